@@ -1,4 +1,4 @@
-//! What must hold for any bytes, read as segments and polygons: the bodies of the fuzz targets
+//! The laws that hold for any bytes, read as segments and polygons: the bodies of the fuzz targets
 //! `line`, `polygon` and `overlay`, which the tests call as well.
 
 use arbitrary::{Result, Unstructured};
@@ -8,7 +8,7 @@ use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, vatti};
 use durer::math::{DVec2, Rect};
 use durer::trace::NoTrace;
 
-/// A number: on a tiny grid, where everything touches, of usual size, or any there is.
+/// Returns A number: on a tiny grid, where everything touches, of usual size, or any there is.
 fn number(u: &mut Unstructured<'_>, kind: u8) -> Result<f64> {
     Ok(match kind {
         0 => f64::from(u.int_in_range(-4i8..=4)?),
@@ -152,7 +152,8 @@ fn any_overlay(
     Ok(())
 }
 
-/// What snapping may change of four areas: all edges times the diagonal of a cell, and rounding.
+/// Returns a bound on the change of four areas by snapping: all edges times the diagonal of a cell,
+/// and rounding.
 fn bound(a: &Shapes, b: &Shapes, cell: f64) -> f64 {
     let around =
         |r: &[DVec2]| (0..r.len()).map(|i| r[i].distance(r[(i + 1) % r.len()])).sum::<f64>();

@@ -1,5 +1,5 @@
-//! What must hold for any bytes, read as a drawing: the body of the fuzz target `drawing`, which the
-//! tests call as well.
+//! The laws that hold for any bytes, read as a drawing: the body of the fuzz target `drawing`, which
+//! the tests call as well.
 
 use arbitrary::{Result, Unstructured};
 use durer::math::{DAffine2, DVec2};
@@ -117,7 +117,7 @@ fn draw(bytes: &[u8]) {
     canvas.render(&mut Pixels::new(24, 17, [0; 4])).expect("the same size");
 }
 
-/// A document that is well-formed.
+/// Returns A document that is well-formed.
 fn text(bytes: &[u8]) -> Result<String> {
     let mut u = Unstructured::new(bytes);
     let mut text = "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='15'>".to_owned();

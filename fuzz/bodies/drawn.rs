@@ -19,7 +19,7 @@ fn seen(data: &[u8]) -> Option<(Scene, View)> {
     Some((scene(&mut bytes), view))
 }
 
-/// The same triangles, the last first.
+/// Returns the same triangles, the last first.
 fn reversed(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     for mesh in &mut scene.meshes {
@@ -31,7 +31,7 @@ fn reversed(scene: &Scene) -> Scene {
     scene
 }
 
-/// Height of the picture where the target is, in units of the scene.
+/// Returns the height of the picture where the target is, in units of the scene.
 fn height(view: &View) -> f64 {
     let camera = view.camera();
     match camera.projection {
@@ -79,7 +79,7 @@ pub fn regions(data: &[u8]) {
     assert!(items.iter().all(|r| r.item < count && r.area() >= 0.0));
 }
 
-/// The length of all borders.
+/// Returns the length of all borders.
 fn length(regions: &[VisibleRegion]) -> f64 {
     let around = |ring: &Vec<DVec2>| {
         let next = ring.iter().cycle().skip(1);

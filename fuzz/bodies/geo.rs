@@ -1,6 +1,6 @@
-//! What must hold for any bytes, read as map data: the bodies of the fuzz targets `geojson`, `wkt`,
-//! `wkb`, `svg`, `shapefile`, `flatgeobuf`, `geopackage`, `geoparquet`,
-//! `topojson`, `csv`, `kml` and `gpx`, which the tests call as well.
+//! The laws that hold for any bytes, read as map data: the bodies of the fuzz targets `geojson`,
+//! `wkt`, `wkb`, `svg`, `shapefile`, `flatgeobuf`, `geopackage`, `geoparquet`, `topojson`, `csv`,
+//! `kml` and `gpx`, which the tests call as well.
 
 use super::words::text;
 use arbitrary::{Result, Unstructured};
@@ -22,7 +22,7 @@ fn round_trip(format: GeoFormat, bytes: &[u8]) {
     assert_eq!(write(format, &second), text, "{}", String::from_utf8_lossy(&text));
 }
 
-/// All features, where there is no error.
+/// Returns all features, where there is no error.
 fn read(format: GeoFormat, bytes: &[u8]) -> Option<Vec<Feature>> {
     let mut reader = Reader::new(format, bytes).ok()?;
     let mut features = Vec::new();

@@ -71,7 +71,7 @@ impl Made<'_, '_> {
         Ok(format!("[{}]", numbers.join(",")))
     }
 
-    /// An index of one of so many, hardly ever another number.
+    /// Returns an index of one of so many, hardly ever another number.
     fn index(&mut self, count: usize) -> Result<String> {
         if self.rarely(32)? {
             self.number()
@@ -423,7 +423,7 @@ impl Made<'_, '_> {
 /// A picture of four pixels, two of them transparent.
 const IMAGE: &str = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAYAAABytg0kAAAAFElEQVR4nGP4z8DwHwgbGMA0EAAAP9cIeY8TiooAAAAASUVORK5CYII=";
 
-/// The buffer: corners of boxes, indices of boxes, then the input over and over.
+/// Returns the buffer: corners of boxes, indices of boxes, then the input over and over.
 fn buffer(rest: &[u8]) -> Vec<u8> {
     let mut buffer = Vec::with_capacity(BUFFER);
     for i in 0..FLOATS / 4 {

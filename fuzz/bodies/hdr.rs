@@ -1,5 +1,5 @@
-//! What must hold for any bytes, read as a picture with a wide range of brightness: the body of the fuzz
-//! target `hdr`, which the tests call as well.
+//! The laws that hold for any bytes, read as a picture with a wide range of brightness: the body of the
+//! fuzz target `hdr`, which the tests call as well.
 
 use durer_formats::Limits;
 use durer_formats::hdr::read;

@@ -1,6 +1,6 @@
-//! What must hold for any bytes, read as a model: the bodies of the fuzz targets `gltf`, `draco`,
-//! `image`, `meshopt`, `obj`, `mtl`, `stl`, `ply`, `threemf`, `collada`, `fbx`, `off`, `las`, `e57` and `xyz`, which
-//! the tests call as well.
+//! The laws that hold for any bytes, read as a model: the bodies of the fuzz targets `gltf`, `draco`, `image`,
+//! `meshopt`, `obj`, `mtl`, `stl`, `ply`, `threemf`, `collada`, `fbx`, `off`, `las`, `e57` and `xyz`, which the
+//! tests call as well.
 
 use arbitrary::{Result, Unstructured};
 use durer::scene::Scene;
@@ -10,7 +10,7 @@ use durer_formats::{
 };
 use std::io::{Cursor, Write};
 
-/// Small enough for many runs a second.
+/// Returns small enough for many runs a second.
 pub fn options() -> ReadOptions {
     let limits = Limits {
         primitives: 10_000,
@@ -42,7 +42,7 @@ fn check(model: durer_formats::Result<Model>) {
     }
 }
 
-/// The bits of positions and colours of all corners of a scene's first mesh.
+/// Returns the bits of positions and colours of all corners of a scene's first mesh.
 fn corners(scene: &Scene) -> Vec<[u32; 7]> {
     let Some(mesh) = scene.meshes.first() else { return Vec::new() };
     let vertex = |i: usize| mesh.indices.as_ref().map_or(i, |indices| indices[i] as usize);
@@ -112,7 +112,7 @@ pub fn gltf(bytes: &[u8]) {
     }
 }
 
-/// A document whose numbers come from the input, so that most of it is well formed.
+/// Returns A document whose numbers come from the input, so that most of it is well formed.
 fn document(bytes: &[u8]) -> Result<(String, &[u8])> {
     let mut u = Unstructured::new(bytes);
     let mut small = |most: u32| u.int_in_range(0..=most);
@@ -143,7 +143,7 @@ fn document(bytes: &[u8]) -> Result<(String, &[u8])> {
     Ok((json, u.take_rest()))
 }
 
-/// A GLB of a JSON text and a buffer.
+/// Returns A GLB of a JSON text and a buffer.
 pub fn glb(json: &str, buffer: &[u8]) -> Vec<u8> {
     let json = format!("{json}{}", " ".repeat(json.len().wrapping_neg() % 4));
     let word = |v: usize| (v as u32).to_le_bytes();
@@ -202,7 +202,7 @@ fn meshopt_document<'a>(u: &mut Unstructured<'a>) -> Result<(String, &'a [u8])> 
     Ok((json, data))
 }
 
-/// A text of the format's words, with numbers and bytes between.
+/// Returns A text of the format's words, with numbers and bytes between.
 fn text(bytes: &[u8], words: &[&str]) -> Result<Vec<u8>> {
     let mut u = Unstructured::new(bytes);
     let mut text = Vec::new();
@@ -256,7 +256,8 @@ pub fn obj(bytes: &[u8]) {
     check(obj::read(&outline(bytes), &NoResources, &options()));
 }
 
-/// One face, with a corner for each byte, on a grid so small that outlines touch and cross everywhere.
+/// Returns one face, with a corner for each byte, on a grid so small that outlines touch and cross
+/// everywhere.
 fn outline(bytes: &[u8]) -> Vec<u8> {
     let mut text = Vec::new();
     for byte in bytes.iter().take(64) {
@@ -610,7 +611,7 @@ const COLLADA: &[&str] = &[
     "\"",
 ];
 
-/// What a mesh of words is shown by.
+/// Scene that shows a mesh of words.
 const SHOWN: &str = "<library_visual_scenes><visual_scene><node><instance_geometry url=\"#g\"/></node>\
     </visual_scene></library_visual_scenes></COLLADA>";
 

@@ -1,5 +1,5 @@
-//! What must hold for any bytes, read as a height map or as a formula: the bodies of the fuzz targets
-//! `height_map` and `formula`, which the tests call as well.
+//! The laws that hold for any bytes, read as a height map or as a formula: the bodies of the fuzz
+//! targets `height_map` and `formula`, which the tests call as well.
 
 use super::words::text;
 use durer::math::DVec3;
@@ -13,7 +13,8 @@ use durer_formats::height_map::{HeightMapOptions, read};
 /// Points of a surface that is drawn at most, so that one run stays short.
 const POINTS: usize = 2048;
 
-/// A camera that looks at a box of any size, from above the front or from a side that `turn` chooses.
+/// Returns A camera that looks at a box of any size, from above the front or from a side that `turn`
+/// chooses.
 fn camera(field: &HeightField, turn: u8) -> Option<Camera> {
     let bounds = field.bounds()?;
     let (center, reach) = (bounds.center(), bounds.size().length().max(1e-3));

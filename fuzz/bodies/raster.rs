@@ -1,5 +1,5 @@
-//! What must hold for any bytes, read as paths, strokes, lines and images: the bodies of the fuzz targets
-//! `raster` and `seed_fill`, which the tests call as well.
+//! The laws that hold for any bytes, read as paths, strokes, lines and images: the bodies of the fuzz
+//! targets `raster` and `seed_fill`, which the tests call as well.
 
 use arbitrary::{Result, Unstructured};
 use durer::curve::{Contours, Path, PathElement, flatten};
@@ -14,7 +14,8 @@ use durer::target::Pixels;
 use durer::trace::NoTrace;
 use std::sync::Arc;
 
-/// A number: on a tiny grid, where everything touches, around a small target, far away, or any there is.
+/// Returns A number: on a tiny grid, where everything touches, around a small target, far away, or any
+/// there is.
 fn number(u: &mut Unstructured<'_>, kind: u8) -> Result<f64> {
     Ok(match kind {
         0 => f64::from(u.int_in_range(-2i8..=18)?),
@@ -115,7 +116,7 @@ fn any_fill(contours: &Contours, rule: FillRule, size: (u32, u32)) {
     assert_eq!(spans, other, "{rule:?} {size:?} {contours:?}");
 }
 
-/// The outline, of finite points, unless the style is wrong.
+/// Returns the outline, of finite points, unless the style is wrong.
 fn any_stroke(path: &Path, stroke: &Stroke) -> Option<Contours> {
     let length = |v: f64| v.is_finite() && v >= 0.0;
     let good = length(stroke.width)
@@ -136,7 +137,7 @@ const NEAR: f64 = 1e4;
 /// The outline's tolerance, that of the chain it is compared with, and rounding.
 const WITHIN: f64 = 0.1 + 0.01 + 1e-3;
 
-/// How often an outline goes round a point.
+/// Returns how often an outline winds around a point.
 fn winding(outline: &Contours, p: DVec2) -> i32 {
     let mut winding = 0;
     for (points, _) in outline.iter() {
@@ -172,7 +173,7 @@ fn is_finite(element: &PathElement) -> bool {
     }
 }
 
-/// The path without what only moves, which has no stroke.
+/// Returns the path without what only moves, which has no stroke.
 fn drawn(path: &Path) -> Path {
     let (mut out, mut moved, mut open) = (Path::new(), None, false);
     for element in path.elements() {
@@ -191,8 +192,8 @@ fn drawn(path: &Path) -> Path {
     out
 }
 
-/// What a stroke covers lies within its reach; round ones cover all that is within half their width; and no
-/// point is passed backwards, which would cancel what lies on it.
+/// Checks that a stroke covers only points within its reach; that round ones cover everything within half
+/// their width; and that no point is passed backwards, which would cancel the area around it.
 fn any_reach(
     u: &mut Unstructured<'_>,
     path: &Path,

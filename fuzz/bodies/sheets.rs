@@ -78,7 +78,7 @@ fn annotations(bytes: &mut Bytes<'_>) -> Annotations {
     }
 }
 
-/// A scene, perhaps cut and pulled apart.
+/// Returns A scene, perhaps cut and pulled apart.
 fn model(bytes: &mut Bytes<'_>) -> Scene {
     let mut scene = scene(bytes);
     if bytes.next().is_multiple_of(2) {
@@ -150,7 +150,7 @@ pub fn sheet(data: &[u8]) {
     paper::paint(laid.sheet, 40, 30, [255; 4]).expect("small");
 }
 
-/// Height of the picture where the target is, in units of the scene.
+/// Returns the height of the picture where the target is, in units of the scene.
 fn height(camera: &Camera) -> f64 {
     match camera.projection {
         Projection::Orthographic { height } => height,

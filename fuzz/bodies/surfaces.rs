@@ -48,7 +48,7 @@ impl Bytes<'_> {
     }
 }
 
-/// A texture of any size, wrap mode and transparency, with a mip chain or without.
+/// Returns A texture of any size, wrap mode and transparency, with a mip chain or without.
 fn texture(number: usize) -> (Image, Sampler) {
     let (width, height) = (1 + number as u32 * 5 % 37, 1 + number as u32 * 7 % 53);
     let data = (0..width * height).map(|i| {
@@ -61,7 +61,7 @@ fn texture(number: usize) -> (Image, Sampler) {
     (Image { name: String::new(), width, height, data: data.collect() }, sampler)
 }
 
-/// Opaque, blended and masked triangles, up to 64; two scenes of three have a texture.
+/// Returns opaque, blended and masked triangles, up to 64; two scenes of three have a texture.
 pub fn scene(bytes: &mut Bytes<'_>) -> Scene {
     let count = 1 + bytes.next() as usize % TRIANGLES;
     let mut triangles: Vec<[Vec3; 3]> = Vec::new();

@@ -2,7 +2,8 @@
 
 use arbitrary::{Result, Unstructured};
 
-/// A text of words of a format, with numbers, and with bytes between where the input says so.
+/// Returns A text of words of a format, with numbers, and with bytes between where the input says
+/// so.
 pub fn text(bytes: &[u8], words: &[&str]) -> Result<Vec<u8>> {
     let mut u = Unstructured::new(bytes);
     let mut text = Vec::new();

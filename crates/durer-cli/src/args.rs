@@ -17,10 +17,10 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 #[derive(Debug, Parser)]
 #[command(name = "durer", version, about = ABOUT, after_help = EXIT_CODES, after_long_help = format!("{}\n\n{EXIT_CODES}", crate::config::HELP), max_term_width = 100)]
 pub struct Cli {
-    /// What to do.
+    /// Subcommand to run.
     #[command(subcommand)]
     pub command: Command,
-    /// Where further options are.
+    /// File with further options.
     #[command(flatten)]
     pub config: ConfigArgs,
 }

@@ -14,7 +14,7 @@ pub const FOV: f64 = 30.0;
 /// The part of the picture that a fitted model leaves free at each border.
 const MARGIN: f64 = 0.03;
 
-/// Which picture of those that the options ask for.
+/// Selection of one picture from those that the options ask for.
 #[derive(Debug, Clone, Copy)]
 pub struct Shot {
     /// The view of a viewport; `None` = the one of the view options.
@@ -26,7 +26,7 @@ pub struct Shot {
 }
 
 impl Shot {
-    /// The only picture, or one frame of a turntable.
+    /// Returns the only picture, or one frame of a turntable.
     pub fn of(picture: &PictureArgs, frame: Option<u32>) -> Self {
         Self { view: None, size: picture.size, turn: frame.zip(picture.turntable) }
     }
@@ -35,7 +35,7 @@ impl Shot {
         f64::from(self.size.width) / f64::from(self.size.height)
     }
 
-    /// How far the turntable has turned, in degrees.
+    /// Returns how far the turntable has turned, in degrees.
     fn turned(&self) -> f64 {
         self.turn.map_or(0.0, |(frame, count)| 360.0 * f64::from(frame) / f64::from(count))
     }
@@ -117,12 +117,12 @@ impl Sights for &Scene {
     }
 }
 
-/// The camera of one picture of a scene.
+/// Returns the camera of one picture of a scene.
 pub fn camera(args: &ViewArgs, mut scene: &Scene, shot: &Shot) -> Result<Camera, Failure> {
     camera_by(args, &mut scene, shot)
 }
 
-/// The camera of one picture.
+/// Returns the camera of one picture.
 pub fn camera_by(args: &ViewArgs, scene: &mut impl Sights, shot: &Shot) -> Result<Camera, Failure> {
     let mut camera = if let Some(name) = &args.camera {
         of_file(name, scene, shot)?
@@ -138,7 +138,8 @@ pub fn camera_by(args: &ViewArgs, scene: &mut impl Sights, shot: &Shot) -> Resul
     Ok(camera)
 }
 
-/// Where one of near and far was given beyond the other, which comes from the model, moves the latter.
+/// Moves the clipping distance that comes from the model where the other one, given by the user, lies
+/// beyond it.
 fn keep_order(args: &ViewArgs, camera: &mut Camera) {
     if camera.near < camera.far {
         return;
@@ -151,7 +152,7 @@ fn keep_order(args: &ViewArgs, camera: &mut Camera) {
     }
 }
 
-/// A camera of the file, turned around the middle of the model.
+/// Returns A camera of the file, turned around the middle of the model.
 fn of_file(name: &str, scene: &mut impl Sights, shot: &Shot) -> Result<Camera, Failure> {
     let found = scene.cameras().iter().find(|c| c.name == name).ok_or_else(|| {
         let names: Vec<&str> = scene.cameras().iter().map(|c| c.name.as_str()).collect();
@@ -169,7 +170,7 @@ fn of_file(name: &str, scene: &mut impl Sights, shot: &Shot) -> Result<Camera, F
     Ok(turned(camera, pivot, scene.up_axis(), shot))
 }
 
-/// A camera in a given place, turned around its target.
+/// Returns A camera in a given place, turned around its target.
 fn at(
     eye: DVec3,
     args: &ViewArgs,
@@ -198,7 +199,7 @@ fn projection(args: &ViewArgs) -> Projection {
     }
 }
 
-/// The camera after the share of a full turn around the up axis through the pivot.
+/// Returns the camera after the share of a full turn around the up axis through the pivot.
 fn turned(camera: Camera, pivot: DVec3, up_axis: UpAxis, shot: &Shot) -> Camera {
     let half = shot.turned().to_radians() * 0.5;
     if half == 0.0 {
@@ -212,7 +213,7 @@ fn turned(camera: Camera, pivot: DVec3, up_axis: UpAxis, shot: &Shot) -> Camera 
     Camera { eye, target, up: turn * camera.up, ..camera }
 }
 
-/// A camera that sees the whole model; the same distance for all frames of a turntable.
+/// Returns A camera that sees the whole model; the same distance for all frames of a turntable.
 fn fitted(args: &ViewArgs, scene: &mut impl Sights, shot: &Shot) -> Result<Camera, Failure> {
     let (azimuth, elevation) = match (shot.view, args.azimuth, args.elevation) {
         (Some(view), ..) => view.angles(),

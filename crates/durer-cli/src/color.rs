@@ -4,18 +4,18 @@ use durer::math::Vec4;
 use durer::pipeline::Background;
 use durer::shade::color::LINEAR_FROM_SRGB;
 
-/// What `--background gradient` means: a bright sky over a light grey.
+/// Colours of `--background gradient`: a bright sky over a light grey.
 const GRADIENT: (&str, &str) = ("#9fb7d4", "#f2f4f7");
 
-/// A linear RGBA colour from what [`bytes`] takes.
+/// Returns A linear RGBA colour from what [`bytes`] takes.
 pub fn color(text: &str) -> Result<Vec4, String> {
     let [r, g, b, a] = bytes(text)?;
     let linear = |channel: u8| LINEAR_FROM_SRGB[usize::from(channel)];
     Ok(Vec4::new(linear(r), linear(g), linear(b), f32::from(a) / 255.0))
 }
 
-/// A colour of CSS as sRGB bytes with straight alpha: a name of CSS 4, `#rgb`, `#rrggbb` (both also with alpha), `rgb()`,
-/// `rgba()`, `hsl()` or `hsla()`.
+/// Returns A colour of CSS as sRGB bytes with straight alpha: a name of CSS 4, `#rgb`, `#rrggbb` (both also
+/// with alpha), `rgb()`, `rgba()`, `hsl()` or `hsla()`.
 pub fn bytes(text: &str) -> Result<[u8; 4], String> {
     durer_formats::css::color(text).ok_or_else(|| {
         "a colour is a name of CSS 4, #rgb, #rrggbb, #rrggbbaa, rgb(R,G,B), rgba(R,G,B,A) or hsl(H,S%,L%)"
@@ -23,7 +23,7 @@ pub fn bytes(text: &str) -> Result<[u8; 4], String> {
     })
 }
 
-/// A colour, `gradient`, or `TOP,BOTTOM`.
+/// Returns A colour, `gradient`, or `TOP,BOTTOM`.
 pub fn background(text: &str) -> Result<Background, String> {
     match split(text) {
         _ if text == "gradient" => Ok(Background::Gradient(color(GRADIENT.0)?, color(GRADIENT.1)?)),
@@ -34,7 +34,7 @@ pub fn background(text: &str) -> Result<Background, String> {
     }
 }
 
-/// What is before and after the first comma that is in no brackets.
+/// Splits at the first comma outside brackets.
 fn split(text: &str) -> Option<(&str, &str)> {
     let mut depth = 0;
     let comma = text.find(|c| {

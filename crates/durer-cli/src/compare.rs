@@ -30,7 +30,7 @@ const PAPER: Color = [236, 236, 238, 255];
 const INK: Color = [24, 24, 28, 255];
 const ALARM: Color = [190, 20, 20, 255];
 
-/// Black lines on the background.
+/// Returns black lines on the background.
 pub fn wireframe(scene: &Scene, options: &RenderOptions) -> durer::Result<Framebuffer> {
     options.check()?;
     scene.check()?;
@@ -49,8 +49,8 @@ pub fn wireframe(scene: &Scene, options: &RenderOptions) -> durer::Result<Frameb
     Ok(framebuffer)
 }
 
-/// The pictures of all algorithms, each as large as was asked for, with their names and the number of
-/// pixels whose item is not the z-buffer's.
+/// Returns the pictures of all algorithms, each as large as was asked for, with their names and the
+/// number of pixels whose item is not the z-buffer's.
 pub fn sheet(
     scene: &Scene,
     options: &RenderOptions,
@@ -71,7 +71,7 @@ pub fn sheet(
     lay_out(&compared, options).map_err(usage)
 }
 
-/// Columns of a sheet: about as wide as high.
+/// Returns columns of a sheet: about as wide as high.
 fn columns(count: u32, width: u32, height: u32) -> u32 {
     let (w, h) = (f64::from(width + GAP), f64::from(height + LABEL + GAP));
     let fits = |&c: &u32| f64::from(c) * w >= f64::from(count.div_ceil(c)) * h;

@@ -19,7 +19,7 @@ const NAME: &str = "durer.toml";
 /// More than anybody writes.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// What is said about it at the end of the help.
+/// Text about the file of options at the end of the help.
 pub const HELP: &str = "\
 Options can stand in a file, `durer.toml` in the current folder or --config FILE, each under its command:
   [render]
@@ -29,7 +29,7 @@ Options can stand in a file, `durer.toml` in the current folder or --config FILE
 Flags are true or false, lists of numbers may be arrays, and paths are relative to the file. What is on \
 the command line wins over the file; --no-config leaves the file out.";
 
-/// Where further options are.
+/// File with further options.
 #[derive(Debug, Clone, Args)]
 pub struct ConfigArgs {
     /// Take further options from this file [default: durer.toml, where there is one]
@@ -44,7 +44,7 @@ pub struct ConfigArgs {
 pub struct Configured {
     /// Knows the defaults.
     pub command: Command,
-    /// As it was given, but for what a file can only say in its words.
+    /// Arguments as given, except for values that a file can only write in its own words.
     pub line: Vec<OsString>,
     /// The file, where there is one.
     pub file: Option<PathBuf>,
@@ -78,7 +78,7 @@ pub fn configured(command: Command, line: Vec<OsString>) -> Result<Configured, F
     Ok(Configured { command, line, file: Some(file) })
 }
 
-/// The file that is named, or the one that is there.
+/// Returns the file that is named, or the one that is there.
 fn file(given: &ArgMatches) -> Option<PathBuf> {
     if given.get_flag("no_config") {
         return None;
@@ -98,7 +98,7 @@ fn is_given(given: &ArgMatches, arg: &Arg) -> bool {
     known && given.value_source(id) == Some(ValueSource::CommandLine)
 }
 
-/// Whether an option that was given takes the place of a setting.
+/// Returns whether an option that was given takes the place of a setting.
 fn excluded(sub: &Command, setting: &Setting, given: &Arg) -> bool {
     let excludes = |a: &Arg, id: &clap::Id| {
         sub.get_arg_conflicts_with(a).iter().any(|other| other.get_id() == id)
@@ -121,7 +121,7 @@ fn check_pairs(file: &Path, settings: &[Setting], sub: &Command) -> Result<(), F
     Ok(())
 }
 
-/// The command line with settings right behind the command's name.
+/// Returns the command line with settings right behind the command's name.
 fn with_words(mut line: Vec<OsString>, name: &str, settings: &[Setting]) -> Vec<OsString> {
     let words = settings.iter().flat_map(Setting::words).map(OsString::from);
     // The name is the first word that is not an option, nor the file of --config.

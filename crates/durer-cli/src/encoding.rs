@@ -1,4 +1,4 @@
-//! How pictures are put into bytes: options that all commands share.
+//! The encoding of pictures: options that all commands share.
 
 use crate::failure::Failure;
 use crate::kind::Kind;
@@ -8,19 +8,19 @@ use clap::{Args, ValueEnum};
 use durer::target::Pixels;
 use durer_formats::picture::{self, Encoding, PictureFormat};
 
-/// What is told of a JPEG whose picture was not opaque.
+/// Warning for a JPEG whose picture was not opaque.
 pub const FLATTENED: &str = "a JPEG has no transparency; what is not opaque lies on white";
 
 /// Formats and sizes of files.
 #[derive(Debug, Clone, Args)]
 pub struct EncodingArgs {
-    /// How small a PNG is to be: `fast` or `small`; the pixels are the same
+    /// Effort of PNG compression: `fast` or `small`; the pixels are the same
     #[arg(long, value_name = "HOW", default_value = "fast")]
     pub compression: Compression,
-    /// How fine a JPEG is, 1 to 100 [default: 90]
+    /// Quality of a JPEG, 1 to 100 [default: 90]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u8).range(1..=100))]
     pub quality: Option<u8>,
-    /// Whether the quality is from the command line, and not from a file of options.
+    /// True if the quality is from the command line, and not from a file of options.
     #[arg(skip)]
     pub quality_given: bool,
 }
@@ -65,7 +65,7 @@ impl EncodingArgs {
         Ok(())
     }
 
-    /// What the encoders take.
+    /// Returns the options in the form that encoders take.
     pub fn encoding(&self) -> Encoding {
         let default = Encoding::default();
         Encoding {

@@ -1,4 +1,4 @@
-//! What surrounds the model, as `--environment` takes it.
+//! The value of `--environment`: the light around the model.
 
 use crate::failure::Failure;
 use crate::input;

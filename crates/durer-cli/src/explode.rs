@@ -6,7 +6,7 @@ use clap::Args;
 use durer::scene::Scene;
 use durer::view::explode::{self, Way};
 
-/// How the parts of assemblies are moved apart.
+/// Options that move the parts of assemblies apart.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Section")]
 pub struct ExplodeArgs {

@@ -1,11 +1,11 @@
-//! How the command ends when it does not end well.
+//! The ways in which the command fails.
 
 use durer_formats::told::{message, shown_path};
 use std::fmt;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Why the command stops.
+/// Reason why the command stops.
 #[derive(Debug)]
 pub enum Failure {
     /// Data that is wrong, or a file that cannot be read or written.
@@ -21,7 +21,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The exit code of the process.
+    /// Returns the exit code of the process.
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::ClosedPipe => ExitCode::SUCCESS,
@@ -37,7 +37,7 @@ impl Failure {
         if error.is_of_budget() { Self::Refused(message) } else { Self::Usage(message) }
     }
 
-    /// The failure with the file's name, where that is missing.
+    /// Returns the failure with the file's name, where that is missing.
     pub fn named(self, name: &str) -> Self {
         match self {
             Self::Refused(message) => Self::Data(format!("{name}: {message}")),
@@ -45,12 +45,12 @@ impl Failure {
         }
     }
 
-    /// A failure of a file: its name, then what is wrong with it.
+    /// Creates A failure of a file: its name, then what is wrong with it.
     pub fn of_file(file: &Path, what: impl fmt::Display) -> Self {
         Self::Data(format!("{}: {what}", shown_path(file)))
     }
 
-    /// A failed write to standard output.
+    /// Creates A failed write to standard output.
     pub fn of_stdout(error: &std::io::Error) -> Self {
         match error.kind() {
             std::io::ErrorKind::BrokenPipe => Self::ClosedPipe,
@@ -80,7 +80,7 @@ pub fn tell_of_large_files() {
     }
 }
 
-/// The system's message without the number that Rust adds.
+/// Returns the system's message without the number that Rust adds.
 pub fn in_words(error: &std::io::Error) -> String {
     let text = error.to_string();
     match text.find(" (os error") {

@@ -39,7 +39,7 @@ pub struct FillArgs {
     /// A PNG or JPEG; `-` reads standard input
     #[arg(value_name = "IMAGE", value_hint = ValueHint::FilePath)]
     pub image: PathBuf,
-    /// Where the picture goes
+    /// File to write the picture to
     ///
     /// A .png, .jpg or .webp file, or `-` for standard output. A file is replaced only by a whole picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
@@ -53,11 +53,11 @@ pub struct FillArgs {
     /// The colour that filled pixels get, also one that is not opaque
     #[arg(long, value_name = "COLOR", value_parser = color::bytes)]
     pub color: [u8; 4],
-    /// How much a pixel may differ from the one started from (with --boundary: from the boundary's
-    /// colour) in any channel, 0 to 255
+    /// Largest difference in any channel, 0 to 255, from the pixel where the fill starts (with
+    /// --boundary: from the boundary's colour)
     #[arg(long, value_name = "T", default_value = "0", allow_hyphen_values = true)]
     pub tolerance: u8,
-    /// Whether pixels that touch at corners are neighbours
+    /// Neighbourhood of pixels: 4, or 8 with those that touch at corners
     #[arg(long, value_name = "N", default_value = "4")]
     pub connectivity: Connectivity,
     /// Fill up to this colour, whatever is inside [default: fill what is like the first pixel]
@@ -96,7 +96,7 @@ fn method(name: &str) -> Result<SeedFill, String> {
     name.parse().map_err(|_| format!("it must be one of {}", names.join(", ")))
 }
 
-/// What `--json` says.
+/// Report of `--json`.
 #[derive(Debug, Serialize)]
 struct Report {
     version: &'static str,
@@ -115,7 +115,7 @@ struct Report {
 struct Fill {
     x: u32,
     y: u32,
-    /// How many pixels it reached.
+    /// Number of pixels that it reached.
     pixels: u64,
 }
 
@@ -201,7 +201,7 @@ impl Picture {
         Ok(Self::Eight(orientation.turned(pixels.map_err(|e| fail(e.into()))?)))
     }
 
-    /// Width and height.
+    /// Returns the width and height.
     fn size(&self) -> (u32, u32) {
         match self {
             Self::Eight(pixels) => (pixels.width(), pixels.height()),
@@ -255,7 +255,7 @@ impl Picture {
     }
 }
 
-/// The nearest colours of eight bits per channel.
+/// Returns the nearest colours of eight bits per channel.
 fn eight_bits(pixels: &Pixels<[u16; 4]>) -> Result<Pixels<[u8; 4]>, Failure> {
     let nearest = |v: u16| ((u32::from(v) + 128) / 257) as u8;
     let data = pixels.data().iter().map(|p| p.map(nearest)).collect();
@@ -263,7 +263,7 @@ fn eight_bits(pixels: &Pixels<[u16; 4]>) -> Result<Pixels<[u8; 4]>, Failure> {
         .map_err(|e| Failure::Data(e.to_string()))
 }
 
-/// The pixel in which a point lies.
+/// Returns the pixel in which a point lies.
 fn place(at: DVec2, (width, height): (u32, u32)) -> Result<(u32, u32), Failure> {
     let inside = |v: f64, side: u32| v >= 0.0 && v < f64::from(side);
     if inside(at.x, width) && inside(at.y, height) {

@@ -1,4 +1,4 @@
-//! Where the frames of a model go: each to a file, or all to one that is written while they come.
+//! The output of a model's frames: a file for each, or one file written as they come.
 
 use crate::beside::Beside;
 use crate::encoding::EncodingArgs;
@@ -17,7 +17,7 @@ use std::path::Path;
 /// Frames a second, where nothing is said.
 const FRAMES_PER_SECOND: f64 = 24.0;
 
-/// How frames go into one file.
+/// Timing and format of frames in one file.
 #[derive(Debug, Clone, Copy)]
 pub struct Plan {
     format: AnimationFormat,
@@ -33,7 +33,7 @@ pub struct Film<'a> {
 }
 
 impl<'a> Film<'a> {
-    /// An animation with nothing in it; no file is touched yet.
+    /// Creates an animation with nothing in it; no file is touched yet.
     pub fn new(path: &'a Path, plan: Plan) -> Self {
         Self { path, plan, growing: None }
     }
@@ -59,7 +59,7 @@ impl<'a> Film<'a> {
     }
 }
 
-/// A file beside the place, or what is special there itself.
+/// Returns A file beside the place, or what is special there itself.
 fn open(path: &Path) -> io::Result<(File, Option<Beside>)> {
     if output::is_special(path) {
         return Ok((OpenOptions::new().write(true).open(path)?, None));
@@ -68,7 +68,7 @@ fn open(path: &Path) -> io::Result<(File, Option<Beside>)> {
     Ok((beside.file()?, Some(beside)))
 }
 
-/// How all frames of a turntable go into one file, where that is asked for.
+/// Returns the plan for all frames of a turntable in one file, if the options ask for that.
 pub fn wanted(args: &RenderArgs, kind: Kind) -> Result<Option<Plan>, Failure> {
     let picture = &args.picture;
     let (gif, one) = (kind == Kind::Gif, output::is_one_file(&args.output));
@@ -103,7 +103,7 @@ fn is_opaque(background: &Background) -> bool {
     }
 }
 
-/// How long all frames are shown, in seconds; refuses what the format cannot say.
+/// Returns the time that all frames take, in seconds; refuses times that the format cannot store.
 fn seconds(
     format: AnimationFormat,
     frames: u32,
@@ -123,7 +123,7 @@ fn seconds(
     )))
 }
 
-/// One target for each model, as often as it has frames.
+/// Returns one target for each model, as often as it has frames.
 pub fn targets(
     path: &Path,
     stems: &[String],
@@ -140,7 +140,7 @@ pub fn targets(
     Ok(targets.into_iter().flat_map(|target| vec![target; frames]).collect())
 }
 
-/// Where a frame goes.
+/// Destination of a frame.
 pub enum Sink<'a, 'f> {
     /// To a file of its own.
     File(&'a Target),
@@ -149,7 +149,7 @@ pub enum Sink<'a, 'f> {
 }
 
 impl Sink<'_, '_> {
-    /// The name of the file.
+    /// Returns the name of the file.
     pub fn name(&self) -> String {
         match self {
             Self::File(target) => target.to_string(),

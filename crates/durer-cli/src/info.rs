@@ -38,7 +38,7 @@ pub struct InfoArgs {
     pub running: RunningArgs,
 }
 
-/// What a file holds.
+/// Report on a file's contents.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 enum Told {
@@ -55,22 +55,22 @@ impl Told {
     }
 }
 
-/// What a model holds.
+/// Report on a model's contents.
 #[derive(Debug, Serialize)]
 struct Info {
     model: String,
     format: String,
     triangles: u64,
-    /// Of all meshes, before instancing.
+    /// Number of vertices of all meshes, before instancing.
     vertices: u64,
     lines: u64,
     points: u64,
     meshes: usize,
     instances: usize,
     bounds: Option<Bounds>,
-    /// Of all triangles together, in the model's own units; `null` where there are none.
+    /// Area of all triangles together, in the model's own units; `null` if there are none.
     area: Option<f64>,
-    /// Whether the triangles bound a body; `null` where there are none.
+    /// True if the triangles bound a body; `null` where there are none.
     closed: Option<bool>,
     up_axis: &'static str,
     materials: Vec<MaterialInfo>,
@@ -78,7 +78,7 @@ struct Info {
     cameras: Vec<String>,
     lights: Vec<&'static str>,
     animations: Vec<String>,
-    /// Of its materials.
+    /// Names of its material variants.
     variants: Vec<String>,
     plates: Vec<String>,
     extensions: Vec<String>,
@@ -151,7 +151,8 @@ fn tell_all(args: &InfoArgs, messages: &Messages, infos: &mut Vec<Told>) -> Resu
     Ok(())
 }
 
-/// Whether a file holds map data, and no model: by its first bytes, or else by its name. Standard input holds a model.
+/// Returns whether a file holds map data, and no model: by its first bytes, or else by its name. Standard input holds
+/// a model.
 fn is_layer(path: &Path) -> bool {
     if is_stream(path) {
         return false;
@@ -203,7 +204,7 @@ fn of_model(name: String, model: &Model, work: &Work) -> Result<Info, Failure> {
     })
 }
 
-/// What is told of a model that is larger than its budget.
+/// Returns the report on a model that is larger than its budget.
 fn of_pieces(name: String, read: &mut InPieces) -> Result<Info, Failure> {
     let bounds = read.pieces.bounds().map_err(|e| read.failure(&e))?;
     let (mut area, facts) = (0.0, read.facts()?);
@@ -253,7 +254,7 @@ fn add_areas(scene: &Scene, sum: &mut f64) {
     }
 }
 
-/// A name of the file, not too long.
+/// Returns A name of the file, not too long.
 fn short(name: impl AsRef<str>) -> String {
     cut(name.as_ref()).into_owned()
 }
@@ -262,7 +263,7 @@ fn told_bounds(b: Aabb) -> Bounds {
     Bounds { min: b.min.to_array(), max: b.max.to_array(), size: b.size().to_array() }
 }
 
-/// The sum of the triangles' areas, instance by instance.
+/// Returns the sum of the triangles' areas, instance by instance.
 fn area(scene: &Scene) -> Option<f64> {
     let of_instance = |instance: &Instance| {
         let mesh = scene.meshes.get(instance.mesh)?;
@@ -273,7 +274,7 @@ fn area(scene: &Scene) -> Option<f64> {
     (scene.triangle_count() > 0).then_some(sum)
 }
 
-/// The areas of an instance's triangles, of those that are finite.
+/// Returns the areas of an instance's triangles, of those that are finite.
 fn areas(mesh: &Mesh, instance: &Instance) -> impl Iterator<Item = f64> {
     let corner = |v: u32| {
         let p = mesh.positions.get(v as usize).copied().unwrap_or_default();
@@ -283,7 +284,8 @@ fn areas(mesh: &Mesh, instance: &Instance) -> impl Iterator<Item = f64> {
     (0..mesh.triangle_count()).map(area).filter(|area| area.is_finite())
 }
 
-/// Whether all meshes of triangles that are shown are closed, each or together.
+/// Returns whether all visible meshes of triangles are closed, each or together; `None` if it was
+/// not examined.
 fn closed(scene: &Scene, work: &Work) -> durer::Result<Option<bool>> {
     let mut shown = vec![false; scene.meshes.len()];
     for instance in &scene.instances {
@@ -349,7 +351,7 @@ fn light(kind: &LightKind) -> &'static str {
 }
 
 impl Info {
-    /// A line for each fact; facts that are nothing are left out.
+    /// Returns A line for each fact; facts that are nothing are left out.
     fn text(&self) -> String {
         let mut lines = vec![
             ("format", self.format.clone()),
@@ -412,7 +414,7 @@ impl Info {
     }
 }
 
-/// As many digits as coordinates of single precision have.
+/// Formats with as many digits as coordinates of single precision have.
 fn triple(v: &[f64; 3]) -> String {
     let [x, y, z] = v.map(|c| c as f32);
     format!("({x}, {y}, {z})")

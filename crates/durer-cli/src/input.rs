@@ -18,7 +18,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// What messages call an input.
+/// Returns the name of an input in messages.
 pub fn display_name(path: &Path) -> String {
     if is_stream(path) { "standard input".to_owned() } else { shown_path(path) }
 }
@@ -31,7 +31,8 @@ pub fn given_name(path: &Path) -> String {
 /// The squares of larger coordinates are beyond what numbers of double precision hold.
 const FARTHEST: f64 = 1e150;
 
-/// A failure with the file's name, where it comes of a model that lies too far off for any view.
+/// Returns A failure with the file's name, where it comes of a model that lies too far off for any
+/// view.
 pub fn blamed(name: &str, scene: &durer::scene::Scene, failure: Failure) -> Failure {
     let farthest = || scene.bounds().map(|b| b.min.abs().max(b.max.abs()).max_element());
     let too_far = || farthest().is_some_and(|farthest| farthest.is_nan() || farthest > FARTHEST);
@@ -51,7 +52,7 @@ pub fn check_streams(models: &[impl AsRef<Path>]) -> Result<(), Failure> {
     }
 }
 
-/// How models are read, and where what they refer to may lie.
+/// Options for reading models, and the folder that they may refer to.
 #[derive(Debug)]
 pub struct Reading {
     options: ReadOptions,
@@ -60,7 +61,7 @@ pub struct Reading {
     given: [Option<u64>; 2],
 }
 
-/// How models are read.
+/// Returns the options for reading models.
 pub fn read_options(args: &ReadingArgs, work: &Work) -> Reading {
     let default = Limits::default();
     let posed = args.animation.is_some() || args.time.is_some();
@@ -124,13 +125,13 @@ fn read_whole(
         .map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))
 }
 
-/// What stands beside a file, where it is one.
+/// Returns access to the files beside an input, if the input is a file.
 pub fn folder(path: &Path) -> Box<dyn Resources> {
     let folder = if is_stream(path) { None } else { Folder::of(path).ok() };
     folder.map_or_else(|| Box::new(NoResources) as Box<dyn Resources>, |f| Box::new(f))
 }
 
-/// What a model may refer to.
+/// Returns access to the files that a model may refer to.
 fn resources(path: &Path, root: Option<&Path>) -> Result<Box<dyn Resources>, Failure> {
     let of_root = |root: &Path, e: std::io::Error| {
         Failure::Data(format!("--root {}: {}", root.display(), in_words(&e)))
@@ -169,12 +170,13 @@ fn streamed(
     Some(model.map_err(|e| Failure::Data(format!("{}: {e}", display_name(path)))))
 }
 
-/// All bytes of a file, or of standard input, refused above the limit.
+/// Returns all bytes of a file, or of standard input, refused above the limit.
 pub fn bytes(path: &Path, limit: u64) -> Result<Vec<u8>, Failure> {
     bytes_within(path, &Limits { decoded_bytes: limit, ..Limits::default() })
 }
 
-/// All bytes of a file, or of standard input, refused above the limit; they are charged to its work.
+/// Returns all bytes of a file, or of standard input, refused above the limit; they are charged to
+/// its work.
 pub fn bytes_within(path: &Path, limits: &Limits) -> Result<Vec<u8>, Failure> {
     let Limits { decoded_bytes: limit, work, .. } = limits;
     let limit = *limit;
@@ -196,7 +198,7 @@ pub fn bytes_within(path: &Path, limits: &Limits) -> Result<Vec<u8>, Failure> {
     bounded(file, metadata.len(), limit).map_err(fail)
 }
 
-/// All bytes of a source, refused above the limit.
+/// Returns all bytes of a source, refused above the limit.
 fn bounded(source: impl Read, expected: u64, limit: u64) -> Result<Vec<u8>, String> {
     let too_large =
         || format!("it has more bytes than the limit of {limit}; --max-bytes raises it");

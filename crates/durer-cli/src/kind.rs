@@ -1,4 +1,4 @@
-//! What kind of file an output is: by what was told, else by its name.
+//! The kind of an output file: that of the option, or that of its name.
 
 use crate::failure::Failure;
 use durer_formats::drawing::DrawingFormat;
@@ -6,7 +6,7 @@ use durer_formats::picture::PictureFormat;
 use durer_formats::picture::animation::AnimationFormat;
 use std::path::Path;
 
-/// What kind of file a picture becomes.
+/// Kind of file that a picture is written to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Pixels.
@@ -18,16 +18,16 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// What pixels become where nothing else is said.
+    /// Default kind for pixels.
     pub const PNG: Self = Self::Picture(PictureFormat::Png);
 
-    /// The names of all kinds, as `--format` takes them.
+    /// Returns the names of all kinds, as `--format` takes them.
     pub fn names() -> impl Iterator<Item = &'static str> {
         let pictures = PictureFormat::ALL.iter().map(|f| f.name());
         pictures.chain(["gif"]).chain(DrawingFormat::ALL.iter().map(|f| f.name()))
     }
 
-    /// The kind of one of these names; pixels for any other.
+    /// Returns the kind of one of these names; pixels for any other.
     pub fn of_name(name: &str) -> Self {
         let picture = PictureFormat::ALL.iter().find(|f| f.name() == name);
         picture.map(|f| Self::Picture(*f)).or_else(|| Self::of_suffix(name)).unwrap_or(Self::PNG)
@@ -41,17 +41,17 @@ impl Kind {
         picture.or_else(|| DrawingFormat::of_suffix(suffix).map(Self::Drawing))
     }
 
-    /// The kind that a file's name asks for, if any.
+    /// Returns the kind that a file's name asks for, if any.
     fn of_path(path: &Path) -> Option<Self> {
         Self::of_suffix(&path.extension().unwrap_or_default().to_string_lossy())
     }
 
-    /// Whether it has lines and areas instead of pixels.
+    /// Returns whether it has lines and areas instead of pixels.
     pub fn is_vector(self) -> bool {
         matches!(self, Self::Drawing(_))
     }
 
-    /// The format of vectors, where it has them.
+    /// Returns the format of vectors, where it has them.
     pub fn drawing(self) -> Option<DrawingFormat> {
         match self {
             Self::Drawing(format) => Some(format),
@@ -59,7 +59,7 @@ impl Kind {
         }
     }
 
-    /// The format of one picture; PNG where it has none of its own.
+    /// Returns the format of one picture; PNG where it has none of its own.
     pub fn picture(self) -> PictureFormat {
         match self {
             Self::Picture(format) => format,
@@ -67,7 +67,7 @@ impl Kind {
         }
     }
 
-    /// The format of a file with several pictures, where there is one of this kind.
+    /// Returns the format of a file with several pictures, where there is one of this kind.
     pub fn animation(self) -> Option<AnimationFormat> {
         match self {
             Self::Picture(PictureFormat::Png) => Some(AnimationFormat::Png),
@@ -77,7 +77,7 @@ impl Kind {
         }
     }
 
-    /// The largest width and height in pixels, where there are any.
+    /// Returns the largest width and height in pixels, where there are any.
     pub fn max_side(self) -> u32 {
         match self {
             Self::Picture(format) => format.max_side(),
@@ -93,7 +93,7 @@ impl Kind {
         }
     }
 
-    /// What its files' names end in, without a dot.
+    /// Returns the suffix of its files' names, without a dot.
     pub fn suffix(self) -> &'static str {
         match self {
             Self::Picture(format) => format.suffixes().first().copied().unwrap_or_default(),
@@ -108,20 +108,20 @@ impl Kind {
 pub struct Wanted {
     /// The kind.
     pub kind: Kind,
-    /// Whether an option says so, and not the name.
+    /// True if an option says so, and not the name.
     told: bool,
-    /// What names may end in.
+    /// Suffixes of its files' names.
     suffixes: &'static str,
 }
 
 impl Wanted {
-    /// An output of a command that writes pictures and drawings.
+    /// Creates an output of a command that writes pictures and drawings.
     pub fn any(path: &Path, told: Option<Kind>) -> Self {
         let kind = told.or_else(|| Kind::of_path(path)).unwrap_or(Kind::PNG);
         Self { kind, told: told.is_some(), suffixes: ANY }
     }
 
-    /// An output of a command that writes pictures only.
+    /// Creates an output of a command that writes pictures only.
     pub fn picture(path: &Path, told: Option<PictureFormat>) -> Self {
         let of_name = || match Kind::of_path(path) {
             Some(Kind::Picture(format)) => Some(format),
@@ -131,7 +131,7 @@ impl Wanted {
         Self { kind, told: told.is_some(), suffixes: PICTURES }
     }
 
-    /// A picture whose pixels are numbers that must not change.
+    /// Creates A picture whose pixels are numbers that must not change.
     pub fn plane() -> Self {
         Self { kind: Kind::PNG, told: false, suffixes: PLANES }
     }

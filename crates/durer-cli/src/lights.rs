@@ -57,7 +57,7 @@ pub fn exposure(text: &str) -> Result<Exposure, String> {
     }
 }
 
-/// Half the angle of a cone, from degrees to radians.
+/// Returns half the angle of a cone, from degrees to radians.
 fn half_angle(text: &str) -> Result<f64, String> {
     let degrees = number(text)?;
     if degrees > 0.0 && degrees <= 90.0 {

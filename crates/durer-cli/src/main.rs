@@ -76,7 +76,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// What is wrong with options may be wrong in the file of options, which is then named.
+/// Parses the arguments and runs the command; for a wrong option that comes from the file of
+/// options, the error names that file.
 fn parse_and_run() -> Result<(), Failure> {
     let (command, file) = parse()?;
     run(command).map_err(|failure| match (failure, file) {
@@ -87,7 +88,8 @@ fn parse_and_run() -> Result<(), Failure> {
     })
 }
 
-/// The command line, with the options of a file; what was given by hand is noted where that matters.
+/// Returns the command line, with the options of a file; what was given by hand is noted where that
+/// matters.
 fn parse() -> Result<(Command, Option<PathBuf>), Failure> {
     let Configured { command, line, file } =
         config::configured(Cli::command(), std::env::args_os().collect())?;
@@ -136,7 +138,7 @@ fn running(command: &mut Command) -> Option<&mut RunningArgs> {
     })
 }
 
-/// How a command's pictures are put into bytes, where it makes any.
+/// Returns the encoding options of a command that makes pictures.
 fn encoding(command: &mut Command) -> Option<&mut EncodingArgs> {
     match command {
         Command::Render(args) => Some(&mut args.picture.encoding),

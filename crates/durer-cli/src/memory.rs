@@ -1,4 +1,4 @@
-//! How much memory there is, and how much of it the process holds, where Linux tells.
+//! The memory of the machine and of the process, where Linux reports it.
 
 use std::fs;
 use std::path::{Component, Path};
@@ -6,7 +6,8 @@ use std::path::{Component, Path};
 /// No more than this is taken without being asked for.
 const MOST: u64 = 4 << 30;
 
-/// The budget where none is given: half of what the machine, its control group or the limits of the process allow.
+/// Returns the budget where none is given: half of what the machine, its control group or the limits of the
+/// process allow.
 pub fn usual_budget() -> u64 {
     let read = |path: &str| fs::read_to_string(path).ok();
     let machine = read("/proc/meminfo").and_then(|text| kilobytes(&text, "MemTotal:"));
@@ -22,19 +23,20 @@ pub fn held() -> Option<u64> {
     kilobytes(&fs::read_to_string("/proc/self/status").ok()?, "RssAnon:")
 }
 
-/// A number of kilobytes, in bytes, behind a name at the start of a line.
+/// Returns A number of kilobytes, in bytes, behind a name at the start of a line.
 fn kilobytes(text: &str, name: &str) -> Option<u64> {
     let rest = text.lines().find_map(|line| line.strip_prefix(name))?;
     rest.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// The soft limit of the address space, as `ulimit -v` sets it.
+/// Returns the soft limit of the address space, as `ulimit -v` sets it.
 fn address_space(limits: &str) -> Option<u64> {
     let rest = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
     rest.split_whitespace().next()?.parse().ok()
 }
 
-/// The files that may say how much the control groups of the process allow: its own, of both versions, and those above it.
+/// Returns the files that may say how much the control groups of the process allow: its own, of both
+/// versions, and those above it.
 fn group_files(groups: &str) -> Vec<String> {
     let mut files = Vec::new();
     for line in groups.lines() {

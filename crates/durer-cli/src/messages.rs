@@ -1,4 +1,4 @@
-//! What is told on standard error.
+//! Messages on standard error.
 
 use crate::options::RunningArgs;
 use crate::progress::Progress;
@@ -52,7 +52,7 @@ impl Messages {
         }
     }
 
-    /// What was done, for `--verbose`.
+    /// Reports a step for `--verbose`.
     pub fn detail(&self, message: impl FnOnce() -> String) {
         if self.verbose {
             self.progress.tell(&told::message(&format!("durer: {}", message())));

@@ -1,4 +1,4 @@
-//! Where pictures go: one file, many files, or standard output; never half a file.
+//! The output of pictures: one file, many files, or standard output; never half a file.
 
 use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
@@ -21,7 +21,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// Its name in messages.
+    /// Returns its name in messages.
     fn name(&self) -> String {
         match self {
             Self::Stdout => "standard output".to_owned(),
@@ -39,7 +39,7 @@ impl std::fmt::Display for Target {
     }
 }
 
-/// What a picture is called where there are several.
+/// Name of a picture if there are several.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Name {
     /// The model's name without its suffix.
@@ -48,7 +48,7 @@ pub struct Name {
     pub frame: Option<u32>,
 }
 
-/// One target for each name; creates missing folders for what is to be several files.
+/// Returns one target for each name; creates missing folders for what is to be several files.
 pub fn plan(
     option: &str,
     path: &Path,
@@ -123,7 +123,8 @@ fn stdout_target(option: &str) -> Result<Target, Failure> {
     Ok(Target::Stdout)
 }
 
-/// One file, named as its kind, in a folder that is there; or something special such as a device.
+/// Returns one file, named as its kind, in a folder that is there; or something special such as a
+/// device.
 fn single(option: &str, path: &Path, wanted: &Wanted) -> Result<Target, Failure> {
     if is_special(path) {
         return Ok(Target::File(path.to_owned()));
@@ -132,13 +133,13 @@ fn single(option: &str, path: &Path, wanted: &Wanted) -> Result<Target, Failure>
     in_its_folder(path)
 }
 
-/// Whether a name stands for one file: for no folder, for no stream, and not for one file per frame.
+/// Returns whether a name means one file: not a folder, not a stream, and not one file per frame.
 pub fn is_one_file(path: &Path) -> bool {
     let folder = path.is_dir() || ends_in_separator(path) || path.extension().is_none();
     !is_stream(path) && !folder && Pattern::of(path).is_none()
 }
 
-/// One file of any format, or `-` for standard output; nothing is read or written yet.
+/// Returns one file of any format, or `-` for standard output; nothing is read or written yet.
 pub fn file_or_stream(option: &str, path: &Path) -> Result<Target, Failure> {
     if is_stream(path) {
         return stdout_target(option);
@@ -152,7 +153,7 @@ pub fn file_or_stream(option: &str, path: &Path) -> Result<Target, Failure> {
     in_its_folder(path)
 }
 
-/// A file in a folder that is there.
+/// Returns A file in a folder that is there.
 fn in_its_folder(path: &Path) -> Result<Target, Failure> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match fs::metadata(folder) {
@@ -164,7 +165,7 @@ fn in_its_folder(path: &Path) -> Result<Target, Failure> {
     }
 }
 
-/// Whether the path is there and neither a file nor a folder.
+/// Returns whether the path is there and neither a file nor a folder.
 pub fn is_special(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir())
 }
@@ -191,7 +192,8 @@ impl Name {
     }
 }
 
-/// Names without folder and suffix, made different where they are not: by the suffix, then by number.
+/// Returns names without folder and suffix, made different where they are not: by the suffix, then by
+/// number.
 pub fn stems(models: &[impl AsRef<Path>]) -> Vec<String> {
     let part = |p: Option<&std::ffi::OsStr>| p.unwrap_or_default().to_string_lossy().into_owned();
     let stem = |m: &Path| if is_stream(m) { "stdin".to_owned() } else { part(m.file_stem()) };
@@ -241,7 +243,7 @@ impl Pattern {
     }
 }
 
-/// Where encoders write to: memory, or a new file beside the old one.
+/// Destination of encoders: memory, or a new file beside the old one.
 pub struct Out {
     sink: Sink,
     written: u64,

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind, set_hook};
 use std::sync::Mutex;
 
-/// Of the last panic the message, with the place, and the calls where they are asked for by `RUST_BACKTRACE`.
+/// Message and place of the last panic, and the calls if `RUST_BACKTRACE` asks for them.
 static LAST: Mutex<String> = Mutex::new(String::new());
 
 /// Does the work; where it panics, tells so and unwinds on.

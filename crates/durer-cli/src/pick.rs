@@ -38,7 +38,7 @@ pub struct PickArgs {
     /// Write JSON
     #[arg(long)]
     pub json: bool,
-    /// Where the eye is.
+    /// Options for the camera.
     #[command(flatten)]
     pub view: ViewArgs,
     /// Reading and its limits.
@@ -49,7 +49,7 @@ pub struct PickArgs {
     pub running: RunningArgs,
 }
 
-/// What lies behind a part of the picture.
+/// Contents behind a part of the picture.
 #[derive(Debug, Serialize)]
 struct Picked {
     model: String,
@@ -69,15 +69,15 @@ struct Object {
     name: String,
     /// Window depth of the nearest point: 0 at the near plane, 1 at the far.
     depth: f64,
-    /// How many of its triangles were hit.
+    /// Number of its triangles that were hit.
     triangles: usize,
-    /// How many of its lines or points were hit.
+    /// Number of its lines or points that were hit.
     marks: usize,
 }
 
 #[derive(Debug, Serialize)]
 struct Triangle {
-    /// As in the pictures that `render --item` writes.
+    /// Number in the pictures that `render --item` writes.
     item: u32,
     instance: usize,
     /// Index in the mesh.
@@ -157,7 +157,7 @@ fn describe(model: String, scene: &Scene, hits: &[Hit]) -> Picked {
     }
 }
 
-/// The hits of one kind.
+/// Returns the hits of one kind.
 fn of(hits: &[Hit], topology: Topology) -> impl Iterator<Item = &Hit> {
     hits.iter().filter(move |h| h.topology == topology)
 }
@@ -169,7 +169,7 @@ impl From<&Hit> for Mark {
     }
 }
 
-/// One line per object.
+/// Returns one line per object.
 fn text(picked: &Picked) -> String {
     let mut text = String::new();
     for o in &picked.objects {

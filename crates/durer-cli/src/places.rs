@@ -1,4 +1,4 @@
-//! Where files are, by identity and not by spelling: `a.png`, `./a.png`, links to it and its full path are one place.
+//! The identity of files regardless of spelling: `a.png`, `./a.png`, links to it and its full path are one place.
 
 use crate::failure::Failure;
 use crate::sandbox::{self, Sandbox};
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// The argument that stands for standard input or output.
 pub const STREAM: &str = "-";
 
-/// Whether the argument stands for standard input or output.
+/// Returns whether the argument means standard input or output.
 pub fn is_stream(path: &Path) -> bool {
     path.as_os_str() == OsStr::new(STREAM)
 }
@@ -37,7 +37,7 @@ pub enum Place {
 }
 
 impl Place {
-    /// The place of a path.
+    /// Returns the place of a path.
     pub fn of(path: &Path) -> Self {
         fs::metadata(path).ok().and_then(|m| numbers(&m)).unwrap_or_else(|| Self::At(full(path)))
     }
@@ -60,7 +60,7 @@ fn numbers(_: &Metadata) -> Option<Place> {
     None
 }
 
-/// A path without links and `..`, as far as its folder is there.
+/// Returns A path without links and `..`, as far as its folder is there.
 fn full(path: &Path) -> PathBuf {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::canonicalize(path)
@@ -79,7 +79,7 @@ pub fn settle(name: &str, given: &ArgMatches) -> Result<(), Failure> {
     }
 }
 
-/// The paths that a command reads and those that it writes.
+/// Returns the paths that a command reads and those that it writes.
 fn named(command: &str, given: &ArgMatches) -> (Vec<PathBuf>, Vec<PathBuf>) {
     let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
     for id in given.ids().map(clap::Id::as_str) {

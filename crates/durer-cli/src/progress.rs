@@ -15,7 +15,7 @@ const PATIENCE: Duration = Duration::from_millis(500);
 /// A line on standard error that says what is being done; nothing where that is no terminal.
 #[derive(Debug, Default)]
 pub struct Progress {
-    /// What counts how far the work has come.
+    /// Work whose progress is counted.
     work: Work,
     shown: Option<Shown>,
 }
@@ -91,7 +91,7 @@ impl Progress {
     }
 }
 
-/// How much of a stage is done, in percent; empty where nothing is counted.
+/// Formats the progress of a stage, in percent; empty if nothing is counted.
 fn percent(progress: work::Progress) -> String {
     progress.share().map_or_else(String::new, |share| format!("{:.0} %", (share * 100.0).floor()))
 }

@@ -86,14 +86,15 @@ fn render_all(
     }
 }
 
-/// The options with both sides of the picture; an open one as in a picture of a given shape.
+/// Returns the options with both sides of the picture; an open one as in a picture of a given
+/// shape.
 fn sized(args: &RenderArgs, natural: DVec2) -> RenderArgs {
     let mut args = args.clone();
     args.picture.size = args.picture.sides.of_shape(natural);
     args
 }
 
-/// What the parser does not know to be wrong, before anything is read.
+/// Checks options that the parser cannot check, before anything is read.
 fn check(args: &RenderArgs) -> Result<(), Failure> {
     input::check_streams(&args.models)?;
     camera::check(&args.view)?;
@@ -106,7 +107,7 @@ fn check(args: &RenderArgs) -> Result<(), Failure> {
     shots(args, None).map(|_| ())
 }
 
-/// Whether the picture is not too large.
+/// Checks that the picture is not too large.
 fn check_size(args: &RenderArgs) -> Result<(), Failure> {
     let Size { width, height } = args.picture.size;
     let (kind, side) = (wanted(args).kind, width.max(height));
@@ -127,7 +128,7 @@ fn check_size(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether the algorithm that is asked for can do what is asked of it.
+/// Checks that the chosen algorithm supports the other options.
 fn check_algorithm(args: &RenderArgs) -> Result<(), Failure> {
     let usage = |text: String| Err(Failure::Usage(text));
     let rays = asks_for_rays(args);
@@ -173,7 +174,7 @@ fn has_planes(args: &RenderArgs) -> bool {
     planes.item.is_some() || planes.depth.is_some() || planes.normal.is_some()
 }
 
-/// The option that only rays can fulfil.
+/// Returns the option that only rays can fulfil.
 fn asks_for_rays(args: &RenderArgs) -> Option<&'static str> {
     if args.look.bounces > 0 {
         Some("--bounces")
@@ -193,7 +194,7 @@ fn algorithm(args: &RenderArgs) -> Algorithm {
     })
 }
 
-/// What is written: what --format says, or the name of the output.
+/// Returns the output format: that of --format, or that of the output's name.
 fn wanted(args: &RenderArgs) -> Wanted {
     Wanted::any(&args.output, args.format)
 }
@@ -203,12 +204,12 @@ struct Job<'a> {
     model: &'a Path,
     /// Its name without folder and suffix.
     stem: String,
-    /// How all frames go into one file, where they do.
+    /// Plan for all frames in one file, if they go into one.
     film: Option<film::Plan>,
     pictures: Vec<Picture>,
 }
 
-/// Where a picture and its further planes go.
+/// Files of a picture and its further planes.
 struct Picture {
     frame: Option<u32>,
     /// One place for all frames of a film.
@@ -219,7 +220,7 @@ struct Picture {
 }
 
 impl Job<'_> {
-    /// The file that all frames go into, where there is one.
+    /// Returns the file that all frames go into, where there is one.
     fn film(&self) -> Option<Film<'_>> {
         let plan = self.film?;
         match self.pictures.first().map(|p| &p.color) {
@@ -403,7 +404,7 @@ fn tell_model(job: &Job, model: Model, read_seconds: f64, told: &mut Growing) {
     });
 }
 
-/// The default material in another colour.
+/// Returns the default material in another colour.
 fn colored(color: Vec4) -> Material {
     let alpha_mode = if color.w < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque };
     Material { base_color: color, alpha_mode, ..Material::default() }
@@ -451,7 +452,7 @@ struct Cell {
     shot: Shot,
 }
 
-/// The cells of a picture: one, or one for each viewport.
+/// Returns the cells of a picture: one, or one for each viewport.
 fn shots(args: &RenderArgs, frame: Option<u32>) -> Result<Vec<Cell>, Failure> {
     let size = args.picture.size;
     let Some(layout) = &args.picture.viewports else {
@@ -547,7 +548,8 @@ fn usage(e: durer::Error) -> Failure {
     Failure::of_library(&e)
 }
 
-/// The options for the picture of a model, of what the view is fitted to, and of all there is.
+/// Returns the options for the picture of a model, of what the view is fitted to, and of all there
+/// is.
 fn render_options(
     args: &RenderArgs,
     [model, framed, scene]: [&Scene; 3],
@@ -565,7 +567,7 @@ fn render_options(
     Ok(RenderOptions { ambient_occlusion, ..options })
 }
 
-/// The options for the picture from a camera.
+/// Returns the options for the picture from a camera.
 fn picture_options(
     args: &RenderArgs,
     camera: Camera,

@@ -1,4 +1,4 @@
-//! What `durer render --json` says.
+//! The report of `durer render --json`.
 
 mod growing;
 pub mod noticed;
@@ -13,20 +13,20 @@ use serde::Serialize;
 /// A model that could be read.
 #[derive(Debug, Serialize)]
 pub struct ModelReport {
-    /// As on the command line.
+    /// Path as given on the command line.
     pub model: String,
     /// The format found.
     pub format: String,
     /// Seconds for reading and decoding.
     pub read_seconds: f64,
-    /// What was repaired or left out.
+    /// Repairs and omissions.
     pub warnings: Vec<String>,
 }
 
 /// One picture, with its further planes.
 #[derive(Debug, Default, Serialize)]
 pub struct PictureReport {
-    /// Where it went; `-` is standard output.
+    /// Files that were written; `-` is standard output.
     pub files: Vec<String>,
     /// `ok`, `empty` or `invisible`: whether anything of the model is seen.
     pub status: &'static str,
@@ -36,7 +36,7 @@ pub struct PictureReport {
     pub height: u32,
     /// Over all viewports.
     pub triangles: Triangles,
-    /// What was drawn, where it is a drawing.
+    /// Report on the drawing, if it is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub drawing: Option<crate::drawing::report::DrawingReport>,
     /// Seconds for vertices, clipping and set-up.
@@ -45,15 +45,15 @@ pub struct PictureReport {
     pub raster_seconds: f64,
     /// Seconds for encoding and writing.
     pub encode_seconds: f64,
-    /// How surfaces were found: an algorithm's name, `wireframe`, or `all`.
+    /// Method that found the surfaces: an algorithm's name, `wireframe`, or `all`.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub algorithm: String,
     /// The eye of each viewport.
     pub cameras: Vec<CameraReport>,
-    /// Whether it was not opaque, and had to become so.
+    /// True if it was not opaque, and had to become so.
     #[serde(skip)]
     pub flattened: bool,
-    /// What it should show but does not, in words.
+    /// Features of the model that the picture does not show, in words.
     #[serde(skip)]
     pub notes: Vec<String>,
     /// For `all`: each algorithm beside the z-buffer.
@@ -66,9 +66,9 @@ pub struct PictureReport {
 pub struct CameraReport {
     /// In the world.
     pub eye: [f64; 3],
-    /// What it looks at.
+    /// Point that it looks at.
     pub target: [f64; 3],
-    /// What is up in the picture.
+    /// Direction that points up in the picture.
     pub up: [f64; 3],
     /// Vertical angle of view in degrees, in perspective.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -124,9 +124,9 @@ pub struct Triangles {
 /// A model that could not be rendered.
 #[derive(Debug, Serialize)]
 pub struct Failed {
-    /// As on the command line.
+    /// Path as given on the command line.
     pub model: String,
-    /// Why.
+    /// Reason of the failure.
     pub error: String,
 }
 
@@ -156,7 +156,7 @@ impl PictureReport {
     }
 }
 
-/// What may be done about a model of which nothing is seen.
+/// Returns advice for a model of which nothing is seen.
 fn hint(why: Unseen) -> &'static str {
     match why {
         Unseen::Culled => "; --cull none shows them",
@@ -168,7 +168,7 @@ fn hint(why: Unseen) -> &'static str {
     }
 }
 
-/// The peak of the resident memory, as Linux tells it.
+/// Returns the peak of the resident memory, as Linux tells it.
 pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

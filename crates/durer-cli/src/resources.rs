@@ -19,24 +19,24 @@ type Names = BTreeMap<String, OsString>;
 /// or `..` lead elsewhere; never a network address.
 #[derive(Debug)]
 pub struct Folder {
-    /// Where relative paths start; without links and `..`.
+    /// Folder in which relative paths begin; without links and `..`.
     base: PathBuf,
     /// Below which folders files may lie; without links and `..`.
     roots: Vec<PathBuf>,
-    /// What can be done where a file lies elsewhere, for the end of the message.
+    /// Advice for a file that lies elsewhere, for the end of the message.
     hint: &'static str,
     /// Folders in which names were looked for in other cases.
     names: Mutex<BTreeMap<PathBuf, Names>>,
 }
 
 impl Folder {
-    /// The folder that holds the file; where the file is a link, what it leads to.
+    /// Returns the folder that holds the file; where the file is a link, what it leads to.
     pub fn of(model: &Path) -> io::Result<Self> {
         let model = fs::canonicalize(model)?;
         Ok(Self::at(model.parent().unwrap_or(Path::new("/")).to_owned()))
     }
 
-    /// A folder without a model in it, where paths start.
+    /// Returns A folder without a model in it, where paths start.
     pub fn itself(folder: &Path) -> io::Result<Self> {
         Ok(Self::at(directory(folder)?))
     }
@@ -56,8 +56,8 @@ impl Folder {
         Self { hint, ..self }
     }
 
-    /// The file's true place, if that is where files may lie; and what is to be told where its name is written
-    /// otherwise.
+    /// Returns the file's true place, if that is where files may lie; and what is to be told where its name
+    /// is written otherwise.
     fn place(&self, path: &str) -> Result<(PathBuf, Option<String>), String> {
         if has_scheme(path) {
             return Err(
@@ -93,7 +93,8 @@ impl Folder {
         format!("there is no `{path}`; `{spelled}` is taken, which differs in upper and lower case")
     }
 
-    /// The path with each name that does not exist in another case; `None` where one does not exist in any.
+    /// Returns the path with each name that does not exist in another case; `None` where one does not exist
+    /// in any.
     fn other_case(&self, path: &str) -> Option<PathBuf> {
         let mut at = self.base.clone();
         for component in Path::new(path).components() {
@@ -108,7 +109,7 @@ impl Folder {
         Some(at)
     }
 
-    /// A name of the folder that differs from `name` only in upper and lower case.
+    /// Returns A name of the folder that differs from `name` only in upper and lower case.
     fn name(&self, folder: &Path, name: &OsStr) -> Option<OsString> {
         let folder = fs::canonicalize(folder).ok().filter(|folder| self.allows(folder))?;
         let mut known = self.names.lock().unwrap_or_else(PoisonError::into_inner);
@@ -117,7 +118,7 @@ impl Folder {
     }
 }
 
-/// A folder's true place.
+/// Returns A folder's true place.
 fn directory(folder: &Path) -> io::Result<PathBuf> {
     let full = fs::canonicalize(folder)?;
     if full.is_dir() { Ok(full) } else { Err(io::Error::other("it is not a folder")) }
@@ -134,7 +135,8 @@ fn open(path: &Path) -> io::Result<File> {
     options.read(true).open(path)
 }
 
-/// Where an open file lies, as the system tells; where it does not, the path that it was opened by.
+/// Returns the path of an open file according to the system; otherwise the path that it was opened
+/// by.
 #[cfg(target_os = "linux")]
 fn place_of(file: &File, path: &Path) -> PathBuf {
     use std::os::fd::AsRawFd;
@@ -146,7 +148,7 @@ fn place_of(_: &File, path: &Path) -> PathBuf {
     fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// The names in a folder, as far as it can be read.
+/// Returns the names in a folder, as far as it can be read.
 fn names(folder: &Path) -> Names {
     let mut names = Names::new();
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -160,8 +162,8 @@ fn names(folder: &Path) -> Names {
     names
 }
 
-/// Whether a reference begins like `http:` or `file:` (RFC 3986), with at least two letters, so that
-/// it is no drive.
+/// Returns whether a reference begins like `http:` or `file:` (RFC 3986), with at least two letters,
+/// so that it is no drive.
 fn has_scheme(path: &str) -> bool {
     let Some((scheme, _)) = path.split_once(':') else { return false };
     let letter = |c: char| c.is_ascii_alphanumeric() || "+-.".contains(c);

@@ -13,7 +13,7 @@ pub enum Sandbox {
     BestEffort,
 }
 
-/// What tells of memory and threads.
+/// Files that describe memory and threads.
 #[cfg(target_os = "linux")]
 const SYSTEM: [&str; 4] =
     ["/proc/self", "/proc/meminfo", "/sys/fs/cgroup", "/sys/devices/system/cpu"];
@@ -41,8 +41,8 @@ pub fn confine(how: Sandbox, inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<
     }
 }
 
-/// The folder of a file without links; a folder itself, and what is neither. Of what is not there, the folder above it
-/// that is: it will be made there.
+/// Returns the folder of a file without links; a folder itself, and what is neither. Of what is not there,
+/// the folder above it that is: it will be made there.
 fn folder(path: &Path) -> Option<PathBuf> {
     if let Ok(full) = std::fs::canonicalize(path) {
         let within = if full.is_file() { full.parent() } else { Some(&*full) };

@@ -35,9 +35,9 @@ pub struct SectionArgs {
 /// A plane of `--section`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectionPlane {
-    /// What its view on a sheet is called; `None` where it cuts the model itself.
+    /// Name of its view on a sheet; `None` if it cuts the model itself.
     pub letter: Option<String>,
-    /// What cuts.
+    /// Cutting plane.
     pub plane: Plane,
 }
 
@@ -52,7 +52,7 @@ fn section(text: &str) -> Result<SectionPlane, String> {
 /// The longest name of a section or a detail.
 const MOST_LETTERS: usize = 3;
 
-/// The name of a section or a detail: a letter, or a few with figures.
+/// Returns the name of a section or a detail: a letter, or a few with figures.
 pub fn letter(text: &str) -> Result<String, String> {
     let right = text.chars().count() <= MOST_LETTERS
         && text.starts_with(char::is_alphabetic)
@@ -70,7 +70,7 @@ fn plane(text: &str) -> Result<Plane, String> {
 }
 
 impl SectionArgs {
-    /// The sections that are views of a sheet, with their names.
+    /// Returns the sections that are views of a sheet, with their names.
     pub fn views(&self) -> impl Iterator<Item = (&str, Plane)> {
         self.section.iter().filter_map(|s| s.letter.as_deref().map(|letter| (letter, s.plane)))
     }

@@ -15,8 +15,8 @@ const LONGEST: f64 = 16.0;
 /// Pixels along a side of what is divided into viewports, to see their shape.
 const TRIAL: u32 = 1 << 12;
 
-/// Width and height of a picture, up to a factor: square cells of viewports, the aspect ratio of a camera of
-/// the file, the outline of a model that fills the view; else a square.
+/// Returns the width and height of a picture, up to a factor: square cells of viewports, the aspect ratio of
+/// a camera of the file, the outline of a model that fills the view; else a square.
 pub fn of_picture(picture: &PictureArgs, view: &ViewArgs, scene: &Scene) -> Result<DVec2, Failure> {
     match &picture.viewports {
         Some(layout) => Ok(of_layout(layout)),
@@ -24,7 +24,7 @@ pub fn of_picture(picture: &PictureArgs, view: &ViewArgs, scene: &Scene) -> Resu
     }
 }
 
-/// Columns and rows.
+/// Returns columns and rows.
 fn of_layout(layout: &Layout) -> DVec2 {
     let cells = layout.viewports(TRIAL, TRIAL).unwrap_or_default();
     cells.first().map_or(DVec2::ONE, |(_, viewport)| {
@@ -33,7 +33,7 @@ fn of_layout(layout: &Layout) -> DVec2 {
     })
 }
 
-/// The shape of one view.
+/// Returns the shape of one view.
 pub fn of_view(view: &ViewArgs, scene: &Scene, turntable: Option<u32>) -> Result<DVec2, Failure> {
     if let Some(name) = &view.camera {
         let camera = scene.cameras.iter().find(|c| c.name == *name);

@@ -29,12 +29,12 @@ pub fn sides(text: &str) -> Result<Sides, String> {
 }
 
 impl Sides {
-    /// Whether a side has to be found.
+    /// Returns whether a side has to be found.
     pub fn is_open(self) -> bool {
         self.width.is_none() || self.height.is_none()
     }
 
-    /// Both sides, an open one so that the picture has the shape of `natural`.
+    /// Returns both sides, an open one so that the picture has the shape of `natural`.
     pub fn of_shape(self, natural: DVec2) -> Size {
         let (width, height) = match (self.width, self.height) {
             (Some(width), Some(height)) => (width, height),
@@ -46,7 +46,7 @@ impl Sides {
     }
 }
 
-/// The nearest number of pixels.
+/// Returns the nearest number of pixels.
 fn whole(side: f64) -> u32 {
     side.round().clamp(1.0, f64::from(u32::MAX)) as u32
 }

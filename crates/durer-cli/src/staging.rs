@@ -1,4 +1,4 @@
-//! What is put around a model, and how light falls on it: floor, grid, axes, edges, occlusion.
+//! The surroundings of a model and effects of its light: floor, grid, axes, edges, occlusion.
 
 use crate::failure::Failure;
 use crate::options::ViewArgs;
@@ -13,7 +13,7 @@ use durer::target::Framebuffer;
 use durer::view::fit;
 use durer::view::projection::drawn_bounds;
 
-/// How far away, as a part of the model's radius, things take light from each other.
+/// Distance, as a part of the model's radius, within which things take light from each other.
 const OCCLUSION_RADIUS: f64 = 0.25;
 
 /// The options.
@@ -72,17 +72,17 @@ impl StageArgs {
         self.edges.or((self.look == Look::Technical).then_some(1.5))
     }
 
-    /// Whether edges are drawn over the picture.
+    /// Returns whether edges are drawn over the picture.
     pub fn has_edges(&self) -> bool {
         self.edges().is_some()
     }
 
-    /// Whether the picture is darkened by occlusion.
+    /// Returns whether the picture is darkened by occlusion.
     pub fn has_occlusion(&self) -> bool {
         self.occlusion().is_some()
     }
 
-    /// Whether something is asked for that is made of all of the model.
+    /// Returns whether an option needs the whole model.
     pub fn needs_model(&self) -> bool {
         self.has_ground() || self.grid || self.axes || self.has_edges() || self.has_occlusion()
     }
@@ -126,7 +126,7 @@ pub fn give_materials(args: &StageArgs, asked: Option<Vec4>, scene: &mut Scene) 
 
 /// A model with what is put around it.
 pub struct Staged {
-    /// What the view is fitted to: all but the shadow on the floor, which fades out.
+    /// Scene that the view is fitted to: all but the shadow on the floor, which fades out.
     pub framed: Scene,
     /// All of it.
     pub whole: Scene,

@@ -33,7 +33,7 @@ pub fn start(args: &RunningArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A thread that waits for its part.
+/// Returns A thread that waits for its part.
 fn waiting(take: &Arc<Mutex<Receiver<rayon::ThreadBuilder>>>) -> io::Result<()> {
     let take = Arc::clone(take);
     let work = move || {
@@ -45,7 +45,7 @@ fn waiting(take: &Arc<Mutex<Receiver<rayon::ThreadBuilder>>>) -> io::Result<()> 
     std::thread::Builder::new().spawn(work).map(drop)
 }
 
-/// As many as `RAYON_NUM_THREADS` says, or as there are processors.
+/// Returns the number in `RAYON_NUM_THREADS`, or the number of processors.
 fn usual() -> usize {
     let said = std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.parse().ok());
     let processors = || available_parallelism().map_or(1, usize::from);

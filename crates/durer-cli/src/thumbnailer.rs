@@ -7,7 +7,7 @@ use crate::report;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
-/// How to install it.
+/// Instructions for installing it.
 pub const HELP: &str = "\
 To see models in file managers (GNOME, Xfce, MATE, Cinnamon):
   mkdir -p ~/.local/share/thumbnailers
@@ -21,7 +21,7 @@ Then remove the pictures that failed before: rm -r ~/.cache/thumbnails/fail";
 /// The options of `durer thumbnailer`.
 #[derive(Debug, Args)]
 pub struct ThumbnailerArgs {
-    /// Where it goes; `-` for standard output
+    /// File to write to; `-` for standard output
     #[arg(value_name = "FILE", value_hint = ValueHint::AnyPath, default_value = STREAM, hide_default_value = true)]
     pub output: PathBuf,
     /// Write the types of files that desktops do not know, instead of the thumbnailer

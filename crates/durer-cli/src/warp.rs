@@ -40,16 +40,16 @@ pub struct WarpArgs {
     /// Its depths, as `durer render --depth` writes them
     #[arg(value_name = "DEPTH", value_hint = ValueHint::FilePath)]
     pub depth: PathBuf,
-    /// Where the new picture goes: a .png, .jpg or .webp file, or `-` for standard output
+    /// File to write the new picture to: a .png, .jpg or .webp file, or `-` for standard output
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
-    /// Where the eye of the picture was
+    /// Position of the picture's eye
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector)]
     pub eye: DVec3,
-    /// What it looked at
+    /// Point that the picture's eye looked at
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector)]
     pub target: DVec3,
-    /// What was up in the picture
+    /// Direction that pointed up in the picture
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, default_value = "0,1,0", value_parser = values::direction)]
     pub up: DVec3,
     /// Its vertical angle of view in degrees [default: 30, as of `render`]
@@ -64,13 +64,13 @@ pub struct WarpArgs {
     /// Distance of the far plane, where depth is 1
     #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true, value_parser = values::number)]
     pub far: f64,
-    /// Where the new eye is
+    /// Position of the new eye
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector)]
     pub to_eye: DVec3,
-    /// What it looks at [default: as before]
+    /// Point that the new eye looks at [default: as before]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector)]
     pub to_target: Option<DVec3>,
-    /// What is up in the new picture [default: as before]
+    /// Direction that points up in the new picture [default: as before]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction)]
     pub to_up: Option<DVec3>,
     /// Width and height of the new picture; one may be left out [default: as before]
@@ -82,10 +82,10 @@ pub struct WarpArgs {
     /// A second picture and its depths, which fill holes; same lens and planes
     #[arg(long, num_args = 2, value_names = ["COLOR", "DEPTH"], value_hint = ValueHint::FilePath, requires = "fill_eye")]
     pub fill: Vec<PathBuf>,
-    /// Where the eye of the second picture was
+    /// Position of the second picture's eye
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, requires = "fill")]
     pub fill_eye: Option<DVec3>,
-    /// What it looked at [default: the same]
+    /// Point that the second picture's eye looked at [default: the same]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, requires = "fill")]
     pub fill_target: Option<DVec3>,
     /// Compression and quality of the file.

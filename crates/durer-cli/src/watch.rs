@@ -34,7 +34,7 @@ static NOW: Mutex<String> = Mutex::new(String::new());
 /// The file that it works on.
 static FILE: Mutex<String> = Mutex::new(String::new());
 
-/// Whether a model is done, so that an end leaves something.
+/// Set once a model is done, so that ending early leaves some output.
 static DONE: AtomicBool = AtomicBool::new(false);
 
 /// The number of the signal that came.
@@ -100,7 +100,7 @@ struct Watch {
     work: Work,
     timeout: Option<f64>,
     start: Instant,
-    /// When the work was stopped for what it holds.
+    /// Time at which the work was stopped because of its memory.
     stopped: Option<Instant>,
 }
 

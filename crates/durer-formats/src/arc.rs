@@ -13,9 +13,9 @@ pub(crate) struct Ends {
     pub radii: DVec2,
     /// From the x axis to the ellipse's first axis, in radians.
     pub turned: f64,
-    /// Whether it is the larger one of two arcs.
+    /// True if it is the larger one of two arcs.
     pub large: bool,
-    /// Whether its angles grow.
+    /// True if its angles grow.
     pub sweep: bool,
 }
 
@@ -25,9 +25,9 @@ pub(crate) struct Arc {
     pub center: DVec2,
     /// The angle on the unit circle, in radians, at which it begins.
     pub start: f64,
-    /// How far it goes from there, in radians: from −2π to 2π.
+    /// Angle that it sweeps, in radians: from −2π to 2π.
     pub turn: f64,
-    /// Whether it is half an ellipse, as far as rounding lets `turn` say so, whose radii just reach.
+    /// True if it is half an ellipse, as far as rounding lets `turn` say so, whose radii just reach.
     pub is_half: bool,
     radii: DVec2,
     /// Sine and cosine of the angle by which it is turned.
@@ -65,7 +65,7 @@ impl Arc {
         Some(arc)
     }
 
-    /// A vector of the space where the ellipse is a unit circle, in that of the path.
+    /// Returns A vector of the space where the ellipse is a unit circle, in that of the path.
     pub fn seen(&self, v: DVec2) -> DVec2 {
         let ((sin, cos), v) = (self.turned, v * self.radii);
         DVec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)

@@ -1,11 +1,11 @@
-//! What readers count against [`Limits`] while they make meshes.
+//! The quantities that readers count against [`Limits`] while they make meshes.
 
 use crate::{Error, Limits, Place, Result};
 
-/// What a model's meshes are called in errors about memory.
+/// Stage of a model's meshes in errors about memory.
 pub(crate) const MODEL: &str = "meshes of the model";
 
-/// What may still be made of a file.
+/// Amounts that may still be made of a file.
 pub(crate) struct Budget {
     limits: Limits,
     primitives: u64,

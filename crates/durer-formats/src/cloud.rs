@@ -11,7 +11,7 @@ pub(crate) struct Cloud {
     pub points: Vec<DVec3>,
     /// Red, green and blue of sRGB, from 0 to `full`, and alpha 1.
     pub colors: Vec<Vec4>,
-    /// What colours are divided by.
+    /// Divisor of colours.
     pub full: f32,
     /// Strengths of what the scanner got back, in any unit; shown where there are no colours.
     pub intensities: Vec<f32>,

@@ -3,7 +3,7 @@
 use durer::math::{Vec3, Vec4, powf};
 use durer::scene::Material;
 
-/// Linear light from an sRGB value, IEC 61966-2-1; values above 1 go on by the same curve.
+/// Returns linear light from an sRGB value, IEC 61966-2-1; values above 1 go on by the same curve.
 pub(crate) fn linear(srgb: f32) -> f32 {
     if srgb <= 0.04045 { srgb / 12.92 } else { powf((srgb + 0.055) / 1.055, 2.4) }
 }
@@ -18,7 +18,7 @@ pub(crate) fn linear_bytes() -> [f32; 256] {
     std::array::from_fn(|i| linear(i as f32 / 255.0))
 }
 
-/// Linear colour of `#RRGGBB` or `#RRGGBBAA`, sRGB; `None` for what is neither.
+/// Returns linear colour of `#RRGGBB` or `#RRGGBBAA`, sRGB; `None` for what is neither.
 pub(crate) fn hex(text: &str) -> Option<Vec4> {
     let digits = text.strip_prefix('#').filter(|d| matches!(d.len(), 6 | 8))?;
     let digits = Some(digits).filter(|d| d.bytes().all(|b| b.is_ascii_hexdigit()))?;
@@ -31,7 +31,7 @@ pub(crate) fn hex(text: &str) -> Option<Vec4> {
 /// The name of the material that shows vertex colours.
 pub(crate) const VERTEX_COLORS: &str = "vertex colors";
 
-/// What shows vertex colors as they are: the default material, but white.
+/// Returns the material that shows vertex colors unchanged: the default material, but white.
 pub(crate) fn vertex_color_material() -> Material {
     Material { name: VERTEX_COLORS.to_owned(), base_color: Vec4::ONE, ..Material::default() }
 }

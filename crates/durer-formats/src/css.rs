@@ -16,9 +16,10 @@ use std::str::FromStr;
 /// that it does.
 const REBECCA_PURPLE: (&str, &str) = ("rebeccapurple", "#663399");
 
-/// A colour of CSS as sRGB bytes with straight alpha: a name of CSS 4 or `transparent` in letters of any case, `#rgb`, `#rrggbb`
-/// (both also with alpha), `rgb()`, `hsl()`, `hwb()`, `lab()`, `lch()`, `oklab()`, `oklch()`, `color()`, `color-mix()` or
-/// `light-dark()`, of which the light one is taken; `None` for other text. What lies outside of sRGB is cut off.
+/// Returns A colour of CSS as sRGB bytes with straight alpha: a name of CSS 4 or `transparent` in letters of
+/// any case, `#rgb`, `#rrggbb` (both also with alpha), `rgb()`, `hsl()`, `hwb()`, `lab()`, `lch()`,
+/// `oklab()`, `oklch()`, `color()`, `color-mix()` or `light-dark()`, of which the light one is taken; `None`
+/// for other text. What lies outside of sRGB is cut off.
 ///
 /// ```
 /// use durer_formats::css::color;
@@ -34,7 +35,7 @@ pub fn color(text: &str) -> Option<[u8; 4]> {
     color_within(text, None).map(Color::bytes)
 }
 
-/// As [`color`], where `current` is what `currentColor` stands for.
+/// Parses like [`color`], with `current` as the value of `currentColor`.
 pub(crate) fn color_within(text: &str, current: Option<Color>) -> Option<Color> {
     let text = text.trim();
     match text.contains('(') {
@@ -44,7 +45,7 @@ pub(crate) fn color_within(text: &str, current: Option<Color>) -> Option<Color> 
     }
 }
 
-/// A colour that is a name or a number with `#`.
+/// Returns A colour that is a name or a number with `#`.
 fn simple(text: &str) -> Option<[u8; 4]> {
     let text = text.to_ascii_lowercase();
     let words = if text == REBECCA_PURPLE.0 { REBECCA_PURPLE.1 } else { &text };

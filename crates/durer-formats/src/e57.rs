@@ -8,10 +8,10 @@ mod scan;
 
 pub use scan::read;
 
-/// What files begin with.
+/// First bytes of a file.
 pub(crate) const MAGIC: &[u8] = b"ASTM-E57";
 
-/// Whether the content begins as E57 does.
+/// Returns whether the content begins as E57 does.
 pub(crate) fn sniff(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }

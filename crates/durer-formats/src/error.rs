@@ -1,9 +1,9 @@
-//! What can be wrong with bytes.
+//! The errors of readers and writers.
 
 use crate::told::{message, shown};
 use thiserror::Error;
 
-/// Where in a file something is.
+/// Position in a file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Place {
@@ -30,36 +30,37 @@ impl std::fmt::Display for Place {
     }
 }
 
-/// Why bytes could not be read or written. The caller puts the file's name before the message.
+/// Reason why bytes could not be read or written. The caller puts the file's name before the
+/// message.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The bytes are not what their format demands.
     #[error("{}", crate::told::message(&format!("{place}{message}")))]
     Decode {
-        /// Where.
+        /// Position of the fault.
         place: Place,
-        /// What is wrong, and what would be right.
+        /// Description of the fault, and what would be right.
         message: String,
     },
     /// The file needs something that durer does not have, e.g. a required glTF extension.
     #[error("{}", unsupported(place, what, hint))]
     Unsupported {
-        /// Where.
+        /// Position of the fault.
         place: Place,
-        /// What is missing.
+        /// Name of the missing thing.
         what: String,
-        /// What to do instead, or empty.
+        /// Advice, or empty.
         hint: String,
     },
     /// A stated limit would be exceeded.
     #[error("{place}{what} of {value} is above the limit of {limit}")]
     Limit {
-        /// Where.
+        /// Position of the fault.
         place: Place,
-        /// What is limited, e.g. `"decoded size"`.
+        /// Limited quantity, e.g. `"decoded size"`.
         what: &'static str,
-        /// What the file asks for.
+        /// Amount that the file asks for.
         value: u64,
         /// The limit in force.
         limit: u64,
@@ -67,11 +68,11 @@ pub enum Error {
     /// Something that the file refers to could not be had.
     #[error("{}", crate::told::message(&format!("{place}cannot read `{}`: {message}", shown(uri))))]
     Resource {
-        /// Where the reference stands.
+        /// Position of the reference.
         place: Place,
-        /// What is referred to, as the file writes it.
+        /// Target of the reference, as the file writes it.
         uri: String,
-        /// Why not.
+        /// Reason for the refusal.
         message: String,
     },
     /// The format is not known, by content or by name.
@@ -85,7 +86,7 @@ pub enum Error {
     Io(#[from] std::io::Error),
 }
 
-/// The system's message without the number that Rust adds.
+/// Returns the system's message without the number that Rust adds.
 fn without_number(error: &std::io::Error) -> String {
     let text = error.to_string();
     text.split(" (os error").next().unwrap_or(&text).to_owned()
@@ -98,22 +99,22 @@ fn unsupported(place: &Place, what: &str, hint: &str) -> String {
 }
 
 impl Error {
-    /// A decode error at a line and column, both counted from 1 (column 0: unknown).
+    /// Creates A decode error at a line and column, both counted from 1 (column 0: unknown).
     pub fn line(line: u64, column: u64, message: impl Into<String>) -> Self {
         Self::Decode { place: Place::Line(line, column), message: message.into() }
     }
 
-    /// A decode error at a byte offset.
+    /// Creates A decode error at a byte offset.
     pub fn byte(offset: u64, message: impl Into<String>) -> Self {
         Self::Decode { place: Place::Byte(offset), message: message.into() }
     }
 
-    /// A decode error at a path inside a structured file.
+    /// Creates A decode error at a path inside a structured file.
     pub fn path(path: impl Into<String>, message: impl Into<String>) -> Self {
         Self::Decode { place: Place::Path(path.into()), message: message.into() }
     }
 
-    /// The same error at a place that is made of its own.
+    /// Returns the same error at a place that is made of its own.
     pub(crate) fn at(self, place_of: impl FnOnce(Place) -> Place) -> Self {
         match self {
             Self::Decode { place, message } => Self::Decode { place: place_of(place), message },
@@ -130,7 +131,7 @@ impl Error {
         }
     }
 
-    /// A decode error of the file as a whole.
+    /// Creates A decode error of the file as a whole.
     pub fn whole(message: impl Into<String>) -> Self {
         Self::Decode { place: Place::Whole, message: message.into() }
     }
@@ -139,9 +140,9 @@ impl Error {
 /// Something that was repaired or left out; the result is usable all the same.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
-    /// Where.
+    /// Position of the fault.
     pub place: Place,
-    /// What was wrong and what was done about it.
+    /// Description of the fault and of its repair.
     pub message: String,
 }
 

@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 /// A near plane that a file leaves out stands at this part of the distance to all there is.
 const NEAR: f64 = 1e-4;
 
-/// How a camera sees, in the world's units.
+/// Projection of a camera, in the world's units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Lens {
     pub projection: Projection,
@@ -28,9 +28,9 @@ pub(crate) struct Eye {
     pub name: String,
     /// Its frame: it is at the origin and looks along −z, y is up. Scale has no meaning for it.
     pub world: DMat4,
-    /// How it sees, or why it does not.
+    /// Its projection, or the reason why there is none.
     pub lens: Result<Lens, String>,
-    /// Where it stands, for a warning.
+    /// Its position in the file, for a warning.
     pub place: Place,
 }
 
@@ -67,7 +67,7 @@ struct Names {
 }
 
 impl Names {
-    /// The name, or `camera` and a number, with a number more where it is taken.
+    /// Returns the name, or `camera` and a number, with a number more where it is taken.
     fn unique(&mut self, name: &str) -> String {
         let nameless = || format!("camera{}", self.taken.len());
         let base = Some(name).filter(|n| !n.is_empty()).map_or_else(nameless, str::to_owned);
@@ -81,7 +81,7 @@ impl Names {
     }
 }
 
-/// The camera of a frame, as yet without a name.
+/// Returns the camera of a frame, as yet without a name.
 fn camera(lens: &Lens, world: DMat4, behind: impl Fn(DVec3) -> f64) -> Result<NamedCamera, String> {
     let direction = |v: DVec3| v.try_normalize().ok_or("its node has no direction");
     let eye = world.w_axis.truncate();
@@ -111,8 +111,8 @@ pub(crate) struct Lamp {
     pub kind: LightKind,
     /// Linear colour times intensity: at 1 a white matte surface is white.
     pub color: Vec3,
-    /// Of points and spots: at a distance of d units of the file, light is divided by the sum of these
-    /// times 1, d, d² and d³.
+    /// Attenuation of points and spots: at a distance of d units of the file, light is divided by the
+    /// sum of these times 1, d, d² and d³.
     pub falloff: [f64; 4],
 }
 
@@ -120,7 +120,7 @@ pub(crate) struct Lamp {
 /// around, not in one direction.
 const INSIDE: f64 = 0.25;
 
-/// What shines in a scene. `unit` is the length of a file's unit in the world's.
+/// Returns the lights of a scene. `unit` is the length of a file's unit in the world's.
 ///
 /// The library's lamps fall off with the square of the distance. Points that hardly fall off, and are not
 /// within the scene, become directional lights: as square ones they would burn what is near to
@@ -148,7 +148,8 @@ pub(crate) fn lights(lamps: &[Lamp], unit: f64, scene: &Scene) -> Vec<Light> {
     if shows { lights } else { Vec::new() }
 }
 
-/// The kind of a lamp at a place, and what its colour is multiplied by, so that it is right at the scene.
+/// Returns the kind of a lamp at a place, and what its colour is multiplied by, so that it is right at
+/// the scene.
 fn fit(lamp: &Lamp, position: DVec3, unit: f64, scene: BoundingSphere) -> (LightKind, f64) {
     let way = scene.center - position;
     let distance = way.length().max(scene.radius);
@@ -168,7 +169,7 @@ mod tests {
     use super::*;
     use durer::scene::{Instance, Mesh};
 
-    /// A scene of two points, with the radius 1 around the origin.
+    /// Returns A scene of two points, with the radius 1 around the origin.
     fn scene() -> Scene {
         let positions = vec![Vec3::X, Vec3::NEG_X];
         let mesh = Mesh { positions, ..Mesh::default() };

@@ -16,7 +16,7 @@ pub(crate) struct Palette {
 }
 
 impl Palette {
-    /// The number of a colour.
+    /// Returns the number of a colour.
     pub fn number(&mut self, color: [f32; 4]) -> u32 {
         let key = color.map(f32::to_bits);
         if let Some((last, number)) = self.last
@@ -47,7 +47,7 @@ pub(crate) struct Facets {
 }
 
 impl Facets {
-    /// How many polygons there are.
+    /// Returns the number of polygons.
     pub fn count(&self) -> usize {
         self.count as usize
     }
@@ -85,7 +85,7 @@ impl Facets {
     }
 }
 
-/// What vertices have; lists but that of the positions may be empty. Colours are linear.
+/// Attributes of vertices; lists other than that of the positions may be empty. Colours are linear.
 #[derive(Debug, Default)]
 pub(crate) struct Attributes {
     pub positions: Vec<Vec3>,
@@ -95,15 +95,15 @@ pub(crate) struct Attributes {
 }
 
 impl Attributes {
-    /// The vertices as a mesh of points.
+    /// Returns the vertices as a mesh of points.
     pub fn into_mesh(self) -> Mesh {
         let Self { positions, normals, colors, tex_coords } = self;
         let tex_coords = if tex_coords.is_empty() { vec![] } else { vec![tex_coords] };
         Mesh { positions, normals, colors, tex_coords, ..Mesh::default() }
     }
 
-    /// The mesh of corners of these vertices: of the vertices as they are, or of one vertex per different
-    /// corner. `palette` and `coords` are what corners name in place of normals and as texture
+    /// Returns the mesh of corners of these vertices: of the vertices as they are, or of one vertex per
+    /// different corner. `palette` and `coords` are what corners name in place of normals and as texture
     /// coordinates.
     pub fn joined(
         self,
@@ -140,7 +140,7 @@ impl Attributes {
         Self { positions, normals: gathered(&self.normals, keys), colors, tex_coords }
     }
 
-    /// Whether colours of faces or edges are shown: not where those of vertices say more.
+    /// Returns whether colours of faces or edges are shown: not where those of vertices say more.
     fn palette_counts(&self, model: &mut Model, palette: &Palette) -> bool {
         let varied = self.colors.iter().any(|c| Some(c) != self.colors.first());
         if varied && !palette.colors.is_empty() {
@@ -152,7 +152,7 @@ impl Attributes {
     }
 }
 
-/// The values of corners' vertices; none where vertices have none.
+/// Returns the values of corners' vertices; none where vertices have none.
 fn gathered<T: Copy + Default>(values: &[T], keys: &[Corner]) -> Vec<T> {
     let keys = if values.is_empty() { &[] } else { keys };
     keys.iter().map(|k| values.get(k.position as usize).copied().unwrap_or_default()).collect()
@@ -192,7 +192,7 @@ pub(crate) fn show_colors(model: &mut Model, meshes: &mut [Mesh]) {
     }
 }
 
-/// The part that is all of a mesh.
+/// Returns the part that is all of a mesh.
 pub(crate) fn whole(mesh: &Mesh, material: usize) -> Part {
     let range = 0..mesh.primitive_count() as u32;
     Part { range, material: Some(material), name: String::new() }
@@ -205,12 +205,12 @@ pub(crate) fn make_linear(model: &mut Model, colors: &mut [Vec4]) {
     scaled_to_linear(colors, scale);
 }
 
-/// The largest part of colours.
+/// Returns the largest part of colours.
 pub(crate) fn brightest(colors: &[Vec4]) -> f32 {
     colors.iter().map(|c| c.truncate().max_element()).fold(0.0, f32::max)
 }
 
-/// What colours are multiplied by whose largest part this is.
+/// Returns the factor of colours whose largest part this is.
 pub(crate) fn scale_of(brightest: f32) -> f32 {
     if brightest > 2.0 { 1.0 / 255.0 } else { 1.0 }
 }

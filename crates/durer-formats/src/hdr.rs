@@ -44,7 +44,7 @@ pub fn read(bytes: &[u8], limits: &Limits) -> Result<HdrPicture> {
     Ok(HdrPicture { width: width as u32, height: height as u32, pixels })
 }
 
-/// The product of all exposures that were applied to the pixels.
+/// Returns the product of all exposures that were applied to the pixels.
 fn header(source: &mut Source<'_>) -> Result<f32> {
     let mut exposure = 1.0;
     loop {
@@ -69,7 +69,7 @@ fn header(source: &mut Source<'_>) -> Result<f32> {
     }
 }
 
-/// Width and height from a line such as `-Y 512 +X 1024`.
+/// Returns the width and height from a line such as `-Y 512 +X 1024`.
 fn size(line: &[u8], limits: &Limits) -> Result<(usize, usize)> {
     let text = String::from_utf8_lossy(line);
     let words: Vec<&str> = text.split_ascii_whitespace().collect();
@@ -99,7 +99,7 @@ fn no_size(line: &[u8]) -> Error {
     Error::whole(format!("`{}` is no size such as `-Y 512 +X 1024`", quote(line)))
 }
 
-/// A colour from three mantissas and their common exponent.
+/// Returns A colour from three mantissas and their common exponent.
 fn decoded([r, g, b, exponent]: [u8; 4], exposure: f32) -> [f32; 3] {
     if exponent == 0 {
         return [0.0; 3];
@@ -131,7 +131,7 @@ impl<'a> Source<'a> {
         Ok([self.next()?, self.next()?, self.next()?, self.next()?])
     }
 
-    /// A line of the header, without its end.
+    /// Returns A line of the header, without its end.
     fn line(&mut self) -> Result<&'a [u8]> {
         let rest = self.bytes.get(self.at..).unwrap_or_default();
         let length = rest.iter().position(|byte| *byte == b'\n');

@@ -20,7 +20,7 @@ use crate::told::shown;
 use crate::{Error, Limits, Place, Result};
 use durer::scene::Image;
 
-/// What pictures are called in errors about memory.
+/// Stage of pictures in errors about memory.
 pub(crate) const DECODED: &str = "decoded pictures";
 
 /// Width, height and pixels.
@@ -61,7 +61,7 @@ fn unsupported(name: &str, format: &str) -> Error {
     }
 }
 
-/// The name of a picture format that is known but not read.
+/// Returns the name of a picture format that is known but not read.
 fn other_format(bytes: &[u8]) -> Option<&'static str> {
     let starts = |magic: &[u8]| bytes.starts_with(magic);
     match () {
@@ -84,12 +84,12 @@ fn show_if_all_transparent(pixels: &mut [[u8; 4]]) {
     }
 }
 
-/// The place of a picture, where it has a name.
+/// Returns the place of a picture, where it has a name.
 fn place(name: &str) -> Place {
     if name.is_empty() { Place::Whole } else { Place::Path(format!("image `{}`", shown(name))) }
 }
 
-/// A decode error that names the picture.
+/// Returns A decode error that names the picture.
 fn broken(name: &str, message: impl std::fmt::Display) -> Error {
     Error::whole(format!("image `{}`: {message}", shown(name)))
 }

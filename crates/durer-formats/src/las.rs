@@ -34,7 +34,7 @@ const FORMATS: [(usize, Option<usize>); 11] = [
     (67, Some(30)),
 ];
 
-/// Whether the content begins as LAS and LAZ do.
+/// Returns whether the content begins as LAS and LAZ do.
 pub(crate) fn sniff(bytes: &[u8]) -> bool {
     bytes.starts_with(b"LASF")
 }
@@ -74,10 +74,10 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
     cloud.into_model(model)
 }
 
-/// What a file says of its points.
+/// Header that describes the points.
 struct Header {
     minor: u8,
-    /// Where the points begin.
+    /// Offset of the points.
     data: usize,
     compressed: bool,
     color: Option<usize>,
@@ -125,7 +125,7 @@ impl Header {
         Ok(Self { color, ..header })
     }
 
-    /// The fields, but for what depends on the format of points.
+    /// Returns the fields, but for what depends on the format of points.
     fn fields(bytes: &[u8]) -> Option<Self> {
         bytes.get(..HEADER)?;
         let u16_at = |at| take(bytes, at).map(u16::from_le_bytes);
@@ -147,7 +147,7 @@ impl Header {
         })
     }
 
-    /// The points of a file that is not compressed; how many there are.
+    /// Returns the points of a file that is not compressed; how many there are.
     fn points(&self, bytes: &[u8], cloud: &mut Cloud) -> u64 {
         let data = bytes.get(self.data..).unwrap_or_default();
         let records = data.chunks_exact(self.length);

@@ -1,4 +1,4 @@
-//! How many digits a text file gives of its coordinates.
+//! The number of digits of a text file's coordinates.
 
 /// Lines that are looked at: what the first say holds for all.
 const LINES: usize = 4096;

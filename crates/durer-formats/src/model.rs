@@ -1,4 +1,4 @@
-//! What all readers of models share.
+//! The types that all readers of models share.
 
 use crate::{Place, Warning};
 use durer::math::Vec3;
@@ -10,15 +10,15 @@ use durer::work::Work;
 /// The command's implementation looks only below the model's own folder and never at a network
 /// address; data URIs never get here.
 pub trait Resources {
-    /// The bytes behind a relative, already percent-decoded path with `/` as separator, at most
-    /// `limit` of them.
+    /// Returns the bytes behind a relative, already percent-decoded path with `/` as separator, at
+    /// most `limit` of them.
     ///
     /// # Errors
     /// A sentence that says why not, for the reader to put into [`crate::Error::Resource`].
     fn read(&self, path: &str, limit: u64) -> std::result::Result<Vec<u8>, String>;
 
-    /// The bytes behind a path as the file writes it, percent-decoded and with `/` as separator; it may be
-    /// absolute, lead out of the folder by `..`, or be a network address. Readers call this.
+    /// Returns the bytes behind a path as the file writes it, percent-decoded and with `/` as separator;
+    /// it may be absolute, lead out of the folder by `..`, or be a network address. Readers call this.
     ///
     /// As provided it refuses such paths, so that [`Self::read`] never sees one. What replaces it decides
     /// itself where paths may lead, and may find a file under another spelling.
@@ -31,7 +31,7 @@ pub trait Resources {
     }
 }
 
-/// What [`Resources::find`] found.
+/// Result of [`Resources::find`].
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Found {
     /// The file's bytes.
@@ -73,7 +73,7 @@ impl Resources for NoResources {
     }
 }
 
-/// What readers refuse to exceed; each refusal is [`crate::Error::Limit`].
+/// Limits of readers; exceeding one gives [`crate::Error::Limit`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Limits {
     /// Triangles, lines and points over all meshes, before instancing.
@@ -112,7 +112,7 @@ impl Limits {
     }
 }
 
-/// Which moment of an animation a model is posed at.
+/// Time of an animation at which a model is posed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Pose {
     /// Name or number of the animation; `None` = the first, where there is a time.
@@ -121,10 +121,10 @@ pub struct Pose {
     pub time: f64,
 }
 
-/// How a model is read.
+/// Options for reading a model.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReadOptions {
-    /// What is refused.
+    /// Limits of sizes.
     pub limits: Limits,
     /// The moment to pose at; `None` = the rest pose of the file.
     pub pose: Option<Pose>,
@@ -133,7 +133,7 @@ pub struct ReadOptions {
     pub variant: Option<String>,
     /// Only what stands on this plate, counted from 1, of a project that has plates; `None` = all.
     pub plate: Option<u32>,
-    /// Whether lights of COLLADA and FBX shine. Most are what an exporter has left in every file, of units that
+    /// True if lights of COLLADA and FBX shine. Most are what an exporter has left in every file, of units that
     /// nobody keeps to, so that models look worse by them than without. Those of glTF always shine.
     pub own_lights: bool,
 }
@@ -141,7 +141,7 @@ pub struct ReadOptions {
 /// A model as read.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Model {
-    /// What can be drawn. Passes [`Scene::check`].
+    /// Scene to draw. Passes [`Scene::check`].
     pub scene: Scene,
     /// The format, e.g. `"glTF 2.0 binary"` or `"STL, ascii"`.
     pub format: String,
@@ -153,7 +153,7 @@ pub struct Model {
     pub variants: Vec<String>,
     /// Names of the plates of a slicer's project, empty where they have none.
     pub plates: Vec<String>,
-    /// What was repaired or left out.
+    /// Repairs and omissions.
     pub warnings: Vec<Warning>,
 }
 
@@ -164,7 +164,7 @@ impl Model {
     }
 }
 
-/// How many points have a coordinate that is NaN or infinite.
+/// Returns the number of points with a coordinate that is NaN or infinite.
 pub(crate) fn count_infinite(points: &[Vec3]) -> usize {
     // There is hardly ever one, and whether there is one among many is sooner known than for each.
     let count = |some: &[Vec3]| some.iter().filter(|p| !p.is_finite()).count();

@@ -84,7 +84,7 @@ fn read_libraries(
     }
 }
 
-/// The names of several libraries: each ends with `.mtl`, or where none does, with a blank.
+/// Returns the names of several libraries: each ends with `.mtl`, or where none does, with a blank.
 fn names(operand: &str) -> Vec<String> {
     let words = operand.split_ascii_whitespace();
     let ends = |word: &&str| word.to_ascii_lowercase().ends_with(".mtl");
@@ -113,8 +113,8 @@ fn read_library(
     }
 }
 
-/// The path as [`Resources`] wants it: `/` between folders, no `./`; of an absolute path, which
-/// was right on the writer's machine only, the file's name.
+/// Returns the path as [`Resources`] wants it: `/` between folders, no `./`; of an absolute path,
+/// which was right on the writer's machine only, the file's name.
 fn relative(path: &str) -> String {
     let path = path.trim_matches('"').replace('\\', "/");
     let drive = path.as_bytes().get(1) == Some(&b':');

@@ -9,7 +9,8 @@ const POWERS: [f64; 23] = [
 /// More digits than these may not fit 64 bits.
 const MAX_DIGITS: usize = 19;
 
-/// The longest number at the start of `text` and its length in bytes, as C's `strtod` takes it.
+/// Returns the longest number at the start of `text` and its length in bytes, as C's `strtod` takes
+/// it.
 ///
 /// Knows `.5`, `1.`, `+1`, `1e-3`, `nan`, `inf`, `infinity` (any case, signed) and the `1.#IND`,
 /// `1.#INF` that old Microsoft libraries wrote.
@@ -92,7 +93,7 @@ fn microsoft(text: &[u8], negative: bool) -> Option<(f64, usize)> {
     Some((if infinite { infinity } else { f64::NAN }, length))
 }
 
-/// The decimal integer at the start of `text` and its length; saturates beyond 64 bits.
+/// Returns the decimal integer at the start of `text` and its length; saturates beyond 64 bits.
 pub(crate) fn integer(text: &[u8]) -> Option<(i64, usize)> {
     let negative = text.first() == Some(&b'-');
     let start = usize::from(negative || text.first() == Some(&b'+'));

@@ -18,10 +18,10 @@ use durer::scene::{Instance, Mesh, Topology};
 
 /// Numbers that a vertex may have.
 const NUMBERS: usize = 12;
-/// How much of a file is looked at for its first word.
+/// Number of bytes of a file that are searched for its first word.
 const PROBE: usize = 4096;
 
-/// What the first word of a file says that vertices have.
+/// Attributes of vertices according to the first word of a file.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Kind {
     tex_coords: bool,
@@ -33,7 +33,7 @@ struct Kind {
 }
 
 impl Kind {
-    /// What a word says, if it is one of the format's.
+    /// Parses a word, if it is one of the format's.
     fn of(word: &[u8]) -> Option<Self> {
         let mut kind = Self::default();
         let mut rest = word;
@@ -54,7 +54,7 @@ impl Kind {
     }
 }
 
-/// Whether the content begins as OFF does.
+/// Returns whether the content begins as OFF does.
 pub(crate) fn sniff(bytes: &[u8]) -> bool {
     let text = utf8(bytes.get(..PROBE).unwrap_or(bytes));
     let mut cursor = Cursor::new(&text);
@@ -100,7 +100,7 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
     reader.into_model(model)
 }
 
-/// The first word, and the numbers of vertices and faces.
+/// Returns the first word, and the numbers of vertices and faces.
 fn header<'a>(cursor: &mut Cursor<'a>, text: &'a [u8]) -> Result<(Kind, [u64; 2])> {
     let word = next_word(cursor).unwrap_or_default();
     // Files without the word exist: they begin with the counts.
@@ -141,10 +141,10 @@ fn count(cursor: &mut Cursor<'_>, of: &str) -> Result<u64> {
 #[derive(Default)]
 struct Reader {
     kind: Kind,
-    /// Of vertices and faces, as the file says.
+    /// Numbers of vertices and faces according to the file.
     counts: [u64; 2],
     limits: Limits,
-    /// Whether the file ended too early.
+    /// True if the file ended too early.
     ended: bool,
     points: Vec<DVec3>,
     vertices: Attributes,
@@ -187,7 +187,7 @@ impl Reader {
         }
     }
 
-    /// The next number, on this line or a later one.
+    /// Returns the next number, on this line or a later one.
     fn number(&mut self, cursor: &mut Cursor<'_>) -> Result<f64> {
         loop {
             if let Some(value) = cursor.float()? {
@@ -266,7 +266,7 @@ impl Reader {
         Ok(())
     }
 
-    /// What follows the vertices of a face on its line.
+    /// Reads the colour after the vertices of a face.
     fn face_color(&mut self, cursor: &mut Cursor<'_>) -> Result<Option<[f32; 4]>> {
         let mut rest = [0.0; 5];
         let count = cursor.floats(&mut rest)?;
@@ -281,7 +281,7 @@ impl Reader {
         Ok(None)
     }
 
-    /// Whether there is something to show of a file that breaks off here.
+    /// Returns whether there is something to show of a file that breaks off here.
     fn has_something(&self) -> bool {
         !self.facets.triangles.indices.is_empty() || (self.ended && !self.points.is_empty())
     }
@@ -351,7 +351,7 @@ impl Reader {
         }
     }
 
-    /// Triangles and lines; else points.
+    /// Returns triangles and lines; else points.
     fn meshes(self, model: &mut Model) -> Result<Vec<Mesh>> {
         let Self { vertices, facets, lines, limits, .. } = self;
         let mut meshes = Vec::new();

@@ -29,7 +29,7 @@ impl PictureFormat {
     /// All of them.
     pub const ALL: &'static [Self] = &[Self::Png, Self::Jpeg, Self::WebP];
 
-    /// The name used on the command line.
+    /// Returns the name used on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Png => "png",
@@ -38,7 +38,8 @@ impl PictureFormat {
         }
     }
 
-    /// The endings of its files' names, lower case, without a dot; the first is the usual one.
+    /// Returns the endings of its files' names, lower case, without a dot; the first is the usual
+    /// one.
     pub const fn suffixes(self) -> &'static [&'static str] {
         match self {
             Self::Png => &["png"],
@@ -47,13 +48,13 @@ impl PictureFormat {
         }
     }
 
-    /// The format that a file name's suffix stands for, without its dot, in any case.
+    /// Returns the format that a file name's suffix stands for, without its dot, in any case.
     pub fn of_suffix(suffix: &str) -> Option<Self> {
         let lower = suffix.to_ascii_lowercase();
         Self::ALL.iter().copied().find(|f| f.suffixes().contains(&lower.as_str()))
     }
 
-    /// The largest width and height that it can say, in pixels.
+    /// Returns the largest width and height that it can say, in pixels.
     pub const fn max_side(self) -> u32 {
         match self {
             Self::Png => i32::MAX.unsigned_abs(),
@@ -63,12 +64,13 @@ impl PictureFormat {
     }
 }
 
-/// How pictures are put into bytes.
+/// Options for encoding pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Encoding {
-    /// How hard PNG and JPEG try to be small; it changes no pixel.
+    /// Effort of PNG and JPEG compression; it changes no pixel.
     pub compression: Compression,
-    /// Of JPEG: 1, small and coarse, to 100, large and fine. From 90 on colours are as fine as brightness.
+    /// Quality of JPEG: 1, small and coarse, to 100, large and fine. From 90 on colours are as fine as
+    /// brightness.
     pub quality: u8,
 }
 
@@ -107,7 +109,7 @@ pub fn write<W: Write>(
     }
 }
 
-/// Width and height, where the picture has pixels and a format can say how many.
+/// Returns the width and height, where the picture has pixels and a format can say how many.
 fn sides(pixels: &Pixels<[u8; 4]>, max: u32, expected: &'static str) -> Result<(u32, u32)> {
     let (width, height) = (pixels.width(), pixels.height());
     if width.min(height) == 0 || width.max(height) > max {
@@ -117,14 +119,14 @@ fn sides(pixels: &Pixels<[u8; 4]>, max: u32, expected: &'static str) -> Result<(
     Ok((width, height))
 }
 
-/// Whether each pixel is opaque.
+/// Returns whether each pixel is opaque.
 fn is_opaque(pixels: &Pixels<[u8; 4]>) -> bool {
     let rows = (0..pixels.height()).map(|y| pixels.row(y));
     let mut least = rows.map(|row| row.iter().fold(255, |least, p| p[3].min(least)));
     least.all(|alpha| alpha == 255)
 }
 
-/// What an encoder says beside failed writes.
+/// Converts an encoder's error other than a failed write.
 fn refused(_: impl std::fmt::Display) -> Error {
     Error::whole(crate::foreign::REFUSED)
 }

@@ -8,17 +8,17 @@ use std::ops::Range;
 
 /// The most sets of texture coordinates that are read.
 pub(crate) const SETS: usize = 4;
-/// Where a corner has no such attribute.
+/// Index of a missing attribute of a corner.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// Indices of a corner: position, normal, colour, sets of texture coordinates.
 pub(crate) type Corner = [u32; 3 + SETS];
 
-/// What the indices of corners stand for.
+/// Attributes that the indices of corners refer to.
 pub(crate) trait Values {
-    /// Whether there is anything for one of a corner's indices.
+    /// Returns whether there is anything for one of a corner's indices.
     fn has(&self, slot: usize) -> bool;
-    /// The numbers behind an index, `fill` where they are fewer; `None` beyond the end.
+    /// Returns the numbers behind an index, `fill` where they are fewer; `None` beyond the end.
     fn get(&self, slot: usize, index: u32, fill: f64) -> Option<[f64; 4]>;
 }
 
@@ -27,9 +27,9 @@ pub(crate) trait Values {
 pub(crate) struct Piece {
     /// Its parts have no material yet.
     pub mesh: Mesh,
-    /// What positions are relative to.
+    /// Origin of positions.
     pub origin: DVec3,
-    /// What each part calls its material.
+    /// Name of each part's material.
     pub symbols: Vec<String>,
     /// The file's numbers of the sets of texture coordinates.
     pub sets: Vec<u64>,
@@ -72,7 +72,7 @@ impl Builder {
         self.indices.extend(ends);
     }
 
-    /// The number of a corner's vertex.
+    /// Returns the number of a corner's vertex.
     pub fn vertex(&mut self, corner: Corner) -> u32 {
         *self.known.entry(corner).or_insert_with(|| {
             self.corners.push(corner);
@@ -80,7 +80,7 @@ impl Builder {
         })
     }
 
-    /// The mesh; `None` where it is empty.
+    /// Returns the mesh; `None` where it is empty.
     pub fn piece(self, values: &dyn Values, name: &str) -> Option<Piece> {
         let Builder { topology, sets, corners, indices, mut faces, runs, .. } = self;
         if indices.is_empty() {
@@ -136,7 +136,7 @@ fn parts(mesh: &mut Mesh, runs: Vec<(usize, String)>, per: usize, count: usize) 
     symbols
 }
 
-/// An sRGB colour with alpha as linear light.
+/// Returns an sRGB colour with alpha as linear light.
 fn linear([r, g, b, a]: [f64; 4]) -> Vec4 {
     let rgb: Vec3 = color::linear3([r, g, b].map(|v| v as f32));
     rgb.extend(a as f32)

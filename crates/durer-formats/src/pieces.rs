@@ -12,13 +12,13 @@ pub type Visit<'a> = &'a mut dyn FnMut(&mut Scene) -> durer::Result<()>;
 /// Pieces are scenes of one instance, with the materials of the model; their primitives follow each other as in the scene
 /// that the format's `read` gives, and have the same bits.
 pub trait Pieces {
-    /// The most bytes that the model takes as a whole, with what a picture of it takes.
+    /// Returns the most bytes that the model takes as a whole, with what a picture of it takes.
     fn whole(&self) -> u64;
 
-    /// Which axis is up.
+    /// Axis that points up.
     fn up_axis(&self) -> UpAxis;
 
-    /// Whether its vertices have normals.
+    /// Returns whether its vertices have normals.
     fn has_normals(&self) -> bool;
 
     /// Hands over all vertices, and what is drawn with them where that is known: for boxes and cameras. Of vertices that
@@ -54,7 +54,7 @@ pub trait Pieces {
     fn facts(&mut self) -> Result<Facts>;
 }
 
-/// What there is to tell of a model in pieces.
+/// Facts about a model in pieces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Facts {
     /// The model without its mesh: format, warnings, materials, and which axis is up.
@@ -67,7 +67,7 @@ pub struct Facts {
     pub vertices: u64,
 }
 
-/// The box around two that may be empty.
+/// Returns the box around two that may be empty.
 pub(crate) fn union(a: Option<Aabb>, b: Option<Aabb>) -> Option<Aabb> {
     a.into_iter().chain(b).reduce(|a, b| a.union(&b))
 }

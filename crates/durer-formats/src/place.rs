@@ -7,7 +7,7 @@ use durer::scene::Aabb;
 /// precision would keep fewer than 21 bits of the extent. Nearer models keep their coordinates.
 const FAR: f64 = 8.0;
 
-/// The origin to store positions against: zero, or for a far-off model its middle.
+/// Returns the origin to store positions against: zero, or for a far-off model its middle.
 pub(crate) fn origin(points: &[DVec3]) -> DVec3 {
     origin_of(Aabb::around(points.iter().copied()))
 }

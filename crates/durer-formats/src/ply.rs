@@ -34,7 +34,7 @@ use build::Builder;
 use header::{Element, Encoding, Header};
 pub use pieces::Pieces;
 
-/// Whether the content begins as PLY does.
+/// Returns whether the content begins as PLY does.
 pub(crate) fn sniff(bytes: &[u8]) -> bool {
     matches!(bytes, [b'p', b'l', b'y', b'\r' | b'\n' | b' ', ..]) || bytes == b"ply"
 }
@@ -124,13 +124,13 @@ fn read_body(
     Ok(values.left_over())
 }
 
-/// How many rows of an element the rest of the file has room for.
+/// Returns the number of an element's rows that fit into the rest of the file.
 fn room(element: &Element, values: &impl body::Values) -> u64 {
     // The last value of an ascii file needs no blank behind it.
     (values.bytes_left() + 1) / values.least_size(element).max(1)
 }
 
-/// What to say of a file that ends, or makes no sense, from a row on.
+/// Returns the place and message for a file that ends, or becomes invalid, at a row.
 ///
 /// # Errors
 /// `why`, where there is nothing to show yet.
@@ -141,7 +141,7 @@ fn missing(element: &Element, row: u64, builder: &Builder, why: Error) -> Result
     missing_rows(element, row, why)
 }
 
-/// What to say of rows of an element that are not there.
+/// Returns the place and message for rows of an element that are missing.
 ///
 /// # Errors
 /// `why`, where it is not about what the file holds.

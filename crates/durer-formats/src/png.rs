@@ -10,7 +10,7 @@ use durer::target::{NO_ITEM, Pixels};
 use png::{BitDepth, ColorType, Encoder, EncodingError, Filter, SrgbRenderingIntent};
 use std::io::Write;
 
-/// How hard the writer tries to make the file small.
+/// Effort of the writer to make the file small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Compression {
     /// A DEFLATE made for PNG: some twenty times faster, files a quarter to a half larger.
@@ -73,7 +73,7 @@ fn without_alpha(row: &[[u8; 4]], bytes: &mut [[u8; 3]]) {
     bytes[3 * others.len()..][..3].copy_from_slice(&last[..3]);
 }
 
-/// Which channels a PNG has beside a grey one.
+/// Channels of a PNG beside a grey one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Channels {
     /// Red, green and blue instead of grey.
@@ -210,7 +210,7 @@ fn too_many_items(item: u32) -> Error {
     }
 }
 
-/// What the header says about the pixels.
+/// Kind of pixels according to the header.
 struct Kind {
     color: ColorType,
     depth: BitDepth,

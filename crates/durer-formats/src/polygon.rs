@@ -41,7 +41,7 @@ impl Budget {
     }
 }
 
-/// What was met besides.
+/// Observations about the polygon.
 #[derive(Debug, Default)]
 struct Found {
     crossing: Tally,
@@ -74,7 +74,7 @@ pub(crate) fn recut(model: &mut Model, mesh: &mut Mesh, limits: &Limits) -> Resu
     Ok(())
 }
 
-/// The triangles of each face of a mesh of triangles.
+/// Returns the triangles of each face of a mesh of triangles.
 pub(crate) fn faces(mesh: &Mesh) -> impl Iterator<Item = Range<usize>> + '_ {
     let count = mesh.triangle_count();
     let firsts = mesh.faces.iter().map(|&first| first as usize);
@@ -83,7 +83,7 @@ pub(crate) fn faces(mesh: &Mesh) -> impl Iterator<Item = Range<usize>> + '_ {
     firsts.zip(ends).map(|(first, end)| first..end).chain((0..single).map(|i| i..i + 1))
 }
 
-/// The triangles to be put in the place of fans.
+/// Returns the triangles to be put in the place of fans.
 fn replacements(mesh: &Mesh) -> (Replaced, Found) {
     let (mut replaced, mut found) = (Replaced::new(mesh), Found::default());
     let mut budget = Budget(Budget::TESTS);
@@ -108,13 +108,15 @@ fn replacements(mesh: &Mesh) -> (Replaced, Found) {
     (replaced, found)
 }
 
-/// Whether the two triangles of a fan lie within a right angle of one plane: then they make the quad.
+/// Returns whether the two triangles of a fan lie within a right angle of one plane: then they make
+/// the quad.
 fn quad_is_flat([a, b, c, d]: [DVec3; 4]) -> bool {
     let (b, c, d) = (b - a, c - a, d - a);
     b.cross(c).dot(c.cross(d)) >= 0.0
 }
 
-/// Whether the triangles from the first corner cover a polygon: all run as it does, and once around.
+/// Returns whether the triangles from the first corner cover a polygon: all run as it does, and once
+/// around.
 fn fan_is_right(points: &[DVec3]) -> bool {
     let Some((&origin, rest)) = points.split_first() else { return true };
     let normals = || rest.windows(2).map(|w| [w[0] - origin, w[1] - origin]);
@@ -127,7 +129,7 @@ fn fan_is_right(points: &[DVec3]) -> bool {
     normal != DVec3::ZERO && normals().all(runs_along) && !winds_twice(origin, rest, normal)
 }
 
-/// Whether directions from the origin that turn one way come around to the first again.
+/// Returns whether directions from the origin that turn one way come around to the first again.
 fn winds_twice(origin: DVec3, rest: &[DVec3], normal: DVec3) -> bool {
     let Some(first) = rest.iter().map(|p| *p - origin).find(|d| *d != DVec3::ZERO) else {
         return false;

@@ -1,4 +1,4 @@
-//! Which format a model is in: by its content first, then by its name.
+//! The detection of a model's format: by its content first, then by its name.
 
 use crate::text::{Cursor, utf8};
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     threemf, xyz,
 };
 
-/// How much of a file is looked at.
+/// Number of bytes of a file that are examined.
 const PROBE: usize = 64 << 10;
 
 /// A format of models.
@@ -53,7 +53,7 @@ impl ModelFormat {
         Self::Xyz,
     ];
 
-    /// Its usual name.
+    /// Returns its usual name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Gltf => "glTF",
@@ -70,7 +70,7 @@ impl ModelFormat {
         }
     }
 
-    /// The endings of its files' names, lower case, without a dot.
+    /// Returns the endings of its files' names, lower case, without a dot.
     pub fn suffixes(self) -> &'static [&'static str] {
         match self {
             Self::Gltf => &["gltf", "glb"],
@@ -87,7 +87,7 @@ impl ModelFormat {
         }
     }
 
-    /// The format that the content speaks for, if any does.
+    /// Returns the format that the content speaks for, if any does.
     pub fn of_content(bytes: &[u8]) -> Option<Self> {
         if is_gltf(bytes) {
             Some(Self::Gltf)
@@ -112,7 +112,7 @@ impl ModelFormat {
         }
     }
 
-    /// Whether a file that begins so is none of the formats that are asked before STL.
+    /// Returns whether a file that begins so is none of the formats that are asked before STL.
     pub(crate) fn may_be_stl(head: &[u8]) -> bool {
         let other: [&[u8]; 5] =
             [b"glTF", b"PK\x03\x04", b"LASF", e57::MAGIC, b"Kaydara FBX Binary"];
@@ -121,7 +121,7 @@ impl ModelFormat {
             && !ply::sniff(head)
     }
 
-    /// The format that a file's name speaks for, if any does.
+    /// Returns the format that a file's name speaks for, if any does.
     pub fn of_name(name: &str) -> Option<Self> {
         let (_, suffix) = name.rsplit_once('.')?;
         let suffix = suffix.to_ascii_lowercase();
@@ -141,7 +141,7 @@ fn starts_as_json(bytes: &[u8]) -> bool {
     text.trim_ascii_start().starts_with(b"{")
 }
 
-/// Whether the first statement that is neither a comment nor empty is one of OBJ's.
+/// Returns whether the first statement that is neither a comment nor empty is one of OBJ's.
 fn is_obj(bytes: &[u8]) -> bool {
     let text = utf8(bytes.get(..PROBE).unwrap_or(bytes));
     let mut cursor = Cursor::new(&text);

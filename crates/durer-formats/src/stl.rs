@@ -26,16 +26,16 @@ pub use pieces::Pieces;
 pub const HEADER: usize = 84;
 /// Bytes of a triangle in a binary file: normal, three vertices, two bytes of attributes.
 pub const RECORD: usize = 50;
-/// How far into a file that begins with `solid` a keyword of ascii STL is looked for.
+/// Number of bytes that are searched for a keyword of ascii STL in a file that begins with `solid`.
 const PROBE: usize = 4096;
 
-/// Whether the content looks like STL.
+/// Returns whether the content looks like STL.
 pub(crate) fn sniff(bytes: &[u8]) -> bool {
     has_exact_length(bytes) || is_ascii(bytes)
 }
 
-/// Whether a file of `length` bytes that begins with `head`, [`HEADER`] bytes or more, is binary STL
-/// as long as its header says; [`read_binary_stream`] reads such a file.
+/// Returns whether a file of `length` bytes that begins with `head`, [`HEADER`] bytes or more, is
+/// binary STL as long as its header says; [`read_binary_stream`] reads such a file.
 pub fn is_whole_binary(head: &[u8], length: u64) -> bool {
     is_length_in_header(head, length) && ModelFormat::may_be_stl(head)
 }
@@ -45,7 +45,8 @@ fn count_in_header(bytes: &[u8]) -> Option<u32> {
     Some(u32::from_le_bytes(count.try_into().ok()?))
 }
 
-/// Whether the file is as long as a binary header says; such a file is binary whatever it begins with.
+/// Returns whether the file is as long as a binary header says; such a file is binary whatever it
+/// begins with.
 fn has_exact_length(bytes: &[u8]) -> bool {
     is_length_in_header(bytes, bytes.len() as u64)
 }
@@ -55,7 +56,7 @@ fn is_length_in_header(head: &[u8], length: u64) -> bool {
     count_in_header(head).is_some_and(|count| expected(count) == length)
 }
 
-/// Whether the file begins as ascii STL does, and goes on as text.
+/// Returns whether the file begins as ascii STL does, and goes on as text.
 fn is_ascii(bytes: &[u8]) -> bool {
     let text = utf8(bytes.get(..PROBE).unwrap_or(bytes));
     let text = text.trim_ascii_start();
@@ -83,7 +84,7 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
     }
 }
 
-/// What files of both kinds have in common; told how many vertices are not finite.
+/// Builds the model of either kind of file, given the number of vertices that are not finite.
 fn finished(mut model: Model, infinite: usize) -> Result<Model> {
     model.scene.up_axis = UpAxis::Z;
     if model.scene.meshes.iter().all(|m| m.positions.is_empty()) {

@@ -2,14 +2,15 @@
 
 use durer::scene::Image;
 
-/// The size of the smallest picture that loses no texel of several; `None` where none is there.
+/// Returns the size of the smallest picture that loses no texel of several; `None` where none is
+/// there.
 pub(crate) fn size<const N: usize>(images: [Option<&Image>; N]) -> Option<[u32; 2]> {
     let largest = |side: fn(&Image) -> u32| images.iter().flatten().map(|i| side(i)).max();
     Some([largest(|i| i.width)?, largest(|i| i.height)?])
 }
 
-/// What `join` makes of the texels of several pictures at each place of their [`size`], row by row. Smaller
-/// pictures are enlarged by repeating texels; for one that is not there `join` is given none.
+/// Applies `join` to the texels of several pictures at each place of their [`size`], row by row. Smaller
+/// pictures are enlarged by repeating texels; a missing picture gives `join` no texel.
 pub(crate) fn join<const N: usize, T>(
     images: [Option<&Image>; N],
     join: impl Fn([Option<[u8; 4]>; N]) -> T,

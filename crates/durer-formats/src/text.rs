@@ -16,7 +16,7 @@ pub(crate) struct Cursor<'a> {
     pub sloppy: Tally,
 }
 
-/// How often something was met, and where first; becomes one warning instead of a million.
+/// Number of occurrences, and the first of them; becomes one warning instead of a million.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Tally {
     pub count: u64,
@@ -41,13 +41,14 @@ impl Tally {
     }
 }
 
-/// Names and messages from bytes that should be UTF-8, at most 60 characters.
+/// Returns names and messages from bytes that should be UTF-8, at most 60 characters.
 pub(crate) fn quote(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes.get(..240).unwrap_or(bytes)).into_owned();
     if text.chars().count() <= 60 { text } else { text.chars().take(60).chain(['…']).collect() }
 }
 
-/// A name in a text: UTF-8, or where it is none, Windows-1252, in which older programs wrote.
+/// Returns A name in a text: UTF-8, or where it is none, Windows-1252, in which older programs
+/// wrote.
 pub(crate) fn name(bytes: &[u8]) -> Cow<'_, str> {
     match std::str::from_utf8(bytes) {
         Ok(name) => Cow::Borrowed(name),
@@ -55,8 +56,8 @@ pub(crate) fn name(bytes: &[u8]) -> Cow<'_, str> {
     }
 }
 
-/// The character behind a byte of Windows-1252, which is Latin-1 but for the 32 from 0x80 on; the five
-/// that it leaves free are control characters.
+/// Returns the character behind a byte of Windows-1252, which is Latin-1 but for the 32 from 0x80 on;
+/// the five that it leaves free are control characters.
 fn windows_1252(byte: u8) -> char {
     const FROM_80: [char; 32] = [
         '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž',
@@ -67,7 +68,8 @@ fn windows_1252(byte: u8) -> char {
     special.copied().unwrap_or(char::from(byte))
 }
 
-/// Text as bytes of UTF-8: without a byte-order mark, and decoded where the mark says UTF-16.
+/// Returns text as bytes of UTF-8: without a byte-order mark, and decoded where the mark says
+/// UTF-16.
 pub(crate) fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     match bytes {
         [0xef, 0xbb, 0xbf, rest @ ..] => Cow::Borrowed(rest),
@@ -119,7 +121,7 @@ impl<'a> Cursor<'a> {
         self.bytes.len().saturating_sub(self.at)
     }
 
-    /// Whether the text is over.
+    /// Returns whether the text is over.
     pub fn at_end(&self) -> bool {
         self.at >= self.bytes.len()
     }
@@ -129,18 +131,18 @@ impl<'a> Cursor<'a> {
         self.at
     }
 
-    /// Number of the current line, from 1.
+    /// Returns the number of the current line, from 1.
     pub fn line(&self) -> u64 {
         self.line
     }
 
-    /// Where the last word began.
+    /// Returns the place where the last word began.
     pub fn place(&self) -> Place {
         let column = self.word_start.saturating_sub(self.line_start) as u64 + 1;
         Place::Line(self.line, column)
     }
 
-    /// An error where the last word began.
+    /// Returns an error where the last word began.
     pub fn error(&self, message: impl Into<String>) -> Error {
         Error::Decode { place: self.place(), message: message.into() }
     }
@@ -149,7 +151,7 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.at).copied()
     }
 
-    /// The length of the line end at `at`, 0 where there is none.
+    /// Returns the length of the line end at `at`, 0 where there is none.
     fn line_end(&self, at: usize) -> usize {
         match (self.bytes.get(at), self.bytes.get(at + 1)) {
             (Some(b'\r'), Some(b'\n')) => 2,
@@ -174,13 +176,13 @@ impl<'a> Cursor<'a> {
         self.word_start = self.at;
     }
 
-    /// Whether nothing but blanks and a comment is left of the line.
+    /// Returns whether nothing but blanks and a comment is left of the line.
     pub fn line_is_over(&mut self) -> bool {
         self.skip_blanks();
         self.peek().is_none_or(|b| ends_line(b) || b == b'#')
     }
 
-    /// The next word of the line.
+    /// Returns the next word of the line.
     pub fn word(&mut self) -> Option<&'a [u8]> {
         if self.line_is_over() {
             return None;
@@ -200,7 +202,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// The rest of the line as one name, without blanks around it.
+    /// Returns the rest of the line as one name, without blanks around it.
     pub fn rest(&mut self) -> &'a [u8] {
         self.skip_blanks();
         while self.peek().is_some_and(|b| !ends_line(b)) {
@@ -209,7 +211,8 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.word_start..self.at).unwrap_or_default().trim_ascii_end()
     }
 
-    /// The rest of the line as one name, up to a word from which on `stop` holds of the text.
+    /// Returns the rest of the line as one name, up to a word from which on `stop` holds of the
+    /// text.
     pub fn rest_before(&mut self, stop: impl Fn(&'a [u8]) -> bool) -> &'a [u8] {
         self.skip_blanks();
         let start = self.at;
@@ -235,7 +238,7 @@ impl<'a> Cursor<'a> {
         self.word_start = self.at;
     }
 
-    /// The next number of the line; `None` where the line is over.
+    /// Returns the next number of the line; `None` where the line is over.
     ///
     /// # Errors
     /// A word that does not begin with a number.
@@ -271,7 +274,7 @@ impl<'a> Cursor<'a> {
         Ok(values.len())
     }
 
-    /// The integer at the cursor, right here: nothing is skipped.
+    /// Returns the integer at the cursor, right here: nothing is skipped.
     pub fn integer_here(&mut self) -> Option<i64> {
         let (value, length) = number::integer(self.bytes.get(self.at..)?)?;
         self.at += length;
@@ -285,12 +288,12 @@ impl<'a> Cursor<'a> {
         here
     }
 
-    /// Whether a word ends right here.
+    /// Returns whether a word ends right here.
     pub fn word_is_over(&self) -> bool {
         self.peek().is_none_or(|b| is_blank(b) || ends_line(b) || b == b'#' || b == b'\\')
     }
 
-    /// The whole word that the cursor stands in, for messages.
+    /// Returns the whole word that the cursor stands in, for messages.
     pub fn current_word(&mut self) -> String {
         self.finish_word();
         quote(self.bytes.get(self.word_start..self.at).unwrap_or_default())

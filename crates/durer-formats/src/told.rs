@@ -1,4 +1,4 @@
-//! What files say, as messages may show it: on one line, in one direction, and not too long.
+//! Texts of files in a form for messages: on one line, in one direction, and not too long.
 
 use std::borrow::Cow;
 use std::fmt::Write;
@@ -96,7 +96,7 @@ pub fn message(text: &str) -> Cow<'_, str> {
     Cow::Owned(escaped(cut_at(&told, MESSAGE)).into_owned())
 }
 
-/// Whether a character acts on what shows it, or on the characters beside it.
+/// Returns whether a character controls the display, or the characters beside it.
 fn steers(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}' | '\u{200e}' | '\u{200f}'
@@ -116,7 +116,7 @@ fn is_long_number(run: &[u8]) -> bool {
     run.len() > NUMBER && run.iter().all(|&b| of_number(b))
 }
 
-/// The same text with numbers of more than 20 characters as powers of ten.
+/// Returns the same text with numbers of more than 20 characters as powers of ten.
 fn with_short_numbers(text: &str) -> Cow<'_, str> {
     if !has_long_number(text) {
         return Cow::Borrowed(text);
@@ -136,7 +136,7 @@ fn with_short_numbers(text: &str) -> Cow<'_, str> {
     Cow::Owned(told)
 }
 
-/// A number of few digits; those of single precision are enough to find it.
+/// Returns A number of few digits; those of single precision are enough to find it.
 fn short(number: f64) -> String {
     let text = format!("{number:.8e}");
     let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));

@@ -2,7 +2,7 @@
 
 use crate::{Error, Found, Place, Resources, Result};
 
-/// The bytes behind a URI, at most `limit` of them.
+/// Returns the bytes behind a URI, at most `limit` of them.
 ///
 /// # Errors
 /// [`Error::Resource`] where the URI cannot be followed or read; [`Error::Decode`] for a broken data URI.
@@ -30,7 +30,7 @@ fn refused(uri: &str, at: &str, message: &str) -> Error {
     Error::Resource { place, uri: uri.chars().take(QUOTED).collect(), message: message.to_owned() }
 }
 
-/// Whether the data stand in the URI itself.
+/// Returns whether the data stand in the URI itself.
 pub(crate) fn is_data(uri: &str) -> bool {
     strip_data_scheme(uri).is_some()
 }
@@ -40,8 +40,8 @@ fn strip_data_scheme(uri: &str) -> Option<&str> {
     scheme.eq_ignore_ascii_case("data:").then_some(rest)
 }
 
-/// A percent-decoded path with `/` as separator, as [`Resources::find`] takes it. A `%` without two
-/// hexadecimal digits stands for itself, as programs that do not encode write it.
+/// Returns A percent-decoded path with `/` as separator, as [`Resources::find`] takes it. A `%`
+/// without two hexadecimal digits stands for itself, as programs that do not encode write it.
 pub(crate) fn path(uri: &str) -> std::result::Result<String, &'static str> {
     let bytes = percent_decode(uri).unwrap_or_else(|| uri.as_bytes().to_vec());
     let path = String::from_utf8(bytes).map_err(|_| "it is not UTF-8 when percent-decoded")?;
@@ -60,8 +60,8 @@ pub(crate) fn path(uri: &str) -> std::result::Result<String, &'static str> {
     }
 }
 
-/// The steps of a path with `/` as separator, without `.` and without folders that a `..` leaves again (RFC 3986,
-/// §5.2.4): they need not exist. What is left of `..` stands at the beginning.
+/// Returns the steps of a path with `/` as separator, without `.` and without folders that a `..` leaves
+/// again (RFC 3986, §5.2.4): they need not exist. What is left of `..` stands at the beginning.
 pub(crate) fn steps(path: &str) -> Vec<&str> {
     let mut steps = Vec::new();
     for step in path.split('/').filter(|step| !matches!(*step, "" | ".")) {
@@ -88,7 +88,7 @@ pub(crate) fn percent_decode(text: &str) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// Whether a data URI is base64, and its payload.
+/// Returns whether a data URI is base64, and its payload.
 fn data_parts<'a>(data: &'a str, at: &str) -> Result<(bool, &'a str)> {
     let (media, payload) =
         data.split_once(',').ok_or_else(|| Error::path(at, "a data URI without a comma"))?;

@@ -1,4 +1,4 @@
-//! What readers of XML share: its encodings, attributes, and the place of what is wrong.
+//! The code that readers of XML share: encodings, attributes, and the place of errors.
 
 use crate::{Error, Place, Result, number, text};
 use quick_xml::events::BytesStart;
@@ -43,7 +43,7 @@ pub(crate) fn attribute(e: &BytesStart<'_>, key: &str) -> Option<String> {
     Some(quick_xml::escape::unescape(&value).map_or(value.to_string(), |t| t.into_owned()))
 }
 
-/// Where in which file a reader is: for messages.
+/// Position of a reader and its file, for messages.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Here<'a> {
     pub file: &'a str,
@@ -51,12 +51,12 @@ pub(crate) struct Here<'a> {
 }
 
 impl Here<'_> {
-    /// The place, for a warning.
+    /// Returns the place, for a warning.
     pub fn place(&self) -> Place {
         Place::Path(format!("{}, byte {}", self.file, self.byte))
     }
 
-    /// An error at this place.
+    /// Returns an error at this place.
     pub fn wrong(&self, message: impl Into<String>) -> Error {
         Error::Decode { place: self.place(), message: message.into() }
     }

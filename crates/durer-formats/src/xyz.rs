@@ -55,7 +55,7 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
     cloud.into_model(model)
 }
 
-/// The lines that are not empty, with their numbers.
+/// Returns the lines that are not empty, with their numbers.
 fn lines(text: &[u8]) -> impl Iterator<Item = (u64, &[u8])> {
     let lines = text.split(|&b| b == b'\n').zip(1..);
     // A file of old Macintosh has other line ends, and no other.
@@ -67,7 +67,8 @@ fn separates(byte: u8) -> bool {
     byte.is_ascii_whitespace() || matches!(byte, b',' | b';')
 }
 
-/// The numbers of a line and how many there are: 0 of a comment; `None` where a word is none.
+/// Returns the numbers of a line and how many there are: 0 of a comment; `None` where a word is
+/// none.
 fn numbers(line: &[u8]) -> Option<([f64; COLUMNS], usize)> {
     let (mut values, mut count) = ([0.0; COLUMNS], 0);
     if line.starts_with(b"#") || line.starts_with(b"//") {
@@ -89,15 +90,15 @@ fn numbers(line: &[u8]) -> Option<([f64; COLUMNS], usize)> {
     Some((values, count))
 }
 
-/// What is known about the columns.
+/// Facts about the columns.
 struct Table {
     /// The columns of x, y and z.
     place: [usize; 3],
     color: Option<usize>,
     intensity: Option<usize>,
-    /// Whether a line has named the columns.
+    /// True if a line has named the columns.
     named: bool,
-    /// How many columns the lines have: the fewest.
+    /// Number of columns in the lines: the fewest.
     count: usize,
     least: [f64; COLUMNS],
     most: [f64; COLUMNS],
@@ -123,7 +124,7 @@ impl Default for Table {
 }
 
 impl Table {
-    /// The last column of a coordinate.
+    /// Returns the last column of a coordinate.
     fn last_place(&self) -> usize {
         let [x, y, z] = self.place;
         x.max(y).max(z)
@@ -172,7 +173,7 @@ impl Table {
         self.intensity = of(&[b"i", b"intensity", b"scalar_intensity", b"reflectance"]);
     }
 
-    /// Whether three columns hold colours, and of what range.
+    /// Returns the range of three columns if they hold colours.
     fn full_scale(&self, first: usize) -> Option<f32> {
         let columns = first..first + 3;
         if columns.end > self.count {

@@ -25,7 +25,7 @@ fn materials() -> Vec<Material> {
     ]
 }
 
-/// The pixel's point on the unit sphere in the middle of its cell, seen along −z.
+/// Returns the pixel's point on the unit sphere in the middle of its cell, seen along −z.
 fn pixel(x: u32, y: u32) -> Option<Vec3> {
     let at = |i: u32| ((i % CELL) as f32 + 0.5) / CELL as f32 * 2.2 - 1.1;
     let (x, y) = (at(x), -at(y));

@@ -1,4 +1,4 @@
-//! What can be seen of a bumpy sphere, divided exactly: `visible_regions 190 > bumps.svg`.
+//! The visible parts of a bumpy sphere, divided exactly: `visible_regions 190 > bumps.svg`.
 //!
 //! The argument is the number of faces around; figures go to standard error.
 

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// What can be wrong with a value handed to the library.
+/// Reason why the library refuses a value.
 ///
 /// The library opens no file, so these speak of values; `durer-formats` has its own error for bytes.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -13,15 +13,15 @@ pub enum Error {
     Parameter {
         /// The parameter's name, as in the signature or the command line.
         name: &'static str,
-        /// What was given.
+        /// Value that was given.
         value: String,
-        /// What would be right.
+        /// Expected form of the value.
         expected: &'static str,
     },
     /// A coordinate is NaN or infinite where only finite numbers have a meaning.
     #[error("{what} {index} is not finite")]
     NonFinite {
-        /// What kind of thing, e.g. `"segment"`.
+        /// Kind of thing, e.g. `"segment"`.
         what: &'static str,
         /// Its index in the input.
         index: usize,
@@ -29,19 +29,19 @@ pub enum Error {
     /// A value refers to something that does not exist, e.g. a vertex index beyond the last vertex.
     #[error("{what} {index} does not exist: there are {count}")]
     Dangling {
-        /// What is referred to, e.g. `"vertex"`.
+        /// Kind of the target, e.g. `"vertex"`.
         what: &'static str,
         /// The index that was used.
         index: usize,
-        /// How many there are.
+        /// Returns the number of bytes.
         count: usize,
     },
     /// A size is above a stated limit.
     #[error("{what} {value} is above the limit of {limit}")]
     Limit {
-        /// What is limited, e.g. `"pixels"`.
+        /// Limited quantity, e.g. `"pixels"`.
         what: &'static str,
-        /// What was asked for.
+        /// Requested amount.
         value: u64,
         /// The limit in force.
         limit: u64,
@@ -49,27 +49,27 @@ pub enum Error {
     /// The combination asked for has no meaning, e.g. vector output of an image-space algorithm.
     #[error("{what} is not supported; {instead}")]
     Unsupported {
-        /// What was asked for.
+        /// Requested amount.
         what: &'static str,
-        /// What to use instead.
+        /// Alternative to use.
         instead: &'static str,
     },
     /// The work would take more memory than its budget allows ([`crate::work::Work`]).
     #[error("{stage}: {} of memory are needed, {option} allows {}", in_words(*need), in_words(*budget))]
     Memory {
-        /// What it is needed for, e.g. `"planes of the picture"`.
+        /// Purpose of the memory, e.g. `"planes of the picture"`.
         stage: &'static str,
         /// Bytes that would be in use together.
         need: u64,
         /// Bytes that are allowed.
         budget: u64,
-        /// What sets the budget, as the caller calls it.
+        /// Name of the setting for the budget, in the caller's words.
         option: &'static str,
     },
     /// The system has no memory for a large buffer.
     #[error("{stage}: the system has no {} of memory left", in_words(*need))]
     OutOfMemory {
-        /// What it is needed for.
+        /// Purpose of the work.
         stage: &'static str,
         /// Bytes of the buffer.
         need: u64,
@@ -79,7 +79,7 @@ pub enum Error {
     TimedOut {
         /// Seconds that are allowed.
         seconds: f64,
-        /// What sets the time, as the caller calls it.
+        /// Name of the setting for the time, in the caller's words.
         option: &'static str,
     },
     /// The work was ended from outside.
@@ -88,13 +88,13 @@ pub enum Error {
 }
 
 impl Error {
-    /// Whether the work was ended for what it costs, not for what it was given.
+    /// Returns whether the work ended because of its cost, not because of its input.
     pub fn is_of_budget(&self) -> bool {
         use Error::{Cancelled, Memory, OutOfMemory, TimedOut};
         matches!(self, Memory { .. } | OutOfMemory { .. } | TimedOut { .. } | Cancelled)
     }
 
-    /// A [`Error::Parameter`] from any displayable value.
+    /// Creates A [`Error::Parameter`] from any displayable value.
     pub fn parameter(
         name: &'static str,
         value: impl std::fmt::Display,

@@ -4,7 +4,7 @@
 
 use crate::math::{DVec2, Rect};
 
-/// Which ordinates positions have beside x and y.
+/// Ordinates of positions beside x and y.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Dimensions {
     /// x and y only.
@@ -19,7 +19,7 @@ pub enum Dimensions {
 }
 
 impl Dimensions {
-    /// The dimensions with or without height and measure.
+    /// Creates the dimensions with or without height and measure.
     pub fn new(z: bool, m: bool) -> Self {
         match (z, m) {
             (false, false) => Self::Xy,
@@ -29,22 +29,22 @@ impl Dimensions {
         }
     }
 
-    /// Whether there is a height.
+    /// Returns whether there is a height.
     pub fn has_z(self) -> bool {
         matches!(self, Self::Xyz | Self::Xyzm)
     }
 
-    /// Whether there is a measure.
+    /// Returns whether there is a measure.
     pub fn has_m(self) -> bool {
         matches!(self, Self::Xym | Self::Xyzm)
     }
 
-    /// The ordinates of either.
+    /// Returns the ordinates of either.
     pub fn with(self, other: Self) -> Self {
         Self::new(self.has_z() || other.has_z(), self.has_m() || other.has_m())
     }
 
-    /// How many numbers a position has.
+    /// Returns the number of ordinates in a position.
     pub fn count(self) -> usize {
         2 + usize::from(self.has_z()) + usize::from(self.has_m())
     }
@@ -53,7 +53,7 @@ impl Dimensions {
 /// Positions in the units and space of their file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Points {
-    /// Which ordinates they have.
+    /// Ordinates of the positions.
     pub dimensions: Dimensions,
     /// x and y of each; all are finite.
     pub xy: Vec<DVec2>,
@@ -110,22 +110,22 @@ impl Points {
         self.zm.pop();
     }
 
-    /// How many positions there are.
+    /// Returns the number of positions.
     pub fn len(&self) -> usize {
         self.xy.len()
     }
 
-    /// Whether there is none.
+    /// Returns whether there is none.
     pub fn is_empty(&self) -> bool {
         self.xy.is_empty()
     }
 
-    /// Height and measure of a position; zeros where there are none.
+    /// Returns the height and measure of a position; zeros where there are none.
     pub fn zm(&self, index: usize) -> [f64; 2] {
         self.zm.get(index).copied().unwrap_or_default()
     }
 
-    /// All numbers of a position, in the file's order: x, y, then height, then measure.
+    /// Returns all numbers of a position, in the file's order: x, y, then height, then measure.
     pub fn ordinates(&self, index: usize) -> impl Iterator<Item = f64> {
         let (p, [z, m]) = (self.xy.get(index).copied().unwrap_or_default(), self.zm(index));
         let z = self.dimensions.has_z().then_some(z);
@@ -159,7 +159,7 @@ pub enum Geometry {
 }
 
 impl Geometry {
-    /// Its name in GeoJSON.
+    /// Returns its name in GeoJSON.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Point(_) => "Point",
@@ -182,19 +182,19 @@ impl Geometry {
         }
     }
 
-    /// How many positions there are.
+    /// Returns the number of positions.
     pub fn len(&self) -> usize {
         let mut count = 0;
         self.for_each(&mut |points| count += points.len());
         count
     }
 
-    /// Whether there is no position at all.
+    /// Returns whether there is no position at all.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The ordinates that any position has; `Xy` where there is none.
+    /// Returns the ordinates that any position has; `Xy` where there is none.
     pub fn dimensions(&self) -> Dimensions {
         let mut all = Dimensions::Xy;
         self.for_each(&mut |points| {
@@ -205,7 +205,7 @@ impl Geometry {
         all
     }
 
-    /// The smallest rectangle around it; `None` where it is empty.
+    /// Returns the smallest rectangle around it; `None` where it is empty.
     pub fn bounds(&self) -> Option<Rect> {
         let mut bounds: Option<Rect> = None;
         self.for_each(&mut |points| {

@@ -1,4 +1,5 @@
-//! What an algorithm is called, who published it, what it costs: one record per algorithm file.
+//! The description of an algorithm: its name, its publication, its cost. Each algorithm's file has
+//! one record.
 
 /// In which space an algorithm decides, after Sutherland, Sproull and Schumacker (1974).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -22,13 +23,13 @@ pub struct Info {
     pub authors: &'static str,
     /// Year of publication.
     pub year: u16,
-    /// Where it was published.
+    /// Publication.
     pub source: &'static str,
-    /// Where it decides.
+    /// Space in which it decides.
     pub class: Class,
     /// Time and memory, in the usual O-notation, with its letters explained.
     pub cost: &'static str,
-    /// What it cannot do, or needs from its input.
+    /// Limits, and requirements on the input.
     pub limits: &'static str,
 }
 
@@ -46,12 +47,12 @@ macro_rules! family {
             /// Every member of the family, in the order of the documentation.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
 
-            /// The facts of this algorithm.
+            /// Returns the facts of this algorithm.
             pub const fn info(self) -> &'static $crate::info::Info {
                 match self { $(Self::$variant => &$info),+ }
             }
 
-            /// The name used on the command line.
+            /// Returns the name used on the command line.
             pub const fn name(self) -> &'static str {
                 self.info().name
             }

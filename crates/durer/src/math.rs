@@ -16,8 +16,8 @@ pub enum Orientation {
     Collinear,
 }
 
-/// The orientation of three points, exact for all finite input whose products neither overflow nor
-/// underflow (Shewchuk, *Adaptive Precision Floating-Point Arithmetic*, 1997).
+/// Returns the orientation of three points, exact for all finite input whose products neither
+/// overflow nor underflow (Shewchuk, *Adaptive Precision Floating-Point Arithmetic*, 1997).
 ///
 /// ```
 /// use durer::math::{DVec2, Orientation, orient2d};
@@ -35,8 +35,8 @@ pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> Orientation {
     }
 }
 
-/// Whether x lies in the open sector around an apex from the ray through one point counter-clockwise to the ray through
-/// another; exact as [`orient2d`] is. Where both rays are the same, everything but that ray is in it.
+/// Returns whether x lies in the open sector around an apex from the ray through one point counter-clockwise to the ray
+/// through another; exact as [`orient2d`] is. Where both rays are the same, everything but that ray is in it.
 ///
 /// ```
 /// use durer::math::{DVec2, in_sector};
@@ -50,7 +50,7 @@ pub fn in_sector(apex: DVec2, from: DVec2, x: DVec2, to: DVec2) -> bool {
     if left(to, apex, from) { first && second } else { first || second }
 }
 
-/// Twice the signed area of the triangle a, b, c; its sign is exact, its size approximate.
+/// Returns twice the signed area of the triangle a, b, c; its sign is exact, its size approximate.
 pub fn orient2d_value(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let coord = |p: DVec2| robust::Coord { x: p.x, y: p.y };
     robust::orient2d(coord(a), coord(b), coord(c))
@@ -68,7 +68,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The plane through `point` whose inside is where `normal` points.
+    /// Returns the plane through `point` whose inside is where `normal` points.
     pub fn through(point: DVec3, normal: DVec3) -> Self {
         Self { normal, distance: -normal.dot(point) }
     }
@@ -78,7 +78,8 @@ impl Plane {
         self.normal.dot(p) + self.distance
     }
 
-    /// The same plane with a normal of unit length; `None` where the normal has no direction.
+    /// Returns the same plane with a normal of unit length; `None` where the normal has no
+    /// direction.
     pub fn normalized(&self) -> Option<Self> {
         let length = self.normal.length();
         (length.is_finite() && length > 0.0)
@@ -97,7 +98,7 @@ pub struct Rect {
 }
 
 impl Rect {
-    /// The rectangle between two corners.
+    /// Returns the rectangle between two corners.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] where a number is not finite or `min > max` on an axis.
@@ -113,7 +114,7 @@ impl Rect {
         }
     }
 
-    /// The smallest rectangle around the finite points; `None` where there is none.
+    /// Returns the smallest rectangle around the finite points; `None` where there is none.
     pub fn around(points: impl IntoIterator<Item = DVec2>) -> Option<Self> {
         let mut points = points.into_iter().filter(|p| p.is_finite());
         let first = points.next()?;
@@ -121,27 +122,27 @@ impl Rect {
         Some(Self { min, max })
     }
 
-    /// The corner with the smallest coordinates.
+    /// Returns the corner with the smallest coordinates.
     pub fn min(&self) -> DVec2 {
         self.min
     }
 
-    /// The corner with the largest coordinates.
+    /// Returns the corner with the largest coordinates.
     pub fn max(&self) -> DVec2 {
         self.max
     }
 
-    /// Width and height.
+    /// Returns the width and height.
     pub fn size(&self) -> DVec2 {
         self.max - self.min
     }
 
-    /// Whether the point lies inside or on the border.
+    /// Returns whether the point lies inside or on the border.
     pub fn contains(&self, p: DVec2) -> bool {
         p.x >= self.min.x && p.x <= self.max.x && p.y >= self.min.y && p.y <= self.max.y
     }
 
-    /// Whether the two closed rectangles have a point in common.
+    /// Returns whether the two closed rectangles have a point in common.
     pub fn overlaps(&self, other: &Self) -> bool {
         self.min.x <= other.max.x
             && other.min.x <= self.max.x
@@ -150,7 +151,7 @@ impl Rect {
     }
 }
 
-/// An order of points: by x, then y, then z.
+/// Returns an order of points: by x, then y, then z.
 pub(crate) fn by_coordinates(a: &DVec3, b: &DVec3) -> std::cmp::Ordering {
     a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
 }
@@ -166,7 +167,7 @@ pub fn powf(x: f32, y: f32) -> f32 {
     exp2(y * log2(x))
 }
 
-/// The logarithm to base 2 of a positive finite number; see [`powf`].
+/// Returns the logarithm to base 2 of a positive finite number; see [`powf`].
 pub fn log2(x: f32) -> f32 {
     let x = f64::from(x);
     let bits = x.to_bits();
@@ -185,7 +186,7 @@ pub fn log2(x: f32) -> f32 {
     (exponent as f64 + 2.0 * s * series * std::f64::consts::LOG2_E) as f32
 }
 
-/// Two to the power `x`; overflow gives infinity, underflow zero; see [`powf`].
+/// Returns two to the power `x`; overflow gives infinity, underflow zero; see [`powf`].
 pub fn exp2(x: f32) -> f32 {
     if x.is_nan() {
         return x;

@@ -50,7 +50,7 @@ pub fn map_and_keep<S: Send, T: Send, R: Send>(
     (results, states.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// How many threads share the work.
+/// Returns the number of threads that share the work.
 pub fn threads() -> usize {
     #[cfg(feature = "parallel")]
     {

@@ -43,7 +43,7 @@ use crate::visibility::surface::{shadow_map, z_buffer};
 use crate::work::Work;
 use crate::{Error, Result};
 
-/// Where light comes from.
+/// Source of light.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Lighting {
     /// The scene's own lights; where it has none, three points: key, fill and rim light that go with
@@ -54,7 +54,7 @@ pub enum Lighting {
     Given(Vec<Light>),
 }
 
-/// How shadows are found.
+/// Method for shadows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Shadows {
     /// There are none.
@@ -69,55 +69,55 @@ pub enum Shadows {
 /// Everything about a picture but the scene.
 #[derive(Debug, Clone)]
 pub struct RenderOptions {
-    /// How visible surfaces are found.
+    /// Method for visible surfaces.
     pub algorithm: SurfaceMethod,
     /// Width in pixels, at least 1.
     pub width: u32,
     /// Height in pixels, at least 1.
     pub height: u32,
-    /// Where the eye is.
+    /// Options for the camera.
     pub camera: Camera,
     /// `None` = by material.
     pub shading: Option<Shading>,
-    /// Where light comes from.
+    /// Source of light.
     pub lighting: Lighting,
-    /// How strong light is shown; `None` = [`Exposure::Auto`] for the scene's own lights and for
-    /// panoramas, 0 EV for lights that are given.
+    /// Exposure; `None` = [`Exposure::Auto`] for the scene's own lights and for panoramas, 0 EV for
+    /// lights that are given.
     pub exposure: Option<Exposure>,
-    /// What mirrors show, and what may light the scene from all around.
+    /// Surroundings that mirrors show, and that may light the scene from all around.
     pub surroundings: Surroundings,
-    /// How the range of brightness is brought to a display's.
+    /// Mapping from the range of brightness to that of a display.
     pub tone_map: ToneMap,
-    /// What is behind everything.
+    /// Background of the picture.
     pub background: Background,
-    /// Which faces are left out.
+    /// Faces to leave out.
     pub cull: Cull,
     /// The size of lines and points.
     pub marks: Marks,
     /// Samples per pixel of the colour plane, where the algorithm takes several; the other planes always have one, at the centre.
     pub samples: Samples,
-    /// How fine the A-buffer's masks are; it takes no samples.
+    /// Resolution of the A-buffer's masks; it takes no samples.
     pub mask: Mask,
-    /// Whether surfaces keep light from others.
+    /// Method that keeps light from surfaces in shadow.
     pub shadows: Shadows,
     /// Texels along the side of shadow maps.
     pub shadow_map_side: u32,
-    /// How often rays may be reflected by mirrors and refracted by what blends; above 0 for
-    /// [`SurfaceMethod::Ray`] only.
+    /// Number of times that rays may be reflected by mirrors and refracted by what blends; above 0
+    /// for [`SurfaceMethod::Ray`] only.
     pub bounces: u32,
     /// Ambient occlusion of the surfaces that are seen; `None` = without.
     pub ambient_occlusion: Option<ambient_occlusion::Options>,
-    /// Whether the framebuffer gets a depth plane.
+    /// True if the framebuffer gets a depth plane.
     pub depth: bool,
-    /// Whether the framebuffer gets an item plane.
+    /// True if the framebuffer gets an item plane.
     pub item: bool,
-    /// Whether the framebuffer gets a normal plane.
+    /// True if the framebuffer gets a normal plane.
     pub normal: bool,
     /// Refuse pictures of more pixels than this.
     pub max_pixels: u64,
     /// The SIMD level to work at; all give the same bytes.
     pub level: Level,
-    /// What it may cost, and whether it goes on.
+    /// Budget of the work, and its cancellation.
     pub work: Work,
 }
 
@@ -182,7 +182,7 @@ impl RenderOptions {
     }
 }
 
-/// What happened on the way to a picture.
+/// Report on the making of a picture.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Report {
     /// Triangles of the scene, over all instances.
@@ -217,9 +217,9 @@ pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Re
     Ok((framebuffer, report))
 }
 
-/// As [`render`], into a framebuffer that may have held another picture: whatever it held, it has the same planes
-/// and bytes afterwards. Of pictures one after another of one size the memory is kept, which spares a tenth of
-/// the time of small ones.
+/// Renders like [`render`], into a framebuffer that may have held another picture: afterwards it has the same
+/// planes and bytes whatever it held. Of pictures one after another of one size the memory is kept, which spares
+/// a tenth of the time of small ones.
 ///
 /// ```
 /// use durer::pipeline::{RenderOptions, render, render_into};
@@ -308,7 +308,7 @@ fn darken(view: &View, options: &RenderOptions, framebuffer: &mut Framebuffer) {
     }
 }
 
-/// The lights of a picture from a camera, exposed.
+/// Returns the lights of a picture from a camera, exposed.
 fn lights(
     scene: &Scene,
     camera: &Camera,
@@ -366,7 +366,7 @@ pub struct Compared {
     pub method: SurfaceMethod,
     /// Its picture, with an item plane.
     pub picture: Framebuffer,
-    /// What happened on the way.
+    /// Report on the work.
     pub report: Report,
     /// Pixels whose item is not that of the z-buffer; 0 is what all methods here promise.
     pub differing: u64,
@@ -389,7 +389,7 @@ pub fn compare(scene: &Scene, options: &RenderOptions) -> Result<Vec<Compared>> 
     Ok(compared)
 }
 
-/// How many pixels show different items; those without an item plane show none.
+/// Returns the number of pixels that show different items; those without an item plane show none.
 fn differing_items(a: &Framebuffer, b: &Framebuffer) -> u64 {
     match (&a.item, &b.item) {
         (Some(a), Some(b)) => a.data().iter().zip(b.data()).filter(|(a, b)| a != b).count() as u64,
@@ -397,7 +397,8 @@ fn differing_items(a: &Framebuffer, b: &Framebuffer) -> u64 {
     }
 }
 
-/// All methods but the production path: first the list of triangles on the screen, then the method.
+/// Returns all methods but the production path: first the list of triangles on the screen, then the
+/// method.
 fn from_screen_triangles(
     scene: &Scene,
     view: &View,

@@ -4,11 +4,11 @@ pub use fearless_simd::Level;
 use fearless_simd::Simd;
 use std::sync::OnceLock;
 
-/// What everything works at where no other level is asked for.
+/// Level of all work that asks for no other.
 static DEFAULT: OnceLock<Level> = OnceLock::new();
 
-/// The level that everything works at where no other is asked for: the machine's best, or what
-/// [`set_default_level`] has chosen.
+/// Returns the level that everything works at where no other is asked for: the machine's best, or
+/// what [`set_default_level`] has chosen.
 pub fn default_level() -> Level {
     *DEFAULT.get_or_init(Level::new)
 }
@@ -27,7 +27,7 @@ pub fn set_default_level(level: Level) -> bool {
     DEFAULT.set(level).is_ok()
 }
 
-/// How many numbers of 32 bits a register of the level holds.
+/// Returns the number of 32-bit lanes in a register of the level.
 #[inline(always)]
 pub(crate) const fn lanes<S: Simd>() -> usize {
     size_of::<S::i32s>() / size_of::<i32>()

@@ -43,22 +43,22 @@ pub struct Recorder<S> {
 }
 
 impl<S> Recorder<S> {
-    /// A recorder that keeps the first `cap` steps.
+    /// Creates A recorder that keeps the first `cap` steps.
     pub fn with_cap(cap: usize) -> Self {
         Self { steps: Vec::new(), cap, dropped: 0 }
     }
 
-    /// The steps kept, in the order in which they were taken.
+    /// Returns the steps kept, in the order in which they were taken.
     pub fn steps(&self) -> &[S] {
         &self.steps
     }
 
-    /// How many steps came after the cap was reached.
+    /// Returns the number of steps after the cap was reached.
     pub fn dropped(&self) -> usize {
         self.dropped
     }
 
-    /// The steps kept, by value.
+    /// Returns the steps kept, by value.
     pub fn into_steps(self) -> Vec<S> {
         self.steps
     }

@@ -1,4 +1,4 @@
-//! What work may cost: a budget of memory, and a way to stop it.
+//! The cost of work: a budget of memory, and a way to stop it.
 //!
 //! A [`Work`] is a value that options hand down. Large buffers are charged to it before they are made, each as a whole, so
 //! that normal work does not get slower by it; long loops ask it at times whether to go on. Nothing of it is global: two
@@ -38,32 +38,32 @@ struct Scope {
     kept: AtomicU64,
 }
 
-/// What all parts have in common.
+/// State that all parts share.
 #[derive(Debug)]
 struct Shared {
     /// Bytes.
     budget: u64,
-    /// What sets the budget.
+    /// Name of the setting for the budget.
     option: &'static str,
     /// Bytes that are charged.
     used: AtomicU64,
     stopped: AtomicBool,
     why: Mutex<Option<Error>>,
     stage: Mutex<&'static str>,
-    /// What [`Work::begin`] named last, and how much of it is done and is to be done.
+    /// Stage that [`Work::begin`] named last, and its counts of finished and of all steps.
     counted: Mutex<&'static str>,
     done: AtomicU64,
     of: AtomicU64,
 }
 
-/// How far work has come, as [`Work::progress`] tells.
+/// Progress of work, as [`Work::progress`] returns it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Progress {
-    /// What is being done: `"rows of tiles"`, `"lines"`, …; empty before anything that is counted.
+    /// Current stage: `"rows of tiles"`, `"lines"`, …; empty before the first counted one.
     pub stage: &'static str,
-    /// How much of it is done; at most `of`.
+    /// Number of finished steps; at most `of`.
     pub done: u64,
-    /// How much there is to do.
+    /// Number of all steps.
     pub of: u64,
 }
 
@@ -159,7 +159,7 @@ impl Work {
         Ok(charge)
     }
 
-    /// As [`Self::charge`], for so many elements of a type.
+    /// Charges like [`Self::charge`], for a number of elements of a type.
     ///
     /// # Errors
     /// As [`Self::charge`].
@@ -180,8 +180,8 @@ impl Work {
         Ok(())
     }
 
-    /// As [`Self::keep`], where an error cannot be returned: what does not fit stops the work, so that its next check fails.
-    /// Returns whether it fits.
+    /// Keeps a charge like [`Self::keep`], if an error cannot be returned: exceeding the budget stops the work, so that its
+    /// next check fails. Returns whether it fits.
     pub fn keep_or_stop(&self, stage: &'static str, bytes: u64) -> bool {
         self.keep(stage, bytes).map_err(|error| self.stop(error)).is_ok()
     }
@@ -198,7 +198,7 @@ impl Work {
         }
     }
 
-    /// Whether [`Self::check`] fails, for loops that leave the error to their callers.
+    /// Returns whether [`Self::check`] fails, for loops that leave the error to their callers.
     #[inline]
     pub fn is_stopped(&self) -> bool {
         self.0.as_ref().is_some_and(|scope| scope.shared.stopped.load(Ordering::Relaxed))
@@ -245,7 +245,7 @@ impl Work {
         }
     }
 
-    /// The stage that the work came to last.
+    /// Returns the stage that the work came to last.
     pub fn stage(&self) -> &'static str {
         self.0.as_ref().map_or("start", |scope| *lock(&scope.shared.stage))
     }
@@ -283,7 +283,7 @@ impl Work {
         self.0.as_ref().map_or(0, |scope| scope.shared.used.load(Ordering::Relaxed))
     }
 
-    /// The budget, bytes; [`u64::MAX`] where there is none.
+    /// Returns the budget, bytes; [`u64::MAX`] where there is none.
     pub fn budget(&self) -> u64 {
         self.0.as_ref().map_or(u64::MAX, |scope| scope.shared.budget)
     }

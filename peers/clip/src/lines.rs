@@ -37,7 +37,7 @@ fn segment(kind: &str, r: &mut Random) -> [f64; 4] {
     }
 }
 
-/// How many segments are accepted; each call is a direct one, as the other's.
+/// Returns the number of accepted segments; each call is a direct one, as the other's.
 fn one_by_one(all: &[[f64; 4]], f: impl Fn(Segment<DVec2>) -> Option<Segment<DVec2>>) -> f64 {
     let segments = all.iter().map(|s| Segment::new(DVec2::new(s[0], s[1]), DVec2::new(s[2], s[3])));
     segments.filter(|s| black_box(f(*s)).is_some()).count() as f64

@@ -36,7 +36,7 @@ unsafe extern "C" {
 
 const WORLD: f64 = 1_000_000.0;
 
-/// Closed or open curves of n points that wind around a centre.
+/// Returns closed or open curves of n points that wind around a centre.
 fn blobs(count: usize, n: usize, radius: f64, random: &mut Random) -> Vec<Vec<DVec2>> {
     let blob = |random: &mut Random| {
         let center = DVec2::new(random.next(), random.next()) * WORLD;

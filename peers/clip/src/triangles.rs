@@ -10,7 +10,8 @@ use std::hint::black_box;
 
 const N: usize = 500_000;
 
-/// Triangles of some size in clip space, all inside, all outside, or anything; w from 1 to 9.
+/// Returns triangles of some size in clip space, all inside, all outside, or anything; w from 1 to
+/// 9.
 fn triangle(kind: &str, r: &mut Random) -> [[f32; 4]; 3] {
     let mut within = |lo: f64, hi: f64| lo + (hi - lo) * r.next();
     let (reach, away) = match kind {

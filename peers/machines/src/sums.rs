@@ -93,7 +93,7 @@ fn map() -> u64 {
     sum(writer.finish(&[]).expect("memory"))
 }
 
-/// The golden scenes of the library, each at four samples and by one of the methods.
+/// Returns the golden scenes of the library, each at four samples and by one of the methods.
 fn scenes_by_methods() -> Vec<(String, u64)> {
     let methods = SurfaceMethod::ALL.iter().cycle();
     let scenes = scenes::all().into_iter().cycle().take(SurfaceMethod::ALL.len());

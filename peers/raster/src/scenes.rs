@@ -34,7 +34,7 @@ fn shape(points: Vec<DVec2>, color: [u8; 4]) -> Shape {
     Shape { contours: Contours::polygon(points), even_odd: false, color }
 }
 
-/// Random convex polygons of about 20 pixels.
+/// Returns random convex polygons of about 20 pixels.
 pub fn small_polygons() -> Scene {
     let mut r = Random(1);
     let shapes = (0..10_000).map(|_| {
@@ -51,7 +51,7 @@ pub fn small_polygons() -> Scene {
     Scene { name: "10k polygons 1024".into(), size: 1024, shapes: shapes.collect() }
 }
 
-/// A jittered grid of 64 × 64 cells, two triangles each.
+/// Returns A jittered grid of 64 × 64 cells, two triangles each.
 pub fn mesh() -> Scene {
     let mut r = Random(2);
     let (n, side) = (64, 512.0);
@@ -120,7 +120,7 @@ fn convert(data: &usvg::tiny_skia_path::Path) -> Path {
     path
 }
 
-/// One polygon of 10⁵ vertices at 2048².
+/// Returns one polygon of 10⁵ vertices at 2048².
 pub fn heavy(kind: &str, even_odd: bool) -> Scene {
     let mut r = Random(3);
     let count = 100_000;

@@ -51,14 +51,14 @@ impl Drop for Ended {
 pub struct TempFolder(PathBuf);
 
 impl TempFolder {
-    /// A new folder among the temporary files.
+    /// Creates A new folder among the temporary files.
     pub fn new() -> Result<Self> {
         let folder = std::env::temp_dir().join(format!("durer-peers-{}", std::process::id()));
         std::fs::create_dir_all(&folder)?;
         Ok(Self(folder))
     }
 
-    /// Where it is.
+    /// Returns the position of the feature.
     pub fn path(&self) -> &Path {
         &self.0
     }

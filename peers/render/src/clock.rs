@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-/// What a piece of work cost.
+/// Cost of a piece of work.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Cost {
     /// User and system time of all threads, seconds.
@@ -29,7 +29,7 @@ pub fn measure<T>(work: impl FnOnce() -> T) -> (T, Cost) {
     (result, cost)
 }
 
-/// The middle of the values, the upper one of two; 0 for none.
+/// Returns the middle of the values, the upper one of two; 0 for none.
 pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.into_iter().collect();
     values.sort_by(f64::total_cmp);
@@ -42,7 +42,8 @@ pub fn median_cost(costs: &[Cost]) -> Cost {
     Cost { cpu: of(|c| c.cpu), wall: of(|c| c.wall), memory: of(|c| c.memory) }
 }
 
-/// How many times `ours` fits into `theirs`: the median over the rounds, each with its own quotient.
+/// Returns how many times `ours` fits into `theirs`: the median over the rounds, each with its own
+/// quotient.
 pub fn ratio(theirs: &[Cost], ours: &[Cost], part: fn(&Cost) -> f64) -> f64 {
     median(theirs.iter().zip(ours).map(|(t, o)| part(t) / part(o)))
 }

@@ -29,7 +29,7 @@ pub struct Durer {
 }
 
 impl Durer {
-    /// The scene ready to be drawn, with 1 or 4 samples per pixel.
+    /// Creates the scene ready to be drawn, with 1 or 4 samples per pixel.
     pub fn new(mesh: &Mesh, samples: u32, threads: usize) -> Result<Self> {
         let durer_mesh = durer::scene::Mesh {
             positions: mesh.positions.iter().copied().map(Vec3::from).collect(),
@@ -104,7 +104,7 @@ impl Durer {
         }
     }
 
-    /// The last frame, turned from sRGB to the linear bytes that the others write.
+    /// Returns the last frame, turned from sRGB to the linear bytes that the others write.
     pub fn picture(&self) -> Picture {
         let linear = |c: u8| color::encode_unorm8(color::decode_srgb8(c));
         let pixels = self.last.color.data().iter().map(|&[r, g, b, _]| [r, g, b].map(linear));

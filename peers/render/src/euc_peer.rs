@@ -18,7 +18,7 @@ pub struct Euc {
     depth: Buffer2d<f32>,
 }
 
-/// What is the same for a whole frame.
+/// Values that are the same for a whole frame.
 struct Phong<'a> {
     positions: &'a [Vec3<f32>],
     normals: &'a [Vec3<f32>],
@@ -61,7 +61,7 @@ fn background() -> [u8; 3] {
 }
 
 impl Euc {
-    /// The scene ready to be drawn.
+    /// Creates the scene ready to be drawn.
     pub fn new(mesh: &Mesh) -> Self {
         let size = [scene::WIDTH, scene::HEIGHT];
         let vectors = |v: &[[f32; 3]]| v.iter().map(|&p| Vec3::from(p)).collect();
@@ -107,7 +107,7 @@ impl Euc {
         phong.draw::<rasterizer::Triangles<_>, _>(&self.indices, &mut self.color, depth);
     }
 
-    /// The last frame.
+    /// Returns the last frame.
     pub fn picture(&self) -> Picture {
         let pixels = self.color.as_ref().iter().map(|&[r, g, b, _]| [r, g, b]).collect();
         Picture { width: scene::WIDTH, pixels, background: background() }

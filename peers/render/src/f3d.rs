@@ -13,7 +13,8 @@ pub struct Display {
 }
 
 impl Display {
-    /// Where there is an f3d to show on it: starts Xvfb on the first free display from 99 on and waits until it listens.
+    /// Starts a display, if there is an f3d to show on it: starts Xvfb on the first free display from 99 on and waits
+    /// until it listens.
     pub fn start() -> Result<Self> {
         crate::child::run(Command::new("f3d").arg("--version"))?;
         let socket = |n: u32| format!("/tmp/.X11-unix/X{n}");

@@ -152,7 +152,7 @@ impl<'a> Contest<'a> {
         }
     }
 
-    /// Whether all have drawn the same thing.
+    /// Checks that all have drawn the same thing.
     fn compare(&self, folder: Option<&Path>) -> Result<Vec<[String; 6]>> {
         let mut rows = Vec::new();
         let mut first: Option<Picture> = None;

@@ -1,4 +1,4 @@
-//! How the cost of a frame grows: with triangles, pixels, overdraw and threads, drawn as charts.
+//! The growth of a frame's cost: with triangles, pixels, overdraw and threads, drawn as charts.
 
 #[path = "../../../crates/durer/examples/growth/chart.rs"]
 mod chart;
@@ -58,7 +58,7 @@ pub fn run(options: &Options) -> Result<()> {
     draw(folder, "threads", "threads, 262k triangles; up: wall ms", &threads, |c| c.wall)
 }
 
-/// What a place on the axis is called, and what the frame cost there.
+/// Name of a place on the axis, and the frame's cost there.
 type Place = (String, Cost);
 
 /// A curve's name and places.

@@ -45,7 +45,8 @@ pub fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// The median of three frames into one picture, as the harness has one surface, after one that does not count.
+/// Returns the median of three frames into one picture, as the harness has one surface, after one that does
+/// not count.
 pub fn turn(scene: &Scene, view: &RenderOptions) -> Result<Cost> {
     let (mut costs, mut picture) = (Vec::new(), Framebuffer::new(0, 0));
     for frame in 0..4 {
@@ -58,7 +59,7 @@ pub fn turn(scene: &Scene, view: &RenderOptions) -> Result<Cost> {
     Ok(median_cost(&costs))
 }
 
-/// How the quads are seen.
+/// Returns the view of the quads.
 pub fn view() -> RenderOptions {
     let height = 2.0;
     let camera = Camera {
@@ -78,7 +79,7 @@ pub fn view() -> RenderOptions {
     }
 }
 
-/// So many quads in an order.
+/// Returns the quads in an order.
 pub fn quads(mode: &str, layers: usize) -> Scene {
     let half = (scene::WIDTH as f32 / scene::HEIGHT as f32, 1.0);
     let mut mesh = Mesh::default();
@@ -128,7 +129,7 @@ pub fn quads(mode: &str, layers: usize) -> Scene {
     }
 }
 
-/// The harness's texture: a chequer with noise.
+/// Returns the harness's texture: a chequer with noise.
 fn image() -> Image {
     let mut seed = 1u32;
     let mut data = Vec::new();

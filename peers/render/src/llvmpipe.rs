@@ -7,13 +7,13 @@ use crate::scene;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The harness, if there is one.
+/// Returns the harness, if there is one.
 pub fn harness() -> Option<PathBuf> {
     std::env::var_os("LLVMPIPE_BENCH").map(PathBuf::from)
 }
 
-/// One turn of frames with so many raster threads (0 = all in the calling one); the medians that the
-/// harness prints.
+/// Returns one turn of frames with so many raster threads (0 = all in the calling one); the medians
+/// that the harness prints.
 pub fn turn(
     harness: &Path,
     mesh: &Path,
@@ -35,7 +35,7 @@ pub fn turn(
     medians(command, harness)
 }
 
-/// One turn of what the arguments say, with so many raster threads.
+/// Returns one turn of what the arguments say, with so many raster threads.
 pub fn run(harness: &Path, arguments: &[&str], threads: u32) -> Result<Cost> {
     let mut command = command(harness, threads);
     command.args(arguments);
@@ -49,7 +49,7 @@ fn command(harness: &Path, threads: u32) -> Command {
     command
 }
 
-/// The medians that the harness prints.
+/// Returns the medians that the harness prints.
 fn medians(mut command: Command, harness: &Path) -> Result<Cost> {
     let output = command.output().map_err(|e| format!("{}: {e}", harness.display()))?;
     let text = String::from_utf8_lossy(&output.stdout);
@@ -64,7 +64,7 @@ fn medians(mut command: Command, harness: &Path) -> Result<Cost> {
     Ok(Cost { cpu: value("cpu_med=")?, wall: value("med_ms=")?, memory: 0.0 })
 }
 
-/// The picture that the harness has written.
+/// Returns the picture that the harness has written.
 pub fn picture(path: &Path) -> Result<Picture> {
     let mut picture = Picture::read(path)?;
     // The harness clears to these; Mesa rounds halves up.

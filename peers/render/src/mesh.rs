@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// Triangles with normals at the vertices.
 pub struct Mesh {
-    /// Where the vertices are.
+    /// Positions of the vertices.
     pub positions: Vec<[f32; 3]>,
     /// Unit normals, the mean of the faces around weighted by area.
     pub normals: Vec<[f32; 3]>,
@@ -20,14 +20,14 @@ pub struct Mesh {
 pub const SIZES: [(&str, u32, u32); 3] =
     [("sphere13k", 114, 58), ("sphere69k", 264, 132), ("sphere1m", 1000, 501)];
 
-/// The mesh of one of [`SIZES`].
+/// Returns the mesh of one of [`SIZES`].
 pub fn sphere(name: &str) -> Result<Mesh> {
     let size = SIZES.iter().find(|s| s.0 == name);
     let &(_, around, down) = size.ok_or_else(|| format!("{name}: there is no such mesh"))?;
     Ok(displaced(around, down))
 }
 
-/// A displaced sphere with so many meridians and parallels.
+/// Returns A displaced sphere with so many meridians and parallels.
 pub fn displaced(around: u32, down: u32) -> Mesh {
     let points: Vec<[f64; 3]> =
         (0..=down).flat_map(|i| (0..around).map(move |j| point(i, j, around, down))).collect();
@@ -37,7 +37,7 @@ pub fn displaced(around: u32, down: u32) -> Mesh {
     Mesh { positions, normals, triangles }
 }
 
-/// The mesh of a name in [`SIZES`], or of an STL file with a normal for each face.
+/// Returns the mesh of a name in [`SIZES`], or of an STL file with a normal for each face.
 pub fn named(name: &str) -> Result<Mesh> {
     if !name.ends_with(".stl") {
         return sphere(name);
@@ -67,7 +67,7 @@ fn point(i: u32, j: u32, around: u32, down: u32) -> [f64; 3] {
     [x, y, z].map(|v| v * radius)
 }
 
-/// Row by row, two triangles for each cell of the grid, one at the poles.
+/// Returns the row by row, two triangles for each cell of the grid, one at the poles.
 fn triangles(around: u32, down: u32) -> Vec<[u32; 3]> {
     let mut triangles = Vec::new();
     for (i, j) in (0..down).flat_map(|i| (0..around).map(move |j| (i, j))) {
@@ -95,14 +95,14 @@ fn normals(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<[f32; 3]> {
     sums.into_iter().map(unit).collect()
 }
 
-/// Twice the area long.
+/// Returns twice the area long.
 fn face_normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     let u: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
     let v: [f64; 3] = std::array::from_fn(|k| c[k] - a[k]);
     [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
 }
 
-/// Of length one; the poles' spare vertices, which no triangle uses, stay zero.
+/// Returns the vector of length one; the poles' spare vertices, which no triangle uses, stay zero.
 fn unit(v: [f64; 3]) -> [f32; 3] {
     let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let scale = if length > 0.0 { 1.0 / length } else { 0.0 };

@@ -37,7 +37,7 @@ pub fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// The triangles of a binary STL file.
+/// Returns the triangles of a binary STL file.
 pub fn read_stl(path: &Path) -> Result<Scene> {
     let bytes = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
     let number = |b: &[u8]| b.try_into().map_or(0.0, f32::from_le_bytes);
@@ -49,7 +49,7 @@ pub fn read_stl(path: &Path) -> Result<Scene> {
     Ok(Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() })
 }
 
-/// The whole model from one side; `rays.py` has the same.
+/// Returns the whole model from one side; `rays.py` has the same.
 fn camera(scene: &Scene) -> Result<Camera> {
     let bounds = scene.bounds().ok_or("the model is empty")?;
     let (center, extent) = ((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min).length());

@@ -1,19 +1,19 @@
-//! What stands on the command line.
+//! The command line.
 
 use crate::{Result, USAGE};
 use std::path::PathBuf;
 
-/// What both measurements take.
+/// Options of both measurements.
 pub struct Options {
     /// Files or meshes.
     pub names: Vec<String>,
-    /// How often each contender has its turn.
+    /// Number of turns of each contender.
     pub rounds: usize,
     /// Only so many samples per pixel; `None` = 1 and 4.
     pub samples: Option<u32>,
-    /// Where pictures are kept.
+    /// Folder for pictures.
     pub png: Option<PathBuf>,
-    /// Where `make` has put the meshes; `None` = they are made.
+    /// Folder of the meshes made by `make`; `None` = they are made.
     pub meshes: Option<PathBuf>,
 }
 

@@ -12,7 +12,7 @@ pub struct Picture {
     pub width: usize,
     /// Red, green, blue.
     pub pixels: Vec<[u8; 3]>,
-    /// What a pixel is that nothing covers.
+    /// Colour of a pixel that nothing covers.
     pub background: [u8; 3],
 }
 
@@ -44,13 +44,13 @@ impl Picture {
         Ok(())
     }
 
-    /// The number of pixels that something covers.
+    /// Returns the number of pixels that something covers.
     pub fn covered(&self) -> usize {
         self.pixels.iter().filter(|p| **p != self.background).count()
     }
 
-    /// The number of pixels that are covered in one of two pictures only, and the mean difference of
-    /// a channel where both are.
+    /// Returns the number of pixels that are covered in one of two pictures only, and the mean
+    /// difference of a channel where both are.
     pub fn compare(&self, other: &Self) -> (usize, f64) {
         let (mut differ, mut sum, mut both) = (0, 0, 0);
         for (a, b) in self.pixels.iter().zip(&other.pixels) {

@@ -56,10 +56,10 @@ pub fn run(options: &Options) -> Result<()> {
     pictures.iter().try_for_each(|p| check(p))
 }
 
-/// What both have to do.
+/// Task of both.
 #[derive(Clone, Copy)]
 enum Work {
-    /// What each does without being told more: other views, and durer alone smooths edges.
+    /// Defaults of each: other views, and durer alone smooths edges.
     Defaults,
     /// The view that durer chooses, edges not smoothed.
     OneSample,
@@ -112,7 +112,7 @@ struct Camera {
 }
 
 impl Camera {
-    /// The one that durer chooses for a model.
+    /// Returns the one that durer chooses for a model.
     fn of(durer: &Path, model: &Path, picture: &Path) -> Result<Self> {
         let output = render(durer, model, picture).arg("--json").output()?;
         let report = String::from_utf8(output.stdout)?;
@@ -149,7 +149,7 @@ fn render(durer: &Path, model: &Path, picture: &Path) -> Command {
     command
 }
 
-/// The release build of the command, or what `DURER` names.
+/// Returns the release build of the command, or what `DURER` names.
 fn durer() -> Result<PathBuf> {
     let built = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/release/durer");
     let path = std::env::var_os("DURER").map_or(built, PathBuf::from);
@@ -160,7 +160,7 @@ fn durer() -> Result<PathBuf> {
     }
 }
 
-/// What the command line names; else a scanned boat, where the data are, and spheres.
+/// Returns the models of the command line; else a scanned boat, if the data are there, and spheres.
 fn models(options: &Options, temp: &Path) -> Result<Vec<PathBuf>> {
     if !options.names.is_empty() {
         return Ok(options.names.iter().map(PathBuf::from).collect());

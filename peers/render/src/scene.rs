@@ -20,7 +20,7 @@ pub const DIFFUSE: [f32; 3] = [0.7, 0.55, 0.35];
 pub const SPECULAR: f32 = 0.4;
 /// Exponent of n·h.
 pub const SHININESS: f32 = 32.0;
-/// What is behind.
+/// Colour of the background.
 pub const BACKGROUND: [f32; 3] = [0.1, 0.1, 0.12];
 /// Frames before the clock runs.
 pub const WARM: usize = 3;
@@ -29,7 +29,7 @@ pub const FRAMES: usize = 5;
 /// The frame whose picture is compared: the last one.
 pub const LAST: usize = WARM + FRAMES - 1;
 
-/// Where the mesh lies and how far the eye is.
+/// Placement of the mesh and distance of the eye.
 pub struct Place {
     /// Middle of the mesh's box, world space.
     pub center: [f64; 3],
@@ -38,7 +38,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// The mesh seen whole, as near as the harness comes with a zoom of 1.25.
+    /// Returns the mesh seen whole, as near as the harness comes with a zoom of 1.25.
     pub fn of(mesh: &Mesh) -> Self {
         let bound = |f: fn(f32, f32) -> f32, k: usize| {
             f64::from(mesh.positions.iter().map(|p| p[k]).reduce(f).unwrap_or(0.0))
@@ -50,17 +50,17 @@ impl Place {
         Self { center, distance: radius / (FOV_Y / 2.0).sin() * 0.85 / 1.25 }
     }
 
-    /// The near plane's distance from the eye.
+    /// Returns the near plane's distance from the eye.
     pub fn near(&self) -> f64 {
         self.distance * 0.05
     }
 
-    /// The far plane's distance from the eye.
+    /// Returns the far plane's distance from the eye.
     pub fn far(&self) -> f64 {
         self.distance * 4.0
     }
 
-    /// The mesh turned before the eye as it is in a frame.
+    /// Returns the mesh turned before the eye as it is in a frame.
     pub fn view_from_world(&self, frame: usize) -> Mat4<f32> {
         let to_center = Vec3::from(self.center.map(|c| -c as f32));
         // The camera turns the other way round the mesh than the mesh before the camera.
@@ -71,7 +71,7 @@ impl Place {
     }
 }
 
-/// How far the mesh is turned in a frame, radians; half a degree more in each.
+/// Returns the angle of the mesh in a frame, radians; half a degree more in each.
 pub fn angle(frame: usize) -> f64 {
     0.6 + 0.5 * 0.01745 * frame as f64
 }

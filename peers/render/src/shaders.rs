@@ -5,7 +5,8 @@ use naga::ShaderStage;
 use naga::back::spv;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
-/// The words of the vertex shader, whose entry point is `vertex`, and of the fragment shader, `fragment`.
+/// Returns the words of the vertex shader, whose entry point is `vertex`, and of the fragment shader,
+/// `fragment`.
 pub fn phong() -> Result<[Vec<u32>; 2]> {
     let source = constants() + include_str!("phong.wgsl");
     let module = naga::front::wgsl::parse_str(&source).map_err(|e| e.emit_to_string(&source))?;
@@ -17,7 +18,7 @@ pub fn phong() -> Result<[Vec<u32>; 2]> {
     ])
 }
 
-/// The scene's constants in WGSL.
+/// Returns the scene's constants in WGSL.
 fn constants() -> String {
     let vector = |[x, y, z]: [f64; 3]| format!("vec3<f32>({x:?}, {y:?}, {z:?})");
     let color = |[r, g, b]: [f32; 3]| format!("vec3<f32>({r:?}, {g:?}, {b:?})");

@@ -10,16 +10,16 @@ use ash::vk;
 use std::path::{Path, PathBuf};
 use vek::Mat4;
 
-/// Where Debian's `chromium-common` puts it.
+/// Path of the library in Debian's `chromium-common`.
 const DEBIAN: &str = "/usr/lib/chromium/libvk_swiftshader.so";
 
-/// The library, if there is one: what `SWIFTSHADER` names, else Debian's.
+/// Returns the library, if there is one: what `SWIFTSHADER` names, else Debian's.
 pub fn library() -> Option<PathBuf> {
     let named = std::env::var_os("SWIFTSHADER").map(PathBuf::from);
     named.or_else(|| Some(PathBuf::from(DEBIAN)).filter(|path| path.exists()))
 }
 
-/// What the library's device calls itself, which has to be SwiftShader: other libraries draw too.
+/// Returns the name of the library's device, which has to be SwiftShader: other libraries draw too.
 pub fn name(library: &Path) -> Result<String> {
     let path = library.display();
     let gpu = Gpu::new(library).map_err(|e| format!("{path}: {e}"))?;
@@ -37,14 +37,14 @@ pub struct SwiftShader {
     indices: Vec<u32>,
     place: Place,
     samples: u32,
-    /// Where `SwiftShader.ini` lies, which says how many threads.
+    /// Folder of `SwiftShader.ini`, which says how many threads.
     folder: PathBuf,
     last: Picture,
 }
 
 impl SwiftShader {
-    /// The scene ready to be drawn, with 1 or 4 samples per pixel, by so many threads; a folder of
-    /// its own is made in the one that is given.
+    /// Creates the scene ready to be drawn, with 1 or 4 samples per pixel, by so many threads; a
+    /// folder of its own is made in the one that is given.
     pub fn new(
         library: PathBuf,
         mesh: &Mesh,
@@ -68,7 +68,7 @@ impl SwiftShader {
         })
     }
 
-    /// A device with its threads: SwiftShader reads its settings in the current folder.
+    /// Returns A device with its threads: SwiftShader reads its settings in the current folder.
     fn open(&self) -> Result<Gpu> {
         let before = std::env::current_dir()?;
         let library = self.library.canonicalize()?;
@@ -120,7 +120,7 @@ impl SwiftShader {
         bytes
     }
 
-    /// The last frame.
+    /// Returns the last frame.
     pub fn picture(&self) -> Picture {
         self.last.clone()
     }

@@ -17,7 +17,7 @@ const MATRIX_BYTES: u32 = 128;
 
 /// A device with a queue.
 pub struct Gpu {
-    /// What the device calls itself.
+    /// Name of the device.
     pub name: String,
     device: ash::Device,
     instance: ash::Instance,
@@ -34,7 +34,7 @@ pub struct Gpu {
     _entry: ash::Entry,
 }
 
-/// What a frame is drawn to; without multisampling, `resolved` is where it is drawn.
+/// Targets of a frame; without multisampling, it is drawn to `resolved`.
 pub struct Targets {
     samples: u32,
     color: vk::ImageView,
@@ -43,7 +43,7 @@ pub struct Targets {
 }
 
 impl Gpu {
-    /// The first device of the library, by Vulkan 1.3.
+    /// Creates the first device of the library, by Vulkan 1.3.
     pub fn new(library: &Path) -> Result<Self> {
         // SAFETY: loading a Vulkan library runs its constructors, which ask nothing of the caller.
         let entry = unsafe { ash::Entry::load_from(library)? };
@@ -82,7 +82,7 @@ impl Gpu {
         })
     }
 
-    /// Memory that the host can write and read; a software device has no other.
+    /// Returns memory that the host can write and read; a software device has no other.
     fn allocate(&mut self, needs: vk::MemoryRequirements) -> Result<vk::DeviceMemory> {
         let wanted = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
         let types = self.memory_types.memory_types_as_slice().iter().zip(0..);
@@ -111,7 +111,7 @@ impl Gpu {
         Ok((buffer, memory))
     }
 
-    /// A buffer that holds these words.
+    /// Returns A buffer that holds these words.
     pub fn buffer(&mut self, words: &[u32], usage: vk::BufferUsageFlags) -> Result<vk::Buffer> {
         let (buffer, memory) = self.buffer_of(size_of_val(words), usage)?;
         let flags = vk::MemoryMapFlags::empty();
@@ -313,7 +313,7 @@ impl Gpu {
         })
     }
 
-    /// The pixels of the last frame, rows from the top.
+    /// Returns the pixels of the last frame, rows from the top.
     pub fn read(&mut self, targets: &Targets) -> Result<Vec<[u8; 4]>> {
         let count = scene::WIDTH * scene::HEIGHT;
         let (buffer, memory) = self.buffer_of(4 * count, vk::BufferUsageFlags::TRANSFER_DST)?;
@@ -341,7 +341,7 @@ impl Gpu {
         }
     }
 
-    /// What was written before is seen by all that comes after.
+    /// Waits until earlier writes are visible to everything after.
     fn visible(&self) {
         let barrier = vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
@@ -355,7 +355,7 @@ impl Gpu {
     }
 }
 
-/// A device with one queue and rendering without render passes.
+/// Returns A device with one queue and rendering without render passes.
 fn device(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Result<ash::Device> {
     let queues =
         [vk::DeviceQueueCreateInfo::default().queue_family_index(0).queue_priorities(&[1.0])];

@@ -18,8 +18,9 @@ const FINE: u32 = 16;
 /// A pixel with premultiplied alpha, 0 … 255.
 type Color = [f64; 4];
 
-/// The drawings that each have but one of what is drawn directly below the root. Means of pixels where one
-/// shape covers another would let what is covered shine through less than coverage does, so each is drawn alone.
+/// Returns the drawings that each have but one of what is drawn directly below the root. Means of pixels
+/// where one shape covers another would let what is covered shine through less than coverage does, so each is
+/// drawn alone.
 fn parts(text: &str) -> Result<Vec<String>, Box<dyn Error>> {
     const ALWAYS: [&str; 6] =
         ["title", "desc", "defs", "style", "linearGradient", "radialGradient"];
@@ -80,7 +81,8 @@ fn durer(text: &str, (width, height): (u32, u32)) -> Result<Vec<Color>, Box<dyn 
     Ok(picture.data().iter().map(premultiplied).collect())
 }
 
-/// Mean difference of all channels, and the percentage of pixels of which one is off by more than 8.
+/// Returns the mean difference of all channels, and the percentage of pixels of which one is off by
+/// more than 8.
 fn difference(a: &[Color], b: &[Color]) -> (f64, f64) {
     let (mut sum, mut off) = (0.0, 0);
     for (a, b) in a.iter().zip(b) {

@@ -27,7 +27,7 @@ const BEND: f64 = 6.0;
 /// Length of the bend in the flat sheet, at its middle.
 const BENT: f64 = (BEND + THICK * 0.5) * FRAC_PI_2;
 
-/// The bytes of a binary STL file.
+/// Returns the bytes of a binary STL file.
 pub fn stl() -> Vec<u8> {
     let triangles = sheet();
     let mut bytes = b"bracket, made by durer, CC0".to_vec();
@@ -43,7 +43,7 @@ pub fn stl() -> Vec<u8> {
     bytes
 }
 
-/// What is in the middle of a cell.
+/// Feature in the middle of a cell.
 #[derive(Clone, Copy, PartialEq)]
 enum Middle {
     Plain,
@@ -75,19 +75,19 @@ fn middle(row: usize, column: usize) -> Middle {
     }
 }
 
-/// Where the cell's middle lies in the flat sheet.
+/// Returns the position of the cell's middle in the flat sheet.
 fn center(row: usize, column: usize) -> DVec2 {
     let bend = if column < LYING { 0.0 } else { BENT };
     DVec2::new((2 * column + 1) as f64 * HALF + bend, (2 * row + 1) as f64 * HALF)
 }
 
-/// The direction of point i around a cell's middle.
+/// Returns the direction of point i around a cell's middle.
 fn direction(i: usize) -> DVec2 {
     let (sin, cos) = libm::sincos(TAU * (i % AROUND) as f64 / AROUND as f64);
     DVec2::new(cos, sin)
 }
 
-/// Which sides of a cell are the sheet's border: left, right, lower, upper.
+/// Returns which sides of a cell are the sheet's border: left, right, lower, upper.
 fn borders(row: usize, column: usize) -> [bool; 4] {
     [column == 0, column == LYING + STANDING - 1, row == 0, row == ROWS - 1]
 }
@@ -129,7 +129,7 @@ fn cell(row: usize, column: usize, out: &mut Vec<[DVec3; 3]>) {
     }
 }
 
-/// Whether the piece of a cell's border after point i is the sheet's border.
+/// Returns whether the piece of a cell's border after point i is the sheet's border.
 fn on_rim(row: usize, column: usize, i: usize) -> bool {
     let between = direction(i) + direction(i + 1);
     let [left, right, lower, upper] = borders(row, column);
@@ -151,7 +151,7 @@ fn profile_of(middle: Middle) -> Vec<(f64, f64)> {
     }
 }
 
-/// A fillet of 2.5 at the foot, a round of 1 at the top, a bore of 3.
+/// Returns A fillet of 2.5 at the foot, a round of 1 at the top, a bore of 3.
 fn boss() -> Vec<(f64, f64)> {
     const STEPS: usize = 8;
     let (radius, foot, round, top, bore) = (6.0, 2.5, 1.0, 16.0, 3.0);
@@ -192,8 +192,8 @@ fn bend_strip(row: usize, strip: usize, out: &mut Vec<[DVec3; 3]>) {
     }
 }
 
-/// Where a point of the flat sheet lies after bending, on a grid of a millionth of a millimetre so that
-/// points meant to be one are one.
+/// Returns the position of a point of the flat sheet after bending, on a grid of a millionth of a
+/// millimetre so that equal points stay equal.
 fn bent(p: DVec3) -> DVec3 {
     let start = (2 * LYING) as f64 * HALF;
     let from_axis = BEND + THICK - p.z;

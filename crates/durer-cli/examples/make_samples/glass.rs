@@ -5,7 +5,7 @@ use crate::solids;
 use durer::math::DVec3;
 use serde_json::{Value, json};
 
-/// The bytes of a binary glTF file.
+/// Returns the bytes of a binary glTF file.
 pub fn glb() -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     let mut glb = Glb::default();
     floor(&mut glb);

@@ -55,7 +55,7 @@ impl Glb {
         self.accessors.len() - 1
     }
 
-    /// The accessors of a body, which several meshes may share.
+    /// Returns the accessors of a body, which several meshes may share.
     pub fn geometry(&mut self, solid: &Solid) -> Geometry {
         let positions = self.floats("VEC3", solid.positions.iter().map(|p| p.to_array()));
         let normals = self.floats("VEC3", solid.normals.iter().map(|n| n.to_array()));
@@ -69,7 +69,7 @@ impl Glb {
         Geometry { positions, normals, tex_coords, indices: self.accessors.len() - 1 }
     }
 
-    /// A mesh of one part; gives its number.
+    /// Returns A mesh of one part; gives its number.
     pub fn mesh(&mut self, geometry: Geometry, material: usize) -> usize {
         let Geometry { positions, normals, tex_coords, indices } = geometry;
         self.meshes.push(json!({"primitives": [{
@@ -79,7 +79,7 @@ impl Glb {
         self.meshes.len() - 1
     }
 
-    /// A PNG; gives the number of its texture.
+    /// Returns A PNG; gives the number of its texture.
     pub fn texture(&mut self, png: &[u8]) -> usize {
         let view = self.view(png);
         self.images.push(json!({"bufferView": view, "mimeType": "image/png"}));
@@ -100,7 +100,7 @@ impl Glb {
         }));
     }
 
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     pub fn finish(mut self) -> Result<Vec<u8>, serde_json::Error> {
         self.bin.resize(self.bin.len().next_multiple_of(4), 0);
         let textures: Vec<Value> =

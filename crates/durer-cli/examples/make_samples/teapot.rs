@@ -11,7 +11,7 @@ const PIECES: usize = 10;
 /// A step off a point where the surface's sides have shrunk to nothing.
 const ASIDE: f64 = 1e-4;
 
-/// The text of an OBJ file.
+/// Returns the text of an OBJ file.
 pub fn obj() -> String {
     let mut model = Obj::default();
     for patch in &PATCHES {
@@ -20,7 +20,7 @@ pub fn obj() -> String {
     model.text()
 }
 
-/// The value and the derivative of a cubic Bézier curve.
+/// Returns the value and the derivative of a cubic Bézier curve.
 fn cubic(p: [DVec3; 4], t: f64) -> (DVec3, DVec3) {
     let s = 1.0 - t;
     let value = p[0] * (s * s * s)
@@ -31,7 +31,7 @@ fn cubic(p: [DVec3; 4], t: f64) -> (DVec3, DVec3) {
     (value, slope * 3.0)
 }
 
-/// The point and the cross product of both derivatives, which points outwards.
+/// Returns the point and the cross product of both derivatives, which points outwards.
 fn surface(p: &[DVec3; 16], u: f64, v: f64) -> (DVec3, DVec3) {
     let row = |i: usize| cubic([p[4 * i], p[4 * i + 1], p[4 * i + 2], p[4 * i + 3]], v);
     let rows = [row(0), row(1), row(2), row(3)];
@@ -77,7 +77,7 @@ struct Lines {
 }
 
 impl Lines {
-    /// The number of a line, counted from 1; z up becomes y up.
+    /// Returns the number of a line, counted from 1; z up becomes y up.
     fn number(&mut self, keyword: &str, v: DVec3) -> usize {
         // Adding 0 turns −0 into 0.
         let round = |c: f64| (c * 1e5).round() / 1e5 + 0.0;

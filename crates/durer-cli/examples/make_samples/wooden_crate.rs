@@ -12,7 +12,7 @@ const SIDE: u32 = 256;
 /// Width of the frame around the planks.
 const FRAME: f64 = 0.13;
 
-/// The bytes of a binary glTF file.
+/// Returns the bytes of a binary glTF file.
 pub fn glb() -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     let mut image = Vec::new();
     png::write_color(&mut image, &texture(), Compression::Small)?;
@@ -88,7 +88,7 @@ fn smooth(x: f64, y: f64, seed: u32) -> f64 {
     row(0) * (1.0 - t) + row(1) * t
 }
 
-/// A number between 0 and 1 that looks like chance.
+/// Returns A number between 0 and 1 that looks like chance.
 fn noise(x: i64, y: i64, seed: u32) -> f64 {
     let mut h = (x as u64)
         .wrapping_mul(0x9e37_79b9_7f4a_7c15)

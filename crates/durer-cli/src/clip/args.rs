@@ -36,7 +36,7 @@ pub struct ClipArgs {
     /// compressed by gzip; `-` reads standard input
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     pub input: PathBuf,
-    /// Where the result goes
+    /// File to write the result to
     ///
     /// A file whose suffix tells the format: .geojson, .json; .geojsonl, .ndjson, .jsonl (one
     /// feature per line); .geojsons (RFC 8142); .topojson; .fgb; .shp, with .dbf, .shx, .cpg and .prj beside it; .csv;
@@ -44,13 +44,13 @@ pub struct ClipArgs {
     /// result. With --tiles, a folder.
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
-    /// What to cut with.
+    /// Options for the clip region.
     #[command(flatten)]
     pub region: RegionArgs,
-    /// How to cut.
+    /// Options for the clipping method.
     #[command(flatten)]
     pub cutting: CuttingArgs,
-    /// Which features and fields.
+    /// Options for features and their fields.
     #[command(flatten)]
     pub fields: FieldArgs,
     /// From which coordinates to which.
@@ -74,7 +74,7 @@ pub struct ClipArgs {
     pub json: bool,
 }
 
-/// What to cut with.
+/// Options for the clip region.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Mask")]
 pub struct RegionArgs {
@@ -105,7 +105,7 @@ pub struct RegionArgs {
     /// At most so many tiles
     #[arg(long, value_name = "N", default_value_t = 1_000_000, requires = "tiles", value_parser = values::count)]
     pub max_tiles: u64,
-    /// What the coordinates are, for --tiles
+    /// Coordinate system of the input, for --tiles
     #[arg(long, value_name = "SYSTEM", default_value = "lonlat", requires = "tiles")]
     pub tile_coordinates: TileCoordinates,
     /// Keep what is outside; the same as `--op difference`
@@ -113,7 +113,7 @@ pub struct RegionArgs {
     pub outside: bool,
 }
 
-/// How to cut.
+/// Options for the clipping method.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Cutting")]
 pub struct CuttingArgs {

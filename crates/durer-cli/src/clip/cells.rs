@@ -105,7 +105,7 @@ impl Cells {
         Self { cells, order, width }
     }
 
-    /// The cells whose boxes meet another one, in the order of the file.
+    /// Returns the cells whose boxes meet another one, in the order of the file.
     fn near(&self, bounds: &Rect) -> Vec<usize> {
         let left = |&i: &usize| self.cells[i].bounds.min().x;
         // A width is rounded.
@@ -119,7 +119,7 @@ impl Cells {
         near
     }
 
-    /// The pieces of a geometry, in the order of the cells.
+    /// Returns the pieces of a geometry, in the order of the cells.
     fn cut(&self, geometry: &Geometry, rules: Rules) -> durer::Result<Vec<Piece>> {
         let Some(bounds) = geometry.bounds() else { return Ok(Vec::new()) };
         let near = self.near(&bounds);
@@ -150,7 +150,7 @@ struct Large {
     repaired: bool,
 }
 
-/// So many positions make a geometry large.
+/// Number of positions from which a geometry counts as large.
 const MANY: usize = 64;
 
 impl Large {
@@ -212,7 +212,7 @@ impl Job<'_> {
     }
 }
 
-/// A feature's fields, and then those of its cell.
+/// Returns A feature's fields, and then those of its cell.
 fn with_fields(mut fields: Vec<Member>, of_cell: &[Member]) -> Vec<Member> {
     for field in of_cell {
         let mut name = field.key();

@@ -12,7 +12,7 @@ use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
 use durer_formats::geo::GeoFormat;
 use std::path::Path;
 
-/// All polygons of a file as one mask.
+/// Returns all polygons of a file as one mask.
 ///
 /// Without a polygon there is nothing to keep the inside of; else it takes away or adds nothing.
 pub fn read(

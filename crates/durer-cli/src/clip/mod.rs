@@ -100,13 +100,13 @@ pub const MIXED: &str = "heights and measures that some features have and others
 const NO_MASK: &str = "nothing to cut with: give --window, --by, --cells or --tiles; without them features are only \
                        converted to another format, chosen by --where and the like, or brought to --to-crs";
 
-/// Whether features are to be changed or written otherwise without being cut.
+/// Returns whether features are to be changed or written otherwise without being cut.
 fn converts(args: &ClipArgs, from: GeoFormat, to: GeoFormat) -> bool {
     let systems = &args.systems;
     from != to || !args.fields.is_idle() || systems.to_crs.is_some() || systems.from_crs.is_some()
 }
 
-/// Whether all polygons become one.
+/// Returns whether all polygons become one.
 fn joins(args: &ClipArgs) -> bool {
     matches!(args.cutting.op, BooleanOp::Union | BooleanOp::Xor)
 }
@@ -158,25 +158,26 @@ fn check(args: &ClipArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What holds for one feature: what the options say, or else the feature itself.
+/// Returns the rules for one feature: those of the options, or else the feature's own.
 fn rules(args: &ClipArgs, feature: &Feature) -> Rules {
     let fill = args.cutting.fill_rule.unwrap_or(feature.fill_rule);
     Rules { fill, grid: args.cutting.grid }
 }
 
-/// Whether no polygons of a geometry cross, pinch or overlap themselves or one another.
+/// Returns whether no polygons of a geometry cross, pinch or overlap themselves or one another.
 pub fn is_valid(geometry: &Geometry) -> bool {
     let area = Area::of_geometry(geometry);
     area.shapes.is_empty() || validity::is_valid(&area.shapes, Touching::AtPoints)
 }
 
-/// The union of polygons that are valid, each for itself, with outer rings counter-clockwise.
+/// Returns the union of polygons that are valid, each for itself, with outer rings
+/// counter-clockwise.
 pub fn joined(area: &Area) -> durer::Result<Area> {
     let rules = Rules { fill: FillRule::Positive, grid: None };
     Ok(rules.overlay(area, &Shapes::new(), BooleanOp::Union, FillRule::Positive)?.area)
 }
 
-/// The format of the result; of tiles always GeoJSON.
+/// Returns the format of the result; of tiles always GeoJSON.
 fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure> {
     if args.region.tiles.is_none() {
         return named_format(&args.output, args.to, Some(from));
@@ -285,7 +286,7 @@ struct Job<'a> {
     messages: &'a Messages,
     reader: &'a mut Source,
     report: &'a mut Report,
-    /// Why reading ended, told when what was read before is written.
+    /// Reason why reading ended; reported after everything read before it is written.
     failed: Option<Failure>,
     shift: Option<Shift>,
     fields: Fields,
@@ -296,7 +297,7 @@ impl Job<'_> {
         Failure::Data(format!("{}: {what}", display_name(&self.args.input)))
     }
 
-    /// The next features; none at the end.
+    /// Returns the next features; none at the end.
     fn batch(&mut self) -> Result<Vec<Feature>, Failure> {
         if let Some(failure) = self.failed.take() {
             return Err(failure);
@@ -360,12 +361,12 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// A writer that knows what stands before the features.
+    /// Returns A writer that knows what stands before the features.
     fn writer(&self) -> Result<Writer<Sink>, Failure> {
         layer::writer(&self.args.output, self.to, &self.members(), self.system())
     }
 
-    /// The coordinate system of what is written.
+    /// Returns the coordinate system of what is written.
     fn system(&self) -> System {
         match (&self.shift, &self.args.systems.from_crs) {
             (Some(shift), _) => shift.system.clone(),
@@ -392,7 +393,7 @@ impl Job<'_> {
         members
     }
 
-    /// What is to be told where GeoJSON has other coordinates than it should.
+    /// Returns a warning if GeoJSON has coordinates other than longitude and latitude.
     fn unfit(&self) -> Option<String> {
         let code = self.system().code.filter(|code| *code != 4326 && self.to.is_lonlat())?;
         let told = self.members().iter().any(|member| member.name == CRS);
@@ -406,7 +407,7 @@ impl Job<'_> {
         })
     }
 
-    /// Whether a feature has a place in the system that is asked for, to which it is brought.
+    /// Moves a feature to the requested system; returns whether it has a place there.
     fn shifted(&mut self, feature: &mut Feature) -> Result<bool, Failure> {
         match &mut self.shift {
             Some(shift) => shift.apply(feature),

@@ -1,4 +1,4 @@
-//! What `durer clip --json` says.
+//! The report of `durer clip --json`.
 
 use super::srids::Srids;
 use crate::tiles::BrokenOff;
@@ -12,21 +12,21 @@ use serde::Serialize;
 pub struct Report {
     /// The version of durer.
     pub version: &'static str,
-    /// As on the command line.
+    /// Path as given on the command line.
     pub input: String,
-    /// As on the command line.
+    /// Path as given on the command line.
     pub output: String,
     /// The format that was read.
     pub from: &'static str,
     /// The format that was written.
     pub to: &'static str,
-    /// What was read.
+    /// Counts of the input.
     #[serde(rename = "in")]
     pub given: Counts,
     /// Features that --where left out.
     #[serde(skip_serializing_if = "is_zero")]
     pub unchosen: u64,
-    /// What was written.
+    /// Counts of the output.
     pub out: Counts,
     /// Features whose polygons crossed themselves or one another and were made valid.
     pub repaired: u64,
@@ -65,7 +65,7 @@ pub struct Report {
     /// Why not all tiles are there, and the files of those that are.
     #[serde(flatten)]
     pub broken_off: Option<BrokenOff>,
-    /// What was repaired or left out in reading.
+    /// Repairs and omissions while reading.
     pub warnings: Vec<String>,
     /// From start to end.
     pub total_seconds: f64,
@@ -102,9 +102,9 @@ pub struct Counts {
     pub holes: u64,
     /// Positions; rings without the repeated one.
     pub vertices: u64,
-    /// Of polygons as they are written, holes taken off; in squared units of the coordinates.
+    /// Area of the polygons as written, without holes, in squared units of the coordinates.
     pub area: f64,
-    /// Of lines, in units of the coordinates.
+    /// Length of the lines, in units of the coordinates.
     pub length: f64,
 }
 

@@ -7,11 +7,11 @@ use durer_formats::geo::GeoFormat;
 pub struct Srids {
     /// The first few of them, in the order in which they came.
     first: Vec<i32>,
-    /// Whether there were more.
+    /// True if there were more.
     more: bool,
 }
 
-/// So many are told by number.
+/// Number of systems that a message lists.
 const TOLD: usize = 4;
 
 impl Srids {
@@ -24,7 +24,7 @@ impl Srids {
         }
     }
 
-    /// The one of all features that tell one.
+    /// Returns the one of all features that tell one.
     pub fn common(&self) -> Option<i32> {
         match self.first[..] {
             [srid] => Some(srid),
@@ -32,14 +32,15 @@ impl Srids {
         }
     }
 
-    /// All of them, as a message lists them.
+    /// Returns all of them, as a message lists them.
     fn names(&self) -> String {
         let numbers: Vec<String> = self.first.iter().map(i32::to_string).collect();
         let (name, more) = (if numbers.len() > 1 { "SRIDs" } else { "SRID" }, self.more);
         format!("{name} {}{}", numbers.join(", "), if more { " and others" } else { "" })
     }
 
-    /// What gets lost or does not fit; `is_told` where the result tells the system of all features.
+    /// Returns warnings about what gets lost or does not fit; `is_told` says whether the result
+    /// states the system of all features.
     pub fn told(&self, mask: &Self, joined: bool, to: GeoFormat, is_told: bool) -> Vec<String> {
         let mut told = Vec::new();
         if self.first.is_empty() {

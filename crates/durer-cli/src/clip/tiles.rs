@@ -9,7 +9,7 @@ use durer::math::{DVec2, Rect};
 use durer_formats::geo::Geometry;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// What a tile covers. Borders of neighbours are the same numbers.
+/// Returns the bounds of a tile. Borders of neighbours are the same numbers.
 pub fn bounds(tile: Tile, coordinates: TileCoordinates) -> durer::Result<Rect> {
     let side = f64::from(1u32 << tile.zoom);
     let x = |x: u32| {
@@ -26,7 +26,7 @@ pub fn bounds(tile: Tile, coordinates: TileCoordinates) -> durer::Result<Rect> {
     Rect::new(DVec2::new(x(tile.x), y(tile.y + 1)), DVec2::new(x(tile.x + 1), y(tile.y)))
 }
 
-/// How far the world reaches to the east.
+/// Returns the distance from the middle of the world to its eastern border.
 fn half_world(coordinates: TileCoordinates) -> f64 {
     match coordinates {
         TileCoordinates::Lonlat => 180.0,
@@ -34,7 +34,7 @@ fn half_world(coordinates: TileCoordinates) -> f64 {
     }
 }
 
-/// How all features are cut.
+/// Settings for clipping all features.
 pub struct Job {
     pub zoom: u8,
     pub coordinates: TileCoordinates,
@@ -48,11 +48,11 @@ pub struct Subject<'a> {
     pub index: usize,
     pub geometry: &'a Geometry,
     pub rules: Rules,
-    /// Whether it had to be made valid.
+    /// True if it had to be made valid.
     pub repaired: AtomicBool,
 }
 
-/// Where a geometry lies to the world.
+/// Position of a geometry relative to the world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reach {
     Within,
@@ -67,7 +67,7 @@ impl Job {
         Self { zoom, coordinates, failed: AtomicUsize::new(usize::MAX) }
     }
 
-    /// Where a geometry lies.
+    /// Returns the position of a geometry relative to the world.
     pub fn reach(&self, geometry: &Geometry) -> Reach {
         let world = bounds(Tile::WORLD, self.coordinates);
         let (Some(own), Ok(world)) = (geometry.bounds(), world) else { return Reach::Within };
@@ -81,7 +81,7 @@ impl Job {
         }
     }
 
-    /// How many tiles there are at least, counted up to a limit.
+    /// Returns a lower bound of the number of tiles, counted up to a limit.
     pub fn count(&self, subjects: &[Subject<'_>], limit: u64) -> durer::Result<u64> {
         let boxes = subjects.iter().map(Subject::count_of_box).fold(0, u64::saturating_add);
         let boxes = boxes.min(Tile::WORLD.count_at(self.zoom));
@@ -135,7 +135,7 @@ pub struct Part<'a> {
     geometry: Geometry,
 }
 
-/// All features in all worlds, moved to the first.
+/// Returns all features in all worlds, moved to the first.
 fn contents<'a>(subjects: &'a [Subject<'a>]) -> Vec<Part<'a>> {
     let mut contents = Vec::new();
     for subject in subjects {

@@ -112,7 +112,7 @@ impl Job<'_> {
         done
     }
 
-    /// The features that lie in tiles; takes note of those that do not.
+    /// Returns the features that lie in tiles; takes note of those that do not.
     fn subjects<'a>(
         &mut self,
         tiling: &'a tiles::Job,
@@ -144,7 +144,7 @@ impl Job<'_> {
 /// The member that names a feature's tile, as JSON writes it.
 const TILE: &str = "\"tile\"";
 
-/// The part of a feature in a tile, with a member that names the tile.
+/// Returns the part of a feature in a tile, with a member that names the tile.
 fn with_tile(feature: &Feature, geometry: Geometry, tile: Tile) -> Feature {
     let mut feature = Feature { geometry: Some(geometry), ..feature.clone() };
     feature.members.retain(|member| member.name != TILE);

@@ -5,7 +5,7 @@ use durer::clip::mask::Mask;
 use durer::math::{DVec2, Rect};
 use durer_formats::geo::{Geometry, Points};
 
-/// What `--window` says.
+/// Value of `--window`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Window {
     Plain(Rect),
@@ -21,8 +21,8 @@ impl Window {
         }
     }
 
-    /// Whether an edge of a geometry may be meant to go across the meridian but goes the long way around:
-    /// more than half, but not all of it.
+    /// Returns whether an edge of a geometry may be meant to go across the meridian but goes the long way
+    /// around: more than half, but not all of it.
     pub fn is_long_way(&self, geometry: &Geometry) -> bool {
         let long = |a: DVec2, b: DVec2| {
             let way = (b.x - a.x).abs();
@@ -45,7 +45,8 @@ impl Window {
     }
 }
 
-/// A window, or one across the meridian where the left border is the larger one, as in RFC 7946.
+/// Returns A window, or one across the meridian where the left border is the larger one, as in RFC
+/// 7946.
 pub fn region(text: &str) -> Result<Window, String> {
     let [xl, yb, xr, yt] = corners(text)?;
     // From the eastern hemisphere to the western one: all else is a slip.
@@ -58,7 +59,7 @@ pub fn region(text: &str) -> Result<Window, String> {
     Ok(Window::Across([rect(xl - 360.0, xr)?, rect(xl, xr + 360.0)?]))
 }
 
-/// A rectangle.
+/// Returns A rectangle.
 pub fn window(text: &str) -> Result<Rect, String> {
     let [xl, yb, xr, yt] = corners(text)?;
     if xl >= xr || yb >= yt {

@@ -13,26 +13,26 @@ const NOT_IN_FILES: &[&str] = &["config", "no_config", "help", "version"];
 /// An option as the file has it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Setting {
-    /// As the file calls it.
+    /// Key as written in the file.
     pub key: String,
-    /// Where, counted from 1.
+    /// Line in the file, counted from 1.
     line: usize,
-    /// As the parser calls it.
+    /// Identifier of the option in the parser.
     pub id: clap::Id,
     /// Its values, as on the command line; `true` or `false` of a flag.
     pub values: Vec<String>,
-    /// Whether it takes no value, and whether it takes several at once.
+    /// True if it takes no value, and whether it takes several at once.
     flag: bool,
     several: bool,
 }
 
 impl Setting {
-    /// A failure at its place.
+    /// Returns A failure at its place.
     pub fn wrong(&self, file: &Path, what: &str) -> Failure {
         wrong(file, self.line, what)
     }
 
-    /// As it would stand on the command line.
+    /// Returns the arguments as they would be written on the command line.
     pub fn words(&self) -> Vec<String> {
         let option = format!("--{}", self.key);
         match &self.values[..] {
@@ -139,7 +139,7 @@ fn is_called(arg: &Arg, name: &str) -> bool {
     in_files && (arg.get_long() == Some(name) || aliases.contains(&name))
 }
 
-/// The values as on the command line.
+/// Returns the values as on the command line.
 fn values(arg: &Arg, value: &DeValue) -> Result<Vec<String>, String> {
     let flag = !arg.get_action().takes_values();
     match value {
@@ -159,7 +159,7 @@ fn values(arg: &Arg, value: &DeValue) -> Result<Vec<String>, String> {
     }
 }
 
-/// A string or a number.
+/// Returns A string or a number.
 fn word(value: &DeValue) -> Result<String, String> {
     match value {
         DeValue::String(text) => Ok(text.clone().into_owned()),
@@ -169,7 +169,7 @@ fn word(value: &DeValue) -> Result<String, String> {
     }
 }
 
-/// What the parser has to say about a value.
+/// Returns the parser's objection to a value.
 fn check(sub: &Command, setting: &Setting) -> Result<(), String> {
     let line = std::iter::once(sub.get_name().to_owned()).chain(setting.words());
     let Err(error) = sub.clone().try_get_matches_from(line) else { return Ok(()) };
@@ -180,7 +180,7 @@ fn check(sub: &Command, setting: &Setting) -> Result<(), String> {
     }
 }
 
-/// The parser's message without its hints at the command line.
+/// Returns the parser's message without its hints at the command line.
 fn first_paragraph(message: &str) -> String {
     let lines = message.lines().map(str::trim).take_while(|line| !line.is_empty());
     let text = lines.collect::<Vec<_>>().join(" ");
@@ -192,7 +192,7 @@ fn is_path(arg: &Arg) -> bool {
     matches!(arg.get_value_hint(), AnyPath | DirPath | ExecutablePath | FilePath)
 }
 
-/// A path of the file as seen from where the command runs.
+/// Returns A path of the file as seen from where the command runs.
 fn beside(folder: &Path, path: &str) -> String {
     if path == crate::places::STREAM {
         path.to_owned()

@@ -30,18 +30,18 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 /// The options of `durer draw`.
 #[derive(Debug, Args)]
 pub struct DrawArgs {
-    /// What is drawn.
+    /// Layers to draw.
     #[command(flatten)]
     pub layers: Layers,
-    /// Where the picture goes
+    /// File to write the picture to
     ///
     /// A .png, .jpg or .webp file, or `-` for standard output. A file is replaced only by a whole picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
-    /// What the picture is like.
+    /// Options for the picture.
     #[command(flatten)]
     pub picture: PictureArgs,
-    /// Which fonts there are.
+    /// Fonts to use.
     #[command(flatten)]
     pub fonts: FontArgs,
     /// The format of the map layers [default: by their content, then by their suffix]
@@ -74,12 +74,13 @@ pub struct PictureArgs {
     /// A colour, or `transparent` [default: transparent for an SVG, white for a map]
     #[arg(long, value_name = "COLOR", value_parser = color::bytes)]
     pub background: Option<[u8; 4]>,
-    /// What is shown: left, lower, right and upper border, in the coordinates of the file
+    /// Part of the map to show: left, lower, right and upper border, in the coordinates of the file
     ///
     /// Of an SVG, whose y grows downwards, the smaller y first. [default: all]
     #[arg(long, value_name = "XL,YB,XR,YT", allow_hyphen_values = true, value_parser = crate::clip::window)]
     pub window: Option<Rect>,
-    /// Where it is shown, in pixels from the upper left corner [default: the whole picture]
+    /// Part of the picture to draw to, in pixels from the upper left corner [default: the whole
+    /// picture]
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = viewport)]
     pub viewport: Option<PixelRect>,
     /// Compression and quality of the file.

@@ -14,7 +14,7 @@ const SUFFIXES: [&str; 4] = ["ttf", "otf", "ttc", "otc"];
 /// Folders are searched so deep.
 const MAX_DEPTH: u32 = 16;
 
-/// The fonts given, then those installed if wanted, then the built-in one.
+/// Returns the fonts given, then those installed if wanted, then the built-in one.
 pub fn load(args: &FontArgs) -> Result<Fonts, Failure> {
     let mut fonts = Fonts::new();
     for path in &args.font {
@@ -42,7 +42,7 @@ pub fn load(args: &FontArgs) -> Result<Fonts, Failure> {
     Ok(fonts)
 }
 
-/// The font files below a folder, sorted; or the file itself.
+/// Returns the font files below a folder, sorted; or the file itself.
 fn find(path: &Path, depth: u32, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
     if !fs::metadata(path)?.is_dir() {
         files.push(path.to_owned());

@@ -19,7 +19,7 @@ pub struct Dashes(pub Vec<f64>);
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Priority {
     pub field: String,
-    /// Whether large numbers come first, as of people, and not small ones, as of ranks.
+    /// True if large numbers come first, as of people, and not small ones, as of ranks.
     pub largest_first: bool,
 }
 
@@ -61,11 +61,11 @@ pub struct Layer {
     pub input: PathBuf,
     pub style: Style,
     pub labels: Labels,
-    /// Whether an option of the style was given for it.
+    /// True if an option of the style was given for it.
     pub styled: bool,
 }
 
-/// What is drawn, from the bottom to the top.
+/// Layers to draw, from the bottom to the top.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layers(pub Vec<Layer>);
 
@@ -90,10 +90,10 @@ struct LayerArgs {
     /// Lengths of dashes and gaps in turn, in pixels, e.g. 4,2; or `none`
     #[arg(long, value_name = "PX,PX,…", allow_hyphen_values = true, value_parser = dashes)]
     dashes: Vec<Dashes>,
-    /// How opaque the layer is, 0 to 1 [default: 1]
+    /// Opacity of the layer, 0 to 1 [default: 1]
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = share)]
     opacity: Vec<f64>,
-    /// What stands for a point [default: circle]
+    /// Symbol for a point [default: circle]
     #[arg(long, value_name = "SHAPE")]
     marker: Vec<MarkerArg>,
     /// The width of markers in pixels [default: 6]
@@ -124,7 +124,7 @@ struct LayerArgs {
     label_halo: Vec<Ink>,
 }
 
-/// Whether an option is one of the style of layers, by its name in the parser.
+/// Returns whether an option is one of the style of layers, by its name in the parser.
 pub fn is_style(id: &clap::Id) -> bool {
     LayerArgs::augment_args(Command::new("layers")).get_arguments().any(|a| a.get_id() == id)
 }
@@ -226,7 +226,7 @@ fn apply(matches: &ArgMatches, place: Range<usize>, (style, labels): &mut (Style
     any
 }
 
-/// The last value of an option within a part of the command line.
+/// Returns the last value of an option within a part of the command line.
 fn last<T: Clone + Send + Sync + 'static>(
     matches: &ArgMatches,
     name: &str,

@@ -141,7 +141,7 @@ fn extent(layers: &[Vec<Feature>], names: &str) -> Result<Window, Failure> {
     })
 }
 
-/// The properties of a feature.
+/// Returns the properties of a feature.
 fn properties(feature: &Feature) -> Option<serde_json::Map<String, serde_json::Value>> {
     serde_json::from_str(feature.properties.as_deref()?).ok()
 }

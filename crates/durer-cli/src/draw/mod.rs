@@ -61,7 +61,7 @@ pub fn run(args: &DrawArgs) -> Result<(), Failure> {
     if args.json { crate::report::print(&report) } else { Ok(()) }
 }
 
-/// What the parser does not know to be wrong; where the picture goes.
+/// Checks options that the parser cannot check; returns the target of the picture.
 fn check(args: &DrawArgs) -> Result<Target, Failure> {
     let inputs: Vec<_> = args.layers.0.iter().map(|l| &l.input).collect();
     input::check_streams(&inputs)?;
@@ -79,7 +79,7 @@ fn check(args: &DrawArgs) -> Result<Target, Failure> {
     Ok(target)
 }
 
-/// What is written: what --format says, or the name of the output.
+/// Returns the output format: that of --format, or that of the output's name.
 fn wanted(args: &DrawArgs) -> Wanted {
     Wanted::picture(&args.output, args.picture.file.format)
 }
@@ -157,13 +157,13 @@ impl Job<'_> {
         Ok(Given { layer, format, bytes })
     }
 
-    /// The limits on what is read.
+    /// Returns the limits on what is read.
     fn limits(&self) -> Limits {
         let work = self.args.running.work.clone();
         Limits { decoded_bytes: self.args.max_bytes, work, ..Limits::default() }
     }
 
-    /// An empty canvas.
+    /// Returns an empty canvas.
     fn canvas(&self, (width, height): (u32, u32), background: [u8; 4]) -> Result<Canvas, Failure> {
         let picture = &self.args.picture;
         let (pixels, limit) = (u64::from(width) * u64::from(height), picture.max_pixels);
@@ -184,7 +184,7 @@ impl Job<'_> {
         Ok(canvas)
     }
 
-    /// The part of a picture to draw in.
+    /// Returns the part of a picture to draw in.
     fn viewport(&self, (width, height): (u32, u32)) -> Result<Viewport, Failure> {
         let usage = |e: durer::Error| Failure::Usage(e.to_string());
         let whole = PixelRect::of_size(width, height).map_err(usage)?;
@@ -197,8 +197,8 @@ impl Job<'_> {
     }
 }
 
-/// The bytes of a file, decompressed where they are compressed by gzip, of which there may be no more than a limit. (An
-/// SVG is decompressed by its reader.)
+/// Returns the bytes of a file, decompressed where they are compressed by gzip, of which there may be no more
+/// than a limit. (An SVG is decompressed by its reader.)
 fn unzipped(bytes: Vec<u8>, limit: u64) -> Result<Vec<u8>, String> {
     if !bytes.starts_with(&[0x1f, 0x8b]) {
         return Ok(bytes);
@@ -213,21 +213,22 @@ fn unzipped(bytes: Vec<u8>, limit: u64) -> Result<Vec<u8>, String> {
     })
 }
 
-/// Whole sides for something of a given shape, which by itself would have the size `natural`.
+/// Returns whole sides for something of a given shape, which by itself would have the size
+/// `natural`.
 fn sides(given: Option<Sides>, natural: DVec2) -> (u32, u32) {
     let Size { width, height } =
         given.unwrap_or(Sides { width: None, height: None }).of_shape(natural);
     (width, height)
 }
 
-/// The rectangle of a viewport as a path.
+/// Returns the rectangle of a viewport as a path.
 fn frame(viewport: &Viewport) -> durer::curve::Path {
     let p = viewport.pixels();
     let (x, y) = (f64::from(p.x0()), f64::from(p.y0()));
     durer::curve::Path::rectangle(x, y, f64::from(p.width()), f64::from(p.height()))
 }
 
-/// Whether a layer is a file, which has a folder, and not standard input.
+/// Returns whether a layer is a file, which has a folder, and not standard input.
 fn has_folder(layer: &Layer) -> bool {
     !is_stream(&layer.input)
 }

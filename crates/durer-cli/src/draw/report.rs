@@ -1,4 +1,4 @@
-//! What `durer draw --json` says.
+//! The report of `durer draw --json`.
 
 use durer::map::Counts;
 use serde::Serialize;
@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct Report {
     /// The version of durer.
     pub version: &'static str,
-    /// As on the command line.
+    /// Path as given on the command line.
     pub output: String,
     /// In pixels.
     pub width: u32,
@@ -16,7 +16,7 @@ pub struct Report {
     pub height: u32,
     /// From the bottom to the top.
     pub layers: Vec<LayerReport>,
-    /// What was repaired, replaced or left out.
+    /// Repairs, replacements and omissions.
     pub warnings: Vec<String>,
     /// Seconds for reading and decoding.
     pub read_seconds: f64,
@@ -33,16 +33,16 @@ pub struct Report {
 /// One file.
 #[derive(Debug, Default, Serialize)]
 pub struct LayerReport {
-    /// As on the command line.
+    /// Path as given on the command line.
     pub input: String,
     /// The format found.
     pub format: &'static str,
-    /// Of a map.
+    /// Counts of a map.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub map: Option<MapCounts>,
 }
 
-/// What was drawn of a layer of a map: parts that touch the window.
+/// Counts of a layer of a map: parts that touch the window.
 #[derive(Debug, Default, Clone, Copy, Serialize)]
 pub struct MapCounts {
     pub features: u64,

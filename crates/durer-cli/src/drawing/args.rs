@@ -1,4 +1,4 @@
-//! What can be said of drawings.
+//! The options of drawings.
 
 use super::annotations::args::AnnotationArgs;
 use super::machine::MachineArgs;
@@ -18,10 +18,10 @@ use durer::visibility::region;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Drawing")]
 pub struct DrawingArgs {
-    /// What a drawing shows [default for vector files: hidden-line]
+    /// Style of the drawing [default for vector files: hidden-line]
     #[arg(long, value_name = "STYLE", value_parser = style())]
     pub style: Option<DrawStyle>,
-    /// What becomes of hidden lines
+    /// Treatment of hidden lines
     #[arg(long, value_name = "HOW", default_value = "drop")]
     pub hidden: Hidden,
     /// Edges whose faces turn by more degrees are drawn as creases
@@ -34,7 +34,7 @@ pub struct DrawingArgs {
     /// part are none. Any other angle than 40 decides alone.
     #[arg(long, value_name = "FROM[,TO]", allow_hyphen_values = true, default_value = "40", value_parser = crease)]
     pub crease: Crease,
-    /// Which lines are drawn, joined by commas [default: all but tangent, wire and shadow]
+    /// Classes of lines to draw, separated by commas [default: all but tangent, wire and shadow]
     ///
     /// silhouette, crease, border, non-manifold, material, intersection, section, tangent, shadow, wire; `all` is
     /// all but the last three. `tangent` is where curved faces meet others smoothly, as a fillet a plane: --lines
@@ -73,35 +73,35 @@ pub struct DrawingArgs {
     /// Silhouettes and borders before other parts of the model stay what they are.
     #[arg(long)]
     pub contour: bool,
-    /// Whether areas are hatched instead of filled [default: shade for .hpgl and .gcode, else none]
+    /// Hatching of areas instead of filling [default: shade for .hpgl and .gcode, else none]
     ///
     /// With `shade` the style hidden-line is hatched between its lines, too; a wireframe cannot be. `contour` and
     /// `stipple` are for that style: their marks follow the shading of pictures, as it is with smooth normals. The caps
     /// of a --section are hatched among lines anyway; `none` fills them.
     #[arg(long, value_name = "HOW")]
     pub hatch: Option<Hatch>,
-    /// Which neighbouring areas become one [default: shade; band for .dxf, face for .geojson]
+    /// Rule that joins neighbouring areas [default: shade; band for .dxf, face for .geojson]
     #[arg(long, value_name = "HOW")]
     pub merge: Option<Merge>,
-    /// Whether areas end at their borders or reach under what covers them [default: trapped for .svg, .pdf
-    /// and .png without --hatch shade, else disjoint]
+    /// Extent of areas: to their borders, or under what covers them [default: trapped for .svg, .pdf and
+    /// .png without --hatch shade, else disjoint]
     #[arg(long, value_name = "HOW")]
     pub fill: Option<Fill>,
     /// Draw outlines of round parts where the normals turn away, not along the edges between facets
     /// [default: auto; off for .geojson and with --stubs 0; without a word: on]
     #[arg(long, value_name = "HOW", num_args = 0..=1, require_equals = true, default_missing_value = "on")]
     pub smooth: Option<Smooth>,
-    /// Where lines are drawn in which faces penetrate each other
+    /// Faces whose intersections are drawn as lines
     #[arg(long, value_name = "WHERE", default_value = "bodies")]
     pub intersections: Intersections,
-    /// How near the borders of faces may lie to each other to be one
+    /// Largest distance at which borders of faces are joined
     ///
     /// `auto` takes what rounding may have moved: a few of the last digits of the file's coordinates. A length, in
     /// units of the model, closes wider gaps. `none` takes vertices as they are in the file.
     #[arg(long, value_name = "LENGTH|auto|none", allow_hyphen_values = true, default_value = "auto", value_parser = weld)]
     pub weld: Weld,
-    /// How far curves may lie from the mesh's lines, in millimetres on paper; 0 draws lines as polylines
-    /// [default: 0.02; 0 for pictures]
+    /// Largest distance between fitted curves and the mesh's lines, in millimetres on paper; 0 draws
+    /// lines as polylines [default: 0.02; 0 for pictures]
     ///
     /// Lines become circles, arcs, ellipses and cubic curves where those lie that near to all their points. Where a
     /// line turns regularly, it is taken for a round one, whose facets the curve leaves as an arc through their corners
@@ -121,14 +121,14 @@ pub struct DrawingArgs {
     /// Free space at each side of the paper, in millimetres [default: 10 with --page or --sheet, else 5]
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = values::not_negative)]
     pub margin: Option<f64>,
-    /// How large things are on the paper: 1:10, 2:1, …, or auto
+    /// Scale on the paper: 1:10, 2:1, …, or auto
     ///
     /// `auto` takes the largest of 1:1, 1:2, 1:5, 1:10 … and 2:1, 5:1, 10:1 … that fits, and is the default
     /// for parallel views with --page or --sheet. Without them a .dxf is 1:1, for machines, and where the unit is known,
     /// from the file or --unit, so are a .gcode, and an .svg of 20 to 420 mm; all else fills the paper, 180 mm without a page.
     #[arg(long, value_name = "SCALE", value_parser = parsed::<Scale>)]
     pub scale: Option<Scale>,
-    /// What a unit of the model is [default: m for glTF, COLLADA and FBX, else mm]
+    /// Unit of the model's coordinates [default: m for glTF, COLLADA and FBX, else mm]
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<Unit>,
     /// Several views on one page with a title block: front, top, right and isometric, or those of --views
@@ -158,7 +158,7 @@ pub struct DrawingArgs {
     /// Parts are the objects of the file; those of one mesh have one number and are counted.
     #[arg(long)]
     pub callouts: bool,
-    /// What the title says [default: the model's name]
+    /// Text of the title [default: the model's name]
     #[arg(long, value_name = "TEXT")]
     pub title: Option<String>,
     /// A date for the title block; there is none where it is not given
@@ -381,7 +381,7 @@ impl From<SheetKind> for paper::Angle {
 /// `--detail`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DetailSpec {
-    /// What it is called.
+    /// Letter that names it.
     pub letter: String,
     /// The middle of the circle, in the units of the model.
     pub center: DVec3,
@@ -416,7 +416,7 @@ fn detail(text: &str) -> Result<DetailSpec, String> {
 }
 
 impl Unit {
-    /// Its length in millimetres.
+    /// Returns its length in millimetres.
     pub const fn millimetres(self) -> f64 {
         match self {
             Self::Mm => 1.0,
@@ -427,7 +427,7 @@ impl Unit {
         }
     }
 
-    /// As on drawings.
+    /// Returns the name that drawings show.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Mm => "mm",

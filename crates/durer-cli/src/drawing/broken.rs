@@ -23,7 +23,8 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
     Err(Failure::Usage(format!("--break: {message}")))
 }
 
-/// The breaks of a model in views of it. Those in perspective are refused, and breaks that no view shows are noted.
+/// Returns the breaks of a model in views of it. Those in perspective are refused, and breaks that no view
+/// shows are noted.
 pub fn breaks(
     args: &RenderArgs,
     scene: &Scene,

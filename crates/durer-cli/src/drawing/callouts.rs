@@ -6,7 +6,7 @@ use durer::paper::{Callout, PartsListRow, ViewKind};
 use durer::pipeline;
 use durer::view::projection::NamedView;
 
-/// So many parts are named that are not seen.
+/// Number of hidden parts that a message lists.
 const NAMED: usize = 5;
 
 /// Numbers and names of parts.

@@ -39,7 +39,7 @@ const OF_PICTURES: &[(&str, &str)] = &[
     ("compression", "it is for .png and .jpg files; leave it out"),
 ];
 
-/// What the parser does not know to be wrong.
+/// Checks options that the parser cannot check.
 pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
     let given = |id: &str| args.given.iter().any(|g| g == id);
     let option = |id: &str| id.replace('_', "-");

@@ -1,4 +1,4 @@
-//! How drawings come onto paper: units, scale, page and margins.
+//! The layout of drawings on paper: units, scale, page and margins.
 
 use super::args::Unit;
 use super::callouts::Callouts;
@@ -30,8 +30,8 @@ pub(super) fn unit(args: &RenderArgs, subject: &Subject) -> Unit {
     known_unit(args, subject).unwrap_or(Unit::Mm)
 }
 
-/// The model's unit, where it is given or the format says it. Readers bring lengths to metres, and those of 3MF to
-/// millimetres.
+/// Returns the model's unit, where it is given or the format says it. Readers bring lengths to metres, and
+/// those of 3MF to millimetres.
 pub(super) fn known_unit(args: &RenderArgs, subject: &Subject) -> Option<Unit> {
     let format = subject.format.to_ascii_lowercase();
     let is_one = |names: &[&str]| names.iter().any(|name| format.contains(name));

@@ -15,15 +15,15 @@ pub struct MachineArgs {
     /// layer is ordered by itself; in .hpgl and .gcode each pen is.
     #[arg(long)]
     pub pen_order: bool,
-    /// How many pens the plotter has, for .hpgl and .gcode [default: one for each width and colour]
+    /// Number of pens in the plotter, for .hpgl and .gcode [default: one for each width and colour]
     ///
     /// With fewer pens than the drawing has, strokes go to the pen that is most alike; with 1 no pen is ever changed.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::count)]
     pub pens: Option<u64>,
-    /// How fast the pen draws, millimetres a minute, for .gcode [default: 1500]
+    /// Speed of the pen while it draws, millimetres a minute, for .gcode [default: 1500]
     #[arg(long, value_name = "MM/MIN", allow_hyphen_values = true, value_parser = values::positive)]
     pub feed: Option<f64>,
-    /// How fast it moves when it is up, millimetres a minute, for .gcode [default: as fast as the machine moves]
+    /// Speed of the raised pen, millimetres a minute, for .gcode [default: as fast as the machine moves]
     ///
     /// Such moves are G1 with this speed then, for GRBL takes none for G0.
     #[arg(long, value_name = "MM/MIN", allow_hyphen_values = true, value_parser = values::positive)]
@@ -50,7 +50,7 @@ fn lines(text: &str) -> Result<String, String> {
 }
 
 impl MachineArgs {
-    /// As writers take it.
+    /// Returns the options in the form that writers take.
     pub fn options(&self) -> MachineOptions {
         let default = MachineOptions::default();
         MachineOptions {
@@ -88,7 +88,7 @@ impl MachineArgs {
         Ok(())
     }
 
-    /// Whether strokes are to be ordered before they are written.
+    /// Returns whether strokes are to be ordered before they are written.
     pub fn orders(&self, format: Option<DrawingFormat>) -> bool {
         self.pen_order && !format.is_some_and(DrawingFormat::is_for_pens)
     }

@@ -49,12 +49,12 @@ const CONTOUR_SPACING: f64 = 0.6;
 /// The length of stubs on paper, percent of the drawing's larger side.
 const STUBS: f64 = 1.0;
 
-/// How near hidden lines are to visible ones to be left out on paper, percent of the drawing's larger side: 0.36 mm
-/// of 180, a pen's width.
+/// Distance within which hidden lines beside visible ones are left out on paper, in percent of the drawing's larger
+/// side: 0.36 mm of 180, a pen's width.
 const BENEATH: f64 = 0.2;
 
-/// How far fitted curves may lie from lines on vector drawings, millimetres: machines that cut paper and sheet metal
-/// are no more exact.
+/// Largest distance between fitted curves and lines of vector drawings, in millimetres: machines that cut paper and
+/// sheet metal are no more exact.
 const FIT: f64 = 0.02;
 
 /// Lines are simplified at least by this part of the drawing's extent: what is nearer comes from rounding.
@@ -63,7 +63,7 @@ const FINEST: f64 = 1e-5;
 /// The shape of a sheet of several views, where no page is given: that of lying ISO paper.
 const SHEET: DVec2 = DVec2::new(297.0, 210.0);
 
-/// Whether the options ask for a drawing, rather than for pixels of surfaces.
+/// Returns whether the options ask for a drawing, rather than for pixels of surfaces.
 pub fn is_wanted(args: &RenderArgs, kind: Kind) -> bool {
     kind.is_vector() || args.drawing.style.is_some() || args.drawing.sheet.is_some()
 }
@@ -85,7 +85,7 @@ fn weighted(
     Ok(drawing)
 }
 
-/// What the paper is filled with. Vector files stay blank unless a colour is asked for.
+/// Returns the colour of the paper. Vector files stay blank unless a colour is asked for.
 fn background(args: &RenderArgs, kind: Kind) -> Result<Option<[u8; 4]>, Failure> {
     let asked = args.given.iter().any(|g| g == "background");
     match args.picture.background {
@@ -105,7 +105,7 @@ fn bytes(color: Vec4) -> [u8; 4] {
 
 /// A model with what its drawing's title block says.
 pub struct Subject<'a> {
-    /// What is drawn.
+    /// Layers to draw.
     pub scene: &'a Scene,
     /// The model's name without folder and suffix.
     pub name: &'a str,
@@ -301,13 +301,13 @@ fn write(
     Ok(())
 }
 
-/// How far fitted curves may lie from lines, millimetres on paper.
+/// Returns the largest distance between fitted curves and lines, in millimetres on paper.
 fn curve_fit(args: &RenderArgs, kind: Kind) -> f64 {
     args.drawing.fit.unwrap_or(if kind.is_vector() { FIT } else { 0.0 })
 }
 
-/// How much lines are simplified, as a part of the drawing's extent: on large paper less than elsewhere, so that curves
-/// still find the points that they go through.
+/// Returns the tolerance for simplifying lines, as a part of the drawing's extent: on large paper less than elsewhere,
+/// so that curves still pass through the points that they are fitted to.
 fn line_tolerance(args: &RenderArgs, kind: Kind, subject: &Subject) -> f64 {
     let usual = hidden_line::Options::default().tolerance;
     let fit = curve_fit(args, kind);
@@ -332,7 +332,7 @@ fn dxf_strokes(args: &RenderArgs) -> DxfStrokes {
     }
 }
 
-/// Whether areas reach under what covers them.
+/// Returns whether areas extend under whatever covers them.
 fn is_trapped(args: &RenderArgs, kind: Kind) -> bool {
     let paper = matches!(kind, Kind::Drawing(DrawingFormat::Svg | DrawingFormat::Pdf));
     let viewed = paper || !kind.is_vector();
@@ -385,13 +385,14 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
     }
 }
 
-/// Width over height of what the camera sees: the picture's, or the page's where it is certain.
+/// Returns the ratio of width to height of what the camera sees: the picture's, or the page's where it is
+/// certain.
 fn aspect(args: &RenderArgs) -> f64 {
     let Size { width, height } = size(args);
     (f64::from(width) / f64::from(height)).clamp(1e-3, 1e3)
 }
 
-/// The size that cameras are fitted to; in units of a tenth of a millimetre for pages.
+/// Returns the size that cameras are fitted to; in units of a tenth of a millimetre for pages.
 fn size(args: &RenderArgs) -> Size {
     match args.drawing.page {
         Some(Page::Exact(page)) => {
@@ -402,7 +403,8 @@ fn size(args: &RenderArgs) -> Size {
     }
 }
 
-/// The shape of a picture whose size leaves a side open: that of its page, or of what is seen.
+/// Returns the shape of a picture whose size leaves a side open: that of its page, or of what is
+/// seen.
 pub fn shape(args: &RenderArgs, scene: &Scene) -> Result<DVec2, Failure> {
     match args.drawing.page {
         Some(Page::Exact(size) | Page::Either(size)) => Ok(size),
@@ -414,8 +416,8 @@ pub fn shape(args: &RenderArgs, scene: &Scene) -> Result<DVec2, Failure> {
     }
 }
 
-/// The view options. Fitted views are parallel unless an angle of view is given: that is what drawings are
-/// measured in.
+/// Returns the view options. Fitted views are parallel unless an angle of view is given: that is what
+/// drawings are measured in.
 fn view(args: &RenderArgs) -> ViewArgs {
     let mut view = args.view.clone();
     let fitted = view.eye.is_none() && view.camera.is_none();
@@ -425,7 +427,7 @@ fn view(args: &RenderArgs) -> ViewArgs {
     view
 }
 
-/// The camera of the view options.
+/// Returns the camera of the view options.
 fn single_camera(args: &RenderArgs, scene: &Scene, frame: Option<u32>) -> Result<Camera, Failure> {
     let shot =
         camera::Shot { view: None, size: size(args), turn: frame.zip(args.picture.turntable) };

@@ -1,4 +1,4 @@
-//! What `--json` says of a drawing.
+//! The report of a drawing in `--json`.
 
 use super::annotations::FeatureReport;
 use durer::paper::{LaidOut, scale_text};
@@ -11,7 +11,7 @@ const LOOSE: u64 = 12;
 /// A drawing's counts and lengths.
 #[derive(Debug, Serialize)]
 pub struct DrawingReport {
-    /// What it shows.
+    /// Style of the drawing.
     pub style: &'static str,
     /// Width and height of the paper, millimetres.
     pub page: [f64; 2],
@@ -32,7 +32,7 @@ pub struct DrawingReport {
     /// Round parts, where they are asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub features: Vec<FeatureReport>,
-    /// What is to be told of the scale.
+    /// Warning about the scale.
     #[serde(skip)]
     pub told_scale: Option<String>,
 }
@@ -60,7 +60,7 @@ pub struct LineReport {
 }
 
 impl DrawingReport {
-    /// The report on what was drawn, over all views.
+    /// Creates the report on what was drawn, over all views.
     pub fn new(
         style: &'static str,
         drawings: &[&Drawing],

@@ -22,7 +22,7 @@ const VIEWS: &[NamedView] = &[NamedView::Front, NamedView::Top, NamedView::Right
 const OF_VIEWS: &[&str] =
     &["view", "azimuth", "elevation", "eye", "target", "up", "fov", "ortho", "camera", "turntable"];
 
-/// What the parser does not know to be wrong about sheets.
+/// Checks options of sheets that the parser cannot check.
 pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
     let usage = |message: String| Err(Failure::Usage(message));
     let drawing = &args.drawing;
@@ -58,12 +58,12 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
     }
 }
 
-/// The first that is equal to one before it.
+/// Returns the first that is equal to one before it.
 fn repeated<T: PartialEq>(all: &[T]) -> Option<&T> {
     all.iter().enumerate().find(|(i, one)| all[..*i].contains(one)).map(|(_, one)| one)
 }
 
-/// The principal views.
+/// Returns the principal views.
 fn of_sheet(args: &RenderArgs) -> &[NamedView] {
     if args.drawing.views.is_empty() { VIEWS } else { &args.drawing.views }
 }
@@ -72,17 +72,17 @@ fn of_sheet(args: &RenderArgs) -> &[NamedView] {
 pub struct Shot {
     /// Its part on a sheet; `None` without one.
     pub kind: Option<ViewKind>,
-    /// What sees it.
+    /// Camera of the view.
     pub camera: Camera,
 }
 
 impl Shot {
-    /// A view of a kind.
+    /// Creates A view of a kind.
     pub fn new(kind: Option<ViewKind>, camera: Camera) -> Self {
         Self { kind, camera }
     }
 
-    /// What a section leaves of a scene; `None` for other views. What is to be known about it goes to the notes.
+    /// Returns the part of a scene that a section leaves, or `None` for other views. Adds warnings to the notes.
     pub fn cut(
         &self,
         args: &RenderArgs,
@@ -102,7 +102,8 @@ impl Shot {
     }
 }
 
-/// The views of a sheet but for its details: parallel, with one target, so that they are aligned.
+/// Returns the views of a sheet but for its details: parallel, with one target, so that they are
+/// aligned.
 pub fn shots(args: &RenderArgs, scene: &Scene) -> Result<Vec<Shot>, Failure> {
     let sphere = scene.bounding_sphere();
     let target = fit::center(scene).or(sphere.map(|s| s.center)).unwrap_or(DVec3::ZERO);
@@ -131,7 +132,7 @@ pub fn shots(args: &RenderArgs, scene: &Scene) -> Result<Vec<Shot>, Failure> {
 /// Lines of sight nearer to the up axis than this sine have no up of their own.
 const ALONG_UP: f64 = 1e-6;
 
-/// The direction to the eye that looks at a plane from outside, and what is up for it.
+/// Returns the direction to the eye that looks at a plane from outside, and what is up for it.
 fn against(plane: &Plane, up_axis: UpAxis) -> (DVec3, DVec3) {
     // Planes without a direction are refused as they are read.
     let to_eye = -plane.normal.normalize_or(DVec3::Z);
@@ -162,7 +163,8 @@ pub fn add_details(
     Ok(())
 }
 
-/// A detail of the view that it names, or that shows most within its circle; `None` where that is nothing.
+/// Returns A detail of the view that it names, or that shows most within its circle; `None` where that is
+/// nothing.
 fn detail(spec: &DetailSpec, shown: &[Shown]) -> Result<Option<Shown>, Failure> {
     let mut best: Option<(f64, Shown)> = None;
     for (of, view) in shown.iter().enumerate() {
@@ -185,7 +187,7 @@ fn detail(spec: &DetailSpec, shown: &[Shown]) -> Result<Option<Shown>, Failure> 
     Ok(best.map(|b| b.1))
 }
 
-/// How much a drawing shows: the length of its visible lines and of the borders of its areas.
+/// Returns the total length of a drawing's visible lines and of its areas' borders.
 fn seen(drawing: &Drawing) -> f64 {
     let borders = drawing.regions.iter().flat_map(|r| &r.rings);
     let border = |ring: &Vec<_>| durer::paper::dashes::length(ring, true);

@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// What a triangle, a vertex or a point takes while its piece is looked at.
+/// Bytes for a triangle, a vertex or a point while its piece is processed.
 const IN_PIECE: u64 = 160;
 
 /// The part of the budget that a piece may take.
@@ -31,12 +31,12 @@ pub struct InPieces {
 }
 
 impl InPieces {
-    /// A failure of the file.
+    /// Returns A failure of the file.
     pub fn failure(&self, e: &durer_formats::Error) -> Failure {
         Failure::Data(format!("{}: {e}", self.name))
     }
 
-    /// What is known of the model as a whole.
+    /// Returns the facts about the model as a whole.
     pub fn facts(&mut self) -> Result<Facts, Failure> {
         let facts = self.pieces.facts();
         let mut facts = facts.map_err(|e| self.failure(&e))?;
@@ -70,7 +70,7 @@ pub fn in_pieces(path: &Path, reading: &Reading) -> Option<Result<InPieces, Fail
     Some(Ok(InPieces { pieces, name: name.clone(), options }))
 }
 
-/// The pieces of a file of so many bytes; `None` where its format has none.
+/// Returns the pieces of a file of so many bytes; `None` where its format has none.
 fn opened(
     mut file: File,
     length: u64,

@@ -1,4 +1,4 @@
-//! Which features are kept, and which of their fields under which names: `--where`, `--select`, `--rename`.
+//! The choice of features, of their fields and of the fields' names: `--where`, `--select`, `--rename`.
 
 use clap::Args;
 use durer_formats::geo::{Feature, Member};
@@ -24,13 +24,13 @@ pub struct FieldArgs {
 }
 
 impl FieldArgs {
-    /// Whether nothing is to be done.
+    /// Returns whether nothing is to be done.
     pub fn is_idle(&self) -> bool {
         self.conditions.is_empty() && self.select.is_empty() && self.rename.is_empty()
     }
 }
 
-/// What a field must be like.
+/// Condition on a field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Condition {
     field: String,
@@ -38,7 +38,7 @@ pub struct Condition {
     value: String,
 }
 
-/// How a field is compared.
+/// Comparison of a field with a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Test {
     Equal,
@@ -81,7 +81,7 @@ fn rename(text: &str) -> Result<(String, String), String> {
 }
 
 impl Condition {
-    /// Whether a value, nothing where there is no such field, is so.
+    /// Returns whether a value, nothing where there is no such field, is so.
     fn holds(&self, value: Option<&Value>) -> bool {
         let text = match value {
             None | Some(Value::Null) => return self.test == Test::Equal && self.value == "null",
@@ -107,7 +107,7 @@ impl Condition {
     }
 }
 
-/// So many fields are listed where a name is not known.
+/// Number of fields that a message lists when a name is unknown.
 const LISTED: usize = 12;
 
 /// The choices, and which of the fields that they name were found.
@@ -122,7 +122,7 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// What options ask for.
+    /// Builds the choice from the options.
     pub fn new(args: &FieldArgs) -> Self {
         let conditions = args.conditions.iter().map(|c| &c.field);
         let all = conditions.chain(&args.select).chain(args.rename.iter().map(|(old, _)| old));
@@ -135,7 +135,7 @@ impl Fields {
         Self { args: args.clone(), missing, known: BTreeSet::new(), any: false }
     }
 
-    /// Whether a feature is kept, which then has the fields that are asked for.
+    /// Returns whether a feature is kept, which then has the fields that are asked for.
     pub fn apply(&mut self, feature: &mut Feature) -> bool {
         if self.args.is_idle() {
             return true;
@@ -183,7 +183,7 @@ impl Fields {
         self.known.extend(keys.into_iter().take(room));
     }
 
-    /// What is to be told at the end: fields that no feature has.
+    /// Returns a warning at the end: fields that no feature has.
     pub fn told(&self) -> Option<String> {
         if self.missing.is_empty() || !self.any {
             return None;

@@ -1,4 +1,4 @@
-//! What `durer info` says of map data.
+//! The report of `durer info` on map data.
 
 use super::{Source, open, words};
 use crate::clip::is_valid;
@@ -13,7 +13,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// What a layer holds.
+/// Report on a layer's contents.
 #[derive(Debug, Serialize)]
 pub struct LayerInfo {
     layer: String,
@@ -42,7 +42,7 @@ pub struct LayerInfo {
 struct CrsInfo {
     code: Option<String>,
     wkt: Option<String>,
-    /// Whether `--to-crs` knows it.
+    /// True if `--to-crs` knows it.
     known: bool,
 }
 
@@ -55,7 +55,7 @@ struct FieldInfo {
     examples: Vec<serde_json::Value>,
 }
 
-/// What is counted over features.
+/// Counts over features.
 #[derive(Default)]
 struct Counts {
     features: u64,
@@ -177,7 +177,7 @@ fn fields(schema: &Schema) -> Vec<FieldInfo> {
 const LONG: usize = 40;
 
 impl LayerInfo {
-    /// A line for each fact; facts that are nothing are left out.
+    /// Returns A line for each fact; facts that are nothing are left out.
     pub fn text(&self) -> String {
         let title = match &self.name {
             Some(name) => format!("{}, layer {name}", self.layer),
@@ -220,7 +220,7 @@ impl LayerInfo {
     }
 }
 
-/// A value as one short line.
+/// Returns A value as one short line.
 fn short(value: &serde_json::Value) -> String {
     let text = value.to_string();
     let plain: String = text.chars().filter(|c| !c.is_control()).collect();

@@ -30,7 +30,8 @@ const PROBE: usize = 64 << 10;
 /// A reader of a file or of standard input.
 pub type Source = Reader<Box<dyn BufRead>>;
 
-/// The bytes of a file, or of standard input, as they come; decompressed where they are compressed by gzip.
+/// Returns the bytes of a file, or of standard input, as they come; decompressed where they are compressed
+/// by gzip.
 pub fn bytes(path: &Path) -> Result<Box<dyn BufRead>, Failure> {
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
     let source: Box<dyn BufRead> = if is_stream(path) {
@@ -45,7 +46,7 @@ pub fn bytes(path: &Path) -> Result<Box<dyn BufRead>, Failure> {
     unzipped(source, PROBE).map_err(|e| fail(in_words(&e)))
 }
 
-/// The format that a name speaks for, or that its first bytes do.
+/// Returns the format that a name speaks for, or that its first bytes do.
 pub fn format_of(path: &Path, head: &[u8]) -> Option<GeoFormat> {
     GeoFormat::of_content(head).or_else(|| {
         // What is known to be something else is not what its name says.
@@ -77,7 +78,7 @@ pub fn open(
     Ok((named.unwrap_or(format), reader.map_err(|e| fail(words(&e)))?))
 }
 
-/// A reader of bytes of a file, which finds what is beside it.
+/// Returns A reader of bytes of a file, which finds what is beside it.
 pub fn reader<R: std::io::Read>(
     path: &Path,
     format: GeoFormat,
@@ -100,7 +101,7 @@ pub fn keep(feature: &Feature, work: &Work) -> durer::Result<()> {
     work.keep("features", bytes as u64)
 }
 
-/// What an error says, in the command's words.
+/// Returns an error's message in the command's words.
 pub fn words(error: &durer_formats::Error) -> String {
     match error {
         durer_formats::Error::Io(e) => in_words(e),

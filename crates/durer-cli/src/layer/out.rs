@@ -1,4 +1,4 @@
-//! Where features go: one file, or several beside each other, or standard output.
+//! The output of features: one file, several beside each other, or standard output.
 
 use super::sink::{Sink, failure};
 use crate::failure::Failure;
@@ -9,7 +9,7 @@ use durer_formats::geo::{GeoFormat, Member, System, Writer};
 use std::io::IsTerminal;
 use std::path::Path;
 
-/// The format of the result: as told, by the suffix, or on a stream that of the input.
+/// Returns the format of the result: as told, by the suffix, or on a stream that of the input.
 pub fn named_format(
     output: &Path,
     to: Option<GeoFormat>,
@@ -39,7 +39,7 @@ pub fn named_format(
     Ok(format)
 }
 
-/// A writer of features with what comes before them.
+/// Returns A writer of features with what comes before them.
 pub fn writer(
     output: &Path,
     to: GeoFormat,
@@ -57,7 +57,7 @@ pub fn writer(
     Ok(writer)
 }
 
-/// A place for one file.
+/// Returns A place for one file.
 fn place(output: &Path, to: GeoFormat) -> Result<Sink, Failure> {
     if !is_stream(output) {
         return Sink::file(output);

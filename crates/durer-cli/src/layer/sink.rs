@@ -1,4 +1,4 @@
-//! Where a stream of bytes goes: it is in its place when it is whole, and not before.
+//! A stream of bytes into a file that appears in its place only when it is complete.
 
 use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
@@ -31,7 +31,7 @@ impl Sink {
         Self { out, name: PathBuf::from("standard output") }
     }
 
-    /// A file, replaced by [`Sink::commit`]; a device or pipe is written to directly.
+    /// Returns A file, replaced by [`Sink::commit`]; a device or pipe is written to directly.
     pub fn file(path: &Path) -> Result<Self, Failure> {
         let out = if is_special(path) {
             let file = OpenOptions::new().write(true).open(path);
@@ -43,7 +43,7 @@ impl Sink {
         Ok(Self { out, name: path.to_owned() })
     }
 
-    /// Whether what was written can be gone back to.
+    /// Returns whether the target can be rewound and overwritten.
     pub fn is_seekable(&self) -> bool {
         matches!(self.out, Out::Beside(_))
     }
@@ -67,7 +67,7 @@ impl Sink {
     }
 }
 
-/// What went wrong with writing, in the command's words.
+/// Returns a failure to write in the command's words.
 pub fn failure(name: &Path, error: &Error) -> Failure {
     let name = if is_stream(name) { Path::new("standard output") } else { name };
     match error {

@@ -28,7 +28,7 @@ pub struct Shift {
     common: Option<Transform>,
     /// The way there for features that tell the number of their own system: the number of the last one, and its way.
     own: Option<(i32, Transform)>,
-    /// Why nothing is known of the file as a whole.
+    /// Reason why nothing is known of the file as a whole.
     unknown: String,
     /// The system of what comes out.
     pub system: System,
@@ -37,7 +37,8 @@ pub struct Shift {
 }
 
 impl Shift {
-    /// What options ask for, of a file that says it is in a system; nothing where nothing is asked for.
+    /// Builds the conversion that options ask for, from the system that the file states; `None` if they
+    /// ask for nothing.
     pub fn new(args: &SystemArgs, told: &System) -> Option<Self> {
         let to = args.to_crs.clone()?;
         let from = args.from_crs.clone().map_or_else(|| Crs::of_system(told), Ok);
@@ -49,7 +50,7 @@ impl Shift {
         Some(Self { to, common, own: None, unknown, system, lost: 0 })
     }
 
-    /// The way from a feature's system.
+    /// Returns the way from a feature's system.
     fn transform(&mut self, srid: Option<i32>) -> Result<&Transform, Failure> {
         if let Some(common) = &self.common {
             return Ok(common);
@@ -85,7 +86,7 @@ impl Shift {
         Ok(true)
     }
 
-    /// What is to be told at the end.
+    /// Returns a warning at the end.
     pub fn told(&self) -> Option<String> {
         let (lost, system) = (self.lost, self.system.code);
         let name =
@@ -97,7 +98,8 @@ impl Shift {
         (!told.is_empty()).then(|| told.join("; "))
     }
 
-    /// How well coordinates are known, where they come from an older frame or go to one.
+    /// Returns a warning about the accuracy of coordinates that come from an older frame or go to
+    /// one.
     fn shifted(&self) -> Option<String> {
         let way = self.common.as_ref().or_else(|| self.own.as_ref().map(|(_, way)| way))?;
         let (datum, metres) = way.accuracy()?;

@@ -7,12 +7,12 @@ use std::io::{self, BufRead, Read};
 pub struct Watched {
     source: Box<dyn BufRead>,
     work: Work,
-    /// Whether all that is read stays.
+    /// True if all that is read stays.
     holds: bool,
 }
 
 impl Watched {
-    /// A source of a file that is held whole, or is not.
+    /// Creates A source of a file that is held whole, or is not.
     pub fn new(source: Box<dyn BufRead>, work: &Work, holds: bool) -> Self {
         Self { source, work: work.part(), holds }
     }

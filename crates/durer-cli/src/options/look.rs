@@ -32,13 +32,13 @@ fn environment(text: &str) -> Result<Environment, String> {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Look")]
 pub struct LookArgs {
-    /// How surfaces are shaded [default: by the material]
+    /// Shading of surfaces [default: by the material]
     #[arg(long, value_name = "MODEL")]
     pub shading: Option<Shading>,
     /// A light; replaces the default three-point light or the file's own
     #[arg(long, value_name = "LIGHT", allow_hyphen_values = true, long_help = lights::SYNTAX, value_parser = lights::light)]
     pub light: Vec<Light>,
-    /// Which faces are left out
+    /// Faces to leave out
     #[arg(long, value_name = "WHICH", default_value = "material")]
     pub cull: Cull,
     /// Width of a model's lines in pixels
@@ -51,13 +51,13 @@ pub struct LookArgs {
     /// against the background]
     #[arg(long, value_name = "COLOR", value_parser = color::color)]
     pub color: Option<durer::math::Vec4>,
-    /// Whether surfaces keep light from others
+    /// Method that keeps light from surfaces in shadow
     #[arg(long, value_name = "HOW", default_value = "none")]
     pub shadows: Shadows,
     /// Texels along the side of a shadow map
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "2048", value_parser = clap::value_parser!(u32).range(1..=16384), requires = "shadows")]
     pub shadow_map: u32,
-    /// How often rays are reflected by mirrors and refracted by what blends
+    /// Number of times that rays are reflected by mirrors and refracted by what blends
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "0", value_parser = clap::value_parser!(u32).range(0..=32))]
     pub bounces: u32,
     /// Exposure of the light: `auto`, or a number of EV

@@ -4,7 +4,7 @@ use crate::values;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
-/// What is read of a model, and how much.
+/// Options and limits for reading a model.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Reading")]
 pub struct ReadingArgs {

@@ -4,7 +4,7 @@ use crate::sandbox::Sandbox;
 use crate::values;
 use clap::Args;
 
-/// How the command runs.
+/// Options for the run itself: threads, limits, progress.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Running")]
 pub struct RunningArgs {

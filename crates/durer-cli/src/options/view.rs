@@ -36,13 +36,13 @@ pub struct ViewArgs {
     /// Degrees above the horizon, -90 to 90; fits the model
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::elevation, conflicts_with_all = ["eye", "camera"])]
     pub elevation: Option<f64>,
-    /// Where the eye is, in the world of the file
+    /// Position of the eye, in the world of the file
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, conflicts_with = "camera")]
     pub eye: Option<DVec3>,
-    /// What the eye looks at [default: the middle of the model]
+    /// Point that the eye looks at [default: the middle of the model]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, requires = "eye")]
     pub target: Option<DVec3>,
-    /// What is up in the picture [default: the up axis]
+    /// Direction that points up in the picture [default: the up axis]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction, requires = "eye")]
     pub up: Option<DVec3>,
     /// Vertical angle of view in degrees
@@ -60,7 +60,7 @@ pub struct ViewArgs {
     /// A camera of the file, by its name; `durer info` lists them
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
-    /// Which axis is up: x, y, z, -x, -y or -z [default: by the format]
+    /// Axis that points up: x, y, z, -x, -y or -z [default: by the format]
     #[arg(long, value_name = "AXIS", ignore_case = true, allow_hyphen_values = true)]
     pub up_axis: Option<UpAxis>,
 }

@@ -33,7 +33,7 @@ pub struct PlotArgs {
     /// A height map: ESRI ASCII grid, NPY, NPZ, CSV, JSON, or grey PNG; `-` reads standard input
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath, required_unless_present = "formula", conflicts_with = "formula")]
     pub input: Option<PathBuf>,
-    /// Where the plot goes
+    /// File to write the plot to
     ///
     /// A file whose suffix tells the format: .svg, .pdf, .dxf, .hpgl, .gcode, .geojson, or .png, .jpg, .webp;
     /// `-` for standard output, with --to. A file is replaced only by a whole plot.
@@ -42,13 +42,13 @@ pub struct PlotArgs {
     /// The format of OUT [default: by its suffix]
     #[arg(long, value_name = "FORMAT", value_parser = super::format)]
     pub to: Option<super::Format>,
-    /// Where heights come from.
+    /// Source of heights.
     #[command(flatten)]
     pub surface: SurfaceArgs,
-    /// Where the eye is.
+    /// Options for the camera.
     #[command(flatten)]
     pub view: PlotViewArgs,
-    /// What is drawn.
+    /// Layers to draw.
     #[command(flatten)]
     pub look: PlotLookArgs,
     /// Pens and what moves them.
@@ -62,7 +62,7 @@ pub struct PlotArgs {
     pub json: bool,
 }
 
-/// Where heights come from.
+/// Source of heights.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Surface")]
 pub struct SurfaceArgs {
@@ -78,7 +78,7 @@ pub struct SurfaceArgs {
     /// Points along x and z at which a formula is evaluated
     #[arg(long, value_name = "NxM", allow_hyphen_values = true, default_value = "61x61", value_parser = values::size, requires = "formula")]
     pub samples: Size,
-    /// What heights are multiplied with, or `auto`: as high as 0.4 of the longer side of the ground
+    /// Factor for heights, or `auto`: as high as 0.4 of the longer side of the ground
     #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, default_value = "auto", value_parser = super::exaggeration)]
     pub exaggeration: super::Exaggeration,
     /// Depth over width of the ground as drawn: a number, `equal` for one scale, or `auto`: equal, or 1 where one
@@ -91,7 +91,7 @@ pub struct SurfaceArgs {
     /// A height that stands for a missing one, beside what the format says
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true, value_parser = values::number, conflicts_with = "formula")]
     pub no_data: Option<f64>,
-    /// Which array of an NPZ file or member of a JSON object holds the heights
+    /// Array of an NPZ file or member of a JSON object that holds the heights
     #[arg(long, value_name = "NAME", conflicts_with = "formula")]
     pub array: Option<String>,
     /// Refuse files that are, or unpack to, more bytes; k, M, G are understood [default: 4G]
@@ -112,10 +112,10 @@ pub struct PlotViewArgs {
     /// Degrees above the horizon, -90 to 90
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::elevation, default_value = "30")]
     pub elevation: f64,
-    /// Where the eye stands, in perspective: x, height and z of the surface, all of which has to lie ahead
+    /// Position of the eye, in perspective: x, height and z of the surface, all of which has to lie ahead
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, conflicts_with_all = ["view", "azimuth", "elevation", "ortho"])]
     pub eye: Option<DVec3>,
-    /// What the eye looks at [default: the middle of the surface]
+    /// Point that the eye looks at [default: the middle of the surface]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, requires = "eye")]
     pub target: Option<DVec3>,
     /// Perspective, with this vertical angle of view in degrees [default: parallel projection; 35 with --eye]
@@ -130,7 +130,7 @@ pub struct PlotViewArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Look")]
 pub struct PlotLookArgs {
-    /// Which lines are drawn: along x, along z, both, or none
+    /// Lines to draw: along x, along z, both, or none
     #[arg(long, value_name = "WHICH", default_value = "both")]
     pub lines: Lines,
     /// Draw each N-th row and column of the grid, while all of it hides
@@ -139,7 +139,7 @@ pub struct PlotLookArgs {
     /// lie close and end at each other. --every 1 takes all there is.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::count)]
     pub every: Option<u64>,
-    /// What becomes of hidden parts of lines
+    /// Treatment of hidden parts of lines
     #[arg(long, value_name = "HOW", default_value = "drop")]
     pub hidden: Hidden,
     /// Colour by height: viridis, terrain, cool-warm or grey; lines, or with --fill the cells
@@ -175,7 +175,7 @@ pub struct PlotLookArgs {
     /// The paper: A0 … A6, letter, … (lying), or WIDTHxHEIGHT in millimetres
     #[arg(long, value_name = "PAGE", default_value = "180x135", value_parser = super::page)]
     pub page: Page,
-    /// How a picture is put into bytes.
+    /// Encoding of pictures.
     #[command(flatten)]
     pub encoding: EncodingArgs,
     /// Width and height of a picture in pixels; one side may be left out, and follows from the page

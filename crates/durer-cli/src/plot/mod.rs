@@ -37,10 +37,10 @@ const MOST_LINES: usize = 100;
 const MOST_LENGTHY: f64 = 5.0;
 /// `--exaggeration auto`: height over the longer side of the ground.
 const AUTO_HEIGHT: f64 = 0.4;
-/// Where a formula is evaluated unless told.
+/// Range in which a formula is evaluated by default.
 const FORMULA_RANGE: [f64; 2] = [-4.0, 4.0];
 
-/// What the plot becomes.
+/// Format of the plot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// Vectors.
@@ -49,7 +49,7 @@ pub enum Format {
     Picture(PictureFormat),
 }
 
-/// A format by its name or a file's suffix.
+/// Returns A format by its name or a file's suffix.
 pub fn format(text: &str) -> Result<Format, String> {
     let picture = PictureFormat::of_suffix(text).map(Format::Picture);
     picture
@@ -62,7 +62,7 @@ pub fn format(text: &str) -> Result<Format, String> {
 pub enum Exaggeration {
     /// By the extent of the surface.
     Auto,
-    /// As told.
+    /// A factor from the option.
     Factor(f64),
 }
 
@@ -83,7 +83,7 @@ pub enum Ratio {
     Auto,
     /// One scale for x and z.
     Equal,
-    /// As told.
+    /// A factor from the option.
     Of(f64),
 }
 
@@ -96,13 +96,13 @@ pub fn aspect(text: &str) -> Result<Ratio, String> {
     }
 }
 
-/// Three names joined by commas; they may be empty.
+/// Returns three names joined by commas; they may be empty.
 pub fn names(text: &str) -> Result<[String; 3], String> {
     let names: Vec<String> = text.split(',').map(|n| n.trim().to_owned()).collect();
     names.try_into().map_err(|_| "three names joined by commas are needed, e.g. x,y,z".to_owned())
 }
 
-/// A page; `fit` has no meaning for a plot, which fits the page.
+/// Returns A page; `fit` has no meaning for a plot, which fits the page.
 pub fn page(text: &str) -> Result<Page, String> {
     match text.parse() {
         Ok(Page::Fit) => Err("a plot fits its page; name a size such as A4 or 180x135".to_owned()),
@@ -166,7 +166,7 @@ fn format_of(args: &PlotArgs) -> Result<Format, Failure> {
     })
 }
 
-/// The place of the plot, checked before anything is read.
+/// Returns the place of the plot, checked before anything is read.
 fn target(args: &PlotArgs) -> Result<Target, Failure> {
     let target = output::file_or_stream("--output", &args.output)?;
     if args.json && target == Target::Stdout {
@@ -176,7 +176,7 @@ fn target(args: &PlotArgs) -> Result<Target, Failure> {
     Ok(target)
 }
 
-/// What is plotted.
+/// Surface to plot.
 pub struct Surface {
     field: HeightField,
     name: String,
@@ -252,7 +252,7 @@ impl Surface {
         Ok(Self { field, name, format: map.format, on_map })
     }
 
-    /// Depth over width of the ground as drawn; `None` for one scale.
+    /// Returns the ratio of depth to width of the ground as drawn; `None` for one scale.
     fn aspect(&self, ratio: Ratio) -> Option<f64> {
         let extent = |[from, to]: [f64; 2]| to - from;
         let own = extent(self.field.z_range()) / extent(self.field.x_range());
@@ -263,7 +263,7 @@ impl Surface {
         }
     }
 
-    /// What heights are multiplied with so that the plot is neither flat nor a tower.
+    /// Returns a factor for heights with which the plot is neither flat nor a tower.
     fn auto_exaggeration(&self, aspect: Option<f64>) -> f64 {
         let extent = |[from, to]: [f64; 2]| to - from;
         let width = extent(self.field.x_range());
@@ -275,7 +275,7 @@ impl Surface {
     }
 }
 
-/// A field without what is beyond `--y-range`.
+/// Returns A field without what is beyond `--y-range`.
 fn within(field: HeightField, args: &PlotArgs) -> Result<HeightField, Failure> {
     let Some([low, high]) = args.surface.y_range else { return Ok(field) };
     let field = field.within([low, high]).map_err(|e| Failure::Usage(format!("--y-range: {e}")))?;

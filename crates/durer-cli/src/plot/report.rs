@@ -1,4 +1,4 @@
-//! What `durer plot --json` says.
+//! The report of `durer plot --json`.
 
 use super::Surface;
 use crate::output::Target;
@@ -28,7 +28,7 @@ pub struct Report {
     /// Depth over width of the ground as drawn, where it has two scales.
     #[serde(skip_serializing_if = "Option::is_none")]
     aspect: Option<f64>,
-    /// What heights are multiplied with.
+    /// Factor for heights.
     exaggeration: f64,
     /// Chains of visible lines of the grid.
     lines: usize,
@@ -36,7 +36,7 @@ pub struct Report {
     length: f64,
     /// Filled cells.
     cells: usize,
-    /// Where the plot went; `-` is standard output.
+    /// File of the plot; `-` is standard output.
     file: String,
     /// Seconds for reading or evaluating.
     pub read_seconds: f64,
@@ -49,7 +49,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// All but the times.
+    /// Creates all but the times.
     pub fn new(surface: &Surface, plot: &Plot, options: &Options, target: &Target) -> Self {
         let field = &surface.field;
         let grid = |l: &Line| l.class == LineClass::Grid && l.is_visible();

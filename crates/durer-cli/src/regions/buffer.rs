@@ -27,7 +27,7 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 /// The options of `durer buffer`.
 #[derive(Debug, Args)]
 pub struct BufferArgs {
-    /// How far the result reaches, in units of the coordinates
+    /// Distance that the result extends beyond the input, in units of the coordinates
     #[arg(short, long, value_name = "D", allow_hyphen_values = true, value_parser = values::number)]
     pub distance: f64,
     /// Corners: round, miter or bevel
@@ -39,14 +39,14 @@ pub struct BufferArgs {
     /// Cut off corners that reach farther than this many distances
     #[arg(long, value_name = "L", default_value = "5", value_parser = values::positive)]
     pub miter_limit: f64,
-    /// How far the polygons that stand for arcs may lie from them, in units of the coordinates [default: a thousandth of
-    /// the distance]
+    /// Largest distance of polygons from the arcs that they approximate, in units of the coordinates [default: a
+    /// thousandth of the distance]
     #[arg(long, value_name = "T", value_parser = values::positive)]
     pub tolerance: Option<f64>,
     /// Join all to one feature
     #[arg(long)]
     pub dissolve: bool,
-    /// What is read and written.
+    /// Input and output.
     #[command(flatten)]
     pub files: FilesArgs,
 }
@@ -129,7 +129,7 @@ pub fn run(args: &BufferArgs) -> Result<(), Failure> {
     job.write(features)
 }
 
-/// The polygons within a distance of all parts of a geometry.
+/// Returns the polygons within a distance of all parts of a geometry.
 fn buffer(geometry: &Geometry, rule: FillRule, options: &Options) -> durer::Result<Shapes> {
     let mut lines: Vec<Vec<DVec2>> = Vec::new();
     chains(geometry, &mut lines);

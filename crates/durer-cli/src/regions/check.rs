@@ -71,7 +71,7 @@ struct Found {
     at: [f64; 2],
 }
 
-/// What `--json` says.
+/// Report of `--json`.
 #[derive(Debug, Default, Serialize)]
 struct Report {
     version: &'static str,
@@ -79,9 +79,9 @@ struct Report {
     features: u64,
     /// Features that are not valid.
     invalid: u64,
-    /// Whether all are valid, and with --coverage are a coverage.
+    /// True if all are valid, and with --coverage are a coverage.
     valid: bool,
-    /// How many faults there are of each kind.
+    /// Number of faults of each kind.
     counts: BTreeMap<&'static str, u64>,
     faults: Vec<Found>,
     warnings: Vec<String>,
@@ -164,7 +164,7 @@ impl Report {
         }
     }
 
-    /// The faults that have a place.
+    /// Returns the faults that have a place.
     fn faults_counted(&self) -> u64 {
         self.counts.iter().filter(|(kind, _)| **kind != "reading").map(|(_, n)| n).sum()
     }
@@ -207,7 +207,7 @@ impl Report {
         }
     }
 
-    /// The faults by kind, in a line.
+    /// Returns the faults by kind, in a line.
     fn sum(&self) -> String {
         let counts: Vec<String> = self.counts.iter().map(|(f, n)| format!("{n} {f}")).collect();
         let total = self.features;

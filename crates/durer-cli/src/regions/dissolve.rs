@@ -28,7 +28,7 @@ pub struct DissolveArgs {
     /// Fields by whose values features are joined
     #[arg(long, value_name = "FIELD,…", value_delimiter = ',')]
     pub by: Vec<String>,
-    /// What is read and written.
+    /// Input and output.
     #[command(flatten)]
     pub files: FilesArgs,
 }
@@ -100,7 +100,7 @@ pub fn run(args: &DissolveArgs) -> Result<(), Failure> {
     job.write(features)
 }
 
-/// The value of a field, `null` where there is none.
+/// Returns the value of a field, `null` where there is none.
 fn value(own: &[Member], name: &str) -> Member {
     let found = own.iter().find(|field| field.key() == name).cloned();
     found.unwrap_or_else(|| Member::new(name, "null".to_owned()))

@@ -35,7 +35,7 @@ pub struct FixArgs {
     /// All features are held in memory. What overlaps or leaves gaps beyond that stays; durer check --coverage tells it.
     #[arg(long)]
     pub coverage: bool,
-    /// What is read and written.
+    /// Input and output.
     #[command(flatten)]
     pub files: FilesArgs,
 }
@@ -50,7 +50,8 @@ pub fn run(args: &FixArgs) -> Result<(), Failure> {
     job.each(|feature, geometry| made(args, feature, geometry), note)
 }
 
-/// A feature's geometry made valid, `None` where nothing of it is left; and whether it was not.
+/// Returns A feature's geometry made valid, `None` where nothing of it is left; and whether it was
+/// not.
 fn made(
     args: &FixArgs,
     feature: &Feature,
@@ -126,14 +127,14 @@ fn with_matched_points(features: &mut [Feature]) -> usize {
     count
 }
 
-/// What is said of features that were made valid on the way.
+/// Returns the message about features that were made valid on the way.
 pub fn told(repaired: u64) -> String {
     format!(
         "{repaired} features are not valid; they were made so by the even-odd rule, as durer fix does"
     )
 }
 
-/// The geometry with valid polygons; `None` where nothing of it is left.
+/// Returns the geometry with valid polygons; `None` where nothing of it is left.
 fn fixed(
     geometry: &Geometry,
     rules: &Rules,

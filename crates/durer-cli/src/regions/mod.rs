@@ -28,13 +28,13 @@ use simplify::Simplified;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// What is read and written, and how.
+/// Options for input and output.
 #[derive(Debug, Args)]
 pub struct FilesArgs {
     /// A layer: GeoJSON (also one feature per line), WKT, WKB, Shapefile, FlatGeobuf and others; `-` reads standard input
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     pub input: PathBuf,
-    /// Where the result goes: a file whose suffix tells the format, or `-` for standard output, in the format of the input
+    /// File to write the result to: its suffix selects the format; `-` for standard output, in the format of the input
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath)]
     pub output: PathBuf,
     /// The format of IN [default: by its content, then by its suffix]
@@ -43,7 +43,7 @@ pub struct FilesArgs {
     /// The format of OUT [default: by its suffix]
     #[arg(long, visible_alias = "format", value_name = "FORMAT", value_parser = crate::clip::format, help_heading = "Formats")]
     pub to: Option<GeoFormat>,
-    /// Which features are kept.
+    /// Features to keep.
     #[command(flatten)]
     pub fields: FieldArgs,
     /// Threads and messages.
@@ -54,7 +54,7 @@ pub struct FilesArgs {
     pub json: bool,
 }
 
-/// What `--json` says.
+/// Report of `--json`.
 #[derive(Debug, Default, Serialize)]
 struct Report {
     version: &'static str,
@@ -68,7 +68,7 @@ struct Report {
     /// Features that were changed because they were not valid.
     #[serde(skip_serializing_if = "Option::is_none")]
     repaired: Option<u64>,
-    /// What `durer simplify` says.
+    /// Report of `durer simplify`.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     simplified: Option<Simplified>,
     warnings: Vec<String>,
@@ -118,7 +118,8 @@ impl<'a> Job<'a> {
         Failure::Data(format!("{}: {what}", display_name(&self.args.input)))
     }
 
-    /// The next features that are kept, with their numbers in the file; at most `most`, none at the end.
+    /// Returns the next features that are kept, with their numbers in the file; at most `most`, none at
+    /// the end.
     fn batch(&mut self, most: usize) -> Result<Vec<(u64, Feature)>, Failure> {
         let mut features = Vec::new();
         while features.len() < most {

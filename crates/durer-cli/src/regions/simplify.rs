@@ -27,8 +27,8 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("amount").required(true))]
 pub struct SimplifyArgs {
-    /// How far lines may move, in units of the coordinates: by douglas-peucker the distance of points that are left
-    /// out; by visvalingam the side of a square as large as the triangles that are
+    /// Largest distance that lines may move, in units of the coordinates: by douglas-peucker the distance of points
+    /// that are left out; by visvalingam the side of a square as large as the triangles that are
     #[arg(long, value_name = "T", group = "amount", allow_hyphen_values = true, value_parser = values::not_negative)]
     pub tolerance: Option<f64>,
     /// Keep this share of the points that can be left out, e.g. 10%
@@ -44,12 +44,12 @@ pub struct SimplifyArgs {
     /// Each feature for itself, as a stream; borders between features may come apart
     #[arg(long)]
     pub each: bool,
-    /// What is read and written.
+    /// Input and output.
     #[command(flatten)]
     pub files: FilesArgs,
 }
 
-/// A share in percent.
+/// Returns A share in percent.
 fn share(text: &str) -> Result<f64, String> {
     let percent = values::not_negative(text.strip_suffix('%').unwrap_or(text))?;
     if percent > 100.0 {
@@ -58,11 +58,11 @@ fn share(text: &str) -> Result<f64, String> {
     Ok(percent / 100.0)
 }
 
-/// What `--json` says besides.
+/// Additional figures in `--json`.
 #[derive(Debug, Default, Serialize)]
 pub struct Simplified {
     method: &'static str,
-    /// That of all features together.
+    /// Tolerance for all features together.
     #[serde(skip_serializing_if = "Option::is_none")]
     tolerance: Option<f64>,
     dropped: Dropped,
@@ -155,7 +155,7 @@ fn chains(geometry: &mut Geometry, f: &mut dyn FnMut(&mut Points, bool)) {
     }
 }
 
-/// Which runs of points are left out.
+/// Runs of points that are left out.
 #[derive(Debug, Default, Clone, Copy, Serialize)]
 struct Dropped {
     /// Rings that enclose less than asked for.
@@ -170,7 +170,7 @@ impl Dropped {
         self.degenerate += other.degenerate;
     }
 
-    /// Whether a ring stays.
+    /// Returns whether a ring stays.
     fn keeps(&mut self, ring: &Points, least: f64) -> bool {
         let degenerate = ring.len() < 3;
         let small = !degenerate && signed_area(&ring.xy).abs() < least;
@@ -192,7 +192,7 @@ impl Dropped {
         line.len() > 1
     }
 
-    /// What is left of a geometry. What was empty before stays.
+    /// Returns the rest of a geometry. A geometry that was empty before stays.
     fn left(&mut self, geometry: Geometry, least: f64) -> Option<Geometry> {
         if geometry.is_empty() {
             return Some(geometry);

@@ -40,7 +40,7 @@ pub struct RenderArgs {
     /// E57, XYZ, PTS; `-` reads one from standard input
     #[arg(required = true, value_name = "MODEL", value_hint = ValueHint::FilePath)]
     pub models: Vec<PathBuf>,
-    /// Where the picture goes
+    /// File to write the picture to
     ///
     /// A .png, .jpg or .webp file, or a drawing as .svg, .pdf, .dxf, .hpgl, .gcode or .geojson; `-` for
     /// standard output; a folder (existing, or ending in `/`) for NAME.png of each model. A --turntable goes into
@@ -55,13 +55,13 @@ pub struct RenderArgs {
     /// The options that were given, by their names in the parser.
     #[arg(skip)]
     pub given: Vec<String>,
-    /// What the picture is like.
+    /// Options for the picture.
     #[command(flatten)]
     pub picture: PictureArgs,
-    /// Where the eye is.
+    /// Options for the camera.
     #[command(flatten)]
     pub view: ViewArgs,
-    /// How surfaces look.
+    /// Options for the look of surfaces.
     #[command(flatten)]
     pub look: LookArgs,
     /// The floor, grid and axes around the model, and edges over it.

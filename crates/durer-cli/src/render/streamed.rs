@@ -27,7 +27,7 @@ use durer::view::projection::{EndsOfPieces, FitOptions, FitPieces, ViewDirection
 use durer_formats::{Facts, Pieces};
 use std::time::Instant;
 
-/// Whether a picture needs all of the model at once.
+/// Returns whether a picture needs the whole model at once.
 fn needs_whole(args: &RenderArgs) -> bool {
     let asked = &args.picture.algorithm;
     let drawing = &args.drawing;
@@ -57,7 +57,7 @@ pub fn hinted(failure: Failure) -> Failure {
     }
 }
 
-/// Whether pictures of a model can be made of its pieces.
+/// Returns whether pictures of a model can be made of its pieces.
 pub fn suits(args: &RenderArgs, job: &Job, pieces: &dyn Pieces) -> bool {
     let camera = Camera {
         eye: DVec3::Z,
@@ -109,7 +109,7 @@ struct Streamed<'a> {
 }
 
 impl Streamed<'_> {
-    /// What is known of the model; its warnings are told at the first time.
+    /// Returns the facts about the model; its warnings are reported the first time.
     fn facts(&mut self) -> Result<Facts, Failure> {
         if let Some(facts) = &self.facts {
             return Ok(facts.clone());
@@ -243,7 +243,7 @@ impl Sights for Streamed<'_> {
         Ok(fit::depth_range_of(camera, ends.ends()))
     }
 
-    /// A still one.
+    /// Returns A still one.
     fn fitted(
         &mut self,
         direction: &ViewDirection,

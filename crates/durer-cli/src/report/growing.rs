@@ -11,11 +11,11 @@ use std::io::{self, Write};
 /// A report, where one is wanted.
 pub struct Growing {
     wanted: bool,
-    /// Of the models that are done, parted by commas, then the pictures of the one in work.
+    /// Reports of finished models, separated by commas, then the pictures of the current one.
     models: String,
-    /// How much of it is of models that are done.
+    /// Length of the part that belongs to finished models.
     done: usize,
-    /// Of the models that failed.
+    /// Reports of the models that failed.
     failed: String,
 }
 
@@ -36,7 +36,7 @@ struct Tail {
 }
 
 impl Growing {
-    /// An empty report; one that is not wanted stays so.
+    /// Creates an empty report; one that is not wanted stays so.
     pub fn new(wanted: bool) -> Self {
         Self { wanted, models: String::new(), done: 0, failed: String::new() }
     }
@@ -94,18 +94,18 @@ impl Growing {
     }
 }
 
-/// The begin of a model's entry up to its pictures, after others or the first.
+/// Returns the begin of a model's entry up to its pictures, after others or the first.
 fn opening(facts: &impl Serialize, follows: bool) -> String {
     let between = if follows { "," } else { "" };
     format!("{between}\n    {{\n{},\n      \"pictures\": [", members(facts, "      "))
 }
 
-/// The end of a model's entry, after pictures or none.
+/// Returns the end of a model's entry, after pictures or none.
 fn closing(pictures: bool) -> &'static str {
     if pictures { "\n      ]\n    }" } else { "]\n    }" }
 }
 
-/// The members of an object, a line each, with an indent in front of each.
+/// Returns the members of an object, a line each, with an indent in front of each.
 fn members(object: &impl Serialize, indent: &str) -> String {
     let text = serde_json::to_string_pretty(object).unwrap_or_default();
     let text = told::json(&text);

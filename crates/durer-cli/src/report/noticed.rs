@@ -1,4 +1,4 @@
-//! What pictures of a model tell of the model, when they have been made.
+//! Observations about a model from its pictures.
 
 use super::PictureReport;
 use crate::encoding::FLATTENED;
@@ -8,17 +8,18 @@ use durer_formats::{Model, Place};
 /// The notes on all pictures of a model.
 #[derive(Debug, Default)]
 pub struct Noticed {
-    /// Why nothing of the model is seen in the first picture where that is so; told already.
+    /// Reason why nothing of the model is seen in the first picture, if that is so; already
+    /// reported.
     pub unseen: Option<String>,
     /// Triangles of a picture with a vertex that is no number, which the renderer finds, not the reader.
     non_finite: u64,
     /// The notes on sheets.
     notes: Vec<String>,
-    /// How faces meet.
+    /// Warning about how faces meet.
     loose_faces: Option<String>,
     /// The scale of the drawing on its paper.
     scale: Option<String>,
-    /// Whether something transparent had to become opaque.
+    /// True if something transparent had to become opaque.
     flattened: bool,
 }
 

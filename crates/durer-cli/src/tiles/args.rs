@@ -29,7 +29,8 @@ pub struct TilesArgs {
     /// GeoJSON (also one feature per line), WKT or WKB; `-` reads standard input
     #[arg(value_name = "IN", required = true, value_hint = ValueHint::FilePath)]
     pub inputs: Vec<PathBuf>,
-    /// Where the tiles go: map.pmtiles, map.mbtiles, a folder, or a folder with `{z}/{x}/{y}.mvt` or `.geojson`
+    /// File or folder to write the tiles to: map.pmtiles, map.mbtiles, a folder, or a folder with
+    /// `{z}/{x}/{y}.mvt` or `.geojson`
     ///
     /// Into a folder go one file per tile, not compressed, and `tiles.json`, a TileJSON.
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
@@ -40,13 +41,14 @@ pub struct TilesArgs {
     /// The side of a tile, in cells of its grid
     #[arg(long, value_name = "CELLS", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=8192), help_heading = "Tiles")]
     pub extent: u32,
-    /// How far features go on beyond the border of their tile, in cells
+    /// Distance that features continue beyond the border of their tile, in cells
     #[arg(long, value_name = "CELLS", default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..8192), help_heading = "Tiles")]
     pub buffer: u32,
     /// At most so many tiles
     #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = values::count, help_heading = "Tiles")]
     pub max_tiles: u64,
-    /// How far lines may move on levels below the highest, in cells; see `durer simplify`
+    /// Largest distance that lines may move on levels below the highest, in cells; see `durer
+    /// simplify`
     #[arg(long, value_name = "CELLS", default_value_t = 3.0, allow_hyphen_values = true, value_parser = values::not_negative, help_heading = "Simplification")]
     pub tolerance: f64,
     /// douglas-peucker or visvalingam
@@ -76,10 +78,10 @@ pub struct TilesArgs {
     /// The name of the map [default: that of OUT]
     #[arg(long, value_name = "TEXT", help_heading = "Layers")]
     pub name: Option<String>,
-    /// What must be told beside the map, as HTML
+    /// Credit to show beside the map, as HTML
     #[arg(long, value_name = "HTML", help_heading = "Layers")]
     pub attribution: Option<String>,
-    /// What the coordinates are
+    /// Coordinate system of the input
     #[arg(long, value_name = "SYSTEM", default_value = "lonlat", help_heading = "Reading")]
     pub coordinates: TileCoordinates,
     /// Lines and borders never go more than half around the world: an edge of more than 180 degrees goes the other
@@ -92,7 +94,7 @@ pub struct TilesArgs {
     /// The format of OUT [default: by its suffix; of a folder mvt]
     #[arg(long, value_name = "FORMAT")]
     pub to: Option<TileFormat>,
-    /// Which features are kept, and which of their fields.
+    /// Features to keep, and their fields.
     #[command(flatten)]
     pub fields: FieldArgs,
     /// Threads and messages.
@@ -103,7 +105,7 @@ pub struct TilesArgs {
     pub json: bool,
 }
 
-/// How tiles are written.
+/// Format of tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum TileFormat {
     /// One file, for any web server
@@ -117,7 +119,7 @@ pub enum TileFormat {
 }
 
 impl TileFormat {
-    /// Its name on the command line.
+    /// Returns its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Pmtiles => "pmtiles",
@@ -127,7 +129,7 @@ impl TileFormat {
         }
     }
 
-    /// Whether each tile is a file of its own.
+    /// Returns whether each tile is a file of its own.
     pub fn is_folder(self) -> bool {
         matches!(self, Self::Mvt | Self::Geojson)
     }

@@ -1,4 +1,4 @@
-//! What the files have, projected and with numbered properties.
+//! The contents of the files, projected and with numbered properties.
 
 use super::args::TilesArgs;
 use crate::clip::TileCoordinates;
@@ -24,7 +24,7 @@ pub struct Layer {
     fields: BTreeMap<String, Field>,
 }
 
-/// What a feature has beside its geometry.
+/// Properties of a feature beside its geometry.
 #[derive(Debug, Default)]
 pub struct Row {
     pub layer: usize,
@@ -44,11 +44,11 @@ pub struct Layers {
     pub row_of: Vec<usize>,
     /// Features read.
     pub read: u64,
-    /// What was repaired or left out.
+    /// Repairs and omissions.
     pub warnings: Vec<String>,
 }
 
-/// How often something was found, and where first.
+/// Number of occurrences, and the first of them.
 #[derive(Debug, Default)]
 struct Found {
     count: u64,
@@ -69,7 +69,7 @@ impl Found {
     }
 }
 
-/// What is told of a file.
+/// Warnings about a file.
 #[derive(Debug, Default)]
 struct Doubts {
     far: Found,
@@ -173,7 +173,7 @@ fn tell(message: String, name: &str, messages: &Messages, warnings: &mut Vec<Str
     warnings.push(format!("{name}: {message}"));
 }
 
-/// The layer of each file.
+/// Returns the layer of each file.
 fn names(args: &TilesArgs) -> Result<Vec<String>, Failure> {
     match (args.layer.len(), args.inputs.len()) {
         (0, _) => Ok(output::stems(&args.inputs)),
@@ -233,7 +233,7 @@ impl Layers {
         }
     }
 
-    /// What the map tells of its layers.
+    /// Returns the descriptions of layers in the map's metadata.
     pub fn infos(&self) -> Vec<LayerInfo> {
         let fields = |layer: &Layer| layer.fields.iter().map(|(n, f)| (n.clone(), *f)).collect();
         let info = |layer: &Layer| LayerInfo { name: layer.name.clone(), fields: fields(layer) };
@@ -242,7 +242,8 @@ impl Layers {
 }
 
 impl Layer {
-    /// The properties by their numbers; those without a value are left out, and what has parts becomes JSON.
+    /// Returns the properties by their numbers; those without a value are left out, and what has parts
+    /// becomes JSON.
     fn properties(&mut self, args: &TilesArgs, json: Option<&str>) -> Vec<(u32, u32)> {
         let object = json.and_then(|json| serde_json::from_str(json).ok());
         let Some(serde_json::Value::Object(object)) = object else { return Vec::new() };
@@ -280,7 +281,7 @@ fn typed(value: serde_json::Value) -> Option<(Value, Field)> {
     })
 }
 
-/// An id that vector tiles can have: a whole number, or text that is one.
+/// Returns an id that vector tiles can have: a whole number, or text that is one.
 fn whole_number(json: &str) -> Option<u64> {
     let text = json.strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or(json);
     text.parse().ok().filter(|number: &u64| number.to_string() == text)
@@ -364,7 +365,7 @@ impl Parts {
     }
 }
 
-/// Whether a ring ends in another world than it begins.
+/// Returns whether a ring ends in another world than it begins.
 fn goes_around(ring: &[DVec2]) -> bool {
     matches!((ring.first(), ring.last()), (Some(a), Some(b)) if (a.x - b.x).abs() > 0.5)
 }
@@ -380,13 +381,14 @@ fn close_along_pole(ring: &mut Vec<DVec2>) {
     ring.extend([(end, first.y), (end, pole), (first.x, pole)].map(DVec2::from));
 }
 
-/// Whether an edge goes around more than half of the world, and not along a pole, where no map shows which way it goes.
+/// Returns whether an edge goes around more than half of the world, and not along a pole, where no map shows which way
+/// it goes.
 fn is_long(from: DVec2, to: DVec2) -> bool {
     let is_on_map = |p: DVec2| (0.0..=1.0).contains(&p.y);
     (to.x - from.x).abs() > 0.5 && (is_on_map(from) || is_on_map(to))
 }
 
-/// The places of positions; where it matters, each in the world nearest to the one before.
+/// Returns the places of positions; where it matters, each in the world nearest to the one before.
 fn run(points: &Points, short_way: bool, args: &TilesArgs, doubts: &mut Projected) -> Vec<DVec2> {
     let degrees = args.coordinates == TileCoordinates::Lonlat;
     let mut before: Option<DVec2> = None;

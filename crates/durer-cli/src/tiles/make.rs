@@ -16,13 +16,13 @@ pub struct Maker<'a> {
     extent: u32,
     last_zoom: u8,
     all: &'a Layers,
-    /// Of each row whether it is in any tile.
+    /// True for each row that is in some tile.
     seen: Vec<AtomicBool>,
-    /// What tiles that features cover wholly are when they are compressed: inside a large feature all are the same.
+    /// Compressed tiles that features cover wholly: inside a large feature all are the same.
     covered: Mutex<BTreeMap<Vec<u8>, Vec<u8>>>,
 }
 
-/// So many tiles are held.
+/// Number of tiles to hold.
 const HELD: usize = 4096;
 
 /// A tile.
@@ -38,12 +38,12 @@ impl<'a> Maker<'a> {
         Self { format, extent: args.extent, last_zoom: *args.zoom.end(), all, seen, covered }
     }
 
-    /// How many features are in no tile.
+    /// Returns the number of features that are in no tile.
     pub fn lost(&self) -> u64 {
         self.seen.iter().filter(|seen| !seen.load(Ordering::Relaxed)).count() as u64
     }
 
-    /// The bytes of a tile.
+    /// Returns the bytes of a tile.
     pub fn make(&self, tile: Tile, mut pieces: Vec<Piece>) -> Made {
         for piece in &pieces {
             self.seen[self.all.row_of[piece.feature]].store(true, Ordering::Relaxed);
@@ -59,7 +59,7 @@ impl<'a> Maker<'a> {
         Made { bytes, features: pieces.len() as u64 }
     }
 
-    /// The compressed bytes, of tiles that come often from memory.
+    /// Returns the compressed bytes, of tiles that come often from memory.
     fn packed(&self, pieces: &[Piece]) -> Vec<u8> {
         let bytes = self.vector(pieces);
         let covers =
@@ -84,7 +84,7 @@ impl<'a> Maker<'a> {
         &self.all.rows[self.all.row_of[piece.feature]]
     }
 
-    /// Of points with the same properties at the same place the first stays.
+    /// Keeps the first of several points with the same properties at the same place.
     fn merge_points(&self, pieces: &mut Vec<Piece>) {
         let mut seen = HashSet::new();
         pieces.retain_mut(|piece| {
@@ -147,7 +147,7 @@ impl<'a> Maker<'a> {
         serde_json::Value::Object(object).to_string()
     }
 
-    /// A shape in degrees, rings as GeoJSON wants them: outer ones counter-clockwise.
+    /// Returns A shape in degrees, rings as GeoJSON wants them: outer ones counter-clockwise.
     fn geometry(&self, tile: Tile, shape: &Shape) -> Geometry {
         let side = 1.0 / f64::from(1u32 << tile.zoom);
         let corner = DVec2::new(tile.x.into(), tile.y.into());

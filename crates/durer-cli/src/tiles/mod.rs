@@ -21,7 +21,7 @@ use out::Out;
 use serde::Serialize;
 use std::time::Instant;
 
-/// What `--json` says.
+/// Report of `--json`.
 #[derive(Debug, Serialize)]
 struct Report {
     version: &'static str,
@@ -32,7 +32,7 @@ struct Report {
     /// In no tile.
     lost: u64,
     tiles: u64,
-    /// As they are written.
+    /// Size in bytes as written.
     bytes: u64,
     levels: Vec<LevelReport>,
     warnings: Vec<String>,
@@ -44,10 +44,10 @@ struct Report {
     peak_memory_bytes: Option<u64>,
 }
 
-/// What is said of tiles that could not all be written.
+/// Report on tiles that could not all be written.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct BrokenOff {
-    /// What went wrong.
+    /// Reason of the failure.
     pub error: String,
     /// The files that were written before, each of them whole, within the folder.
     pub written: Vec<String>,
@@ -68,7 +68,7 @@ struct Done {
     written: Vec<Tile>,
 }
 
-/// What is said of a level.
+/// Report on a level.
 #[derive(Debug, Default, Serialize)]
 struct LevelReport {
     zoom: u8,
@@ -76,7 +76,7 @@ struct LevelReport {
     bytes: u64,
     /// Bytes of the largest tile.
     largest: u64,
-    /// That tile.
+    /// Name of that tile.
     largest_tile: String,
     /// Features in all tiles.
     features: u64,
@@ -214,7 +214,7 @@ fn level(
     })
 }
 
-/// Why making tiles ended before its time.
+/// Reason why making tiles ended early.
 #[derive(Debug)]
 pub enum Stopped {
     Cut(durer::Error),

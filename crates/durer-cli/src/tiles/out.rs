@@ -1,4 +1,4 @@
-//! Where tiles go.
+//! The destinations of tiles.
 
 use super::args::{TileFormat, TilesArgs};
 use crate::beside::Beside;
@@ -20,7 +20,7 @@ pub enum Out {
     Folder(PathBuf, TileFormat),
 }
 
-/// The format that is asked for, and the file or folder.
+/// Returns the format that is asked for, and the file or folder.
 pub fn format(args: &TilesArgs) -> Result<(TileFormat, PathBuf), Failure> {
     let path = &args.output;
     let usage = |what: &str| Err(Failure::Usage(format!("--output {}: {what}", path.display())));
@@ -61,7 +61,7 @@ pub fn format(args: &TilesArgs) -> Result<(TileFormat, PathBuf), Failure> {
 }
 
 impl Out {
-    /// A place for tiles; nothing is in it yet.
+    /// Returns A place for tiles; nothing is in it yet.
     pub fn new(format: TileFormat, path: PathBuf) -> Result<Self, Failure> {
         let file = |path: &Path| {
             if path.is_dir() || is_special(path) {

@@ -7,7 +7,7 @@ use std::io::Write as _;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-/// A binary STL file of triangles that stand side by side.
+/// Returns A binary STL file of triangles that stand side by side.
 fn stl(count: u32) -> Vec<u8> {
     let mut file = vec![b' '; 80];
     file.extend(count.to_le_bytes());
@@ -23,14 +23,14 @@ fn stl(count: u32) -> Vec<u8> {
     file
 }
 
-/// An OBJ file of as many triangles.
+/// Returns an OBJ file of as many triangles.
 fn obj(count: u32) -> String {
     let mut text = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
     (0..count).for_each(|_| text.push_str("f 1 2 3\n"));
     text
 }
 
-/// A drawing of many curves with wide strokes.
+/// Returns A drawing of many curves with wide strokes.
 fn svg(curves: u32) -> String {
     let mut text =
         String::from(r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100">"#);
@@ -138,7 +138,7 @@ fn a_model_that_costs_too_much_is_skipped() {
     assert!(folder.path("out/cube.png").exists() && !folder.path("out/many.png").exists());
 }
 
-/// What one model has taken is there again for the next.
+/// Checks that memory of one model is available again for the next.
 #[test]
 fn models_one_after_another_share_a_budget() {
     let folder = Folder::new();

@@ -159,7 +159,7 @@ fn fill_rules_decide_what_crossing_rings_enclose() {
     assert!(warned.err.contains("1 features crossed"), "{}", warned.err);
 }
 
-/// What `durer clip` makes of WKT, line by line.
+/// Runs `durer clip` on WKT and returns its output line by line.
 fn clipped(wkt: &str, arguments: &str) -> Vec<String> {
     let folder = Folder::new();
     folder.write("a.wkt", wkt);
@@ -224,7 +224,7 @@ fn outer_rings_run_counter_clockwise_and_holes_clockwise() {
     }
 }
 
-/// Twice the signed area of a ring as WKT writes it.
+/// Returns twice the signed area of a ring as WKT writes it.
 fn turn(ring: &str) -> f64 {
     let ring = ring.trim_matches(|c: char| !c.is_ascii_digit());
     let points: Vec<Vec<f64>> = ring

@@ -17,7 +17,7 @@ fn folder() -> Folder {
     folder
 }
 
-/// What a command says on standard output.
+/// Returns a command's standard output.
 fn said(folder: &Folder, line: &str) -> String {
     String::from_utf8(folder.must(line).out).expect("text")
 }

@@ -3,7 +3,7 @@
 use crate::clip::text;
 use crate::harness::{Ended, Folder};
 
-/// Two files and the lines of what the first becomes by options, and what is told.
+/// Returns two files and the lines of what the first becomes by options, and what is told.
 fn clip(input: &str, mask: &str, options: &str) -> (Vec<String>, String) {
     let folder = Folder::new();
     folder.write("in.wkt", input);

@@ -1,4 +1,5 @@
-//! What `durer clip` says, and of which file; what it takes from a file beside geometry.
+//! Messages of `durer clip` and the files that they name; properties of a file that are kept beside
+//! geometry.
 
 use crate::clip::{folder, piped, text};
 use crate::harness::{Ended, Folder};

@@ -11,7 +11,7 @@ fn close(found: &Value, expected: &Value) -> bool {
     (a - b).abs() <= 1e-9 * b.abs() + 1e-9
 }
 
-/// What the report says of the result.
+/// Runs the command and returns the report on its result.
 fn run(folder: &Folder, file: &Path, arguments: &str) -> Value {
     let mut command = folder.command(&format!("clip {arguments} -q --json"));
     let ended = Ended::of(command.arg(file).output().unwrap());

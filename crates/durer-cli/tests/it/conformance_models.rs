@@ -13,10 +13,10 @@ use std::time::{Duration, Instant};
 /// A run that takes longer hangs.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// As many runs at a time; each uses one thread.
+/// Number of simultaneous runs; each uses one thread.
 const WORKERS: usize = 2;
 
-/// The folder of the test data, if it is there.
+/// Returns the folder of the test data, if it is there.
 pub fn data() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("DURER_DATA").map_or(beside, PathBuf::from);
@@ -27,7 +27,7 @@ pub fn data() -> Option<PathBuf> {
     found.then_some(folder)
 }
 
-/// All files with these suffixes below a folder, in order.
+/// Returns all files with these suffixes below a folder, in order.
 fn files(folder: &Path, suffixes: &[&str]) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![folder.to_owned()];
@@ -100,7 +100,8 @@ fn for_all(
     );
 }
 
-/// Whether a model has triangles, but none of them covers anything: its corners lie on a line.
+/// Returns whether a model has triangles, but none of them covers anything: its corners lie on a
+/// line.
 fn has_no_area(model: &Path) -> bool {
     let bytes = std::fs::read(model).unwrap();
     let name = model.to_string_lossy();

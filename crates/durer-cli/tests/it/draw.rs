@@ -408,7 +408,7 @@ fn wrong_use_and_bad_data_are_told() {
     assert!(!folder.path("a.png").exists());
 }
 
-/// A feature that is a point.
+/// Returns A feature that is a point.
 fn point([x, y]: [u32; 2], properties: &str) -> String {
     let geometry = format!(r#"{{"type":"Point","coordinates":[{x},{y}]}}"#);
     format!(r#"{{"type":"Feature","properties":{properties},"geometry":{geometry}}}"#)
@@ -448,7 +448,7 @@ fn labels_beside_holes_stand_in_the_middle_too() {
     assert!((27..=33).contains(&((dark.0 + dark.1) / 2)), "{dark:?}");
 }
 
-/// The first and the last row with dark pixels in a part of a picture.
+/// Returns the first and the last row with dark pixels in a part of a picture.
 fn darkest_rows(
     picture: &Picture,
     columns: std::ops::Range<u32>,

@@ -28,7 +28,7 @@ const GOLDEN: &[(&str, &str, &str)] = &[
     ("crate", "crate.glb", "--style regions+lines --merge material --azimuth -25 --elevation 20"),
 ];
 
-/// A folder with the cube and the samples' models.
+/// Returns A folder with the cube and the samples' models.
 fn folder() -> Folder {
     let folder = Folder::with_models();
     for name in ["bracket.stl", "teapot.obj", "crate.glb"] {
@@ -273,7 +273,7 @@ fn a_pen_goes_short_ways_where_that_is_asked_for() {
     assert!(travel("--pen-order") < 0.3 * travel(""));
 }
 
-/// Where a straight stroke of an SVG begins and ends.
+/// Returns the ends of a straight stroke in an SVG.
 fn ends(line: &str) -> Option<[f64; 4]> {
     let path = line.split_once(" d=\"M")?.1.split_once('"')?.0;
     let (start, step) = path.split_once('l')?;
@@ -408,7 +408,8 @@ fn outlines_are_smooth_and_bodies_searched_where_that_is_asked_for() {
     assert_eq!(outlines("--stubs 0"), outlines("--stubs 0 --smooth=off"));
 }
 
-/// A box as text in STL; each corner of a facet is moved by what `moved` says of its number.
+/// Returns A box as text in STL; each corner of a facet is moved by what `moved` says of its
+/// number.
 fn box_of_facets(moved: impl Fn(usize) -> f64) -> String {
     let sides =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -481,7 +482,7 @@ fn polygons_that_are_not_flat_have_their_outline_between_their_triangles() {
     assert_eq!((silhouettes(0), silhouettes(60)), (0, 1));
 }
 
-/// A plate with a round hole, of so many sides each.
+/// Returns A plate with a round hole, of so many sides each.
 fn plate(sides: u32) -> String {
     let ring = |radius: f64, z: f64| {
         let angle = move |i: u32| f64::from(i) * std::f64::consts::TAU / f64::from(sides);
@@ -501,7 +502,7 @@ fn plate(sides: u32) -> String {
     text
 }
 
-/// The entities of a DXF file, and the values of a group code.
+/// Returns the entities of a DXF file, and the values of a group code.
 fn entities(file: &[u8], code: &str) -> (Vec<String>, Vec<f64>) {
     let text = String::from_utf8_lossy(file).into_owned();
     let (_, after) = text.split_once("ENTITIES\n").unwrap();

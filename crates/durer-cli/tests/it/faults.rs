@@ -1,4 +1,4 @@
-//! What is left when the command is stopped from outside.
+//! Files left behind when the command is stopped from outside.
 
 use crate::harness::{Folder, Picture};
 use std::io::{Read, Write};

@@ -2,8 +2,8 @@
 
 use crate::harness::{Folder, Picture};
 
-/// A white 8 × 8 picture with a black cross, white in its middle, one field of it
-/// with a pixel that is a little darker.
+/// Returns A white 8 × 8 picture with a black cross, white in its middle, one field of it with a
+/// pixel that is a little darker.
 fn folder() -> Folder {
     let folder = Folder::new();
     folder.write(
@@ -63,7 +63,7 @@ fn wholly_transparent_pixels_are_one_colour() {
     assert_eq!(pixels(&folder, "--at 4,0 --color red --tolerance 9"), [5]);
 }
 
-/// A PNG of one row.
+/// Returns A PNG of one row.
 fn row(
     color: png::ColorType,
     depth: png::BitDepth,
@@ -130,7 +130,7 @@ fn sixteen_bits_stay_sixteen_bits() {
     let pale = grey.map(|[g]| [g, 0x8001]);
     let rgb = grey.map(|[g]| [0x1234, g, 0xabcd]);
     let rgba = grey.map(|[g]| [0x1234, 0xabcd, 0x4321, g]);
-    /// Of all pixels but the first; that is filled.
+    /// Counts the pixels other than the first, which is filled.
     fn with<const N: usize>(first: [u16; N], pixels: &[[u16; N]]) -> Vec<Vec<u16>> {
         std::iter::once(&first).chain(&pixels[1..]).map(|p| p.to_vec()).collect()
     }

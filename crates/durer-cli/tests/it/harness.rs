@@ -18,7 +18,7 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// An empty folder.
+    /// Creates an empty folder.
     pub fn new() -> Self {
         static NUMBER: AtomicU32 = AtomicU32::new(0);
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
@@ -28,7 +28,7 @@ impl Folder {
         Self { path }
     }
 
-    /// A folder with `cube.obj` and `broken.obj`.
+    /// Creates A folder with `cube.obj` and `broken.obj`.
     pub fn with_models() -> Self {
         let folder = Self::new();
         folder.write("cube.obj", CUBE);
@@ -48,7 +48,7 @@ impl Folder {
         std::fs::read(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
-    /// All names in the folder, hidden ones too, in order.
+    /// Returns all names in the folder, hidden ones too, in order.
     pub fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(&self.path).unwrap();
         let mut names: Vec<_> =
@@ -57,7 +57,7 @@ impl Folder {
         names
     }
 
-    /// The command, to be run in this folder with these arguments, parted by spaces.
+    /// Returns the command, to be run in this folder with these arguments, parted by spaces.
     pub fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_durer"));
         command.current_dir(&self.path).args(arguments.split_whitespace()).stdin(Stdio::null());
@@ -83,7 +83,7 @@ impl Drop for Folder {
     }
 }
 
-/// How a run ended.
+/// Outcome of a run.
 #[derive(Debug)]
 pub struct Ended {
     /// Exit code; −1 for a signal.
@@ -142,7 +142,7 @@ impl Picture {
         self.data.chunks_exact(self.channels)
     }
 
-    /// Whether something else than the upper left corner's colour is there.
+    /// Returns whether something else than the upper left corner's colour is there.
     pub fn shows_something(&self) -> bool {
         self.pixels().any(|p| p != self.pixel(0, 0))
     }

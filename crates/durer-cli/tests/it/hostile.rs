@@ -1,5 +1,5 @@
-//! What must not be had by files of strangers, nor by a system that gives little: forged messages, files that are written over,
-//! runs that end without a word.
+//! Harm that neither strangers' files nor a system with few resources may cause: forged messages, overwritten files, runs
+//! that end without a word.
 
 use crate::harness::{CUBE, Folder};
 use std::fs::{self, File};
@@ -17,7 +17,7 @@ const ENDLESS: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes"
 "bufferViews":[{"buffer":0,"byteLength":36}],
 "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
 
-/// Whether a text acts on a terminal, but for line breaks.
+/// Returns whether a text acts on a terminal, but for line breaks.
 fn steers(text: &str) -> bool {
     text.chars().any(|c| (c.is_control() && c != '\n') || ('\u{202a}'..='\u{202e}').contains(&c))
 }

@@ -16,7 +16,7 @@ fn tests() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests"))
 }
 
-/// All models of the folder `kinds`, in order.
+/// Returns all models of the folder `kinds`, in order.
 fn models() -> Vec<String> {
     let entries = fs::read_dir(tests().join("kinds")).unwrap();
     let names = entries.map(|e| e.unwrap().file_name().into_string().unwrap());
@@ -28,7 +28,7 @@ fn models() -> Vec<String> {
     models
 }
 
-/// A folder with the models and what they refer to.
+/// Returns A folder with the models and what they refer to.
 fn folder() -> Folder {
     let folder = Folder::new();
     for entry in fs::read_dir(tests().join("kinds")).unwrap() {

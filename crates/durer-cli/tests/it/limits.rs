@@ -4,7 +4,7 @@
 use crate::harness::Folder;
 use std::io::Write;
 
-/// A triangle as glTF, with parts of the text replaced.
+/// Returns A triangle as glTF, with parts of the text replaced.
 fn gltf(replace: &[(&str, &str)]) -> String {
     let text = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
@@ -16,7 +16,7 @@ fn gltf(replace: &[(&str, &str)]) -> String {
 
 const NODES: &str = r#""nodes":[{"mesh":0}]"#;
 
-/// A node tree as deep as it is long.
+/// Returns A node tree as deep as it is long.
 fn chain(nodes: usize) -> String {
     let inner: String = (1..nodes).map(|i| format!("{{\"children\":[{i}]}},")).collect();
     gltf(&[(NODES, &format!(r#""nodes":[{inner}{{"mesh":0}}]"#))])
@@ -30,7 +30,7 @@ fn chunk(kind: &[u8; 4], data: &[u8]) -> Vec<u8> {
     [&length[..], kind, data, &sum.sum().to_be_bytes()].concat()
 }
 
-/// An RGB picture that says it is of this size and holds so many zeros.
+/// Returns an RGB picture that says it is of this size and holds so many zeros.
 fn png(width: u32, height: u32, zeros: usize) -> Vec<u8> {
     let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
     packed.write_all(&vec![0; zeros]).expect("memory");

@@ -2,7 +2,7 @@
 
 use crate::harness::{Folder, Picture};
 
-/// A white square under one sun of so many lux.
+/// Returns A white square under one sun of so many lux.
 fn lit_square(lux: &str) -> String {
     let floats: [f32; 12] = [-1.0, -1.0, 0.0, 1.0, -1.0, 0.0, 1.0, 1.0, 0.0, -1.0, 1.0, 0.0];
     let indices: [u16; 6] = [0, 1, 2, 0, 2, 3];
@@ -24,7 +24,7 @@ fn lit_square(lux: &str) -> String {
     )
 }
 
-/// The middle pixel's green of a picture with these options.
+/// Returns the middle pixel's green of a picture with these options.
 fn middle(folder: &Folder, model: &str, options: &str) -> u8 {
     folder.must(&format!("render {model} -o o.png --size 33x33 --view front {options}"));
     let picture = Picture::decode(&folder.read("o.png"));

@@ -1,4 +1,4 @@
-//! How much memory a whole run takes, told by Linux; elsewhere the command tells nothing.
+//! The memory of whole runs as Linux reports it; elsewhere there is nothing to test.
 
 use crate::harness::Folder;
 use std::fmt::Write;
@@ -6,14 +6,14 @@ use std::fmt::Write;
 /// Squares along a side of a sheet, each of two triangles.
 const SIDE: u32 = 200;
 
-/// What the command takes for itself, whatever the model.
+/// Memory that the command needs for itself, whatever the model.
 const OWN: u64 = 16 << 20;
 
 fn height(x: u32, y: u32) -> f32 {
     (x * 7 % 13) as f32 * 0.1 + (y * 5 % 11) as f32 * 0.1
 }
 
-/// The corners of all squares' triangles.
+/// Returns the corners of all squares' triangles.
 fn triangles() -> impl Iterator<Item = [[u32; 2]; 3]> {
     (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))).flat_map(|(x, y)| {
         let [a, b, c, d] = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]];
@@ -96,7 +96,7 @@ fn a_run_takes_less_than_eight_times_its_file() {
     }
 }
 
-/// A binary glTF file of many vertices and one triangle.
+/// Returns A binary glTF file of many vertices and one triangle.
 fn glb(vertices: u32) -> Vec<u8> {
     let (points, bytes) = (12 * vertices, 12 * vertices + 12);
     let mut json = format!(
@@ -136,7 +136,8 @@ fn of_a_binary_gltf_file_only_what_is_made_of_it_is_held() {
     assert!(peak < most, "{} bytes: {peak}, not below {most}", file.len());
 }
 
-/// What a batch may take for each of its small pictures: its line of the report, and what is known of it before.
+/// Memory that a batch may need for each of its small pictures: its line of the report, and what is known of it
+/// before.
 const EACH: u64 = 16 << 10;
 
 #[test]

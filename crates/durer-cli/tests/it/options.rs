@@ -1,4 +1,4 @@
-//! What is wrong with options is said, with the option's name, and ends with code 2.
+//! Errors in options: each names its option and ends with code 2.
 
 use crate::harness::Folder;
 

@@ -3,7 +3,7 @@
 use crate::harness::Folder;
 use durer_formats::{Limits, image};
 
-/// Width, height, and the pixel in the middle, of a JPEG.
+/// Returns the width, height, and the pixel in the middle, of a JPEG.
 fn jpeg(folder: &Folder, name: &str) -> (u32, u32, [u8; 4]) {
     let bytes = folder.read(name);
     assert!(bytes.starts_with(b"\xff\xd8\xff"), "{name} is a JPEG");
@@ -12,7 +12,7 @@ fn jpeg(folder: &Folder, name: &str) -> (u32, u32, [u8; 4]) {
     (image.width, image.height, middle)
 }
 
-/// Width and height of a WebP without loss.
+/// Returns the width and height of a WebP without loss.
 fn webp(bytes: &[u8]) -> (u32, u32) {
     assert!(bytes.starts_with(b"RIFF") && &bytes[8..16] == b"WEBPVP8L");
     let sides = u32::from_le_bytes(bytes[21..25].try_into().unwrap());
@@ -131,7 +131,7 @@ fn png_frames(bytes: &[u8]) -> Vec<u32> {
     delays
 }
 
-/// How often a sequence of bytes is there.
+/// Returns the number of occurrences of a sequence of bytes.
 fn count(bytes: &[u8], part: &[u8]) -> usize {
     bytes.windows(part.len()).filter(|w| *w == part).count()
 }

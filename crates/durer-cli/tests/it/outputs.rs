@@ -1,4 +1,4 @@
-//! Where pictures go: whole files or none, many files, further planes.
+//! Output of pictures: whole files or none, many files, further planes.
 
 use crate::harness::{Folder, Picture};
 use std::fs;

@@ -1,4 +1,4 @@
-//! What is in the pictures.
+//! The contents of pictures.
 
 use crate::harness::{Folder, Picture};
 

@@ -7,7 +7,8 @@ use std::f32::consts::{PI, TAU};
 /// Enough for a piece and a small picture, too little for the models.
 const BUDGET: &str = "--max-memory 1100k";
 
-/// Corners of triangles of a wavy ball, which lies far off the origin; each eighth is there twice.
+/// Returns corners of triangles of a wavy ball, which lies far off the origin; each eighth is there
+/// twice.
 fn triangles() -> Vec<[[f32; 3]; 3]> {
     let (rows, columns) = (60, 100);
     let at = |i: u32, j: u32| {
@@ -27,7 +28,7 @@ fn triangles() -> Vec<[[f32; 3]; 3]> {
     all
 }
 
-/// A binary STL file; of facets by their numbers these have colours.
+/// Returns A binary STL file; of facets by their numbers these have colours.
 fn stl(is_colored: impl Fn(usize) -> bool) -> Vec<u8> {
     let all = triangles();
     let mut file = vec![b' '; 80];
@@ -41,7 +42,7 @@ fn stl(is_colored: impl Fn(usize) -> bool) -> Vec<u8> {
     file
 }
 
-/// What a PLY file has.
+/// Contents of a PLY file.
 #[derive(Clone, Copy, Default)]
 struct Ply {
     big: bool,

@@ -12,7 +12,7 @@ fn document(name: &str) -> String {
     fs::read_to_string(root().join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
-/// The lines of all code blocks marked `sh`.
+/// Returns the lines of all code blocks marked `sh`.
 fn shell_lines(document: &str) -> Vec<&str> {
     let mut inside = false;
     let mut lines = Vec::new();
@@ -26,7 +26,7 @@ fn shell_lines(document: &str) -> Vec<&str> {
     lines
 }
 
-/// What a line gives to `durer`, if it calls it.
+/// Returns the arguments of a line that calls `durer`.
 fn arguments(line: &str) -> Option<Vec<String>> {
     let rest = line.strip_prefix("durer ").or(line.strip_prefix("cargo run --release -- "))?;
     assert!(!rest.contains(['|', '*', '$', '\\', '"', '&']), "needs a shell: {line}");
@@ -34,7 +34,7 @@ fn arguments(line: &str) -> Option<Vec<String>> {
     Some(rest.split_whitespace().map(|w| w.trim_matches('\'').to_owned()).collect())
 }
 
-/// The same command for a small picture.
+/// Returns the same command for a small picture.
 fn made_small(mut arguments: Vec<String>) -> Vec<String> {
     // Drawings in vectors are small anyway.
     let vectors = [".svg", ".pdf", ".dxf", ".hpgl", ".gcode", ".geojson"];
@@ -52,12 +52,12 @@ fn made_small(mut arguments: Vec<String>) -> Vec<String> {
     arguments
 }
 
-/// What `durer clip` has to cut in the examples, and what with.
+/// Input of `durer clip` in the examples, and its mask.
 const COUNTRIES: &str = r#"{"type":"Feature","properties":{"name":"A"},"geometry":{"type":"Polygon",
 "coordinates":[[[0,40],[50,40],[50,50],[0,50],[0,40]]]}}"#;
 const MASK: &str = r#"{"type":"Polygon","coordinates":[[[10,30],[20,30],[15,60],[10,30]]]}"#;
 
-/// A folder with a copy of the samples, and map data.
+/// Returns A folder with a copy of the samples, and map data.
 fn folder_with_samples() -> Folder {
     let folder = Folder::new();
     fs::create_dir(folder.path("samples")).unwrap();
@@ -71,7 +71,7 @@ fn folder_with_samples() -> Folder {
     folder
 }
 
-/// The values of options that name one picture.
+/// Returns the values of options that name one picture.
 fn pictures(arguments: &[String]) -> impl Iterator<Item = &str> {
     let names = |a: &str| ["-o", "--item", "--depth", "--normal"].contains(&a);
     let pairs = arguments.windows(2).filter(move |p| names(&p[0]));

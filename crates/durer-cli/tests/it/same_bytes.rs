@@ -5,7 +5,8 @@ use crate::harness::{Ended, Folder};
 use std::path::Path;
 use std::process::Command;
 
-/// What comes after `durer`, and the file it writes; later ones read what earlier ones wrote.
+/// Arguments after `durer`, and the file that they write; later commands read the files of earlier
+/// ones.
 const COMMANDS: &[(&str, &str)] = &[
     ("render teapot.obj --item items.png --depth depth.png --normal normals.png", "a.png"),
     (
@@ -60,7 +61,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ),
 ];
 
-/// What of that runs under valgrind too: some fifty times as long.
+/// Commands that run under valgrind too, where they take some fifty times as long.
 const UNDER_VALGRIND: &[&str] =
     &["textured.png", "a.jpg", "turn.gif", "lines.svg", "window.geojson", "drawn_svg.png"];
 
@@ -75,7 +76,7 @@ fn written(how: &str) -> Vec<(String, Vec<u8>)> {
     names.map(|name| (name.clone(), folder.read(&name))).collect()
 }
 
-/// A folder with all samples.
+/// Returns A folder with all samples.
 fn samples() -> Folder {
     let folder = Folder::new();
     let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples");
@@ -87,7 +88,7 @@ fn samples() -> Folder {
     folder
 }
 
-/// A command that writes a file; pictures of models are small.
+/// Returns A command that writes a file; pictures of models are small.
 fn with_output(command: &str, out: &str) -> String {
     let painted = [".png", ".jpg", ".webp", ".gif"].iter().any(|suffix| out.ends_with(suffix));
     let pixels = command.starts_with("render") && painted;

@@ -1,8 +1,9 @@
-//! What a picture shows of a model: status and warnings, lines and points, faces that are culled.
+//! The contents of a picture in relation to its model: status and warnings, lines and points, faces
+//! that are culled.
 
 use crate::harness::Folder;
 
-/// A triangle that is seen from its front along −z, in glTF.
+/// Returns A triangle that is seen from its front along −z, in glTF.
 fn triangle(material: &str, mode: u32) -> String {
     format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
@@ -12,7 +13,7 @@ fn triangle(material: &str, mode: u32) -> String {
     )
 }
 
-/// The status of the picture, and what was told.
+/// Returns the status of the picture, and what was told.
 fn status(folder: &Folder, arguments: &str) -> (String, String) {
     let run = folder.must(&format!("render {arguments} --json"));
     let report = run.json();

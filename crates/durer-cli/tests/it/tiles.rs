@@ -63,13 +63,13 @@ impl Feature {
         self.properties.iter().find(|(n, _)| n == name).map(|(_, v)| v)
     }
 
-    /// Twice the area of all rings.
+    /// Returns twice the area of all rings.
     fn area(&self) -> i64 {
         self.runs.iter().map(|ring| area(ring)).sum()
     }
 }
 
-/// Twice the signed area of a ring by the surveyor's formula.
+/// Returns twice the signed area of a ring by the surveyor's formula.
 fn area(ring: &[(i64, i64)]) -> i64 {
     let next = ring.iter().cycle().skip(1);
     ring.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum()
@@ -127,7 +127,8 @@ fn drawn(kind: u64, commands: &[u64]) -> Vec<Vec<(i64, i64)>> {
     runs
 }
 
-/// The features of a tile, each checked: rings have areas, outer ones come first and run the right way.
+/// Returns the features of a tile, each checked: rings have areas, outer ones come first and run the
+/// right way.
 fn decode(bytes: &[u8], extent: u64) -> Vec<Feature> {
     let mut found = Vec::new();
     for (number, layer) in fields(bytes) {
@@ -181,7 +182,7 @@ fn unpacked(bytes: &[u8]) -> Vec<u8> {
     out
 }
 
-/// The tiles of a PMTiles file by their numbers.
+/// Returns the tiles of a PMTiles file by their numbers.
 fn pmtiles(bytes: &[u8]) -> Vec<(u64, Vec<u8>)> {
     assert_eq!(&bytes[..8], b"PMTiles\x03");
     let long = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
@@ -216,7 +217,7 @@ fn pmtiles(bytes: &[u8]) -> Vec<(u64, Vec<u8>)> {
     tiles
 }
 
-/// Two parcels with a jagged border between them, a third far away, a path and two trees.
+/// Returns two parcels with a jagged border between them, a third far away, a path and two trees.
 fn land() -> Folder {
     let folder = Folder::new();
     let border: Vec<(f64, f64)> =

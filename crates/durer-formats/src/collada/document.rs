@@ -131,34 +131,34 @@ impl<'a> Document<'a> {
         number
     }
 
-    /// The outermost element, if there is one.
+    /// Returns the outermost element, if there is one.
     pub fn root(&self) -> Option<usize> {
         (!self.elements.is_empty()).then_some(0)
     }
 
-    /// Its name, without a prefix.
+    /// Returns its name, without a prefix.
     pub fn name(&self, element: usize) -> &str {
         let name = self.elements.get(element).and_then(|e| self.names.get(e.name));
         name.map_or("", String::as_str)
     }
 
-    /// The elements right inside another, in their order.
+    /// Returns the elements right inside another, in their order.
     pub fn children(&self, element: usize) -> impl Iterator<Item = usize> + '_ {
         let first = self.elements.get(element).and_then(|e| e.first);
         std::iter::successors(first, |&n| self.elements.get(n)?.next)
     }
 
-    /// Those of one name.
+    /// Returns those of one name.
     pub fn named<'s>(&'s self, element: usize, name: &'s str) -> impl Iterator<Item = usize> + 's {
         self.children(element).filter(move |&n| self.name(n) == name)
     }
 
-    /// The first at the end of a path of names.
+    /// Returns the first at the end of a path of names.
     pub fn find(&self, element: usize, path: &[&str]) -> Option<usize> {
         path.iter().try_fold(element, |at, name| self.named(at, name).next())
     }
 
-    /// All elements inside another, at any depth, in their order.
+    /// Returns all elements inside another, at any depth, in their order.
     pub fn inside(&self, element: usize) -> impl Iterator<Item = usize> + '_ {
         // Elements stand in the order of their starts.
         let end = self.elements.get(element).map_or(0, |e| e.content.end);
@@ -175,40 +175,41 @@ impl<'a> Document<'a> {
         found.map(|(_, value)| value.as_str())
     }
 
-    /// An attribute that is a whole number.
+    /// Returns an attribute that is a whole number.
     pub fn whole(&self, element: usize, key: &str) -> Option<u64> {
         self.attribute(element, key)?.trim().parse().ok()
     }
 
-    /// The element that an attribute names by `#id`; or by the id alone, as some writers do.
+    /// Returns the element that an attribute names by `#id`; or by the id alone, as some writers
+    /// do.
     pub fn refers(&self, element: usize, key: &str) -> Option<usize> {
         self.by_id(self.attribute(element, key)?)
     }
 
-    /// The element of an id, with or without `#` before it.
+    /// Returns the element of an id, with or without `#` before it.
     pub fn by_id(&self, id: &str) -> Option<usize> {
         self.ids.get(id.strip_prefix('#').unwrap_or(id)).copied()
     }
 
-    /// What stands between its start and its end, as it is in the file.
+    /// Returns the text between its start and its end, as it is in the file.
     pub fn raw(&self, element: usize) -> &'a str {
         let content = self.elements.get(element).map(|e| e.content.clone());
         content.and_then(|c| self.text.get(c)).unwrap_or_default()
     }
 
-    /// Its text, trimmed.
+    /// Returns its text, trimmed.
     pub fn text(&self, element: usize) -> String {
         let raw = self.raw(element).trim();
         let raw = raw.strip_prefix("<![CDATA[").and_then(|r| r.strip_suffix("]]>")).unwrap_or(raw);
         quick_xml::escape::unescape(raw).map_or_else(|_| raw.to_owned(), |t| t.into_owned())
     }
 
-    /// Its text as numbers; `None` for each word that is none.
+    /// Returns its text as numbers; `None` for each word that is none.
     pub fn floats(&self, element: usize) -> impl Iterator<Item = Option<f64>> + use<'a> {
         self.raw(element).split_ascii_whitespace().map(float)
     }
 
-    /// Its text as exactly N numbers.
+    /// Returns its text as exactly N numbers.
     pub fn vector<const N: usize>(&self, element: usize) -> Option<[f64; N]> {
         let mut vector = [0.0; N];
         let mut floats = self.floats(element);
@@ -218,7 +219,7 @@ impl<'a> Document<'a> {
         floats.next().is_none().then_some(vector)
     }
 
-    /// Where an element begins: for messages.
+    /// Returns the place where an element begins, for messages.
     pub fn place(&self, element: usize) -> Place {
         self.line(self.elements.get(element).map_or(0, |e| e.start))
     }
@@ -231,7 +232,7 @@ impl<'a> Document<'a> {
     }
 }
 
-/// A number, also one with a decimal comma, as some writers set it where their users live.
+/// Returns A number, also one with a decimal comma, as some writers set it where their users live.
 pub(super) fn float(word: &str) -> Option<f64> {
     let whole = |text: &str| {
         let (value, length) = number::float(text.as_bytes())?;

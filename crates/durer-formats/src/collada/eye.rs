@@ -45,12 +45,12 @@ pub(super) fn add(
     model.scene.lights = eye::lights(&lamps, unit, &model.scene);
 }
 
-/// A number of an element's child.
+/// Returns A number of an element's child.
 fn number(document: &Document<'_>, element: usize, name: &str) -> Option<f64> {
     document.vector::<1>(document.find(element, &[name])?).map(|[v]| v)
 }
 
-/// How a camera sees; `unit` is the length of the file's unit.
+/// Returns the projection of a camera; `unit` is the length of the file's unit.
 pub(super) fn lens(document: &Document<'_>, camera: usize, unit: f64) -> Result<Lens, String> {
     let common = document.find(camera, &["optics", "technique_common"]);
     let kind = common.and_then(|c| {
@@ -98,8 +98,8 @@ fn parallel(
     Some((Projection::Orthographic { height }, ratio))
 }
 
-/// The light of a frame, which shines along −z; `None` where it is of no known kind. Colours are as
-/// those of materials, linear or not.
+/// Returns the light of a frame, which shines along −z; `None` where it is of no known kind.
+/// Colours are as those of materials, linear or not.
 pub(super) fn lamp(
     document: &Document<'_>,
     light: usize,
@@ -138,7 +138,7 @@ pub(super) fn lamp(
     position.is_finite().then_some(Lamp { kind: of_kind, color, falloff })
 }
 
-/// A colour times an intensity, which is above 1 where a component is.
+/// Returns A colour times an intensity, which is above 1 where a component is.
 fn light_color(rgb: [f64; 3], linear: bool) -> Vec3 {
     let intensity = rgb.into_iter().fold(1.0, f64::max);
     let rgb = rgb.map(|v| (v.max(0.0) / intensity) as f32);

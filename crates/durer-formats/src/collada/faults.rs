@@ -1,9 +1,9 @@
-//! What geometries lack, as warnings.
+//! Omissions and repairs in geometries, as warnings.
 
 use crate::Model;
 use crate::text::Tally;
 
-/// What was left out or repaired.
+/// Omissions and repairs.
 #[derive(Debug, Default)]
 pub(super) struct Faults {
     pub numbers: Tally,

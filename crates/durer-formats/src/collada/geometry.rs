@@ -17,12 +17,12 @@ pub(super) struct Geometry {
     pub pieces: Vec<Piece>,
 }
 
-/// What corners of a primitive are made of.
+/// Source of an attribute for the corners of a primitive.
 struct Input {
     /// Its place in a [`Corner`].
     slot: usize,
     source: usize,
-    /// Which of a corner's indices.
+    /// Index among those of a corner.
     offset: usize,
     set: u64,
 }
@@ -102,7 +102,8 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// The inputs that are read; those of `vertices` have the offset of the input that names it.
+    /// Returns the inputs that are read; those of `vertices` have the offset of the input that
+    /// names it.
     fn inputs(&mut self, element: usize) -> Result<Vec<Input>> {
         let document = self.document;
         let mut inputs: Vec<Input> = Vec::new();
@@ -152,7 +153,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// A source, read once.
+    /// Returns A source, read once.
     fn source(&mut self, element: usize) -> Result<Option<Rc<Source>>> {
         if let Some(known) = self.sources.get(&element) {
             return Ok(known.clone());
@@ -163,7 +164,7 @@ impl Reader<'_, '_> {
         Ok(source)
     }
 
-    /// The builder of primitives with these sources.
+    /// Returns the builder of primitives with these sources.
     fn builder(&mut self, topology: Topology, inputs: &[Input]) -> usize {
         let mut slots = [None; 3 + SETS];
         let mut sets = Vec::new();
@@ -183,7 +184,8 @@ impl Reader<'_, '_> {
         at
     }
 
-    /// The vertices of the corners that a list of indices names; `None` for one that has not all.
+    /// Returns the vertices of the corners that a list of indices names; `None` for one that has
+    /// not all.
     fn corners(
         &mut self,
         p: usize,
@@ -356,8 +358,8 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The indices of a corner in its sources, and whether they are all there; `None` where that of its
-/// position is not.
+/// Returns the indices of a corner in its sources, and whether they are all there; `None` where
+/// that of its position is not.
 fn key(
     inputs: &[Input],
     sources: &[Option<Rc<Source>>],

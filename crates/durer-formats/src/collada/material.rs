@@ -12,7 +12,7 @@ use std::collections::HashMap;
 /// The largest exponent of a highlight: narrower ones fall between pixels.
 const MAX_SHININESS: f64 = 10_000.0;
 
-/// Which set of the mesh a channel of texture coordinates is.
+/// Map from channels of texture coordinates to the mesh's sets.
 pub(super) type Channels<'c> = &'c dyn Fn(&str) -> u32;
 
 /// Makes materials, each once for a choice of sets.
@@ -21,10 +21,10 @@ pub(super) struct Materials<'d, 'a> {
     images: Images<'d>,
     known: HashMap<(usize, Vec<u32>), usize>,
     textures: HashMap<(usize, Wrap, Wrap), usize>,
-    /// Whether the file counts transparency from the opaque, as old exporters of SketchUp, Blender and
+    /// True if the file counts transparency from the opaque, as old exporters of SketchUp, Blender and
     /// 3ds Max do.
     reversed: bool,
-    /// Whether colours are linear light instead of sRGB values.
+    /// True if colours are linear light instead of sRGB values.
     linear: bool,
     lost: Tally,
 }
@@ -49,7 +49,7 @@ impl<'d, 'a> Materials<'d, 'a> {
         Self { document, images, known, textures, reversed: reversed.is_some(), linear, lost }
     }
 
-    /// The scene's number of a material; `None` where the document does not have it.
+    /// Returns the scene's number of a material; `None` where the document does not have it.
     pub fn get(&mut self, model: &mut Model, id: &str, channels: Channels<'_>) -> Option<usize> {
         let document = self.document;
         let element = document.by_id(id).filter(|&m| document.name(m) == "material")?;
@@ -196,7 +196,7 @@ impl<'d, 'a> Materials<'d, 'a> {
         }
     }
 
-    /// A colour, a picture, or a parameter that is a colour.
+    /// Returns A colour, a picture, or a parameter that is a colour.
     fn value(&self, profile: usize, shader: usize, name: &str) -> Option<Value> {
         let document = self.document;
         let element = document.find(shader, &[name])?;
@@ -218,7 +218,7 @@ impl<'d, 'a> Materials<'d, 'a> {
         }
     }
 
-    /// A colour with alpha as linear light.
+    /// Returns A colour with alpha as linear light.
     fn linear_color(&self, element: usize) -> Vec4 {
         let floats = self.document.floats(element);
         let mut floats = floats.map(|v| v.filter(|v| v.is_finite()).unwrap_or(0.0));
@@ -239,14 +239,14 @@ impl<'d, 'a> Materials<'d, 'a> {
         })
     }
 
-    /// A parameter of the profile, by its name there.
+    /// Returns A parameter of the profile, by its name there.
     fn parameter(&self, profile: usize, sid: &str) -> Option<usize> {
         let document = self.document;
         let mut all = document.inside(profile).filter(|&n| document.name(n) == "newparam");
         all.find(|&n| document.attribute(n, "sid") == Some(sid))
     }
 
-    /// The texture that a sampler's name leads to.
+    /// Returns the texture that a sampler's name leads to.
     fn texture(
         &mut self,
         model: &mut Model,
@@ -279,8 +279,8 @@ impl<'d, 'a> Materials<'d, 'a> {
         Some(TextureRef { texture, tex_coord, transform: DMat3::IDENTITY })
     }
 
-    /// The path of the picture behind a sampler: through a surface (1.4), an instance (1.5), or where
-    /// the name is that of an image itself.
+    /// Returns the path of the picture behind a sampler: through a surface (1.4), an instance (1.5),
+    /// or where the name is that of an image itself.
     fn picture(&self, profile: usize, name: &str, sampler: Option<usize>) -> Option<String> {
         let document = self.document;
         let text = |n: Option<usize>| n.map(|n| document.text(n));
@@ -297,7 +297,8 @@ impl<'d, 'a> Materials<'d, 'a> {
     }
 }
 
-/// Whether the file comes from a Blender since 2.80, which writes the linear values of its nodes.
+/// Returns whether the file comes from a Blender since 2.80, which writes the linear values of its
+/// nodes.
 pub(super) fn is_linear(document: &Document<'_>) -> bool {
     let contributors = document.root().and_then(|root| document.find(root, &["asset"]));
     let mut contributors = contributors.into_iter().flat_map(|a| document.named(a, "contributor"));
@@ -312,14 +313,14 @@ pub(super) fn is_linear(document: &Document<'_>) -> bool {
     })
 }
 
-/// Which sides an effect asks for, in what the schema leaves to programs.
+/// Returns the sides that an effect asks for, in the part that the schema leaves to programs.
 fn sides(document: &Document<'_>, effect: usize) -> Option<bool> {
     let found = document.inside(effect).find(|&n| document.name(n) == "double_sided")?;
     let text = document.text(found);
     Some(text != "0" && !text.eq_ignore_ascii_case("false"))
 }
 
-/// The first effect that says it is wholly transparent where it can only mean the opposite.
+/// Returns the first effect that says it is wholly transparent where it can only mean the opposite.
 fn is_reversed(document: &Document<'_>) -> Option<usize> {
     let root = document.root()?;
     let zero =
@@ -335,8 +336,8 @@ fn is_reversed(document: &Document<'_>) -> Option<usize> {
     })
 }
 
-/// The path of a picture's address: what is absolute was elsewhere on the writer's machine, and is
-/// looked for beside the model.
+/// Returns the path of a picture's address: what is absolute was elsewhere on the writer's machine,
+/// and is looked for beside the model.
 fn path(uri: &str) -> String {
     let bytes = percent_decode(uri).and_then(|b| String::from_utf8(b).ok());
     let path = bytes.unwrap_or_else(|| uri.to_owned()).replace('\\', "/");

@@ -74,7 +74,7 @@ fn format(document: &Document<'_>, root: usize) -> String {
     format!("COLLADA {}", document.attribute(root, "version").unwrap_or_default()).trim().to_owned()
 }
 
-/// Which axis is up, the matrix to metres, and the length of the file's unit.
+/// Returns the up axis, the matrix to metres, and the length of the file's unit.
 fn frame(document: &Document<'_>, root: usize, model: &mut Model) -> (UpAxis, DMat4, f64) {
     let unit = document.find(root, &["asset", "unit"]);
     let meter = unit.and_then(|u| document.attribute(u, "meter"));
@@ -97,7 +97,7 @@ fn frame(document: &Document<'_>, root: usize, model: &mut Model) -> (UpAxis, DM
     }
 }
 
-/// The scene that the file shows, else the first one.
+/// Returns the scene that the file shows, else the first one.
 fn scene(document: &Document<'_>, root: usize) -> Option<usize> {
     let instance = document.find(root, &["scene", "instance_visual_scene"]);
     let named = instance.and_then(|i| document.refers(i, "url"));

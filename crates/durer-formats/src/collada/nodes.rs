@@ -31,7 +31,7 @@ pub(super) struct Nodes<'d, 'a> {
     pub lights: Vec<Placed>,
 }
 
-/// What a node holds besides geometry.
+/// Contents of a node besides geometry.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placed {
     /// The element that is held.
@@ -44,7 +44,7 @@ pub(super) struct Placed {
 /// A geometry, and the symbols and targets of an instance's materials.
 type Key = (usize, Vec<(String, String)>);
 
-/// What is still to be done.
+/// Remaining step of the walk.
 enum Step {
     Enter(usize, DMat4),
     Leave(usize),
@@ -155,7 +155,7 @@ impl<'d, 'a> Nodes<'d, 'a> {
         }
     }
 
-    /// A node's matrix to its parent: its transforms in their order.
+    /// Returns A node's matrix to its parent: its transforms in their order.
     fn local(&mut self, node: usize) -> DMat4 {
         let document = self.document;
         let mut matrix = DMat4::IDENTITY;
@@ -192,8 +192,8 @@ impl<'d, 'a> Nodes<'d, 'a> {
         Ok(())
     }
 
-    /// The geometry behind an instance, through skins and morphs, and what takes it to the pose that
-    /// it was bound at.
+    /// Returns the geometry behind an instance, through skins and morphs, and what takes it to the
+    /// pose that it was bound at.
     fn geometry(&self, target: usize) -> Option<(usize, DMat4)> {
         let document = self.document;
         let (mut at, mut bind) = (target, DMat4::IDENTITY);
@@ -213,7 +213,7 @@ impl<'d, 'a> Nodes<'d, 'a> {
         None
     }
 
-    /// The scene's number of a material that shows colours of vertices.
+    /// Returns the scene's number of a material that shows colours of vertices.
     fn plain(&mut self, model: &mut Model) -> usize {
         *self.plain.get_or_insert_with(|| {
             model.scene.materials.push(color::vertex_color_material());
@@ -221,7 +221,7 @@ impl<'d, 'a> Nodes<'d, 'a> {
         })
     }
 
-    /// The scene's meshes of a geometry in the materials that an instance binds.
+    /// Returns the scene's meshes of a geometry in the materials that an instance binds.
     fn meshes(
         &mut self,
         model: &mut Model,
@@ -299,12 +299,13 @@ impl<'d, 'a> Nodes<'d, 'a> {
     }
 }
 
-/// A matrix that is written row by row.
+/// Returns A matrix that is written row by row.
 fn rows(m: &[f64; 16]) -> DMat4 {
     DMat4::from_cols_array(m).transpose()
 }
 
-/// A transform element's matrix: `None` for other elements, `Some(None)` for broken numbers.
+/// Returns A transform element's matrix: `None` for other elements, `Some(None)` for broken
+/// numbers.
 fn transform(document: &Document<'_>, element: usize) -> Option<Option<DMat4>> {
     let vector = |v: [f64; 3]| DVec3::from(v);
     Some(match document.name(element) {
@@ -320,7 +321,7 @@ fn transform(document: &Document<'_>, element: usize) -> Option<Option<DMat4>> {
     })
 }
 
-/// A turn by degrees about an axis; about none, nothing.
+/// Returns A turn by degrees about an axis; about none, nothing.
 fn turn(axis: DVec3, degrees: f64) -> DMat4 {
     let Some(a) = axis.try_normalize() else { return DMat4::IDENTITY };
     let angle = degrees.to_radians();
@@ -339,7 +340,7 @@ fn look_at(v: &[f64; 9]) -> DMat4 {
     DMat4::from_cols(right.extend(0.0), up.extend(0.0), back.extend(0.0), eye.extend(1.0))
 }
 
-/// A shear by degrees from one axis towards another (RenderMan's Skew).
+/// Returns A shear by degrees from one axis towards another (RenderMan's Skew).
 fn skew(v: &[f64; 7]) -> DMat4 {
     let angle = v[0].to_radians();
     let along = DVec3::new(v[4], v[5], v[6]).normalize_or_zero();

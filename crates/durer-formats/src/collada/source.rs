@@ -15,12 +15,12 @@ pub(super) struct Source {
     offset: usize,
     stride: usize,
     count: usize,
-    /// Which of a tuple's values are the components.
+    /// Positions of the components among a tuple's values.
     components: Vec<usize>,
 }
 
 impl Source {
-    /// The components of a tuple, `fill` where it has fewer; `None` beyond the end.
+    /// Returns the components of a tuple, `fill` where it has fewer; `None` beyond the end.
     pub fn get<const N: usize>(&self, index: u32, fill: f64) -> Option<[f64; N]> {
         let first = self.stride.checked_mul(index as usize)?.checked_add(self.offset)?;
         let values = self.values.get(first..)?;
@@ -40,7 +40,7 @@ pub(super) type Slots = [Option<usize>; 3 + SETS];
 /// Sources that have been read, by their elements.
 pub(super) type Sources = HashMap<usize, Option<Rc<Source>>>;
 
-/// What the slots of corners stand for.
+/// Data that the slots of corners refer to.
 pub(super) struct Slotted<'s>(pub &'s Sources, pub Slots);
 
 impl Slotted<'_> {

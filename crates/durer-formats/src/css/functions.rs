@@ -9,12 +9,12 @@ use super::units::{Units, Value, Whole};
 /// Colours within colours may be so deep.
 const MAX_DEPTH: u32 = 8;
 
-/// The colour of a text; `current` is what `currentColor` stands for.
+/// Returns the colour of a text; `current` is what `currentColor` stands for.
 pub(super) fn parse(text: &str, current: Option<Color>) -> Option<Color> {
     of_pieces(trimmed(&tokens(text)), current, 0)
 }
 
-/// A colour that is all of the tokens.
+/// Returns A colour that is all of the tokens.
 fn of_pieces(pieces: &[Piece<'_>], current: Option<Color>, depth: u32) -> Option<Color> {
     let (first, rest) = pieces.split_first()?;
     let function = match &first.token {
@@ -43,12 +43,12 @@ fn named(name: &str, current: Option<Color>) -> Option<Color> {
     if name.eq_ignore_ascii_case("currentcolor") { current } else { plain(name) }
 }
 
-/// A name, or a number with `#`.
+/// Returns A name, or a number with `#`.
 fn plain(text: &str) -> Option<Color> {
     super::simple(text).map(Color::of_bytes)
 }
 
-/// The tokens without blanks at the ends.
+/// Returns the tokens without blanks at the ends.
 pub(super) fn trimmed<'a, 'b>(mut pieces: &'b [Piece<'a>]) -> &'b [Piece<'a>] {
     while let [Piece { token: Token::Blank, .. }, rest @ ..]
     | [rest @ .., Piece { token: Token::Blank, .. }] = pieces
@@ -77,7 +77,8 @@ fn split_at<'a, 'b>(pieces: &'b [Piece<'a>], separator: &Token<'_>) -> Vec<&'b [
     parts.collect()
 }
 
-/// The components of a colour as they stand in a function: with commas, or with blanks and a stroke before alpha.
+/// Returns the components of a colour as they stand in a function: with commas, or with blanks and a stroke
+/// before alpha.
 fn of_components(space: Space, inside: &[Piece<'_>]) -> Option<Color> {
     let mut parts = split(inside, ',');
     let alpha: Option<&[Piece<'_>]>;
@@ -112,7 +113,7 @@ pub(crate) fn words<'a, 'b>(pieces: &'b [Piece<'a>]) -> Vec<&'b [Piece<'a>]> {
     split_at(pieces, &Token::Blank).into_iter().filter(|part| !part.is_empty()).collect()
 }
 
-/// A number, a percentage of `all`, or `none`, which counts as 0.
+/// Returns A number, a percentage of `all`, or `none`, which counts as 0.
 fn number(part: &[Piece<'_>], all: f64) -> Option<f64> {
     if let [piece] = part
         && piece.token.is_word("none")
@@ -122,7 +123,7 @@ fn number(part: &[Piece<'_>], all: f64) -> Option<f64> {
     Units::default().value(part, Some(Whole::Number(all)))?.number()
 }
 
-/// The component of a colour at that index.
+/// Returns the component of a colour at that index.
 fn component_of(part: &[Piece<'_>], space: Space, index: usize) -> Option<f64> {
     if space.is_hue(index) {
         if let [piece] = part
@@ -171,7 +172,7 @@ fn mixed(inside: &[Piece<'_>], current: Option<Color>, depth: u32) -> Option<Col
     Some(color)
 }
 
-/// A colour with its share in percent, before or after it.
+/// Returns A colour with its share in percent, before or after it.
 fn with_share(
     part: &[Piece<'_>],
     current: Option<Color>,

@@ -18,14 +18,14 @@ impl Color {
         Self { rgb: [r, g, b], alpha: a }
     }
 
-    /// The nearest bytes.
+    /// Returns the nearest bytes.
     pub fn bytes(self) -> [u8; 4] {
         let [r, g, b] = self.rgb;
         [r, g, b, self.alpha].map(|v| (v.clamp(0.0, 1.0) * 255.0).round() as u8)
     }
 }
 
-/// How three components say a colour.
+/// Colour space of three components.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Space {
     /// 0 to 255, as `rgb()` has it.
@@ -108,7 +108,7 @@ fn times(matrix: &[Row; 3], v: Row) -> Row {
     matrix.map(|[a, b, c]| a * v[0] + b * v[1] + c * v[2])
 }
 
-/// Linear light from a value of sRGB; negative ones mirrored.
+/// Returns linear light from a value of sRGB; negative ones mirrored.
 fn linear(v: f64) -> f64 {
     let a = v.abs();
     if a <= 0.04045 { v / 12.92 } else { pow((a + 0.055) / 1.055, 2.4).copysign(v) }
@@ -162,7 +162,7 @@ fn rgb_to_hsl(rgb: Row) -> Row {
     [hue, s * 100.0, l * 100.0]
 }
 
-/// The hue in degrees, the least and the greatest component.
+/// Returns the hue in degrees, the least and the greatest component.
 fn hue_and_range([r, g, b]: Row) -> Row {
     let (high, low) = (r.max(g).max(b), r.min(g).min(b));
     let d = high - low;
@@ -187,7 +187,7 @@ fn hwb_to_rgb([h, w, b]: Row) -> Row {
 }
 
 impl Space {
-    /// The space of a function of that name.
+    /// Returns the space of a function of that name.
     pub fn of_function(name: &str) -> Option<Self> {
         Some(match name {
             "rgb" | "rgba" => Self::Bytes,
@@ -201,7 +201,7 @@ impl Space {
         })
     }
 
-    /// The space that `color()` and `color-mix()` know by that name.
+    /// Returns the space that `color()` and `color-mix()` know by that name.
     pub fn of_color(name: &str) -> Option<Self> {
         Some(match name {
             "srgb" => Self::Srgb,
@@ -213,7 +213,7 @@ impl Space {
         })
     }
 
-    /// Whether the component of that index is a hue.
+    /// Returns whether the component of that index is a hue.
     pub fn is_hue(self, index: usize) -> bool {
         self.hue() == Some(index)
     }
@@ -226,7 +226,7 @@ impl Space {
         }
     }
 
-    /// What 100 % of the component of that index are.
+    /// Returns the value of 100 % for the component with this index.
     pub fn whole(self, index: usize) -> f64 {
         match (self, index) {
             (Self::Bytes, _) => 255.0,
@@ -238,7 +238,7 @@ impl Space {
         }
     }
 
-    /// The colour of components; what goes beyond is kept, but lightness and chroma.
+    /// Returns the colour of components; what goes beyond is kept, but lightness and chroma.
     pub fn color(self, mut components: Row, alpha: f64) -> Color {
         let [first, second, _] = &mut components;
         match self {
@@ -299,7 +299,8 @@ impl Space {
         }
     }
 
-    /// The mixture of two colours with so much of the second one, components weighted by alpha.
+    /// Returns the mixture of two colours with so much of the second one, components weighted by
+    /// alpha.
     pub fn mix(self, a: Color, b: Color, share: f64) -> Color {
         let (mut x, mut y) = (self.of_srgb(a.rgb), self.of_srgb(b.rgb));
         let alpha = a.alpha * (1.0 - share) + b.alpha * share;

@@ -28,12 +28,12 @@ pub(crate) enum Token<'a> {
 }
 
 impl Token<'_> {
-    /// Whether this is that word, in letters of any case.
+    /// Returns whether this is that word, in letters of any case.
     pub fn is_word(&self, word: &str) -> bool {
         matches!(self, Self::Ident(name) if name.eq_ignore_ascii_case(word))
     }
 
-    /// What closes what this token opens.
+    /// Returns the character that closes the group that this token opens.
     fn closing(&self) -> Option<char> {
         match self {
             Self::Function(_) | Self::Open('(') => Some(')'),
@@ -51,11 +51,12 @@ pub(crate) struct Piece<'a> {
     /// Bytes from the start of the text to the token, and to what follows it.
     pub start: usize,
     pub end: usize,
-    /// Of what opens, the index of what closes it, or how many tokens there are; of others their own index.
+    /// Index of the closing token for an opening one, or the number of tokens if none closes it; for other
+    /// tokens their own index.
     pub mate: usize,
 }
 
-/// The tokens of a text, in order. Cost: linear in its length.
+/// Returns the tokens of a text, in order. Cost: linear in its length.
 pub(crate) fn tokens(text: &str) -> Vec<Piece<'_>> {
     let mut lexer = Lexer { text, at: 0 };
     let mut pieces: Vec<Piece<'_>> = Vec::new();
@@ -122,7 +123,7 @@ impl<'a> Lexer<'a> {
         self.text.get(self.at..).unwrap_or_default()
     }
 
-    /// The character so many bytes on, where those before it are ASCII.
+    /// Returns the character so many bytes on, where those before it are ASCII.
     fn peek(&self, ahead: usize) -> Option<char> {
         self.rest().get(ahead..)?.chars().next()
     }
@@ -134,7 +135,7 @@ impl<'a> Lexer<'a> {
         rest.get(..length).unwrap_or_default()
     }
 
-    /// The next token; `None` for a comment.
+    /// Returns the next token; `None` for a comment.
     fn token(&mut self) -> Option<Token<'a>> {
         let rest = self.rest();
         let first = rest.chars().next()?;
@@ -165,7 +166,7 @@ impl<'a> Lexer<'a> {
         })
     }
 
-    /// Whether a number begins so many bytes on.
+    /// Returns whether a number begins at this offset.
     fn is_number(&self, ahead: usize) -> bool {
         let digit = |at| self.peek(at).is_some_and(|c: char| c.is_ascii_digit());
         match self.peek(ahead) {
@@ -177,7 +178,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// Whether a name begins so many bytes on.
+    /// Returns whether a name begins at this offset.
     fn is_ident(&self, ahead: usize) -> bool {
         let starts = |at| match self.peek(at) {
             Some('\\') => self.peek(at + 1).is_some_and(|c| c != '\n'),
@@ -214,7 +215,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// A name, and what it begins.
+    /// Returns A name, and what it begins.
     fn word(&mut self) -> Token<'a> {
         let name = self.name();
         if self.peek(0) != Some('(') {
@@ -234,7 +235,7 @@ impl<'a> Lexer<'a> {
         Token::Url(Cow::Borrowed(rest.get(..end).unwrap_or_default().trim()))
     }
 
-    /// The name that begins here.
+    /// Returns the name that begins here.
     fn name(&mut self) -> Cow<'a, str> {
         let plain = self.skip(is_name);
         if self.peek(0) != Some('\\') {
@@ -249,7 +250,7 @@ impl<'a> Lexer<'a> {
         Cow::Owned(name)
     }
 
-    /// The character behind a backslash.
+    /// Returns the character behind a backslash.
     fn escaped(&mut self) -> Option<char> {
         let rest = self.rest();
         let digits = rest.bytes().take(6).take_while(u8::is_ascii_hexdigit).count();
@@ -264,7 +265,7 @@ impl<'a> Lexer<'a> {
         Some(char::from_u32(code).filter(|c| *c != '\0').unwrap_or(char::REPLACEMENT_CHARACTER))
     }
 
-    /// The text up to the quote, or to the end of the line.
+    /// Returns the text up to the quote, or to the end of the line.
     fn string(&mut self, quote: char) -> Token<'a> {
         let plain = self.skip(|c| c != quote && c != '\\' && c != '\n');
         let mut text = Cow::Borrowed(plain);

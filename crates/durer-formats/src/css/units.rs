@@ -7,7 +7,7 @@ use super::tokens::{Piece, Token};
 /// `calc()` and parentheses within one another may be so deep.
 const MAX_DEPTH: u32 = 32;
 
-/// What relative units stand for, in pixels.
+/// Lengths of relative units, in pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Units {
     pub font_size: f64,
@@ -22,7 +22,7 @@ impl Default for Units {
     }
 }
 
-/// What a percentage is of.
+/// Base of a percentage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Whole {
     /// 100 % are this length in pixels.
@@ -42,7 +42,7 @@ pub(crate) enum Value {
 }
 
 impl Value {
-    /// The number, of a length in pixels, of an angle in degrees.
+    /// Returns the number, of a length in pixels, of an angle in degrees.
     pub fn raw(self) -> f64 {
         match self {
             Self::Number(v) | Self::Length(v) | Self::Angle(v) => v,
@@ -61,7 +61,7 @@ impl Value {
         std::mem::discriminant(&self) == std::mem::discriminant(&other)
     }
 
-    /// The number in pixels; a number without a unit is one of pixels.
+    /// Returns the number in pixels; a number without a unit is one of pixels.
     pub fn length(self) -> Option<f64> {
         match self {
             Self::Number(v) | Self::Length(v) => Some(v),
@@ -69,7 +69,7 @@ impl Value {
         }
     }
 
-    /// The number in degrees; a number without a unit is one of degrees.
+    /// Returns the number in degrees; a number without a unit is one of degrees.
     pub fn angle(self) -> Option<f64> {
         match self {
             Self::Number(v) | Self::Angle(v) => Some(v),
@@ -77,7 +77,7 @@ impl Value {
         }
     }
 
-    /// The number, if it has no unit.
+    /// Returns the number, if it has no unit.
     pub fn number(self) -> Option<f64> {
         match self {
             Self::Number(v) => Some(v),
@@ -87,7 +87,7 @@ impl Value {
 }
 
 impl Units {
-    /// The value of a number with a unit; `None` for a unit that is none.
+    /// Returns the value of a number with a unit; `None` for a unit that is none.
     pub fn dimension(&self, number: f64, unit: &str) -> Option<Value> {
         let [width, height] = self.viewport;
         let px = match unit.to_ascii_lowercase().as_str() {
@@ -114,7 +114,8 @@ impl Units {
         Some(Value::Length(number * px))
     }
 
-    /// The value of the tokens from `range` on, which must be one number, length, angle, percentage or a function like `calc()`.
+    /// Returns the value of the tokens from `range` on, which must be one number, length, angle, percentage
+    /// or a function like `calc()`.
     pub fn value(&self, pieces: &[Piece<'_>], whole: Option<Whole>) -> Option<Value> {
         let mut sum = Sum { pieces, at: 0, units: self, whole, depth: 0 };
         sum.skip_blanks();
@@ -123,13 +124,13 @@ impl Units {
         (sum.at == pieces.len() && value.raw().is_finite()).then_some(value)
     }
 
-    /// As [`Self::value`], of a text.
+    /// Parses a text like [`Self::value`].
     pub fn parse(&self, text: &str, whole: Option<Whole>) -> Option<Value> {
         self.value(&super::tokens::tokens(text), whole)
     }
 }
 
-/// Where a computation has come to. Mates of tokens are not used: the tokens may be part of a longer list.
+/// Position in a computation. Mates of tokens are not used: the tokens may be part of a longer list.
 struct Sum<'a, 'b> {
     pieces: &'b [Piece<'a>],
     at: usize,
@@ -166,7 +167,7 @@ impl Sum<'_, '_> {
         found
     }
 
-    /// A number, a length, an angle, a percentage, a sum in parentheses or a function.
+    /// Returns A number, a length, an angle, a percentage, a sum in parentheses or a function.
     fn term(&mut self) -> Option<Value> {
         let token = self.pieces.get(self.at)?.token.clone();
         self.at += 1;
@@ -186,7 +187,7 @@ impl Sum<'_, '_> {
         }
     }
 
-    /// What a function makes of its arguments.
+    /// Evaluates a function on its arguments.
     fn function(&mut self, name: &str) -> Option<Value> {
         if self.depth == MAX_DEPTH {
             return None;

@@ -41,7 +41,7 @@ const PAPER: u32 = 0x1b;
 /// From here on handles are given out in order.
 const FIRST: u32 = 0x30;
 
-/// As what strokes are written.
+/// Entity type of strokes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum DxfStrokes {
     /// LWPOLYLINE throughout, arcs as bulges; ellipses and cubic curves as arcs within 0.005 mm.
@@ -110,12 +110,12 @@ impl Tags {
         self.tag(code, &format!("{value:X}"))
     }
 
-    /// A real number; micrometres are the last digits.
+    /// Returns A real number; micrometres are the last digits.
     pub fn real(&mut self, code: u16, value: f64) -> &mut Self {
         self.precise(code, value, 6)
     }
 
-    /// A real number with so many digits after the point.
+    /// Returns A real number with so many digits after the point.
     pub fn precise(&mut self, code: u16, value: f64, digits: usize) -> &mut Self {
         let mut text = String::new();
         push(&mut text, value, digits);
@@ -155,7 +155,7 @@ impl Tags {
         self.class("AcDbSymbolTable").int(70, count as i64)
     }
 
-    /// The common start of a table's entry.
+    /// Returns the common start of a table's entry.
     pub fn record(&mut self, kind: &str, table: u32, class: &str) -> &mut Self {
         let handle = self.fresh();
         self.tag(0, kind).handle(5, handle).handle(330, table);
@@ -215,7 +215,7 @@ fn tables(tags: &mut Tags, sheet: &Sheet, dimensions: &Dimensions) {
     tags.tag(0, "ENDTAB").tag(0, "ENDSEC");
 }
 
-/// What is seen when the file is opened: all of the sheet.
+/// Writes the part that is seen when the file is opened: all of the sheet.
 fn viewport(tags: &mut Tags, sheet: &Sheet) {
     tags.table("VPORT", VPORTS, 1);
     tags.record("VPORT", VPORTS, "AcDbViewportTableRecord").tag(2, "*Active").int(70, 0);
@@ -266,7 +266,7 @@ fn layers(tags: &mut Tags, sheet: &Sheet) {
     tags.tag(0, "ENDTAB");
 }
 
-/// The pen of a layer: that of its first line.
+/// Returns the pen of a layer: that of its first line.
 fn layer_pen<'a>(sheet: &'a Sheet, l: &SheetLayer) -> Option<&'a Pen> {
     l.marks.iter().find_map(|m| match m {
         Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => {
@@ -300,13 +300,14 @@ fn line_type(pen: Option<&Pen>) -> &'static str {
     }
 }
 
-/// The nearest line weight of the format.
+/// Returns the nearest line weight of the format.
 fn weight(pen: &Pen) -> i64 {
     let wanted = (pen.width * 100.0).round() as i64;
     WEIGHTS.iter().copied().min_by_key(|w| (w - wanted).abs()).unwrap_or(25)
 }
 
-/// The nearest of the palette's first colours and greys; 7 is black on white and white on black.
+/// Returns the nearest of the palette's first colours and greys; 7 is black on white and white on
+/// black.
 fn palette([r, g, b, _]: [u8; 4]) -> i64 {
     const COLORS: [([u8; 3], i64); 12] = [
         ([0, 0, 0], 7),
@@ -434,7 +435,7 @@ pub(super) fn entity(
     }
 }
 
-/// Where an entity goes, and with what it is drawn.
+/// Layer of an entity, and its colour and width.
 pub(super) struct Target<'a> {
     pub layer: &'a str,
     pub pen: Option<&'a Pen>,
@@ -473,12 +474,12 @@ fn hatch(tags: &mut Tags, rings: &[Vec<(DVec2, f64)>]) {
     tags.int(75, 0).int(76, 1).int(98, 0);
 }
 
-/// A name of a table's entry: the format forbids a few characters.
+/// Returns A name of a table's entry: the format forbids a few characters.
 pub(super) fn symbol(name: &str) -> String {
     string(name).replace(['<', '>', '/', '\\', '"', ':', ';', '?', '*', '|', ',', '=', '`'], "_")
 }
 
-/// Text on one line; `^` and what is not ASCII are written as the format escapes them.
+/// Returns text on one line; `^` and what is not ASCII are written as the format escapes them.
 pub(super) fn string(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {

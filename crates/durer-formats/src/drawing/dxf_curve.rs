@@ -6,7 +6,8 @@ use durer::math::DVec2;
 use durer::target::{Arc, Curve, Piece};
 use std::f64::consts::TAU;
 
-/// How near arcs are to ellipses and cubic curves, millimetres.
+/// Largest distance between arcs and the ellipses and cubic curves that they approximate, in
+/// millimetres.
 const ARCS: f64 = 0.005;
 
 /// Digits of angles: with them a circle of a metre still meets its neighbours to the last digit of places.
@@ -32,7 +33,8 @@ pub(super) fn bulge(tags: &mut Tags, bulge: f64) {
     tags.precise(42, bulge, DIGITS);
 }
 
-/// A curve as points, each with the bulge of the arc that begins there; the first one is not repeated.
+/// Returns A curve as points, each with the bulge of the arc that begins there; the first one is not
+/// repeated.
 pub(super) fn vertices(curve: &Curve) -> Vec<(DVec2, f64)> {
     let arcs = pieces::arcs(curve, ARCS);
     let starts = std::iter::once(curve.start).chain(arcs.iter().map(|a| a.0));
@@ -44,7 +46,7 @@ pub(super) fn vertices(curve: &Curve) -> Vec<(DVec2, f64)> {
     points
 }
 
-/// A curve seen in a mirror: y counts up from the sheet's lower side.
+/// Returns A curve seen in a mirror: y counts up from the sheet's lower side.
 pub(super) fn turned_up(curve: &Curve, height: f64) -> Curve {
     let place = |p: DVec2| DVec2::new(p.x, height - p.y);
     let way = |v: DVec2| DVec2::new(v.x, -v.y);
@@ -78,7 +80,7 @@ fn pieces_of(tags: &mut Tags, to: &Target<'_>, curve: &Curve) {
     }
 }
 
-/// Whether two pieces are written as one entity.
+/// Returns whether two pieces are written as one entity.
 fn goes_on(a: &Piece, b: &Piece) -> bool {
     matches!((a, b), (Piece::Line(_), Piece::Line(_)) | (Piece::Cubic(..), Piece::Cubic(..)))
 }
@@ -146,7 +148,7 @@ fn arc(tags: &mut Tags, to: &Target<'_>, arc: &Arc) {
     tags.precise(41, first, DIGITS).precise(42, first + sweep, DIGITS);
 }
 
-/// An angle in 0 … 2π.
+/// Returns an angle in 0 … 2π.
 fn within_turn(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).floor()
 }

@@ -40,7 +40,7 @@ impl<'a> Dimensions<'a> {
         found
     }
 
-    /// The names and handles of the blocks' records.
+    /// Returns the names and handles of the blocks' records.
     pub(super) fn records(&self) -> impl Iterator<Item = (String, u32)> + '_ {
         self.all.iter().enumerate().map(|(i, d)| (block_name(i), d.record))
     }
@@ -157,18 +157,18 @@ fn style(tags: &mut Tags, name: &str) {
     tags.tag(2, name).int(70, 0);
 }
 
-/// The text of a dimension. Not all readers know how the format escapes a sign of times.
+/// Returns the text of a dimension. Not all readers know how the format escapes a sign of times.
 fn words(text: &str) -> String {
     string(&text.replace('×', "x"))
 }
 
-/// The angle of a way on the sheet, y up, degrees.
+/// Returns the angle of a way on the sheet, y up, degrees.
 fn degrees(along: DVec2) -> f64 {
     // Adding 0 makes a plain 0 of −0.
     libm::atan2(-along.y, along.x).to_degrees() + 0.0
 }
 
-/// The middle of a text, between its base line and the top of its capitals.
+/// Returns the middle of a text, between its base line and the top of its capitals.
 fn middle(text: &DimensionText) -> DVec2 {
     text.at + DVec2::new(text.along.y, -text.along.x) * (text.height * 0.5)
 }

@@ -69,7 +69,7 @@ fn write_pass(head: &mut Head<impl Write>, index: usize, pass: Pass) -> Result<(
     Ok(())
 }
 
-/// What stands at the machine's pen.
+/// State of the machine's pen.
 struct Head<'a, W> {
     out: &'a mut W,
     machine: &'a MachineOptions,
@@ -105,7 +105,7 @@ impl<W: Write> Head<'_, W> {
     }
 }
 
-/// The command that draws a line or an arc between two rounded places.
+/// Returns the command that draws a line or an arc between two rounded places.
 fn step(from: DVec2, to: DVec2, bulge: f64) -> String {
     let (across, way) = (to - from, place(to));
     if (across.length() * 0.5 * bulge).abs() < FLAT {
@@ -117,7 +117,7 @@ fn step(from: DVec2, to: DVec2, bulge: f64) -> String {
     format!("{} {way} I{i} J{j}", if bulge > 0.0 { "G3" } else { "G2" })
 }
 
-/// A place as it is written.
+/// Returns A place as it is written.
 fn rounded(p: DVec2) -> DVec2 {
     (p * 1000.0).round() / 1000.0
 }
@@ -126,7 +126,7 @@ fn place(p: DVec2) -> String {
     format!("X{} Y{}", short(p.x, DIGITS), short(p.y, DIGITS))
 }
 
-/// Text that no machine obeys.
+/// Returns text that no machine obeys.
 fn comment(text: &str) -> String {
     text.chars().map(|c| if is_plain(c) { c } else { '_' }).collect()
 }

@@ -105,7 +105,7 @@ fn write_region(out: &mut impl Write, region: &Region) -> Result<()> {
     Ok(())
 }
 
-/// Rings of a region as polygons: each outer ring (counter-clockwise) with the holes in it.
+/// Returns rings of a region as polygons: each outer ring (counter-clockwise) with the holes in it.
 fn polygons(rings: &[Vec<DVec2>]) -> Vec<Vec<&[DVec2]>> {
     let (outer, holes): (Vec<_>, Vec<_>) = rings.iter().partition(|r| area(r) >= 0.0);
     let mut polygons: Vec<Vec<&[DVec2]>> = outer.iter().map(|r| vec![r.as_slice()]).collect();
@@ -127,8 +127,8 @@ fn area(ring: &[DVec2]) -> f64 {
     ring.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum::<f64>() * 0.5
 }
 
-/// Whether a ring lies in another that it does not cross: by the first of its points that is not a
-/// point of the other, as rings may touch there.
+/// Returns whether a ring lies in another that it does not cross: by the first of its points that
+/// is not a point of the other, as rings may touch there.
 fn inside(outer: &[DVec2], ring: &[DVec2]) -> bool {
     let Some(p) = ring.iter().find(|p| !outer.contains(p)).or(ring.first()) else { return false };
     let next = outer.iter().cycle().skip(1);

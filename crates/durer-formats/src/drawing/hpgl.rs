@@ -42,7 +42,7 @@ pub(super) fn write_for(
     Ok(())
 }
 
-/// What one pen draws, from where it is; where it is afterwards.
+/// Draws everything of one pen from its position; returns its position afterwards.
 fn draw(out: &mut impl Write, chains: Vec<Chain>, start: [i64; 2]) -> Result<[i64; 2]> {
     let start_mm = DVec2::new(start[0] as f64, start[1] as f64) / UNITS;
     let mut at = None;
@@ -66,7 +66,7 @@ fn draw(out: &mut impl Write, chains: Vec<Chain>, start: [i64; 2]) -> Result<[i6
     Ok(at.unwrap_or(start))
 }
 
-/// The points in plotter units, each once; a dot has two, for the pen is put down.
+/// Returns the points in plotter units, each once; a dot has two, for the pen is put down.
 fn steps(way: &Way) -> Vec<[i64; 2]> {
     let all = std::iter::once(way.start).chain(way.steps.iter().map(|s| s.0));
     // A cast saturates; nothing on paper is that far away.

@@ -1,4 +1,4 @@
-//! What a machine with pens does for a sheet: pen by pen, each of which is taken once, layer by layer.
+//! The order of work of a machine with pens: pen by pen, each of which is taken once, layer by layer.
 
 use super::dxf_curve::turned_up;
 use crate::{Error, Result};
@@ -8,19 +8,20 @@ use durer::paper::order::{Chain, Stroke, ordered_chains};
 use durer::paper::{dashes, dimension_strokes, text_strokes};
 use durer::target::sheet::{Mark, Sheet};
 
-/// How near chords are to curves, millimetres: less than half of a step of plotters.
+/// Largest distance between chords and curves, in millimetres: less than half of a step of
+/// plotters.
 pub const CHORDS: f64 = 0.01;
 
-/// How machines draw.
+/// Options for machines that draw.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MachineOptions {
-    /// How many pens there are; those of a sheet that has more are drawn with the pen that is most alike.
+    /// Number of pens; strokes of a sheet that has more are drawn with the most similar pen.
     pub pens: Option<usize>,
-    /// How fast a pen draws, millimetres a minute.
+    /// Speed of a drawing pen, in millimetres a minute.
     pub feed: f64,
-    /// How fast it moves in the air, millimetres a minute; `None` for as fast as the machine moves.
+    /// Speed of the raised pen, in millimetres a minute; `None` for as fast as the machine moves.
     pub travel: Option<f64>,
-    /// Whether the machine knows arcs in G-code, G2 and G3; else they are chords.
+    /// True if the machine knows arcs in G-code, G2 and G3; else they are chords.
     pub arcs: bool,
     /// The lines of G-code that put the pen down.
     pub pen_down: String,
@@ -68,7 +69,8 @@ impl MachineOptions {
     }
 }
 
-/// Whether a character is text for every machine. GRBL obeys some, and all beyond ASCII, within comments too.
+/// Returns whether a character is text for every machine. GRBL obeys some, and all beyond ASCII, within
+/// comments too.
 pub fn is_plain(c: char) -> bool {
     matches!(c, ' '..='}') && !matches!(c, '!' | '?')
 }
@@ -100,7 +102,7 @@ impl Pass {
         }
     }
 
-    /// How unlike two pens are: first by colour, then by width.
+    /// Returns how much two pens differ: first by colour, then by width.
     fn unlike(&self, other: &Self) -> (u32, f64) {
         let color = self.color.iter().zip(other.color).map(|(a, b)| u32::from(a.abs_diff(b)));
         let width = |pass: &Self| pass.width.unwrap_or(0.0);
@@ -133,8 +135,8 @@ fn way(chain: Chain) -> Option<Way> {
     }
 }
 
-/// A sheet by pens of one width and colour, in the order of the sheet's pens; the outlines of areas come last.
-/// Dashes and texts become strokes, as machines differ in theirs, and without `arcs` curves do.
+/// Returns A sheet by pens of one width and colour, in the order of the sheet's pens; the outlines of areas
+/// come last. Dashes and texts become strokes, as machines differ in theirs, and without `arcs` curves do.
 pub fn passes(sheet: &Sheet, pens: Option<usize>, arcs: bool) -> Vec<Pass> {
     let mut found: Vec<Pass> = Vec::new();
     let mut areas = Pass { width: None, color: [0, 0, 0, 255], layers: Vec::new() };
@@ -169,7 +171,7 @@ pub fn passes(sheet: &Sheet, pens: Option<usize>, arcs: bool) -> Vec<Pass> {
     found
 }
 
-/// A mark and the marks that it is made of.
+/// Returns A mark and the marks that it is made of.
 fn with_parts(mark: &Mark) -> impl Iterator<Item = &Mark> {
     let parts = match mark {
         Mark::Dimension(dimension) => &dimension.marks[..],
@@ -194,7 +196,7 @@ fn fold(passes: &mut Vec<Pass>, most: usize) {
     }
 }
 
-/// A mark as what pens draw.
+/// Returns A mark as what pens draw.
 fn chains_of(mark: &Mark, sheet: &Sheet, arcs: bool) -> Vec<Chain> {
     let height = sheet.size.y;
     let stroke = |points: &[DVec2], closed: bool| {

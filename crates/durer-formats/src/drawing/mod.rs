@@ -51,7 +51,7 @@ impl DrawingFormat {
     pub const ALL: &'static [Self] =
         &[Self::Svg, Self::Pdf, Self::Dxf, Self::Hpgl, Self::Gcode, Self::GeoJson];
 
-    /// The name used on the command line; also the suffix of files.
+    /// Returns the name used on the command line; also the suffix of files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Svg => "svg",
@@ -63,12 +63,13 @@ impl DrawingFormat {
         }
     }
 
-    /// Whether it drives a machine with pens, which needs no order told.
+    /// Returns whether it drives a machine with pens, which needs no order of strokes from the
+    /// caller.
     pub const fn is_for_pens(self) -> bool {
         matches!(self, Self::Hpgl | Self::Gcode)
     }
 
-    /// The format that a file name's suffix stands for, without its dot, in any case.
+    /// Returns the format that a file name's suffix stands for, without its dot, in any case.
     pub fn of_suffix(suffix: &str) -> Option<Self> {
         let lower = suffix.to_ascii_lowercase();
         match lower.as_str() {
@@ -98,7 +99,7 @@ impl FromStr for DrawingFormat {
     }
 }
 
-/// What some of the formats are told.
+/// Options of some of the formats.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FileOptions {
     /// For DXF.

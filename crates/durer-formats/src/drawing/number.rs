@@ -22,7 +22,7 @@ pub fn push(text: &mut String, value: f64, digits: usize) {
     }
 }
 
-/// The number on its own.
+/// Returns the number on its own.
 pub fn short(value: f64, digits: usize) -> String {
     let mut text = String::new();
     push(&mut text, value, digits);

@@ -18,7 +18,7 @@ const POINTS: f64 = 72.0 / 25.4;
 const LONGEST: f64 = 14_400.0;
 /// Digits after the point of a millimetre.
 const DIGITS: usize = 3;
-/// How near cubic curves are to arcs, millimetres.
+/// Largest distance between cubic curves and arcs, in millimetres.
 const CUBICS: f64 = 1e-4;
 /// The compressor's level: zlib's default.
 const LEVEL: u8 = 6;
@@ -85,7 +85,7 @@ fn catalog(pdf: &mut Pdf, layers: &[Ref]) {
     default.insert(Name(b"Order")).array().items(layers.iter().rev().copied());
 }
 
-/// What the page's operators name.
+/// Resources that the page's operators name.
 struct Used<'a> {
     layers: &'a [Ref],
     alphas: &'a BTreeSet<u8>,
@@ -117,7 +117,7 @@ fn page(pdf: &mut Pdf, sheet: &Sheet, scale: f64, user_unit: f64, used: &Used<'_
     }
 }
 
-/// What is in force, so that only changes are written.
+/// Current state of graphics, so that only changes are written.
 #[derive(Default, PartialEq)]
 struct State {
     alpha: Option<u8>,
@@ -127,7 +127,7 @@ struct State {
     dashed: bool,
 }
 
-/// The page's operators; collects the opacities used.
+/// Returns the page's operators; collects the opacities used.
 fn content(sheet: &Sheet, scale: f64, alphas: &mut BTreeSet<u8>, words: &mut Words) -> String {
     let mut text = String::new();
     // Millimetres, y down.

@@ -19,10 +19,10 @@ const CAPITALS: f64 = 562.0;
 /// Codes for letters beyond Latin-1, whose own codes are the same in the font's encoding.
 const OTHERS: std::ops::RangeInclusive<u8> = 0x80..=0x9f;
 
-/// What is written in a document.
+/// Texts of a document.
 #[derive(Debug, Default)]
 pub struct Words {
-    /// Whether there is anything.
+    /// True if there is anything.
     pub any: bool,
     /// Codes of letters beyond Latin-1.
     others: BTreeMap<char, u8>,
@@ -64,7 +64,7 @@ impl Words {
         *text += "> Tj ET\n";
     }
 
-    /// The code of a letter; where there are none left, that of a question mark.
+    /// Returns the code of a letter; where there are none left, that of a question mark.
     fn code(&mut self, letter: char) -> u8 {
         match letter {
             ' '..='~' | '\u{a0}'..='\u{ff}' => letter as u8,

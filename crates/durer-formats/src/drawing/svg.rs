@@ -66,7 +66,7 @@ fn write_layer(out: &mut impl Write, sheet: &Sheet, layer: &SheetLayer) -> Resul
     Ok(())
 }
 
-/// The pen of a mark's first stroke.
+/// Returns the pen of a mark's first stroke.
 fn pen_of(mark: &Mark) -> Option<usize> {
     match mark {
         Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => Some(*pen),
@@ -143,7 +143,7 @@ fn stroke_style(pen: &Pen) -> String {
     format!("{} stroke-width=\"{}\"", paint("stroke", pen.color), short(pen.width, DIGITS))
 }
 
-/// The dashes of one stroke, made to fit it.
+/// Returns the dashes of one stroke, made to fit it.
 fn dash_array(pen: Option<&Pen>, length: f64, closed: bool) -> String {
     match pen.and_then(|pen| dashes::fitted(&pen.dashes, length, closed)) {
         Some(dashes) => {
@@ -155,7 +155,7 @@ fn dash_array(pen: Option<&Pen>, length: f64, closed: bool) -> String {
     }
 }
 
-/// A colour attribute, and the opacity where it is not opaque.
+/// Returns A colour attribute, and the opacity where it is not opaque.
 fn paint(name: &str, [r, g, b, a]: [u8; 4]) -> String {
     let color = match [r, g, b].map(|c| (c >> 4, c & 15)) {
         [(r, s), (g, t), (b, u)] if r == s && g == t && b == u => format!("#{r:x}{g:x}{b:x}"),
@@ -226,7 +226,7 @@ pub(super) fn separator(text: &mut String, next: f64) {
     }
 }
 
-/// Text within an attribute or element; characters that XML forbids are left out.
+/// Returns text within an attribute or element; characters that XML forbids are left out.
 fn escaped(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
@@ -243,7 +243,7 @@ fn escaped(text: &str) -> String {
     out
 }
 
-/// A name as an identifier of XML.
+/// Returns A name as an identifier of XML.
 fn identifier(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
     let name: String = name.chars().map(plain).collect();

@@ -1,4 +1,4 @@
-//! What stands in for E57 without the feature `e57`.
+//! A replacement for E57 without the feature `e57`.
 
 use crate::{Error, Model, Place, ReadOptions, Resources, Result};
 

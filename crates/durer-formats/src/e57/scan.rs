@@ -54,7 +54,7 @@ fn broken(why: &str) -> Error {
 struct Scans {
     cloud: Cloud,
     limits: Limits,
-    /// Whether some point has a colour, or an intensity.
+    /// True if some point has a colour, or an intensity.
     colored: bool,
     measured: bool,
     invalid: u64,
@@ -152,7 +152,7 @@ fn check(scan: &PointCloud, place: Place) -> Result<()> {
     Err(Error::Decode { place, message })
 }
 
-/// The place of a point in its scan.
+/// Returns the place of a point in its scan.
 fn place(point: &Point) -> Option<DVec3> {
     match (&point.cartesian, &point.spherical) {
         (&CartesianCoordinate::Valid { x, y, z }, _) => Some(DVec3::new(x, y, z)),
@@ -200,7 +200,7 @@ mod tests {
     const DOUBLE: RecordDataType = RecordDataType::Double { min: None, max: None };
     const BYTE: RecordDataType = RecordDataType::Integer { min: 0, max: 255 };
 
-    /// A file of one scan, a quarter turn about z and 100 along x from its place.
+    /// Returns A file of one scan, a quarter turn about z and 100 along x from its place.
     fn file(prototype: Vec<Record>, points: &[Vec<RecordValue>]) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());
         let mut writer = E57Writer::new(&mut bytes, "a").expect("new");

@@ -54,7 +54,8 @@ fn positive(value: f64) -> Option<f64> {
     Some(value).filter(|v| v.is_finite() && *v > 0.0)
 }
 
-/// How a camera sees. The library has angles of its own, which ask the platform for arcs.
+/// Returns the projection of a camera. The library has angles of its own, which ask the platform
+/// for arcs.
 fn lens(camera: &Camera, unit: f64) -> Result<Lens, String> {
     let aspect = positive(camera.aspect_ratio);
     let near = positive(camera.near_plane).map(|v| v * unit);
@@ -68,7 +69,7 @@ fn lens(camera: &Camera, unit: f64) -> Result<Lens, String> {
     Ok(Lens { projection, near, far, aspect })
 }
 
-/// The angle of view from top to bottom, in radians.
+/// Returns the angle of view from top to bottom, in radians.
 fn angle(camera: &Camera) -> Option<f64> {
     let field = camera.field_of_view_deg;
     let half = |degrees: f64| degrees.to_radians() / 2.0;
@@ -87,7 +88,7 @@ fn angle(camera: &Camera) -> Option<f64> {
     }
 }
 
-/// The light of a frame; they shine along −y.
+/// Returns the light of a frame; they shine along −y.
 fn lamp(light: &Light, world: DMat4) -> Option<Lamp> {
     let position = Some(world.w_axis.truncate()).filter(|p| p.is_finite())?;
     let direction = (-world.y_axis.truncate()).try_normalize();

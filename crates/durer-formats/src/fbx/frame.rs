@@ -1,4 +1,4 @@
-//! Where nodes are: from their properties to matrices.
+//! The placement of nodes: from their properties to matrices.
 //!
 //! Source: Autodesk, *FBX SDK Programmer's Guide*, "Computing transformation matrices"; the modes of
 //! inheritance as in ufbx. Computed here with sines that are the same everywhere.
@@ -18,7 +18,7 @@ pub(super) struct World {
 }
 
 impl World {
-    /// The frame that a file's settings tell.
+    /// Returns the frame that a file's settings tell.
     pub fn of(scene: &Scene, model: &mut Model) -> Self {
         let unit = Some(scene.settings.unit_meters).filter(|m| m.is_finite() && *m > 0.0);
         let scale = DMat4::from_scale(DVec3::splat(unit.unwrap_or(0.01)));
@@ -31,7 +31,8 @@ impl World {
     }
 }
 
-/// Which axis is up, and what takes a file's axes to x on the right, and y up or z up.
+/// Returns the up axis, and the matrix that takes a file's axes to x on the right, and y up or z
+/// up.
 fn axes(axes: &CoordinateAxes) -> Option<(UpAxis, DMat3)> {
     let unit = |axis| {
         Some(match axis {
@@ -56,14 +57,14 @@ fn axes(axes: &CoordinateAxes) -> Option<(UpAxis, DMat3)> {
     })
 }
 
-/// A property that is a vector of finite numbers; `None` where it is not there, `Some(None)` where they
-/// are not finite.
+/// Returns A property that is a vector of finite numbers; `None` where it is not there, `Some(None)`
+/// where they are not finite.
 fn vector(props: &Props, name: &str) -> Option<Option<DVec3>> {
     let v = props.find_prop(name)?.value_vec4;
     Some(Some(DVec3::new(v.x, v.y, v.z)).filter(|v| v.is_finite()))
 }
 
-/// A turn by degrees about the axes, the first letter's first.
+/// Returns A turn by degrees about the axes, the first letter's first.
 fn turn(degrees: DVec3, order: RotationOrder) -> DMat3 {
     if degrees == DVec3::ZERO {
         return DMat3::IDENTITY;
@@ -101,7 +102,7 @@ impl Local {
     }
 }
 
-/// Where one node is.
+/// Placement of one node.
 #[derive(Debug, Clone, Copy)]
 struct Frame {
     world: DMat4,
@@ -113,16 +114,17 @@ struct Frame {
     geometry: DMat4,
 }
 
-/// Where all nodes are.
+/// Placement of all nodes.
 #[derive(Debug, Default)]
 pub(super) struct Frames {
     frames: Vec<Frame>,
-    /// How many properties were not finite.
+    /// Number of properties that were not finite.
     pub broken: usize,
 }
 
 impl Frames {
-    /// The frames of all nodes of a scene in the world. Parents stand before their children.
+    /// Returns the frames of all nodes of a scene in the world. Parents stand before their
+    /// children.
     pub fn of(scene: &Scene, world: DMat4) -> Self {
         let geometry = DMat4::IDENTITY;
         let root = Frame { world, unscaled: world, scale: DVec3::ONE, geometry };
@@ -189,17 +191,18 @@ impl Frames {
         Local { translation, rotation, scale }
     }
 
-    /// Where a node is, with what hangs on it but its geometry.
+    /// Returns the matrix of a node, which applies to everything attached to it except its
+    /// geometry.
     pub fn world(&self, node: &Node) -> DMat4 {
         self.get(Some(node)).map_or(DMat4::IDENTITY, |f| f.world)
     }
 
-    /// Where a node's geometry is.
+    /// Returns the matrix of a node's geometry.
     pub fn geometry(&self, node: &Node) -> DMat4 {
         self.get(Some(node)).map_or(DMat4::IDENTITY, |f| f.world * f.geometry)
     }
 
-    /// What moves a node's geometry, and nothing below the node.
+    /// Returns the matrix that moves a node's geometry, but nothing below the node.
     fn own(&mut self, node: &Node) -> DMat4 {
         let props = &node.element.props;
         let translation = self.vector(props, "GeometricTranslation", DVec3::ZERO);

@@ -18,7 +18,7 @@ pub(super) struct Materials<'s> {
     images: Images<'s>,
     known: HashMap<(u32, Vec<u32>), usize>,
     textures: HashMap<(usize, Wrap, Wrap), usize>,
-    /// Whether colours are linear light instead of sRGB values.
+    /// True if colours are linear light instead of sRGB values.
     linear: bool,
     layered: Tally,
     lost: Tally,
@@ -26,7 +26,7 @@ pub(super) struct Materials<'s> {
     bumps: Tally,
 }
 
-/// Which way a picture counts opacity.
+/// Meaning of a picture's opacity values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Shows {
     Opacity,
@@ -43,7 +43,8 @@ impl<'s> Materials<'s> {
         Self { images, known, textures, linear, layered, lost, opaque, bumps }
     }
 
-    /// The scene's number of a material on a mesh whose sets of texture coordinates have these names.
+    /// Returns the scene's number of a material on a mesh whose sets of texture coordinates have
+    /// these names.
     pub fn get(&mut self, model: &mut Model, from: &ufbx::Material, sets: &[&str]) -> usize {
         let used = from.textures.iter().map(|t| set(&t.texture, sets)).collect();
         let key = (from.element.typed_id, used);
@@ -168,7 +169,7 @@ impl<'s> Materials<'s> {
         to.metallic = if metal.is_some() { 1.0 } else { to.metallic };
     }
 
-    /// The colour that a surface shows, or its picture, which is returned.
+    /// Returns the colour that a surface shows, or its picture, which is returned.
     fn base<'m>(
         &mut self,
         model: &mut Model,
@@ -265,7 +266,7 @@ impl<'s> Materials<'s> {
         }
     }
 
-    /// The texture with a picture behind a map: itself, or the first that it is made of.
+    /// Returns the texture with a picture behind a map: itself, or the first that it is made of.
     fn file<'m>(&mut self, map: &'m MaterialMap) -> Option<&'m Texture> {
         let texture = map.texture.as_deref().filter(|_| map.texture_enabled)?;
         if path(texture).is_some() {
@@ -284,7 +285,7 @@ impl<'s> Materials<'s> {
         Some(self.place(model, texture, image, sets))
     }
 
-    /// A texture of the scene: equal ones are shared.
+    /// Returns A texture of the scene: equal ones are shared.
     fn place(
         &mut self,
         model: &mut Model,
@@ -304,7 +305,8 @@ impl<'s> Materials<'s> {
     }
 }
 
-/// The number of the set of texture coordinates that a texture asks for by name, else the first.
+/// Returns the number of the set of texture coordinates that a texture asks for by name, else the
+/// first.
 fn set(texture: &Texture, sets: &[&str]) -> u32 {
     let asked: &str = texture.uv_set.as_ref();
     sets.iter().take(SETS).position(|name| *name == asked).unwrap_or(0) as u32
@@ -336,12 +338,12 @@ fn transform(texture: &Texture) -> DMat3 {
     if inverse.is_finite() { flip * inverse * flip } else { DMat3::IDENTITY }
 }
 
-/// The number of a map, if it has one.
+/// Returns the number of a map, if it has one.
 fn number(map: &MaterialMap) -> Option<f32> {
     Some(map.value_vec4.x as f32).filter(|v| map.has_value && v.is_finite())
 }
 
-/// The colour of a map as linear light, if it has one.
+/// Returns the colour of a map as linear light, if it has one.
 fn tint(map: &MaterialMap, linear: bool) -> Option<Vec3> {
     let v = map.value_vec4;
     let rgb = [v.x, v.y, v.z].map(|v| (v as f32).max(0.0));

@@ -11,7 +11,7 @@ use ufbx::Mesh;
 /// Memory that a corner takes, at most, while it is joined to vertices.
 const CORNER: u64 = 100;
 
-/// What meshes lack.
+/// Omissions and repairs in meshes.
 #[derive(Debug, Default)]
 pub(super) struct Faults {
     pub attributes: Tally,
@@ -19,7 +19,7 @@ pub(super) struct Faults {
     pub points: Tally,
 }
 
-/// What the indices of corners stand for.
+/// Attributes that the indices of corners refer to.
 struct Attributes<'m>(&'m Mesh);
 
 impl Values for Attributes<'_> {
@@ -48,7 +48,7 @@ impl Values for Attributes<'_> {
 }
 
 impl Attributes<'_> {
-    /// The indices of a corner, and whether there is something behind all that it has.
+    /// Returns the indices of a corner, and whether there is something behind all that it has.
     fn corner(&self, index: usize) -> (Corner, bool) {
         let mesh = self.0;
         let mut corner = [NONE; 3 + SETS];
@@ -108,7 +108,7 @@ pub(super) fn pieces(mesh: &Mesh, budget: &mut Budget, faults: &mut Faults) -> R
     Ok(builders.into_iter().filter_map(|b| b.piece(&values, &called)).collect())
 }
 
-/// The faces that are no holes, by their materials.
+/// Returns the faces that are no holes, by their materials.
 fn by_material(mesh: &Mesh, faults: &mut Faults) -> BTreeMap<u32, Vec<usize>> {
     let mut all: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for face in 0..mesh.faces.len() {
@@ -122,7 +122,7 @@ fn by_material(mesh: &Mesh, faults: &mut Faults) -> BTreeMap<u32, Vec<usize>> {
     all
 }
 
-/// What a mesh is called: by itself, or by the first node that shows it.
+/// Returns the name of a mesh: its own, or that of the first node that shows it.
 pub(super) fn name(mesh: &Mesh) -> String {
     let node = mesh.element.instances.first().map_or("", |node| node.element.name.as_ref());
     let own: &str = mesh.element.name.as_ref();

@@ -1,4 +1,4 @@
-//! What stands in for FBX without the feature `fbx`.
+//! A replacement for FBX without the feature `fbx`.
 
 use crate::{Error, Model, Place, ReadOptions, Resources, Result};
 

@@ -80,7 +80,7 @@ impl<'s> Nodes<'s> {
         Ok(())
     }
 
-    /// Whether a node, and what is below it, is neither hidden nor a coarser stand-in.
+    /// Returns whether a node, and everything below it, is neither hidden nor a coarser stand-in.
     fn is_shown(&mut self, node: &Node) -> bool {
         let here = || Place::Path(node.element.name.to_string());
         let is_coarse = node.parent.as_deref().is_some_and(|parent| {
@@ -108,7 +108,7 @@ impl<'s> Nodes<'s> {
         Ok(())
     }
 
-    /// The scene's meshes of a mesh in these materials.
+    /// Returns the scene's meshes of a mesh in these materials.
     fn meshes(
         &mut self,
         model: &mut Model,
@@ -148,7 +148,7 @@ impl<'s> Nodes<'s> {
         Ok(made)
     }
 
-    /// The scene's number of a material that shows colours of vertices.
+    /// Returns the scene's number of a material that shows colours of vertices.
     fn plain(&mut self, model: &mut Model) -> usize {
         *self.plain.get_or_insert_with(|| {
             model.scene.materials.push(color::vertex_color_material());

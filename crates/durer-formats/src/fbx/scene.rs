@@ -81,7 +81,7 @@ fn format(scene: &Scene) -> String {
     format!("FBX {}.{} {kind}", version / 1000, version % 1000 / 100)
 }
 
-/// Whether text ends where braces are open, which the library takes as their end.
+/// Returns whether text ends where braces are open, which the library takes as their end.
 fn ends_inside(text: &[u8]) -> bool {
     let (mut depth, mut quoted, mut comment) = (0u64, false, false);
     for byte in text {

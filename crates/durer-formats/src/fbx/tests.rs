@@ -33,7 +33,7 @@ const SHAPE: &str = r#"Geometry: 1, "Geometry::shape", "Mesh" {
 }
 "#;
 
-/// A file of objects besides the shape, and what is joined to what.
+/// Returns A file of objects besides the shape, and what is joined to what.
 fn file(settings: &str, objects: &str, joined: &[(u32, u32, &str)]) -> String {
     let join = |(from, to, property): &(u32, u32, &str)| match *property {
         "" => format!("C: \"OO\",{from},{to}\n"),
@@ -49,7 +49,7 @@ fn file(settings: &str, objects: &str, joined: &[(u32, u32, &str)]) -> String {
     .replace("CREATOR", "")
 }
 
-/// A node of a kind with properties.
+/// Returns A node of a kind with properties.
 fn node(id: u32, kind: &str, properties: &str) -> String {
     format!(
         "Model: {id}, \"Model::node{id}\", \"{kind}\" {{ Version: 232\nProperties70: {{ {properties} }} }}\n"
@@ -141,7 +141,7 @@ fn colors_of_vertices_are_shown() {
     assert_eq!(shown, Some(Vec4::ONE));
 }
 
-/// Where a point of the only mesh is.
+/// Returns the position of a point of the only mesh.
 fn placed(settings: &str, properties: &str, p: DVec3) -> DVec3 {
     let model = read(&file(settings, &node(2, "Mesh", properties), &[(2, 0, ""), (1, 2, "")]));
     model.scene.instances[0].world_from_mesh.transform_point3(p)
@@ -320,7 +320,7 @@ fn axes_and_units_become_the_worlds() {
     near(placed(&x_up, "", p), DVec3::new(-2.0, 1.0, 3.0));
 }
 
-/// A picture of one pixel, as BMP.
+/// Returns A picture of one pixel, as BMP.
 fn pixel([r, g, b]: [u8; 3]) -> Vec<u8> {
     let mut bytes = b"BM".to_vec();
     for word in [58u32, 0, 54, 40, 1, 1, 1 | 24 << 16, 0, 4, 0, 0, 0, 0] {
@@ -352,7 +352,7 @@ fn texture(id: u32, path: &str, more: &str) -> String {
     )
 }
 
-/// The model of a material with these properties and textures.
+/// Returns the model of a material with these properties and textures.
 fn shaded(properties: &str, textures: &[(&str, &str, &str)], creator: &str) -> Model {
     let mut objects = format!("{}{}", node(2, "Mesh", ""), material(8, properties));
     let mut joined = vec![(2, 0, ""), (1, 2, ""), (8, 2, "")];

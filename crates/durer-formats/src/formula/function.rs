@@ -14,7 +14,7 @@ pub enum Function {
 pub const FUNCTIONS: &str = "sin cos tan asin acos atan atan2 sinh cosh tanh exp ln log (natural, like ln) \
 log2 log10 sqrt cbrt pow hypot abs sign floor ceil round fract mod min max clamp sinc (sin(x)/x) erf j0 j1";
 
-/// The function of a name, if it has one.
+/// Returns the function of a name, if it has one.
 pub fn function(name: &str) -> Option<Function> {
     use Function::{Fold, One, Three, Two};
     Some(match name {
@@ -54,7 +54,7 @@ pub fn function(name: &str) -> Option<Function> {
     })
 }
 
-/// What is wrong with a name that is none.
+/// Returns the message for an unknown name.
 pub fn unknown(name: &str) -> String {
     match name {
         "y" => "`y` is what the formula gives; the ground is x and z".to_owned(),

@@ -73,13 +73,13 @@ impl Formula {
         Ok(Self { operations, depth })
     }
 
-    /// The value at a point; NaN or infinite where the formula has none.
+    /// Returns the value at a point; NaN or infinite where the formula has none.
     pub fn evaluate(&self, x: f64, z: f64) -> f64 {
         let mut stack = Vec::with_capacity(self.depth);
         self.evaluate_on(&mut stack, x, z)
     }
 
-    /// As [`Self::evaluate`], with memory that is used again.
+    /// Evaluates like [`Self::evaluate`], with memory that is used again.
     pub fn evaluate_on(&self, stack: &mut Vec<f64>, x: f64, z: f64) -> f64 {
         stack.clear();
         for operation in &self.operations {
@@ -123,7 +123,7 @@ fn binary(operation: Operation, a: f64, b: f64) -> f64 {
     }
 }
 
-/// Small whole powers by multiplication: quicker, and x^2 is x·x.
+/// Returns small whole powers by multiplication: quicker, and x^2 is x·x.
 fn power(a: f64, b: f64) -> f64 {
     match b {
         2.0 => a * a,

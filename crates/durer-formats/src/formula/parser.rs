@@ -7,7 +7,7 @@ use crate::{Error, Result};
 /// Deeper nesting of parentheses, signs and powers is refused; parsing recurses so deep.
 const DEEPEST: usize = 100;
 
-/// The operations of a formula, in the order of a stack machine.
+/// Returns the operations of a formula, in the order of a stack machine.
 pub fn parse(text: &str) -> Result<Vec<Operation>> {
     let mut parser = Parser { text, at: 0, level: 0, operations: Vec::new() };
     parser.skip_left_side();
@@ -51,7 +51,7 @@ impl<'a> Parser<'a> {
         here
     }
 
-    /// What stands at the place, short enough for a message.
+    /// Returns the rest of the text from this place, short enough for a message.
     fn rest(&self) -> String {
         self.tail().chars().take(20).collect()
     }

@@ -53,14 +53,14 @@ enum Where {
     Parts(usize, usize, Option<usize>),
 }
 
-/// What a column's values are.
+/// Kind of a column's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Json,
     Text,
 }
 
-/// Whether the first row names columns with geometries.
+/// Returns whether the first row names columns with geometries.
 pub fn sniff(text: &[u8]) -> bool {
     let end = text.iter().position(|&b| b == b'\n').unwrap_or(text.len());
     let Some(line) = text.get(..end) else { return false };
@@ -73,7 +73,7 @@ fn keys(row: &[Cow<'_, [u8]>]) -> Vec<String> {
     row.iter().map(|value| name(value.trim_ascii()).into_owned()).collect()
 }
 
-/// Where geometries stand, by the names of columns.
+/// Returns the columns of geometries, by their names.
 fn places(keys: &[String]) -> Option<Where> {
     let lower: Vec<String> = keys.iter().map(|key| key.to_lowercase()).collect();
     let index = |name: &&str| lower.iter().position(|key| key == *name);
@@ -121,7 +121,7 @@ impl Rows {
         self.line
     }
 
-    /// The values of the next row that is not empty.
+    /// Returns the values of the next row that is not empty.
     fn next<'a>(&mut self, text: &'a [u8]) -> Option<Vec<Cow<'a, [u8]>>> {
         self.start(text);
         if self.at >= text.len() {
@@ -137,7 +137,7 @@ impl Rows {
         }
     }
 
-    /// The value from here to what parts it from the next one, without quotes.
+    /// Returns the value from here to what parts it from the next one, without quotes.
     fn value<'a>(&mut self, text: &'a [u8]) -> Cow<'a, [u8]> {
         if text.get(self.at) == Some(&b'"') {
             return Cow::Owned(self.quoted(text));
@@ -207,7 +207,7 @@ impl Reader {
         Ok(Self { text, rows, keys, kinds, place, ragged, nowhere })
     }
 
-    /// The next row; `None` at the end.
+    /// Returns the next row; `None` at the end.
     pub fn next_feature(&mut self, warnings: &mut Warnings) -> Result<Option<Feature>> {
         let line = self.rows.start(&self.text);
         let Some(row) = self.rows.next(&self.text) else {
@@ -245,7 +245,7 @@ impl Reader {
         }
     }
 
-    /// All values but those of the geometry.
+    /// Returns all values but those of the geometry.
     fn fields(&self, row: &[Cow<'_, [u8]>]) -> Vec<Member> {
         let own = |i: usize| match self.place {
             Where::Whole(at) => i == at,
@@ -265,7 +265,7 @@ impl Reader {
     }
 }
 
-/// The point at x and y, and at a height where there is one.
+/// Returns the point at x and y, and at a height where there is one.
 fn point(row: &[Cow<'_, [u8]>], (x, y, z): (usize, usize, Option<usize>)) -> Option<Feature> {
     let value = |i: usize| number(row.get(i)?);
     let height = z.and_then(value);
@@ -286,7 +286,7 @@ fn no_place(keys: &[String]) -> Error {
     )
 }
 
-/// A finite number; a decimal comma is taken for a point.
+/// Returns A finite number; a decimal comma is taken for a point.
 fn number(value: &[u8]) -> Option<f64> {
     let value = value.trim_ascii();
     let dotted: Vec<u8> = value.iter().map(|&b| if b == b',' { b'.' } else { b }).collect();
@@ -294,7 +294,7 @@ fn number(value: &[u8]) -> Option<f64> {
     (length == value.len() && number.is_finite()).then_some(number)
 }
 
-/// Whether a value is a number of JSON that a double holds, or a truth value.
+/// Returns whether a value is a number of JSON that a double holds, or a truth value.
 fn is_json(value: &[u8]) -> bool {
     let is_value =
         matches!(value, b"true" | b"false") || matches!(value.first(), Some(b'-' | b'0'..=b'9'));
@@ -302,7 +302,7 @@ fn is_json(value: &[u8]) -> bool {
     is_value && digits <= 17 && serde_json::from_slice::<serde_json::Value>(value).is_ok()
 }
 
-/// The geometry that one value holds.
+/// Returns the geometry that one value holds.
 fn whole(value: &[u8], line: u64, warnings: &mut Warnings) -> Result<Feature> {
     let value = value.trim_ascii();
     if value.is_empty() {
@@ -343,7 +343,7 @@ pub fn write(out: &mut impl Write, features: &[Feature]) -> io::Result<()> {
     Ok(())
 }
 
-/// A value of JSON as a table has it: texts without quotes, nothing for null.
+/// Returns A value of JSON as a table has it: texts without quotes, nothing for null.
 fn plain(value: &str) -> String {
     match serde_json::from_str(value) {
         Ok(serde_json::Value::String(text)) => text,

@@ -7,8 +7,9 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// Edges of a quarter of a circle, all corners of which lie on it: they are within 1/3000 of the radius.
 const EDGES: f64 = 32.0;
 
-/// The line through the arcs of control positions: each second one lies on an arc, those between are its ends. An
-/// arc has the same corners whichever way it runs, so that neighbours that share it stay neighbours.
+/// Returns the line through the arcs of control positions: each second one lies on an arc, those between are
+/// its ends. An arc has the same corners whichever way it runs, so that neighbours that share it stay
+/// neighbours.
 ///
 /// # Errors
 /// Where there is an even number of positions, or one.
@@ -46,7 +47,7 @@ pub fn keep_polygon(rings: &mut Vec<Points>) {
     rings.retain(|ring| !ring.is_empty());
 }
 
-/// One arc, its ends included.
+/// Returns one arc, its ends included.
 fn arc(control: &Points, ends: [usize; 3]) -> Points {
     let [a, b, c] = ends.map(|i| control.xy[i]);
     let turned = (c.x, c.y) < (a.x, a.y);
@@ -88,8 +89,8 @@ fn arc_onwards(control: &Points, order: [usize; 3], [a, b, c]: [DVec2; 3]) -> Po
     flat
 }
 
-/// The centre of the circle through three positions, and by how much it turns from the first to the second and to the
-/// third; `None` where they lie on a line.
+/// Returns the centre of the circle through three positions, and by how much it turns from the first to the
+/// second and to the third; `None` where they lie on a line.
 fn circle(a: DVec2, b: DVec2, c: DVec2) -> Option<(DVec2, f64, f64)> {
     if a == c {
         // A whole circle, counter-clockwise, with its middle between both positions.

@@ -28,17 +28,17 @@ pub struct Feature {
     pub geometry_members: Vec<Member>,
     /// The number of the coordinate system, of EWKT, EWKB and files that tell it for all features.
     pub srid: Option<i32>,
-    /// Which points its polygons enclose: even-odd, but for paths of an SVG.
+    /// Fill rule of its polygons: even-odd, except for paths of an SVG.
     pub fill_rule: FillRule,
 }
 
 impl Feature {
-    /// A feature that is nothing but a geometry.
+    /// Creates A feature that is nothing but a geometry.
     pub fn of_geometry(geometry: Geometry) -> Self {
         Self { geometry: Some(geometry), ..Self::default() }
     }
 
-    /// The properties one by one, in their order; none where there are none.
+    /// Returns the properties one by one, in their order; none where there are none.
     pub fn fields(&self) -> Vec<Member> {
         super::members::members(self.properties.as_deref().unwrap_or_default())
     }

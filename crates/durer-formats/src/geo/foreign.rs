@@ -1,4 +1,4 @@
-//! What a file is that is no map data that can be read, for messages.
+//! Formats that are not readable as map data, for messages.
 
 /// Beginnings of formats, what they are, and what to do.
 const MAGIC: [(&[u8], &str, &str); 17] = [
@@ -36,8 +36,8 @@ const ROOTS: [(&str, &str, &str); 4] = [
     ("HTML", "a web page", "download the data that it shows"),
 ];
 
-/// What the bytes begin like, where it is a format that is known but not read as map data: what it
-/// is, and what to do.
+/// Returns the name of a known format that is not read as map data, if the bytes begin like one,
+/// and advice.
 pub fn of_content(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     let magic = MAGIC.iter().find(|(magic, ..)| bytes.starts_with(magic));
     let root = || ROOTS.iter().find(|(name, ..)| Some(*name) == super::markup::root(bytes));
@@ -48,12 +48,13 @@ pub fn of_content(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
         .or_else(|| is_dbf(bytes).then_some(("a table of a Shapefile", "open the .shp beside it")))
 }
 
-/// Whether a block of OpenStreetMap's format begins.
+/// Returns whether a block of OpenStreetMap's format begins.
 fn is_pbf(bytes: &[u8]) -> bool {
     bytes.get(4..15) == Some(b"\x0a\x09OSMHeader")
 }
 
-/// Whether it looks like the table beside a Shapefile: version, a date, and lengths that fit each other.
+/// Returns whether it looks like the table beside a Shapefile: version, a date, and lengths that fit
+/// each other.
 fn is_dbf(bytes: &[u8]) -> bool {
     let fields = |low: u8, high: u8| u16::from_le_bytes([low, high]).checked_sub(33);
     match bytes {

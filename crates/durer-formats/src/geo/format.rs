@@ -59,10 +59,10 @@ impl GeoFormat {
         Self::Gpx,
     ];
 
-    /// What is read, for messages.
+    /// List of formats that are read, for messages.
     pub const READ: &'static str = "GeoJSON, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB and SVG, also compressed by gzip";
 
-    /// The name used on the command line.
+    /// Returns the name used on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::GeoJson => "geojson",
@@ -83,7 +83,7 @@ impl GeoFormat {
         }
     }
 
-    /// The endings of its files' names, lower case, without a dot.
+    /// Returns the endings of its files' names, lower case, without a dot.
     pub fn suffixes(self) -> &'static [&'static str] {
         match self {
             Self::GeoJson => &["geojson", "json"],
@@ -104,56 +104,57 @@ impl GeoFormat {
         }
     }
 
-    /// Whether it is one of the layouts of GeoJSON.
+    /// Returns whether it is one of the layouts of GeoJSON.
     pub fn is_geojson(self) -> bool {
         matches!(self, Self::GeoJson | Self::GeoJsonSeq | Self::GeoJsonRs)
     }
 
-    /// Whether features can be written one after the other, without holding them.
+    /// Returns whether features can be written one after the other, without holding them.
     pub fn streams(self) -> bool {
         self.is_geojson() || matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex)
     }
 
-    /// Whether its files may have several layers.
+    /// Returns whether its files may have several layers.
     pub fn has_layers(self) -> bool {
         matches!(self, Self::TopoJson | Self::GeoPackage)
     }
 
-    /// Whether it is written by this build, and not only read.
+    /// Returns whether it is written by this build, and not only read.
     pub fn is_written(self) -> bool {
         !matches!(self, Self::Kml | Self::Gpx) && self.missing_feature().is_none()
     }
 
-    /// The feature without which this build neither reads nor writes it.
+    /// Returns the feature without which this build neither reads nor writes it.
     pub fn missing_feature(self) -> Option<&'static str> {
         let is_missing = self == Self::GeoParquet && !cfg!(feature = "geoparquet");
         is_missing.then_some("geoparquet")
     }
 
-    /// Whether features keep their properties in it.
+    /// Returns whether features keep their properties in it.
     pub fn has_fields(self) -> bool {
         !matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex | Self::Svg)
     }
 
-    /// Whether its files are bytes that are no text.
+    /// Returns whether its files are bytes that are no text.
     pub fn is_binary(self) -> bool {
         matches!(self, Self::Wkb | Self::Shapefile | Self::FlatGeobuf)
             || matches!(self, Self::GeoPackage | Self::GeoParquet)
     }
 
-    /// Whether its coordinates are longitude and latitude on WGS 84 where nothing else is said.
+    /// Returns whether its coordinates are longitude and latitude on WGS 84 where nothing else is
+    /// said.
     pub fn is_lonlat(self) -> bool {
         self.is_geojson() || matches!(self, Self::TopoJson | Self::Kml | Self::Gpx)
     }
 
-    /// Whether it has a place for the number of the coordinate system.
+    /// Returns whether it has a place for the number of the coordinate system.
     pub fn tells_system(self) -> bool {
         matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex)
             || matches!(self, Self::Shapefile | Self::FlatGeobuf)
             || matches!(self, Self::GeoPackage | Self::GeoParquet)
     }
 
-    /// The format that the first bytes of a file speak for, if they do.
+    /// Returns the format that the first bytes of a file speak for, if they do.
     pub fn of_content(bytes: &[u8]) -> Option<Self> {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
         match text.first() {
@@ -178,7 +179,8 @@ impl GeoFormat {
         }
     }
 
-    /// What the first bytes of a file are, where they are of no format that is read: a sentence for messages.
+    /// Describes the format of the first bytes of a file that is of no readable format: a sentence for
+    /// messages.
     pub fn foreign(bytes: &[u8]) -> String {
         match foreign::of_content(bytes) {
             Some((what, hint)) => format!("this is {what}; {hint}"),
@@ -187,7 +189,7 @@ impl GeoFormat {
         }
     }
 
-    /// The format that a file's name speaks for, if it does.
+    /// Returns the format that a file's name speaks for, if it does.
     pub fn of_name(name: &str) -> Option<Self> {
         let (stem, suffix) = name.rsplit_once('.')?;
         let suffix = suffix.to_ascii_lowercase();
@@ -198,7 +200,7 @@ impl GeoFormat {
     }
 }
 
-/// Whether a second JSON object begins where the first has ended.
+/// Returns whether a second JSON object begins where the first has ended.
 fn has_another_object(text: &[u8]) -> bool {
     let (mut depth, mut in_string, mut escaped) = (0_u64, false, false);
     for (i, byte) in text.iter().enumerate() {

@@ -3,10 +3,11 @@
 use flate2::bufread::MultiGzDecoder;
 use std::io::{self, BufRead, BufReader};
 
-/// What a stream of gzip begins with.
+/// First bytes of a gzip stream.
 const MAGIC: [u8; 2] = [0x1f, 0x8b];
 
-/// The bytes of a source, decompressed where it is compressed by gzip, as far as they are read.
+/// Returns the bytes of a source, decompressed where it is compressed by gzip, as far as they are
+/// read.
 ///
 /// # Errors
 /// Where the source cannot be read.

@@ -16,7 +16,7 @@ const MAX_MEMORY: u64 = 8 << 30;
 /// Elements of a placemark that become fields, in the order in which they are kept.
 const FIELDS: [&str; 5] = ["name", "description", "address", "phoneNumber", "visibility"];
 
-/// What is shown beside placemarks, and left out.
+/// Elements shown beside placemarks that are left out.
 const LEFT_OUT: [&str; 4] = ["GroundOverlay", "ScreenOverlay", "PhotoOverlay", "NetworkLink"];
 
 /// Reads all placemarks of a document.
@@ -39,7 +39,7 @@ pub fn read(text: &str, warnings: &mut Warnings) -> Result<Vec<Feature>> {
     Ok(features)
 }
 
-/// What is told once, with a count.
+/// Faults that are reported once, with a count.
 #[derive(Debug, Default)]
 struct Faults {
     others: Tally,
@@ -115,7 +115,7 @@ impl Reader<'_> {
         fields
     }
 
-    /// The geometry that an element is, if it is one.
+    /// Returns the geometry that an element is, if it is one.
     fn geometry(
         &mut self,
         element: usize,
@@ -167,7 +167,8 @@ impl Reader<'_> {
         }))
     }
 
-    /// The positions of an element's `coordinates`: numbers joined by commas, parted by blanks.
+    /// Returns the positions of an element's `coordinates`: numbers joined by commas, parted by
+    /// blanks.
     fn coordinates(&mut self, element: usize) -> Points {
         let Some(list) = self.document.find(element, &["coordinates"]) else {
             return Points::default();
@@ -204,7 +205,7 @@ impl Reader<'_> {
         rings
     }
 
-    /// The positions of a track: `coord` elements of numbers parted by blanks.
+    /// Returns the positions of a track: `coord` elements of numbers parted by blanks.
     fn track(&mut self, element: usize, warnings: &mut Warnings) -> Points {
         let document = &self.document;
         let texts: Vec<String> =
@@ -246,7 +247,7 @@ fn number(text: &str) -> Option<f64> {
     (length == text.len() && value.is_finite()).then_some(value)
 }
 
-/// Parts of one kind as one geometry of several, others as a collection.
+/// Returns parts of one kind as one geometry of several, others as a collection.
 fn alike(parts: Vec<Geometry>) -> Geometry {
     let all = |name: &str| !parts.is_empty() && parts.iter().all(|part| part.name() == name);
     if all("Polygon") {

@@ -4,29 +4,29 @@ use super::Member;
 use super::geojson::Text;
 
 impl Member {
-    /// A member from a name and a value in JSON.
+    /// Creates A member from a name and a value in JSON.
     pub fn new(key: &str, value: impl Into<String>) -> Self {
         Self { name: quoted(key), value: value.into() }
     }
 
-    /// The name without quotes and escapes.
+    /// Returns the name without quotes and escapes.
     pub fn key(&self) -> String {
         serde_json::from_str(&self.name).unwrap_or_else(|_| self.name.clone())
     }
 
-    /// The value where it is a string, without quotes and escapes.
+    /// Returns the value where it is a string, without quotes and escapes.
     pub fn text(&self) -> Option<String> {
         serde_json::from_str(&self.value).ok()
     }
 }
 
-/// A string in JSON.
+/// Returns A string in JSON.
 pub fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
 
-/// The members of a JSON object, in order; none of anything else. Of several of one name the last one
-/// counts, in the place of the first.
+/// Returns the members of a JSON object, in order; none of anything else. Of several of one name the
+/// last one counts, in the place of the first.
 pub fn members(object: &str) -> Vec<Member> {
     let mut list: Vec<Member> = Vec::new();
     let mut places = std::collections::BTreeMap::new();
@@ -42,7 +42,7 @@ pub fn members(object: &str) -> Vec<Member> {
     list
 }
 
-/// The JSON object of members.
+/// Returns the JSON object of members.
 pub fn object(members: &[Member]) -> String {
     let parts: Vec<String> = members.iter().map(|m| format!("{}:{}", m.name, m.value)).collect();
     format!("{{{}}}", parts.join(","))

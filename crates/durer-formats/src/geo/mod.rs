@@ -58,10 +58,10 @@ pub use writer::{Finished, Writer};
 /// Geometries and values may be nested so deep, at most.
 const MAX_DEPTH: usize = 128;
 
-/// So many warnings are kept; the rest is counted.
+/// Number of warnings that are kept; the rest is counted.
 const MAX_WARNINGS: usize = 1000;
 
-/// What was repaired or left out while reading, the first thousand of it.
+/// Repairs and omissions while reading, the first thousand of them.
 #[derive(Debug, Clone, Default)]
 struct Warnings {
     kept: Vec<crate::Warning>,
@@ -73,7 +73,7 @@ struct Warnings {
 }
 
 impl Warnings {
-    /// Whether no more are kept.
+    /// Returns whether no more are kept.
     fn are_many(&self) -> bool {
         self.kept.len() >= MAX_WARNINGS
     }

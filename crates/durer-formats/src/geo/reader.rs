@@ -11,7 +11,7 @@ use std::io::Read;
 /// Files that are held whole may have so many bytes.
 const MAX_BYTES: u64 = 4 << 30;
 
-/// What is known of a file beside its bytes.
+/// Facts about a file from outside its bytes.
 #[derive(Clone, Copy)]
 pub struct Beside<'a> {
     /// The file's name, without a folder.
@@ -23,10 +23,10 @@ pub struct Beside<'a> {
 }
 
 impl Beside<'_> {
-    /// Nothing.
+    /// An unknown system.
     pub const NOTHING: Beside<'static> = Beside { name: "", resources: &NoResources, layer: None };
 
-    /// The file of the same name with another ending; `None` where there is none.
+    /// Returns the file of the same name with another ending; `None` where there is none.
     pub(super) fn find(&self, suffix: &str) -> Option<Vec<u8>> {
         let stem = self.name.strip_suffix(".gz").unwrap_or(self.name);
         let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
@@ -41,7 +41,7 @@ impl Beside<'_> {
 pub struct Reader<R> {
     source: Source<R>,
     warnings: Warnings,
-    /// What a file says of all its coordinates.
+    /// System that a file states for all its coordinates.
     system: System,
     /// Members of the file that are known at once.
     members: Vec<Member>,
@@ -65,7 +65,7 @@ enum Source<R> {
 }
 
 impl<R: Read> Reader<R> {
-    /// A reader of a format.
+    /// Creates A reader of a format.
     ///
     /// # Errors
     /// [`Error::Io`] where the source cannot be read, [`Error::Limit`] where a format that is held
@@ -74,7 +74,7 @@ impl<R: Read> Reader<R> {
         Self::with(format, source, &Beside::NOTHING)
     }
 
-    /// A reader of a format that may have further files beside it, or layers.
+    /// Creates A reader of a format that may have further files beside it, or layers.
     ///
     /// # Errors
     /// As [`Self::new`]; and those of [`Self::next_feature`] where a format is read before its first feature is given.
@@ -127,8 +127,8 @@ impl<R: Read> Reader<R> {
         Ok(Self { source, warnings, system, members })
     }
 
-    /// The coordinate system that the file says all its coordinates are in, as far as it has been read: what GeoJSON
-    /// says after its features is known at the end.
+    /// Returns the coordinate system that the file says all its coordinates are in, as far as it has been
+    /// read: what GeoJSON says after its features is known at the end.
     pub fn system(&self) -> System {
         let told = super::system::of_members(self.members());
         told.unwrap_or_else(|| self.system.clone())
@@ -142,7 +142,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// The next feature; `None` at the end. After an error there is nothing more to be had.
+    /// Returns the next feature; `None` at the end. After an error there is nothing more to be had.
     ///
     /// # Errors
     /// [`Error::Decode`] with line and column, or the byte; [`Error::Unsupported`] for geometries
@@ -188,7 +188,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// The names of the layers that are read, of a GeoPackage; none of other formats.
+    /// Returns the names of the layers that are read, of a GeoPackage; none of other formats.
     pub fn layers(&self) -> Vec<String> {
         match &self.source {
             Source::GeoPackage(reader) => reader.layers(),
@@ -205,18 +205,18 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// What was repaired or left out so far; at most a thousand warnings are kept.
+    /// Returns the repairs and omissions so far; at most a thousand warnings are kept.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings.kept
     }
 
-    /// How many warnings there were beyond those kept.
+    /// Returns the number of warnings beyond those kept.
     pub fn further_warnings(&self) -> u64 {
         self.warnings.more
     }
 }
 
-/// The geometry of the next line that is not empty.
+/// Returns the geometry of the next line that is not empty.
 fn next_hex(
     text: &[u8],
     at: &mut usize,
@@ -270,14 +270,14 @@ fn text(source: impl Read) -> Result<Vec<u8>> {
     Ok(crate::text::utf8(&whole(source)?).into_owned())
 }
 
-/// A document of XML as text.
+/// Returns A document of XML as text.
 fn markup(source: impl Read) -> Result<String> {
     let text = crate::xml::utf8(&whole(source)?).into_owned();
     Ok(String::from_utf8(text)
         .unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned()))
 }
 
-/// All features of a file in the format that its content, or else its name, speaks for.
+/// Returns all features of a file in the format that its content, or else its name, speaks for.
 ///
 /// # Errors
 /// [`Error::Unknown`] where neither does; else as [`Reader::next_feature`].

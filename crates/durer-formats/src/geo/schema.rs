@@ -1,13 +1,13 @@
-//! Which fields the features of a layer have, and of what kind their values are.
+//! Fields of a layer's features, and the kinds of their values.
 
 use super::members::members;
 use super::{Feature, Member};
 use std::collections::BTreeMap;
 
-/// What the values of a field are.
+/// Kind of a field's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FieldKind {
-    /// Nothing but null.
+    /// Null only.
     Null,
     /// `true` and `false`.
     Boolean,
@@ -24,7 +24,7 @@ pub enum FieldKind {
 }
 
 impl FieldKind {
-    /// Its name in messages.
+    /// Returns its name in messages.
     pub fn name(self) -> &'static str {
         match self {
             Self::Null => "null",
@@ -37,7 +37,7 @@ impl FieldKind {
         }
     }
 
-    /// The kind of a value in JSON.
+    /// Returns the kind of a value in JSON.
     pub fn of(value: &str) -> Self {
         match value.as_bytes() {
             [b'"', ..] if is_day(value) => Self::Date,
@@ -50,7 +50,7 @@ impl FieldKind {
         }
     }
 
-    /// The kind that holds values of both.
+    /// Returns the kind that holds values of both.
     pub fn join(self, other: Self) -> Self {
         match (self, other) {
             (a, b) if a == b => a,
@@ -61,7 +61,7 @@ impl FieldKind {
     }
 }
 
-/// Whether a text of JSON is a day.
+/// Returns whether a text of JSON is a day.
 fn is_day(value: &str) -> bool {
     let shape =
         |(i, b): (usize, &u8)| if matches!(i, 5 | 8) { *b == b'-' } else { b.is_ascii_digit() };
@@ -74,15 +74,15 @@ fn is_day(value: &str) -> bool {
 pub struct Field {
     /// Its name.
     pub key: String,
-    /// What its values are, all together.
+    /// Common kind of its values.
     pub kind: FieldKind,
-    /// How many features have a value that is not null.
+    /// Number of features with a value that is not null.
     pub filled: u64,
     /// The first few values that are not null and differ, in JSON.
     pub examples: Vec<String>,
 }
 
-/// So many examples are kept.
+/// Number of examples to keep.
 const EXAMPLES: usize = 3;
 
 /// The fields of a layer, in the order in which they come first.
@@ -93,7 +93,7 @@ pub struct Schema {
 }
 
 impl Schema {
-    /// Of features.
+    /// Builds the schema of features.
     pub fn of(features: &[Feature]) -> Self {
         let mut schema = Self::default();
         features.iter().for_each(|feature| schema.add(feature));
@@ -129,12 +129,12 @@ impl Schema {
         }
     }
 
-    /// All fields.
+    /// Returns all fields.
     pub fn columns(&self) -> &[Field] {
         &self.fields
     }
 
-    /// The place of a field by its name.
+    /// Returns the place of a field by its name.
     pub fn find(&self, key: &str) -> Option<usize> {
         self.places.get(key).copied()
     }

@@ -5,7 +5,7 @@ use durer::clip::polygon::FillRule;
 use durer::math::{DVec2, Rect};
 use std::io::{self, Write};
 
-/// How geometries look, but for the width of lines.
+/// Look of geometries, except for the width of lines.
 const STYLE: &str = "path{stroke:#224;stroke-linejoin:round;stroke-linecap:round}\
 .area{fill:#9bc}.line{fill:none}.points{fill:none}";
 
@@ -46,7 +46,7 @@ pub fn write(out: &mut impl Write, features: &[Feature]) -> io::Result<()> {
     out.write_all(b"</g>\n</svg>\n")
 }
 
-/// What the picture shows: all features and a little more.
+/// Returns the picture's frame: all features and a small margin.
 fn frame(features: &[Feature]) -> Option<Rect> {
     let boxes = features.iter().filter_map(|f| f.geometry.as_ref()?.bounds());
     let all = Rect::around(boxes.flat_map(|b| [b.min(), b.max()]));

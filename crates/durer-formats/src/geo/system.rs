@@ -1,4 +1,4 @@
-//! What a file says about the coordinate system of its coordinates.
+//! The coordinate system that a file states.
 
 use super::{Member, crs};
 
@@ -15,25 +15,25 @@ impl System {
     /// Longitude and latitude in degrees on WGS 84, as GeoJSON, KML and GPX have them always.
     pub const LONLAT: Self = Self { code: Some(4326), wkt: None };
 
-    /// A system by its number.
+    /// Creates A system by its number.
     pub fn of_code(code: i32) -> Self {
         Self { code: Some(code), wkt: None }
     }
 
-    /// A system by its definition, of which the number is looked for.
+    /// Creates A system by its definition, of which the number is looked for.
     pub fn of_wkt(wkt: &str) -> Self {
         let wkt = wkt.trim();
         let given = (!wkt.is_empty()).then(|| wkt.to_owned());
         Self { code: crs::code_of_wkt(wkt), wkt: given }
     }
 
-    /// Whether nothing is known.
+    /// Returns whether nothing is known.
     pub fn is_unknown(&self) -> bool {
         self.code.is_none() && self.wkt.is_none()
     }
 }
 
-/// The system that a member `crs` of GeoJSON tells, as its version of 2008 had it.
+/// Returns the system that a member `crs` of GeoJSON tells, as its version of 2008 had it.
 pub fn of_members(members: &[Member]) -> Option<System> {
     let told = members.iter().rfind(|member| member.name == "\"crs\"")?;
     let value: serde_json::Value = serde_json::from_str(&told.value).ok()?;
@@ -47,7 +47,7 @@ pub fn of_members(members: &[Member]) -> Option<System> {
 }
 
 impl System {
-    /// The member `crs` that tells it in GeoJSON; `None` where GeoJSON means it without.
+    /// Returns the member `crs` that tells it in GeoJSON; `None` where GeoJSON means it without.
     pub fn member(&self) -> Option<Member> {
         let code = self.code.filter(|code| *code != 4326)?;
         let value = format!(

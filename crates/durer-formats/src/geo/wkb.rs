@@ -14,7 +14,7 @@ const HAS_Z: u32 = 0x8000_0000;
 const HAS_M: u32 = 0x4000_0000;
 const HAS_SRID: u32 = 0x2000_0000;
 
-/// The number of a geometry's type, from 1 for a point to 7 for a collection.
+/// Returns the number of a geometry's type, from 1 for a point to 7 for a collection.
 pub fn kind(geometry: &Geometry) -> u32 {
     match geometry {
         Geometry::Point(_) => 1,
@@ -30,7 +30,7 @@ pub fn kind(geometry: &Geometry) -> u32 {
 /// The numbers of lines, arcs and chains of both.
 const CURVES: [u32; 3] = [2, 8, 9];
 
-/// Whether the bytes begin like a geometry.
+/// Returns whether the bytes begin like a geometry.
 pub fn sniff(bytes: &[u8]) -> bool {
     match bytes {
         [order @ (0 | 1), a, b, c, d, ..] => {
@@ -43,7 +43,7 @@ pub fn sniff(bytes: &[u8]) -> bool {
     }
 }
 
-/// Whether the text begins like a geometry in hexadecimal digits.
+/// Returns whether the text begins like a geometry in hexadecimal digits.
 pub fn sniff_hex(text: &[u8]) -> bool {
     let digits = text.strip_prefix(b"\\x").unwrap_or(text);
     let head: Option<Vec<u8>> =
@@ -65,7 +65,7 @@ fn kind_of(code: u32) -> Option<(u32, Dimensions)> {
     (matches!(kind, 1..=12 | 15..=17) && thousands <= 3).then(|| (kind, Dimensions::new(z, m)))
 }
 
-/// The bytes of a line of hexadecimal digits.
+/// Returns the bytes of a line of hexadecimal digits.
 pub fn decode_hex(line: &[u8], number: u64) -> Result<Vec<u8>> {
     let digits = line.strip_prefix(b"\\x").unwrap_or(line);
     let skipped = line.len() - digits.len();
@@ -100,7 +100,7 @@ impl<'a> Reader<'a> {
         Self { bytes, at: 0, warnings: Warnings::default() }
     }
 
-    /// The byte after what has been read.
+    /// Returns the byte after what has been read.
     pub fn offset(&self) -> usize {
         self.at
     }
@@ -110,7 +110,7 @@ impl<'a> Reader<'a> {
         self.at = at;
     }
 
-    /// The next geometry; `None` at the end.
+    /// Returns the next geometry; `None` at the end.
     pub fn next_feature(&mut self) -> Result<Option<Feature>> {
         if self.at >= self.bytes.len() {
             return Ok(None);
@@ -161,7 +161,8 @@ impl<'a> Reader<'a> {
         Ok(Header { kind, dimensions, srid, big })
     }
 
-    /// A count of things of at least `least` bytes each; refused where the data cannot hold them.
+    /// Returns A count of things of at least `least` bytes each; refused where the data cannot hold
+    /// them.
     fn count(&mut self, big: bool, least: usize) -> Result<usize> {
         let at = self.at;
         let count = self.word(big)? as usize;
@@ -273,7 +274,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// A point; all numbers NaN say that there is none.
+    /// Returns A point; all numbers NaN say that there is none.
     fn point(&mut self, header: &Header) -> Result<Points> {
         let mut points = Points::new(header.dimensions);
         let at = self.at;
@@ -321,7 +322,7 @@ impl<'a> Reader<'a> {
         Ok(points)
     }
 
-    /// A line, an arc or a chain of both, as a line.
+    /// Returns A line, an arc or a chain of both, as a line.
     fn curve(&mut self, header: &Header, depth: usize) -> Result<Points> {
         if depth > MAX_DEPTH {
             return Err(self.error_at(self.at, "geometries are nested too deep"));
@@ -344,7 +345,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A polygon whose rings are curves.
+    /// Returns A polygon whose rings are curves.
     fn surface(&mut self, header: &Header, depth: usize) -> Result<Vec<Points>> {
         let place = Place::Byte(self.at as u64);
         self.warnings.curves.add(|| place.clone());

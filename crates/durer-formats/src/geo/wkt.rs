@@ -34,7 +34,7 @@ const NAMES: [&str; 17] = [
 /// The places of names that stand for others only.
 const ABSTRACT: [usize; 2] = [12, 13];
 
-/// Whether a text begins with the name of a geometry and what may follow it.
+/// Returns whether a text begins with the name of a geometry and a valid continuation.
 pub fn sniff(text: &[u8]) -> bool {
     let letters = text.iter().take_while(|b| b.is_ascii_alphabetic()).count();
     let (word, rest) = text.split_at(letters);
@@ -63,7 +63,7 @@ fn tag(word: &str) -> Option<(usize, Option<Dimensions>)> {
     })
 }
 
-/// How far a text has been read.
+/// Position up to which a text has been read.
 #[derive(Debug, Clone, Copy)]
 pub struct Mark {
     /// The next byte.
@@ -92,7 +92,7 @@ impl<'a> Reader<'a> {
         Self { text, at, told, warnings: Warnings::default() }
     }
 
-    /// How far it has come.
+    /// Returns the current position.
     pub fn mark(&self) -> Mark {
         Mark { at: self.at, told: self.told }
     }
@@ -135,7 +135,7 @@ impl<'a> Reader<'a> {
         self.error(format!("{what} is expected, not {found}"))
     }
 
-    /// The letters that come next, in capitals.
+    /// Returns the letters that come next, in capitals.
     fn word(&mut self) -> String {
         self.peek();
         let rest = self.text.get(self.at..).unwrap_or_default();
@@ -144,7 +144,7 @@ impl<'a> Reader<'a> {
         String::from_utf8_lossy(&rest[..length]).to_ascii_uppercase()
     }
 
-    /// A word if it is one of these; else nothing is taken.
+    /// Returns A word if it is one of these; else nothing is taken.
     fn keyword(&mut self, words: &[&str]) -> Option<String> {
         let before = self.at;
         let word = self.word();
@@ -155,7 +155,7 @@ impl<'a> Reader<'a> {
         None
     }
 
-    /// The next geometry; `None` at the end.
+    /// Returns the next geometry; `None` at the end.
     pub fn next_feature(&mut self) -> Result<Option<Feature>> {
         while self.take(b';') {}
         if self.peek().is_none() {
@@ -302,7 +302,8 @@ impl<'a> Reader<'a> {
         Ok(points)
     }
 
-    /// The name that comes next, as far as it is one of these, with the dimensions that follow it.
+    /// Returns the name that comes next, as far as it is one of these, with the dimensions that
+    /// follow it.
     fn name(&mut self, kinds: &[usize], dimensions: &mut Option<Dimensions>) -> Option<usize> {
         let start = self.at;
         let found = tag(&self.word()).filter(|(kind, _)| kinds.contains(kind));
@@ -316,7 +317,7 @@ impl<'a> Reader<'a> {
         Some(kind)
     }
 
-    /// A line, with its name or without, an arc, or a chain of both, as a line.
+    /// Returns A line, with its name or without, an arc, or a chain of both, as a line.
     fn curve(&mut self, dimensions: &mut Option<Dimensions>, depth: usize) -> Result<Points> {
         if depth > MAX_DEPTH {
             return Err(self.error("geometries are nested too deep"));
@@ -342,7 +343,7 @@ impl<'a> Reader<'a> {
         Ok(points)
     }
 
-    /// The rings of a polygon whose name has been read, which may be curves.
+    /// Returns the rings of a polygon whose name has been read, which may be curves.
     fn surface(
         &mut self,
         dimensions: &mut Option<Dimensions>,
@@ -362,7 +363,8 @@ impl<'a> Reader<'a> {
         Ok(rings)
     }
 
-    /// A part of a group of surfaces: a polygon, with its name or without, or one of curves.
+    /// Returns A part of a group of surfaces: a polygon, with its name or without, or one of
+    /// curves.
     fn patch(&mut self, dimensions: &mut Option<Dimensions>, depth: usize) -> Result<Vec<Points>> {
         let kind = self.name(&[2, 9], dimensions);
         if self.keyword(&["EMPTY"]).is_some() {

@@ -18,7 +18,7 @@ pub struct Writer<W> {
     out: W,
     members: Vec<Member>,
     count: u64,
-    /// What has to wait for the end.
+    /// Features that have to wait for the end.
     held: Vec<Feature>,
     line: Vec<u8>,
     system: System,
@@ -28,23 +28,23 @@ pub struct Writer<W> {
     rewrite: Option<Rewrite<W>>,
 }
 
-/// What writes bytes over the first ones of a target and goes to its end.
+/// Function that writes bytes over the first ones of a target and goes to its end.
 type Rewrite<W> = fn(&mut W, &[u8]) -> io::Result<()>;
 
-/// What a writer gives back at its end.
+/// Result of a writer at its end.
 #[derive(Debug)]
 pub struct Finished<W> {
-    /// Where the file was written to.
+    /// Target that the file was written to.
     pub out: W,
     /// Further files that belong beside it: the endings of their names, and their bytes.
     pub beside: Vec<(&'static str, Vec<u8>)>,
-    /// What the format could not keep.
+    /// Warnings about what the format could not keep.
     pub warnings: Vec<Warning>,
 }
 
 impl<W: Write + Seek> Writer<W> {
-    /// A writer of a format to a target that is empty and can be gone back in, so that a GeoPackage is written as its
-    /// features come. Nothing is written yet.
+    /// Creates A writer of a format to a target that is empty and can be gone back in, so that a GeoPackage
+    /// is written as its features come. Nothing is written yet.
     pub fn seekable(format: GeoFormat, out: W) -> Self {
         let rewrite: Rewrite<W> = |out, bytes| {
             out.seek(SeekFrom::Start(0))?;
@@ -56,7 +56,7 @@ impl<W: Write + Seek> Writer<W> {
 }
 
 impl<W: Write> Writer<W> {
-    /// A writer of a format. Nothing is written yet.
+    /// Creates A writer of a format. Nothing is written yet.
     pub fn new(format: GeoFormat, out: W) -> Self {
         let (members, held, line, system, package) = Default::default();
         let (layer, rewrite) = ("layer".to_owned(), None);
@@ -206,7 +206,7 @@ impl<W: Write> Writer<W> {
     }
 }
 
-/// The feature with its id among its fields.
+/// Returns the feature with its id among its fields.
 pub(super) fn with_id(feature: &Feature) -> Feature {
     let mut feature = feature.clone();
     let mut fields = feature.fields();

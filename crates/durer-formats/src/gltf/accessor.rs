@@ -46,7 +46,7 @@ impl Component {
         }
     }
 
-    /// As a float; normalized integers become −1 … 1 or 0 … 1.
+    /// Returns the value as a float; normalized integers become −1 … 1 or 0 … 1.
     fn float(self, bytes: &[u8], normalized: bool) -> f32 {
         let (value, max) = match (self, bytes) {
             (Self::I8, &[a]) => (f32::from(a as i8), 127.0),
@@ -62,7 +62,7 @@ impl Component {
         if normalized { (value / max).max(-1.0) } else { value }
     }
 
-    /// As an unsigned number; `None` for signed and floating ones.
+    /// Returns the value as an unsigned number; `None` for signed and floating ones.
     fn unsigned(self, bytes: &[u8]) -> Option<u32> {
         match (self, bytes) {
             (Self::U8, &[a]) => Some(u32::from(a)),
@@ -88,7 +88,7 @@ pub struct Layout {
     offset: usize,
 }
 
-/// The number of columns and of rows of a shape.
+/// Returns the number of columns and of rows of a shape.
 fn shape(name: &str) -> Option<(usize, usize)> {
     Some(match name {
         "SCALAR" => (1, 1),
@@ -108,7 +108,7 @@ impl Layout {
         self.component.size() * self.lanes
     }
 
-    /// The layout of accessor `index`.
+    /// Returns the layout of accessor `index`.
     ///
     /// # Errors
     /// Where the type is unknown or the elements do not fit into the view.
@@ -164,7 +164,7 @@ impl Layout {
         Ok(())
     }
 
-    /// The byte after the last element, from the view's begin.
+    /// Returns the byte after the last element, from the view's begin.
     fn end(&self) -> u128 {
         match self.count as u128 {
             0 => 0,
@@ -173,7 +173,7 @@ impl Layout {
     }
 }
 
-/// The layouts of a sparse accessor's indices and values.
+/// Returns the layouts of a sparse accessor's indices and values.
 fn sparse_layouts(
     root: &Root,
     accessor: &Accessor,
@@ -208,11 +208,11 @@ fn check_sparse(root: &Root, accessor: &Accessor, whole: &Layout, at: &str) -> R
     sparse_layouts(root, accessor, whole, at).map(|_| ())
 }
 
-/// So many elements without data may have no reason.
+/// Number of elements without data that are accepted without a reason.
 const MOST_BARE: usize = 1 << 20;
 
 impl Source<'_> {
-    /// The layout of an accessor.
+    /// Returns the layout of an accessor.
     fn layout(&self, index: Whole, at: &str) -> Result<Layout> {
         let count = self.root.accessors.len();
         if index.index() >= count {
@@ -372,7 +372,7 @@ fn decode<const SIZE: usize, const N: usize, V, T: From<[V; N]>>(
     }
 }
 
-/// The bytes of a view from an accessor's first element to its last.
+/// Returns the bytes of a view from an accessor's first element to its last.
 fn occupied<'a>(view: &Bytes<'a>, layout: &Layout, at: &str) -> Result<Bytes<'a>> {
     let offset = if layout.count == 0 { 0 } else { layout.offset as u64 };
     let part = u64::try_from(layout.end()).ok().and_then(|end| view.part(offset..end));

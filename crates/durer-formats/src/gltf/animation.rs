@@ -6,7 +6,7 @@ use super::node::unit;
 use crate::{Error, Pose, Result};
 use durer::math::{DQuat, DVec3};
 
-/// What an animation sets of a node.
+/// Values that an animation sets for a node.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Override {
     /// In the parent's space.
@@ -20,19 +20,20 @@ pub struct Override {
 }
 
 impl Override {
-    /// Whether the node's place changes.
+    /// Returns whether the node's place changes.
     pub fn moves(&self) -> bool {
         self.translation.is_some() || self.rotation.is_some() || self.scale.is_some()
     }
 }
 
-/// Names of the animations; `animation0`, `animation1` … where there is none.
+/// Returns names of the animations; `animation0`, `animation1` … where there is none.
 pub fn names(root: &Root) -> Vec<String> {
     let name = |(i, a): (usize, &Animation)| a.name.clone().unwrap_or(format!("animation{i}"));
     root.animations.iter().enumerate().map(name).collect()
 }
 
-/// What the animation sets of each node at the moment asked for; nothing for the rest pose.
+/// Returns the values that the animation sets for each node at the requested time; nothing for the
+/// rest pose.
 ///
 /// # Errors
 /// Where there is no such animation, or its data are broken.
@@ -54,7 +55,7 @@ pub fn pose(source: &Source<'_>, pose: Option<&Pose>) -> Result<Vec<Override>> {
     Ok(overrides)
 }
 
-/// The number of the animation asked for; `None` where none is named and there is none.
+/// Returns the number of the animation asked for; `None` where none is named and there is none.
 fn find(root: &Root, pose: &Pose) -> Result<Option<usize>> {
     let Some(wanted) = &pose.animation else {
         return Ok((!root.animations.is_empty()).then_some(0));
@@ -116,7 +117,7 @@ fn sample_lanes<const N: usize>(
         .map_err(|v| Error::path(at, format!("has {} numbers per key, {N} are needed", v.len())))
 }
 
-/// How values between keys are found.
+/// Interpolation between keys.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Interpolation {
     Step,
@@ -167,7 +168,8 @@ impl Track {
         Ok(Self { times, values, lanes, interpolation })
     }
 
-    /// The value at a time, clamped to the first and last key. Rotations go along the shorter arc.
+    /// Returns the value at a time, clamped to the first and last key. Rotations go along the
+    /// shorter arc.
     fn at(&self, time: f64, rotation: bool) -> Vec<f64> {
         let after = self.times.partition_point(|&t| f64::from(t) <= time);
         let last = self.times.len() - 1;
@@ -194,7 +196,7 @@ impl Track {
         }
     }
 
-    /// The values of a key; `part` of a spline: 0 in-tangent, 1 value, 2 out-tangent.
+    /// Returns the values of a key; `part` of a spline: 0 in-tangent, 1 value, 2 out-tangent.
     fn key(&self, key: usize, part: usize) -> Vec<f64> {
         let spline = self.interpolation == Interpolation::CubicSpline;
         let block = if spline { 3 * key + part } else { key };

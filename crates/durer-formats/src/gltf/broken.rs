@@ -1,9 +1,9 @@
-//! What could not be read, and is left out where something else remains.
+//! Parts that could not be read, and are left out if something else remains.
 
 use crate::{Error, Model, Place, Result};
 use std::collections::BTreeMap;
 
-/// What is wrong with primitives that could not be read.
+/// Faults of primitives that could not be read.
 #[derive(Default)]
 pub struct Broken {
     /// By what they have in common, a missing file or being broken: the first error, the primitive it is of,
@@ -55,7 +55,7 @@ fn warn(error: Error, then: &str, model: &mut Model) {
     model.warn(place, format!("{what}; {then}"));
 }
 
-/// The place of an error, and what it says without it.
+/// Returns the place of an error, and what it says without it.
 pub fn apart(error: Error) -> (Place, String) {
     match error {
         Error::Resource { place, uri, message } => {

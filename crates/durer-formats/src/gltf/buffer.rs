@@ -9,7 +9,7 @@ use crate::budget::MODEL;
 use crate::{Error, Found, Limits, Place, Resources, Result, Warning, uri};
 use std::cell::Cell;
 
-/// What has been taken of the limits so far.
+/// Amounts of the limits that have been used so far.
 #[derive(Debug)]
 pub struct Budget {
     limits: Limits,
@@ -19,12 +19,12 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// Nothing taken yet.
+    /// Creates an empty count.
     pub fn new(limits: Limits) -> Self {
         Self { limits, bytes: Cell::new(0), primitives: Cell::new(0), instances: Cell::new(0) }
     }
 
-    /// The limits with only what is left of the decoded bytes.
+    /// Returns the limits with only what is left of the decoded bytes.
     pub fn rest(&self) -> Limits {
         let decoded_bytes = self.limits.decoded_bytes.saturating_sub(self.bytes.get());
         Limits { decoded_bytes, ..self.limits.clone() }
@@ -59,7 +59,7 @@ fn take(used: &Cell<u64>, count: u64, limit: u64, what: &'static str, at: &str) 
 /// The bytes of a buffer.
 #[derive(Debug)]
 enum Buffer<'a> {
-    /// Of a file of its own, or in the JSON.
+    /// Bytes from a file of its own, or from the JSON.
     Loaded(Vec<u8>),
     /// The binary chunk.
     Chunk(Bytes<'a>),
@@ -97,7 +97,7 @@ impl Missing {
 pub struct Source<'a> {
     /// The JSON.
     pub root: &'a Root,
-    /// What is left of the limits.
+    /// Rest of the limits.
     pub budget: &'a Budget,
     buffers: Vec<Option<Buffer<'a>>>,
     unpacked: Vec<Option<Vec<u8>>>,
@@ -135,7 +135,7 @@ impl<'a> Source<'a> {
         Ok(source)
     }
 
-    /// The buffers that could not be had.
+    /// Returns the buffers that could not be had.
     pub fn missing(&self) -> impl Iterator<Item = Error> + '_ {
         self.buffers.iter().flatten().filter_map(|buffer| match buffer {
             Buffer::Missing(missing) => Some(missing.error()),
@@ -143,7 +143,7 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// The bytes of a view, as long as its `byteLength`.
+    /// Returns the bytes of a view, as long as its `byteLength`.
     ///
     /// # Errors
     /// Where the view does not exist or its buffer has no data.
@@ -182,7 +182,8 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// The plain bytes of a compressed view; `None` for a plain one, and for one whose buffer is missing.
+    /// Returns the plain bytes of a compressed view; `None` for a plain one, and for one whose buffer is
+    /// missing.
     fn unpack(&self, index: usize) -> Result<Option<Vec<u8>>> {
         match self.unpack_there(index) {
             Err(Error::Resource { .. }) => Ok(None),
@@ -214,12 +215,12 @@ impl<'a> Source<'a> {
     }
 }
 
-/// The view's length; one that is missing was refused by the check of references.
+/// Returns the view's length; one that is missing was refused by the check of references.
 fn length(view: &BufferView) -> Whole {
     view.byte_length.unwrap_or_default()
 }
 
-/// A buffer, where it has bytes, and what is to be told about its file.
+/// Returns A buffer, where it has bytes, and what is to be told about its file.
 fn load_buffer<'a>(
     root: &'a Root,
     index: usize,

@@ -42,7 +42,7 @@ impl std::fmt::Debug for Bytes<'_> {
 }
 
 impl<'a> Bytes<'a> {
-    /// How many there are.
+    /// Returns the number of bytes.
     pub fn len(&self) -> u64 {
         match self {
             Self::Held(bytes) => bytes.len() as u64,
@@ -50,7 +50,7 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// Those of a range; `None` where it leads out of them.
+    /// Returns those of a range; `None` where it leads out of them.
     pub fn part(&self, range: Range<u64>) -> Option<Self> {
         match self {
             Self::Held(bytes) => {
@@ -65,7 +65,7 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// All of them; no more than the file has, which is within the limits.
+    /// Returns all of them; no more than the file has, which is within the limits.
     ///
     /// # Errors
     /// [`Error::Io`] where the file cannot be read, or has become shorter.
@@ -113,7 +113,7 @@ impl<'a> Bytes<'a> {
 mod tests {
     use super::*;
 
-    /// A file whose byte i is i modulo 251.
+    /// Returns A file whose byte i is i modulo 251.
     fn file(length: usize) -> Vec<u8> {
         (0..length).map(|i| (i % 251) as u8).collect()
     }

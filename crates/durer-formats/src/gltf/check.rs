@@ -18,7 +18,7 @@ pub fn references(root: &Root) -> Result<()> {
     materials(root)
 }
 
-/// That `index`, where there is one, is below `count`.
+/// Checks that `index`, if present, is below `count`.
 fn exists(index: Option<Whole>, count: usize, what: &str, at: impl Display) -> Result<()> {
     match index {
         Some(i) if i.index() >= count => Err(missing(what, i, count, at)),
@@ -26,7 +26,7 @@ fn exists(index: Option<Whole>, count: usize, what: &str, at: impl Display) -> R
     }
 }
 
-/// The error for a reference to one of `count` things that does not exist.
+/// Returns the error for a reference to one of `count` things that does not exist.
 pub fn missing(what: &str, index: Whole, count: usize, at: impl Display) -> Error {
     let message = match count {
         0 => format!("there is no {what} {}, none at all", index.0),
@@ -35,7 +35,7 @@ pub fn missing(what: &str, index: Whole, count: usize, at: impl Display) -> Erro
     Error::path(at.to_string(), message)
 }
 
-/// That a member which must be there is there.
+/// Checks that a required member is present.
 fn present<T>(value: &Option<T>, name: &str, at: impl Display) -> Result<()> {
     let missing = || Error::path(at.to_string(), format!("`{name}` is missing"));
     value.as_ref().map(|_| ()).ok_or_else(missing)
@@ -202,7 +202,7 @@ fn materials(root: &Root) -> Result<()> {
     Ok(())
 }
 
-/// All textures of a material that are read, with their places in it.
+/// Returns all textures of a material that are read, with their places in it.
 fn slots(material: &Material) -> impl Iterator<Item = (&'static str, &TextureInfo)> {
     let pbr = &material.pbr_metallic_roughness;
     let extensions = &material.extensions;

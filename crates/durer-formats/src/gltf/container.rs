@@ -14,10 +14,10 @@ const BIN: u32 = 0x004E_4942;
 /// Size of the header and of a chunk's header, in bytes.
 const HEADER: usize = 12;
 const CHUNK_HEADER: u64 = 8;
-/// Where the first chunk begins.
+/// Offset of the first chunk.
 const FIRST: u64 = HEADER as u64;
 
-/// What some editors write before a text; JSON does not allow it.
+/// Byte-order mark that some editors write before a text; JSON does not allow it.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// The parts of a file.
@@ -26,12 +26,12 @@ pub struct Container<'a> {
     json: Cow<'a, [u8]>,
     /// The binary chunk, if there is one.
     pub bin: Option<Bytes<'a>>,
-    /// Whether the file is binary.
+    /// True if the file is binary.
     pub binary: bool,
 }
 
 impl Container<'_> {
-    /// The JSON text, without a byte order mark.
+    /// Returns the JSON text, without a byte order mark.
     pub fn json(&self) -> &[u8] {
         self.json.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&self.json)
     }
@@ -137,7 +137,7 @@ mod tests {
         Ok(Slices { json: slice(json), bin })
     }
 
-    /// A binary file of chunks, with a right header.
+    /// Returns A binary file of chunks, with a right header.
     fn file(chunks: &[(u32, &[u8])]) -> Vec<u8> {
         let mut body = Vec::new();
         for (kind, data) in chunks {

@@ -77,7 +77,8 @@ fn morph_sets(
     Ok(())
 }
 
-/// Each joint's matrix from mesh space to the world: where the joint is now, times where it was.
+/// Returns each joint's matrix from mesh space to the world: where the joint is now, times where it
+/// was.
 ///
 /// # Errors
 /// Where there are fewer inverse bind matrices than joints.
@@ -128,7 +129,7 @@ pub fn skin(g: &mut Geometry, joints: &[DMat4], at: &str) -> Result<()> {
     Ok(())
 }
 
-/// The weighted mean of the matrices that vertex `v` follows.
+/// Returns the weighted mean of the matrices that vertex `v` follows.
 fn blend(g: &Geometry, v: usize, joints: &[DMat4], at: &str) -> Result<DMat4> {
     let (mut sum, mut total) = (DMat4::ZERO, 0.0);
     for (set, four) in g.influences.iter().enumerate() {

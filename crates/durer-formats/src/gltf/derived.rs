@@ -9,7 +9,7 @@ use durer::scene::{AlphaMode, Image, Material, Scene, Texture, TextureRef};
 use durer::shade::color::{decode_rgba8, decode_unorm8, encode_unorm8};
 use std::collections::BTreeMap;
 
-/// How much of the light a clear pane lets through; the rest shows the pane itself.
+/// Share of the light that a clear pane lets through; the rest shows the pane itself.
 const CLEAR: f32 = 0.85;
 
 /// Something to be done to a material once its images are there.
@@ -18,16 +18,16 @@ pub struct Job {
     pub material: usize,
     /// The texture that the scene's material has no place for.
     pub texture: Option<TextureRef>,
-    /// What.
+    /// Change to make.
     pub what: What,
 }
 
-/// What is to be done to a material.
+/// Change to make to a material.
 #[derive(Clone, Copy)]
 pub enum What {
     /// Multiply a factor by the mean of the texture.
     Mean {
-        /// Whether its colours are stored as sRGB.
+        /// True if its colours are stored as sRGB.
         srgb: bool,
         /// Sets the factor, given the linear mean.
         set: fn(&mut Material, Vec4),
@@ -71,26 +71,26 @@ fn forget_unused(scene: &mut Scene) {
     unused.for_each(|(image, _)| *image = Image::default());
 }
 
-/// What a texture is made of: two textures, and the factors' bits.
+/// Inputs of a derived texture: two textures, and the factors' bits.
 type Key = ([Option<usize>; 2], Vec<u32>);
 
 struct Maker<'a> {
     source: &'a Source<'a>,
     scene: &'a mut Scene,
     todo: &'a mut Todo,
-    /// Of images, as sRGB or not.
+    /// Means of images, as sRGB or not.
     means: BTreeMap<(usize, bool), Vec4>,
     made: BTreeMap<Key, Vec<usize>>,
 }
 
 impl Maker<'_> {
-    /// The image of a texture; `None` where there is none, or it could not be read.
+    /// Returns the image of a texture; `None` where there is none, or it could not be read.
     fn image(&self, texture: Option<TextureRef>) -> Option<&Image> {
         let image = &self.scene.images[self.scene.textures[texture?.texture].image];
         Some(image).filter(|image| !image.data.is_empty())
     }
 
-    /// The linear mean of a texture; white where it has no image.
+    /// Returns the linear mean of a texture; white where it has no image.
     fn mean(&mut self, texture: Option<TextureRef>, srgb: bool) -> Vec4 {
         let Some(image) = self.image(texture) else { return Vec4::ONE };
         let key = (self.scene.textures[texture.map_or(0, |t| t.texture)].image, srgb);
@@ -147,7 +147,7 @@ impl Maker<'_> {
         Ok(made.map(|made: [usize; N]| made.map(|texture| TextureRef { texture, ..placed })))
     }
 
-    /// Whether texels of two textures that lie at one place of a mesh can be joined.
+    /// Returns whether texels of two textures that lie at one place of a mesh can be joined.
     fn lie_alike(a: Option<TextureRef>, b: Option<TextureRef>) -> bool {
         let place = |t: TextureRef| (t.tex_coord, t.transform);
         a.zip(b).is_none_or(|(a, b)| place(a) == place(b))
@@ -193,7 +193,8 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// How much light goes through where colour and mask are white, and the mask, where it can be laid on.
+    /// Returns the share of light that passes where colour and mask are white, and the mask, if it can be
+    /// applied.
     fn clearness(&mut self, job: &Job) -> (f32, Option<TextureRef>) {
         let material = &self.scene.materials[job.material];
         let base = material.base_color_texture;

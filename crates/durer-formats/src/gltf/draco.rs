@@ -7,7 +7,7 @@ use super::buffer::Source;
 use super::json::{Draco, Whole};
 use crate::{Error, Place, Result};
 
-/// What a normalized integer is divided by; `None` for types that are not normalized.
+/// Returns the divisor of a normalized integer; `None` for types that are not normalized.
 const fn largest(kind: draco_core::DataType) -> Option<f32> {
     match kind {
         draco_core::DataType::Int8 => Some(127.0),
@@ -69,12 +69,12 @@ impl Packed {
         Ok(Some(Self(mesh)))
     }
 
-    /// The vertex numbers of all triangles.
+    /// Returns the vertex numbers of all triangles.
     pub fn indices(&self) -> Vec<u32> {
         self.0.faces().iter().flatten().map(|p| p.0).collect()
     }
 
-    /// An attribute by the number that the file knows it by.
+    /// Returns an attribute by the number that the file knows it by.
     pub fn attribute(&self, id: Whole) -> Option<Attribute<'_>> {
         let attribute = self.0.attribute_by_unique_id(u32::try_from(id.0).ok()?)?;
         Some(Attribute { attribute, points: self.0.num_points() })

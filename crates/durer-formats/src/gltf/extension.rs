@@ -1,4 +1,4 @@
-//! Which extensions are read, and what becomes of the others.
+//! The extensions that are read, and the effects of ignoring others.
 
 use super::json::Root;
 use crate::{Error, Model, Place, Result};
@@ -34,7 +34,7 @@ const IN_PART: &[(&str, &str)] = &[
 /// Extensions whose loss is told where it matters, or changes no picture.
 const SILENT: &[&str] = &["KHR_texture_basisu", "KHR_xmp", "KHR_xmp_json_ld"];
 
-/// What a message calls the loss of an optional extension.
+/// Returns a message's words for the loss of an optional extension.
 fn loss(name: &str) -> &'static str {
     match name {
         "MSFT_texture_dds" | "EXT_texture_avif" => {

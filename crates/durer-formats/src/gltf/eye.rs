@@ -44,7 +44,7 @@ fn lens(camera: &json::Camera) -> Result<Lens, String> {
     Ok(Lens { projection, near: Some(near), far, aspect })
 }
 
-/// The lights of KHR_lights_punctual.
+/// Returns the lights of KHR_lights_punctual.
 ///
 /// A file's intensities are lux (directional) and candela (point, spot). A white matte surface sends
 /// back 1/π of what falls on it, so π lux make it white: all intensities are divided by π. Sunlight has

@@ -6,8 +6,8 @@ use super::node::unit;
 use crate::{Error, Result};
 use durer::math::{DMat4, DQuat, DVec3};
 
-/// Where the instances are in their node's space; what the scene cannot hold of them is passed over, as the
-/// attributes of an application's own.
+/// Returns the matrices of the instances in their node's space; data that the scene cannot hold, such as an
+/// application's own attributes, are ignored.
 ///
 /// # Errors
 /// Where an attribute is broken, or they have different numbers of elements.

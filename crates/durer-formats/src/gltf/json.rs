@@ -13,7 +13,7 @@ use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 pub struct Whole(pub u64);
 
 impl Whole {
-    /// As an index; too large for memory becomes an index that no array has.
+    /// Parses an index; one too large for memory becomes an index that no array has.
     pub fn index(self) -> usize {
         usize::try_from(self.0).unwrap_or(usize::MAX)
     }
@@ -307,7 +307,8 @@ objects! {
     }
     Transmission { transmission_factor: f32, transmission_texture: Option<TextureInfo>, }
     Volume { attenuation_color: Option<[f32; 3]>, }
-    /// Of any kind: `scale` is a normal texture's, `strength` an occlusion texture's.
+    /// Texture reference of any kind: `scale` is a normal texture's, `strength` an occlusion
+    /// texture's.
     TextureInfo {
         index: Option<Whole>,
         tex_coord: Whole,

@@ -53,13 +53,14 @@ pub fn read(
     Ok(())
 }
 
-/// Which of its images a texture shows: that of EXT_texture_webp before the one for readers that do not know it.
+/// Returns the image that a texture shows: that of EXT_texture_webp before the one for readers that do not know
+/// it.
 fn image_of(texture: &json::Texture) -> Option<Whole> {
     let webp = texture.extensions.webp.as_ref().and_then(|webp| webp.source);
     webp.or(texture.source)
 }
 
-/// Which images are used; tells of textures that have none.
+/// Returns true for each image that is used; warns of textures that have none.
 fn used_images(root: &Root, scene: &Scene, todo: &Todo, warnings: &mut Vec<Warning>) -> Vec<bool> {
     let mut used = vec![false; root.images.len()];
     let mut without = BTreeSet::new();
@@ -90,7 +91,7 @@ fn used_images(root: &Root, scene: &Scene, todo: &Todo, warnings: &mut Vec<Warni
     used
 }
 
-/// An image; one that is missing or broken is empty, with a warning.
+/// Returns an image; one that is missing or broken is empty, with a warning.
 fn read_image(
     source: &Source<'_>,
     index: usize,
@@ -201,7 +202,7 @@ fn material(
     material
 }
 
-/// A texture as a material names it.
+/// Returns A texture as a material names it.
 pub fn texture(info: Option<&TextureInfo>) -> Option<TextureRef> {
     let info = info?;
     let transform = info.extensions.transform.as_ref();

@@ -8,7 +8,7 @@ mod attributes;
 mod filter;
 mod indices;
 
-/// How one view is packed.
+/// Packing of one view.
 #[derive(Debug, Clone, Copy)]
 pub struct Packing<'a> {
     /// The number of elements.
@@ -21,7 +21,7 @@ pub struct Packing<'a> {
     pub filter: &'a str,
 }
 
-/// Why a view cannot be unpacked.
+/// Reason why a view cannot be unpacked.
 pub type Refusal = &'static str;
 
 /// Said wherever the packed bytes end too early.
@@ -73,7 +73,7 @@ impl<'a> Bytes<'a> {
         Ok(byte)
     }
 
-    /// An unsigned number of 7 bits a byte, low ones first, in at most five bytes.
+    /// Returns an unsigned number of 7 bits a byte, low ones first, in at most five bytes.
     fn varint(&mut self) -> Result<u32, Refusal> {
         let mut value = 0u32;
         for shift in (0..35).step_by(7) {

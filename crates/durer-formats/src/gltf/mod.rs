@@ -55,14 +55,14 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::io::{Read, Seek, SeekFrom};
 
-/// Whether the bytes look like glTF: the mark of a binary file, or JSON with an `asset`.
+/// Returns whether the bytes look like glTF: the mark of a binary file, or JSON with an `asset`.
 pub fn sniff(bytes: &[u8]) -> bool {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let holds = |key: &[u8]| text.windows(key.len()).any(|w| w == key);
     is_binary(bytes) || (text.starts_with(b"{") && holds(b"\"asset\""))
 }
 
-/// Whether the bytes begin as a binary file does.
+/// Returns whether the bytes begin as a binary file does.
 pub fn is_binary(bytes: &[u8]) -> bool {
     bytes.starts_with(container::MAGIC)
 }
@@ -198,7 +198,7 @@ struct Builder<'a> {
     /// Scene meshes of a file's mesh and primitive as it stands in the file, neither morphed nor
     /// skinned; `None` for a primitive that draws nothing.
     made: BTreeMap<(usize, usize), Option<usize>>,
-    /// What could not be read.
+    /// Parts that could not be read.
     broken: Broken,
 }
 
@@ -234,7 +234,8 @@ impl Builder<'_> {
         self.source.budget.bytes(count.saturating_mul(bytes), &at)
     }
 
-    /// The scene mesh of a primitive, and whether it is skinned; `None` where it draws nothing.
+    /// Returns the scene mesh of a primitive, and whether it is skinned; `None` where it draws
+    /// nothing.
     fn mesh(
         &mut self,
         mesh: usize,
@@ -251,14 +252,15 @@ impl Builder<'_> {
         Ok(made.map(|mesh| (mesh, skinned)))
     }
 
-    /// The weights of a node's morph targets: of the animation, else the node's, else the mesh's.
+    /// Returns the weights of a node's morph targets: of the animation, else the node's, else the
+    /// mesh's.
     fn weights(&self, n: usize, mesh: usize) -> Vec<f32> {
         let node = &self.source.root.nodes[n];
         let rest = node.weights.as_ref().unwrap_or(&self.source.root.meshes[mesh].weights);
         self.pose[n].weights.as_ref().unwrap_or(rest).clone()
     }
 
-    /// The scene mesh of a primitive as it stands, made once.
+    /// Returns the scene mesh of a primitive as it stands, made once.
     fn unposed(&mut self, mesh: usize, p: usize, model: &mut Model) -> Result<Option<usize>> {
         if let Some(made) = self.made.get(&(mesh, p)) {
             return Ok(*made);
@@ -272,7 +274,7 @@ impl Builder<'_> {
         Ok(made)
     }
 
-    /// A scene mesh of a primitive, morphed and skinned, and whether it was skinned.
+    /// Returns A scene mesh of a primitive, morphed and skinned, and whether it was skinned.
     fn posed(
         &self,
         mesh: usize,

@@ -1,4 +1,4 @@
-//! What stands in for Draco without the feature `draco`.
+//! A replacement for Draco without the feature `draco`.
 
 use super::buffer::Source;
 use super::json::{Draco, Whole};
@@ -12,7 +12,7 @@ pub enum Packed {}
 pub type Attribute<'a> = &'a Packed;
 
 impl Packed {
-    /// Nothing: the accessors of the file are read in its place, where they have data.
+    /// Returns nothing: the accessors of the file are read in its place, if they have data.
     pub fn read(_: &Source<'_>, _: &Draco, _: &str) -> Result<Option<Self>> {
         Ok(None)
     }

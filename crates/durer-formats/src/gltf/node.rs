@@ -37,7 +37,7 @@ impl Tree {
         Ok(Self { parents, order })
     }
 
-    /// Each node's matrix to the world.
+    /// Returns each node's matrix to the world.
     pub fn world_matrices(&self, root: &Root, pose: &[Override]) -> Vec<DMat4> {
         let mut world = vec![DMat4::IDENTITY; self.parents.len()];
         for &n in &self.order {
@@ -47,9 +47,9 @@ impl Tree {
         world
     }
 
-    /// The nodes of the default scene (of the first one where that is not there; of a file without scenes, all), in
-    /// drawing order: depth first, as in the file. A node that stands under another one of the scene
-    /// comes once; the nodes of the scene that are no roots are told to `odd`.
+    /// Returns the nodes of the default scene (of the first one where that is not there; of a file without
+    /// scenes, all), in drawing order: depth first, as in the file. A node that stands under another one of
+    /// the scene comes once; the nodes of the scene that are no roots are told to `odd`.
     pub fn scene_nodes(&self, root: &Root, mut odd: impl FnMut(usize)) -> Vec<usize> {
         let scene = root.scenes.get(root.scene.map_or(0, Whole::index)).or(root.scenes.first());
         let roots: Vec<usize> = match scene {
@@ -86,7 +86,7 @@ impl Tree {
     }
 }
 
-/// Each node's parent.
+/// Returns each node's parent.
 fn parents(root: &Root) -> Result<Vec<Option<usize>>> {
     let mut parents = vec![None; root.nodes.len()];
     for (n, node) in root.nodes.iter().enumerate() {
@@ -111,7 +111,7 @@ fn walk(root: &Root, roots: impl DoubleEndedIterator<Item = usize>) -> impl Iter
     })
 }
 
-/// A node's matrix to its parent.
+/// Returns A node's matrix to its parent.
 fn local_matrix(node: &Node, pose: &Override) -> DMat4 {
     if let (Some(matrix), false) = (&node.matrix, pose.moves()) {
         return DMat4::from_cols_array(matrix);
@@ -123,7 +123,7 @@ fn local_matrix(node: &Node, pose: &Override) -> DMat4 {
     DMat4::from_scale_rotation_translation(scale, unit(rotation), translation)
 }
 
-/// The quaternion at unit length; what has no direction turns nothing.
+/// Returns the quaternion at unit length; what has no direction turns nothing.
 pub fn unit(q: DQuat) -> DQuat {
     let length = q.length();
     if length.is_finite() && length > 1e-12 { q * (1.0 / length) } else { DQuat::IDENTITY }

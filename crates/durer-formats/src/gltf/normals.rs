@@ -32,8 +32,8 @@ pub fn repair(g: &mut Geometry) {
     colors.for_each(|c| *c = Vec4::ONE);
 }
 
-/// The vector at unit length; vectors that already have it to the last bits stay as they are, and
-/// what is too short or not finite has none.
+/// Returns the vector at unit length; vectors that already have it to the last bits stay as they
+/// are, and what is too short or not finite has none.
 fn unit(v: Vec3) -> Option<Vec3> {
     // In double precision, where squares of tiny and huge numbers are still there.
     let (d, length) = (v.as_dvec3(), v.as_dvec3().length());
@@ -43,7 +43,7 @@ fn unit(v: Vec3) -> Option<Vec3> {
     Some(if (length - 1.0).abs() < 1e-7 { v } else { (d / length).as_vec3() })
 }
 
-/// The sum of the area-weighted normals around each vertex.
+/// Returns the sum of the area-weighted normals around each vertex.
 fn area_normals(g: &Geometry) -> Vec<Vec3> {
     let mut sums = vec![Vec3::ZERO; g.positions.len()];
     if g.topology != Topology::Triangles {

@@ -4,13 +4,14 @@ use crate::{Error, Place};
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
-/// The error for a version that is not read.
+/// Returns the error for a version that is not read.
 pub fn unsupported(place: Place, version: &str) -> Error {
     let hint = "export the model as glTF 2.0, or convert it, for example by `gltf-pipeline`";
     Error::Unsupported { place, what: format!("glTF {version}"), hint: hint.to_owned() }
 }
 
-/// The version that a JSON text says it has, or is built like, where that is one before 2.0.
+/// Returns the version that a JSON text says it has, or is built like, where that is one before
+/// 2.0.
 pub fn version(text: &[u8]) -> Option<String> {
     let outline: Outline = serde_json::from_slice(text).ok()?;
     let said = match outline.asset.unwrap_or_default().version {
@@ -26,7 +27,7 @@ pub fn version(text: &[u8]) -> Option<String> {
     }
 }
 
-/// What tells the version of a file.
+/// Members that identify the version of a file.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 struct Outline {

@@ -1,4 +1,4 @@
-//! Where a node has its mesh.
+//! The placement of a node's mesh.
 
 use super::buffer::Source;
 use super::{deform, instancing};
@@ -6,10 +6,10 @@ use crate::{Model, Place, Result};
 use durer::math::DMat4;
 use durer::scene::Instance;
 
-/// Where a node has its mesh, and how it is posed.
+/// Placement and pose of a node's mesh.
 pub struct Placing {
     node: usize,
-    /// Of morph targets.
+    /// Weights of morph targets.
     pub weights: Vec<f32>,
     /// The matrices of the skin, where there is one.
     pub joints: Option<Vec<DMat4>>,
@@ -18,7 +18,7 @@ pub struct Placing {
 }
 
 impl Placing {
-    /// That of node `n`, whose morph targets have these weights.
+    /// Computes the placement of node `n`, whose morph targets have these weights.
     ///
     /// # Errors
     /// Where the skin or the instances are broken, or their data are missing.

@@ -7,14 +7,14 @@ use crate::{Error, Result};
 use durer::math::{Vec2, Vec3, Vec4};
 use durer::scene::Topology;
 
-/// What a primitive becomes, before it is posed.
+/// Geometry of a primitive before it is posed.
 #[derive(Debug, Clone, Default)]
 pub struct Geometry {
-    /// What the indices are joined to.
+    /// Primitives that the indices form.
     pub topology: Topology,
     /// Mesh space.
     pub positions: Vec<Vec3>,
-    /// Of unit length, or empty.
+    /// Normals of unit length, or empty.
     pub normals: Vec<Vec3>,
     /// Unit vectors with the sign of the bitangent, or empty.
     pub tangents: Vec<Vec4>,
@@ -26,7 +26,7 @@ pub struct Geometry {
     pub indices: Option<Vec<u32>>,
     /// Joints and their weights, four and four.
     pub influences: Vec<Influences>,
-    /// What was repaired.
+    /// Repairs.
     pub notes: Vec<String>,
 }
 
@@ -35,7 +35,7 @@ pub struct Geometry {
 pub struct Influences {
     /// Numbers of joints in the skin.
     pub joints: Vec<[u32; 4]>,
-    /// How much each counts; their sum need not be 1.
+    /// Weights of the joints; their sum need not be 1.
     pub weights: Vec<[f32; 4]>,
 }
 
@@ -73,7 +73,7 @@ pub fn read(source: &Source<'_>, primitive: &Primitive, at: &str) -> Result<Opti
     Ok(Some(g))
 }
 
-/// Where attributes come from: accessors, or a Draco mesh.
+/// Source of attributes: accessors, or a Draco mesh.
 struct Attributes<'a> {
     source: &'a Source<'a>,
     primitive: &'a Primitive,
@@ -94,7 +94,7 @@ impl<'a> Attributes<'a> {
         self.primitive.attributes.get(name).copied()
     }
 
-    /// An attribute of N floats each; `None` where the primitive has it not.
+    /// Returns an attribute of N floats each; `None` where the primitive has it not.
     fn vectors<T: From<[f32; N]>, const N: usize>(&self, name: &str) -> Result<Option<Vec<T>>> {
         let Some(accessor) = self.accessor(name) else { return Ok(None) };
         let at = format!("{}.attributes.{name}", self.at);
@@ -112,7 +112,7 @@ impl<'a> Attributes<'a> {
         self.packed.as_ref()?.attribute(*id)
     }
 
-    /// The first set of vertex colours; without alpha, opaque.
+    /// Returns the first set of vertex colours; without alpha, opaque.
     fn colors(&self) -> Result<Vec<Vec4>> {
         let Some(accessor) = self.accessor("COLOR_0") else { return Ok(Vec::new()) };
         let shape = self.source.root.accessors.get(accessor.index()).map(|a| a.shape.as_str());
@@ -146,7 +146,7 @@ impl<'a> Attributes<'a> {
     }
 }
 
-/// How the file joins vertices.
+/// Primitive mode of the file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Mode {
     Points,
@@ -176,7 +176,7 @@ impl Mode {
         }
     }
 
-    /// The number of primitives that `count` indices make, and of indices per primitive.
+    /// Returns the number of primitives that `count` indices make, and of indices per primitive.
     fn primitives(self, count: usize) -> (usize, usize) {
         match self {
             Self::Points => (count, 1),
@@ -188,7 +188,8 @@ impl Mode {
         }
     }
 
-    /// Which of `count` indices the corner `corner` of primitive `i` is (glTF 2.0, §3.7.2.1).
+    /// Returns which of `count` indices is the corner `corner` of primitive `i` (glTF 2.0,
+    /// §3.7.2.1).
     fn corner(self, i: usize, corner: usize, count: usize) -> usize {
         match self {
             Self::Points => i,
@@ -311,7 +312,7 @@ fn first_dangling(indices: &[u32], vertices: usize) -> Option<String> {
 mod tests {
     use super::*;
 
-    /// The corners of all primitives of `count` vertices without indices.
+    /// Returns the corners of all primitives of `count` vertices without indices.
     fn list(mode: Mode, count: usize) -> Vec<usize> {
         let (primitives, corners) = mode.primitives(count);
         (0..primitives * corners).map(|k| mode.corner(k / corners, k % corners, count)).collect()

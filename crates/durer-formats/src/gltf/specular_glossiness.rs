@@ -7,7 +7,7 @@ use super::json;
 use durer::math::{Vec3, Vec4};
 use durer::shade::color::{decode_rgba8, decode_unorm8, encode_srgb8, encode_unorm8};
 
-/// What a dielectric reflects straight on.
+/// Reflectance of a dielectric at normal incidence.
 const DIELECTRIC: f32 = 0.04;
 
 /// The factors of a material.
@@ -31,7 +31,7 @@ pub struct Metallic {
 }
 
 impl Glossy {
-    /// The factors that the file gives; those that are missing are 1.
+    /// Returns the factors that the file gives; those that are missing are 1.
     pub fn of(glossy: &json::SpecularGlossiness) -> Self {
         let unit = |v: f32| v.clamp(0.0, 1.0);
         Self {
@@ -41,7 +41,7 @@ impl Glossy {
         }
     }
 
-    /// Whether it is a dielectric whatever its diffuse colour is.
+    /// Returns whether it is a dielectric whatever its diffuse colour is.
     pub fn is_dielectric(&self) -> bool {
         brightness(self.specular) < DIELECTRIC
     }
@@ -57,7 +57,7 @@ impl Glossy {
         }
     }
 
-    /// The texels of a base colour and of a metallic-roughness texture.
+    /// Returns the texels of a base colour and of a metallic-roughness texture.
     pub fn texels(self, texels: [Option<[u8; 4]>; 2]) -> [[u8; 4]; 2] {
         let Metallic { base_color, metallic, roughness } = self.textured(texels).metallic();
         let [r, g, b] = base_color.truncate().to_array().map(encode_srgb8);
@@ -66,7 +66,7 @@ impl Glossy {
         [[r, g, b, alpha], [255, encode_unorm8(roughness), encode_unorm8(metallic), 255]]
     }
 
-    /// The conversion.
+    /// Returns the conversion.
     pub fn metallic(self) -> Metallic {
         let (diffuse, specular) = (self.diffuse.truncate(), self.specular);
         let scattered = 1.0 - specular.max_element();
@@ -85,12 +85,12 @@ impl Glossy {
     }
 }
 
-/// How bright a colour is seen: the lengths of its weighted channels.
+/// Returns the perceived brightness of a colour: the length of its weighted channels.
 fn brightness(color: Vec3) -> f32 {
     (color * color).dot(Vec3::new(0.299, 0.587, 0.114)).sqrt()
 }
 
-/// The root of the quadratic equation for the metalness, 0 … 1.
+/// Returns the root of the quadratic equation for the metalness, 0 … 1.
 fn metalness(diffuse: f32, specular: f32, scattered: f32) -> f32 {
     if specular < DIELECTRIC {
         return 0.0;

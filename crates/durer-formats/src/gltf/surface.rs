@@ -1,4 +1,4 @@
-//! What extensions change in a material.
+//! The changes that extensions make to a material.
 //!
 //! The scene holds one number for what extensions may vary by a texture: there the mean of the texture is taken,
 //! with one warning for each extension. What only a texture can say becomes one (`derived.rs`).
@@ -15,12 +15,12 @@ use std::collections::BTreeMap;
 /// The index that stands for an infinite one (KHR_materials_ior: 0): all that meets the surface is reflected.
 const MIRROR: f32 = 1e6;
 
-/// What is to be done to materials once their images are there, and what is to be told.
+/// Changes to make to materials once their images are loaded, and warnings.
 #[derive(Default)]
 pub struct Todo {
     /// In this order.
     pub jobs: Vec<Job>,
-    /// Of each extension and kind of texture that is not laid on: the first material, and how many there are.
+    /// First material and number of materials for each extension and kind of texture that is not applied.
     left_out: BTreeMap<(&'static str, &'static str), (usize, u64)>,
 }
 

@@ -3,14 +3,15 @@
 use super::json::{Primitive, Root, Whole};
 use crate::{Error, Result};
 
-/// Names of the variants; `variant0`, `variant1` … where there is none.
+/// Returns names of the variants; `variant0`, `variant1` … where there is none.
 pub fn names(root: &Root) -> Vec<String> {
     let variants = root.extensions.variants.as_ref().map_or(&[][..], |v| &v.variants);
     let name = |(i, name): (usize, &Option<String>)| name.clone().unwrap_or(format!("variant{i}"));
     variants.iter().map(|v| &v.name).enumerate().map(name).collect()
 }
 
-/// The number of the variant of this name, or else of this number; `None` where none is asked for.
+/// Returns the number of the variant of this name, or else of this number; `None` where none is
+/// asked for.
 ///
 /// # Errors
 /// Where there is no such variant, with all that there are.
@@ -25,7 +26,7 @@ pub fn find(names: &[String], wanted: Option<&str>) -> Result<Option<u64>> {
     })
 }
 
-/// The material of a primitive in a variant.
+/// Returns the material of a primitive in a variant.
 pub fn material(primitive: &Primitive, variant: Option<u64>) -> Option<Whole> {
     let mappings = primitive.extensions.variants.as_ref().map_or(&[][..], |v| &v.mappings);
     let shown = variant.and_then(|variant| {

@@ -4,7 +4,7 @@ use super::{Grid, HeightMapOptions, check_size};
 use crate::text::{Cursor, quote, utf8};
 use crate::{Error, Result};
 
-/// What stands before the heights.
+/// Header before the heights.
 #[derive(Debug, Default)]
 struct Header {
     columns: Option<u64>,

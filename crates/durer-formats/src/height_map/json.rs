@@ -34,7 +34,7 @@ pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
     Ok(Grid { columns, rows, heights, place: None, format, warnings })
 }
 
-/// The array of heights and its path.
+/// Returns the array of heights and its path.
 fn heights<'a>(value: &'a Value, options: &'a HeightMapOptions) -> Result<(&'a str, &'a Value)> {
     let Value::Object(object) = value else { return Ok(("", value)) };
     let found = match &options.array {

@@ -36,7 +36,7 @@ impl HeightMapFormat {
     pub const ALL: [Self; 6] =
         [Self::Esri, Self::Npy, Self::Npz, Self::Table, Self::Json, Self::Png];
 
-    /// Its usual name.
+    /// Returns its usual name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Esri => "ESRI ASCII grid",
@@ -48,7 +48,7 @@ impl HeightMapFormat {
         }
     }
 
-    /// The endings of its files' names, lower case, without a dot.
+    /// Returns the endings of its files' names, lower case, without a dot.
     pub fn suffixes(self) -> &'static [&'static str] {
         match self {
             Self::Esri => &["asc", "grd"],
@@ -60,7 +60,8 @@ impl HeightMapFormat {
         }
     }
 
-    /// The format that the content speaks for, if any does; a table of numbers says nothing.
+    /// Returns the format that the content speaks for, if any does; a table of numbers says
+    /// nothing.
     pub fn of_content(bytes: &[u8]) -> Option<Self> {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
         match () {
@@ -78,7 +79,7 @@ impl HeightMapFormat {
         }
     }
 
-    /// The format that a file's name speaks for, if any does.
+    /// Returns the format that a file's name speaks for, if any does.
     pub fn of_name(name: &str) -> Option<Self> {
         let (_, suffix) = name.rsplit_once('.')?;
         let suffix = suffix.to_ascii_lowercase();
@@ -86,15 +87,14 @@ impl HeightMapFormat {
     }
 }
 
-/// How a height map is read.
+/// Options for reading a height map.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct HeightMapOptions {
-    /// What is refused: [`Limits::decoded_bytes`], with eight bytes per point.
+    /// Limits: [`Limits::decoded_bytes`] counts eight bytes per point.
     pub limits: Limits,
     /// A height that means "missing", beside what the format itself says.
     pub no_data: Option<f64>,
-    /// Which array of an NPZ file, or which member of a JSON object; `None` takes the one that there
-    /// is, or the first.
+    /// Array of an NPZ file, or member of a JSON object; `None` takes the only one, or the first.
     pub array: Option<String>,
 }
 
@@ -103,12 +103,12 @@ pub struct HeightMapOptions {
 pub struct HeightMap {
     /// The surface. Without coordinates in the file x and z count its columns and rows from 0.
     pub field: HeightField,
-    /// Whether the file says where on a map it lies: then x runs to the east, and z to the south: it
+    /// True if the file states its place on a map: then x runs to the east, and z to the south: it
     /// is minus the file's northing.
     pub on_map: bool,
     /// The format, e.g. `"NPY, i2"`.
     pub format: String,
-    /// What was repaired or left out.
+    /// Repairs and omissions.
     pub warnings: Vec<Warning>,
 }
 

@@ -21,7 +21,7 @@ pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
 }
 
 impl Array {
-    /// The array as rows of heights.
+    /// Returns the array as rows of heights.
     pub fn grid(self, format: &str) -> Result<Grid> {
         let &[rows, columns] = self.shape.as_slice() else {
             let shape: Vec<String> = self.shape.iter().map(u64::to_string).collect();
@@ -82,7 +82,7 @@ pub fn array(bytes: &[u8], limits: &Limits) -> Result<Array> {
     })
 }
 
-/// What stands after a key of the dictionary.
+/// Returns the text after a key of the dictionary.
 fn member<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     let at = header.find(&format!("'{key}'")).or_else(|| header.find(&format!("\"{key}\"")))?;
     let (_, value) = header[at..].split_once(':')?;

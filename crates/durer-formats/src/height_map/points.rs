@@ -20,7 +20,7 @@ pub fn gridded(table: &Grid, is_list: bool, options: &HeightMapOptions) -> Resul
     if is_list { scattered(points, options).map(Some) } else { Ok(None) }
 }
 
-/// The distinct values of a coordinate, rising.
+/// Returns the distinct values of a coordinate, rising.
 fn distinct(points: &[[f64; 3]], axis: usize) -> Vec<f64> {
     let mut values: Vec<f64> = points.iter().map(|p| p[axis] + 0.0).collect();
     values.sort_by(f64::total_cmp);
@@ -28,7 +28,7 @@ fn distinct(points: &[[f64; 3]], axis: usize) -> Vec<f64> {
     values
 }
 
-/// The grid of points that have each x with each y once.
+/// Returns the grid of points that have each x with each y once.
 fn lattice(points: &[[f64; 3]], options: &HeightMapOptions) -> Result<Option<Grid>> {
     if points.iter().any(|p| !p[0].is_finite() || !p[1].is_finite()) {
         return Ok(None);
@@ -52,8 +52,8 @@ fn lattice(points: &[[f64; 3]], options: &HeightMapOptions) -> Result<Option<Gri
     Ok(Some(spread(&x, &y, heights)))
 }
 
-/// A grid on rising coordinates, the farthest row first, evenly spaced; heights between them are interpolated where
-/// they were not even.
+/// Returns A grid on rising coordinates, the farthest row first, evenly spaced; heights between them are
+/// interpolated where they were not even.
 fn spread(x: &[f64], y: &[f64], heights: Vec<f64>) -> Grid {
     let (columns, rows) = (x.len(), y.len());
     let ends = |v: &[f64]| v.first().copied().zip(v.last().copied()).unwrap_or_default();
@@ -91,7 +91,8 @@ fn spread(x: &[f64], y: &[f64], heights: Vec<f64>) -> Grid {
     }
 }
 
-/// The interval of rising values that holds the place `index` of an even grid over all of them, and where in it.
+/// Returns the interval of rising values that holds the place `index` of an even grid over all of them, and
+/// where in it.
 fn between(values: &[f64], index: usize) -> (usize, f64) {
     let last = values.len().saturating_sub(1);
     let (low, high) = (values[0], values[last]);

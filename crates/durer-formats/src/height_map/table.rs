@@ -4,7 +4,7 @@ use super::{Grid, HeightMapOptions, check_size, points};
 use crate::text::{quote, utf8};
 use crate::{Error, Place, Result, Warning, number};
 
-/// Whether text begins with a number or the names of coordinates, after comments.
+/// Returns whether text begins with a number or the names of coordinates, after comments.
 pub fn looks_like_one(bytes: &[u8]) -> bool {
     let text = utf8(bytes.get(..4096).unwrap_or(bytes));
     let line = text.split(|b| *b == b'\n').map(<[u8]>::trim_ascii).find(|l| is_row(l));
@@ -48,7 +48,7 @@ pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
     Ok(grid)
 }
 
-/// What a table's first line is.
+/// Meaning of a table's first line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Heading {
     /// Numbers like the others.
@@ -61,7 +61,8 @@ enum Heading {
     Words,
 }
 
-/// The numbers of a table. Of a first line whose first cell alone is text that cell is missing.
+/// Returns the numbers of a table. Of a first line whose first cell alone is text that cell is
+/// missing.
 fn table(bytes: &[u8], options: &HeightMapOptions) -> Result<(Grid, Heading)> {
     let text = utf8(bytes);
     let mut grid = Grid {
@@ -96,7 +97,8 @@ fn table(bytes: &[u8], options: &HeightMapOptions) -> Result<(Grid, Heading)> {
     Ok((grid, heading.unwrap_or(Heading::None)))
 }
 
-/// What parts the numbers: a semicolon, tab or comma where the first lines have one, else blanks.
+/// Returns the separator of numbers: a semicolon, tab or comma if the first lines have one, else
+/// blanks.
 fn separator(text: &[u8]) -> Option<u8> {
     let probe = text.get(..4096).unwrap_or(text);
     let mut rows = probe.split(|b| *b == b'\n').filter(|l| is_row(l.trim_ascii()));
@@ -122,12 +124,13 @@ fn cells(line: &[u8], separator: Option<u8>) -> impl Iterator<Item = (u64, &[u8]
 const X: [&str; 7] = ["x", "lon", "lng", "long", "longitude", "east", "easting"];
 const Y: [&str; 6] = ["y", "lat", "latitude", "north", "northing", "lati"];
 
-/// A name without quotes, in lower case.
+/// Returns A name without quotes, in lower case.
 fn name(cell: &[u8]) -> String {
     String::from_utf8_lossy(cell).trim_matches(['"', ' ', '\'']).to_ascii_lowercase()
 }
 
-/// What a first line is; text in a corner, before numbers alone, names what the first row and column are.
+/// Returns the meaning of a first line; text in a corner, before numbers alone, names what the first row
+/// and column are.
 fn heading_of(line: &[u8], separator: Option<u8>) -> Heading {
     let words: Vec<bool> = cells(line, separator).map(|(_, cell)| height(cell).is_none()).collect();
     let names: Vec<String> = cells(line, separator).map(|(_, cell)| name(cell)).collect();
@@ -141,7 +144,7 @@ fn heading_of(line: &[u8], separator: Option<u8>) -> Heading {
     }
 }
 
-/// A height; NaN for what stands for a missing one.
+/// Returns A height; NaN for what stands for a missing one.
 fn height(cell: &[u8]) -> Option<f64> {
     let cell = cell.strip_prefix(b"\"").and_then(|c| c.strip_suffix(b"\"")).unwrap_or(cell);
     let none = ["", "na", "n/a", "null", "none", "-", "--"];

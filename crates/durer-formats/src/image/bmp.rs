@@ -13,12 +13,12 @@ const FILE_HEADER: usize = 14;
 /// Two bytes of a run hold up to 255 pixels, and four leave out up to 255 rows.
 const RUN_PIXELS_PER_BYTE: u64 = 1 << 20;
 
-/// How pixels are stored.
+/// Storage of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Packing {
     Plain,
     Runs,
-    /// Where red, green, blue and alpha are among the bits.
+    /// Masks of red, green, blue and alpha.
     Fields([u32; 4]),
 }
 
@@ -29,7 +29,7 @@ struct Header {
     bits: u32,
     packing: Packing,
     palette: Vec<[u8; 4]>,
-    /// Where the pixels begin.
+    /// Offset of the pixels.
     start: usize,
 }
 
@@ -73,8 +73,8 @@ fn short(bytes: &[u8], at: usize) -> Option<u16> {
     Some(u16::from_le_bytes(*bytes.get(at..)?.first_chunk()?))
 }
 
-/// What the headers say as they are: width, height (negative where the first row is the upper one), bits
-/// of a pixel, the number of its packing, and entries of the palette.
+/// Returns the numbers of the headers unchanged: width, height (negative if the first row is the upper
+/// one), bits of a pixel, the number of its packing, and entries of the palette.
 fn numbers(bytes: &[u8], old: bool) -> Option<(i32, i32, u16, u32, u32)> {
     let at = FILE_HEADER;
     if old {
@@ -124,13 +124,13 @@ fn header(bytes: &[u8], name: &str) -> Result<Header> {
 }
 
 impl Header {
-    /// A colour of the palette; black for those that it has not.
+    /// Returns A colour of the palette; black for those that it has not.
     fn color(&self, index: usize) -> [u8; 4] {
         self.palette.get(index).copied().unwrap_or([0, 0, 0, 255])
     }
 }
 
-/// The pixels of a row; fewer where its bytes end.
+/// Returns the pixels of a row; fewer where its bytes end.
 fn row_pixels(header: &Header, row: &[u8]) -> Vec<[u8; 4]> {
     let width = header.width as usize;
     let (bits, size) = (header.bits as usize, header.bits as usize / 8);
@@ -149,7 +149,7 @@ fn row_pixels(header: &Header, row: &[u8]) -> Vec<[u8; 4]> {
     indices.take(width).map(|i| header.color(i)).collect()
 }
 
-/// The parts of a pixel that masks tell, each spread over a byte.
+/// Returns the parts of a pixel that masks tell, each spread over a byte.
 fn fields(value: u32, masks: [u32; 4]) -> [u8; 4] {
     let mut parts = masks.map(|mask| {
         let shift = mask.trailing_zeros().min(31);
@@ -199,7 +199,7 @@ fn runs(header: &Header, data: &[u8]) -> Option<Vec<[u8; 4]>> {
     Some(pixels)
 }
 
-/// A value of `most` levels spread over a byte.
+/// Returns A value of `most` levels spread over a byte.
 fn widen(value: u32, most: u32) -> u8 {
     (u64::from(value) * 255 + u64::from(most) / 2).checked_div(u64::from(most)).unwrap_or(0) as u8
 }
@@ -218,7 +218,7 @@ mod tests {
     use super::*;
     use crate::image::decode;
 
-    /// A file with a header of 40 bytes; `between` are masks or a palette.
+    /// Returns A file with a header of 40 bytes; `between` are masks or a palette.
     fn file(size: [i32; 2], bits: u16, packing: u32, between: &[u8], data: &[u8]) -> Vec<u8> {
         let start = 54 + between.len() as u32;
         let mut bytes = b"BM\0\0\0\0\0\0\0\0".to_vec();

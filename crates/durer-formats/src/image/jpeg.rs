@@ -52,8 +52,8 @@ pub(super) fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Pictur
     Ok((size.0, size.1, pixels))
 }
 
-/// Whether the marker of the end of a JPEG comes after that of its last scan; in the data of a scan neither
-/// can be.
+/// Returns whether the marker of the end of a JPEG comes after that of its last scan; in the data of a scan
+/// neither can be.
 fn has_end(bytes: &[u8]) -> bool {
     let last_scan = bytes.windows(2).rposition(|marker| marker == [0xff, 0xda]);
     last_scan.is_none_or(|at| bytes[at..].windows(2).any(|marker| marker == [0xff, 0xd9]))
@@ -64,8 +64,8 @@ mod tests {
     use super::*;
     use crate::image::decode;
 
-    /// A baseline JPEG of one 8 × 8 block per component, all samples of a component alike: its two
-    /// Huffman tables know differences of 0, 7 and 8 bits, and the end of a block.
+    /// Returns A baseline JPEG of one 8 × 8 block per component, all samples of a component alike:
+    /// its two Huffman tables know differences of 0, 7 and 8 bits, and the end of a block.
     fn jpeg_block(samples: &[u8]) -> Vec<u8> {
         let count = samples.len() as u8;
         let mut bytes = vec![0xff, 0xd8];

@@ -1,5 +1,5 @@
-//! How viewers turn a picture: the orientation that cameras write into its file (CIPA DC-008, *Exif*, tag 0x0112), in
-//! an APP1 segment of a JPEG or an eXIf chunk of a PNG.
+//! The orientation of pictures that cameras write into their files (CIPA DC-008, *Exif*, tag 0x0112), in an APP1
+//! segment of a JPEG or an eXIf chunk of a PNG.
 
 use super::{jpeg, png};
 use durer::target::Pixels;
@@ -8,10 +8,10 @@ use durer::target::Pixels;
 const TAG: u16 = 0x0112;
 const SHORT: u16 = 3;
 
-/// How the stored pixels are to be turned for the picture to stand upright.
+/// Turn of the stored pixels that makes the picture upright.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Orientation {
-    /// As they are.
+    /// No turn.
     #[default]
     Upright = 1,
     /// Left and right are exchanged.
@@ -42,14 +42,15 @@ impl Orientation {
         Self::Left,
     ];
 
-    /// What the file of a picture says; upright where it says nothing, or nothing that makes sense.
+    /// Returns the orientation that a picture's file states; upright if it states none, or an
+    /// invalid one.
     pub fn of(bytes: &[u8]) -> Self {
         let exif = if bytes.starts_with(png::MAGIC) { of_png(bytes) } else { of_jpeg(bytes) };
         let number = exif.and_then(value).unwrap_or(1);
         Self::ALL.get(usize::from(number).wrapping_sub(1)).copied().unwrap_or_default()
     }
 
-    /// The pixels as they are to be seen.
+    /// Returns the pixels as they are to be seen.
     pub fn turned<P: Copy>(self, pixels: Pixels<P>) -> Pixels<P> {
         let (w, h) = (pixels.width(), pixels.height());
         let (width, height) = if self as u8 >= Self::Transposed as u8 { (h, w) } else { (w, h) };
@@ -77,7 +78,7 @@ impl Orientation {
     }
 }
 
-/// The Exif data of a JPEG: its segments are walked through to the first scan.
+/// Returns the Exif data of a JPEG: its segments are walked through to the first scan.
 fn of_jpeg(bytes: &[u8]) -> Option<&[u8]> {
     const APP1: u8 = 0xe1;
     const START_OF_SCAN: u8 = 0xda;
@@ -99,7 +100,7 @@ fn of_jpeg(bytes: &[u8]) -> Option<&[u8]> {
     }
 }
 
-/// That of a PNG.
+/// Returns the metadata of a PNG.
 fn of_png(bytes: &[u8]) -> Option<&[u8]> {
     let mut rest = bytes.get(png::MAGIC.len()..)?;
     loop {
@@ -114,7 +115,7 @@ fn of_png(bytes: &[u8]) -> Option<&[u8]> {
     }
 }
 
-/// The orientation in Exif data, which are laid out as in a TIFF file.
+/// Returns the orientation in Exif data, which are laid out as in a TIFF file.
 fn value(exif: &[u8]) -> Option<u16> {
     let big = match exif.get(..4)? {
         b"MM\0*" => true,

@@ -14,13 +14,13 @@ pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// per two bits).
 const DEFLATE_RATIO: u64 = 1032;
 
-/// Whether a PNG says of itself that it is grey.
+/// Returns whether a PNG says of itself that it is grey.
 pub(crate) fn is_grey(bytes: &[u8]) -> bool {
     // After the signature: the length and the name of the first chunk, width, height and depth.
     bytes.starts_with(MAGIC) && matches!(bytes.get(25), Some(0 | 4))
 }
 
-/// How many bits each sample of a PNG has, at least 8; JPEG files have 8 always.
+/// Returns the number of bits in each sample of a PNG, at least 8; JPEG files have 8 always.
 pub fn bits_per_sample(bytes: &[u8]) -> u8 {
     // After the signature: the length and the name of the first chunk, width and height.
     let depth = bytes.get(24).filter(|_| bytes.starts_with(MAGIC));
@@ -57,7 +57,7 @@ pub(super) fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Pictur
 pub struct DeepImage {
     /// RGBA with straight alpha; greys have three channels alike, what is opaque an alpha of 65535.
     pub pixels: Pixels<[u16; 4]>,
-    /// Which of them the file has.
+    /// Channels of the file.
     pub channels: Channels,
 }
 
@@ -86,8 +86,8 @@ pub fn decode_deep(bytes: &[u8], name: &str, limits: &Limits) -> Result<DeepImag
     Ok(DeepImage { pixels: Pixels::from_data(frame.width, frame.height, pixels)?, channels })
 }
 
-/// The samples of the first picture of a PNG, palettes and transparent colours resolved, 1, 2 and 4 bits as 8, 16
-/// bits as two bytes; `bytes_per_pixel` is what a pixel will take once it is decoded.
+/// Returns the samples of the first picture of a PNG, palettes and transparent colours resolved, 1, 2 and 4
+/// bits as 8, 16 bits as two bytes; `bytes_per_pixel` is what a pixel will take once it is decoded.
 fn png_samples(
     bytes: &[u8],
     bytes_per_pixel: u64,
@@ -132,7 +132,7 @@ fn rgba<S: Copy, T: Copy>(
     })
 }
 
-/// The nearest of 256 levels.
+/// Returns the nearest of 256 levels.
 fn to_8_bit(sample: u16) -> u8 {
     ((u32::from(sample) * 255 + 32_767) / 65_535) as u8
 }
@@ -143,7 +143,7 @@ mod tests {
     use crate::Error;
     use crate::image::decode;
 
-    /// A PNG of one row.
+    /// Returns A PNG of one row.
     fn png_row(width: u32, color: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Vec<u8> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, width, 1);
@@ -220,7 +220,7 @@ mod tests {
         }
     }
 
-    /// The checksum of a PNG chunk (ISO 3309).
+    /// Returns the checksum of a PNG chunk (ISO 3309).
     fn crc(bytes: &[u8]) -> u32 {
         !bytes.iter().fold(u32::MAX, |crc, &byte| {
             (0..8).fold(crc ^ u32::from(byte), |c, _| {

@@ -15,7 +15,7 @@ const HEADER: usize = 18;
 /// A run-length packet of two bytes at least holds up to 128 pixels.
 const PIXELS_PER_BYTE: u64 = 64;
 
-/// What the pixels are.
+/// Kind of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Indexed,
@@ -67,8 +67,8 @@ impl Header {
         (known && fits && header.width > 0 && header.height > 0).then_some(header)
     }
 
-    /// The bytes of a header without its number of bits of alpha, which many writers get wrong: 32 bits have
-    /// alpha, and so have 16 of grey.
+    /// Returns the bytes of a header without its number of bits of alpha, which many writers get wrong: 32
+    /// bits have alpha, and so have 16 of grey.
     fn without_alpha(&self, head: &[u8]) -> Vec<u8> {
         let mut head = head.to_vec();
         if let Some(descriptor) = head.last_mut() {
@@ -79,7 +79,7 @@ impl Header {
     }
 }
 
-/// Whether bytes begin like a TGA file.
+/// Returns whether bytes begin like a TGA file.
 pub(super) fn is_tga(bytes: &[u8]) -> bool {
     Header::of(bytes).is_some()
 }
@@ -122,7 +122,7 @@ mod tests {
     use super::*;
     use crate::image::decode;
 
-    /// A file of two by two pixels.
+    /// Returns A file of two by two pixels.
     fn file(image_type: u8, bits: u8, descriptor: u8, map: &[u8], data: &[u8]) -> Vec<u8> {
         let mut bytes = vec![1, u8::from(!map.is_empty()), image_type];
         bytes.extend([

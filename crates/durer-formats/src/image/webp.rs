@@ -6,7 +6,7 @@ use crate::{Limits, Result};
 use image_webp::WebPDecoder;
 use std::io::Cursor;
 
-/// Whether bytes begin like a WebP file.
+/// Returns whether bytes begin like a WebP file.
 pub(super) fn is_webp(bytes: &[u8]) -> bool {
     bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP")
 }

@@ -47,7 +47,7 @@ pub(super) fn points(bytes: &[u8], header: &Header, mut each: impl FnMut(&[u8]))
     }
 }
 
-/// The data of the variable length record that a program marked so.
+/// Returns the data of the variable length record that a program marked so.
 fn record<'a>(bytes: &'a [u8], user: &str, number: u16) -> Option<&'a [u8]> {
     let mut at = usize::from(u16::from_le_bytes(take(bytes, 94)?));
     for _ in 0..u32::from_le_bytes(take(bytes, 100)?) {
@@ -89,7 +89,7 @@ fn check(bytes: &[u8], header: &Header, vlr: &LazVlr) -> Result<()> {
     Ok(())
 }
 
-/// How many chunks the table of chunks has.
+/// Returns the number of chunks in the table of chunks.
 fn chunks(bytes: &[u8], data: usize) -> Option<usize> {
     let offset = |at| take(bytes, at).map(i64::from_le_bytes);
     let mut at = offset(data)?;
@@ -101,16 +101,16 @@ fn chunks(bytes: &[u8], data: usize) -> Option<usize> {
     Some(u32::from_le_bytes(count) as usize)
 }
 
-/// What is read next of a chunk in layers.
+/// Next item to read of a chunk in layers.
 #[derive(Debug, Clone, Copy)]
 enum Next {
-    /// So many bytes of the first point.
+    /// Number of bytes of the first point.
     Point(usize),
     /// The number of points.
     Count,
     /// Sizes of so many layers; bytes of those before.
     Sizes(usize, usize),
-    /// So many bytes of layers.
+    /// Number of bytes of layers.
     Layers(usize),
 }
 
@@ -119,12 +119,12 @@ enum Next {
 struct Guard<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Where the data begin, while the table of chunks is read: where the crate goes on without a
-    /// table, it counts on being there.
+    /// Offset of the data while the table of chunks is read: the crate goes on there if there is no
+    /// table, so the reader has to be at that place.
     start: Option<usize>,
     /// Bytes of a point and number of layers, where points are compressed in layers.
     layout: Option<(usize, usize)>,
-    /// What is next, once points are read.
+    /// Next item, once points are read.
     next: Option<Next>,
 }
 
@@ -147,7 +147,7 @@ impl<'a> Guard<'a> {
         self.next = self.layout.map(|(point, _)| Next::Point(point));
     }
 
-    /// What is next after these bytes; `None` where layers are longer than the file.
+    /// Returns the item after these bytes; `None` if layers are longer than the file.
     fn after(&self, next: Next, read: &[u8]) -> Option<Next> {
         let (point, layers) = self.layout?;
         let left = self.bytes.len() - self.at;

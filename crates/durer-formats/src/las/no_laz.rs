@@ -1,9 +1,9 @@
-//! What stands in for LAZ without the feature `laz`.
+//! A replacement for LAZ without the feature `laz`.
 
 use super::Header;
 use crate::{Error, Place, Result};
 
-/// Nothing.
+/// Returns an unknown system.
 ///
 /// # Errors
 /// Always.

@@ -2,7 +2,8 @@ use super::*;
 use crate::{Limits, NoResources};
 use durer::scene::{Mesh, Topology, UpAxis};
 
-/// A header of version 1.2, or 1.4 for formats from 6 on; points of format 0 to 10 follow `records`.
+/// Returns A header of version 1.2, or 1.4 for formats from 6 on; points of format 0 to 10 follow
+/// `records`.
 fn header(format: u8, length: usize, count: u32, records: &[u8], number: u32) -> Vec<u8> {
     let new = format & 0x3f >= 6;
     let size = if new { 375 } else { HEADER };
@@ -28,7 +29,7 @@ fn header(format: u8, length: usize, count: u32, records: &[u8], number: u32) ->
     bytes
 }
 
-/// A point of a format.
+/// Returns A point of a format.
 fn point(format: u8, place: [i32; 3], intensity: u16, color: [u16; 3]) -> Vec<u8> {
     let (length, at) = FORMATS[usize::from(format)];
     let mut bytes = vec![0; length];
@@ -120,7 +121,7 @@ mod compressed {
     use super::*;
     use ::laz::{LasZipCompressor, LazVlr, LazVlrBuilder};
 
-    /// The points of a format, compressed in chunks of 300.
+    /// Returns the points of a format, compressed in chunks of 300.
     fn laz(format: u8) -> Vec<u8> {
         let points = points(format, 65535);
         let vlr = LazVlrBuilder::default().with_point_format(format, 0).expect("known");

@@ -59,7 +59,7 @@ fn set_colors(material: &mut Material, m: &Statements) {
     material.emissive = m.emissive.map_or(Vec3::ZERO, color::linear3);
 }
 
-/// The statements with colours divided by 255, where they are written so.
+/// Returns the statements with colours divided by 255, where they are written so.
 fn from_bytes(m: &Statements) -> Option<Statements> {
     let above = |color: &[f32; 3], limit: f32| color.iter().any(|v| *v > limit);
     // Emission may well be above 1, and so is the ambient colour of what stands for a lamp.
@@ -177,7 +177,7 @@ fn whole(model: &mut Model, images: &mut Images<'_>, map: &Map) -> Option<Textur
     Some(texture(model, map, image))
 }
 
-/// A texture of the scene: equal ones are shared.
+/// Returns A texture of the scene: equal ones are shared.
 fn texture(model: &mut Model, map: &Map, image: usize) -> TextureRef {
     let wrap = if map.clamp { Wrap::ClampToEdge } else { Wrap::Repeat };
     let texture =

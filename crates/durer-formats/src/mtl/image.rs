@@ -8,7 +8,7 @@ use std::collections::HashMap;
 /// Pictures by what they were made of, as indices into the scene's images.
 pub(crate) struct Images<'a> {
     resources: &'a dyn Resources,
-    /// What may still be decoded.
+    /// Rest of the limit for decoded pictures.
     left: Limits,
     decoded: HashMap<String, Option<Image>>,
     numbers: HashMap<Vec<Option<String>>, usize>,
@@ -19,7 +19,7 @@ impl<'a> Images<'a> {
         Self { resources, left: limits, decoded: HashMap::new(), numbers: HashMap::new() }
     }
 
-    /// The picture behind `path`; `None` after a warning.
+    /// Returns the picture behind `path`; `None` after a warning.
     fn decode(&mut self, model: &mut Model, path: &str) -> Option<&Image> {
         if !self.decoded.contains_key(path) {
             let found = self.resources.find(path, self.left.decoded_bytes);
@@ -43,14 +43,14 @@ impl<'a> Images<'a> {
         self.decoded.get(path)?.as_ref()
     }
 
-    /// Whether a picture has any pixel that is not opaque.
+    /// Returns whether a picture has any pixel that is not opaque.
     pub fn has_alpha(&mut self, model: &mut Model, path: &str) -> bool {
         let image = self.decode(model, path);
         image.is_some_and(|image| image.data.iter().any(|pixel| pixel[3] < 255))
     }
 
-    /// Whether a picture shows normals rather than heights; `None` where it cannot be read, after a
-    /// warning. What is grey, or named after heights, is not decoded for it.
+    /// Returns whether a picture shows normals rather than heights; `None` where it cannot be read,
+    /// after a warning. What is grey, or named after heights, is not decoded for it.
     pub fn shows_normals(&mut self, model: &mut Model, path: &str) -> Option<bool> {
         let name = path.to_ascii_lowercase();
         if ["bump", "height", "disp"].iter().any(|word| name.contains(word)) {
@@ -64,7 +64,7 @@ impl<'a> Images<'a> {
         self.decode(model, path).map(is_normal_map)
     }
 
-    /// The scene's number of a picture as it is.
+    /// Returns the scene's number of a picture as it is.
     pub fn whole(&mut self, model: &mut Model, path: &str) -> Option<usize> {
         let key = vec![Some(path.to_owned())];
         if let Some(&number) = self.numbers.get(&key) {
@@ -74,8 +74,8 @@ impl<'a> Images<'a> {
         Some(self.add(model, key, image))
     }
 
-    /// The scene's number of a picture joined from others by `join`, which is given a pixel of
-    /// each where it could be read. Smaller pictures are enlarged by repeating texels.
+    /// Returns the scene's number of a picture joined from others by `join`, which is given a pixel
+    /// of each where it could be read. Smaller pictures are enlarged by repeating texels.
     pub fn joined<const N: usize>(
         &mut self,
         model: &mut Model,
@@ -104,8 +104,8 @@ impl<'a> Images<'a> {
     }
 }
 
-/// Whether a picture is blue on the whole, with red and green in the middle, as normals are that look
-/// away from their surface.
+/// Returns whether a picture is blue on the whole, with red and green in the middle, as normals are
+/// that look away from their surface.
 fn is_normal_map(image: &Image) -> bool {
     let sum = |channel: usize| image.data.iter().map(|p| u64::from(p[channel])).sum::<u64>();
     let count = (image.data.len() as u64).max(1);
@@ -114,7 +114,7 @@ fn is_normal_map(image: &Image) -> bool {
     middle.contains(&red) && middle.contains(&green) && blue >= 160 && blue > red.max(green) + 30
 }
 
-/// A pixel as one grey value: Rec. 709 luma of its stored values.
+/// Returns A pixel as one grey value: Rec. 709 luma of its stored values.
 pub(crate) fn grey([r, g, b, _]: [u8; 4]) -> u8 {
     ((u32::from(r) * 54 + u32::from(g) * 183 + u32::from(b) * 19) >> 8) as u8
 }

@@ -1,4 +1,4 @@
-//! What is to be told about materials, once for all of a kind.
+//! Warnings about materials, one for each kind.
 
 use crate::{Model, Place};
 
@@ -19,10 +19,10 @@ impl Named {
     }
 }
 
-/// What was met while materials were built, and what is known of all of them.
+/// Observations from building materials.
 #[derive(Debug, Default)]
 pub(super) struct Notes {
-    /// Whether `Tr` is the opacity.
+    /// True if `Tr` is the opacity.
     pub tr_is_opacity: bool,
     pub opacity: Named,
     pub invisible: Named,

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 /// A picture with its options.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Map {
-    /// As [`super::relative`] makes it.
+    /// Path as returned by [`super::relative`].
     pub path: String,
     pub clamp: bool,
     /// `-s`: scale of u and v.
@@ -18,7 +18,7 @@ pub(super) struct Map {
     pub strength: f64,
 }
 
-/// What a material's statements say; `None` where there is none.
+/// Values of a material's statements; `None` for missing ones.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Statements {
     pub diffuse: Option<[f32; 3]>,
@@ -46,7 +46,7 @@ pub(super) struct Statements {
 #[derive(Debug, Default)]
 pub(super) struct Library {
     pub materials: HashMap<String, Statements>,
-    /// Whether `Tr` is the opacity: it is nowhere 0 and somewhere 1, of materials without `d`.
+    /// True if `Tr` is the opacity: it is nowhere 0 and somewhere 1, of materials without `d`.
     pub tr_is_opacity: bool,
 }
 
@@ -131,7 +131,7 @@ impl Library {
     }
 }
 
-/// Three sRGB values, or one for all three.
+/// Returns three sRGB values, or one for all three.
 fn color(cursor: &mut Cursor<'_>) -> Result<[f32; 3]> {
     let mut values = [0.0; 3];
     let count = cursor.floats(&mut values)?;
@@ -147,7 +147,7 @@ fn color(cursor: &mut Cursor<'_>) -> Result<[f32; 3]> {
     })
 }
 
-/// One finite number.
+/// Returns one finite number.
 fn value(cursor: &mut Cursor<'_>) -> Result<f32> {
     match cursor.float()? {
         Some(v) if v.is_finite() => Ok(v as f32),

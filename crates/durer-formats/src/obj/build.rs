@@ -105,7 +105,7 @@ fn linear_colors(colors: impl Iterator<Item = Vec3>) -> Vec<Vec4> {
     colors.map(|c| color::linear3(c.to_array()).extend(1.0)).collect()
 }
 
-/// The mesh of lines or points, with only the vertices that it uses, in the file's order.
+/// Returns the mesh of lines or points, with only the vertices that it uses, in the file's order.
 fn loose(
     parsed: &Parsed,
     indices: &[u32],
@@ -133,7 +133,8 @@ fn loose(
     Some(mesh)
 }
 
-/// The mesh of triangles; vertices are the file's positions, or triples where corners have more.
+/// Returns the mesh of triangles; vertices are the file's positions, or triples where corners have
+/// more.
 fn triangles(model: &mut Model, parsed: Parsed, origin: DVec3) -> Mesh {
     let has_objects = parsed.has_objects();
     let Parsed { positions, colors, tex_coords, normals, triangles, faces, .. } = parsed;

@@ -31,7 +31,7 @@ pub(crate) struct Corners {
 }
 
 impl Corners {
-    /// Whether vertices are triples.
+    /// Returns whether vertices are triples.
     pub fn keyed(&self) -> bool {
         self.keyed
     }

@@ -1,4 +1,4 @@
-//! How much an OBJ file holds: counted before anything is allocated for it.
+//! The amount of data in an OBJ file, counted before anything is allocated for it.
 
 use crate::budget::MODEL;
 use crate::{Error, Limits, Place, Result};
@@ -12,7 +12,7 @@ pub(super) struct Counts {
     pub triangles: usize,
     pub lines: usize,
     pub points: usize,
-    /// Whether there is a smoothing group: a statement that only switches smoothing off names none.
+    /// True if there is a smoothing group: a statement that only switches smoothing off names none.
     pub smoothing: bool,
 }
 
@@ -37,7 +37,7 @@ pub(super) fn count(text: &[u8]) -> Counts {
     counts
 }
 
-/// Whether the operand of `s` means that faces are flat.
+/// Returns whether the operand of `s` means that faces are flat.
 pub(super) fn is_off(operand: Option<&[u8]>) -> bool {
     let operand = operand.unwrap_or_default().trim_ascii();
     operand.is_empty() || operand == b"0" || operand.eq_ignore_ascii_case(b"off")
@@ -55,7 +55,7 @@ fn words(line: &[u8]) -> usize {
 }
 
 impl Counts {
-    /// Triangles, lines and points together.
+    /// Returns triangles, lines and points together.
     fn primitives(&self) -> u64 {
         self.triangles as u64 + self.lines as u64 + self.points as u64
     }

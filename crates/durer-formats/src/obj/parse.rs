@@ -22,8 +22,8 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// What its primitives are a part of, and are called: the object in files of several, else the group; the other of the
-    /// two where there is none.
+    /// Returns the name of its primitives, which is that of their part: the object in files with several, else the group;
+    /// the other of the two if one is missing.
     pub fn name(&self, has_objects: bool) -> &str {
         let (first, second) = match has_objects {
             true => (&self.object, &self.group),
@@ -33,7 +33,7 @@ impl Run {
     }
 }
 
-/// What the statements say.
+/// Contents of the statements.
 #[derive(Debug, Default)]
 pub(super) struct Parsed {
     pub positions: Vec<DVec3>,
@@ -89,14 +89,14 @@ struct Parser<'a> {
     material: Option<usize>,
     object: &'a [u8],
     group: &'a [u8],
-    /// What the last run of triangles, lines and points was begun for.
+    /// Parts and materials for which the last run of triangles, lines and points was begun.
     open: [Option<Part<'a>>; 3],
     /// The largest color value, to tell 0…1 from 0…255.
     brightest: f32,
     /// Faces with three or more corners so far.
     faces: usize,
-    /// What stands for the normal of a corner that has none: [`NONE`], or in files with smoothing groups
-    /// a number from that of the normals on: that for flat faces, then one for each group.
+    /// Placeholder for the normal of a corner that has none: [`NONE`], or in files with smoothing groups
+    /// a number that follows those of the normals: the first for flat faces, then one for each group.
     smoothing: u32,
     groups: HashMap<&'a [u8], u32>,
 }
@@ -306,7 +306,7 @@ impl<'a> Parser<'a> {
         self.cursor.error(message)
     }
 
-    /// The number of a thing from the file's index: from 1, or back from −1.
+    /// Returns the number of a thing from the file's index: from 1, or back from −1.
     fn resolve(&self, index: i64, kind: Kind) -> Result<u32> {
         let (total, so_far) = match kind {
             Kind::Position => (self.counts.positions, self.out.positions.len()),

@@ -1,4 +1,4 @@
-//! What is wrong with an OBJ file, and costs only the element that it is wrong with.
+//! Faults of an OBJ file that cost only the element that contains them.
 
 use crate::text::Tally;
 use crate::{Error, Model, Place, Result};

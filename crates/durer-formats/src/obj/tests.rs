@@ -16,7 +16,7 @@ fn words(model: &Model) -> Vec<String> {
     model.warnings.iter().map(ToString::to_string).collect()
 }
 
-/// The sum of the triangles' areas.
+/// Returns the sum of the triangles' areas.
 fn area(mesh: &Mesh) -> f64 {
     let twice = |i| {
         let [a, b, c] = mesh.triangle(i).map(|v| mesh.positions[v as usize].as_dvec3());

@@ -21,7 +21,7 @@ pub enum AnimationFormat {
 }
 
 impl AnimationFormat {
-    /// The largest width and height that it can say, in pixels.
+    /// Returns the largest width and height that it can say, in pixels.
     pub const fn max_side(self) -> u32 {
         match self {
             Self::Png => i32::MAX.unsigned_abs(),
@@ -30,7 +30,7 @@ impl AnimationFormat {
         }
     }
 
-    /// The parts of a second that it counts in.
+    /// Returns the parts of a second that it counts in.
     const fn ticks(self) -> f64 {
         match self {
             Self::Png | Self::WebP => 1000.0,
@@ -38,8 +38,8 @@ impl AnimationFormat {
         }
     }
 
-    /// The shortest and longest time that a picture can be shown, in seconds. Viewers show a picture of less
-    /// than 2/100 s in a GIF for 10/100 s.
+    /// Returns the shortest and longest time that a picture can be shown, in seconds. Viewers show a picture
+    /// of less than 2/100 s in a GIF for 10/100 s.
     pub const fn times(self) -> (f64, f64) {
         match self {
             Self::Png | Self::WebP => (0.001, 65.0),
@@ -48,18 +48,18 @@ impl AnimationFormat {
     }
 }
 
-/// What is known of an animation before its first picture.
+/// Facts about an animation that are known before its first picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Columns and rows.
     pub size: (u32, u32),
-    /// How many pictures there will be.
+    /// Number of pictures.
     pub frames: u32,
-    /// How long all of them are shown, in seconds.
+    /// Time that all pictures take, in seconds.
     pub seconds: f64,
-    /// Whether pictures may be transparent. Where they may not, their alpha is left out of a PNG.
+    /// True if pictures may be transparent. Where they may not, their alpha is left out of a PNG.
     pub alpha: bool,
-    /// How hard a PNG tries to be small.
+    /// Effort of PNG compression.
     pub compression: Compression,
 }
 
@@ -117,7 +117,8 @@ impl<W: Write + Seek> Animation<W> {
         }
     }
 
-    /// How long the next picture is shown, in the format's parts of a second. Rounding errors do not add up.
+    /// Returns the time of the next picture, in the format's parts of a second. Rounding errors do not add
+    /// up.
     fn delay(&self) -> u32 {
         let Options { frames, seconds, .. } = self.options;
         let ticks = seconds * self.format.ticks() / f64::from(frames);
@@ -143,7 +144,7 @@ impl<W: Write + Seek> Animation<W> {
     }
 }
 
-/// Whether the format can say all that.
+/// Checks that the format can store all of that.
 fn check(format: AnimationFormat, options: &Options) -> Result<()> {
     let (width, height) = options.size;
     let wrong =
@@ -197,7 +198,7 @@ fn push_png<W: Write>(
 /// `RIFF`, its length, `WEBP`.
 const RIFF_HEADER: usize = 12;
 
-/// The header with an open length, and what holds for all pictures.
+/// Returns the header with an open length, and what holds for all pictures.
 fn begin_webp<W: Write>(mut out: W, options: &Options) -> Result<W> {
     let (width, height) = options.size;
     out.write_all(b"RIFF\0\0\0\0WEBP")?;
@@ -211,7 +212,7 @@ fn begin_webp<W: Write>(mut out: W, options: &Options) -> Result<W> {
     Ok(out)
 }
 
-/// The lower three bytes, the lowest first.
+/// Returns the lower three bytes, the lowest first.
 fn three_bytes(number: u32) -> [u8; 3] {
     let [a, b, c, _] = number.to_le_bytes();
     [a, b, c]
@@ -259,7 +260,7 @@ mod tests {
 
     const SIZE: (u32, u32) = (20, 12);
 
-    /// Three pictures: the second has less, the third is transparent in part.
+    /// Returns three pictures: the second has less, the third is transparent in part.
     fn pictures() -> Vec<Pixels<[u8; 4]>> {
         let mut first = shades(SIZE.0, SIZE.1);
         first.data_mut().iter_mut().for_each(|p| p[3] = 255);

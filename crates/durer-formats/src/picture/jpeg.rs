@@ -19,7 +19,7 @@ pub fn write<W: Write>(out: W, pixels: &Pixels<[u8; 4]>, encoding: &Encoding) ->
     Ok(matches!(colors, Cow::Owned(_)))
 }
 
-/// The picture as viewers show it on white.
+/// Returns the picture as viewers show it on white.
 fn on_white(pixels: &Pixels<[u8; 4]>) -> Cow<'_, Pixels<[u8; 4]>> {
     if is_opaque(pixels) {
         return Cow::Borrowed(pixels);
@@ -33,7 +33,7 @@ fn on_white(pixels: &Pixels<[u8; 4]>) -> Cow<'_, Pixels<[u8; 4]>> {
     Cow::Owned(opaque)
 }
 
-/// A channel over white, rounded.
+/// Returns A channel over white, rounded.
 fn over_white(channel: u8, alpha: u8) -> u8 {
     let (c, a) = (u32::from(channel), u32::from(alpha));
     ((c * a + 255 * (255 - a) + 127) / 255) as u8
@@ -58,7 +58,7 @@ mod tests {
         (bytes, flattened)
     }
 
-    /// The largest difference of a channel, after decoding.
+    /// Returns the largest difference of a channel, after decoding.
     fn worst(pixels: &Pixels<[u8; 4]>, bytes: &[u8]) -> u8 {
         let decoded = image::decode(bytes, "a.jpg", &Limits::default()).unwrap();
         assert_eq!((decoded.width, decoded.height), (pixels.width(), pixels.height()));

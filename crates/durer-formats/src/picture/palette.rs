@@ -50,7 +50,7 @@ pub fn indexed(pixels: &Pixels<[u8; 4]>) -> Indexed {
     Indexed { palette, indices, transparent }
 }
 
-/// The colours of what is not transparent, in order, with their numbers of pixels.
+/// Returns the colours of what is not transparent, in order, with their numbers of pixels.
 fn counted(pixels: &Pixels<[u8; 4]>) -> Vec<([u8; 3], u64)> {
     let seen = pixels.data().iter().filter(|p| p[3] >= SEEN);
     let mut all: Vec<[u8; 3]> = seen.map(|&[r, g, b, _]| [r, g, b]).collect();
@@ -103,7 +103,8 @@ impl Group {
     }
 }
 
-/// The colour of most pixels where it has half of them, so that a background stays as it is; else the mean.
+/// Returns the colour of most pixels where it has half of them, so that a background stays as it is; else
+/// the mean.
 fn representative(colors: &[([u8; 3], u64)]) -> [u8; 3] {
     let pixels = colors.iter().map(|c| c.1).sum::<u64>().max(1);
     let main = colors.iter().rev().max_by_key(|c| c.1);
@@ -116,7 +117,7 @@ fn representative(colors: &[([u8; 3], u64)]) -> [u8; 3] {
     }
 }
 
-/// Each pixel's index, from a sorted list of colours.
+/// Returns each pixel's index, from a sorted list of colours.
 fn indices(pixels: &Pixels<[u8; 4]>, found: &[([u8; 3], u8)], transparent: u8) -> Vec<u8> {
     let mut last = ([0; 4], transparent);
     let index = |&pixel: &[u8; 4]| {

@@ -6,7 +6,7 @@ use crate::{Error, Place, Result};
 
 /// A source of values.
 pub(super) trait Values {
-    /// The next value. Integers up to 53 bits are exact in a double.
+    /// Returns the next value. Integers up to 53 bits are exact in a double.
     ///
     /// # Errors
     /// The end of the file, or a word that is no number.
@@ -18,16 +18,16 @@ pub(super) trait Values {
     /// As [`Values::next`].
     fn skip(&mut self, kind: Type, count: u64) -> Result<()>;
 
-    /// The fewest bytes that a row of `element` takes.
+    /// Returns the fewest bytes that a row of `element` takes.
     fn least_size(&self, element: &Element) -> u64;
 
-    /// The fewest bytes that a value takes.
+    /// Returns the fewest bytes that a value takes.
     fn least_value(&self, kind: Type) -> u64;
 
     /// Bytes not read yet.
     fn bytes_left(&self) -> u64;
 
-    /// Where the last value stood.
+    /// Returns the place of the last value.
     fn place(&self) -> Place;
 
     /// Notes that the file has no more values.
@@ -48,10 +48,10 @@ pub(super) trait Values {
         Err(Error::Decode { place: self.place(), message })
     }
 
-    /// Whether a value was asked for that the file has no more.
+    /// Returns whether a value was asked for that the file has no more.
     fn ended(&self) -> bool;
 
-    /// What to say about values beyond the last element.
+    /// Returns the place and message for values beyond the last element.
     fn left_over(&mut self) -> Option<(Place, String)>;
 }
 
@@ -90,7 +90,7 @@ impl Values for Ascii<'_> {
         2 * element.properties.len() as u64
     }
 
-    /// A digit and a blank.
+    /// Returns A digit and a blank.
     fn least_value(&self, _kind: Type) -> u64 {
         2
     }
@@ -127,7 +127,7 @@ pub(super) struct Binary<'a, const LITTLE: bool> {
     bytes: &'a [u8],
     at: usize,
     last: usize,
-    /// Where `bytes` begins in the file.
+    /// Offset of `bytes` in the file.
     offset: u64,
     ended: bool,
 }
@@ -211,7 +211,7 @@ impl<const LITTLE: bool> Values for Binary<'_, LITTLE> {
     }
 }
 
-/// What to say of so many bytes beyond the last element.
+/// Returns the place and message for bytes beyond the last element.
 pub(super) fn left_over(left: u64, place: u64) -> Option<(Place, String)> {
     let message = || format!("{left} bytes after the last element were ignored");
     // Writers that end the data as they end a line leave one or two bytes.

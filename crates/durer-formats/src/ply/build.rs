@@ -12,7 +12,7 @@ use crate::obj::corners::{Corner, Corners, NONE};
 use crate::text::Tally;
 use crate::{Error, Limits, Place, Result};
 
-/// What vertex numbers and counts must keep to.
+/// Limits of vertex numbers and counts.
 #[derive(Debug)]
 pub(super) struct Bounds {
     pub limits: Limits,
@@ -24,13 +24,13 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// Of a file, of which nothing is wrong so far.
+    /// Creates the builder of a file, without faults so far.
     pub fn new(header: &Header, limits: Limits) -> Self {
         let vertex_count = header.element("vertex").map_or(0, |e| e.count);
         Self { limits, vertex_count, dangling: Tally::default(), dangling_vertex: 0.0 }
     }
 
-    /// The vertex that a value names, if there is one; others are counted.
+    /// Returns the vertex that a value names, if there is one; others are counted.
     pub fn vertex(&mut self, value: f64, values: &impl Values) -> Option<u32> {
         if value >= 0.0 && value < self.vertex_count as f64 && value.fract() == 0.0 {
             return Some(value as u32);
@@ -42,7 +42,7 @@ impl Bounds {
         None
     }
 
-    /// What is wrong with the first number that names no vertex.
+    /// Returns the message about the first number that names no vertex.
     pub fn dangling_message(&self) -> String {
         let (value, count) = (self.dangling_vertex, self.vertex_count);
         let message = format!("vertex {value} does not exist: there are {count}, counted from 0");
@@ -114,7 +114,7 @@ pub(super) struct Builder {
     pub vertices: Vertices,
     pub faces: Faces,
     pub edges: Edges,
-    /// What is said about elements that are not drawn.
+    /// Messages about elements that are not drawn.
     pub unread: Vec<String>,
 }
 
@@ -129,7 +129,7 @@ impl Builder {
         }
     }
 
-    /// Whether there is a triangle to show.
+    /// Returns whether there is a triangle to show.
     pub fn has_faces(&self) -> bool {
         self.faces.has_any()
     }

@@ -31,7 +31,7 @@ pub(super) struct Faces {
 }
 
 impl Faces {
-    /// Whether there is a triangle to show.
+    /// Returns whether there is a triangle to show.
     pub fn has_any(&self) -> bool {
         !self.facets.triangles.indices.is_empty()
     }
@@ -162,7 +162,7 @@ impl Faces {
         Ok(())
     }
 
-    /// What is said about faces that were left out or changed.
+    /// Returns the messages about faces that were left out or changed.
     pub fn warnings(&self) -> [(&Tally, &'static str); 2] {
         [
             (&self.small, "faces have fewer than three vertices and were left out"),
@@ -174,7 +174,7 @@ impl Faces {
     }
 }
 
-/// The number of a picture; the largest stands for none.
+/// Returns the number of a picture; the largest stands for none.
 fn picture(value: f64) -> u32 {
     if value >= 0.0 { value as u32 } else { u32::MAX }
 }

@@ -3,7 +3,7 @@
 use crate::text::{Cursor, Tally, quote};
 use crate::{Error, Place, Result};
 
-/// How values are written.
+/// Encoding of values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Ascii,
@@ -43,7 +43,7 @@ pub(super) struct Element {
     pub properties: Vec<Property>,
 }
 
-/// What a file declares.
+/// Declarations of a file's header.
 #[derive(Debug)]
 pub(super) struct Header {
     pub encoding: Encoding,
@@ -69,7 +69,7 @@ impl Type {
         }
     }
 
-    /// The largest value of an integer type, by which colors are divided; 1 for others.
+    /// Returns the largest value of an integer type, by which colors are divided; 1 for others.
     pub fn full_scale(self) -> f64 {
         match self {
             Self::I8 => 127.0,
@@ -102,7 +102,7 @@ impl Type {
 }
 
 impl Header {
-    /// The element of a name, in any case.
+    /// Returns the element of a name, in any case.
     pub fn element(&self, name: &str) -> Option<&Element> {
         self.elements.iter().find(|e| e.name.eq_ignore_ascii_case(name))
     }
@@ -160,7 +160,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header> {
     Ok(Header { encoding, elements, textures, length, lines: cursor.line() + 1, unknown })
 }
 
-/// The picture that a comment names, as VCG's library and those that follow it write it.
+/// Returns the picture that a comment names, as VCG's library and those that follow it write it.
 fn texture(cursor: &mut Cursor<'_>) -> Option<String> {
     let names = cursor.word()?.eq_ignore_ascii_case(b"TextureFile");
     let name = names.then(|| String::from_utf8_lossy(cursor.rest()).into_owned());

@@ -1,4 +1,4 @@
-//! What elements and properties of a PLY file are, by the names that writers give them.
+//! The names that writers give to elements and properties of a PLY file.
 
 use super::header::{Element, Property, Type};
 
@@ -14,19 +14,19 @@ pub(super) const OPACITY: usize = 15;
 pub(super) const SCALE: usize = 16;
 pub(super) const ROTATION: usize = 19;
 
-/// What an element is.
+/// Role of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
     Vertex,
     Face,
     Strip,
     Edge,
-    /// Nothing to draw: cameras, materials.
+    /// Element without geometry, such as cameras and materials.
     Quiet,
     Other,
 }
 
-/// What becomes of a property.
+/// Use of a property.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Use {
     /// A value of the vertex.
@@ -53,19 +53,19 @@ pub(super) struct Step {
     pub kind: Type,
 }
 
-/// How the rows of an element are read.
+/// Plan for reading the rows of an element.
 #[derive(Debug)]
 pub(super) struct Plan {
     pub role: Role,
     pub steps: Vec<Step>,
-    /// Whether rows of faces or edges have a colour.
+    /// True if rows of faces or edges have a colour.
     pub colored: bool,
     /// The element's name, for messages.
     pub name: String,
 }
 
 impl Plan {
-    /// The plan for an element.
+    /// Creates the plan for an element.
     pub fn new(element: &Element) -> Self {
         let role = role(&element.name.to_ascii_lowercase());
         let mut steps: Vec<Step> = Vec::new();
@@ -95,7 +95,7 @@ impl Plan {
         }
     }
 
-    /// Whether some property is used so.
+    /// Returns whether some property is used so.
     pub fn has(&self, usage: Use) -> bool {
         self.steps.iter().any(|s| s.usage == usage)
     }
@@ -133,7 +133,7 @@ fn usage(role: Role, property: &Property) -> Use {
     }
 }
 
-/// The place of a vertex's value.
+/// Returns the place of a vertex's value.
 fn slot(name: &str) -> Option<usize> {
     Some(match name {
         "x" | "px" | "posx" | "pos_x" | "position_x" => 0,

@@ -26,10 +26,10 @@ use std::sync::Arc;
 /// The most bytes of a header.
 const MOST_HEADER: u64 = 64 << 10;
 
-/// What a vertex or a face takes while its piece is made.
+/// Bytes for a vertex or a face while its piece is made.
 const IN_PIECE: u64 = 80;
 
-/// What a triangle takes on the screen; a point is two.
+/// Bytes for a triangle on the screen; a point is two.
 const ON_SCREEN: u64 = 52;
 
 /// A piece ends early at so many corners of triangles, where polygons are large.
@@ -39,7 +39,7 @@ const MOST_CORNERS: usize = 4 << 20;
 pub struct Pieces<R> {
     header: Header,
     stream: Stream<R>,
-    /// Where the vertices begin, bytes of each, and how many.
+    /// Offset of the vertices, bytes of each, and their number.
     first_vertex: u64,
     row: u64,
     count: u64,
@@ -49,26 +49,26 @@ pub struct Pieces<R> {
     /// Vertices or faces of a piece.
     at_once: u64,
     options: ReadOptions,
-    /// What positions are relative to, once that is known.
+    /// Origin of positions, once it is known.
     origin: Option<DVec3>,
     faces_seen: Option<FacesSeen>,
     vertices_seen: Option<VerticesSeen>,
     _charge: Charge,
 }
 
-/// What is known of the faces after they were read once.
+/// Facts about the faces after the first reading.
 struct FacesSeen {
     faces: Faces,
     bounds: Bounds,
     triangles: u64,
-    /// What is missing at the end of the file, or left over.
+    /// Message about the end of the file: missing or extra values.
     end: Option<(Place, String)>,
     /// A bit for each vertex that something is drawn with.
     used: Vec<u64>,
     _charge: Charge,
 }
 
-/// What is known of the vertices after they were read once.
+/// Facts about the vertices after the first reading.
 #[derive(Debug, Clone, Copy, Default)]
 struct VerticesSeen {
     infinite: usize,
@@ -76,7 +76,7 @@ struct VerticesSeen {
     brightest: f32,
 }
 
-/// The elements of vertices and of faces, of a file that can be read in pieces.
+/// Returns the elements of vertices and of faces, of a file that can be read in pieces.
 fn elements(header: &Header) -> Option<(&Element, Option<&Element>)> {
     let mut there = header.elements.iter().filter(|element| element.count > 0);
     let (vertex, face) = (there.next()?, there.next());
@@ -176,7 +176,7 @@ impl<R: Read + Seek> Pieces<R> {
         Ok(())
     }
 
-    /// What positions are relative to: of wide numbers their middle, where they are far off.
+    /// Returns the origin of positions: the middle of wide numbers that are far off.
     fn origin(&mut self) -> Result<DVec3> {
         if let Some(origin) = self.origin {
             return Ok(origin);
@@ -280,7 +280,7 @@ impl<R: Read + Seek> Pieces<R> {
         Ok(())
     }
 
-    /// A scene of some vertices and what is drawn with them.
+    /// Returns A scene of some vertices and what is drawn with them.
     fn scene(&mut self, mut mesh: Mesh) -> Result<Scene> {
         if self.faces.is_none() {
             mesh.topology = Topology::Points;
@@ -440,7 +440,7 @@ impl<R: Read + Seek> crate::Pieces for Pieces<R> {
 }
 
 impl<R: Read + Seek> Pieces<R> {
-    /// What is missing at the end of the file, or left over.
+    /// Returns the message about missing or extra values at the end of the file.
     fn end(&mut self) -> Option<(Place, String)> {
         match &self.faces_seen {
             Some(seen) => seen.end.clone(),

@@ -10,7 +10,7 @@ use crate::obj::corners::NONE;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RowColor {
     rgba: [f32; 4],
-    /// Whether rows have one.
+    /// True if rows have one.
     used: bool,
 }
 
@@ -32,7 +32,7 @@ impl RowColor {
         Ok(())
     }
 
-    /// Its number in the palette; [`NONE`] where rows have none.
+    /// Returns its number in the palette; [`NONE`] where rows have none.
     pub fn number(self, palette: &mut Palette) -> u32 {
         if self.used { palette.number(self.rgba) } else { NONE }
     }

@@ -111,12 +111,12 @@ impl Shape {
         self.scale.max_element() - self.scale.min_element() < ROUND
     }
 
-    /// The triangles of what is drawn.
+    /// Returns the triangles of what is drawn.
     fn triangles(&self) -> &'static [u32] {
         if self.is_round() { &SOLID } else { &FLAT }
     }
 
-    /// The radii as vectors, the least last; `None` where they are not finite.
+    /// Returns the radii as vectors, the least last; `None` where they are not finite.
     fn radii(&self) -> Option<[Vec3; 3]> {
         let [w, x, y, z] = self.rotation;
         let scale = 2.0 / (w * w + x * x + y * y + z * z);
@@ -145,7 +145,7 @@ impl Shape {
     }
 }
 
-/// What shows splats: their colours hold the light already.
+/// Returns the material of splats: their colours include the light already.
 fn material() -> Material {
     let (name, model) = ("splats".to_owned(), ShadingModel::Unlit);
     Material { name, model, base_color: Vec4::ONE, ..Material::default() }

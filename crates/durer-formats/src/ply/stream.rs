@@ -12,10 +12,10 @@ const AT_ONCE: usize = 64 << 10;
 pub(super) struct Stream<R> {
     source: R,
     little: bool,
-    /// Where the file ends.
+    /// End of the file.
     end: u64,
     buffer: Vec<u8>,
-    /// Where the buffer begins in the file.
+    /// Start of the buffer in the file.
     start: u64,
     /// The next byte of the buffer, and the first of the last value.
     at: usize,
@@ -24,7 +24,7 @@ pub(super) struct Stream<R> {
 }
 
 impl<R: Read + Seek> Stream<R> {
-    /// A file of so many bytes, from its start on.
+    /// Creates A file of so many bytes, from its start on.
     pub fn new(source: R, little: bool, end: u64) -> Self {
         // Nothing is in the buffer: the first value seeks.
         let (buffer, start) = (Vec::new(), u64::MAX);
@@ -49,7 +49,7 @@ impl<R: Read + Seek> Stream<R> {
         Ok(())
     }
 
-    /// Where the next value stands.
+    /// Returns the position of the next value.
     pub fn position(&self) -> u64 {
         self.start.saturating_add(self.at as u64)
     }

@@ -16,18 +16,18 @@ const SH_C0: f64 = 0.282_094_791_773_878_14;
 /// The vertices so far; each list but that of the positions may be empty.
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
-    /// What the mesh will have; colours are sRGB values.
+    /// Attributes of the mesh; colours are sRGB values.
     pub all: Attributes,
     /// Positions where the file has double precision.
     pub wide: Option<Vec<DVec3>>,
     /// Size and rotation of Gaussian splats.
     pub splats: Vec<Shape>,
-    /// Which values the file has, and by what they are divided.
+    /// Divisors of the values that the file has.
     present: [Option<f64>; VALUES],
     kinds: Kinds,
 }
 
-/// What a vertex has besides its position.
+/// Attributes of a vertex besides its position.
 #[derive(Debug, Default, Clone, Copy)]
 struct Kinds {
     normal: bool,
@@ -81,17 +81,17 @@ impl Vertices {
         self.splats.reserve_exact(if splat { count } else { 0 });
     }
 
-    /// Whether the file has `count` values from `slot` on.
+    /// Returns whether the file has `count` values from `slot` on.
     fn has(&self, slot: usize, count: usize) -> bool {
         self.present.iter().skip(slot).take(count).all(Option::is_some)
     }
 
-    /// How many there are.
+    /// Returns the number of bytes.
     pub fn len(&self) -> usize {
         self.wide.as_ref().map_or(self.all.positions.len(), Vec::len)
     }
 
-    /// The positions, relative to an origin where they are wide.
+    /// Returns the positions, relative to an origin where they are wide.
     pub fn into_positions(self, origin: DVec3) -> Vec<Vec3> {
         self.wide.map_or(self.all.positions, |wide| place::narrow(&wide, origin))
     }
@@ -146,7 +146,7 @@ impl Vertices {
         }
     }
 
-    /// The colour of a splat seen from all around, and its opacity.
+    /// Returns the colour of a splat seen from all around, and its opacity.
     fn splat_color(&self, coefficients: DVec3, opacity: f64) -> Vec4 {
         let color = DVec3::splat(0.5) + SH_C0 * coefficients;
         let color = color.as_vec3().clamp(Vec3::ZERO, Vec3::ONE);

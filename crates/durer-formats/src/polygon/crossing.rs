@@ -12,8 +12,8 @@ use std::collections::HashMap;
 /// Outlines of more crossings per corner are noise, and would take memory without end.
 const CROSSINGS_PER_CORNER: usize = 4;
 
-/// How many pairs of edges cross properly, each through the inside of the other; `None` where the
-/// budget is used up, or there are too many.
+/// Returns the number of pairs of edges that cross properly, each through the inside of the other;
+/// `None` if the budget is used up, or there are too many.
 pub(super) fn count(points: &[DVec2], budget: &mut Budget) -> Option<usize> {
     let n = points.len();
     let edge = |i: usize| [points[i], points[(i + 1) % n]];
@@ -98,7 +98,7 @@ fn counter_clockwise([a, b, c]: [usize; 3], points: &[DVec2]) -> Option<[usize; 
 }
 
 impl Resolved {
-    /// The corner that a point of the overlay is; crossings are kept.
+    /// Returns the corner that a point of the overlay is; crossings are kept.
     fn corner(&mut self, origin: &Origin) -> Corner {
         let along = |(edge, t): (EdgeId, f64)| ([edge.from, edge.to], t);
         match *origin {

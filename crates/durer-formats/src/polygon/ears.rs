@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 /// Ears that are thinner than this part of their length are cut when there are no others.
 const THIN: f64 = 1e-6;
 
-/// What is cut next: first what is good, then what is there.
+/// Preference among corners to cut: good ones first, then any.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Taste {
     /// No slivers.
@@ -67,7 +67,7 @@ pub(super) fn cut(
     Some(true)
 }
 
-/// What a corner is.
+/// State of a corner.
 enum Ear {
     /// It can be cut off.
     Whole,
@@ -85,7 +85,7 @@ struct Queue {
 }
 
 impl Queue {
-    /// All of n corners.
+    /// Returns all of n corners.
     fn of(n: usize) -> Self {
         Self { corners: (0..n).collect(), queued: vec![true; n], waiting: vec![Vec::new(); n] }
     }
@@ -108,7 +108,7 @@ impl Queue {
     }
 }
 
-/// What is left of the outline: corners by number, each with its neighbours.
+/// Rest of the outline: corners by number, each with its neighbours.
 struct Ring<'a> {
     points: &'a [DVec2],
     next: Vec<usize>,
@@ -133,7 +133,7 @@ impl<'a> Ring<'a> {
         ring
     }
 
-    /// The corners that are left.
+    /// Returns the corners that are left.
     fn corners(&self) -> impl Iterator<Item = usize> {
         (0..self.points.len()).filter(|&i| self.there[i])
     }
@@ -164,7 +164,7 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// Whether a corner is where the one before it is, or the tip of a spike.
+    /// Returns whether a corner is where the one before it is, or the tip of a spike.
     fn is_nothing(&self, i: usize) -> bool {
         let [a, b, c] = self.around(i).map(|i| self.points[i]);
         a == b || (orient2d(a, b, c) == Orientation::Collinear && (a - b).dot(c - b) > 0.0)
@@ -193,7 +193,7 @@ impl<'a> Ring<'a> {
         Some(Ear::Whole)
     }
 
-    /// Whether the outline enters a triangle at corner q.
+    /// Returns whether the outline enters a triangle at corner q.
     fn is_in_the_way(&self, q: usize, corners: [usize; 3], taste: Taste) -> bool {
         let point = self.points[q];
         if corners.iter().any(|&i| i == q || self.points[i] == point) {
@@ -218,7 +218,7 @@ impl<'a> Ring<'a> {
         in_the_way
     }
 
-    /// Whether nothing but rounding is enclosed by what is left.
+    /// Returns whether the rest encloses nothing but rounding errors.
     fn has_no_area(&self) -> bool {
         let Some(origin) = self.corners().next().map(|i| self.points[i]) else { return true };
         let from = |i: usize| self.points[i] - origin;
@@ -241,7 +241,7 @@ struct Cells {
     /// Cells per unit.
     scale: DVec2,
     side: usize,
-    /// Where each cell's corners begin, row by row.
+    /// Start of each cell's corners, row by row.
     starts: Vec<u32>,
     corners: Vec<u32>,
 }
@@ -269,7 +269,7 @@ impl Cells {
         cells
     }
 
-    /// Column and row, those at the border for what lies outside.
+    /// Returns the column and row, those at the border for what lies outside.
     fn place(&self, p: DVec2) -> [usize; 2] {
         ((p - self.low) * self.scale).to_array().map(|v| (v as usize).min(self.side - 1))
     }
@@ -279,7 +279,7 @@ impl Cells {
         row * self.side + column
     }
 
-    /// The corners of all cells that the box around a triangle touches.
+    /// Returns the corners of all cells that the box around a triangle touches.
     fn near(&self, triangle: [DVec2; 3]) -> impl Iterator<Item = &u32> {
         let [a, b, c] = triangle;
         let [left, bottom] = self.place(a.min(b).min(c));

@@ -12,15 +12,16 @@ const BENT: f64 = 1e-3;
 #[derive(Debug)]
 pub(super) struct Plane {
     origin: DVec3,
-    /// Of length 1.
+    /// Normal of length 1.
     normal: DVec3,
-    /// What counts as no distance.
+    /// Distance that counts as zero.
     none: f64,
 }
 
 impl Plane {
-    /// The plane through the first corner, across Newell's normal; where that is nothing, across the
-    /// largest triangle of the fan. `None` for corners on one line, or that are not finite.
+    /// Returns the plane through the first corner, across Newell's normal; where that is nothing,
+    /// across the largest triangle of the fan. `None` for corners on one line, or that are not
+    /// finite.
     pub fn of(points: &[DVec3]) -> Option<Self> {
         let (&origin, rest) = points.split_first()?;
         let size = rest.iter().map(|p| (*p - origin).length()).fold(0.0, f64::max);
@@ -35,14 +36,16 @@ impl Plane {
         size.is_finite().then_some(Self { origin, normal, none: FLAT * size })
     }
 
-    /// Whether corners lie so far off the plane that edges which cross in it pass each other in space.
+    /// Returns whether corners lie so far off the plane that edges which cross in it pass each other
+    /// in space.
     pub fn is_left_by(&self, points: &[DVec3]) -> bool {
         let limit = self.none / FLAT * BENT;
         points.iter().any(|p| (*p - self.origin).dot(self.normal).abs() > limit)
     }
 
-    /// A point along the normal, on the plane of two axes that the polygon is seen best in. What lies
-    /// in the plane already keeps its coordinates, so that no rounding bends straight lines.
+    /// Returns A point along the normal, on the plane of two axes that the polygon is seen best in.
+    /// What lies in the plane already keeps its coordinates, so that no rounding bends straight
+    /// lines.
     pub fn flat(&self, p: DVec3) -> DVec2 {
         let height = (p - self.origin).dot(self.normal);
         let p = if height.abs() > self.none { p - height * self.normal } else { p };

@@ -79,7 +79,7 @@ impl Replaced {
         Ok(())
     }
 
-    /// Each face with its triangles.
+    /// Returns each face with its triangles.
     fn all(&self) -> impl Iterator<Item = (usize, &[[u32; 3]])> {
         let starts = [0].into_iter().chain(self.faces.iter().map(|(_, end)| *end));
         let range = |(start, &(face, end)): (usize, &(usize, usize))| {

@@ -2,7 +2,7 @@ use super::*;
 use durer::math::Vec3;
 use durer::scene::Part;
 
-/// A mesh of one polygon, as a fan, moved into space by `place`.
+/// Returns A mesh of one polygon, as a fan, moved into space by `place`.
 fn fan(outline: &[[f64; 2]], place: impl Fn([f64; 2]) -> Vec3) -> Mesh {
     let n = outline.len() as u32;
     let indices = (2..n).flat_map(|i| [0, i - 1, i]).collect();
@@ -29,7 +29,7 @@ fn triangle_normals(mesh: &Mesh) -> Vec<DVec3> {
     (0..mesh.triangle_count()).map(normal).collect()
 }
 
-/// The sum of the triangles' areas; all must run along `up`.
+/// Returns the sum of the triangles' areas; all must run along `up`.
 fn area(mesh: &Mesh, up: DVec3) -> f64 {
     let normals = triangle_normals(mesh);
     assert!(normals.iter().all(|n| n.dot(up) > 0.0), "{normals:?}");

@@ -9,9 +9,9 @@ pub struct Column {
     pub kind: String,
     /// The value of rows that are older than the column, as a literal.
     pub default: Option<String>,
-    /// Whether it is the number of the row.
+    /// True if it is the number of the row.
     pub is_number: bool,
-    /// Whether rows have a place for it: values that are computed when asked for have none.
+    /// True if rows have a place for it: values that are computed when asked for have none.
     pub is_stored: bool,
 }
 
@@ -41,7 +41,7 @@ impl Token {
     }
 }
 
-/// The columns of a table with numbered rows, in their order; `None` for anything else.
+/// Returns the columns of a table with numbered rows, in their order; `None` for anything else.
 pub fn columns(sql: &str) -> Option<Vec<Column>> {
     let tokens = tokens(sql);
     let start = tokens.iter().position(|t| *t == Token::Sign('('))?;
@@ -65,7 +65,7 @@ pub fn columns(sql: &str) -> Option<Vec<Column>> {
     Some(list)
 }
 
-/// What stands between commas, up to the closing bracket, and where that is.
+/// Returns the parts between commas, up to the closing bracket, and the position of that bracket.
 fn parts(tokens: &[Token]) -> Option<(Vec<&[Token]>, usize)> {
     let (mut parts, mut from, mut depth) = (Vec::new(), 0, 0_usize);
     for (i, token) in tokens.iter().enumerate() {
@@ -85,7 +85,8 @@ fn parts(tokens: &[Token]) -> Option<(Vec<&[Token]>, usize)> {
     None
 }
 
-/// Whether it is no column but a rule of the table: then the only column of its primary key, if it is one.
+/// Parses a rule of the table in place of a column: returns the only column of its primary key, if it is
+/// one.
 fn constraint(part: &[Token]) -> Option<Option<String>> {
     let rules = ["CONSTRAINT", "PRIMARY", "UNIQUE", "CHECK", "FOREIGN"];
     part.first().filter(|first| rules.iter().any(|rule| first.is(rule)))?;
@@ -133,7 +134,7 @@ fn column(part: &[Token]) -> Option<Column> {
     Some(Column { is_number: is_key && kind == "INTEGER", name, kind, default, is_stored })
 }
 
-/// A value in JSON; `None` where it is an expression or null.
+/// Returns A value in JSON; `None` where it is an expression or null.
 fn literal(tokens: &[Token]) -> Option<String> {
     let (sign, tokens) = match tokens {
         [Token::Sign('-'), rest @ ..] => ("-", rest),

@@ -11,7 +11,7 @@ pub use write::{Database as NewDatabase, Table as NewTable, index, record};
 
 use std::borrow::Cow;
 
-/// What a file begins with.
+/// First bytes of a file.
 pub const MAGIC: &[u8; 16] = b"SQLite format 3\0";
 
 /// Bytes of the file's header, on the first page.
@@ -45,7 +45,7 @@ impl<'a> From<&'a str> for Value<'a> {
 }
 
 impl Value<'_> {
-    /// The text, where it is one.
+    /// Returns the text, where it is one.
     pub fn text(&self) -> Option<&str> {
         match self {
             Self::Text(text) => Some(text),
@@ -53,7 +53,7 @@ impl Value<'_> {
         }
     }
 
-    /// The whole number, where it is one.
+    /// Returns the whole number, where it is one.
     pub fn integer(&self) -> Option<i64> {
         match self {
             Self::Integer(value) => Some(*value),

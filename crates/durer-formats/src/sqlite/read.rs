@@ -7,7 +7,7 @@ use std::borrow::Cow;
 /// Trees of pages are so high, at most, as in SQLite.
 const MAX_DEPTH: usize = 20;
 
-/// How texts are stored.
+/// Encoding of texts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Encoding {
     Utf8,
@@ -34,7 +34,7 @@ pub struct Table {
     pub name: String,
     /// Its first page; 0 where it has none.
     pub root: u32,
-    /// How it was made.
+    /// Statement that created it.
     pub sql: String,
 }
 
@@ -76,7 +76,7 @@ impl Database {
         Ok(Self { page, usable, encoding, bytes })
     }
 
-    /// The number that tells what the file is for.
+    /// Returns the number that tells what the file is for.
     pub fn application(&self) -> u32 {
         word(&self.bytes, 68).unwrap_or(0)
     }
@@ -85,7 +85,7 @@ impl Database {
         self.bytes.len().div_ceil(self.page) as u64
     }
 
-    /// A page, and what it is called in messages.
+    /// Returns A page, and what it is called in messages.
     fn page(&self, number: u32) -> Result<&[u8]> {
         let start = (number as usize).checked_sub(1).and_then(|i| i.checked_mul(self.page));
         let found = start.and_then(|start| self.bytes.get(start..start.checked_add(self.page)?));
@@ -115,12 +115,12 @@ impl Database {
         Ok(tables)
     }
 
-    /// The rows of a table, by its first page.
+    /// Returns the rows of a table, by its first page.
     pub fn rows(&self, root: u32) -> Rows {
         Rows { stack: vec![(root, 0)], left: self.pages(), bytes_left: self.bytes.len() }
     }
 
-    /// The values of a row.
+    /// Returns the values of a row.
     ///
     /// # Errors
     /// Where they are more than the row has room for.
@@ -172,7 +172,7 @@ impl Database {
     }
 }
 
-/// Where the rows of a table are read.
+/// Position of the reader in a table's rows.
 pub struct Rows {
     /// Pages from the first one downwards, and what of each comes next.
     stack: Vec<(u32, usize)>,
@@ -183,7 +183,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// The next row; `None` at the end.
+    /// Returns the next row; `None` at the end.
     ///
     /// # Errors
     /// Where pages are not those of a table.
@@ -240,7 +240,7 @@ impl Rows {
         Ok(Row { number: number as i64, record })
     }
 
-    /// The bytes of a row that goes on on other pages.
+    /// Returns the bytes of a row that goes on on other pages.
     fn follow(
         &mut self,
         database: &Database,
@@ -265,7 +265,7 @@ struct Node<'a> {
     number: u32,
     /// The whole page: cells are found from its start.
     page: &'a [u8],
-    /// Where the list of cells begins.
+    /// Offset of the list of cells.
     list: usize,
     is_leaf: bool,
     count: usize,
@@ -294,7 +294,7 @@ impl<'a> Node<'a> {
         self.page.get(usize::from(at[0]) << 8 | usize::from(at[1])..)
     }
 
-    /// A page below; after those of the cells there is one more.
+    /// Returns A page below; after those of the cells there is one more.
     fn child(&self, index: usize) -> Option<u32> {
         match index.cmp(&self.count) {
             _ if self.is_leaf => None,
@@ -305,7 +305,7 @@ impl<'a> Node<'a> {
     }
 }
 
-/// The bytes of a record that stand on the page of its row.
+/// Returns the bytes of a record that stand on the page of its row.
 fn local(length: usize, usable: usize) -> usize {
     let most = usable - 35;
     if length <= most {
@@ -316,7 +316,7 @@ fn local(length: usize, usable: usize) -> usize {
     if part <= most { part } else { least }
 }
 
-/// The bytes of a value of a kind.
+/// Returns the bytes of a value of a kind.
 fn size(kind: u64) -> Option<usize> {
     match kind {
         0 | 8 | 9 => Some(0),
@@ -332,7 +332,7 @@ fn word(bytes: &[u8], at: usize) -> Option<u32> {
     Some(u32::from_be_bytes(*bytes.get(at..)?.first_chunk()?))
 }
 
-/// A number of up to nine bytes, and what follows it.
+/// Returns A number of up to nine bytes, and what follows it.
 fn varint(bytes: &[u8]) -> Option<(u64, &[u8])> {
     let mut value = 0;
     for (i, &byte) in bytes.iter().enumerate().take(9) {

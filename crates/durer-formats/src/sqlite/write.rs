@@ -34,12 +34,12 @@ pub struct Database {
 }
 
 impl Database {
-    /// A database without a table; what is taken first stands in for the first page.
+    /// Creates A database without a table; what is taken first stands in for the first page.
     pub fn new() -> Self {
         Self { out: vec![0; PAGE], pages: 1, schema: Vec::new() }
     }
 
-    /// The pages since the last call, which follow those of that one.
+    /// Returns the pages since the last call, which follow those of that one.
     pub fn take(&mut self) -> Vec<u8> {
         std::mem::take(&mut self.out)
     }
@@ -68,8 +68,8 @@ impl Database {
         self.schema.push(record(&[kind, name, table, Value::Integer(root.into()), sql]));
     }
 
-    /// The first page, and what is left of the others; `application` tells what the file is for, `version` which of its
-    /// kind it is.
+    /// Returns the first page, and what is left of the others; `application` tells what the file is for,
+    /// `version` which of its kind it is.
     pub fn finish(mut self, application: u32, version: u32) -> Result<(Vec<u8>, Vec<u8>)> {
         let mut first = Page::new(TABLE_LEAF, HEADER);
         let mut table = Vec::new();
@@ -85,7 +85,7 @@ impl Database {
         Ok((bytes, self.out))
     }
 
-    /// The cell of a row; what is too long goes to pages of its own.
+    /// Returns the cell of a row; what is too long goes to pages of its own.
     fn row(&mut self, number: i64, record: &[u8]) -> Result<Vec<u8>> {
         if record.len() > LONGEST {
             let (value, limit) = (record.len() as u64, LONGEST as u64);
@@ -112,14 +112,14 @@ impl Database {
     }
 }
 
-/// The number of the page after one.
+/// Returns the number of the page after one.
 fn after(page: u32) -> u32 {
     if page + 1 == LOCKED { page + 2 } else { page + 1 }
 }
 
-/// The header of the file.
+/// Returns the header of the file.
 fn header(pages: u32, application: u32, version: u32) -> [u8; HEADER] {
-    /// Of the library whose format this is.
+    /// Version of the library whose format this is.
     const VERSION: u32 = 3_040_000;
     let mut header = [0; HEADER];
     let mut put = |at: usize, bytes: &[u8]| header[at..at + bytes.len()].copy_from_slice(bytes);
@@ -171,7 +171,7 @@ impl Page {
         self.ends.push(self.cells.len());
     }
 
-    /// The page, with a last child where it has children.
+    /// Returns the page, with a last child where it has children.
     fn bytes(&self, last: Option<u32>) -> Vec<u8> {
         let mut bytes = vec![0; self.before];
         let start = PAGE - self.cells.len();
@@ -198,7 +198,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table without a row.
+    /// Creates A table without a row.
     pub fn new() -> Self {
         Self { leaf: Page::new(TABLE_LEAF, 0), last: 0, leaves: Vec::new() }
     }
@@ -247,14 +247,15 @@ impl Table {
     }
 }
 
-/// So many children has a page: each takes 4 bytes, a number of 9, an offset of 2, and for indices
+/// Number of children in a page: each takes 4 bytes, a number of 9, an offset of 2, and for indices
 /// a record of at most …
 const CHILDREN: usize = (PAGE - 12) / (15 + RECORD);
 
 /// … so many bytes, its length included.
 const RECORD: usize = 40;
 
-/// Parts of a list, none with more than `most` items (2 at least), nor with much fewer than another.
+/// Returns parts of a list, none with more than `most` items (2 at least), nor with much fewer than
+/// another.
 fn evenly<T>(list: &[T], most: usize) -> impl Iterator<Item = &[T]> {
     let count = list.len().div_ceil(most);
     (0..count).map(move |i| &list[i * list.len() / count..(i + 1) * list.len() / count])
@@ -296,7 +297,7 @@ pub fn index(to: &mut Database, records: &[Vec<u8>]) -> Result<u32> {
     Ok(level.first().map_or(0, |(page, _)| *page))
 }
 
-/// A row as it is stored: the kinds of its values, then the values.
+/// Returns A row as it is stored: the kinds of its values, then the values.
 pub fn record(values: &[Value<'_>]) -> Vec<u8> {
     let (mut kinds, mut bodies) = (Vec::new(), Vec::new());
     for value in values {

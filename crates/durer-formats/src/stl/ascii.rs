@@ -58,19 +58,19 @@ struct Ascii<'a> {
     /// Vertices that are not three numbers, and what is wrong with the first.
     bad_vertices: Tally,
     bad_vertex: Option<Error>,
-    /// Whether the facet that is open has such a vertex.
+    /// True if the facet that is open has such a vertex.
     spoiled: bool,
     limits: Limits,
 }
 
-/// Whether the first facet of a solid begins here: its name may be on the same line.
+/// Returns whether the first facet of a solid begins here: its name may be on the same line.
 fn begins_facet(rest: &[u8]) -> bool {
     let mut words = Cursor::new(rest.get(..64).unwrap_or(rest));
     let mut is = |word: &[u8]| words.word().is_some_and(|w| w.eq_ignore_ascii_case(word));
     is(b"facet") && is(b"normal")
 }
 
-/// Whether the next solid begins here, of a file that is one line.
+/// Returns whether the next solid begins here, of a file that is one line.
 fn begins_solid(rest: &[u8]) -> bool {
     let mut words = Cursor::new(rest.get(..256).unwrap_or(rest));
     words.word().is_some_and(|w| w.eq_ignore_ascii_case(b"solid"))
@@ -287,7 +287,7 @@ impl<'a> Ascii<'a> {
         }
     }
 
-    /// The names of the solids; those that have none, or that of one before, get a number.
+    /// Returns the names of the solids; those that have none, or that of one before, get a number.
     fn names<'b>(&'b self) -> Vec<String> {
         let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
         let several = self.solids.len() > 1;

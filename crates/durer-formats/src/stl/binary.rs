@@ -8,7 +8,7 @@ use crate::{Error, Limits, Model, Place, ReadOptions, Result};
 use durer::math::{DVec3, Vec3};
 use durer::scene::{Mesh, Part};
 
-/// What the format is called in a model.
+/// Name of the format in a model.
 pub(super) const BINARY: &str = "STL, binary";
 
 /// Bytes of a binary file that [`read_binary_stream`] works on at a time: few enough for the cache.
@@ -39,7 +39,7 @@ pub fn read_binary_stream(
     facets.into_model(Model { format: BINARY.to_owned(), ..Model::default() }, false)
 }
 
-/// What a triangle takes: its corners, some shared, and numbers of them.
+/// Bytes for a triangle: its corners, some shared, and their numbers.
 pub(super) const BYTES: u64 = 48;
 
 /// Takes the memory for so many triangles from the budget.
@@ -68,7 +68,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Model> {
     facets.into_model(model, false)
 }
 
-/// The triangles that are really there.
+/// Returns the triangles that are really there.
 fn records<'a>(model: &mut Model, data: &'a [u8], count: u32) -> Result<&'a [[u8; RECORD]]> {
     let (whole, rest) = data.as_chunks::<RECORD>();
     let (said, there) = (count as usize, whole.len());
@@ -104,7 +104,7 @@ pub(super) fn vertices(record: &[u8; RECORD]) -> [Vec3; 3] {
 /// The facets of a binary file so far.
 pub(super) struct Facets {
     mesh: Mesh,
-    /// How many there will be.
+    /// Expected number of facets.
     count: usize,
     palette: Palette,
     /// Vertices that are not finite, counted while they are in the cache.
@@ -169,7 +169,8 @@ mod tests {
         read(bytes, &NoResources, &ReadOptions::default()).expect_err("broken").to_string()
     }
 
-    /// A binary file: header text, count field, and per triangle nine numbers and the attributes.
+    /// Returns A binary file: header text, count field, and per triangle nine numbers and the
+    /// attributes.
     fn binary(header: &[u8], count: u32, triangles: &[([f32; 9], u16)]) -> Vec<u8> {
         let mut bytes = header.to_vec();
         bytes.resize(80, b' ');

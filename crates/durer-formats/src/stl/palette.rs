@@ -18,12 +18,12 @@ pub(super) struct Palette {
     table: [f32; 256],
     /// The body's color, where the file is Magics'.
     body: Option<Vec4>,
-    /// Of `MATERIAL=`: the color of highlights.
+    /// Colour of highlights, from `MATERIAL=`.
     highlight: Option<Vec4>,
 }
 
 impl Palette {
-    /// The palette of a file that begins so.
+    /// Creates the palette of a file that begins so.
     pub fn new(head: &[u8]) -> Self {
         let text = head.get(..80).unwrap_or_default();
         let mut palette = Self { table: color::linear_bytes(), body: None, highlight: None };
@@ -42,12 +42,13 @@ impl Palette {
         Vec4::new(linear(r), linear(g), linear(b), f32::from(a) / 255.0)
     }
 
-    /// The bits of a facet's attributes of which one says that facets have colors of their own.
+    /// Returns the bits of a facet's attributes of which one says that facets have colors of their
+    /// own.
     pub fn telling(&self) -> u16 {
         if self.body.is_some() { u16::MAX } else { PAINTED }
     }
 
-    /// The color of a facet with these attributes.
+    /// Returns the color of a facet with these attributes.
     pub fn color(&self, attribute: u16) -> Vec4 {
         let five = |bits: u16| ((bits & 31) * 255 / 31) as u8;
         let [low, middle, high] = [attribute, attribute >> 5, attribute >> 10].map(five);
@@ -59,7 +60,7 @@ impl Palette {
         }
     }
 
-    /// What all facets are made of; `None` for the default material.
+    /// Returns the material of all facets; `None` for the default material.
     pub fn material(&self, colored: bool) -> Option<Material> {
         let mut material = match (colored, self.body) {
             (true, _) => color::vertex_color_material(),
@@ -76,7 +77,7 @@ impl Palette {
     }
 }
 
-/// The bytes after a mark.
+/// Returns the bytes after a mark.
 fn after<const N: usize>(text: &[u8], mark: &[u8]) -> Option<[u8; N]> {
     let at = text.windows(mark.len()).position(|w| w == mark)?;
     text.get(at + mark.len()..)?.first_chunk().copied()

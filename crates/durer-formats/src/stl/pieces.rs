@@ -13,7 +13,7 @@ use durer::view::projection::PIECE;
 use durer::work::Charge;
 use std::io::{Read, Seek, SeekFrom};
 
-/// What a triangle takes on the screen.
+/// Bytes for a triangle on the screen.
 const ON_SCREEN: u64 = 52;
 
 /// Triangles that are read at a time.
@@ -35,7 +35,7 @@ pub struct Pieces<R> {
     _charge: Charge,
 }
 
-/// What is known after all of the file was read once.
+/// Facts about the file after the first reading.
 #[derive(Debug, Clone, Copy, Default)]
 struct Looked {
     infinite: usize,
@@ -43,7 +43,8 @@ struct Looked {
 }
 
 impl<R: Read + Seek> Pieces<R> {
-    /// A file that begins with `head`, for which [`super::is_whole_binary`] holds, in pieces of about so many triangles.
+    /// Creates A file that begins with `head`, for which [`super::is_whole_binary`] holds, in pieces of about
+    /// so many triangles.
     ///
     /// # Errors
     /// [`Error::Limit`] for too many triangles, [`durer::Error::Memory`] where the budget has no room for a piece.
@@ -112,7 +113,7 @@ impl<R: Read + Seek> Pieces<R> {
         Ok(found)
     }
 
-    /// A scene of the piece that was made.
+    /// Returns A scene of the piece that was made.
     fn scene(&mut self) -> Scene {
         let colored = self.looked.is_some_and(|looked| looked.colored);
         let mut mesh = Mesh { positions: std::mem::take(&mut self.positions), ..Mesh::default() };
@@ -126,7 +127,7 @@ impl<R: Read + Seek> Pieces<R> {
         Scene { meshes, instances, materials, up_axis: UpAxis::Z, ..Scene::default() }
     }
 
-    /// What is known of the whole file.
+    /// Returns the facts about the whole file.
     fn looked(&mut self) -> Result<Looked> {
         match self.looked {
             Some(looked) => Ok(looked),

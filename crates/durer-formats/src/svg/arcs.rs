@@ -32,7 +32,8 @@ pub(super) fn curves(ends: &Ends, mut curve: impl FnMut([DVec2; 3])) -> Option<(
     Some(())
 }
 
-/// Path data with curves in place of its arcs, as far as it is well-formed; `None` where it has none.
+/// Returns the path data with curves in place of its arcs, as far as it is well-formed; `None` where
+/// it has none.
 pub(super) fn as_curves(data: &str) -> Option<String> {
     if !data.contains(['A', 'a']) {
         return None;
@@ -112,7 +113,7 @@ pub(super) fn as_curves(data: &str) -> Option<String> {
 mod tests {
     use super::*;
 
-    /// The points on the curves of a path, at their ends and in between.
+    /// Returns the points on the curves of a path, at their ends and in between.
     fn points(data: &str) -> Vec<DVec2> {
         let mut at = DVec2::ZERO;
         let mut found = Vec::new();

@@ -19,11 +19,11 @@ const MAX_DEPTH: u32 = 200;
 pub(super) struct Painter<'a> {
     canvas: &'a mut Canvas,
     limits: &'a Limits,
-    /// How deep the node at hand is nested.
+    /// Nesting depth of the current node.
     depth: u32,
     /// Bytes of images that are still allowed.
     bytes_left: u64,
-    /// What need not be made again.
+    /// Images and tiles to use again.
     painted: Painted,
     warnings: BTreeSet<String>,
 }
@@ -35,7 +35,7 @@ impl<'a> Painter<'a> {
         Self { canvas, limits, depth: 0, bytes_left, painted, warnings }
     }
 
-    /// What could not be drawn.
+    /// Returns the messages about what could not be drawn.
     pub fn warnings(self) -> BTreeSet<String> {
         self.warnings
     }
@@ -132,7 +132,7 @@ impl<'a> Painter<'a> {
         outer + 1
     }
 
-    /// Whether the edges of a path are to be smoothed.
+    /// Returns whether the edges of a path are to be smoothed.
     fn smooth(&self, path: &usvg::Path) -> bool {
         self.canvas.options().anti_alias && path.rendering_mode().use_shape_antialiasing()
     }
@@ -212,7 +212,7 @@ impl<'a> Painter<'a> {
         }
     }
 
-    /// A pattern's tile, painted at the size at which it will be seen.
+    /// Returns A pattern's tile, painted at the size at which it will be seen.
     fn pattern(&mut self, pattern: &Arc<usvg::Pattern>, map: DAffine2) -> Option<Paint> {
         let tile = paint::Tile::new(pattern, map)?;
         let key = TileKey::new(pattern, &tile);
@@ -261,7 +261,7 @@ impl<'a> Painter<'a> {
         }
     }
 
-    /// An image as a paint and its frame; the reason where it cannot be shown.
+    /// Returns an image as a paint and its frame; the reason where it cannot be shown.
     fn pixels(&mut self, node: &usvg::Image, map: DAffine2) -> Result<(Paint, Path), String> {
         let key = ImageKey::new(node, map);
         if let Some(found) = key.as_ref().and_then(|key| self.painted.images.get(key)) {
@@ -289,7 +289,7 @@ fn rule(rule: usvg::FillRule) -> FillRule {
     }
 }
 
-/// The only thing in a group, if it is a path that is filled or stroked but not both.
+/// Returns the only thing in a group, if it is a path that is filled or stroked but not both.
 fn single_path(group: &Group) -> Option<&usvg::Path> {
     match group.children() {
         [Node::Path(path)] if path.fill().is_none() || path.stroke().is_none() => Some(path),
@@ -297,7 +297,7 @@ fn single_path(group: &Group) -> Option<&usvg::Path> {
     }
 }
 
-/// Whether a group does nothing but map its content.
+/// Returns whether a group does nothing but map its content.
 fn plain(group: &Group) -> bool {
     !group.should_isolate()
 }
@@ -307,7 +307,7 @@ mod tests {
     use super::*;
     use crate::svg::{Drawing, ReadOptions};
 
-    /// How many tiles and images are painted for a drawing.
+    /// Returns the numbers of tiles and images that are painted for a drawing.
     fn painted(content: &str) -> [usize; 2] {
         let text = format!(
             r#"<svg xmlns="http://www.w3.org/2000/svg" width="60" height="60">{content}</svg>"#

@@ -1,9 +1,9 @@
-//! What filters leave of what they apply to.
+//! The regions of elements that remain after filters.
 
 use std::collections::HashMap;
 use usvg::roxmltree::Node;
 
-/// Each `id` of `url(#id)` in a value.
+/// Returns each `id` of `url(#id)` in a value.
 pub(super) fn links(value: &str) -> impl Iterator<Item = &str> {
     value.split("url(").skip(1).filter_map(|rest| {
         let (inside, _) = rest.split_once(')')?;
@@ -11,7 +11,7 @@ pub(super) fn links(value: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// A list of filters without those that refer to what is `missing`.
+/// Returns A list of filters without those that refer to what is `missing`.
 pub(super) fn without_links(value: &str, missing: impl Fn(&str) -> bool) -> String {
     let (mut out, mut rest) = (String::new(), value);
     while let Some(at) = rest.find("url(") {
@@ -27,8 +27,8 @@ pub(super) fn without_links(value: &str, missing: impl Fn(&str) -> bool) -> Stri
     out.trim().to_owned()
 }
 
-/// Whether what a filter gives shows anything of the colours of what it applies to. Inputs count as *Filter Effects
-/// Module Level 1*, W3C, § 9 has it.
+/// Returns whether a filter's result shows the colours of its element. Inputs count as *Filter Effects Module Level
+/// 1*, W3C, § 9 says.
 pub(super) fn shows_source(filter: Node<'_, '_>) -> bool {
     let mut results: HashMap<&str, bool> = HashMap::new();
     let mut last = true;

@@ -1,4 +1,4 @@
-//! What can be said of elements only when all attributes of all elements are known.
+//! The amendments that need all attributes of all elements.
 
 use super::outline::{Attributes, Bounds, Boxes, path_length};
 use super::shapes::{Reference, Shape};
@@ -12,7 +12,7 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use usvg::roxmltree::Node;
 
-/// What is left to do for an element.
+/// Remaining work for an element.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Later {
     /// Values of properties that make up its transform.
@@ -90,7 +90,7 @@ impl<'a> Attributes<'a> for View<'_, 'a, '_> {
 }
 
 impl<'a> View<'_, 'a, '_> {
-    /// The value that an element has, or takes from around.
+    /// Returns the value that an element has, or takes from around.
     fn inherited(&self, node: Node<'a, '_>, name: &str) -> Option<&str> {
         node.ancestors().find_map(|node| self.value(node, name).filter(|value| *value != "inherit"))
     }
@@ -99,7 +99,8 @@ impl<'a> View<'_, 'a, '_> {
 /// Markers of paths with more vertices are left to usvg.
 const MAX_VERTICES: usize = 100_000;
 
-/// Whether path data have curves, arcs or closed parts: straight open lines are marked as they should be anyway.
+/// Returns whether path data have curves, arcs or closed parts: straight open lines are marked as they should be
+/// anyway.
 fn is_curved_or_closed(data: &str) -> bool {
     data.contains(['a', 'A', 'c', 'C', 's', 'S', 'q', 'Q', 't', 'T', 'z', 'Z'])
 }
@@ -148,7 +149,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         self.node.tag_name().name()
     }
 
-    /// The box that something refers to.
+    /// Returns the box that something refers to.
     fn bounds(&self, view: &View<'_, 'a, 'i>, reference: Reference) -> Option<Bounds> {
         let [width, height] = self.around.units.viewport;
         if reference == Reference::View {

@@ -73,12 +73,13 @@ impl Fonts {
         added
     }
 
-    /// Whether there is none.
+    /// Returns whether there is none.
     pub fn is_empty(&self) -> bool {
         self.database.get().is_none_or(|d| d.is_empty())
     }
 
-    /// The bytes of the font of the given family, or of the first for `None`, and its number in its file.
+    /// Returns the bytes of the font of the given family, or of the first for `None`, and its number in
+    /// its file.
     pub fn find(&self, family: Option<&str>) -> Option<(&[u8], u32)> {
         let database = self.database.get()?;
         let face = match family {
@@ -91,13 +92,13 @@ impl Fonts {
         bytes(face)
     }
 
-    /// The bytes of all fonts in their order, each with its number in its file.
+    /// Returns the bytes of all fonts in their order, each with its number in its file.
     pub fn iter(&self) -> impl Iterator<Item = (&[u8], u32)> {
         let faces = self.database.get().into_iter().flat_map(|database| database.faces());
         faces.filter_map(bytes)
     }
 
-    /// The family of text that names none.
+    /// Returns the family of text that names none.
     pub(super) fn default_family(&self) -> String {
         let database = self.database.get();
         database.map_or_else(String::new, |d| d.family_name(&Family::SansSerif).to_owned())
@@ -108,7 +109,7 @@ impl Fonts {
     }
 }
 
-/// The bytes of a font and its number in its file.
+/// Returns the bytes of a font and its number in its file.
 fn bytes(face: &fontdb::FaceInfo) -> Option<(&[u8], u32)> {
     match &face.source {
         Source::Binary(data) => Some(((**data).as_ref(), face.index)),
@@ -142,7 +143,7 @@ pub(super) fn resolver(told: &Told) -> FontResolver<'_> {
 /// Weights that differ by less look alike.
 const SAME_WEIGHT: u16 = 200;
 
-/// What is to be told where a face is not what was asked for.
+/// Returns a warning if a face is not the one that was asked for.
 fn replaced(font: &usvg::Font, face: &fontdb::FaceInfo) -> Option<String> {
     let is_one_of = |names: &[&str]| face.families.iter().any(|f| names.contains(&f.0.as_str()));
     let (wanted, same_family) = match font.families().first() {
@@ -169,7 +170,7 @@ fn replaced(font: &usvg::Font, face: &fontdb::FaceInfo) -> Option<String> {
     Some(format!("font {wanted} is missing; {found} is used in its place"))
 }
 
-/// A family with what is not usual in its style.
+/// Returns A family with what is not usual in its style.
 fn described(family: &str, weight: u16, slanted: bool, stretch: fontdb::Stretch) -> String {
     let weight = match weight {
         300..500 => String::new(),
@@ -189,7 +190,7 @@ fn described(family: &str, weight: u16, slanted: bool, stretch: fontdb::Stretch)
 /// Letters that are named in a warning, at most.
 const NAMED: usize = 12;
 
-/// What is to be told of letters that no font has: those that are known to be `missing`, and those without a glyph.
+/// Returns a warning about letters that no font has: those known to be `missing`, and those without a glyph.
 pub(super) fn missing_letters(tree: &usvg::Tree, mut missing: BTreeSet<char>) -> Option<String> {
     let mut groups = vec![tree.root()];
     while let Some(group) = groups.pop() {
@@ -212,7 +213,7 @@ pub(super) fn missing_letters(tree: &usvg::Tree, mut missing: BTreeSet<char>) ->
     no_glyphs(missing.into_iter().filter(is_seen))
 }
 
-/// The warning that there are no glyphs for some letters, if there are such letters.
+/// Returns the warning that there are no glyphs for some letters, if there are such letters.
 pub fn no_glyphs(letters: impl Iterator<Item = char>) -> Option<String> {
     let letters: Vec<char> = letters.collect();
     let named = letters.iter().take(NAMED).map(|c| format!("{c} (U+{:04X})", u32::from(*c)));

@@ -7,7 +7,7 @@ use durer::raster::paint::{Filter, Paint, Pattern, Spread};
 use durer::target::Pixels;
 use std::sync::Arc;
 
-/// An image as a paint, its frame, and how many bytes it takes.
+/// Returns an image as a paint, its frame, and how many bytes it takes.
 pub(super) fn paint(
     node: &usvg::Image,
     pixel_from_node: DAffine2,
@@ -49,8 +49,8 @@ pub(super) fn paint(
     Ok((Paint::Pattern(Arc::new(pattern)), frame, cost))
 }
 
-/// The image halved, in each direction, until it has less than twice the pixels that it will cover:
-/// mixing neighbours then misses none.
+/// Returns the image halved, in each direction, until it has less than twice the pixels that it
+/// will cover: mixing neighbours then misses none.
 fn reduced(mut image: Pixels<[u8; 4]>, size: DVec2, pixel_from_node: DAffine2) -> Pixels<[u8; 4]> {
     let seen = size
         * DVec2::new(
@@ -70,7 +70,7 @@ fn reduced(mut image: Pixels<[u8; 4]>, size: DVec2, pixel_from_node: DAffine2) -
     image
 }
 
-/// The means of pairs of pixels; colours count as much as they are opaque.
+/// Returns the means of pairs of pixels; colours count as much as they are opaque.
 fn halved(
     image: &Pixels<[u8; 4]>,
     width: u32,

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-/// How `text-transform` changes letters.
+/// Change of letters by `text-transform`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) enum Case {
     #[default]
@@ -14,7 +14,7 @@ pub(super) enum Case {
 }
 
 impl Case {
-    /// What a value of `text-transform` asks for; `None` for others.
+    /// Parses a value of `text-transform`; `None` for others.
     pub fn of(value: &str) -> Option<Self> {
         Some(match value {
             "none" => Self::AsWritten,
@@ -26,7 +26,7 @@ impl Case {
     }
 }
 
-/// What becomes of the letters of an element.
+/// Changes to the letters of an element.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Letters {
     pub case: Case,
@@ -35,12 +35,13 @@ pub(super) struct Letters {
 }
 
 impl Letters {
-    /// Whether they stay as they are.
+    /// Returns whether they stay as they are.
     pub fn are_as_written(self) -> bool {
         !self.are_apart && self.case == Case::AsWritten
     }
 
-    /// A text as it is to be set; `beside` says whether there are others before it and after it.
+    /// Returns A text as it is to be set; `beside` says whether there are others before it and
+    /// after it.
     pub fn set(self, text: &str, beside: [bool; 2]) -> Cow<'_, str> {
         let cased = match self.case {
             Case::AsWritten => Cow::Borrowed(text),
@@ -65,14 +66,14 @@ fn capitalized(text: &str) -> String {
     out
 }
 
-/// What keeps two letters from being joined. It gets space of its own.
+/// Character that keeps two letters from being joined. It gets space of its own.
 const NON_JOINER: char = '\u{200c}';
 
-/// Of the space between letters what each of a letter and what follows it gets.
+/// Share of the space between letters for each of a letter and its successor.
 pub(super) const SHARE: f64 = 0.5;
 
-/// A text with what keeps letters from being joined after each of them, where another one follows, so that all gaps are alike.
-/// Blanks at the ends of the line and several together stay so: they vanish.
+/// Returns A text with what keeps letters from being joined after each of them, where another one follows, so
+/// that all gaps are alike. Blanks at the ends of the line and several together stay so: they vanish.
 fn kept_apart(text: &str, [has_before, has_after]: [bool; 2]) -> String {
     let mut out = String::with_capacity(2 * text.len());
     let mut left = text.chars().filter(|c| !c.is_whitespace()).count();
@@ -100,7 +101,7 @@ fn kept_apart(text: &str, [has_before, has_after]: [bool; 2]) -> String {
     out
 }
 
-/// Whether a letter may be joined with the next one by nature.
+/// Returns whether a letter may be joined with the next one by nature.
 fn is_joined(c: char) -> bool {
     matches!(c, '\u{600}'..='\u{8ff}' | '\u{900}'..='\u{9ff}' | '\u{a00}'..='\u{a7f}' | '\u{1680}'..='\u{169f}' | '\u{1800}'..='\u{18af}' | '\u{a840}'..='\u{a87f}' | '\u{300}'..='\u{36f}')
 }

@@ -1,8 +1,8 @@
-//! Where offsets of a text lie, by line and column, without counting from its beginning each time.
+//! The lines and columns of offsets in a text, without counting from its beginning each time.
 
 use crate::Place;
 
-/// So many bytes lie between two places that are counted beforehand: as many are looked at for each that is asked for.
+/// Number of bytes between two places that are counted beforehand; at most as many are examined for each query.
 const STEP: usize = if cfg!(test) { 4 } else { 4096 };
 
 /// Lines and columns of a text, both counted from 1, columns in letters.
@@ -36,7 +36,7 @@ impl<'a> Lines<'a> {
         (line, column)
     }
 
-    /// The same as a place for messages.
+    /// Returns the same as a place for messages.
     pub fn place(&self, offset: usize) -> Place {
         let (line, column) = self.at(offset);
         Place::Line(line, column)

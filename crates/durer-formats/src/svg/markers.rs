@@ -1,4 +1,4 @@
-//! Where the markers of a path stand, and which way they look.
+//! The positions of a path's markers, and their directions.
 //!
 //! Source: *SVG 2*, W3C, § 13.7.4 and § 9.5.1 (directions of vertices); what is not said there as in Chromium. usvg takes each curve that an arc
 //! is made of for a segment, and looks at closed paths as if they were open.
@@ -25,7 +25,7 @@ struct Segment {
 }
 
 impl Segment {
-    /// Of a curve through those points, from the first to the last one.
+    /// Builds a curve through those points, from the first to the last one.
     fn new<const N: usize>(points: [DVec2; N]) -> Self {
         let end = points[N - 1];
         let begins = points.iter().map(|p| *p - points[0]).find(|way| *way != DVec2::ZERO);
@@ -42,7 +42,7 @@ struct Subpath {
 }
 
 impl Subpath {
-    /// The corners in order; of a closed one the first comes again at its end.
+    /// Returns the corners in order; of a closed one the first comes again at its end.
     fn vertices(&self) -> Vec<Vertex> {
         let count = self.segments.len();
         let mut ways = vec![None; count + 1];
@@ -65,7 +65,7 @@ impl Subpath {
     }
 }
 
-/// The angle half-way between two directions.
+/// Returns the angle half-way between two directions.
 fn between(before: Option<DVec2>, after: Option<DVec2>) -> Option<f64> {
     let angle = |way: DVec2| libm::atan2(way.y, way.x);
     let (Some(a), Some(b)) = (before, after) else { return before.or(after).map(angle) };
@@ -78,7 +78,7 @@ fn between(before: Option<DVec2>, after: Option<DVec2>) -> Option<f64> {
     Some((a + b) / 2.0)
 }
 
-/// The vertices of path data, in order.
+/// Returns the vertices of path data, in order.
 pub(super) fn vertices(data: &str) -> Vec<Vertex> {
     let mut found = Vec::new();
     let mut subpath = Subpath::default();

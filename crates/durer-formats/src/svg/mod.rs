@@ -74,14 +74,14 @@ const NOT_DRAWN: [&str; 12] = [
     "video",
 ];
 
-/// How a drawing is read.
+/// Options for reading a drawing.
 #[derive(Clone)]
 pub struct ReadOptions<'a> {
     /// The fonts for text; without any, text is left out.
     pub fonts: &'a Fonts,
     /// Finds images that are not part of the file.
     pub resources: &'a (dyn Resources + Sync),
-    /// What is refused: sizes of images, and of all images together.
+    /// Limits of sizes of images, and of all images together.
     pub limits: Limits,
 }
 
@@ -145,18 +145,18 @@ impl Drawing {
         Ok(Self { tree, place, limits: options.limits.clone(), warnings })
     }
 
-    /// Where in the document the `svg` element stands that gives the drawing its size.
+    /// Returns the place in the document of the `svg` element that gives the drawing its size.
     pub fn place(&self) -> &Place {
         &self.place
     }
 
-    /// Width and height in the drawing's own units, above 0.
+    /// Returns the width and height in the drawing's own units, above 0.
     pub fn size(&self) -> DVec2 {
         let size = self.tree.size();
         DVec2::new(f64::from(size.width()), f64::from(size.height()))
     }
 
-    /// What was left out or replaced while reading.
+    /// Returns the omissions and replacements while reading.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
@@ -181,11 +181,11 @@ fn warning(message: impl Into<String>) -> Warning {
     Warning { place: Place::Whole, message: message.into() }
 }
 
-/// What comes to light within usvg, and what is to be known there.
+/// Messages from within usvg, and the facts that usvg's callbacks need.
 #[derive(Debug)]
 struct Told {
     heard: Mutex<Heard>,
-    /// How many levels of elements it may be in by recursion.
+    /// Number of levels of elements that recursion may still enter.
     levels: AtomicUsize,
     /// Bytes of pictures that may still be decoded.
     bytes_left: AtomicU64,
@@ -195,7 +195,7 @@ struct Told {
 #[derive(Debug, Default)]
 struct Heard {
     messages: Vec<Warning>,
-    /// What the messages say.
+    /// Texts of the messages.
     said: BTreeSet<String>,
     letters: BTreeSet<char>,
     pictures: Vec<pictures::Picture>,
@@ -267,7 +267,7 @@ struct Prepared {
 }
 
 impl Prepared {
-    /// The document that was written anew, if it was.
+    /// Returns the document that was written anew, if it was.
     fn document(&self) -> Result<Option<roxmltree::Document<'_>>> {
         self.written.as_ref().map(|written| parse(&written.text)).transpose()
     }
@@ -328,7 +328,8 @@ fn not_xml(error: &roxmltree::Error, text: &str) -> Error {
     Error::line(line, column, format!("not well-formed XML: {}", foreign::markup(error)))
 }
 
-/// What usvg makes of a document. Where numbers overflow on its way, as coordinates under a transform by 10²⁰ do, it may panic.
+/// Returns usvg's tree of a document. If numbers overflow on its way, as coordinates under a transform by 10²⁰ do, it may
+/// panic.
 fn resolved(
     tree: impl FnOnce() -> std::result::Result<usvg::Tree, usvg::Error>,
 ) -> Result<usvg::Tree> {
@@ -357,7 +358,7 @@ fn wrong(error: usvg::Error) -> Error {
 /// 10³⁸ pixels millions, which take for ever.
 const FARTHEST: f64 = 1e15;
 
-/// Whether arcs can be read in a time that is in proportion to the document.
+/// Checks that arcs can be read in a time that is in proportion to the document.
 fn check_arcs(document: &roxmltree::Document<'_>) -> Result<()> {
     for path in document.descendants().filter_map(|node| node.attribute_node("d")) {
         // Arcs begin where a path has come to by then, wherever that is.
@@ -370,7 +371,8 @@ fn check_arcs(document: &roxmltree::Document<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Whether a number of a segment is beyond [`FARTHEST`]; where there is none, usvg ends the path.
+/// Returns whether a number of a segment is beyond [`FARTHEST`]; where there is none, usvg ends the
+/// path.
 fn is_far(segment: std::result::Result<PathSegment, svgtypes::Error>) -> bool {
     use PathSegment::*;
     let largest = match segment {

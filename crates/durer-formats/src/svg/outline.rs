@@ -11,14 +11,14 @@ use usvg::roxmltree::{Node, NodeId};
 /// Elements within one another whose boxes are looked for may be so deep.
 const MAX_DEPTH: u32 = 64;
 
-/// So many elements are looked at for boxes in a document: groups within groups would be looked at again and again.
+/// Limit on the elements examined for boxes in a document: groups within groups would be examined again and again.
 const MAX_ELEMENTS: u32 = 2_000_000;
 
 /// The attributes that elements have in the end.
 pub(super) trait Attributes<'a> {
-    /// The value of an attribute, without a namespace.
+    /// Returns the value of an attribute, without a namespace.
     fn value(&self, node: Node<'a, '_>, name: &str) -> Option<&str>;
-    /// What `use` shows.
+    /// Returns the element that `use` shows.
     fn shown<'i>(&self, node: Node<'a, 'i>) -> Option<Node<'a, 'i>>;
 }
 
@@ -50,7 +50,7 @@ impl Bounds {
     }
 }
 
-/// A length that an element says.
+/// Returns A length that an element says.
 fn length<'a>(
     all: &impl Attributes<'a>,
     node: Node<'a, '_>,
@@ -62,7 +62,7 @@ fn length<'a>(
     around.units.parse(text, Some(whole))?.length()
 }
 
-/// The outline of a basic shape; `None` for other elements.
+/// Returns the outline of a basic shape; `None` for other elements.
 fn pieces<'a>(
     all: &impl Attributes<'a>,
     node: Node<'a, '_>,
@@ -134,7 +134,7 @@ fn path(data: &str) -> Vec<Piece> {
     found
 }
 
-/// How far control points of a quarter of a circle lie from its ends, in radii.
+/// Distance of control points of a quarter of a circle from its ends, in radii.
 const KAPPA: f64 = 0.552_284_749_830_793_4;
 
 fn quarter(from: DVec2, corner: DVec2, to: DVec2) -> Piece {
@@ -184,7 +184,7 @@ impl Piece {
         }
     }
 
-    /// Of curves by rule of Simpson over chords: off by less than 10⁻⁶ of it.
+    /// Returns the length of a curve by Simpson's rule over chords: off by less than 10⁻⁶ of it.
     fn length(self) -> f64 {
         match self {
             Self::Line([a, b]) => a.distance(b),
@@ -209,7 +209,7 @@ fn speed([a, b, c, d]: [DVec2; 4], t: f64) -> f64 {
     ((b - a) * (3.0 * s * s) + (c - b) * (6.0 * s * t) + (d - c) * (3.0 * t * t)).length()
 }
 
-/// Where a coordinate of a curve is greatest or least in between.
+/// Returns the parameters at which a coordinate of a curve is greatest or least in between.
 fn turns([a, b, c, d]: [f64; 4]) -> impl Iterator<Item = f64> {
     let (p, q, r) = (d - 3.0 * c + 3.0 * b - a, 2.0 * (c - 2.0 * b + a), b - a);
     let roots = if p.abs() < 1e-12 {
@@ -221,7 +221,7 @@ fn turns([a, b, c, d]: [f64; 4]) -> impl Iterator<Item = f64> {
     roots.into_iter().filter(|t| *t > 0.0 && *t < 1.0)
 }
 
-/// The length of the outline of a basic shape in its own units.
+/// Returns the length of the outline of a basic shape in its own units.
 pub(super) fn path_length<'a>(
     all: &impl Attributes<'a>,
     node: Node<'a, '_>,
@@ -235,7 +235,7 @@ pub(super) fn path_length<'a>(
 pub(super) struct Boxes<'b, A> {
     pub all: &'b A,
     pub around: &'b Around,
-    /// How many elements have been looked at in the document.
+    /// Number of elements examined in the document.
     looked: &'b Cell<u32>,
 }
 
@@ -244,7 +244,8 @@ impl<'b, A> Boxes<'b, A> {
         Self { all, around, looked }
     }
 
-    /// The box around an element in its own units, without its transform; `None` where it is not known, as that of text.
+    /// Returns the box around an element in its own units, without its transform; `None` where it is not
+    /// known, as that of text.
     pub fn find<'a>(&mut self, node: Node<'a, '_>) -> Option<Bounds>
     where
         A: Attributes<'a>,
@@ -300,7 +301,7 @@ fn transform<'a>(all: &impl Attributes<'a>, node: Node<'a, '_>) -> Option<DAffin
     Some(DAffine2::from_cols(DVec2::new(t.a, t.b), DVec2::new(t.c, t.d), DVec2::new(t.e, t.f)))
 }
 
-/// Whether an element is not drawn where it stands.
+/// Returns whether an element is a definition, which is not drawn in its place.
 fn is_described(node: Node<'_, '_>) -> bool {
     matches!(
         node.tag_name().name(),

@@ -117,8 +117,8 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    /// A tile with as many pixels as it will cover where those are whole ones, else with up to eight times as many a
-    /// side, which are then averaged; `None` where it covers nothing.
+    /// Creates A tile with as many pixels as it will cover where those are whole ones, else with up to eight
+    /// times as many a side, which are then averaged; `None` where it covers nothing.
     pub fn new(pattern: &usvg::Pattern, pixel_from_path: DAffine2) -> Option<Self> {
         let path_from_pattern = affine(pattern.transform());
         let seen = (pixel_from_path * path_from_pattern).matrix2;
@@ -152,12 +152,12 @@ impl Tile {
         })
     }
 
-    /// How the colours between the tile's pixels are found.
+    /// Returns the filter between the tile's pixels.
     pub fn filter(&self) -> Filter {
         self.filter
     }
 
-    /// The pattern, once its tile is painted.
+    /// Returns the pattern, once its tile is painted.
     pub fn paint(&self, canvas: &Canvas) -> Option<Paint> {
         let mut image = Pixels::new(self.width, self.height, [0; 4]);
         canvas.render(&mut image).ok()?;

@@ -1,4 +1,4 @@
-//! What was painted or decoded once and is used again: tiles of patterns, images.
+//! The cache of painted tiles of patterns and decoded images.
 //!
 //! Things of the tree are known by their address: the tree outlives what is painted of it, and whoever refers to
 //! one thing twice has the same address twice.
@@ -19,7 +19,7 @@ pub(super) struct Painted {
     pub images: BTreeMap<ImageKey, Result<(Paint, Path), String>>,
 }
 
-/// Of a pattern and all of its map that its pixels depend on.
+/// Key of a painted pattern: everything of its map that its pixels depend on.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct TileKey {
     pattern: usize,
@@ -35,7 +35,7 @@ impl TileKey {
     }
 }
 
-/// Of an image's bytes, its size and quality, and how large it is seen.
+/// Key of a decoded image: its bytes, size and quality, and its size in the picture.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct ImageKey {
     bytes: usize,

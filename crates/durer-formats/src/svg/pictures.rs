@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use usvg::{ImageHrefResolver, ImageKind};
 
-/// What the addresses of pictures begin with once these are in a list.
+/// Prefix of the addresses of pictures in the list.
 pub(super) const LISTED: &str = "picture:";
 
 /// Pictures of fewer bytes are decoded while reading, to tell with their place if they are broken.
@@ -31,7 +31,7 @@ pub(super) type Key = (String, bool, usize);
 /// Pictures that have been read.
 pub(super) type Read = BTreeMap<Key, ImageKind>;
 
-/// Where pictures come from: the list of those of the drawing.
+/// Returns the resolver of pictures: the list of those of the drawing.
 pub(super) fn resolver<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHrefResolver<'a> {
     let options = options.clone();
     ImageHrefResolver {
@@ -57,7 +57,7 @@ pub(super) fn resolver<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHr
     }
 }
 
-/// The beginning of an address.
+/// Returns the beginning of an address.
 fn name(href: &str) -> Cow<'_, str> {
     const SHOWN: usize = 60;
     match href.trim().char_indices().nth(SHOWN) {
@@ -66,7 +66,7 @@ fn name(href: &str) -> Cow<'_, str> {
     }
 }
 
-/// What a picture is, in terms of usvg; the reason where it cannot be shown.
+/// Returns a picture in terms of usvg, or the reason why it cannot be shown.
 fn kind(
     picture: &Picture,
     options: &ReadOptions<'_>,
@@ -99,7 +99,7 @@ fn kind(
     }
 }
 
-/// An error without the name that stands for a picture without one.
+/// Returns an error without the name that stands for a picture without one.
 fn in_words(error: Error) -> String {
     let words = error.to_string().replacen("image ``: ", "", 1);
     let is_said_of_it = ["is ", "has ", "holds "].iter().any(|verb| words.starts_with(verb));
@@ -113,7 +113,7 @@ fn check(bytes: &[u8], limits: &Limits) -> std::result::Result<(), String> {
     Ok(())
 }
 
-/// The bytes of a picture.
+/// Returns the bytes of a picture.
 fn bytes(
     picture: &Picture,
     options: &ReadOptions<'_>,
@@ -138,7 +138,8 @@ fn bytes(
     Ok(bytes)
 }
 
-/// A data URI as [`uri::load`] reads it: without blanks in base64, without a fragment, and each `%` that encodes nothing encoded.
+/// Returns A data URI as [`uri::load`] reads it: without blanks in base64, without a fragment, and each `%`
+/// that encodes nothing encoded.
 fn plain_data(href: &str) -> String {
     let href = href.split('#').next().unwrap_or_default();
     let (head, payload) = href.split_at(href.find(',').unwrap_or(href.len()));
@@ -163,7 +164,8 @@ fn plain_data(href: &str) -> String {
     plain + rest
 }
 
-/// A picture upright, as a PNG: usvg measures only some kinds of files, and these as they are stored.
+/// Returns A picture upright, as a PNG: usvg measures only some kinds of files, and these as they are
+/// stored.
 fn as_png(bytes: &[u8], limits: &Limits, told: &Told) -> Result<Vec<u8>> {
     let image = crate::image::decode(bytes, "", limits)?;
     told.take_bytes(image.data.len() as u64 * 4);
@@ -174,7 +176,8 @@ fn as_png(bytes: &[u8], limits: &Limits, told: &Told) -> Result<Vec<u8>> {
     Ok(out)
 }
 
-/// A drawing that is a picture of the drawing, looked at with the same care before usvg goes into it.
+/// Returns A drawing that is a picture of the drawing, looked at with the same care before usvg goes
+/// into it.
 fn within(
     bytes: &[u8],
     picture: &Picture,

@@ -1,5 +1,6 @@
-//! What a drawing's elements refer to: usvg follows patterns, masks, clip paths and filters by recursion, and without end
-//! where three of them, or two of different kinds, go in a circle. Such drawings are refused before it sees them.
+//! The references between a drawing's elements: usvg follows patterns, masks, clip paths and filters by recursion, and
+//! without end where three of them, or two of different kinds, form a circle. Such drawings are refused before usvg reads
+//! them.
 
 use super::filters::links;
 use crate::{Error, Result};
@@ -13,10 +14,10 @@ pub const MAX_DEPTH: usize = 1024;
 /// a small file busy for ever.
 const MAX_FOLLOWED: u64 = 1_000_000;
 
-/// What following a reference takes of the stack, in elements.
+/// Stack that following a reference takes, in elements.
 const REFERENCE: usize = 8;
 
-/// What a drawing that is an image of another one takes of the stack, in elements.
+/// Stack that a drawing inside an image takes, in elements.
 pub const IMAGE: usize = 64;
 
 /// Elements that are filled and stroked; `a` and `tref` where they stand in a text.
@@ -25,7 +26,7 @@ const SHAPES: [&str; 13] = [
     "textPath", "tref", "a", "use",
 ];
 
-/// How something is referred to.
+/// Kind of a reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum Kind {
     Fill,
@@ -39,7 +40,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// Whether elements of this name are what is looked for.
+    /// Returns whether elements of this name are possible targets.
     fn fits(self, name: &str) -> bool {
         match self {
             Self::Fill | Self::Stroke => name == "pattern",
@@ -68,12 +69,12 @@ const PROPERTIES: [(&str, Kind); 9] = [
 /// Those of which only one value counts, in the order of [`Values`].
 const CASCADED: [Kind; 5] = [Kind::Fill, Kind::Stroke, Kind::ClipPath, Kind::Mask, Kind::Filter];
 
-/// Which property of that name refers to elements.
+/// Returns the kind of reference that a property makes.
 fn property(name: &str) -> Option<Kind> {
     PROPERTIES.iter().find(|(known, _)| *known == name).map(|(_, kind)| *kind)
 }
 
-/// Where elements stand in the file, by line and column.
+/// Function from elements to their line and column in the file.
 pub type PlaceOf<'p> = &'p dyn Fn(&Node<'_, '_>) -> (u64, u64);
 
 /// Refuses references that go in circles or multiply, and elements that are too deep within one another and within
@@ -98,26 +99,25 @@ pub fn check(document: &Document<'_>, above: usize, place: PlaceOf<'_>) -> Resul
 
 struct Walk<'a, 'i, 'p> {
     place: PlaceOf<'p>,
-    /// Of several elements with the same id any may be meant.
+    /// Elements by id; an id may name several.
     ids: HashMap<&'a str, Vec<Node<'a, 'i>>>,
-    /// What was found in the elements that have been followed, with how they were referred to and what is said around
-    /// them.
+    /// Results for the elements that have been followed, by the kind of reference and the values around them.
     found: HashMap<(NodeId, Opened, Values<'a>), Found>,
-    /// What is said around elements that were referred to.
+    /// Inherited values around elements that were referred to.
     around: HashMap<NodeId, Values<'a>>,
     /// Those that are being followed.
     open: Vec<(NodeId, Opened)>,
 }
 
-/// What there is in an element and in what it refers to.
+/// Contents of an element and of everything that it refers to.
 #[derive(Debug, Clone, Copy, Default)]
 struct Found {
     levels: usize,
-    /// How many times references are followed to draw it once.
+    /// Number of times that references are followed to draw it once.
     followed: u64,
 }
 
-/// How an element is referred to.
+/// Kind of reference to an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Opened {
     kind: Kind,
@@ -127,18 +127,19 @@ struct Opened {
 
 const BY_HREF: Opened = Opened { kind: Kind::Href, is_outside: false };
 
-/// What is said of a property.
+/// Value of a property.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Value<'a> {
     text: &'a str,
     is_outside: bool,
 }
 
-/// What is said of fill, stroke, clip path, mask and filter.
+/// Values of fill, stroke, clip path, mask and filter.
 type Values<'a> = [Option<Value<'a>>; 5];
 
 impl<'a, 'i> Walk<'a, 'i, '_> {
-    /// What there is in an element and in what it refers to; `above` levels are around it, where this is said.
+    /// Returns the contents of an element and of everything that it refers to; the element has `above` levels
+    /// around it and inherits these values.
     fn follow(
         &mut self,
         start: Node<'a, 'i>,
@@ -188,7 +189,8 @@ impl<'a, 'i> Walk<'a, 'i, '_> {
         Ok(found)
     }
 
-    /// What an element refers to where it is drawn; clip paths have neither paint, mask nor filter.
+    /// Lists the references of an element that is drawn; clip paths have neither paint, mask nor
+    /// filter.
     fn references(
         &self,
         node: Node<'a, 'i>,
@@ -224,14 +226,14 @@ impl<'a, 'i> Walk<'a, 'i, '_> {
         found
     }
 
-    /// What an element refers to by `href`.
+    /// Returns the elements that an element refers to by `href`.
     fn linked(&self, node: Node<'a, 'i>) -> impl Iterator<Item = Node<'a, 'i>> {
         let links = node.attributes().filter(|attribute| attribute.name() == "href");
         let ids = links.filter_map(|link| link.value().trim().strip_prefix('#'));
         ids.filter_map(|id| self.ids.get(id)).flatten().copied()
     }
 
-    /// Whether the filter of an element shows the element: then usvg leaves the filter out.
+    /// Returns whether the filter of an element shows the element: then usvg leaves the filter out.
     fn has_image_of_itself(&self, node: Node<'a, 'i>, filter: &str) -> bool {
         let filters = links(filter).filter_map(|id| self.ids.get(id)).flatten();
         let mut images = filters.flat_map(Node::children);
@@ -240,8 +242,8 @@ impl<'a, 'i> Walk<'a, 'i, '_> {
         })
     }
 
-    /// Whether usvg would follow a circle without end, that closes by a reference to what was opened `at`: it cuts
-    /// those of one or two elements of the same kind, and all with a marker or of `href` alone.
+    /// Returns whether usvg would follow a circle without end that closes by a reference to the element opened
+    /// `at`: it cuts those of one or two elements of the same kind, and all with a marker or of `href` alone.
     fn is_endless(&self, at: usize, closing: Opened) -> bool {
         let within = self.open.get(at + 1..).unwrap_or_default().iter().map(|(_, opened)| *opened);
         let circle: Vec<Opened> = within.chain([closing]).collect();
@@ -251,7 +253,7 @@ impl<'a, 'i> Walk<'a, 'i, '_> {
         !is_cut && circle.iter().all(|other| other.kind != Kind::Marker)
     }
 
-    /// What is said around an element, from the root on.
+    /// Returns the values that an element inherits, from the root on.
     fn around(&mut self, node: Node<'a, 'i>) -> Values<'a> {
         if let Some(known) = self.around.get(&node.id()) {
             return *known;
@@ -266,7 +268,7 @@ impl<'a, 'i> Walk<'a, 'i, '_> {
         around
     }
 
-    /// Of what is said around an element what it and those within it can take: clip path, mask and filter only where
+    /// Returns the inherited values that an element and its descendants can use: clip path, mask and filter only if
     /// it asks for them.
     fn needed(&self, node: Node<'a, 'i>, mut around: Values<'a>) -> Values<'a> {
         let mut values = attributes(node);
@@ -276,7 +278,7 @@ impl<'a, 'i> Walk<'a, 'i, '_> {
         around
     }
 
-    /// What is said for an element itself, as usvg finds it: of attributes the first counts.
+    /// Returns an element's own values as usvg finds them: of attributes the first counts.
     fn said(&self, node: Node<'a, 'i>, around: &Values<'a>) -> Values<'a> {
         let mut said = Values::default();
         for (name, text) in attributes(node) {
@@ -326,10 +328,10 @@ impl<'a, 'i> Walk<'a, 'i, '_> {
     }
 }
 
-/// What takes the value of the element around.
+/// Keyword that takes the value of the element around.
 const INHERIT: &str = "inherit";
 
-/// The attributes of an element that usvg reads.
+/// Returns the attributes of an element that usvg reads.
 fn attributes<'a>(node: Node<'a, '_>) -> impl Iterator<Item = (&'a str, &'a str)> {
     const KNOWN: [&str; 3] =
         [super::ROOT.0, "http://www.w3.org/1999/xlink", "http://www.w3.org/XML/1998/namespace"];
@@ -337,7 +339,8 @@ fn attributes<'a>(node: Node<'a, '_>) -> impl Iterator<Item = (&'a str, &'a str)
     known.map(|attribute| (attribute.name(), attribute.value()))
 }
 
-/// What is said within an element: fill and stroke go down to all within it, the others to those that ask for them.
+/// Returns the values for an element's children: fill and stroke are inherited by all, the others by those that ask
+/// for them.
 fn handed_down<'a>(mut said: Values<'a>, around: &Values<'a>) -> Values<'a> {
     for (own, around) in said.iter_mut().zip(around).take(2) {
         *own = own.or(*around);

@@ -8,14 +8,14 @@ use crate::css::{Piece, Token, Units, Whole, split, tokens, words};
 use durer::math::DVec2;
 use std::fmt::Write as _;
 
-/// What percentages of a shape are of.
+/// Base of a shape's percentages.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Reference {
     /// The box around the filled shape.
     Fill,
     /// With what the stroke adds.
     Stroke,
-    /// What the drawing's own percentages are of.
+    /// Base of the drawing's own percentages.
     View,
 }
 
@@ -64,7 +64,7 @@ impl<'a> Shape<'a> {
         (has_shape || has_box).then_some(Self { pieces, reference, text })
     }
 
-    /// The area of the shape in its box.
+    /// Returns the area of the shape in its box.
     pub fn area(&self, bounds: Bounds, units: &Units) -> Option<Area> {
         let (low, size) = (bounds.low, bounds.size());
         let Some(at) =
@@ -97,7 +97,7 @@ impl<'a> Shape<'a> {
     }
 }
 
-/// Path data, moved.
+/// Returns the path data, moved.
 fn moved(data: &str, by: DVec2) -> Option<String> {
     use svgtypes::SimplePathSegment as Segment;
     let mut out = String::new();
@@ -116,7 +116,7 @@ fn moved(data: &str, by: DVec2) -> Option<String> {
     Some(out)
 }
 
-/// Whether the first part says to fill by the even-odd rule, and the other parts.
+/// Returns whether the first part says to fill by the even-odd rule, and the other parts.
 fn with_rule<'a, 'b>(inside: &'b [Piece<'a>]) -> (bool, Vec<&'b [Piece<'a>]>) {
     let mut parts = split(inside, ',');
     let rule = match parts.first() {
@@ -142,7 +142,7 @@ impl Within<'_> {
         self.units.value(part, Some(Whole::Length(whole)))?.length()
     }
 
-    /// The words before `at`, and the place after it.
+    /// Returns the words before `at`, and the place after it.
     fn place<'a, 'b>(
         &self,
         inside: &'b [Piece<'a>],
@@ -162,7 +162,7 @@ impl Within<'_> {
         Some((words(before), place))
     }
 
-    /// A radius: a length or a percentage of `whole`, or a word for the distance to a side.
+    /// Returns A radius: a length or a percentage of `whole`, or a word for the distance to a side.
     fn radius(&self, part: Option<&[Piece<'_>]>, whole: f64, [near, far]: [f64; 2]) -> Option<f64> {
         let Some(part) = part else { return Some(near) };
         match part {
@@ -209,7 +209,8 @@ impl Within<'_> {
         Some(Area { data, is_even_odd })
     }
 
-    /// A rectangle, perhaps with round corners: by distances from the sides, by its sides, or by its corner and size.
+    /// Returns A rectangle, perhaps with round corners: by distances from the sides, by its sides, or by its
+    /// corner and size.
     fn inset(&self, name: &str, inside: &[Piece<'_>]) -> Option<String> {
         let round = inside.iter().position(|piece| piece.token.is_word("round"));
         let before = words(inside.get(..round.unwrap_or(inside.len()))?);
@@ -250,8 +251,8 @@ impl Within<'_> {
         Some(rectangle(self.low + low, self.low + high, &radii))
     }
 
-    /// The radii of corners from the upper left one on, clockwise, as `border-radius` says them; made smaller where sides
-    /// are too short for them.
+    /// Returns the radii of corners from the upper left one on, clockwise, as `border-radius` says them; made
+    /// smaller where sides are too short for them.
     fn radii(&self, pieces: &[Piece<'_>], size: DVec2) -> Option<[DVec2; 4]> {
         let halves = split(pieces, '/');
         let of = |half: &[Piece<'_>], whole: f64| {
@@ -271,7 +272,7 @@ impl Within<'_> {
     }
 }
 
-/// Four values from one to four, as `margin` has it.
+/// Returns four values from one to four, as `margin` has it.
 fn four(given: &[f64]) -> Option<[f64; 4]> {
     Some(match *given {
         [a] => [a; 4],
@@ -282,7 +283,7 @@ fn four(given: &[f64]) -> Option<[f64; 4]> {
     })
 }
 
-/// A rectangle with such corners, from the upper left one on, clockwise.
+/// Returns A rectangle with such corners, from the upper left one on, clockwise.
 fn rectangle(low: DVec2, high: DVec2, radii: &[DVec2; 4]) -> String {
     let [a, b, c, d] = *radii;
     let arc = |r: DVec2, x: f64, y: f64| format!("A{} {} 0 0 1 {x} {y}", r.x, r.y);

@@ -7,13 +7,14 @@ use flate2::bufread::MultiGzDecoder;
 use std::borrow::Cow;
 use std::io::Read;
 
-/// What a stream of gzip begins with.
+/// First bytes of a gzip stream.
 const MAGIC: [u8; 2] = [0x1f, 0x8b];
 
-/// So many bytes at the start are looked at for the name of the encoding.
+/// Number of bytes at the start that are searched for the name of the encoding.
 const DECLARATION: usize = 256;
 
-/// The text of a drawing: decompressed where it is gzip, then decoded as its mark or its XML declaration says.
+/// Returns the text of a drawing: decompressed where it is gzip, then decoded as its mark or its XML
+/// declaration says.
 ///
 /// # Errors
 /// [`Error::Decode`] for broken gzip, and for bytes that are not in the encoding that is said or an encoding that is not known;
@@ -91,7 +92,7 @@ fn in_encoding<'a>(
     }
 }
 
-/// The encoding that an XML declaration names.
+/// Returns the encoding that an XML declaration names.
 fn label(bytes: &[u8]) -> Option<Vec<u8>> {
     let start = bytes.get(..bytes.len().min(DECLARATION))?;
     let start = start.strip_prefix(b"<?xml")?;

@@ -45,7 +45,7 @@ pub(super) fn check(document: &Document<'_>) -> Result<()> {
 #[derive(Default)]
 struct Piece {
     letters: u64,
-    /// So many at its beginning have a place each.
+    /// Number of letters at its beginning that have a position each.
     placed: u64,
 }
 

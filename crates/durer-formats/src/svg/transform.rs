@@ -5,7 +5,7 @@
 use crate::css::{Piece, Token, Units, Whole, split, tokens, words};
 use durer::math::{DAffine2, DVec2};
 
-/// The map of a list of functions; percentages are of the `size` of the reference box.
+/// Returns the map of a list of functions; percentages are of the `size` of the reference box.
 pub(super) fn parse(text: &str, units: &Units, size: [f64; 2]) -> Option<DAffine2> {
     if text.trim().eq_ignore_ascii_case("none") {
         return Some(DAffine2::IDENTITY);
@@ -26,7 +26,7 @@ pub(super) fn parse(text: &str, units: &Units, size: [f64; 2]) -> Option<DAffine
     (map.is_finite() && !pieces.is_empty()).then_some(map)
 }
 
-/// The map of one function.
+/// Returns the map of one function.
 fn function(name: &str, inside: &[Piece<'_>], units: &Units, size: [f64; 2]) -> Option<DAffine2> {
     let parts = split(inside, ',');
     let length = |i: usize, axis: usize| {
@@ -81,14 +81,14 @@ fn function(name: &str, inside: &[Piece<'_>], units: &Units, size: [f64; 2]) -> 
     })
 }
 
-/// Whether a matrix leaves what is in the plane there.
+/// Returns whether a matrix maps the plane onto itself.
 fn is_flat(number: &impl Fn(usize) -> Option<f64>) -> bool {
     [(2, 0.0), (3, 0.0), (6, 0.0), (7, 0.0), (14, 0.0), (15, 1.0)]
         .iter()
         .all(|(i, v)| number(*i) == Some(*v))
 }
 
-/// The map of the properties `translate`, `rotate` and `scale`.
+/// Returns the map of the properties `translate`, `rotate` and `scale`.
 pub(super) fn single(
     property: &str,
     value: &str,
@@ -106,7 +106,7 @@ pub(super) fn single(
     parse(&format!("{property}({})", parts.join(",")), units, size)
 }
 
-/// The origin of a transform in a reference box with that corner and size.
+/// Returns the origin of a transform in a reference box with that corner and size.
 pub(super) fn origin(text: &str, units: &Units, corner: [f64; 2], size: [f64; 2]) -> Option<DVec2> {
     let pieces = tokens(text);
     let mut parts = words(&pieces);
@@ -137,7 +137,7 @@ pub(super) fn origin(text: &str, units: &Units, corner: [f64; 2], size: [f64; 2]
     Some(DVec2::new(along(0)?, along(1)?))
 }
 
-/// A map as an attribute.
+/// Returns A map as an attribute.
 pub(super) fn attribute(map: &DAffine2) -> String {
     let (m, t) = (map.matrix2, map.translation);
     format!("matrix({} {} {} {} {} {})", m.x_axis.x, m.x_axis.y, m.y_axis.x, m.y_axis.y, t.x, t.y)

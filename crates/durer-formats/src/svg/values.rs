@@ -1,4 +1,4 @@
-//! What values may be, and the same in words that usvg understands.
+//! The values of attributes, and the same in words that usvg understands.
 //!
 //! usvg passes over in silence what it does not know, or takes it for something else.
 
@@ -29,7 +29,7 @@ const SIZED: [&str; 14] = [
 /// Lengths that cannot be less than 0.
 const NOT_NEGATIVE: [&str; 6] = ["width", "height", "r", "rx", "ry", "stroke-width"];
 
-/// What an attribute or a property may be.
+/// Kind of values of an attribute or a property.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
     Paint,
@@ -53,7 +53,8 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// What a property may be, of style sheets too; `None` for those that are not looked at.
+    /// Returns the kind of a property's values, also in style sheets; `None` for those that are not
+    /// checked.
     pub fn of_property(name: &str) -> Option<Self> {
         Some(match name {
             "fill" | "stroke" => Self::Paint,
@@ -75,7 +76,8 @@ impl Kind {
         })
     }
 
-    /// What a property of style sheets may be, that has another meaning there or none as a presentation attribute.
+    /// Returns the kind of values of a property in style sheets that has another meaning, or none, as a
+    /// presentation attribute.
     pub fn of_style(name: &str) -> Option<Self> {
         Some(match name {
             "transform" => Self::Functions,
@@ -86,7 +88,7 @@ impl Kind {
         })
     }
 
-    /// What an attribute may be.
+    /// Returns the kind of an attribute's values.
     pub fn of_attribute(element: &str, name: &str) -> Option<Self> {
         Some(match name {
             "gradientTransform" | "patternTransform" => Self::Transform,
@@ -110,7 +112,7 @@ impl Kind {
         })
     }
 
-    /// Whether usvg understands a value.
+    /// Returns whether usvg understands a value.
     pub fn is_known(self, value: &str) -> bool {
         let length = || Length::from_str(value);
         match self {
@@ -145,8 +147,8 @@ impl Kind {
         }
     }
 
-    /// A value as usvg understands it, where it can be used; `name` is that of the property, and `around` what relative
-    /// values are relative to.
+    /// Returns A value as usvg understands it, where it can be used; `name` is that of the property, and
+    /// `around` what relative values are relative to.
     pub fn words<'v>(self, name: &str, value: &'v str, around: &Around) -> Option<Cow<'v, str>> {
         if self == Self::Path {
             return path(value);
@@ -176,7 +178,7 @@ impl Kind {
         self.computed(name, plain, around).map(Cow::Owned)
     }
 
-    /// What is computed of a value with functions or units that usvg does not know.
+    /// Computes a value with functions or units that usvg does not know.
     fn computed(self, name: &str, value: &str, around: &Around) -> Option<String> {
         let units = &around.units;
         let length = |whole: f64| units.parse(value, Some(Whole::Length(whole)))?.length();
@@ -200,7 +202,7 @@ impl Kind {
         Some(number.to_string())
     }
 
-    /// What would be right, and what becomes of it.
+    /// Returns advice: what would be right, and the effect of the wrong value.
     pub fn wanted(self) -> String {
         let wanted = match self {
             Self::Paint => "a colour, as `red` or `#c80000`, `none` or `url(#…)`",
@@ -224,7 +226,7 @@ impl Kind {
         format!("it must be {wanted}")
     }
 
-    /// What becomes of a value that cannot be used.
+    /// Returns the effect of a value that cannot be used.
     pub fn fate(self, name: &str, value: &str) -> Fate {
         match self {
             Self::Path | Self::Points => Fate::PartlyUsed,
@@ -239,7 +241,7 @@ impl Kind {
     }
 }
 
-/// What becomes of a value that cannot be used.
+/// Returns the effect of a value that cannot be used.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Fate {
     PassedOver,
@@ -257,11 +259,11 @@ impl Fate {
     }
 }
 
-/// What relative values are relative to, where they stand.
+/// Context of relative values.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Around {
     pub units: Units,
-    /// What `currentColor` is, if it is known.
+    /// Value of `currentColor`, if it is known.
     pub color: Option<Color>,
 }
 
@@ -278,7 +280,7 @@ const FONT_SIZES: [(&str, f64); 9] = [
     ("larger", 1.2),
 ];
 
-/// The size of a font in pixels, where that around is known.
+/// Returns the size of a font in pixels, where that around is known.
 pub(super) fn font_size(value: &str, units: &Units) -> Option<f64> {
     match FONT_SIZES.iter().find(|(name, _)| *name == value) {
         Some((_, times)) => Some(units.font_size * times),
@@ -286,7 +288,7 @@ pub(super) fn font_size(value: &str, units: &Units) -> Option<f64> {
     }
 }
 
-/// What percentages of a property of that name are of, in pixels.
+/// Returns the base of percentages of a property with that name, in pixels.
 pub(super) fn whole_of(name: &str, units: &Units) -> f64 {
     let [width, height] = units.viewport;
     match name {
@@ -298,7 +300,7 @@ pub(super) fn whole_of(name: &str, units: &Units) -> f64 {
     }
 }
 
-/// Path data, of CSS too, with curves in place of arcs.
+/// Returns the path data, of CSS too, with curves in place of arcs.
 fn path(value: &str) -> Option<Cow<'_, str>> {
     let plain = value.trim_start();
     if !plain.starts_with("path(") {
@@ -312,7 +314,7 @@ fn path(value: &str) -> Option<Cow<'_, str>> {
     Some(Cow::Owned(arcs::as_curves(data).unwrap_or_else(|| data.to_string())))
 }
 
-/// A colour as usvg reads it.
+/// Returns A colour as usvg reads it.
 fn color(value: &str, around: &Around) -> Option<Cow<'static, str>> {
     let [r, g, b, a] = css::color_within(value, around.color)?.bytes();
     Some(Cow::Owned(match a {
@@ -321,7 +323,8 @@ fn color(value: &str, around: &Around) -> Option<Cow<'static, str>> {
     }))
 }
 
-/// A paint: what it refers to stays, colours and those in place of what is missing are put as usvg reads them.
+/// Returns A paint: what it refers to stays, colours and those in place of what is missing are put as usvg
+/// reads them.
 fn paint<'v>(value: &'v str, around: &Around) -> Option<Cow<'v, str>> {
     if !value.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("url(")) {
         let lower = value.to_ascii_lowercase();
@@ -346,7 +349,7 @@ fn paint<'v>(value: &'v str, around: &Around) -> Option<Cow<'v, str>> {
     Some(Cow::Owned(format!("{link} {words}")))
 }
 
-/// Whether a `url(…)` refers to something outside of its file.
+/// Returns whether a `url(…)` refers to something outside of its file.
 pub(super) fn is_elsewhere(link: &str) -> bool {
     let inner = link.get(4..).unwrap_or_default().trim_end_matches(')');
     !inner.trim_matches(|c: char| c.is_whitespace() || c == '"' || c == '\'').starts_with('#')
@@ -363,7 +366,7 @@ fn lengths(value: &str, whole: f64, units: &Units) -> Option<String> {
     Some(out)
 }
 
-/// Whether usvg draws what has this transform.
+/// Returns whether usvg draws elements with this transform.
 pub(super) fn can_be_drawn(value: &str) -> bool {
     svgtypes::Transform::from_str(value).ok().is_none_or(|t| {
         let [a, b, c, d, e, f] = [t.a, t.b, t.c, t.d, t.e, t.f].map(|v| v as f32);

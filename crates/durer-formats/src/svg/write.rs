@@ -10,14 +10,14 @@ use usvg::roxmltree::{Document, Node, NodeId};
 const XLINK: &str = "http://www.w3.org/1999/xlink";
 const XML: &str = "http://www.w3.org/XML/1998/namespace";
 
-/// What becomes other in a document.
+/// Changes to a document.
 #[derive(Debug, Default)]
 pub(super) struct Changes<'a> {
     /// All attributes that elements have now, by qualified name.
     pub attributes: Changed<'a>,
     /// Elements of definitions to be added at the end.
     pub definitions: String,
-    /// How many elements have been looked at to find boxes.
+    /// Number of elements examined to find boxes.
     pub looked: Cell<u32>,
     /// Elements that become groups, and what is in these.
     pub groups: HashMap<NodeId, String>,
@@ -42,7 +42,7 @@ pub(super) struct Written {
     pub places: Vec<usize>,
 }
 
-/// The attributes of an element that count, by qualified name.
+/// Returns the attributes of an element that count, by qualified name.
 pub(super) fn attributes<'a>(
     node: Node<'a, '_>,
 ) -> impl Iterator<Item = (Cow<'a, str>, Cow<'a, str>)> {
@@ -57,7 +57,7 @@ pub(super) fn attributes<'a>(
     })
 }
 
-/// Whether an element is one of SVG.
+/// Returns whether an element is one of SVG.
 pub(super) fn is_of_svg(node: &Node<'_, '_>) -> bool {
     node.tag_name().namespace().is_none_or(|space| space == super::ROOT.0)
 }
@@ -137,7 +137,7 @@ fn open(node: Node<'_, '_>, changes: &Changes<'_>, out: &mut Written) -> bool {
     false
 }
 
-/// Whether something stands before a text and after it in the same `text` element.
+/// Returns whether there is anything before a text and after it in the same `text` element.
 fn beside(node: Node<'_, '_>) -> [bool; 2] {
     let is_within = |node: &Node<'_, '_>| node.tag_name().name() != "text";
     let is_seen = |node: Node<'_, '_>| {
@@ -150,12 +150,12 @@ fn beside(node: Node<'_, '_>) -> [bool; 2] {
     ]
 }
 
-/// The name that an element has now.
+/// Returns the name that an element has now.
 fn name_of<'a>(node: Node<'a, '_>, changes: &Changes<'_>) -> &'a str {
     if changes.groups.contains_key(&node.id()) { "g" } else { node.tag_name().name() }
 }
 
-/// How many elements there are in what was written.
+/// Returns the number of elements in the written text.
 fn elements_in(text: &str) -> usize {
     text.matches('<').count() - text.matches("</").count()
 }

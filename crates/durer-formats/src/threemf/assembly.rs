@@ -100,7 +100,7 @@ impl<'a, 'b> Assembly<'a, 'b> {
         Ok(())
     }
 
-    /// The items that stand on a plate.
+    /// Returns the items that stand on a plate.
     fn on_plate(&self, items: Vec<Use>, plate: Option<u32>) -> Result<Vec<Use>> {
         let Some(number) = plate else { return Ok(items) };
         let plates = &self.settings.plates;
@@ -137,7 +137,7 @@ impl<'a, 'b> Assembly<'a, 'b> {
         Ok(self.parts.len() - 1)
     }
 
-    /// Where an object is, for messages.
+    /// Returns the path of an object, for messages.
     fn at(&self, (part, id): Id) -> String {
         format!("{}, object {id}", self.names[part])
     }
@@ -292,7 +292,7 @@ impl<'a, 'b> Assembly<'a, 'b> {
         self.textures.insert(part, textures);
     }
 
-    /// The scene's number of a picture, read once, and whether it is transparent somewhere.
+    /// Returns the scene's number of a picture, read once, and whether it is transparent somewhere.
     fn picture(&mut self, path: &str) -> Option<(usize, bool)> {
         if let Some(known) = self.pictures.get(path) {
             return *known;

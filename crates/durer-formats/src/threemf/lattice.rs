@@ -17,10 +17,10 @@ pub(super) struct Lattice {
     pub radius: f64,
     /// Shorter beams are none.
     pub shortest: f64,
-    /// Whether ends are flat where a beam does not say.
+    /// True if ends are flat where a beam does not say.
     pub butt: bool,
     pub ball_radius: f64,
-    /// Whether all ends have a ball.
+    /// True if all ends have a ball.
     pub all_balls: bool,
     /// The id of an object that is to be shown instead.
     pub shown_by: Option<u64>,
@@ -34,7 +34,7 @@ pub(super) struct Lattice {
 pub(super) struct Beam {
     pub ends: [u32; 2],
     pub radii: [f64; 2],
-    /// Which ends are flat.
+    /// True for each end that is flat.
     pub butts: [bool; 2],
     /// A group and the property at each end.
     pub property: Option<(u64, [u64; 2])>,
@@ -98,8 +98,8 @@ pub(super) fn mesh(
     Ok(builder.mesh)
 }
 
-/// The balls to draw, by their vertex and the bits of their radius, with a property. Of those around
-/// a vertex all but the largest would be hidden.
+/// Returns the balls to draw, by their vertex and the bits of their radius, with a property. Of
+/// those around a vertex all but the largest would be hidden.
 fn balls(
     lattice: &Lattice,
     seen: impl Fn(&&Beam) -> bool,
@@ -225,7 +225,7 @@ impl Builder {
     }
 }
 
-/// Two unit vectors that make a right-handed frame with a third.
+/// Returns two unit vectors that make a right-handed frame with a third.
 fn frame(axis: DVec3) -> (DVec3, DVec3) {
     let [x, y, z] = axis.abs().to_array();
     let least = if x <= y && x <= z {

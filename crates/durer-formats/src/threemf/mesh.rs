@@ -10,7 +10,7 @@ use durer::math::{DVec3, Vec2, Vec4};
 use durer::scene::{AlphaMode, Material, Mesh, Part as MeshPart, TextureRef};
 use std::collections::HashMap;
 
-/// What an object is made in, where it does not say itself.
+/// Default material of an object.
 pub(super) struct Base<'a> {
     pub settings: &'a Settings,
     /// The number of the filament that it is printed with, from 1.
@@ -20,7 +20,8 @@ pub(super) struct Base<'a> {
 }
 
 impl Base<'_> {
-    /// The colour of what is printed with a filament, where the file says how filaments look.
+    /// Returns the colour of what is printed with a filament, where the file says how filaments
+    /// look.
     fn color(&self, filament: Option<u32>) -> Option<Vec4> {
         let number = filament.unwrap_or(1);
         self.settings.has_filaments().then(|| self.settings.filament(number))
@@ -33,13 +34,13 @@ impl Base<'_> {
         (number <= *last).then_some(volume)
     }
 
-    /// Whether some triangles differ from others.
+    /// Returns whether some triangles differ from others.
     fn differs(&self) -> bool {
         self.volumes.iter().any(|(_, _, v)| v.hidden || v.filament.is_some())
     }
 }
 
-/// What could not be made as the file says.
+/// Repairs of what could not be built as the file says.
 #[derive(Debug, Default)]
 pub(super) struct Repairs {
     /// Triangles that name properties which the file has not.
@@ -48,7 +49,7 @@ pub(super) struct Repairs {
     pub paint: u64,
     /// Triangles that are modifiers and the like.
     pub hidden: u64,
-    /// Whether filaments are painted of which the file has no colour.
+    /// True if filaments are painted of which the file has no colour.
     pub made_up: bool,
 }
 
@@ -58,7 +59,7 @@ pub(super) struct Materials<'a> {
     pub known: &'a mut HashMap<Key, usize>,
 }
 
-/// What tells materials apart: name, bits of the colour, texture, blending.
+/// Identity of a material: name, bits of the colour, texture, blending.
 pub(super) type Key = (String, [u32; 4], Option<usize>, bool);
 
 impl Materials<'_> {
@@ -172,7 +173,7 @@ struct Soup<'a> {
     properties: &'a Properties,
     textures: &'a HashMap<u64, Texture>,
     base: &'a Base<'a>,
-    /// How the object looks as a whole.
+    /// Look of the object as a whole.
     own: Option<Look>,
     repairs: &'a mut Repairs,
     buckets: Vec<Bucket>,
@@ -215,7 +216,8 @@ impl Soup<'_> {
         Ok(())
     }
 
-    /// How a triangle's corners look: by its own properties, its filament, the object's.
+    /// Returns the looks of a triangle's corners: its own properties, its filament, or the
+    /// object's.
     fn looks(&mut self, property: Option<(u64, [u64; 3])>, filament: Option<u32>) -> [Look; 3] {
         let grey = || Look::plain(Material::default().base_color);
         if let Some((group, corners)) = property {

@@ -8,9 +8,9 @@ use std::borrow::Cow;
 use std::io::{Cursor, Read};
 use zip::ZipArchive;
 
-/// Where the relationships of the package stand.
+/// Path of the package's relationships.
 const RELATIONSHIPS: &str = "_rels/.rels";
-/// Where nearly all writers put the model.
+/// Path at which nearly all writers put the model.
 const USUAL: &str = "3D/3dmodel.model";
 
 /// An open archive.
@@ -29,7 +29,7 @@ impl<'a> Package<'a> {
         Ok(Self { archive, left: limits.decoded_bytes, limit: limits.decoded_bytes })
     }
 
-    /// Whether there is a part of this name.
+    /// Returns whether there is a part of this name.
     pub fn has(&self, name: &str) -> bool {
         self.number(name).is_some()
     }
@@ -44,7 +44,8 @@ impl<'a> Package<'a> {
         self.left = self.left.saturating_sub(bytes);
     }
 
-    /// The archive's number of a part; case does not count, as the Open Packaging Conventions say.
+    /// Returns the archive's number of a part; case does not count, as the Open Packaging
+    /// Conventions say.
     fn number(&self, name: &str) -> Option<usize> {
         let name = name.trim_start_matches('/');
         let same = |n: &str| n.eq_ignore_ascii_case(name);
@@ -52,7 +53,7 @@ impl<'a> Package<'a> {
         self.archive.index_for_name(name).or_else(alike)
     }
 
-    /// The inflated text of a part, as UTF-8.
+    /// Returns the inflated text of a part, as UTF-8.
     pub fn read_text(&mut self, name: &str) -> Result<Vec<u8>> {
         let bytes = self.read(name)?;
         let recoded = match xml::utf8(&bytes) {
@@ -62,7 +63,7 @@ impl<'a> Package<'a> {
         Ok(recoded.unwrap_or(bytes))
     }
 
-    /// The inflated bytes of a part.
+    /// Returns the inflated bytes of a part.
     pub fn read(&mut self, name: &str) -> Result<Vec<u8>> {
         let at = |message: String| Error::path(name, message);
         let number = self.number(name).ok_or_else(|| at("is not in the archive".to_owned()))?;
@@ -89,7 +90,7 @@ impl<'a> Package<'a> {
         Ok(bytes)
     }
 
-    /// The name of the part that the package's relationships call the 3D model.
+    /// Returns the name of the part that the package's relationships call the 3D model.
     pub fn root(&mut self) -> Result<String> {
         let Ok(xml) = self.read_text(RELATIONSHIPS) else { return Ok(USUAL.to_owned()) };
         let mut reader = Reader::from_reader(xml.as_slice());

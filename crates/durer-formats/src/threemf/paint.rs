@@ -64,7 +64,7 @@ impl Digits<'_> {
     }
 }
 
-/// Corners counted from another one.
+/// Returns corners counted from another one.
 fn turned([a, b, c]: Corners, first: u32) -> Corners {
     match first % 3 {
         0 => [a, b, c],

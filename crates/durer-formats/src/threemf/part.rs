@@ -28,7 +28,7 @@ pub(super) type Property = (u32, u64, [u64; 3]);
 #[derive(Debug, Default)]
 pub(super) struct Object {
     pub name: String,
-    /// Whether it is there to help others, and is not to be built.
+    /// True if it is there to help others, and is not to be built.
     pub aside: bool,
     pub vertices: Vec<DVec3>,
     pub triangles: Vec<[u32; 3]>,
@@ -53,7 +53,7 @@ pub(super) struct Part {
     pub faults: Faults,
 }
 
-/// What was repaired or left out, with the first place of each.
+/// Repairs and omissions, with the first place of each.
 #[derive(Debug, Default)]
 pub(super) struct Faults {
     pub colors: Tally,

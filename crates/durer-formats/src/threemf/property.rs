@@ -1,4 +1,4 @@
-//! What triangles can be made of: groups of colours, of texture coordinates, and of mixes of both.
+//! The properties of triangles: groups of colours, of texture coordinates, and of mixes of both.
 //!
 //! Source: 3MF Consortium, *Materials and Properties Extension* 1.2.1, 2021, chapters 2 to 6.
 
@@ -6,7 +6,7 @@ use durer::math::{Vec2, Vec3, Vec4};
 use durer::scene::{Filter, Sampler, Wrap};
 use std::collections::HashMap;
 
-/// How a point of a surface looks.
+/// Look of a point of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Look {
     /// Linear, straight alpha; multiplies the texture.
@@ -38,7 +38,7 @@ pub(super) enum Group {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Layer {
     pub group: u64,
-    /// Whether it multiplies what is below instead of covering it.
+    /// True if it multiplies the colours below instead of covering them.
     pub multiplies: bool,
 }
 

@@ -141,7 +141,7 @@ impl Parser<'_> {
     }
 }
 
-/// Whole numbers with blanks between them; what is none counts as a very large one.
+/// Returns whole numbers with blanks between them; what is none counts as a very large one.
 fn whole_numbers(text: &str) -> Vec<u64> {
     text.split_ascii_whitespace().map(|w| w.parse().unwrap_or(u64::MAX)).collect()
 }

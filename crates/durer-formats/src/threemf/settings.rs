@@ -1,5 +1,5 @@
-//! What slicers keep beside the model: colours of filaments, which filament parts are printed with,
-//! what is no part of the model, and plates.
+//! The settings that slicers keep beside the model: colours of filaments, the filament of each
+//! part, objects that are not part of the model, and plates.
 //!
 //! Source: files of Bambu Studio and OrcaSlicer (`project_settings.config`, JSON;
 //! `model_settings.config`, XML) and of PrusaSlicer (`Slic3r_PE.config`, lines of `; key = value`;
@@ -18,11 +18,11 @@ use std::collections::HashMap;
 const BAMBU: [&str; 2] = ["Metadata/project_settings.config", "Metadata/model_settings.config"];
 const PRUSA: [&str; 2] = ["Metadata/Slic3r_PE.config", "Metadata/Slic3r_PE_model.config"];
 
-/// What filaments look like where the file does not say.
+/// Colours of filaments that the file does not state.
 const MADE_UP: [u32; 8] =
     [0xd9d9d9, 0xe4572e, 0x2e86ab, 0x5fad56, 0xf2c14e, 0x8b5fbf, 0x3d405b, 0xf49ac2];
 
-/// What the slicer's files say; empty where there are none.
+/// Settings in the slicer's files; empty if there are none.
 #[derive(Debug, Default)]
 pub(super) struct Settings {
     /// Linear colours, the first filament first.
@@ -31,7 +31,7 @@ pub(super) struct Settings {
     pub plates: Vec<Plate>,
 }
 
-/// What is said of an object of the build.
+/// Settings of an object of the build.
 #[derive(Debug, Default)]
 pub(super) struct ObjectSettings {
     /// Number of its filament, from 1.
@@ -42,11 +42,11 @@ pub(super) struct ObjectSettings {
     parts: HashMap<u64, VolumeSettings>,
 }
 
-/// What is said of a part of an object.
+/// Settings of a part of an object.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub(super) struct VolumeSettings {
     pub filament: Option<u32>,
-    /// Whether it is no part of the model: a modifier, a hole, a place for supports.
+    /// True if it is no part of the model: a modifier, a hole, a place for supports.
     pub hidden: bool,
 }
 
@@ -134,7 +134,7 @@ impl ObjectSettings {
     }
 }
 
-/// The colours in a JSON of Bambu Studio.
+/// Returns the colours in a JSON of Bambu Studio.
 fn project_filaments(text: &[u8]) -> Result<Vec<String>, String> {
     #[derive(Deserialize)]
     struct Project {
@@ -145,8 +145,8 @@ fn project_filaments(text: &[u8]) -> Result<Vec<String>, String> {
     Ok(project.filament_colour)
 }
 
-/// The colours in a configuration of PrusaSlicer: those of extruders where all have one, else those
-/// of filaments.
+/// Returns the colours in a configuration of PrusaSlicer: those of extruders where all have one,
+/// else those of filaments.
 fn config_filaments(text: &[u8]) -> Vec<String> {
     let text = String::from_utf8_lossy(text);
     let value = |key: &str| {

@@ -1,8 +1,8 @@
-//! What files of tiles tell of themselves.
+//! The metadata of files of tiles.
 
 use serde_json::{Map, Value, json};
 
-/// What files of tiles tell of themselves.
+/// The metadata of files of tiles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Metadata {
     /// Its name.
@@ -11,9 +11,9 @@ pub struct Metadata {
     pub zooms: (u8, u8),
     /// West, south, east and north, in degrees.
     pub bounds: [f64; 4],
-    /// What must be told beside the map, as HTML.
+    /// Credit to show beside the map, as HTML.
     pub attribution: Option<String>,
-    /// What its tiles have.
+    /// Contents of its layers.
     pub layers: Vec<LayerInfo>,
 }
 
@@ -26,7 +26,7 @@ pub struct LayerInfo {
     pub fields: Vec<(String, Field)>,
 }
 
-/// What the values of a property are.
+/// Kind of a property's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Field {
     /// Text, or of several kinds.
@@ -38,7 +38,7 @@ pub enum Field {
 }
 
 impl Field {
-    /// Its name in TileJSON.
+    /// Returns its name in TileJSON.
     pub fn name(self) -> &'static str {
         match self {
             Self::Text => "String",
@@ -49,13 +49,13 @@ impl Field {
 }
 
 impl Metadata {
-    /// The middle of the bounds, longitude and latitude.
+    /// Returns the middle of the bounds, longitude and latitude.
     pub fn center(&self) -> [f64; 2] {
         let [west, south, east, north] = self.bounds;
         [west * 0.5 + east * 0.5, south * 0.5 + north * 0.5]
     }
 
-    /// The member `vector_layers` of TileJSON.
+    /// Returns the member `vector_layers` of TileJSON.
     pub fn vector_layers(&self) -> Value {
         let layer = |layer: &LayerInfo| {
             let fields =
@@ -67,7 +67,7 @@ impl Metadata {
         self.layers.iter().map(layer).collect()
     }
 
-    /// The members of PMTiles' metadata.
+    /// Returns the members of PMTiles' metadata.
     pub fn to_json(&self) -> Value {
         let mut metadata = json!({
             "name": self.name,
@@ -82,8 +82,8 @@ impl Metadata {
         metadata
     }
 
-    /// A document of [TileJSON 3.0](https://github.com/mapbox/tilejson-spec/tree/master/3.0.0) for tiles at an address
-    /// with `{z}`, `{x}` and `{y}`.
+    /// Returns A document of [TileJSON 3.0](https://github.com/mapbox/tilejson-spec/tree/master/3.0.0) for
+    /// tiles at an address with `{z}`, `{x}` and `{y}`.
     pub fn tile_json(&self, address: &str) -> Value {
         let ([x, y], (first, last)) = (self.center(), self.zooms);
         let mut document = json!({

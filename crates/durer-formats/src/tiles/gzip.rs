@@ -1,6 +1,6 @@
 //! Bytes compressed as gzip (RFC 1952). Not by flate2, whose bytes depend on the instructions of the machine.
 
-/// How hard to try, of 10: beyond, sizes hardly fall.
+/// Effort of compression, of 10: beyond, sizes hardly fall.
 const LEVEL: u8 = 6;
 
 /// Compresses bytes; the same bytes on every machine.
@@ -18,7 +18,7 @@ pub fn gzip(bytes: &[u8]) -> Vec<u8> {
     packed
 }
 
-/// The checksum of RFC 1952, 8.
+/// Returns the checksum of RFC 1952, 8.
 fn crc32(bytes: &[u8]) -> u32 {
     let step = |crc: u32, &byte: &u8| TABLE[((crc ^ u32::from(byte)) & 255) as usize] ^ (crc >> 8);
     !bytes.iter().fold(u32::MAX, step)

@@ -20,7 +20,7 @@ pub struct MbTiles<W> {
 }
 
 impl<W: Write + Seek> MbTiles<W> {
-    /// A file without a tile; the target must be empty.
+    /// Creates A file without a tile; the target must be empty.
     ///
     /// # Errors
     /// [`crate::Error::Io`].
@@ -81,7 +81,7 @@ fn cells((zoom, x, y): (u8, u32, u32)) -> [Value<'static>; 3] {
     [zoom.into(), x.into(), y.into()].map(Value::Integer)
 }
 
-/// The table `metadata`.
+/// Returns the table `metadata`.
 fn rows(metadata: &Metadata) -> Vec<(&'static str, String)> {
     let [west, south, east, north] = metadata.bounds;
     let ([x, y], (first, last)) = (metadata.center(), metadata.zooms);

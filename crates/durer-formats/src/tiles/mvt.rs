@@ -21,7 +21,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// The same for the same values, and for no others.
+    /// Returns the same for the same values, and for no others.
     fn key(&self) -> (u8, u64, &str) {
         match self {
             Self::Text(text) => (0, 0, text),
@@ -56,7 +56,7 @@ pub struct Dictionary {
 }
 
 impl Dictionary {
-    /// The number of a name.
+    /// Returns the number of a name.
     pub fn name(&mut self, name: &str) -> u32 {
         if let Some(&found) = self.by_name.get(name) {
             return found;
@@ -67,7 +67,7 @@ impl Dictionary {
         new
     }
 
-    /// The number of a value.
+    /// Returns the number of a value.
     pub fn value(&mut self, value: Value) -> u32 {
         let (kind, bits, text) = value.key();
         let new = self.values.len() as u32;
@@ -78,12 +78,12 @@ impl Dictionary {
         number
     }
 
-    /// The names.
+    /// Returns the names.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// The value of a number.
+    /// Returns the value of a number.
     pub fn get(&self, value: u32) -> Option<&Value> {
         self.values.get(value as usize)
     }
@@ -126,7 +126,7 @@ const LINE_TO: u32 = 2;
 const CLOSE: u32 = 7;
 
 impl<'a> Layer<'a> {
-    /// A layer without a feature, of so many cells across.
+    /// Creates A layer without a feature, of so many cells across.
     pub fn new(name: &'a str, extent: u32, dictionary: &'a Dictionary) -> Self {
         let (names, values) = Default::default();
         Self { name, extent, dictionary, names, values, features: Vec::new() }
@@ -152,7 +152,7 @@ impl<'a> Layer<'a> {
         self.features.push(message);
     }
 
-    /// Whether there is no feature in it.
+    /// Returns whether there is no feature in it.
     pub fn is_empty(&self) -> bool {
         self.features.is_empty()
     }
@@ -173,7 +173,7 @@ impl<'a> Layer<'a> {
     }
 }
 
-/// The bytes of a tile: its layers, but for those without a feature.
+/// Returns the bytes of a tile: its layers, but for those without a feature.
 pub fn encode(layers: &[Layer<'_>]) -> Vec<u8> {
     let mut tile = Message::default();
     let full = layers.iter().filter(|layer| !layer.is_empty());
@@ -209,7 +209,7 @@ impl Pen {
     }
 }
 
-/// The kind of a shape, and how it is drawn.
+/// Returns the kind of a shape, and how it is drawn.
 fn commands(shape: &Shape) -> (u64, Vec<u32>) {
     let mut pen = Pen::default();
     let kind = match shape {

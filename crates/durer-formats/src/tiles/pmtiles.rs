@@ -18,7 +18,7 @@ const HEADER: u64 = 127;
 /// Tiles of at most so many bytes are looked for among those before: the sea, the inside of areas.
 const SMALL: usize = 1024;
 
-/// So many of them are remembered.
+/// Number of tiles to remember.
 const REMEMBERED: usize = 1 << 15;
 
 /// Entries of a directory that the root refers to; more where the root would not fit.
@@ -27,7 +27,7 @@ const LEAF: usize = 4096;
 /// Writes tiles.
 pub struct PmTiles<W> {
     out: W,
-    /// Where the tiles begin in the target.
+    /// Offset of the tiles in the target.
     start: u64,
     entries: Vec<Entry>,
     /// Bytes of tiles.
@@ -47,7 +47,7 @@ struct Entry {
 }
 
 impl<W: Write + Seek> PmTiles<W> {
-    /// A file without a tile.
+    /// Creates A file without a tile.
     ///
     /// # Errors
     /// [`Error::Io`].
@@ -135,7 +135,7 @@ fn e7(degrees: f64) -> [u8; 4] {
     ((degrees * 1e7).round() as i32).to_le_bytes()
 }
 
-/// The root directory and those that it refers to, compressed.
+/// Returns the root directory and those that it refers to, compressed.
 fn directories(entries: &[Entry]) -> (Vec<u8>, Vec<u8>) {
     let fits = |directory: &[u8]| directory.len() as u64 <= HEAD - HEADER;
     let root = directory(entries);
@@ -159,7 +159,7 @@ fn directories(entries: &[Entry]) -> (Vec<u8>, Vec<u8>) {
     }
 }
 
-/// A directory, column by column.
+/// Returns A directory, column by column.
 fn directory(entries: &[Entry]) -> Vec<u8> {
     let mut bytes = Vec::new();
     varint(&mut bytes, entries.len() as u64);

@@ -6,7 +6,7 @@ use durer_formats::{Error, Model, ReadOptions, Resources, Result, gltf};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// The folder of test data; `None`, said on stderr, where there is none.
+/// Returns the folder of test data; `None`, said on stderr, where there is none.
 fn data() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("DURER_DATA").map_or_else(beside, PathBuf::from);
@@ -35,7 +35,7 @@ fn read(path: &Path, options: &ReadOptions) -> Result<Model> {
 /// Models that need Draco.
 const DRACO: [&str; 3] = ["Box_Draco.glb", "Duck_draco.glb", "chess-board.glb"];
 
-/// All `.gltf` and `.glb` files below a folder, sorted.
+/// Returns all `.gltf` and `.glb` files below a folder, sorted.
 fn models(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![folder.to_owned()];
@@ -94,8 +94,8 @@ fn every_model_has_the_triangles_and_box_of_the_index() {
     assert!(checked >= 30, "{checked}");
 }
 
-/// What stays the same when a model is packed another way: area, and by area the mean corner of the
-/// triangles, their mean texture coordinates and normals.
+/// Returns the quantities that stay the same when a model is packed another way: area, and by area
+/// the mean corner of the triangles, their mean texture coordinates and normals.
 fn invariants(scene: &Scene) -> [f64; 9] {
     let mut sums = [0.0; 9];
     for instance in &scene.instances {
@@ -339,7 +339,7 @@ const HARMLESS: &[(&str, &str)] = &[
     ("VALUE_MULTIPLE_OF", "unaligned data are read all the same"),
 ];
 
-/// The codes of the errors in the validator's report on a file.
+/// Returns the codes of the errors in the validator's report on a file.
 fn codes(path: &Path) -> Vec<String> {
     let report = std::fs::read(format!("{}.report.json", path.display())).unwrap();
     let report: serde_json::Value = serde_json::from_slice(&report).unwrap();

@@ -12,7 +12,7 @@ fn read(path: &Path) -> durer_formats::Result<Model> {
     read_model(&bytes, &path.to_string_lossy(), &folder, &ReadOptions::default())
 }
 
-/// Triangles (or for files without any: points) per file as the index states them.
+/// Returns triangles (or for files without any: points) per file as the index states them.
 fn expected(data: &Path) -> BTreeMap<String, (u64, bool)> {
     let index = std::fs::read_to_string(data.join("INDEX.md")).expect("index");
     let row = |line: &str| {

@@ -23,8 +23,8 @@ fn reference(path: &Path) -> Picture {
     Pixels::from_data(image.width, image.height, image.data).unwrap()
 }
 
-/// The drawing in the size of its reference picture. A drawing that cannot be read is empty, as in
-/// resvg's tests.
+/// Returns the drawing in the size of its reference picture. A drawing that cannot be read is
+/// empty, as in resvg's tests.
 fn render(path: &Path, fonts: &Fonts, size: (u32, u32), background: [u8; 4]) -> Picture {
     let bytes = std::fs::read(path).unwrap();
     let folder = Folder(path.parent().unwrap().to_owned());
@@ -40,8 +40,8 @@ fn render(path: &Path, fonts: &Fonts, size: (u32, u32), background: [u8; 4]) -> 
     picture
 }
 
-/// How two pictures differ: the mean over all channels, premultiplied, and the share of pixels of which a
-/// channel is off by more than 8.
+/// Difference of two pictures: the mean over all channels, premultiplied, and the share of pixels of
+/// which a channel is off by more than 8.
 #[derive(Debug, Clone, Copy, Default)]
 struct Difference {
     mean: f64,
@@ -70,7 +70,7 @@ impl Difference {
     }
 }
 
-/// Where `DURER_PICTURES` names a folder, pictures that differ are written there, with the reference.
+/// Writes pictures that differ, with the reference, to the folder that `DURER_PICTURES` names.
 fn keep(name: &str, found: &Picture, reference: &Picture) {
     let Some(folder) = std::env::var_os("DURER_PICTURES") else { return };
     for (kind, picture) in [("found", found), ("wanted", reference)] {
@@ -81,7 +81,7 @@ fn keep(name: &str, found: &Picture, reference: &Picture) {
     }
 }
 
-/// What is wrong with a result, in view of what is listed; empty if nothing is.
+/// Describes how a result departs from the list; empty if it does not.
 fn complaint(listed: &str, name: &str, difference: Difference) -> String {
     let lines = listed.lines().filter(|l| !l.starts_with('#') && !l.is_empty());
     let mut names = lines.map(|l| l.split_once(": ").expect("a name, a colon, a reason").0);

@@ -21,7 +21,7 @@ fn line(class: LineClass, invisibility: u32, points: Vec<DVec2>, closed: bool) -
     Line { class, invisibility, points, closed }
 }
 
-/// A plate of 2w × 2h with a hole, an edge, and hidden lines behind one and two surfaces.
+/// Returns A plate of 2w × 2h with a hole, an edge, and hidden lines behind one and two surfaces.
 fn plate(w: f64, h: f64) -> Drawing {
     let hole: Vec<DVec2> = rectangle(5.0, 5.0).into_iter().rev().collect();
     let bend = [(-w, 0.0), (0.0, 0.0), (0.0, h)].map(|(x, y)| DVec2::new(x, y)).to_vec();
@@ -245,7 +245,7 @@ fn every_format_gives_the_same_bytes_again_and_takes_an_empty_sheet() {
     }
 }
 
-/// A parallel view of the origin from a side of a model whose z axis is up.
+/// Returns A parallel view of the origin from a side of a model whose z axis is up.
 fn camera(side: NamedView) -> Camera {
     let direction = side.direction(UpAxis::Z);
     Camera {
@@ -258,7 +258,7 @@ fn camera(side: NamedView) -> Camera {
     }
 }
 
-/// The four usual views of a block of 120 × 70 × 40.
+/// Returns the four usual views of a block of 120 × 70 × 40.
 fn block() -> [(NamedView, Drawing); 4] {
     [
         (NamedView::Front, plate(60.0, 20.0)),
@@ -287,7 +287,7 @@ fn on_sheet(angle: Angle, views: &[SheetView], scale: &str, page: &str) -> durer
     lay_out_views(&contents, &options)
 }
 
-/// The rectangles around strokes of a layer.
+/// Returns the rectangles around strokes of a layer.
 fn boxes(laid: &LaidOut, layer: &str) -> Vec<Rect> {
     let layer = laid.sheet.layers.iter().find(|l| l.name == layer).expect("a layer");
     let points = layer.marks.iter().filter_map(|m| match m {
@@ -306,7 +306,8 @@ fn texts(laid: &LaidOut, layer: &str) -> Vec<(String, DVec2)> {
     texts.collect()
 }
 
-/// That views lie beside each other, within the frame and above the title block of an A4 sheet.
+/// Checks that views lie beside each other, within the frame and above the title block of an A4
+/// sheet.
 fn assert_apart(views: &[Rect]) {
     for (i, a) in views.iter().enumerate() {
         assert!(a.min().min_element() > 10.0 && a.max().x < 287.0 && a.max().y < 184.0, "{a:?}");

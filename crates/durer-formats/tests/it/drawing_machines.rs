@@ -1,4 +1,4 @@
-//! What machines do with a file: G-code read back as a machine would, and the pens of HPGL.
+//! Simulated machines: G-code read back as a machine would, and the pens of HPGL.
 
 use durer::curve::pieces;
 use durer::math::DVec2;
@@ -15,7 +15,8 @@ fn stroke(list: &[(f64, f64)], closed: bool, pen: usize) -> Mark {
     Mark::Stroke { points: points(list), closed, pen }
 }
 
-/// A sheet of 100 × 80 with three pens, of which the dashed one is as wide and dark as the first.
+/// Returns A sheet of 100 × 80 with three pens, of which the dashed one is as wide and dark as the
+/// first.
 fn sheet() -> Sheet {
     let pen = |width, color, dashes| Pen { width, color, dashes };
     let layer = |name: &str, marks| SheetLayer { name: name.to_owned(), marks };
@@ -51,7 +52,7 @@ fn gcode(sheet: &Sheet, machine: &MachineOptions) -> String {
     String::from_utf8(bytes).expect("text")
 }
 
-/// What a machine with a servo on its spindle draws: chains by pen, split by `M0`. Panics at what it does not know.
+/// Returns what a machine with a servo on its spindle draws: chains by pen, split by `M0`. Panics at unknown words.
 fn replay(text: &str) -> Vec<Vec<Vec<DVec2>>> {
     let (mut at, mut down, mut ended) = (DVec2::ZERO, false, false);
     let mut pens: Vec<Vec<Vec<DVec2>>> = vec![Vec::new()];
@@ -112,7 +113,8 @@ fn replay(text: &str) -> Vec<Vec<Vec<DVec2>>> {
     pens
 }
 
-/// Points a degree apart at most on an arc, its end last. Machines refuse arcs whose ends are not as far from the middle.
+/// Returns points a degree apart at most on an arc, its end last. Machines refuse arcs whose ends are not as
+/// far from the middle.
 fn arc(from: DVec2, to: DVec2, middle: DVec2, is_left: bool) -> Vec<DVec2> {
     let (a, b) = (from - middle, to - middle);
     assert!((a.length() - b.length()).abs() < 0.002, "{from} {to} around {middle}");
@@ -124,7 +126,7 @@ fn arc(from: DVec2, to: DVec2, middle: DVec2, is_left: bool) -> Vec<DVec2> {
     (1..count as u32).map(at).chain([to]).collect()
 }
 
-/// Straight pieces, whichever way they run, in thousandths of a millimetre, sorted.
+/// Returns straight pieces, whichever way they run, in thousandths of a millimetre, sorted.
 fn pieces(chains: &[Vec<DVec2>]) -> Vec<[[i64; 2]; 2]> {
     let place = |p: DVec2| [p.x, p.y].map(|v| (v * 1000.0).round() as i64);
     let piece = |w: &[DVec2]| {
@@ -211,7 +213,8 @@ fn hpgl_has_a_pen_for_each_width_and_colour_and_takes_it_once() {
     assert_eq!(pens, ["SP1;PW.5,1;", "SP2;PW.25,2;", "SP0;"]);
 }
 
-/// A circle, an arc that turns by nearly all of one, an ellipse, and a line that goes on in a cubic curve; y down.
+/// Returns A circle, an arc that turns by nearly all of one, an ellipse, and a line that goes on in a cubic
+/// curve; y down.
 fn curves() -> Vec<Curve> {
     let p = DVec2::new;
     let arc = |center, axis, ratio, start, turn| Arc { center, axis, ratio, start, turn };

@@ -24,7 +24,7 @@ mod surfaces;
 #[path = "../../../../fuzz/bodies/words.rs"]
 mod words;
 
-/// What a target does with bytes.
+/// Body of a target, called with bytes.
 type Body = fn(&[u8]);
 
 const TARGETS: [(&str, Body); 31] = [
@@ -70,7 +70,7 @@ const DRAWN: [(&str, Body); 5] = [
     ("maps", sheets::maps),
 ];
 
-/// The files of a target's folder of seeds; there must be some.
+/// Returns the files of a target's folder of seeds; there must be some.
 fn seeds(target: &str) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds").join(target);
     let files = std::fs::read_dir(&folder).expect("seeds are part of the repository");

@@ -23,7 +23,7 @@ fn written(format: GeoFormat, features: &[Feature]) -> Vec<u8> {
     writer.finish(&[]).expect("memory")
 }
 
-/// The error of reading a text, as it is told.
+/// Returns the error of reading a text, as it is told.
 fn error(format: GeoFormat, bytes: &[u8]) -> String {
     let mut reader = Reader::new(format, bytes).expect("a reader");
     loop {
@@ -311,7 +311,7 @@ fn fill_rules_of_svg_are_read_where_they_stand() {
     assert_eq!(found, [not, odd, not, odd, odd, odd, odd]);
 }
 
-/// Names and bounds of all shapes, and the warnings.
+/// Returns names and bounds of all shapes, and the warnings.
 fn svg_shapes(content: &str) -> (Vec<(String, Rect)>, Vec<String>) {
     let (all, warnings) = read_all(format!("<svg>{content}</svg>").as_bytes(), "").expect("read");
     let shapes = all.iter().map(|f| {
@@ -553,7 +553,7 @@ fn lines_of_svg_are_a_pixel_wide_for_any_viewer() {
     assert!(!text.contains("vector-effect"), "viewers that do not know it draw degrees wide");
 }
 
-/// The points of the one shape of a document, y up.
+/// Returns the points of the one shape of a document, y up.
 fn svg_points(shape: &str) -> Vec<DVec2> {
     let text = format!("<svg>{shape}</svg>");
     let (all, warnings) = read_all(text.as_bytes(), "").expect("read");

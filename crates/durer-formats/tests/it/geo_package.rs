@@ -13,7 +13,7 @@ const WIDE: &[u8] = include_bytes!("../../../../fuzz/seeds/geopackage/wide.gpkg"
 /// The same in UTF-8, with lines in another coordinate system.
 const PLAIN: &[u8] = include_bytes!("../../../../fuzz/seeds/geopackage/plain.gpkg");
 
-/// All features of a layer, the warnings, and the number of the coordinate system.
+/// Returns all features of a layer, the warnings, and the number of the coordinate system.
 fn layer(bytes: &[u8], layer: Option<&str>) -> (Vec<Feature>, Vec<String>, System) {
     let beside = Beside { name: "", resources: &NoResources, layer };
     let mut reader = Reader::with(GeoFormat::GeoPackage, bytes, &beside).expect("a reader");

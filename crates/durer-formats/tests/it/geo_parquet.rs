@@ -2,7 +2,7 @@
 
 use durer_formats::geo::{GeoFormat, read_all};
 
-/// As geopandas writes it, with a column of boxes.
+/// A file as geopandas writes it, with a column of boxes.
 const SEED: &[u8] = include_bytes!("../../../../fuzz/seeds/geoparquet/seed.parquet");
 
 #[cfg(not(feature = "geoparquet"))]

@@ -14,7 +14,7 @@ impl Resources for Files {
     }
 }
 
-/// The files of a Shapefile named `a`, and what was told.
+/// Returns the files of a Shapefile named `a`, and what was told.
 fn written(features: &[Feature], system: System) -> Result<(Files, Vec<String>)> {
     let mut writer = Writer::new(GeoFormat::Shapefile, Vec::new());
     writer.set_system(system);
@@ -110,7 +110,7 @@ fn fields_and_the_coordinate_system_go_there_and_back() {
     assert_eq!(again[1].geometry, None);
 }
 
-/// A table with one text of six bytes.
+/// Returns A table with one text of six bytes.
 fn table(driver: u8, text: &[u8; 6]) -> Vec<u8> {
     let mut bytes = vec![3, 95, 7, 26, 1, 0, 0, 0, 65, 0, 7, 0];
     bytes.resize(32, 0);

@@ -18,13 +18,13 @@ macro_rules! bytes {
     }};
 }
 
-/// A data URI in percent notation.
+/// Returns A data URI in percent notation.
 pub fn uri(bytes: &[u8]) -> String {
     let digits: String = bytes.iter().map(|b| format!("%{b:02x}")).collect();
     format!("data:,{digits}")
 }
 
-/// A file of one buffer, with a view over all of it, and the members given.
+/// Returns A file of one buffer, with a view over all of it, and the members given.
 pub fn file(buffer: &[u8], members: &str) -> String {
     let (uri, length) = (uri(buffer), buffer.len());
     format!(
@@ -44,7 +44,7 @@ pub fn triangle_bytes() -> Vec<u8> {
     TRIANGLE.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
-/// A file of one triangle as mesh 0, with the members given.
+/// Returns A file of one triangle as mesh 0, with the members given.
 pub fn triangle(members: &str) -> String {
     let mesh = r#"{"name": "t", "primitives": [{"attributes": {"POSITION": 0}}]}"#;
     let members = format!(r#""accessors": [{ACCESSOR}], "meshes": [{mesh}], {members}"#);
@@ -63,7 +63,7 @@ pub fn error(text: &str) -> String {
     read(text).unwrap_err().to_string()
 }
 
-/// A binary file of a JSON text and a binary chunk.
+/// Returns A binary file of a JSON text and a binary chunk.
 pub fn binary(json: &str, bin: &[u8]) -> Vec<u8> {
     let json = format!("{json}{}", " ".repeat(json.len().wrapping_neg() % 4));
     let length = (12 + 8 + json.len() + 8 + bin.len()) as u32;
@@ -498,8 +498,8 @@ fn cameras_and_lights_stand_in_the_world() {
     assert_eq!(model.warnings.len(), 3, "{:?}", model.warnings);
 }
 
-/// A triangle with a morph target that lifts it by one, a skin of two joints, and an animation that
-/// turns the weight up and moves joint 1.
+/// Returns A triangle with a morph target that lifts it by one, a skin of two joints, and an
+/// animation that turns the weight up and moves joint 1.
 fn posed(pose: Option<Pose>, members: &str) -> Result<Model> {
     let data = bytes![
         f32: [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
@@ -540,7 +540,7 @@ fn posed(pose: Option<Pose>, members: &str) -> Result<Model> {
     gltf::read(text.as_bytes(), &NoResources, &ReadOptions { pose, ..ReadOptions::default() })
 }
 
-/// The posed triangle's corners in the world.
+/// Returns the posed triangle's corners in the world.
 fn corners(model: &Model) -> [DVec3; 3] {
     let instance = &model.scene.instances[0];
     let positions = &model.scene.meshes[instance.mesh].positions;
@@ -639,7 +639,7 @@ const DRACO: [&str; 2] = [
      00ff000000",
 ];
 
-/// A file whose triangle is a Draco bitstream.
+/// Returns A file whose triangle is a Draco bitstream.
 #[cfg(feature = "draco")]
 fn draco(bytes: &[u8], normalized: bool) -> String {
     file(

@@ -6,7 +6,8 @@ use durer::scene::{AlphaMode, Image, Material, Scene, ShadingModel};
 use durer::target::Pixels;
 use durer_formats::{Error, Limits, Model, NoResources, ReadOptions, gltf, png};
 
-/// A triangle and a node that has it at three places: by floats, by normalized bytes and floats.
+/// Returns A triangle and a node that has it at three places: by floats, by normalized bytes and
+/// floats.
 fn instanced(attributes: &str, node: &str) -> String {
     let mut data = triangle_bytes();
     let places: [f32; 9] = [0.0, 0.0, 0.0, 10.0, 0.0, 0.0, 0.0, 20.0, 0.0];
@@ -95,7 +96,7 @@ fn what_is_hidden_is_left_out_with_all_below_it() {
     assert!(model.scene.lights.is_empty() && model.scene.cameras.len() == 1);
 }
 
-/// Two triangles with materials by variant.
+/// Returns two triangles with materials by variant.
 fn varied(variant: Option<&str>) -> durer_formats::Result<Model> {
     let text = file(
         &triangle_bytes(),
@@ -132,7 +133,7 @@ fn variants_choose_materials() {
     assert!(error.ends_with("there is no variant `warm`: hot, cold, variant2"), "{error}");
 }
 
-/// A PNG of some texels in a row as a data URI, in percent notation.
+/// Returns A PNG of some texels in a row as a data URI, in percent notation.
 fn picture(texels: &[[u8; 4]]) -> String {
     let image = Pixels::from_data(texels.len() as u32, 1, texels.to_vec()).unwrap();
     let mut bytes = Vec::new();
@@ -140,7 +141,7 @@ fn picture(texels: &[[u8; 4]]) -> String {
     crate::gltf::uri(&bytes)
 }
 
-/// A triangle with materials and the pictures that they use: texture i shows picture i.
+/// Returns A triangle with materials and the pictures that they use: texture i shows picture i.
 fn painted(materials: &str, pictures: &[&[[u8; 4]]]) -> Model {
     let images: Vec<String> =
         pictures.iter().map(|p| format!(r#"{{"uri": "{}"}}"#, picture(p))).collect();

@@ -13,7 +13,7 @@ fn position(i: u32) -> Vec3 {
     Vec3::new(i as f32, (i * 7 % 1000) as f32, -0.5 * i as f32)
 }
 
-/// The vertices, and after them twice as many indices of four bytes.
+/// Returns the vertices, and after them twice as many indices of four bytes.
 fn buffer() -> Vec<u8> {
     let mut bytes = Vec::new();
     for i in 0..VERTICES {
@@ -33,7 +33,7 @@ fn glb(json: &str, buffer: &[u8]) -> Vec<u8> {
     [b"glTF\x02\0\0\0", &word(12 + chunks.len())[..], &chunks].concat()
 }
 
-/// A file of points with colours, whose indices are of `index_bytes` bytes.
+/// Returns A file of points with colours, whose indices are of `index_bytes` bytes.
 fn points(index_bytes: u32) -> Vec<u8> {
     let vertices = VERTICES * STRIDE;
     let indices = match index_bytes {
@@ -97,7 +97,7 @@ fn accessors_are_read_in_pieces() {
     }
 }
 
-/// What comes of bytes at hand and of the same in an open file, which must be the same.
+/// Reads the same bytes from memory and from an open file; both have to give the same result.
 fn both(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let model = gltf::read(bytes, resources, options);
     let opened = gltf::read_file(Cursor::new(bytes), resources, options);

@@ -3,8 +3,8 @@
 use crate::gltf::{ACCESSOR, read, triangle_bytes, uri};
 use durer_formats::{Found, Model, ReadOptions, Resources, gltf};
 
-/// A mesh of primitives over two buffers: accessor 0 is in the file, accessor 1 in `far.bin`, accessor 2 is an
-/// index list that leads out of any triangle.
+/// Returns A mesh of primitives over two buffers: accessor 0 is in the file, accessor 1 in `far.bin`,
+/// accessor 2 is an index list that leads out of any triangle.
 fn two_buffers(primitives: &str, more: &str) -> String {
     format!(
         r#"{{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}],

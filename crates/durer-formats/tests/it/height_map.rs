@@ -17,7 +17,7 @@ fn rows(map: &HeightMap) -> Vec<Vec<Option<f64>>> {
     (0..f.rows()).map(|r| (0..f.columns()).map(|c| f.height(c, r)).collect()).collect()
 }
 
-/// An NPY array with numbers as they are.
+/// Returns an NPY array with numbers as they are.
 fn npy(kind: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {
     let order = if fortran { "True" } else { "False" };
     let header = format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': {shape}, }}\n");

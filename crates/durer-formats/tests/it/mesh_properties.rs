@@ -20,7 +20,7 @@ fn only_mesh(bytes: &[u8], name: &str) -> Mesh {
     model.scene.meshes.into_iter().next().expect("one mesh")
 }
 
-/// Vertices and triangles between them.
+/// Returns vertices and triangles between them.
 fn mesh() -> impl Strategy<Value = (Vec<[f32; 3]>, Vec<[u32; 3]>)> {
     (1usize..40).prop_flat_map(|n| {
         let vertices = proptest::collection::vec(proptest::array::uniform3(-1e3..1e3f32), n);

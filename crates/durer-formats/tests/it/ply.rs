@@ -8,7 +8,7 @@ use durer_formats::{Limits, Model, NoResources, ReadOptions, Resources, Result, 
 const CUBE: &str = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n";
 const XYZ: &str = "property float x\nproperty float y\nproperty float z\n";
 
-/// An ascii file with the corners of a cube, more of a header, and more data.
+/// Returns an ascii file with the corners of a cube, more of a header, and more data.
 fn cube(head: &str, data: &str) -> String {
     format!("ply\nformat ascii 1.0\nelement vertex 8\n{XYZ}{head}end_header\n{CUBE}{data}")
 }
@@ -260,7 +260,7 @@ fn what_is_not_drawn_is_told() {
     }
 }
 
-/// A file of splats with one row each.
+/// Returns A file of splats with one row each.
 fn splats(rows: &[&str]) -> Vec<u8> {
     let names = "x y z nx ny nz f_dc_0 f_dc_1 f_dc_2 f_rest_0 opacity scale_0 scale_1 scale_2 rot_0 \
                  rot_1 rot_2 rot_3";

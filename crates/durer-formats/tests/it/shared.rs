@@ -3,7 +3,8 @@
 use durer_formats::Resources;
 use std::path::{Path, PathBuf};
 
-/// The folder of shared data: `DURER_DATA`, or beside the workspace. Says so where there is none.
+/// Returns the folder of shared data: `DURER_DATA`, or beside the workspace. Says so where there is
+/// none.
 pub fn data() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("DURER_DATA").map_or(beside, PathBuf::from);

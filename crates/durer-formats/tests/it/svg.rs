@@ -242,7 +242,7 @@ fn rebeccapurple_is_a_color() {
     }
 }
 
-/// Of references that go in a circle, those that are not cut would be followed until the stack is full.
+/// Checks references in circles: those that are not cut would be followed until the stack is full.
 #[test]
 fn references_in_a_circle_are_refused() {
     let pattern = |id: &str, more: &str, inside: &str| {

@@ -5,7 +5,7 @@ use durer::raster::paint::{Canvas, Options};
 use durer::target::Pixels;
 use durer_formats::svg::{Drawing, Fonts, ReadOptions};
 
-/// A drawing of 40 × 40 with its warnings, those while reading and those while drawing.
+/// Returns A drawing of 40 × 40 with its warnings, those while reading and those while drawing.
 fn draw_with(bytes: &[u8], fonts: &Fonts) -> (Pixels<[u8; 4]>, Vec<String>) {
     let options = ReadOptions { fonts, ..ReadOptions::default() };
     let drawing = Drawing::read(bytes, &options).unwrap();
@@ -26,14 +26,14 @@ fn draw(body: &str) -> (Pixels<[u8; 4]>, Vec<String>) {
     draw_with(document(body).as_bytes(), &Fonts::new())
 }
 
-/// A picture that is drawn without a word.
+/// Returns A picture that is drawn without a word.
 fn painted(body: &str) -> Pixels<[u8; 4]> {
     let (picture, told) = draw(body);
     assert_eq!(told, Vec::<String>::new(), "{body}");
     picture
 }
 
-/// The box around all pixels that are more than half opaque: left, top, right, bottom.
+/// Returns the box around all pixels that are more than half opaque: left, top, right, bottom.
 fn extent(picture: &Pixels<[u8; 4]>) -> Option<[u32; 4]> {
     let pixels = (0..40).flat_map(|y| (0..40).map(move |x| (x, y)));
     let seen = pixels.filter(|(x, y)| picture.get(*x, *y).is_some_and(|p| p[3] > 127));

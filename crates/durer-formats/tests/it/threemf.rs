@@ -13,7 +13,7 @@ const RELATIONSHIPS: &str = r#"<?xml version="1.0"?><Relationships xmlns="x">
 const TRIANGLES: &str = r#"<vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/>
 <vertex x="0" y="1" z="0"/><vertex x="0" y="0" z="1"/></vertices>"#;
 
-/// An archive of parts.
+/// Returns an archive of parts.
 pub fn archive(parts: &[(&str, &str)]) -> Vec<u8> {
     let parts: Vec<_> = parts.iter().map(|(name, text)| (*name, text.as_bytes())).collect();
     archive_of_bytes(&parts)
@@ -28,7 +28,7 @@ fn archive_of_bytes(parts: &[(&str, &[u8])]) -> Vec<u8> {
     zip.finish().expect("archive").into_inner()
 }
 
-/// An archive with one model part of these resources and build items.
+/// Returns an archive with one model part of these resources and build items.
 pub fn simple(unit: &str, resources: &str, items: &str) -> Vec<u8> {
     let model = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"{unit}\" xmlns=\"c\" \
@@ -114,7 +114,7 @@ fn half_transparent_triangles_are_blended() {
     assert!(properties.contains("1 triangles name properties"), "{properties}");
 }
 
-/// A PNG of 2 × 2 pixels.
+/// Returns A PNG of 2 × 2 pixels.
 fn png() -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 2, 2);

@@ -1,4 +1,4 @@
-//! What readers say of files that would have them say something else.
+//! Messages of readers for files that try to forge them.
 
 use durer_formats::geo::{GeoFormat, Reader};
 use durer_formats::{NoResources, ReadOptions, read_model, svg};
@@ -6,7 +6,7 @@ use durer_formats::{NoResources, ReadOptions, read_model, svg};
 /// Colours a terminal, and turns the direction of writing.
 const FORGED: &str = "\u{1b}[31mX\u{202e}\u{7}\u{85}";
 
-/// Whether a message is on one line, acts on nothing and is not too long.
+/// Returns whether a message is on one line, acts on nothing and is not too long.
 fn is_plain(message: &str) -> bool {
     !message.chars().any(|c| c.is_control() || ('\u{2028}'..='\u{202e}').contains(&c))
         && message.chars().count() <= 1000

@@ -1,4 +1,4 @@
-//! What back-face removal leaves of a ring of quadrangles, and what it takes away.
+//! Faces of a ring of quadrangles that back-face removal keeps, and those that it removes.
 
 use crate::overlay;
 use durer::math::{DVec2, DVec3};
@@ -12,7 +12,7 @@ const AROUND: u32 = 28;
 
 const ACROSS: u32 = 12;
 
-/// A torus, its faces counter-clockwise seen from outside.
+/// Returns A torus, its faces counter-clockwise seen from outside.
 fn faces() -> Vec<Vec<DVec3>> {
     let turn = |i: u32, n: u32| f64::from(i % n) / f64::from(n) * std::f64::consts::TAU;
     let point = |i: u32, j: u32| {
@@ -25,7 +25,7 @@ fn faces() -> Vec<Vec<DVec3>> {
     faces.map(face).collect()
 }
 
-/// All edges on the left, those of the faces that are kept on the right.
+/// Returns all edges on the left, those of the faces that are kept on the right.
 pub fn picture(camera: &Camera, [width, height]: [u32; 2]) -> durer::Result<Framebuffer> {
     let camera = Camera { eye: DVec3::new(0.0, 3.9, 5.4), ..*camera };
     let view = View::new(camera, width / 2, height)?;

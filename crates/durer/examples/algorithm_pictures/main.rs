@@ -16,7 +16,7 @@ use durer_formats::png::{Compression, write_color};
 
 const SIZE: [u32; 2] = [288, 216];
 
-/// The picture by a method, with its steps over it.
+/// Returns the picture by a method, with its steps over it.
 fn picture(method: SurfaceMethod, input: &SurfaceInput<'_>) -> durer::Result<Framebuffer> {
     let (mut steps, mut row) = (Recorder::default(), 0);
     let mut picture = Framebuffer::new(SIZE[0], SIZE[1]);

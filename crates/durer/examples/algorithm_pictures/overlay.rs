@@ -1,4 +1,4 @@
-//! What is drawn over a picture: the steps on the way to it.
+//! The steps of an algorithm, drawn over its picture.
 
 use durer::math::{DVec2, IVec2};
 use durer::raster::line::{Options, bresenham};

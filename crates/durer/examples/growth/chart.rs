@@ -8,7 +8,7 @@ use durer::target::Pixels;
 
 const SIZE: [u32; 2] = [580, 340];
 
-/// Where the upward axis stands.
+/// Position of the upward axis.
 const LEFT: f64 = 72.0;
 
 const BLACK: Color = [20, 20, 30, 255];
@@ -24,16 +24,16 @@ pub struct Chart {
     step: f64,
 }
 
-/// What the axes show.
+/// Quantities on the axes.
 pub struct Axis {
     /// The smallest and the largest value there are.
     pub range: [f64; 2],
-    /// What the places along the axis are called.
+    /// Names of the places along the axis.
     pub places: Vec<String>,
 }
 
 impl Chart {
-    /// Two axes, and a line of text below. Upwards go the powers of ten.
+    /// Creates two axes, and a line of text below. Upwards go the powers of ten.
     pub fn new(title: &str, axis: Axis) -> Result<Self> {
         let canvas = Canvas::new(SIZE[0], SIZE[1], Default::default())?;
         let [least, most] = axis.range.map(|value| libm::log10(value.max(1e-9)));
@@ -58,7 +58,7 @@ impl Chart {
         Ok(chart)
     }
 
-    /// Where a value stands.
+    /// Returns the height of a value.
     fn up(&self, value: f64) -> f64 {
         290.0 - self.decade * (libm::log10(value) - self.floor)
     }

@@ -1,4 +1,4 @@
-//! How the work of visible-surface methods grows with triangles and with pixels, counted in steps.
+//! The growth of work of visible-surface methods with triangles and with pixels, counted in steps.
 //!
 //! `cargo run --release --example growth -- docs/algorithms`
 

@@ -1,4 +1,4 @@
-//! What a stencil is good for: an outline, a reflection in a plane, and a section with its cut closed.
+//! Uses of a stencil: an outline, a reflection in a plane, and a section with its cut closed.
 //!
 //! `cargo run --example stencil -- stencil.png`
 

@@ -127,7 +127,7 @@ fn halving() -> durer::Result<String> {
     Ok(svg(&panels, 2))
 }
 
-/// Where the lines through two pairs of points meet.
+/// Returns the intersection of the lines through two pairs of points.
 fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> DVec2 {
     let (u, v) = (b - a, d - c);
     a + u * ((c - a).perp_dot(v) / u.perp_dot(v))

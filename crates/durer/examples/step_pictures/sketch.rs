@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use durer::math::{DVec2, Rect};
 
-/// How wide a panel is, and how high its caption, in pixels.
+/// Width of a panel and height of its caption, in pixels.
 const WIDTH: f64 = 200.0;
 const CAPTION: f64 = 30.0;
 const GAP: f64 = 10.0;
@@ -20,7 +20,7 @@ const STYLE: &str = "text{font:10px sans-serif;fill:#222}path,line{fill:none;str
 /// A drawing with its caption; positions are in the window given to [`Panel::new`].
 pub struct Panel {
     window: Rect,
-    /// Whether y grows downwards, as rows of pixels do.
+    /// True if y grows downwards, as rows of pixels do.
     down: bool,
     caption: String,
     body: String,
@@ -126,7 +126,7 @@ impl Panel {
         );
     }
 
-    /// What is written in the middle of a pixel.
+    /// Writes a text in the middle of a pixel.
     pub fn mark(&mut self, x: f64, y: f64, text: &str) {
         self.text(DVec2::new(x + 0.5, y + 0.5), (0.0, 0.0), text);
     }
@@ -169,7 +169,7 @@ fn short(x: f64) -> String {
     format!("{}", tenths + 0.0)
 }
 
-/// A colour between two, for t = 0 … 1.
+/// Returns A colour between two, for t = 0 … 1.
 pub fn shade(from: [u8; 3], to: [u8; 3], t: f64) -> String {
     let mix =
         |i: usize| (f64::from(from[i]) + (f64::from(to[i]) - f64::from(from[i])) * t).round() as u8;

@@ -25,7 +25,7 @@ fn outlines() -> durer::Result<String> {
     Ok(svg(&panels, 4))
 }
 
-/// The path, and the outline as its steps tell it.
+/// Returns the path, and the outline as its steps tell it.
 fn panel(points: &[(f64, f64)], stroke: &Stroke, caption: &str) -> durer::Result<Panel> {
     let mut panel = Panel::new((-0.5, -1.0), (13.5, 10.5))?;
     let points: Vec<DVec2> = points.iter().copied().map(DVec2::from).collect();

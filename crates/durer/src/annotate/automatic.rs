@@ -17,7 +17,7 @@ const TRIED: usize = 48;
 /// Views whose names are not these show a part of the whole.
 const WHOLE: &[&str] = &["", "front", "top", "right", "left", "back", "bottom"];
 
-/// What a dimension of a length says.
+/// Returns the text of a dimension for a length.
 pub(super) fn said(sign: &str, value: f64, count: usize, view: &Seen, unit: f64) -> Said {
     let times = if count > 1 { format!("{count}× ") } else { String::new() };
     let text = format!("{times}{sign}{}", style::length(value, unit));
@@ -52,7 +52,7 @@ pub(super) fn sizes(
     }
 }
 
-/// Whether there was room.
+/// Returns whether there was room.
 fn size(
     board: &mut Board,
     view: &Seen,
@@ -139,7 +139,7 @@ fn pitch(board: &mut Board, view: &Seen, holes: &[Target], unit: f64, notes: &mu
     }
 }
 
-/// What is told of an annotation without a place.
+/// Returns a warning about an annotation that finds no place.
 pub(super) fn no_room(what: &str) -> String {
     format!("there is no room for {what}; give a larger --page, or a smaller --scale")
 }
@@ -148,7 +148,8 @@ fn plural(name: &str) -> String {
     if name.ends_with('s') { format!("{name}es") } else { format!("{name}s") }
 }
 
-/// The distinct circles of those features that a view shows, which are taken out of the list, and their diameter.
+/// Returns the distinct circles of those features that a view shows, which are taken out of the list, and
+/// their diameter.
 pub(super) fn circles(view: &Seen, rest: &mut Vec<&Feature>) -> Option<(Vec<Target>, f64)> {
     let mut targets: Vec<Target> = Vec::new();
     let mut value = None;

@@ -19,11 +19,11 @@ const SOLID: &[&str] =
 pub(super) struct Board<'a> {
     sheet: &'a mut Sheet,
     pub style: Style,
-    /// Where annotations may be.
+    /// Area in which annotations may lie.
     page: Rect,
-    /// What is there already.
+    /// Areas that are occupied.
     taken: Vec<Quad>,
-    /// How much of that was there before.
+    /// Number of areas that were occupied before.
     old: usize,
     /// Texts of annotations, with their halos.
     texts: Vec<Quad>,
@@ -44,9 +44,9 @@ const NAMES: [&str; 3] = ["center", "thread", "dimension"];
 /// An annotation that has not got its place yet.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
-    /// What is put on the sheet.
+    /// Marks on the sheet.
     pub mark: Vec<Mark>,
-    /// What it takes up: text and dimension line.
+    /// Areas of its text and dimension line.
     pub solid: Vec<Quad>,
     /// Its text.
     pub text: Quad,
@@ -55,7 +55,7 @@ pub(super) struct Draft {
 }
 
 impl<'a> Board<'a> {
-    /// The board of a sheet with what its views take up; `None` without any.
+    /// Creates the board of a sheet with what its views take up; `None` without any.
     pub fn new(sheet: &'a mut Sheet, views: &[Rect], color: [u8; 4]) -> Option<Self> {
         let first = *views.first()?;
         let whole = Rect::around([DVec2::ZERO, sheet.size]);
@@ -88,7 +88,7 @@ impl<'a> Board<'a> {
         self.pen(THIN, CENTER.to_vec())
     }
 
-    /// The pen for letters: a tenth of their height (ISO 3098, type B).
+    /// Returns the pen for letters: a tenth of their height (ISO 3098, type B).
     pub fn letters(&mut self) -> usize {
         self.pen(self.style.text * 0.1, Vec::new())
     }
@@ -111,7 +111,7 @@ impl<'a> Board<'a> {
         solid.iter().all(|q| q.is_within(&self.page) && !taken().any(|t| t.overlaps(q)))
     }
 
-    /// How many texts, dimension lines and leaders a line crosses.
+    /// Returns the number of texts, dimension lines and leaders that a line crosses.
     pub fn crossings(&self, [a, b]: [DVec2; 2]) -> usize {
         let line = Quad::of_segment(a, b, 0.0);
         let leaders = self.leaders.iter().map(|[p, q]| Quad::of_segment(*p, *q, 0.2));
@@ -138,7 +138,7 @@ impl<'a> Board<'a> {
     }
 }
 
-/// What a text of the sheet takes up.
+/// Returns the area of a text on the sheet.
 pub(super) fn text_quad(mark: &Mark) -> Option<Quad> {
     match mark {
         Mark::Text { at, text, height, anchor, .. } => {
@@ -170,7 +170,7 @@ fn thin_quads(mark: &Mark) -> Vec<Quad> {
     }
 }
 
-/// The rectangle around strokes and texts.
+/// Returns the rectangle around strokes and texts.
 fn bounds(marks: &[Mark]) -> Option<Rect> {
     let points = marks.iter().flat_map(|m| match m {
         Mark::Stroke { points, .. } => points.clone(),
@@ -179,7 +179,7 @@ fn bounds(marks: &[Mark]) -> Option<Rect> {
     Rect::around(points)
 }
 
-/// An arc as a mark: around a centre, from an angle on, radians, counter-clockwise as seen.
+/// Returns an arc as a mark: around a centre, from an angle on, radians, counter-clockwise as seen.
 pub(super) fn arc_mark(center: DVec2, radius: f64, start: f64, turn: f64, pen: usize) -> Mark {
     // On the sheet y runs down.
     let arc = Arc { center, axis: DVec2::new(radius, 0.0), ratio: 1.0, start: -start, turn: -turn };
@@ -189,12 +189,12 @@ pub(super) fn arc_mark(center: DVec2, radius: f64, start: f64, turn: f64, pen: u
     Mark::Curve { curve: Curve { start: first, pieces: vec![Piece::Arc(arc, last)], closed }, pen }
 }
 
-/// A dimension as a mark.
+/// Returns A dimension as a mark.
 pub(super) fn mark(dimension: Dimension) -> Mark {
     Mark::Dimension(Box::new(dimension))
 }
 
-/// A text to be laid horizontally.
+/// Returns A text to be laid horizontally.
 pub(super) fn text_mark(at: DVec2, text: String, height: f64, pen: usize) -> Mark {
     Mark::Text { at, text, height, anchor: Anchor::Middle, pen }
 }

@@ -67,7 +67,7 @@ pub(super) fn put(board: &mut Board, view: &Seen, features: &[Feature], alone: b
     }
 }
 
-/// The lines of axes; those in line that overlap are one.
+/// Returns the lines of axes; those in line that overlap are one.
 fn axis_lines(axes: &[(DVec2, [DVec2; 2])]) -> Vec<[DVec2; 2]> {
     let mut keyed: Vec<_> = axes
         .iter()
@@ -116,13 +116,13 @@ fn center_marks(circles: &[Circle]) -> (Vec<[DVec2; 2]>, Vec<Circle>) {
     (lines, rings)
 }
 
-/// A line across a circle, and a little beyond it.
+/// Returns A line across a circle, and a little beyond it.
 fn tick(circle: &Circle, way: DVec2) -> [DVec2; 2] {
     let reach = way * (circle.radius + BEYOND);
     [circle.center - reach, circle.center + reach]
 }
 
-/// The largest circle around each centre.
+/// Returns the largest circle around each centre.
 fn concentric(circles: &[Circle]) -> Vec<Circle> {
     let key = |c: &Circle| [c.center.x, c.center.y].map(|v| (v / SAME).round() as i64);
     let mut sorted = circles.to_vec();
@@ -131,7 +131,7 @@ fn concentric(circles: &[Circle]) -> Vec<Circle> {
     sorted
 }
 
-/// The circle that the centres of at least three circles stand on, evenly.
+/// Returns the circle that the centres of at least three circles stand on, evenly.
 fn pitch_circle(circles: &[Circle]) -> Option<Circle> {
     let count = circles.len();
     if count < 3 {
@@ -153,13 +153,13 @@ fn pitch_circle(circles: &[Circle]) -> Option<Circle> {
     (even && (count != 4 || !is_square_to_page(&angles))).then_some(Circle { center, radius })
 }
 
-/// The same of circles of one radius, given by their centres: the centre and the radius.
+/// Returns the same of circles of one radius, given by their centres: the centre and the radius.
 pub(super) fn pitch_of(centers: impl Iterator<Item = DVec2>, radius: f64) -> Option<(DVec2, f64)> {
     let circles: Vec<Circle> = centers.map(|center| Circle { center, radius }).collect();
     pitch_circle(&circles).map(|c| (c.center, c.radius))
 }
 
-/// Whether four angles are those of a rectangle that stands straight: its holes are dimensioned along its sides.
+/// Returns whether four angles are those of an upright rectangle: its holes are dimensioned along its sides.
 fn is_square_to_page(angles: &[f64]) -> bool {
     let quarter = TAU / 4.0;
     angles.iter().all(|a| ((a / quarter).rem_euclid(1.0) - 0.5).abs() < 0.01)

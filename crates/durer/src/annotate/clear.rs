@@ -6,7 +6,7 @@ use crate::math::DVec2;
 use crate::target::sheet::{Mark, Sheet};
 use crate::target::{Arc, Curve, Piece};
 
-/// What is left of a line between two texts is at least so long, millimetres: less looks like dirt.
+/// Shortest rest of a line between two texts, in millimetres: a shorter one looks like dirt.
 const SHORTEST: f64 = 0.3;
 
 /// Curves are looked at as chains this near to them, millimetres; arcs in chords of two degrees.
@@ -52,7 +52,7 @@ fn cut_marks(marks: &mut Vec<Mark>, quads: &[Quad]) {
     *marks = kept;
 }
 
-/// The parts of a chain outside of all quads; `None` where that is all of it.
+/// Returns the parts of a chain outside of all quads; `None` where that is all of it.
 fn outside(points: &[DVec2], closed: bool, quads: &[Quad]) -> Option<Vec<Vec<DVec2>>> {
     let again = points.first().copied().filter(|_| closed);
     let chain: Vec<DVec2> = points.iter().copied().chain(again).collect();
@@ -79,7 +79,8 @@ fn outside(points: &[DVec2], closed: bool, quads: &[Quad]) -> Option<Vec<Vec<DVe
     Some(parts)
 }
 
-/// The parts of a curve outside of all quads, each piece on its own; `None` where that is all of it.
+/// Returns the parts of a curve outside of all quads, each piece on its own; `None` where that is
+/// all of it.
 fn outside_of_curve(curve: &Curve, quads: &[Quad]) -> Option<Vec<Curve>> {
     outside(&pieces::points(curve, NEAR), curve.closed, quads)?;
     let parts = curve.iter().flat_map(|(start, piece)| match *piece {
@@ -93,7 +94,7 @@ fn outside_of_curve(curve: &Curve, quads: &[Quad]) -> Option<Vec<Curve>> {
     Some(parts.collect())
 }
 
-/// The parts of a chain outside of all quads, as curves.
+/// Returns the parts of a chain outside of all quads, as curves.
 fn polylines(points: &[DVec2], quads: &[Quad]) -> Vec<Curve> {
     let parts = outside(points, false, quads).unwrap_or_else(|| vec![points.to_vec()]);
     let curve = |part: Vec<DVec2>| {
@@ -104,7 +105,7 @@ fn polylines(points: &[DVec2], quads: &[Quad]) -> Vec<Curve> {
     parts.into_iter().filter_map(curve).collect()
 }
 
-/// The parts of an arc between its ends outside of all quads: arcs again.
+/// Returns the parts of an arc between its ends outside of all quads: arcs again.
 fn arcs(arc: &Arc, [start, end]: [DVec2; 2], quads: &[Quad]) -> Vec<Curve> {
     let count = (arc.turn.abs() / CHORD).ceil().max(1.0);
     let at = |t: f64| match t {
@@ -132,7 +133,7 @@ fn arcs(arc: &Arc, [start, end]: [DVec2; 2], quads: &[Quad]) -> Vec<Curve> {
     spans.into_iter().filter(long).map(part).collect()
 }
 
-/// Of a closed chain the last part goes on in the first, where both touch its first point.
+/// Joins the last part of a closed chain to the first, if both touch its first point.
 fn join_ends(parts: &mut Vec<Vec<DVec2>>, closed: bool) {
     let touch = parts.first().and_then(|p| p.first()) == parts.last().and_then(|p| p.last());
     if closed && parts.len() > 1 && touch {
@@ -143,7 +144,7 @@ fn join_ends(parts: &mut Vec<Vec<DVec2>>, closed: bool) {
     }
 }
 
-/// The parts of a segment outside of all quads, as shares of its length.
+/// Returns the parts of a segment outside of all quads, as shares of its length.
 fn gaps(a: DVec2, b: DVec2, quads: &[Quad]) -> Vec<(f64, f64)> {
     let mut inside: Vec<(f64, f64)> = quads.iter().filter_map(|q| q.inside(a, b)).collect();
     inside.sort_by(|p, q| p.0.total_cmp(&q.0));

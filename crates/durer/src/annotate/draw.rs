@@ -8,11 +8,11 @@ use crate::math::DVec2;
 use crate::target::dimension::{Dimension, DimensionText, Measure};
 use crate::target::sheet::Mark;
 
-/// What a dimension says.
+/// Text of a dimension.
 #[derive(Debug, Clone)]
 pub(super) struct Said {
     pub text: String,
-    /// Whether it is just the value with its sign.
+    /// True if it is just the value with its sign.
     pub is_plain: bool,
     /// In units of the model, or radians.
     pub value: f64,
@@ -30,18 +30,18 @@ pub(super) struct Linear {
     pub along: DVec2,
 }
 
-/// The way in which texts along a line run: to the right, or upwards.
+/// Returns the way in which texts along a line run: to the right, or upwards.
 pub(super) fn reading(along: DVec2) -> DVec2 {
     let backwards = along.x < -1e-6 || (along.x < 1e-6 && along.y > 0.0);
     if backwards { -along } else { along }
 }
 
-/// A quarter before the way that a text runs.
+/// Returns A quarter before the way that a text runs.
 fn above(along: DVec2) -> DVec2 {
     DVec2::new(along.y, -along.x)
 }
 
-/// A filled arrow head; `body` is the way from its tip into it.
+/// Returns A filled arrow head; `body` is the way from its tip into it.
 fn arrow(tip: DVec2, body: DVec2, style: &Style) -> Mark {
     let (back, side) = (tip + body * style.arrow, body.perp() * (style.arrow / 6.0));
     Mark::Fill { rings: vec![vec![tip, back + side, back - side]], color: style.color }
@@ -52,8 +52,8 @@ fn stroke(points: Vec<DVec2>, pen: usize) -> Mark {
 }
 
 impl Board<'_> {
-    /// A dimension line with its extension lines, arrows and text. What is too short for arrows has them outside,
-    /// and the text beside them where it is too long.
+    /// Returns A dimension line with its extension lines, arrows and text. What is too short for arrows has
+    /// them outside, and the text beside them where it is too long.
     pub fn linear(&mut self, l: &Linear, said: &Said) -> Draft {
         let (style, thin, letters) = (self.style, self.thin(), self.letters());
         let along = reading(l.along);
@@ -98,8 +98,8 @@ impl Board<'_> {
         )
     }
 
-    /// A leader from a point: it goes to an elbow and on below its text. `measure` is what is measured, or
-    /// nothing for a note.
+    /// Returns A leader from a point: it goes to an elbow and on below its text. `measure` is what is
+    /// measured, or nothing for a note.
     pub fn leader(
         &mut self,
         tip: DVec2,
@@ -136,7 +136,8 @@ impl Board<'_> {
         }
     }
 
-    /// The angle at a vertex between two points, counter-clockwise as seen, with its arc through `radius`.
+    /// Returns the angle at a vertex between two points, counter-clockwise as seen, with its arc through
+    /// `radius`.
     pub fn angle(&mut self, vertex: DVec2, ends: [DVec2; 2], radius: f64, said: &Said) -> Draft {
         let (style, thin, letters) = (self.style, self.thin(), self.letters());
         let [from, to] = ends.map(|p| {

@@ -12,7 +12,7 @@ use crate::math::{DVec2, DVec3};
 use crate::target::dimension::Measure;
 use crate::{Error, Result};
 
-/// What requests refer to.
+/// Model that requests refer to.
 pub(super) struct Model<'a> {
     pub features: &'a [Feature],
     /// Millimetres per unit.
@@ -60,7 +60,7 @@ fn rank(model: &Model, request: &Request) -> Result<f64> {
     }
 }
 
-/// The views that a request may stand in.
+/// Returns the views that a request may stand in.
 fn views_of<'a, 'b>(views: &'a [Seen<'b>], request: &Request) -> Result<Vec<&'a Seen<'b>>> {
     let Some(name) = &request.view else { return Ok(views.iter().collect()) };
     let found: Vec<&Seen> = views.iter().filter(|v| v.placed.name == *name).collect();
@@ -76,7 +76,7 @@ fn views_of<'a, 'b>(views: &'a [Seen<'b>], request: &Request) -> Result<Vec<&'a 
 }
 
 impl Model<'_> {
-    /// A point of a place, and the direction of its axis where it has one.
+    /// Returns A point of a place, and the direction of its axis where it has one.
     fn place(&self, place: &Place) -> Result<(DVec3, Option<DVec3>)> {
         match place {
             Place::Point(p) => Ok((*p, None)),
@@ -87,7 +87,7 @@ impl Model<'_> {
         }
     }
 
-    /// Two points, the direction from one to the other, and their distance along it.
+    /// Returns two points, the direction from one to the other, and their distance along it.
     fn distance(&self, from: &Place, to: &Place, along: Along) -> Result<([DVec3; 2], DVec3, f64)> {
         let ((p, a), (q, b)) = (self.place(from)?, self.place(to)?);
         let mut way = q - p;
@@ -138,7 +138,7 @@ fn one(board: &mut Board, views: &[&Seen], model: &Model, request: &Request) -> 
     }
 }
 
-/// What a dimension says with the words of its request.
+/// Returns the text of a dimension with the words of its request.
 fn worded(said: Said, request: &Request) -> Said {
     match &request.text {
         Some(text) => Said { text: text.replace("<>", &said.text), is_plain: false, ..said },
@@ -146,7 +146,7 @@ fn worded(said: Said, request: &Request) -> Said {
     }
 }
 
-/// The first view that shows a direction in its true length, and its way there.
+/// Returns the first view that shows a direction in its true length, and its way there.
 fn in_true_length<'a, 'b>(
     views: &[&'a Seen<'b>],
     direction: DVec3,
@@ -215,7 +215,8 @@ fn radius(
     }))
 }
 
-/// Where arcs of angles lie, millimetres from the vertex, and how much farther each next one.
+/// Distance of an angle's arc from the vertex, and of each further arc from the one before, in
+/// millimetres.
 const ARC: f64 = 15.0;
 const ARC_STEP: f64 = 8.0;
 

@@ -9,10 +9,10 @@ use std::f64::consts::PI;
 /// Parts that cover at least this angle have a centre to be drawn and a diameter: 170°.
 const HALF: f64 = 170.0 / 180.0 * PI;
 
-/// So many names stand in an error.
+/// Number of names that an error lists.
 const TOLD: usize = 12;
 
-/// What kind of round part a cylinder is.
+/// Kind of a round part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FeatureKind {
     /// The inside of a half cylinder or more.
@@ -24,7 +24,7 @@ pub enum FeatureKind {
 }
 
 impl FeatureKind {
-    /// As in the names of features.
+    /// Returns its name, as in the names of features.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Hole => "hole",
@@ -33,7 +33,7 @@ impl FeatureKind {
         }
     }
 
-    /// What a cylinder is.
+    /// Returns the kind of a cylinder.
     pub fn of(cylinder: &Cylinder) -> Self {
         match (cylinder.angle >= HALF, cylinder.hollow) {
             (false, _) => Self::Fillet,
@@ -50,14 +50,14 @@ pub struct Feature {
     pub name: String,
     /// The name of its object; may be empty.
     pub object: String,
-    /// What it is.
+    /// Kind of the feature.
     pub kind: FeatureKind,
-    /// Where it is.
+    /// Position of the feature.
     pub cylinder: Cylinder,
 }
 
 impl Feature {
-    /// The middle of its axis.
+    /// Returns the middle of its axis.
     pub fn middle(&self) -> DVec3 {
         (self.cylinder.ends[0] + self.cylinder.ends[1]) * 0.5
     }
@@ -77,7 +77,8 @@ pub fn features(scene: &Scene, faces: &Faces) -> Vec<Feature> {
     cylinders(faces).into_iter().map(named).collect()
 }
 
-/// The name of the object that a triangle is a part of: its group's, else that of its instance or its mesh.
+/// Returns the name of the object that a triangle is a part of: its group's, else that of its instance or
+/// its mesh.
 fn object<'a>(scene: &'a Scene, faces: &Faces, item: u32) -> &'a str {
     let Some(run) = faces.run_of(item) else { return "" };
     let mesh = &scene.meshes[run.mesh];
@@ -91,7 +92,7 @@ fn object<'a>(scene: &'a Scene, faces: &Faces, item: u32) -> &'a str {
     names.into_iter().find(|n| !n.is_empty()).unwrap_or("")
 }
 
-/// The features of a name: one by its own, all of an object.
+/// Returns the features of a name: one by its own, all of an object.
 ///
 /// # Errors
 /// [`Error::Parameter`] that tells some of the names there are.
@@ -105,7 +106,7 @@ pub(super) fn named<'a>(features: &'a [Feature], name: &str) -> Result<Vec<&'a F
     Ok(found)
 }
 
-/// The one feature of a name.
+/// Returns the one feature of a name.
 ///
 /// # Errors
 /// [`Error::Parameter`] where there is none, or several.

@@ -16,13 +16,13 @@ const FIXED: [&str; 3] = ["center", "thread", "dimension"];
 /// Layers without anything that letters might lie on.
 const APART: [&str; 4] = ["regions", "frame", "title-block", "parts-list"];
 
-/// How far letters are moved, the least first, millimetres.
+/// Distances that letters are moved, the least first, in millimetres.
 const MOVES: [f64; 5] = [3.0, 4.5, 6.0, 8.0, 10.0];
 
-/// So much more room does a letter get where it is moved to, millimetres.
+/// Additional space around a letter at its new position, in millimetres.
 const SPARE: f64 = 0.6;
 
-/// What is farther from a letter does not matter, millimetres.
+/// Distance from a letter beyond which other marks do not matter, in millimetres.
 const REACH: f64 = 20.0;
 
 /// Curves are looked at as chords this near to them, millimetres.
@@ -72,7 +72,7 @@ fn way(sheet: &Sheet, own: (usize, usize), quad: Quad, views: &[Rect], page: &Re
     ways.into_iter().find(is_free).unwrap_or(DVec2::ZERO)
 }
 
-/// What lies near a letter.
+/// Marks near a letter.
 struct Near {
     around: Quad,
     segments: Vec<[DVec2; 2]>,
@@ -80,7 +80,7 @@ struct Near {
 }
 
 impl Near {
-    /// All but the letter itself in some layers.
+    /// Creates all but the letter itself in some layers.
     fn new(
         sheet: &Sheet,
         own: (usize, usize),

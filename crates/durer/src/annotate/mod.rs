@@ -1,4 +1,4 @@
-//! What draughtsmen write on a drawing: centre lines, dimensions, threads, notes.
+//! The annotations that draughtsmen write on a drawing: centre lines, dimensions, threads, notes.
 //!
 //! [`annotate`] puts them on a sheet whose views are known ([`PlacedView`]), beside the views and clear of each
 //! other, in the layers `center`, `thread` and `dimension`. Lines end before text that stands on them. Signs, lines
@@ -30,24 +30,24 @@ use crate::target::sheet::Sheet;
 use board::Board;
 use seen::Seen;
 
-/// What a sheet shows.
+/// Contents of a sheet.
 #[derive(Debug, Clone, Copy)]
 pub struct Shown<'a> {
     /// Its views, and where they are.
     pub views: &'a [PlacedView],
-    /// What they show, in the same order.
+    /// Drawings of the views, in the same order.
     pub drawings: &'a [&'a Drawing],
     /// The round parts of the model.
     pub features: &'a [Feature],
     /// Millimetres per unit of the model.
     pub unit: f64,
-    /// Whether hidden lines are drawn.
+    /// True if hidden lines are drawn.
     pub hidden: bool,
     /// sRGB with straight alpha, of all annotations.
     pub color: [u8; 4],
 }
 
-/// How much room around its views a sheet should leave for annotations, millimetres.
+/// Returns the space that a sheet should leave around its views for annotations, in millimetres.
 pub fn room(wanted: &Annotations) -> f64 {
     let lanes = wanted.dimensions.len().min(2) + usize::from(wanted.sizes);
     let leaders = wanted.holes || wanted.bosses || !wanted.threads.is_empty();

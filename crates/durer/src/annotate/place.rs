@@ -1,4 +1,4 @@
-//! Where annotations go: beside the views, in lanes, clear of each other.
+//! The placement of annotations: beside the views, in lanes, clear of each other.
 
 use super::board::{Board, Draft};
 use super::draw::{Linear, Said, reading};
@@ -17,14 +17,14 @@ const WAYS: [f64; 16] = [
     105.0, 15.0, 165.0,
 ];
 
-/// How far beyond a view's border elbows of leaders lie, millimetres; and in how many steps farther.
+/// Distance of leaders' elbows beyond a view's border, in millimetres, and number of steps farther.
 const ELBOW: f64 = 4.0;
 const ELBOWS: u32 = 6;
 
 /// A crossing of a leader with something is as bad as so much more length, millimetres.
 const CROSSING: f64 = 60.0;
 
-/// What a leader may point at.
+/// Candidate point for a leader.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Target {
     pub center: DVec2,
@@ -60,7 +60,8 @@ pub(super) fn linear(
     false
 }
 
-/// A point of a dimension line at a distance from a view, or, for one that stands obliquely, from its ends.
+/// Returns A point of a dimension line at a distance from a view, or, for one that stands obliquely, from
+/// its ends.
 fn lane_at(bounds: Rect, ends: [DVec2; 2], along: DVec2, side: Side, distance: f64) -> DVec2 {
     let (min, max) = (bounds.min(), bounds.max());
     let straight = along.x.abs() < 1e-3 || along.y.abs() < 1e-3;
@@ -80,7 +81,8 @@ fn lane_at(bounds: Rect, ends: [DVec2; 2], along: DVec2, side: Side, distance: f
     }
 }
 
-/// The sides on which a dimension may stand, the nearest to what it measures first; only `wanted`, where given.
+/// Returns the sides on which a dimension may stand, the nearest to what it measures first; only `wanted`,
+/// where given.
 pub(super) fn sides(
     view: &Seen,
     ends: [DVec2; 2],
@@ -155,7 +157,7 @@ fn is_on(side: Option<Side>, way: DVec2) -> bool {
     }
 }
 
-/// How far a way from a point goes within a rectangle; 0 where it begins outside.
+/// Returns the length of a way from a point to the border of a rectangle; 0 if it begins outside.
 fn exit(bounds: Rect, from: DVec2, way: DVec2) -> f64 {
     let (min, max) = (bounds.min(), bounds.max());
     let reach = |low: f64, high: f64, at: f64, way: f64| {

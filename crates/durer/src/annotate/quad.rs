@@ -16,7 +16,7 @@ impl Quad {
         Self([a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)])
     }
 
-    /// One that stands straight, so much larger to each side.
+    /// Returns one that stands straight, so much larger to each side.
     pub fn wider(self, by: f64) -> Self {
         let signs = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
         let mut corners = self.0;
@@ -26,14 +26,14 @@ impl Quad {
         Self(corners)
     }
 
-    /// A segment, so much wide to each side.
+    /// Creates A segment, so much wide to each side.
     pub fn of_segment(a: DVec2, b: DVec2, half: f64) -> Self {
         let side = (b - a).normalize_or_zero().perp() * half;
         Self([a - side, b - side, b + side, a + side])
     }
 
-    /// What a line of text takes up, with `space` around it: it runs `along` from where `anchor` says, with its base
-    /// line at `at`.
+    /// Returns the area of a line of text with `space` around it: it runs `along` from where `anchor` says, with its
+    /// base line at `at`.
     pub fn of_text(
         text: &str,
         (at, along): (DVec2, DVec2),
@@ -60,7 +60,7 @@ impl Quad {
         (0..4).map(|i| [self.0[i], self.0[(i + 1) % 4]])
     }
 
-    /// Whether the two have more than a border in common: no side's direction parts them.
+    /// Returns whether the two have more than a border in common: no side's direction parts them.
     pub fn overlaps(&self, other: &Self) -> bool {
         let axes = self.sides().chain(other.sides()).map(|[a, b]| (b - a).perp());
         let ways = [self.0[2] - self.0[0], other.0[2] - other.0[0]];
@@ -76,13 +76,13 @@ impl Quad {
         })
     }
 
-    /// Whether all of it lies in a rectangle.
+    /// Returns whether all of it lies in a rectangle.
     pub fn is_within(&self, rect: &Rect) -> bool {
         let (min, max) = (rect.min(), rect.max());
         self.0.iter().all(|p| p.cmpge(min).all() && p.cmple(max).all())
     }
 
-    /// The part of a segment inside, as shares of its length; `None` where there is none.
+    /// Returns the part of a segment inside, as shares of its length; `None` where there is none.
     pub fn inside(&self, a: DVec2, b: DVec2) -> Option<(f64, f64)> {
         let middle = self.0.iter().sum::<DVec2>() / 4.0;
         let (mut from, mut to) = (0.0f64, 1.0f64);

@@ -1,8 +1,8 @@
-//! What is to be annotated.
+//! The annotations that are asked for.
 
 use crate::math::DVec3;
 
-/// What a drawing gets beside its lines.
+/// Annotations of a drawing beside its lines.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Annotations {
     /// Centre lines and centre marks of round parts.
@@ -20,7 +20,7 @@ pub struct Annotations {
 }
 
 impl Annotations {
-    /// Whether nothing is asked for.
+    /// Returns whether no annotation is requested.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
@@ -29,17 +29,17 @@ impl Annotations {
 /// A dimension or a note.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
-    /// What it says.
+    /// Subject of the text.
     pub what: What,
     /// The name of its view; `None` for the first that shows it.
     pub view: Option<String>,
     /// On which side of the view it stands; `None` for the first with room.
     pub side: Option<Side>,
-    /// What it says, with `<>` for what is measured; `None` says that alone.
+    /// Text, with `<>` for the measured value; `None` for that value alone.
     pub text: Option<String>,
 }
 
-/// What a request is about.
+/// Subject of a request.
 #[derive(Debug, Clone, PartialEq)]
 pub enum What {
     /// The distance of two places.
@@ -68,7 +68,7 @@ pub enum What {
     Note(Place),
 }
 
-/// Where something is.
+/// Position of a feature or point.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Place {
     /// A point of the world.
@@ -92,7 +92,7 @@ pub enum Along {
 }
 
 impl Along {
-    /// Its unit vector; `None` for a straight line.
+    /// Returns its unit vector; `None` for a straight line.
     pub fn axis(self) -> Option<DVec3> {
         match self {
             Self::Straight => None,
@@ -132,7 +132,7 @@ pub struct ThreadSize {
     pub major: f64,
     /// From turn to turn, millimetres.
     pub pitch: f64,
-    /// What drawings call it: `M8×1.25`.
+    /// Name on drawings: `M8×1.25`.
     pub text: String,
 }
 
@@ -163,7 +163,8 @@ const COARSE: &[(f64, f64)] = &[
 ];
 
 impl ThreadSize {
-    /// The core of the screw, millimetres: the basic minor diameter of ISO 68-1, D − 1.0825 P.
+    /// Returns the core of the screw, millimetres: the basic minor diameter of ISO 68-1, D − 1.0825
+    /// P.
     pub fn minor(&self) -> f64 {
         self.major - 1.082_53 * self.pitch
     }

@@ -16,14 +16,14 @@ pub(super) struct Seen<'a> {
     axes: [DVec3; 3],
     /// The points of the lines that are drawn, millimetres, sorted by x.
     points: Vec<DVec2>,
-    /// What is drawn, in the sheet's millimetres.
+    /// Bounds of the drawing, in the sheet's millimetres.
     bounds: Rect,
 }
 
-/// How a view sees a direction.
+/// Appearance of a direction in a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Sight {
-    /// As a point.
+    /// Seen as a point.
     EndOn,
     /// In its true length, this way on the sheet.
     Along(DVec2),
@@ -32,7 +32,8 @@ pub(super) enum Sight {
 }
 
 impl<'a> Seen<'a> {
-    /// A view of a drawing; `None` in perspective, or without a camera. Hidden lines count where they are drawn.
+    /// Creates A view of a drawing; `None` in perspective, or without a camera. Hidden lines count where they
+    /// are drawn.
     pub fn new(placed: &'a PlacedView, drawing: &Drawing, hidden: bool) -> Option<Self> {
         let camera = placed.camera.as_ref()?;
         if !matches!(camera.projection, Projection::Orthographic { .. }) {
@@ -61,19 +62,19 @@ impl<'a> Seen<'a> {
         self.placed.factor
     }
 
-    /// A point of the world on the sheet.
+    /// Returns A point of the world on the sheet.
     pub fn point(&self, p: DVec3) -> DVec2 {
         self.placed.sheet_from_model(p).unwrap_or(DVec2::NAN)
     }
 
-    /// The length between two places of the sheet along a direction of it, in units of the model: with what breaks leave
-    /// out.
+    /// Returns the length between two places of the sheet along a direction of it, in units of the model:
+    /// with what breaks leave out.
     pub fn length(&self, ends: [DVec2; 2], way: DVec2) -> f64 {
         let [from, to] = ends.map(|p| self.placed.plane_from_sheet(p));
         (to - from).dot(DVec2::new(way.x, -way.y))
     }
 
-    /// A direction of the world on the sheet, where it is not of unit length any more.
+    /// Returns A direction of the world on the sheet, where it is not of unit length any more.
     pub fn way(&self, direction: DVec3) -> DVec2 {
         DVec2::new(direction.dot(self.axes[0]), -direction.dot(self.axes[1]))
     }
@@ -89,13 +90,13 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// Whether one of the world's axes is seen as a point: a view from a side.
+    /// Returns whether one of the world's axes is seen as a point: a view from a side.
     pub fn is_from_a_side(&self) -> bool {
         [DVec3::X, DVec3::Y, DVec3::Z].iter().any(|a| self.sight(*a) == Sight::EndOn)
     }
 
-    /// Where the circle of a cylinder is seen in its true shape: its centre and radius on the sheet; `None` where
-    /// the axis is not seen end-on, or nothing of the circle is drawn.
+    /// Returns the circle of a cylinder that is seen in its true shape: its centre and radius on the sheet;
+    /// `None` if the axis is not seen end-on, or nothing of the circle is drawn.
     pub fn circle(&self, cylinder: &Cylinder) -> Option<(DVec2, f64)> {
         if self.sight(cylinder.axis()) != Sight::EndOn {
             return None;
@@ -105,14 +106,15 @@ impl<'a> Seen<'a> {
         self.has_circle(center, radius).then_some((center, radius))
     }
 
-    /// Whether a line has a corner at a place.
+    /// Returns whether a line has a corner at a place.
     pub fn has_point(&self, at: DVec2) -> bool {
         let start = self.points.partition_point(|p| p.x < at.x - 0.05);
         let near = self.points[start..].iter().take_while(|p| p.x <= at.x + 0.05);
         near.into_iter().any(|p| (p.y - at.y).abs() <= 0.05)
     }
 
-    /// Whether the points of the lines lie on a circle: at least three of them, not all in one half of it.
+    /// Returns whether the points of the lines lie on a circle: at least three of them, not all in one
+    /// half of it.
     fn has_circle(&self, center: DVec2, radius: f64) -> bool {
         let tolerance = (radius * 5e-3).max(0.01);
         let reach = radius + tolerance;
@@ -127,7 +129,8 @@ impl<'a> Seen<'a> {
         quadrants.iter().sum::<u32>() >= 5 && quadrants.iter().filter(|q| **q > 0).count() >= 2
     }
 
-    /// The point of the lines that is farthest in a direction of the sheet, and among those the farthest in another.
+    /// Returns the point of the lines that is farthest in a direction of the sheet, and among those the
+    /// farthest in another.
     pub fn farthest(&self, way: DVec2, then: DVec2) -> Option<DVec2> {
         let most = self.points.iter().map(|p| p.dot(way)).fold(f64::NEG_INFINITY, f64::max);
         // A hundredth of a millimetre is nothing on paper.

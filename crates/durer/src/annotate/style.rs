@@ -1,4 +1,4 @@
-//! How annotations look (ISO 128, ISO 129-1, ISO 3098), and numbers in words.
+//! The look of annotations (ISO 128, ISO 129-1, ISO 3098), and numbers in words.
 
 use crate::math::DVec2;
 
@@ -17,9 +17,9 @@ pub(super) struct Style {
 pub(super) const THIN: f64 = 0.25;
 /// Between what is measured and its extension line, and between a line and the text over it.
 pub(super) const GAP: f64 = 1.0;
-/// How far extension lines go on beyond the dimension line.
+/// Length of extension lines beyond the dimension line.
 pub(super) const OVER: f64 = 2.0;
-/// How far centre lines go on beyond what they belong to.
+/// Length of centre lines beyond their feature.
 pub(super) const BEYOND: f64 = 2.5;
 /// Long dash, gap, dot, gap (ISO 128, line 04.1), for thin lines; the dot is made by the pen's round ends.
 pub(super) const CENTER: [f64; 4] = [6.0, 1.0, 0.05, 1.0];
@@ -40,14 +40,14 @@ impl Style {
     }
 }
 
-/// A length in units of the model, to a hundredth of a millimetre where a unit is so many millimetres; no trailing
-/// zeros.
+/// Returns A length in units of the model, to a hundredth of a millimetre where a unit is so many
+/// millimetres; no trailing zeros.
 pub(super) fn length(value: f64, unit: f64) -> String {
     let digits = (2.0 + libm::log10(unit.max(1.0)).ceil()).clamp(2.0, 8.0) as usize;
     short(value, digits)
 }
 
-/// An angle in radians as degrees, to a tenth.
+/// Returns an angle in radians as degrees, to a tenth.
 pub(super) fn angle(value: f64) -> String {
     format!("{}°", short(value.to_degrees(), 1))
 }

@@ -58,7 +58,7 @@ pub(super) fn put<'a>(
     Ok(sized)
 }
 
-/// The radius of the thin lines, in units of the model.
+/// Returns the radius of the thin lines, in units of the model.
 fn other_radius(feature: &Feature, size: Option<&ThreadSize>, unit: f64) -> Option<f64> {
     let (radius, hole) = (feature.cylinder.radius, feature.kind == FeatureKind::Hole);
     let Some(size) = size else {
@@ -97,8 +97,8 @@ fn dashed(board: &mut Board) -> usize {
     board.pen(super::style::THIN, dashes)
 }
 
-/// Whether the lines of a thread seen from the side are hidden; `None` where nothing of it is drawn. The outline of a
-/// screw is seen; that of a hole in sections, elsewhere as a hidden line.
+/// Returns whether the lines of a thread seen from the side are hidden; `None` where nothing of it is drawn. The
+/// outline of a screw is seen; that of a hole in sections, elsewhere as a hidden line.
 fn is_hidden(view: &Seen, feature: &Feature, ends: [DVec2; 2], way: DVec2) -> Option<bool> {
     let side = way.perp() * feature.cylinder.radius * view.factor();
     let corners = ends.iter().flat_map(|p| [*p + side, *p - side]);

@@ -1,12 +1,12 @@
-//! Where the vertices of a clipped shape come from, and values carried along: height, measure,
-//! colour, texture coordinates, any tuple of numbers.
+//! The sources of a clipped shape's vertices, and values carried along: height, measure, colour,
+//! texture coordinates, any tuple of numbers.
 //!
 //! Clippers do not touch attributes; they tell the source of every output vertex, and
 //! [`interpolate`] or any callback makes the new values from it. Who needs none pays nothing.
 
 use crate::math::DVec2;
 
-/// Where an output vertex comes from; indices count the points of the input's flat buffer.
+/// Source of an output vertex; indices count the points of the input's flat buffer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Source {
     /// An input point, bit for bit.
@@ -25,7 +25,8 @@ pub enum Source {
 }
 
 impl Source {
-    /// The source of a point on the edge between two input points, each given by index and place.
+    /// Returns the source of a point on the edge between two input points, each given by index and
+    /// place.
     pub fn on_edge(point: DVec2, (from, a): (usize, DVec2), (to, b): (usize, DVec2)) -> Self {
         if point == a {
             return Self::Vertex(from);
@@ -96,7 +97,7 @@ impl Provenance for Vec<Source> {
     }
 }
 
-/// The values of all output vertices from those of the input.
+/// Returns the values of all output vertices from those of the input.
 ///
 /// `lerp(a, b, t)` mixes the values of an edge's two ends; `corner(i)` makes the value of output
 /// vertex i, a corner of the window, which no edge of the input determines.

@@ -48,8 +48,8 @@ fn side_in_whole_numbers(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     (left - right).sign()
 }
 
-/// The point where two closed segments cross, each coordinate correctly rounded: the same bits for
-/// either order and direction. `None` where they keep apart or lie on one line.
+/// Returns the point where two closed segments cross, each coordinate correctly rounded: the same
+/// bits for either order and direction. `None` where they keep apart or lie on one line.
 pub(crate) fn crossing([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<DVec2> {
     let apart = |s: Ordering, t: Ordering| s == t;
     if apart(side(a, b, c), side(a, b, d)) || apart(side(c, d, a), side(c, d, b)) {
@@ -82,8 +82,8 @@ fn crossing_in_whole_numbers(k: usize, [a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -
     (Exact::from(a[k]) * den.clone() + minus(b, a, k) * num).rounded_ratio(&den)
 }
 
-/// The coordinate on the other axis where the segment a → b, which spans it, crosses the line on
-/// which the coordinate on `axis` is `border`; correctly rounded.
+/// Returns the coordinate on the other axis where the segment a → b, which spans it, crosses the
+/// line on which the coordinate on `axis` is `border`; correctly rounded.
 pub(crate) fn on_border([a, b]: [DVec2; 2], axis: usize, border: f64) -> f64 {
     let other = 1 - axis;
     if a[other] == b[other] {
@@ -107,7 +107,7 @@ pub struct Exact {
 }
 
 impl From<f64> for Exact {
-    /// The exact value of a finite number.
+    /// Returns the exact value of a finite number.
     fn from(value: f64) -> Self {
         let bits = value.to_bits();
         let raw = ((bits >> 52) & 0x7ff) as i32;
@@ -177,7 +177,7 @@ impl Exact {
         near + 0.0
     }
 
-    /// The digits when the number is written with a smaller exponent.
+    /// Returns the digits when the number is written with a smaller exponent.
     fn aligned(&self, exponent: i32) -> Vec<u32> {
         let shift = self.exponent.saturating_sub(exponent).max(0) as u32;
         let mut digits = vec![0; (shift / 32) as usize];
@@ -296,7 +296,8 @@ mod tests {
         assert_eq!(side(p(-f64::MAX, 0.0), p(f64::MAX, 0.0), p(0.0, -tiny)), Ordering::Less);
     }
 
-    /// Points on a coarse grid, times powers of two, beside ones next to them: many on one line, and many that nearly are.
+    /// Returns points on a coarse grid, times powers of two, beside ones next to them: many on one line, and
+    /// many that nearly are.
     fn points() -> impl Strategy<Value = [DVec2; 4]> {
         let coordinate = (-40i32..40, prop::sample::select(vec![0.1, 1.0, 3e-7, 1e9]), -2i32..3);
         let number = coordinate.prop_map(|(v, unit, steps)| {

@@ -8,7 +8,7 @@ use crate::math::{DVec2, DVec4, Rect};
 use std::fmt;
 use std::ops::{BitAnd, BitAndAssign, BitOr, BitOrAssign};
 
-/// Which depths the clip volume holds.
+/// Range of depths in the clip volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum DepthRange {
     /// −w ≤ z ≤ w, as in OpenGL; durer's own convention.
@@ -52,7 +52,7 @@ impl Outcode {
     pub const BORDERS: [Self; 6] =
         [Self::LEFT, Self::RIGHT, Self::BOTTOM, Self::TOP, Self::NEAR, Self::FAR];
 
-    /// The code of a point of the plane; its four bits are exact comparisons.
+    /// Returns the code of a point of the plane; its four bits are exact comparisons.
     #[inline]
     pub fn of_point_2d(window: &Rect, p: DVec2) -> Self {
         let (min, max) = (window.min(), window.max());
@@ -60,8 +60,8 @@ impl Outcode {
         Self::from_inside(inside)
     }
 
-    /// The code of a homogeneous point (x, y, z, w) of clip space; any w, so that a point behind the
-    /// eye lies beyond several borders at once.
+    /// Returns the code of a homogeneous point (x, y, z, w) of clip space; any w, so that a point
+    /// behind the eye lies beyond several borders at once.
     #[inline]
     pub fn of_homogeneous(p: DVec4, depth: DepthRange) -> Self {
         let near = match depth {
@@ -78,7 +78,8 @@ impl Outcode {
         Self(inside.iter().rev().fold(0, |bits, &inside| bits << 1 | u8::from(!inside)))
     }
 
-    /// The bits as digits in the order of the borders given, for books that number borders otherwise.
+    /// Returns the bits as digits in the order of the borders given, for books that number borders
+    /// otherwise.
     ///
     /// ```
     /// use durer::clip::outcode::Outcode;
@@ -91,13 +92,13 @@ impl Outcode {
         order.iter().map(|&border| if self.contains(border) { '1' } else { '0' }).collect()
     }
 
-    /// Whether no bit is set.
+    /// Returns whether no bit is set.
     #[inline]
     pub fn is_inside(self) -> bool {
         self.0 == 0
     }
 
-    /// Whether all bits of `other` are set.
+    /// Returns whether all bits of `other` are set.
     #[inline]
     pub fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0

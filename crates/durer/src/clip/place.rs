@@ -1,5 +1,5 @@
-//! Where in the pipeline triangles are clipped: before the camera transform, in clip space, after the
-//! division, in the viewport, or per pixel. All five give the same picture.
+//! The places in the pipeline at which triangles are clipped: before the camera transform, in clip
+//! space, after the division, in the viewport, or per pixel. All five give the same picture.
 //!
 //! In the world each border is a plane, one dot product a vertex, and what is rejected is never
 //! transformed. In clip space the borders are the same for all cameras, additions suffice, and w may
@@ -77,7 +77,7 @@ pub const PER_PIXEL: Info = Info {
 };
 
 crate::info::family! {
-    /// Where to clip.
+    /// Place of clipping.
     pub enum ClipPlace {
         /// Before the camera transform, against six planes.
         World => WORLD,
@@ -168,7 +168,7 @@ const SIDES: std::ops::Range<usize> = 0..4;
 const DEPTHS: std::ops::Range<usize> = 4..6;
 const ALL_BORDERS: std::ops::Range<usize> = 0..6;
 
-/// What lies between the near and the far plane, in clip space.
+/// Clips to the near and the far plane, in clip space.
 fn between_near_and_far<A: Blend>(
     ring: &[ClipVertex<A>],
     depth: DepthRange,
@@ -227,8 +227,8 @@ fn in_world<A: Blend>(
     ring
 }
 
-/// The smallest w of a point in the view volume: half of it is a safe place for the eye plane, and
-/// not so near to the eye that the division loses the digits of what is visible.
+/// Returns the smallest w of a point in the view volume: half of it is a safe place for the eye
+/// plane, and not so near to the eye that the division loses the digits of what is visible.
 fn nearest_w(clip_from_world: &DMat4, depth: DepthRange) -> f64 {
     let world_from_clip = clip_from_world.inverse();
     let near = if depth == DepthRange::ZeroToOne { 0.0 } else { -1.0 };

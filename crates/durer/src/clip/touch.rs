@@ -11,25 +11,26 @@ use std::cmp::Ordering;
 /// Nearer than this share of its larger coordinate, two to four ulp, a point lies on an edge.
 const NEAR: f64 = 2.0 * f64::EPSILON;
 
-/// How near to a point is as good as there.
+/// Returns the distance from a point within which it counts as reached.
 #[inline]
 pub(crate) fn reach(p: DVec2) -> f64 {
     p.abs().max_element() * NEAR
 }
 
-/// Whether two points are as good as one; the first tells how near that is.
+/// Returns whether two points are as good as one; the first tells how near that is.
 #[inline]
 pub(crate) fn are_one(p: DVec2, q: DVec2) -> bool {
     (p - q).abs().max_element() <= reach(p)
 }
 
-/// Whether a point is as good as on the line of an edge, and beside a part of that.
+/// Returns whether a point is as good as on the line of an edge, and beside a part of that.
 #[inline]
 pub(crate) fn is_on(p: DVec2, edge: [DVec2; 2], line: [DVec2; 2]) -> bool {
     is_within(reach(p), p, edge, line)
 }
 
-/// Whether a point is no farther than `reach` from the line of an edge, and beside a part of that.
+/// Returns whether a point is no farther than `reach` from the line of an edge, and beside a part
+/// of that.
 #[inline]
 pub(crate) fn is_within(reach: f64, p: DVec2, [a, b]: [DVec2; 2], [from, to]: [DVec2; 2]) -> bool {
     let beside = p.cmpge(a.min(b) - reach).all() && p.cmple(a.max(b) + reach).all();

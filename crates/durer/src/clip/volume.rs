@@ -31,7 +31,7 @@ pub const INFO: Info = Info {
 /// Coordinates beyond this are left out: products of two must stay finite.
 const COORDINATE_LIMIT: f64 = 1e150;
 
-/// Which borders are cut, and where the near plane is.
+/// Options: the borders to clip to, and the place of the near plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
     /// −w … w or 0 … w.
@@ -100,7 +100,7 @@ pub struct ClipVertex<A = ()> {
     pub attributes: A,
 }
 
-/// What there is to see. Vertex numbers count in the ring as it is when a border's turn comes.
+/// Step of the algorithm. Vertex numbers count in the ring as it is when a border's turn comes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A vertex got its outcode.
@@ -139,14 +139,14 @@ pub enum Step {
     Dropped,
 }
 
-/// The six distances from the borders in the order of [`Outcode::BORDERS`]; ≥ 0 is inside. Their
-/// signs are exact, and no positive factor of p changes them.
+/// Returns the six distances from the borders in the order of [`Outcode::BORDERS`]; ≥ 0 is inside.
+/// Their signs are exact, and no positive factor of p changes them.
 pub fn boundary_coordinates(p: DVec4, depth: DepthRange) -> [f64; 6] {
     Options { depth, ..Options::default() }.distances(p)
 }
 
-/// The six borders as planes of the space that `clip_from_source` starts from, normals inward, in
-/// the order of [`Outcode::BORDERS`].
+/// Returns the six borders as planes of the space that `clip_from_source` starts from, normals
+/// inward, in the order of [`Outcode::BORDERS`].
 ///
 /// The matrix may hold a perspective; its source space is affine (w = 1).
 pub fn planes_in_source(clip_from_source: &DMat4, depth: DepthRange) -> [Plane; 6] {
@@ -161,7 +161,7 @@ pub fn planes_in_source(clip_from_source: &DMat4, depth: DepthRange) -> [Plane; 
 }
 
 impl Options {
-    /// The extent of the four sides in units of w.
+    /// Returns the extent of the four sides in units of w.
     fn side(&self) -> f64 {
         match self.borders {
             Borders::All => 1.0,
@@ -178,7 +178,7 @@ impl Options {
         [side + p.x, side - p.x, side + p.y, side - p.y, near, p.w - p.z]
     }
 
-    /// The borders to be cut that p lies beyond.
+    /// Returns the borders to be cut that p lies beyond.
     fn code(&self, p: DVec4) -> Outcode {
         let code = Outcode::from_inside(self.distances(p).map(|d| d >= 0.0));
         match self.borders {
@@ -203,7 +203,7 @@ impl Options {
         }
     }
 
-    /// Where an edge meets a border; `d_in ≥ 0 > d_out`.
+    /// Computes the point at which an edge meets a border; `d_in ≥ 0 > d_out`.
     fn cut<A: Blend>(
         &self,
         border: usize,
@@ -222,7 +222,8 @@ impl Options {
     }
 }
 
-/// Which borders have to be cut: none that no vertex lies beyond. `None` rejects all.
+/// Returns the borders that have to be cut: those beyond which some vertex lies. `None` rejects
+/// all.
 fn needed<A>(
     vertices: &[ClipVertex<A>],
     options: &Options,
@@ -382,13 +383,13 @@ fn clip_ring<A: Blend>(
     }
 }
 
-/// Whether all that was left lies in the guard band beyond one border.
+/// Returns whether all that was left lies in the guard band beyond one border.
 fn unseen<A>(vertices: &[ClipVertex<A>], options: &Options) -> bool {
     let codes = vertices.iter().map(|v| Outcode::of_homogeneous(v.position, options.depth));
     !codes.fold(Outcode(u8::MAX), |all, code| all & code).is_inside()
 }
 
-/// One border of the Sutherland–Hodgman method: the part of a ring with `distance ≥ 0`.
+/// Returns one border of the Sutherland–Hodgman method: the part of a ring with `distance ≥ 0`.
 ///
 /// `cut` gets the inside end and the outside end of an edge with their distances.
 pub(super) fn cut_ring<V: Clone>(

@@ -136,13 +136,14 @@ fn put(
     }
 }
 
-/// The pixels of the viewport.
+/// Returns the pixels of the viewport.
 fn window(p: &Pipeline, target: &Framebuffer) -> [i32; 4] {
     let [x, y, w, h] = p.viewport.unwrap_or([0, 0, target.width(), target.height()]);
     [x, y, x.saturating_add(w), y.saturating_add(h)].map(|v| v.min(i32::MAX as u32) as i32)
 }
 
-/// The pixel of a place within the viewport, whose right and lower border belong to its last pixels.
+/// Returns the pixel of a place within the viewport, whose right and lower border belong to its last
+/// pixels.
 fn pixel(p: &Pipeline, at: DVec2, target: &Framebuffer) -> IVec2 {
     let [x0, y0, x1, y1] = window(p, target);
     at.floor().as_ivec2().clamp(IVec2::new(x0, y0), IVec2::new((x1 - 1).max(x0), (y1 - 1).max(y0)))

@@ -21,7 +21,8 @@ pub enum Curve {
 }
 
 impl Curve {
-    /// The point at a parameter 0 … 1; `None` without control points and where weights make it infinite.
+    /// Returns the point at a parameter 0 … 1; `None` without control points and where weights make it
+    /// infinite.
     pub fn point(&self, t: f64) -> Option<DVec3> {
         match self {
             Self::Bezier(control) => de_casteljau(control, t, &mut NoTrace),
@@ -50,7 +51,8 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// The point at two parameters 0 … 1; `None` without control points and where it is not finite.
+    /// Returns the point at two parameters 0 … 1; `None` without control points and where it is not
+    /// finite.
     pub fn point(&self, u: f64, v: f64) -> Option<DVec3> {
         patch(&self.rows, u, v).filter(|p| p.is_finite())
     }

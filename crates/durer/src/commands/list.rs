@@ -39,7 +39,7 @@ impl DisplayLists {
         Ok(())
     }
 
-    /// The commands of a list.
+    /// Returns the commands of a list.
     ///
     /// # Errors
     /// [`Error::Dangling`] for a list of another collection.

@@ -35,7 +35,7 @@ pub use state::{CullFace, MAX_STACK, Pipeline};
 use crate::fragment::{DepthRange, FragmentState, PolygonOffset};
 use crate::math::{DMat4, DVec3, Vec4};
 
-/// How vertices make shapes.
+/// Way in which vertices form shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Primitive {
     /// Each vertex a pixel.

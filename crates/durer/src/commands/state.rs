@@ -3,8 +3,8 @@
 use crate::fragment::{DepthRange, FragmentState, PolygonOffset};
 use crate::math::{DMat4, Vec4};
 
-/// Which faces are left out, by the way their corners turn on the screen: counter-clockwise, seen with
-/// y up, is a front face.
+/// Faces to leave out, by the way their corners turn on the screen: counter-clockwise, seen with y up,
+/// is a front face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum CullFace {
     /// None: the initial state.
@@ -31,11 +31,11 @@ pub struct Pipeline {
     pub color: Vec4,
     /// Colour index of vertices without one; at first 1.
     pub index: f32,
-    /// Which faces are left out; at first none.
+    /// Faces to leave out; at first none.
     pub cull: CullFace,
-    /// Where near and far lie in window depth; at first 0 and 1.
+    /// Window depths of the near and the far plane; at first 0 and 1.
     pub depth_range: DepthRange,
-    /// What is added to the depths of polygons; at first nothing.
+    /// Offset added to the depths of polygons; at first nothing.
     pub polygon_offset: PolygonOffset,
     /// Scissor, alpha test, stencil, depth, blending, dithering, logic operation and write masks; at first
     /// all off but the masks, which let everything through.

@@ -35,7 +35,7 @@ pub struct BSpline<P> {
 }
 
 impl<P: Point> BSpline<P> {
-    /// A curve from its parts.
+    /// Creates A curve from its parts.
     ///
     /// # Errors
     /// [`Error::Parameter`] where a guarantee would not hold.
@@ -66,8 +66,8 @@ impl<P: Point> BSpline<P> {
         Ok(Self { degree, control, knots })
     }
 
-    /// A curve with equally spaced knots, the ends repeated so that it starts and ends in its first and
-    /// last control point; the parameter runs from 0 to 1.
+    /// Creates A curve with equally spaced knots, the ends repeated so that it starts and ends in its
+    /// first and last control point; the parameter runs from 0 to 1.
     ///
     /// # Errors
     /// As [`BSpline::new`].
@@ -78,12 +78,12 @@ impl<P: Point> BSpline<P> {
         Self::new(degree, control, knots)
     }
 
-    /// First and last parameter.
+    /// Returns the first and last parameter.
     pub fn domain(&self) -> (f64, f64) {
         (self.knots[self.degree], self.knots[self.control.len()])
     }
 
-    /// The knot span of a parameter, which is moved into the domain.
+    /// Returns the knot span of a parameter, which is moved into the domain.
     fn span(&self, t: f64) -> (usize, f64) {
         let (start, end) = self.domain();
         let t = if t.is_nan() { start } else { t.clamp(start, end) };
@@ -95,13 +95,13 @@ impl<P: Point> BSpline<P> {
         (span, t)
     }
 
-    /// The point at a parameter, by [`de_boor`].
+    /// Returns the point at a parameter, by [`de_boor`].
     pub fn point(&self, t: f64) -> P {
         de_boor(self, t, &mut NoTrace)
     }
 
-    /// The values of all basis functions at a parameter, by the recursion of Cox and de Boor: they are
-    /// not negative and add up to one.
+    /// Returns the values of all basis functions at a parameter, by the recursion of Cox and de Boor:
+    /// they are not negative and add up to one.
     pub fn basis(&self, t: f64) -> Vec<f64> {
         let (span, t) = self.span(t);
         let mut values = vec![0.0; self.knots.len() - 1];
@@ -134,7 +134,8 @@ pub struct Step<P> {
     pub point: P,
 }
 
-/// The point of a curve at a parameter, by de Boor's algorithm; parameters outside the domain are moved to its ends.
+/// Returns the point of a curve at a parameter, by de Boor's algorithm; parameters outside the domain are
+/// moved to its ends.
 ///
 /// ```
 /// use durer::curve::b_spline::{BSpline, de_boor};
@@ -161,8 +162,8 @@ pub fn de_boor<P: Point>(curve: &BSpline<P>, t: f64, tracer: &mut impl Tracer<St
     points[p]
 }
 
-/// The point of a rational curve at a parameter: [`de_boor`] with homogeneous points (x · weight, y · weight,
-/// weight), then one division.
+/// Returns the point of a rational curve at a parameter: [`de_boor`] with homogeneous points (x · weight, y ·
+/// weight, weight), then one division.
 pub fn de_boor_rational(curve: &Nurbs, t: f64, tracer: &mut impl Tracer<Step<DVec3>>) -> DVec2 {
     project(de_boor(&curve.lifted, t, tracer)).unwrap_or_default()
 }
@@ -174,7 +175,7 @@ pub struct Nurbs {
 }
 
 impl Nurbs {
-    /// A curve from control points, weights and knots.
+    /// Creates A curve from control points, weights and knots.
     ///
     /// # Errors
     /// [`Error::Parameter`] for weights that are not positive and finite, or as [`BSpline::new`].
@@ -196,12 +197,12 @@ impl Nurbs {
         Ok(Self { lifted: BSpline::new(degree, lifted, knots)? })
     }
 
-    /// First and last parameter.
+    /// Returns the first and last parameter.
     pub fn domain(&self) -> (f64, f64) {
         self.lifted.domain()
     }
 
-    /// The point at a parameter, by [`de_boor_rational`].
+    /// Returns the point at a parameter, by [`de_boor_rational`].
     pub fn point(&self, t: f64) -> DVec2 {
         de_boor_rational(self, t, &mut NoTrace)
     }

@@ -21,7 +21,7 @@ pub const INFO: Info = Info {
 
 /// Points that can be mixed; what curves are made of.
 pub trait Point: Copy {
-    /// The point at `t` on the line from `self` (0) to `other` (1).
+    /// Returns the point at `t` on the line from `self` (0) to `other` (1).
     fn mix(self, other: Self, t: f64) -> Self;
 }
 
@@ -53,7 +53,7 @@ pub struct Step<P> {
     pub point: P,
 }
 
-/// The point of the curve at parameter `t`; `None` without control points.
+/// Returns the point of the curve at parameter `t`; `None` without control points.
 ///
 /// ```
 /// use durer::curve::bezier::de_casteljau;
@@ -92,8 +92,8 @@ pub fn split<P: Point>(control: &[P], t: f64) -> (Vec<P>, Vec<P>) {
     (left, right)
 }
 
-/// The point of a rational curve: control points with weights (x, y, weight); `None` without control
-/// points or where the weights cancel.
+/// Returns the point of a rational curve: control points with weights (x, y, weight); `None` without
+/// control points or where the weights cancel.
 pub fn rational(control: &[(DVec2, f64)], t: f64) -> Option<DVec2> {
     let lifted: Vec<DVec3> = control.iter().map(|(p, w)| (*p * *w).extend(*w)).collect();
     project(de_casteljau(&lifted, t, &mut crate::trace::NoTrace)?)
@@ -104,7 +104,8 @@ pub(crate) fn project(p: DVec3) -> Option<DVec2> {
     (p.z != 0.0).then(|| p.truncate() / p.z)
 }
 
-/// The point of a patch at (u, v): `rows` of control points, u along each row, v across the rows.
+/// Returns the point of a patch at (u, v): `rows` of control points, u along each row, v across the
+/// rows.
 pub fn patch<P: Point>(rows: &[impl AsRef<[P]>], u: f64, v: f64) -> Option<P> {
     let t = &mut crate::trace::NoTrace;
     let across: Option<Vec<P>> = rows.iter().map(|r| de_casteljau(r.as_ref(), u, t)).collect();

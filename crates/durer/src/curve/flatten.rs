@@ -48,14 +48,14 @@ impl Contours {
         self.end(closed);
     }
 
-    /// One closed contour.
+    /// Returns one closed contour.
     pub fn polygon(points: impl IntoIterator<Item = DVec2>) -> Self {
         let mut contours = Self::new();
         contours.push(points, true);
         contours
     }
 
-    /// Each contour's points and whether it was closed.
+    /// Returns each contour's points and whether it was closed.
     pub fn iter(&self) -> impl Iterator<Item = (&[DVec2], bool)> {
         let starts = std::iter::once(0).chain(self.ends.iter().map(|e| e.0));
         starts
@@ -63,12 +63,13 @@ impl Contours {
             .map(|(start, (end, closed))| (self.points.get(start..*end).unwrap_or(&[]), *closed))
     }
 
-    /// All points of all contours.
+    /// Returns all points of all contours.
     pub fn points(&self) -> &[DVec2] {
         &self.points
     }
 
-    /// The contours that have points in a range of all points: the points of each, and which of them are in the range.
+    /// Returns the contours that have points in a range of all points: the points of each, and which of them
+    /// are in the range.
     pub(crate) fn within(
         &self,
         range: Range<usize>,
@@ -86,7 +87,7 @@ impl Contours {
         })
     }
 
-    /// The same contours with every point mapped.
+    /// Returns the same contours with every point mapped.
     pub fn transformed(mut self, map: DAffine2) -> Self {
         if map != DAffine2::IDENTITY {
             self.points.iter_mut().for_each(|p| *p = map.transform_point2(*p));
@@ -111,8 +112,8 @@ impl Contours {
     }
 }
 
-/// How many equal parameter steps keep a Bézier curve of the given degree and largest second
-/// difference of control points within `tolerance` of its chords.
+/// Returns the number of equal parameter steps that keep a Bézier curve of the given degree and
+/// largest second difference of control points within `tolerance` of its chords.
 pub fn segments_for(degree: u32, second_difference: f64, tolerance: f64) -> u32 {
     let bound = f64::from(degree) * f64::from(degree.saturating_sub(1)) / 8.0 * second_difference;
     let steps = (bound / tolerance.max(1e-9)).sqrt().ceil();
@@ -138,17 +139,17 @@ pub enum Step {
     Chord {
         /// Index of the element in the path.
         element: usize,
-        /// Where the chord ends.
+        /// End of the chord.
         end: DVec2,
     },
     /// The contour ends, closed or open.
     End {
-        /// Whether it was closed.
+        /// True if it was closed.
         closed: bool,
     },
 }
 
-/// As [`flatten`], with a listener for its steps.
+/// Flattens like [`flatten`], with a listener for its steps.
 pub fn flatten_traced(path: &Path, tolerance: f64, t: &mut impl Tracer<Step>) -> Contours {
     let mut out = Contours::new();
     let (mut start, mut at) = (None, DVec2::ZERO);
@@ -223,7 +224,7 @@ mod tests {
     use super::*;
     use crate::trace::Recorder;
 
-    /// Distance of a point from a chain of lines.
+    /// Returns the distance of a point from a chain of lines.
     fn distance(p: DVec2, chain: &[DVec2]) -> f64 {
         let to = |w: &[DVec2]| {
             let d = w[1] - w[0];

@@ -27,17 +27,17 @@ pub struct Path {
 const QUARTER_CIRCLE: f64 = 0.552_284_749_830_793_4;
 
 impl Path {
-    /// A path without elements.
+    /// Creates A path without elements.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The elements in order.
+    /// Returns the elements in order.
     pub fn elements(&self) -> &[PathElement] {
         &self.elements
     }
 
-    /// Whether there is nothing in it.
+    /// Returns whether there is nothing in it.
     pub fn is_empty(&self) -> bool {
         self.elements.is_empty()
     }
@@ -53,17 +53,17 @@ impl Path {
         self.push(PathElement::MoveTo(DVec2::new(x, y)))
     }
 
-    /// A straight line to (x, y).
+    /// Returns A straight line to (x, y).
     pub fn line_to(&mut self, x: f64, y: f64) -> &mut Self {
         self.push(PathElement::LineTo(DVec2::new(x, y)))
     }
 
-    /// A quadratic curve with control point (cx, cy) to (x, y).
+    /// Returns A quadratic curve with control point (cx, cy) to (x, y).
     pub fn quad_to(&mut self, cx: f64, cy: f64, x: f64, y: f64) -> &mut Self {
         self.push(PathElement::QuadTo(DVec2::new(cx, cy), DVec2::new(x, y)))
     }
 
-    /// A cubic curve to the third point.
+    /// Returns A cubic curve to the third point.
     pub fn cubic_to(&mut self, a: DVec2, b: DVec2, end: DVec2) -> &mut Self {
         self.push(PathElement::CubicTo(a, b, end))
     }
@@ -79,7 +79,7 @@ impl Path {
         self
     }
 
-    /// A closed polygon.
+    /// Creates A closed polygon.
     pub fn polygon(points: impl IntoIterator<Item = DVec2>) -> Self {
         let mut path = Self::polyline(points);
         if !path.is_empty() {
@@ -88,7 +88,7 @@ impl Path {
         path
     }
 
-    /// An open chain of lines.
+    /// Creates an open chain of lines.
     pub fn polyline(points: impl IntoIterator<Item = DVec2>) -> Self {
         let mut path = Self::new();
         for (i, p) in points.into_iter().enumerate() {
@@ -97,19 +97,19 @@ impl Path {
         path
     }
 
-    /// A rectangle, from its upper left corner to the right first.
+    /// Creates A rectangle, from its upper left corner to the right first.
     pub fn rectangle(x: f64, y: f64, width: f64, height: f64) -> Self {
         let (right, bottom) = (x + width, y + height);
         let corners = [(x, y), (right, y), (right, bottom), (x, bottom)];
         Self::polygon(corners.map(|(x, y)| DVec2::new(x, y)))
     }
 
-    /// A circle as four cubic curves; radial error below 0.03 % of the radius.
+    /// Creates A circle as four cubic curves; radial error below 0.03 % of the radius.
     pub fn circle(center: DVec2, radius: f64) -> Self {
         Self::ellipse(center, DVec2::splat(radius))
     }
 
-    /// An ellipse with its axes parallel to the coordinate axes, as four cubic curves.
+    /// Creates an ellipse with its axes parallel to the coordinate axes, as four cubic curves.
     pub fn ellipse(center: DVec2, radii: DVec2) -> Self {
         let at = |x: f64, y: f64| center + radii * DVec2::new(x, y);
         let k = QUARTER_CIRCLE;
@@ -123,7 +123,7 @@ impl Path {
         path
     }
 
-    /// A circular arc from angle `start` over `sweep` radians (positive turns x towards y), as
+    /// Returns A circular arc from angle `start` over `sweep` radians (positive turns x towards y), as
     /// cubic curves of at most a quarter turn each. Appends a line to its start where a contour is open.
     pub fn arc(&mut self, center: DVec2, radius: f64, start: f64, sweep: f64) -> &mut Self {
         let turns = sweep.clamp(-std::f64::consts::TAU, std::f64::consts::TAU);
@@ -146,7 +146,7 @@ impl Path {
         self
     }
 
-    /// The same path with every point mapped.
+    /// Returns the same path with every point mapped.
     pub fn transformed(&self, map: DAffine2) -> Self {
         use PathElement::{Close, CubicTo, LineTo, MoveTo, QuadTo};
         let at = |p: DVec2| map.transform_point2(p);
@@ -160,7 +160,8 @@ impl Path {
         Self { elements: elements.collect() }
     }
 
-    /// The smallest rectangle around all finite points and control points; it contains the curves.
+    /// Returns the smallest rectangle around all finite points and control points; it contains the
+    /// curves.
     pub fn bounds(&self) -> Option<Rect> {
         use PathElement::{Close, CubicTo, LineTo, MoveTo, QuadTo};
         Rect::around(self.elements.iter().flat_map(|e| {

@@ -1,4 +1,4 @@
-//! What can be made of chains of lines, arcs and cubic curves: paths, points, lengths, parts.
+//! Operations on chains of lines, arcs and cubic curves: paths, points, lengths, parts.
 
 use super::{Path, PathElement, flatten};
 use crate::math::DVec2;
@@ -79,7 +79,7 @@ pub fn length(curve: &Curve) -> f64 {
     curve.iter().map(piece).sum()
 }
 
-/// How far a piece may be from where it begins, at most a few times too much.
+/// Returns an upper bound of a piece's distance from its start, at most a few times too large.
 fn reach(start: DVec2, piece: &Piece) -> f64 {
     match piece {
         Piece::Line(end) => start.distance(*end),
@@ -197,7 +197,7 @@ fn pairs(start: DVec2, piece: &Piece, tolerance: f64, arcs: &mut Vec<(DVec2, f64
     }
 }
 
-/// Two arcs between two places.
+/// Returns two arcs between two places.
 fn pair((from, leaves): Place, (to, comes): Place) -> Option<[(DVec2, f64); 2]> {
     let (across, ways) = (to - from, leaves + comes);
     let (along, bend) = (across.dot(ways), 2.0 * (1.0 - leaves.dot(comes)));
@@ -214,7 +214,7 @@ fn pair((from, leaves): Place, (to, comes): Place) -> Option<[(DVec2, f64); 2]> 
     is_sound.then_some([first, second])
 }
 
-/// How far a point is from the circle of an arc.
+/// Returns the distance of a point from the circle of an arc.
 fn off(p: DVec2, start: DVec2, (end, bulge): (DVec2, f64)) -> f64 {
     let across = end - start;
     let half = across.length() * 0.5;

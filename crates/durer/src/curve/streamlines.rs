@@ -11,13 +11,15 @@ use std::collections::VecDeque;
 
 /// Directions in the plane, and how far apart lines along them should be.
 pub trait Field {
-    /// The direction at a point, of unit length; its sign does not matter. `None` where the field has none: lines end.
+    /// Returns the direction at a point, of unit length; its sign does not matter. `None` where the field has
+    /// none: lines end.
     fn direction(&self, p: DVec2) -> Option<DVec2>;
 
-    /// The distance that lines should have at a point, above 0. `None` where there should be none.
+    /// Returns the distance that lines should have at a point, above 0. `None` where there should
+    /// be none.
     fn separation(&self, p: DVec2) -> Option<f64>;
 
-    /// Whether a line may go from one point to another, a step away.
+    /// Returns whether a line may go from one point to another, a step away.
     fn joins(&self, from: DVec2, to: DVec2) -> bool;
 }
 
@@ -26,7 +28,7 @@ pub trait Field {
 pub struct Options {
     /// Distance between points of a line, above 0; in the units of the plane.
     pub step: f64,
-    /// How near a line may come to another before it ends, as a part of the separation; 0 … 1.
+    /// Distance to another line at which a line ends, as a part of the separation; 0 … 1.
     pub closest: f64,
     /// Lines shorter than this are left out.
     pub shortest: f64,
@@ -37,14 +39,15 @@ pub struct Options {
 pub struct Streamline {
     /// Its points, a step apart.
     pub points: Vec<DVec2>,
-    /// Whether its last point is joined to the first.
+    /// True if its last point is joined to the first.
     pub closed: bool,
 }
 
 /// Points of one line at most.
 const MOST_POINTS: i32 = 100_000;
 
-/// How much of the separation a new line needs on both sides: with all of it, gaps up to twice as wide would stay.
+/// Space that a new line needs on both sides, as a part of the separation: with all of it, gaps up to twice as
+/// wide would remain.
 const ROOM: f64 = 0.75;
 
 /// A line ends where it would turn by more than 60° in a step.
@@ -123,7 +126,8 @@ impl<F: Field> Tracing<'_, F> {
         if inside { self.field.separation(p).filter(|s| *s > 0.0) } else { None }
     }
 
-    /// The points that follow a seed to one side, numbered by 1 or −1, and whether they come back to it.
+    /// Returns the points that follow a seed to one side, numbered by 1 or −1, and whether they come
+    /// back to it.
     fn grow(&mut self, seed: DVec2, start: DVec2, sign: i32) -> (Vec<DVec2>, bool) {
         let own = self.lines.len() as u32;
         let mut points = Vec::new();
@@ -150,7 +154,7 @@ impl<F: Field> Tracing<'_, F> {
         (points, false)
     }
 
-    /// A step by the midpoint rule, and the heading there.
+    /// Returns A step by the midpoint rule, and the heading there.
     fn next(&self, at: DVec2, heading: DVec2) -> Option<(DVec2, DVec2)> {
         let along = |p: DVec2| {
             let direction = self.field.direction(p)?;
@@ -180,7 +184,7 @@ impl<F: Field> Tracing<'_, F> {
     }
 }
 
-/// Whether a line that heads along `direction` is about to run into its own start.
+/// Returns whether a line that heads along `direction` is about to run into its own start.
 fn returns(
     p: DVec2,
     direction: DVec2,
@@ -227,7 +231,7 @@ impl Placed {
         Self { cell, columns, rows, cells: vec![Vec::new(); columns * rows] }
     }
 
-    /// The cell of a place, the nearest where it is outside.
+    /// Returns the cell of a place, the nearest where it is outside.
     fn cell(&self, p: DVec2) -> (usize, usize) {
         let place = |v: f64, count: usize| ((v / self.cell).max(0.0) as usize).min(count - 1);
         (place(p.x, self.columns), place(p.y, self.rows))
@@ -245,7 +249,7 @@ impl Placed {
         }
     }
 
-    /// Whether any of the points that count is nearer than `distance`.
+    /// Returns whether any of the points that count is nearer than `distance`.
     fn any(&self, p: DVec2, distance: f64, counts: impl Fn(&Point) -> bool) -> bool {
         let (low, high) = (self.cell(p - distance), self.cell(p + distance));
         (low.1..=high.1).any(|y| {

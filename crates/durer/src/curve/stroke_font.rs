@@ -15,13 +15,13 @@ pub struct StrokeText {
     /// Chains of at least two points, y down, the first letter's origin on the base line at (0, 0). A
     /// chain that is closed repeats its first point.
     pub strokes: Vec<Vec<DVec2>>,
-    /// Where the next letter would start. Half of the space between letters stands on either side of
-    /// each, so half of `advance` is the middle of the text.
+    /// Offset of the next letter. Half of the space between letters lies on either side of each, so
+    /// half of `advance` is the middle of the text.
     pub advance: f64,
 }
 
 impl StrokeText {
-    /// The strokes as a path, to be stroked with round caps and joins.
+    /// Returns the strokes as a path, to be stroked with round caps and joins.
     pub fn path(&self) -> Path {
         let mut path = Path::new();
         for stroke in &self.strokes {
@@ -40,7 +40,7 @@ const WORD: f64 = 2.4;
 /// Chords per quarter of an ellipse: 0.4 % of its radius off, a hundredth of a millimetre for letters
 /// of 5 mm.
 const CHORDS: u32 = 6;
-/// What is drawn for a letter that the font does not have.
+/// Glyph for letters that the font does not have.
 const MISSING: Glyph = (6.0, "M0 0 L6 0 L6 12 L0 12 L0 0");
 
 /// Width and outline: `M` starts a stroke, `L` is a line; `H` and `V` are quarters of an ellipse that
@@ -94,7 +94,7 @@ fn letter(character: char) -> Letter {
     }
 }
 
-/// Small figures: half as large, at the height of capitals.
+/// Returns small figures: half as large, at the height of capitals.
 fn raised(character: char) -> Option<Letter> {
     let figure = match character {
         '²' => '2',
@@ -109,7 +109,7 @@ fn raised(character: char) -> Option<Letter> {
 }
 
 impl Letter {
-    /// The same letter with the accent of `character` over (or under) its middle.
+    /// Creates the same letter with the accent of `character` over (or under) its middle.
     fn with_accent(mut self, character: char) -> Self {
         let Some((base, accent)) = decomposed(character) else { return self };
         let Some((width, outline)) = accent_glyph(accent) else { return self };
@@ -125,7 +125,7 @@ impl Letter {
 /// The height of small letters on the grid.
 const X_HEIGHT: f64 = 8.0;
 
-/// The letter under an accent.
+/// Returns the letter under an accent.
 fn accented(character: char) -> Option<Glyph> {
     match decomposed(character)?.0 {
         'i' => Some((0.0, "M0 0 L0 8")),
@@ -133,7 +133,7 @@ fn accented(character: char) -> Option<Glyph> {
     }
 }
 
-/// A letter with an accent as its two parts.
+/// Returns A letter with an accent as its two parts.
 fn decomposed(character: char) -> Option<(char, char)> {
     let row = ACCENTED.iter().find(|(_, _, all)| all.contains(character))?;
     let index = row.2.chars().position(|c| c == character)?;
@@ -167,7 +167,7 @@ fn accent_glyph(accent: char) -> Option<Glyph> {
     })
 }
 
-/// The chains of points of an outline.
+/// Returns the chains of points of an outline.
 fn strokes(outline: &str) -> Vec<Vec<DVec2>> {
     let mut strokes: Vec<Vec<DVec2>> = Vec::new();
     let mut control = None;

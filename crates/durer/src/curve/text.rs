@@ -24,7 +24,7 @@ pub struct Font<'a> {
 pub struct TextLine {
     /// The outlines, y down, the first glyph's origin on the base line at (0, 0).
     pub path: Path,
-    /// Where the next glyph would start.
+    /// Offset of the next glyph.
     pub advance: f64,
     /// For each glyph where it starts on the base line, where the next one does, and before which element of the
     /// path its outline ends.
@@ -42,7 +42,7 @@ pub struct PlacedGlyph {
     pub start: f64,
     /// The origin of a glyph after it, without kerning.
     pub end: f64,
-    /// How many elements of the line's path belong to it and to those before.
+    /// Number of the elements of the line's path that belong to it and to those before.
     pub elements: usize,
 }
 
@@ -70,7 +70,8 @@ impl TextLine {
     }
 }
 
-/// The point so far along a polyline, and the unit direction there; `None` where it has no length.
+/// Returns the point so far along a polyline, and the unit direction there; `None` where it has no
+/// length.
 pub fn place_along(polyline: &[DVec2], mut along: f64) -> Option<(DVec2, DVec2)> {
     let mut last = None;
     for pair in polyline.windows(2) {
@@ -105,7 +106,7 @@ impl<'a> Font<'a> {
         Ok(Self { font })
     }
 
-    /// Whether the font has a glyph for a character, or the character needs none.
+    /// Returns whether the font has a glyph for a character, or the character needs none.
     pub fn has(&self, character: char) -> bool {
         character.is_control() || self.font.charmap().map(character).is_some()
     }
@@ -144,7 +145,7 @@ impl<'a> Font<'a> {
         line
     }
 
-    /// How much closer two glyphs stand, in font units.
+    /// Returns the kerning of two glyphs: how much closer they are set, in font units.
     fn kerning(&self, left: GlyphId, right: GlyphId) -> i32 {
         let Ok(kern) = self.font.kern() else { return 0 };
         let tables = kern.subtables().filter_map(|t| t.ok());

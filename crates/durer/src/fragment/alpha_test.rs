@@ -7,12 +7,12 @@ use super::Compare;
 pub struct AlphaTest {
     /// The comparison; the fragment's alpha is the incoming value.
     pub compare: Compare,
-    /// What alpha is compared with; held to 0…1.
+    /// Reference value for alpha; clamped to 0…1.
     pub reference: f32,
 }
 
 impl AlphaTest {
-    /// Whether a fragment of this alpha passes.
+    /// Returns whether a fragment of this alpha passes.
     #[inline(always)]
     pub fn passes(&self, alpha: f32) -> bool {
         self.compare.passes(alpha, self.reference.clamp(0.0, 1.0))

@@ -3,7 +3,7 @@
 
 use crate::math::{Vec3, Vec4};
 
-/// What source or destination is multiplied by.
+/// Factor of source or destination.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Factor {
     /// 0.
@@ -58,7 +58,7 @@ impl Factor {
         Self::SourceAlphaSaturate,
     ];
 
-    /// The factor of each channel.
+    /// Returns the factor of each channel.
     #[inline]
     fn value(self, source: Vec4, destination: Vec4, constant: Vec4) -> Vec4 {
         match self {
@@ -81,7 +81,7 @@ impl Factor {
     }
 }
 
-/// How the two products are joined.
+/// Operation that joins the two products.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Equation {
     /// Source + destination.
@@ -137,7 +137,7 @@ impl Function {
     }
 }
 
-/// What is drawn joined with what is there.
+/// Blending of a fragment with the stored colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Blend {
     /// Source over destination, both with straight alpha; right over transparent destinations too.
@@ -154,7 +154,7 @@ pub enum Blend {
 }
 
 impl Blend {
-    /// The blended colour, held to 0…1.
+    /// Returns the blended colour, held to 0…1.
     #[inline]
     pub fn apply(&self, source: Vec4, destination: Vec4) -> Vec4 {
         match self {
@@ -196,7 +196,7 @@ mod tests {
     const DESTINATION: [f32; 4] = [0.5, 1.0, 0.125, 0.375];
     const CONSTANT: [f32; 4] = [0.1, 0.2, 0.3, 0.4];
 
-    /// The specification's table 17.2, channel by channel.
+    /// Returns the specification's table 17.2, channel by channel.
     fn table(factor: Factor, channel: usize) -> f32 {
         let (s, d, c) = (SOURCE, DESTINATION, CONSTANT);
         match factor {

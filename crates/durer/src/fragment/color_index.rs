@@ -41,7 +41,7 @@ impl Default for Palette {
 }
 
 impl Palette {
-    /// A palette of sRGB colours with straight alpha; indices beyond them are opaque black.
+    /// Creates A palette of sRGB colours with straight alpha; indices beyond them are opaque black.
     ///
     /// # Errors
     /// [`Error::Parameter`] for more than 256 colours.
@@ -53,7 +53,7 @@ impl Palette {
         Ok(palette)
     }
 
-    /// The colour of an index: sRGB, straight alpha.
+    /// Returns the colour of an index: sRGB, straight alpha.
     pub fn get(&self, index: u8) -> [u8; 4] {
         self.colors[usize::from(index)]
     }
@@ -72,8 +72,8 @@ impl Palette {
         }
     }
 
-    /// The index whose colour is nearest: the least sum of squared differences of sRGB codes and alpha;
-    /// of equally near ones the lowest. Cost: 256 comparisons.
+    /// Returns the index whose colour is nearest: the least sum of squared differences of sRGB codes
+    /// and alpha; of equally near ones the lowest. Cost: 256 comparisons.
     pub fn nearest(&self, color: [u8; 4]) -> u8 {
         let distance = |index: &u8| -> u32 {
             let entry = self.get(*index);
@@ -91,12 +91,13 @@ impl Palette {
     }
 }
 
-/// The nearest whole index; halves go up.
+/// Returns the nearest whole index; halves go up.
 pub(super) fn rounded(index: f32) -> u8 {
     whole_index((index + 0.5).floor())
 }
 
-/// The lowest eight bits of a whole number, as a framebuffer of eight bits keeps them; 0 for NaN.
+/// Returns the lowest eight bits of a whole number, as a framebuffer of eight bits keeps them; 0
+/// for NaN.
 pub(super) fn whole_index(index: f32) -> u8 {
     (index as i64 & 0xff) as u8
 }

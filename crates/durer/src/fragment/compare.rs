@@ -1,6 +1,6 @@
 //! The eight comparisons of alpha, stencil and depth test (OpenGL 4.6, 17.3).
 
-/// How an incoming value is compared with a stored one.
+/// Comparison of an incoming value with a stored one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Compare {
     /// No fragment passes.
@@ -34,7 +34,7 @@ impl Compare {
         Self::Always,
     ];
 
-    /// Whether the incoming value passes. NaN passes `NotEqual` and `Always` alone.
+    /// Returns whether the incoming value passes. NaN passes `NotEqual` and `Always` alone.
     #[inline(always)]
     pub fn passes<T: PartialOrd>(self, incoming: T, stored: T) -> bool {
         match self {

@@ -1,7 +1,7 @@
 //! Depth: the range of window depth, polygon offset (OpenGL 4.6, 13.8.1, 14.6.5). The test itself is
 //! [`super::Compare`], whose usual choice is [`super::Compare::Less`]: of equal depths the first stays.
 
-/// Where the near and the far plane lie in window depth.
+/// Window depths of the near and the far plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DepthRange {
     /// Window depth of the near plane, 0…1.
@@ -24,7 +24,7 @@ impl DepthRange {
         ndc * ((far - near) * 0.5) + (near + far) * 0.5
     }
 
-    /// A window depth held to what the range can give. NaN becomes the nearer end.
+    /// Returns A window depth held to what the range can give. NaN becomes the nearer end.
     pub fn clamp(&self, depth: f32) -> f32 {
         let (near, far) = self.held();
         let (low, high) = (near.min(far) as f32, near.max(far) as f32);
@@ -55,7 +55,7 @@ pub struct PolygonOffset {
 }
 
 impl PolygonOffset {
-    /// What is added to the depths of a polygon.
+    /// Returns the offset that is added to the depths of a polygon.
     ///
     /// `slope` is the change of depth per pixel along x and y, `deepest` the largest absolute depth of
     /// its vertices: for a floating-point depth plane the smallest difference is 2^(e − 23), e being the

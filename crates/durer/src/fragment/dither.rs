@@ -11,7 +11,8 @@ use crate::shade::color::{LINEAR_FROM_SRGB, encode_srgb8, encode_unorm8};
 /// Bayer's matrix of order 8: the thresholds 0…63.
 pub const BAYER8: [[u8; 8]; 8] = bayer();
 
-/// Each doubling puts 4 M, 4 M + 2, 4 M + 3, 4 M + 1 into the quarters: bits of x ^ y and y, woven.
+/// Returns each doubling puts 4 M, 4 M + 2, 4 M + 3, 4 M + 1 into the quarters: bits of x ^ y and
+/// y, woven.
 const fn bayer() -> [[u8; 8]; 8] {
     let mut m = [[0; 8]; 8];
     let mut i = 0;
@@ -30,7 +31,7 @@ const fn bayer() -> [[u8; 8]; 8] {
     m
 }
 
-/// What a pixel asks of a value between two levels, 1/128 … 127/128.
+/// Returns the threshold of a pixel for a value between two levels, 1/128 … 127/128.
 fn threshold(x: u32, y: u32) -> f32 {
     (f32::from(BAYER8[y as usize % 8][x as usize % 8]) + 0.5) / 64.0
 }
@@ -43,29 +44,31 @@ pub struct Dither {
 }
 
 impl Default for Dither {
-    /// All 256 levels: only hides the steps of 8-bit colour.
+    /// Returns all 256 levels: only hides the steps of 8-bit colour.
     fn default() -> Self {
         Self { levels: 256 }
     }
 }
 
 impl Dither {
-    /// The 8-bit sRGB colour of a pixel at column x, row y; alpha is rounded, not dithered.
+    /// Returns the 8-bit sRGB colour of a pixel at column x, row y; alpha is rounded, not dithered.
     pub fn apply(&self, color: Vec4, x: u32, y: u32) -> [u8; 4] {
         let threshold = threshold(x, y);
         let channel = |v: f32| self.channel(v, threshold);
         [channel(color.x), channel(color.y), channel(color.z), encode_unorm8(color.w)]
     }
 
-    /// A colour index with a fraction: the whole number above or below it, which is higher where the
-    /// fraction is above the threshold (OpenGL 2.1, 4.1.9). Of the result the lowest eight bits count.
+    /// Returns A colour index with a fraction: the whole number above or below it, which is higher
+    /// where the fraction is above the threshold (OpenGL 2.1, 4.1.9). Of the result the lowest eight
+    /// bits count.
     pub fn index(&self, index: f32, x: u32, y: u32) -> u8 {
         let low = index.floor();
         let fraction = index - low;
         whole_index(low + if fraction > threshold(x, y) { 1.0 } else { 0.0 })
     }
 
-    /// The higher of the two levels around a value where its place between them is above the threshold.
+    /// Returns the higher of the two levels around a value where its place between them is above the
+    /// threshold.
     fn channel(&self, value: f32, threshold: f32) -> u8 {
         let steps = u32::from(self.levels.clamp(2, 256)) - 1;
         let code = |step: u32| ((step * 255 + steps / 2) / steps) as u8;

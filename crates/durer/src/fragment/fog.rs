@@ -18,7 +18,7 @@ pub const INFO: Info = Info {
     limits: "the air is the same everywhere",
 };
 
-/// How much of a colour is left at a distance.
+/// Formula for the share of a colour that remains at a distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fog {
     /// Depth cueing: all of it up to `start`, `least` of it from `end` on, in between in proportion. With `least` = 0 it is
@@ -44,7 +44,8 @@ pub enum Fog {
 }
 
 impl Fog {
-    /// How much of a colour is left at a distance from the eye, 0 … 1; all of it where that is no number.
+    /// Returns the share of a colour that remains at a distance from the eye, 0 … 1; all of it for
+    /// NaN.
     ///
     /// ```
     /// use durer::fragment::fog::Fog;
@@ -66,7 +67,7 @@ impl Fog {
         if left.is_nan() { 1.0 } else { left.clamp(0.0, 1.0) }
     }
 
-    /// A colour at a distance, mixed with the air's; alpha stays.
+    /// Returns A colour at a distance, mixed with the air's; alpha stays.
     pub fn apply(&self, color: Vec4, air: Vec4, z: f32) -> Vec4 {
         let left = self.left(z);
         (color * left + air * (1.0 - left)).truncate().extend(color.w)

@@ -58,7 +58,7 @@ impl LogicOp {
         Self::Set,
     ];
 
-    /// The operation on all bits of a channel.
+    /// Returns the operation on all bits of a channel.
     #[inline]
     pub fn apply(self, s: u8, d: u8) -> u8 {
         match self {

@@ -1,5 +1,5 @@
-//! What happens to a fragment between the rasterizer and the framebuffer, in this order:
-//! scissor and mask → alpha test → stencil → depth → blending → dithering → logic operation → write masks.
+//! The operations on a fragment between the rasterizer and the framebuffer, in this order: scissor and
+//! mask → alpha test → stencil → depth → blending → dithering → logic operation → write masks.
 //!
 //! A framebuffer with a plane of colour indices takes a fragment's index in the place of its colour:
 //! scissor and mask → stencil → depth → dithering → logic operation → write mask; there is no alpha to
@@ -51,9 +51,9 @@ pub struct Fragment {
     pub color: Vec4,
     /// Colour index, fractions allowed; has a say in a colour-index framebuffer only.
     pub index: f32,
-    /// Whether the face is seen from its front; true for points and lines.
+    /// True if the face is seen from its front; true for points and lines.
     pub front_facing: bool,
-    /// What is drawn, for the item plane.
+    /// Number of the drawn item, for the item plane.
     pub item: u32,
     /// Unit normal in world space, for the normal plane.
     pub normal: [f32; 3],
@@ -79,7 +79,7 @@ pub struct FragmentState {
     pub dither: Option<Dither>,
     /// `None` = no logic operation. With one, there is no blending.
     pub logic_op: Option<LogicOp>,
-    /// What may be written.
+    /// Planes and channels that may be written.
     pub write_mask: WriteMask,
 }
 
@@ -98,7 +98,7 @@ impl Default for FragmentState {
     }
 }
 
-/// Where a fragment's way ended.
+/// Stage at which a fragment's way ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Outcome {
     /// Outside the framebuffer, the scissor rectangle or the mask.
@@ -140,7 +140,7 @@ pub fn apply(state: &FragmentState, fragment: Fragment, target: &mut Framebuffer
     Outcome::Drawn
 }
 
-/// What the colour plane holds after a fragment that passed all tests.
+/// Returns the content of the colour plane after a fragment that passed all tests.
 fn written_color(state: &FragmentState, fragment: &Fragment, stored: [u8; 4]) -> [u8; 4] {
     let color = blended(state, fragment.color, stored);
     let code = match state.dither {

@@ -9,7 +9,7 @@ use crate::raster::polygon::{self, PolygonRasterizer};
 use crate::raster::span::Span;
 use crate::{Error, Result};
 
-/// Which pixels may be drawn to.
+/// Mask of the pixels that may be drawn to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PixelMask {
     width: u32,
@@ -22,7 +22,7 @@ pub struct PixelMask {
 const MAX_PIXELS: u64 = 1 << 32;
 
 impl PixelMask {
-    /// A mask of this size without any pixel.
+    /// Creates A mask of this size without any pixel.
     ///
     /// # Errors
     /// [`Error::Limit`] above 2³² pixels.
@@ -39,8 +39,8 @@ impl PixelMask {
         Ok(Self { width, words: vec![0; per_row * height as usize], per_row })
     }
 
-    /// The pixels whose centres lie inside contours, in pixels; with the even-odd rule every second
-    /// contour inside another is a hole.
+    /// Returns the pixels whose centres lie inside contours, in pixels; with the even-odd rule
+    /// every second contour inside another is a hole.
     ///
     /// # Errors
     /// As [`Self::empty`].
@@ -70,7 +70,7 @@ impl PixelMask {
         }
     }
 
-    /// Whether a pixel may be drawn to; none outside the mask may.
+    /// Returns whether a pixel may be drawn to; none outside the mask may.
     #[inline]
     pub fn contains(&self, x: u32, y: u32) -> bool {
         let word = self.words.get(y as usize * self.per_row + x as usize / 64);

@@ -14,13 +14,13 @@ pub struct Scissor {
 }
 
 impl Scissor {
-    /// Whether the pixel is inside.
+    /// Returns whether the pixel is inside.
     #[inline(always)]
     pub fn contains(&self, x: u32, y: u32) -> bool {
         x >= self.x0 && x < self.x1 && y >= self.y0 && y < self.y1
     }
 
-    /// The pixels that are in both.
+    /// Returns the pixels that are in both.
     pub fn intersection(&self, other: &Self) -> Self {
         Self {
             x0: self.x0.max(other.x0),

@@ -2,7 +2,7 @@
 
 use super::Compare;
 
-/// What becomes of a stencil value.
+/// Operation on a stencil value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum StencilOp {
     /// It stays.
@@ -37,7 +37,7 @@ impl StencilOp {
         Self::DecrementWrap,
     ];
 
-    /// The new value.
+    /// Returns the new value.
     #[inline(always)]
     pub fn apply(self, stored: u8, reference: u8) -> u8 {
         match self {
@@ -58,15 +58,15 @@ impl StencilOp {
 pub struct StencilFace {
     /// The comparison; the reference is the incoming value.
     pub compare: Compare,
-    /// What the stored value is compared with.
+    /// Reference value for the comparison.
     pub reference: u8,
     /// Bits that are compared, of reference and stored value.
     pub read_mask: u8,
-    /// What happens where the stencil test fails.
+    /// Operation if the stencil test fails.
     pub fail: StencilOp,
-    /// What happens where the stencil test passes and the depth test fails.
+    /// Operation if the stencil test passes and the depth test fails.
     pub depth_fail: StencilOp,
-    /// What happens where both pass, or there is no depth test.
+    /// Operation if both pass, or there is no depth test.
     pub pass: StencilOp,
 }
 
@@ -85,13 +85,13 @@ impl Default for StencilFace {
 }
 
 impl StencilFace {
-    /// Whether the fragment passes over this stored value.
+    /// Returns whether the fragment passes over this stored value.
     #[inline(always)]
     pub fn passes(&self, stored: u8) -> bool {
         self.compare.passes(self.reference & self.read_mask, stored & self.read_mask)
     }
 
-    /// The operation that follows; `depth` is the depth test's answer.
+    /// Returns the operation that follows; `depth` is the depth test's answer.
     #[inline(always)]
     pub fn operation(&self, stencil: bool, depth: bool) -> StencilOp {
         match (stencil, depth) {
@@ -112,12 +112,12 @@ pub struct Stencil {
 }
 
 impl Stencil {
-    /// The same for both sides.
+    /// Returns the same for both sides.
     pub fn both(face: StencilFace) -> Self {
         Self { front: face, back: face }
     }
 
-    /// The state for one side.
+    /// Returns the state for one side.
     #[inline(always)]
     pub fn face(&self, front_facing: bool) -> &StencilFace {
         if front_facing { &self.front } else { &self.back }

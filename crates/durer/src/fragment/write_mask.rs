@@ -1,7 +1,7 @@
 //! Write masks: which channels, depths, stencil and index bits may change (OpenGL 4.6,
 //! 17.4.2; 2.1, 4.2.2).
 
-/// What may be written.
+/// Planes and channels that may be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct WriteMask {
     /// Red, green, blue, alpha.
@@ -22,20 +22,20 @@ impl Default for WriteMask {
 }
 
 impl WriteMask {
-    /// The new channels where they may be written, the old ones elsewhere.
+    /// Returns the new channels where they may be written, the old ones elsewhere.
     #[inline(always)]
     pub fn color(&self, new: [u8; 4], old: [u8; 4]) -> [u8; 4] {
         std::array::from_fn(|i| if self.color[i] { new[i] } else { old[i] })
     }
 
-    /// The new stencil bits where they may be written, the old ones elsewhere.
+    /// Returns the new stencil bits where they may be written, the old ones elsewhere.
     #[inline(always)]
     pub fn stencil(&self, front_facing: bool, new: u8, old: u8) -> u8 {
         let mask = self.stencil[usize::from(!front_facing)];
         (new & mask) | (old & !mask)
     }
 
-    /// The new bits of a colour index where they may be written, the old ones elsewhere.
+    /// Returns the new bits of a colour index where they may be written, the old ones elsewhere.
     #[inline(always)]
     pub fn index(&self, new: u8, old: u8) -> u8 {
         (new & self.index) | (old & !self.index)

@@ -55,14 +55,14 @@ pub fn runs(line: &[DVec2], length: f64, size: f64) -> Vec<Run> {
     starts.filter_map(|start| upright(&line, start, length, whole)).collect()
 }
 
-/// Points at equal steps along a line.
+/// Returns points at equal steps along a line.
 fn resampled(line: &[DVec2], whole: f64, step: f64) -> Vec<DVec2> {
     let count = (whole / step).ceil().clamp(1.0, 65_536.0) as usize;
     let at = |i: usize| place_along(line, whole * i as f64 / count as f64).map(|place| place.0);
     (0..=count).filter_map(at).collect()
 }
 
-/// The means of points and their neighbours; the ends stay where they are.
+/// Returns the means of points and their neighbours; the ends stay where they are.
 fn smoothed(line: &[DVec2]) -> Vec<DVec2> {
     let mean = |i: usize| {
         let reach = SMOOTHED.min(i).min(line.len() - 1 - i);
@@ -81,7 +81,7 @@ fn bend(line: &[DVec2], start: f64, length: f64, size: f64) -> f64 {
     turns.fold(0.0, f64::max)
 }
 
-/// A label from left to right.
+/// Returns A label from left to right.
 fn upright(line: &[DVec2], start: f64, length: f64, whole: f64) -> Option<Run> {
     let (from, to) = (place_along(line, start)?.0, place_along(line, start + length)?.0);
     if from.x <= to.x {

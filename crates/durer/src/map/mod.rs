@@ -99,7 +99,7 @@ pub struct Style {
 }
 
 impl Default for Style {
-    /// Light areas with thin grey borders, dark labels with a white halo.
+    /// Returns light areas with thin grey borders, dark labels with a white halo.
     fn default() -> Self {
         Self {
             fill: Some([0xe3, 0xe7, 0xe0, 255]),

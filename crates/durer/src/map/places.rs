@@ -54,7 +54,7 @@ pub struct Places {
     pub fit: Fit,
     /// The share of the label that the area holds.
     pub held: f64,
-    /// Whether the area has no neighbours, as islands have none.
+    /// True if the area has no neighbours, as islands have none.
     pub alone: bool,
     pub middles: Vec<DVec2>,
 }
@@ -207,7 +207,7 @@ mod tests {
         shapes
     }
 
-    /// The land of one square in a viewport of 200 × 200.
+    /// Returns the land of one square in a viewport of 200 × 200.
     fn land(low: f64, high: f64) -> Land {
         let contours = Contours::polygon(
             [(low, low), (high, low), (high, high), (low, high)].map(|(x, y)| DVec2::new(x, y)),

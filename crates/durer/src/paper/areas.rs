@@ -107,8 +107,8 @@ impl Network {
         self.places.get(id as usize).copied().unwrap_or(DVec2::NAN)
     }
 
-    /// Where a border that comes from one point to another goes on there: to the one, of all that may be, that lies
-    /// straightest ahead, if it is the same the other way round.
+    /// Returns the continuation of a border that comes from one point to another: the candidate that lies
+    /// straightest ahead, if the same holds the other way round.
     fn ahead(&self, from: u32, at: u32) -> Option<u32> {
         let straightest = |from: u32| {
             let come = (self.place(at) - self.place(from)).normalize_or_zero();
@@ -137,7 +137,7 @@ struct Row {
 }
 
 impl Chains {
-    /// The chains of a ring.
+    /// Returns the chains of a ring.
     fn links(&mut self, network: &Network, ring: &[DVec2]) -> Vec<Link> {
         let mut ids = network.ids(ring);
         let first = ids.iter().position(|id| network.is_junction(*id));
@@ -155,7 +155,7 @@ impl Chains {
         links
     }
 
-    /// The link of a ring without junctions, which begins with its first point.
+    /// Returns the link of a ring without junctions, which begins with its first point.
     fn closed(&mut self, mut ids: Vec<u32>) -> Vec<Link> {
         let least = ids.iter().enumerate().min_by_key(|(_, id)| **id).map(|(i, _)| i);
         let Some(least) = least else { return Vec::new() };
@@ -163,7 +163,7 @@ impl Chains {
         vec![self.link(ids, true)]
     }
 
-    /// The link of a chain, which has one direction in all rings.
+    /// Returns the link of a chain, which has one direction in all rings.
     fn link(&mut self, ids: Vec<u32>, closed: bool) -> Link {
         let key = |a: Option<&u32>, b: Option<&u32>| [a, b].map(|i| i.copied().unwrap_or(NONE));
         let ahead = key(ids.first(), ids.get(1));
@@ -181,7 +181,7 @@ impl Chains {
         link
     }
 
-    /// All chains, in rows that are fitted as wholes.
+    /// Returns all chains, in rows that are fitted as wholes.
     fn rows(&self, network: &Network) -> Vec<Row> {
         let mut taken = vec![false; self.all.len()];
         let mut rows = Vec::new();
@@ -224,7 +224,7 @@ impl Chains {
         false
     }
 
-    /// The points of a chain in the direction of a link.
+    /// Returns the points of a chain in the direction of a link.
     fn ids(&self, link: Link) -> Vec<u32> {
         let (ids, closed) = &self.all[link.chain];
         match (link.back, closed) {
@@ -234,7 +234,8 @@ impl Chains {
         }
     }
 
-    /// The curves of the chains of a row, in the direction of the chains, where they are round.
+    /// Returns the curves of the chains of a row, in the direction of the chains, where they are
+    /// round.
     fn fitted(&self, network: &Network, row: &Row, tolerance: f64) -> Vec<(usize, Curve)> {
         let mut points: Vec<DVec2> = Vec::new();
         let mut firsts = Vec::with_capacity(row.links.len());
@@ -263,7 +264,7 @@ impl Chains {
         row.links.iter().zip(firsts).filter_map(part).collect()
     }
 
-    /// The ring of some chains.
+    /// Returns the ring of some chains.
     fn joined(&self, network: &Network, links: &[Link], curves: &[Option<Curve>]) -> Option<Curve> {
         let mut ring: Option<Curve> = None;
         for link in links {
@@ -289,12 +290,12 @@ impl Chains {
     }
 }
 
-/// The same row from its other end.
+/// Returns the same row from its other end.
 fn turned(links: Vec<Link>) -> Vec<Link> {
     links.into_iter().rev().map(|l| Link { back: !l.back, ..l }).collect()
 }
 
-/// What is fitted to a row of chains.
+/// Curve that is fitted to a row of chains.
 struct RowCurve<'a> {
     points: &'a [DVec2],
     closed: bool,
@@ -307,8 +308,8 @@ impl RowCurve<'_> {
         self.points[i % self.points.len()]
     }
 
-    /// The part of the curve between two points of the polyline, so many steps from the first; `None` where one of them
-    /// does not lie on it.
+    /// Returns the part of the curve between two points of the polyline, so many steps from the first; `None`
+    /// where one of them does not lie on it.
     fn part(&self, first: usize, steps: usize) -> Option<Curve> {
         let count = self.points.len();
         let shift = if self.closed { *self.fitted.from.first()? } else { 0 };
@@ -335,7 +336,7 @@ impl RowCurve<'_> {
         Some(Curve { start: self.point(from + shift), pieces, closed: false })
     }
 
-    /// A part of a piece.
+    /// Returns A part of a piece.
     fn cut(&self, piece: &Piece, is_whole: bool, [start, end]: [DVec2; 2]) -> Option<Piece> {
         match piece {
             _ if is_whole => Some(*piece),

@@ -17,9 +17,9 @@ pub fn length(points: &[DVec2], closed: bool) -> f64 {
     }
 }
 
-/// The nominal dashes stretched for one stroke of the given length: it begins and ends with a whole
-/// dash, and a closed one has a whole number of periods. `None` where it is too short for two dashes:
-/// then it is drawn solid.
+/// Returns the nominal dashes stretched for one stroke of the given length: it begins and ends with a
+/// whole dash, and a closed one has a whole number of periods. `None` where it is too short for two
+/// dashes: then it is drawn solid.
 ///
 /// ```
 /// use durer::paper::dashes::fitted;
@@ -69,7 +69,8 @@ pub fn at_corners(points: &[DVec2], closed: bool) -> Vec<(Vec<DVec2>, bool)> {
     cuts.windows(2).map(|w| (part(w[0], w[1]), false)).collect()
 }
 
-/// The dashes of a stroke as chains of their own: what pens and painters without dashes draw.
+/// Returns the dashes of a stroke as chains of their own: what pens and painters without dashes
+/// draw.
 pub fn cut(points: &[DVec2], closed: bool, dashes: &[f64]) -> Vec<Vec<DVec2>> {
     let mut chain = points.to_vec();
     if let (true, Some(&first)) = (closed, points.first()) {
@@ -88,9 +89,9 @@ pub fn cut(points: &[DVec2], closed: bool, dashes: &[f64]) -> Vec<Vec<DVec2>> {
 /// Walks along a chain, a dash or gap at a time.
 struct Cutter<'a> {
     dashes: &'a [f64],
-    /// Which of them the walk is in; even ones are dashes.
+    /// Index of the current element; even ones are dashes.
     index: usize,
-    /// How much of it is left.
+    /// Length that remains of it.
     left: f64,
     done: Vec<Vec<DVec2>>,
 }

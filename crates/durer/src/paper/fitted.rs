@@ -53,7 +53,7 @@ fn is_fitted(class: LineClass) -> bool {
     !matches!(class, Wire | Hatch | Stipple | Axis | Break)
 }
 
-/// Whether the class's lines come from faces, which may stand for something round.
+/// Returns whether the class's lines come from faces, which may stand for something round.
 fn is_round(class: LineClass) -> bool {
     !matches!(class, LineClass::Grid | LineClass::Mark)
 }
@@ -68,7 +68,7 @@ struct Shared {
     near: f64,
 }
 
-/// A point by its bits; zeros are one.
+/// Returns A point by its bits; zeros are one.
 pub(super) fn key(p: DVec2) -> [u64; 2] {
     [p.x + 0.0, p.y + 0.0].map(f64::to_bits)
 }
@@ -94,7 +94,7 @@ impl Shared {
         self.points.binary_search(&key(p)).is_ok()
     }
 
-    /// Whether a line ends on a chord, other than in its ends.
+    /// Returns whether a line ends on a chord, other than in its ends.
     fn meets(&self, a: DVec2, b: DVec2) -> bool {
         let (left, right) = (a.x.min(b.x) - self.near, a.x.max(b.x) + self.near);
         let first = self.ends.partition_point(|p| p.x < left);
@@ -158,7 +158,7 @@ impl Leaders {
         }
     }
 
-    /// The arc as a part of one known already.
+    /// Returns the arc as a part of one known already.
     fn like(&self, arc: &Arc, start: DVec2, end: DVec2) -> Option<Arc> {
         let [x, y] = self.cell(arc.center);
         let around = (-1..=1).flat_map(|i| (-1..=1).map(move |k| (i, k)));

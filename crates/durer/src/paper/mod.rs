@@ -34,7 +34,7 @@ use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use crate::target::{Curve, Piece};
 use crate::{Error, Result};
 
-/// What becomes of hidden lines.
+/// Treatment of hidden lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Hidden {
     /// They are left out.
@@ -50,7 +50,7 @@ pub enum Hidden {
 /// Hidden lines behind more surfaces than this share a layer.
 pub const DEEPEST: u32 = 9;
 
-/// What is to be seen on the paper.
+/// Part of the plane that the paper shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Frame {
     /// All of the drawing, and no more.
@@ -60,30 +60,31 @@ pub enum Frame {
     Window,
 }
 
-/// How a drawing is laid onto paper.
+/// Options for placing a drawing on paper.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// The paper.
     pub page: Page,
-    /// How much of the paper is left free at each side, millimetres.
+    /// Margin at each side of the paper, in millimetres.
     pub margin: f64,
-    /// How large things are.
+    /// Scale of the drawing.
     pub scale: Scale,
     /// Millimetres per unit of the model.
     pub unit: f64,
-    /// What is to be seen.
+    /// Part of the plane to show.
     pub frame: Frame,
-    /// What becomes of hidden lines.
+    /// Treatment of hidden lines.
     pub hidden: Hidden,
-    /// Which pen draws what.
+    /// Pens of the line classes.
     pub pens: Pens,
-    /// How far curves may lie from the polylines that are fitted by them, millimetres; with 0, lines are drawn as
-    /// polylines. See [`crate::curve::fit::Options::tolerance`] and [`crate::curve::fit::Options::round`].
+    /// Largest distance of curves from the polylines that they are fitted to, in millimetres; with 0, lines are
+    /// drawn as polylines. See [`crate::curve::fit::Options::tolerance`] and
+    /// [`crate::curve::fit::Options::round`].
     pub fit: f64,
-    /// Whether the borders of regions are fitted too, where they share them; not for regions that reach under others,
+    /// True if the borders of regions are fitted too, where they share them; not for regions that reach under others,
     /// which would end before those do.
     pub fit_areas: bool,
-    /// What the paper is filled with.
+    /// Colour of the paper.
     pub background: Option<[u8; 4]>,
     /// Room around each view for what is written beside it, millimetres, on top of the margin.
     pub around: f64,
@@ -135,8 +136,8 @@ impl Options {
         }
     }
 
-    /// The page and the scale (paper over truth) for something of a size in model units, where `taken`
-    /// millimetres of the page are not to be had.
+    /// Returns the page and the scale (paper over truth) for something of a size in model units, where
+    /// `taken` millimetres of the page are not to be had.
     fn page_and_scale(&self, size: DVec2, taken: DVec2) -> Result<(DVec2, f64)> {
         let size = size * self.unit;
         match self.page {
@@ -169,7 +170,7 @@ impl Options {
         }
     }
 
-    /// The scale for something of a true size in millimetres on a page.
+    /// Returns the scale for something of a true size in millimetres on a page.
     fn scale_on(&self, page: DVec2, size: DVec2, taken: DVec2) -> Result<f64> {
         let room = page - taken;
         if room.min_element() < 1.0 {
@@ -194,7 +195,7 @@ impl Options {
     }
 }
 
-/// The largest scale at which `size` has room.
+/// Returns the largest scale at which `size` has room.
 fn largest_scale(size: DVec2, room: DVec2) -> f64 {
     let ratio = |room: f64, size: f64| if size > 0.0 { room / size } else { f64::INFINITY };
     let scale = ratio(room.x, size.x).min(ratio(room.y, size.y));
@@ -208,9 +209,9 @@ pub struct LaidOut {
     pub sheet: Sheet,
     /// Length on paper over true length.
     pub scale: f64,
-    /// What is where on the paper, in the order of the views that were given.
+    /// Placement of each view on the paper, in the order of the views that were given.
     pub views: Vec<PlacedView>,
-    /// What the paper should show but does not, in words.
+    /// Warnings about parts that the paper does not show.
     pub notes: Vec<String>,
 }
 
@@ -254,7 +255,7 @@ pub fn lay_out(drawing: &Drawing, title: &str, options: &Options) -> Result<Laid
     Ok(LaidOut { sheet, scale, views: vec![view], notes: Vec::new() })
 }
 
-/// What is to be seen of a drawing; never without a place.
+/// Returns the frame of a drawing; a drawing without extent gets one around the origin.
 fn frame_of(drawing: &Drawing, frame: Frame) -> Rect {
     let window = drawing.window.filter(|_| frame == Frame::Window);
     let found = window.or_else(|| drawing.bounds()).or(drawing.window);
@@ -276,7 +277,7 @@ struct Placed<'a> {
 }
 
 impl<'a> Placed<'a> {
-    /// The lines, and how near they are.
+    /// Returns the lines, and how near they are.
     fn lines(&self) -> impl Iterator<Item = (Option<u8>, &'a Line)> + use<'a> {
         let drawing = self.drawing;
         let near = |i: usize| drawing.nearness.get(i).copied().flatten();
@@ -320,7 +321,7 @@ fn put(sheet: &mut Sheet, views: &[Placed], options: &Options) {
     put_labels(sheet, views, options);
 }
 
-/// The steps of nearness that lines behind so many surfaces have, the farthest first.
+/// Returns the steps of nearness that lines behind so many surfaces have, the farthest first.
 fn steps(views: &[Placed], depth: u32) -> Vec<Option<u8>> {
     let told = depth == 0 && views.iter().any(|v| !v.drawing.nearness.is_empty());
     let near = if told { NEARNESS_STEPS } else { 0 };
@@ -356,7 +357,7 @@ struct Strokes<'a> {
     lines: Vec<(Option<u8>, &'a Line)>,
     /// For each line its curve on paper, where it is not drawn as a polyline; none at all without fitting.
     curves: Vec<Option<Curve>>,
-    /// As for [`onto_paper`].
+    /// Position of the origin, as in [`onto_paper`].
     origin: DVec2,
     factor: f64,
 }
@@ -404,7 +405,7 @@ impl<'a> Strokes<'a> {
     }
 }
 
-/// The points of a curve of lines; the first one is not repeated.
+/// Returns the points of a curve of lines; the first one is not repeated.
 fn corners(curve: &Curve) -> Vec<DVec2> {
     let last = curve.pieces.last().map(Piece::end).filter(|_| !curve.closed);
     curve.iter().map(|(start, _)| start).chain(last).collect()
@@ -453,12 +454,13 @@ fn put_labels(sheet: &mut Sheet, views: &[Placed], options: &Options) {
     }
 }
 
-/// The pen for letters of a height: a tenth of it (ISO 3098, type B). Its index in the sheet.
+/// Returns the pen for letters of a height: a tenth of it (ISO 3098, type B). Its index in the
+/// sheet.
 fn text_pen(sheet: &mut Sheet, height: f64, options: &Options) -> usize {
     pen_index(sheet, Pen { width: height * 0.1, color: options.pens.color, dashes: Vec::new() })
 }
 
-/// The index of a pen, which the sheet gets where it does not have it.
+/// Returns the index of a pen, which the sheet gets where it does not have it.
 pub(crate) fn pen_index(sheet: &mut Sheet, pen: Pen) -> usize {
     match sheet.pens.iter().position(|p| *p == pen) {
         Some(index) => index,
@@ -469,7 +471,7 @@ pub(crate) fn pen_index(sheet: &mut Sheet, pen: Pen) -> usize {
     }
 }
 
-/// The strokes of a [`Mark::Text`], in the sheet's millimetres: letters of the
+/// Returns the strokes of a [`Mark::Text`], in the sheet's millimetres: letters of the
 /// [single-stroke font](stroke_font).
 pub fn text_strokes(at: DVec2, text: &str, height: f64, anchor: Anchor) -> Vec<Vec<DVec2>> {
     let line = stroke_font::line(text, height);
@@ -477,7 +479,7 @@ pub fn text_strokes(at: DVec2, text: &str, height: f64, anchor: Anchor) -> Vec<V
     line.strokes.into_iter().map(|s| s.into_iter().map(|p| p + start).collect()).collect()
 }
 
-/// The strokes of a dimension's text, in the sheet's millimetres.
+/// Returns the strokes of a dimension's text, in the sheet's millimetres.
 pub fn dimension_strokes(text: &DimensionText) -> Vec<Vec<DVec2>> {
     let strokes = text_strokes(DVec2::ZERO, &text.text, text.height, Anchor::Middle);
     // With y down as on the sheet: rotating by `along` takes x to it.

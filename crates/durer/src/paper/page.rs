@@ -62,7 +62,7 @@ impl FromStr for Page {
     }
 }
 
-/// How large things are on the paper.
+/// Scale on the paper.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Scale {
     /// The largest that fits.
@@ -94,7 +94,7 @@ impl FromStr for Scale {
     }
 }
 
-/// The largest standard scale that is no larger than the given one.
+/// Returns the largest standard scale that is no larger than the given one.
 pub fn standard_scale(largest: f64) -> f64 {
     if !(largest > 1e-9 && largest < 1e9) {
         return largest;
@@ -107,7 +107,7 @@ pub fn standard_scale(largest: f64) -> f64 {
     steps.take_while(|s| *s <= largest).last().unwrap_or(largest)
 }
 
-/// A scale in the words of drawings: `1:10`, `2:1`, `1:3.27`.
+/// Returns A scale in the words of drawings: `1:10`, `2:1`, `1:3.27`.
 pub fn scale_text(scale: f64) -> String {
     let short = |n: f64| {
         let digits = if n >= 100.0 { 0 } else { 2 };

@@ -10,10 +10,10 @@ use crate::raster::paint::{Canvas, Options, Paint};
 use crate::target::Pixels;
 use crate::target::sheet::{Mark, Pen, Sheet};
 
-/// So many marks are painted at a time: their edges take more memory than they do.
+/// Number of marks that are painted at a time: their edges take more memory than they do.
 const AT_ONCE: usize = 1 << 15;
 
-/// How near what is painted is to curves, millimetres: far below a pixel.
+/// Largest distance between painted chords and curves, in millimetres: far below a pixel.
 const FINE: f64 = 0.002;
 
 /// Paints a sheet, as large as it can be, in the middle of a picture; `background` is what the picture

@@ -1,4 +1,4 @@
-//! Which pen draws what.
+//! Pens of the line classes.
 
 use crate::target::drawing::{LineClass, NEARNESS_STEPS};
 use crate::target::sheet::Pen;
@@ -55,7 +55,7 @@ impl Default for Pens {
 }
 
 impl Pens {
-    /// The width for a class of visible lines, millimetres.
+    /// Returns the width for a class of visible lines, millimetres.
     pub fn width(&self, class: LineClass) -> f64 {
         LineClass::ALL
             .iter()
@@ -72,13 +72,13 @@ impl Pens {
         }
     }
 
-    /// The pen for visible lines of a class.
+    /// Returns the pen for visible lines of a class.
     pub fn visible(&self, class: LineClass) -> Pen {
         Pen { width: self.width(class), color: self.color, dashes: Vec::new() }
     }
 
-    /// The pen for visible lines of a class at a step of [`crate::target::drawing::Drawing::nearness`]: the nearer,
-    /// the wider and darker.
+    /// Returns the pen for visible lines of a class at a step of
+    /// [`crate::target::drawing::Drawing::nearness`]: the nearer, the wider and darker.
     pub fn at_nearness(&self, class: LineClass, step: Option<u8>) -> Pen {
         let pen = self.visible(class);
         let Some((factor, fade)) = step.and_then(|s| NEARNESS.get(usize::from(s))) else {
@@ -89,13 +89,14 @@ impl Pens {
         Pen { width: pen.width * factor, color: [faded(r), faded(g), faded(b), a], ..pen }
     }
 
-    /// The widest of its pens for visible lines, millimetres: with that for contours or without.
+    /// Returns the widest of its pens for visible lines, millimetres: with that for contours or
+    /// without.
     pub fn widest(&self, contours: bool) -> f64 {
         let some = LineClass::ALL.iter().filter(|c| contours || **c != LineClass::Contour);
         some.map(|c| self.width(*c)).fold(0.0, f64::max)
     }
 
-    /// The pen for hidden lines: no wider than the class's own.
+    /// Returns the pen for hidden lines: no wider than the class's own.
     pub fn hidden(&self, class: LineClass, dashed: bool) -> Pen {
         let width = self.hidden.min(self.width(class));
         if dashed {

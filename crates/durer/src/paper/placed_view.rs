@@ -1,4 +1,4 @@
-//! Where a view lies on its sheet, so that others can draw on it.
+//! The placement of a view on its sheet, so that others can draw on it.
 
 use super::{ViewBreaks, onto_paper};
 use crate::math::{DVec2, DVec3, Rect};
@@ -8,22 +8,23 @@ use crate::view::picture_plane::PicturePlane;
 /// A view on a sheet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlacedView {
-    /// What it is called: `front`, `top`, `A–A`, `B`, …; empty where it is the only one.
+    /// Name of the view: `front`, `top`, `A–A`, `B`, …; empty for the only one.
     pub name: String,
-    /// What sees it; `None` where whoever laid it out was not told.
+    /// Camera of the view; `None` if it is not known.
     pub camera: Option<Camera>,
-    /// Where the origin of the drawing's plane lies, millimetres from the sheet's upper left corner, y down.
+    /// Position of the origin of the drawing's plane, in millimetres from the sheet's upper left corner, y
+    /// down.
     pub origin: DVec2,
     /// Millimetres on the sheet per unit of the model.
     pub factor: f64,
-    /// What the drawing takes up, in the sheet's millimetres.
+    /// Bounds of the drawing, in the sheet's millimetres.
     pub bounds: Rect,
     /// The breaks of the drawing.
     pub breaks: ViewBreaks,
 }
 
 impl PlacedView {
-    /// The place of a drawing with `bounds` in its plane.
+    /// Creates the place of a drawing with `bounds` in its plane.
     pub(super) fn new(
         name: &str,
         camera: Option<Camera>,
@@ -37,19 +38,20 @@ impl PlacedView {
         Self { name: name.to_owned(), camera, origin, factor, bounds, breaks }
     }
 
-    /// A point of the drawing's plane, as it is drawn, on the sheet, millimetres.
+    /// Returns A point of the drawing's plane, as it is drawn, on the sheet, millimetres.
     pub fn sheet_from_plane(&self, p: DVec2) -> DVec2 {
         onto_paper(p, self.origin, self.factor)
     }
 
-    /// The point of the plane that is drawn at a place of the sheet, as the view sees it without its breaks.
+    /// Returns the point of the plane that is drawn at a place of the sheet, as the view sees it without its
+    /// breaks.
     pub fn plane_from_sheet(&self, at: DVec2) -> DVec2 {
         let off = (at - self.origin) / self.factor;
         self.breaks.seen_at(DVec2::new(off.x, -off.y))
     }
 
-    /// A point of the model on the sheet, millimetres; `None` where it lies before the near plane of a
-    /// perspective view, or the camera is not known.
+    /// Returns A point of the model on the sheet, millimetres; `None` where it lies before the near
+    /// plane of a perspective view, or the camera is not known.
     pub fn sheet_from_model(&self, p: DVec3) -> Option<DVec2> {
         let camera = self.camera.as_ref()?;
         let plane = PicturePlane::of_camera(camera, 1.0).ok()?;

@@ -6,10 +6,10 @@ use crate::math::DVec2;
 use crate::target::drawing::Anchor;
 use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 
-/// What stands in the title block.
+/// Contents of the title block.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct TitleBlock {
-    /// What is drawn.
+    /// Layers to draw.
     pub name: String,
     /// The unit of the model, e.g. `mm`.
     pub unit: String,
@@ -60,7 +60,7 @@ pub fn put(sheet: &mut Sheet, title: &TitleBlock, angle: Angle, scale: f64, opti
     sheet.layers.push(SheetLayer { name: "title-block".to_owned(), marks });
 }
 
-/// The height of letters at which a text has room: the given one, or less.
+/// Returns the height of letters at which a text has room: the given one, or less.
 pub fn fitted(text: &str, height: f64, room: f64) -> f64 {
     let natural = stroke_font::line(text, height).advance;
     if natural > room { height * room / natural } else { height }
@@ -70,7 +70,7 @@ struct Block<'a> {
     marks: &'a mut Vec<Mark>,
     /// Its upper left corner.
     corner: DVec2,
-    /// Where the cells placed so far begin.
+    /// Left border of the cells placed so far.
     right: f64,
     thin: usize,
 }

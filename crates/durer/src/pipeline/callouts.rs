@@ -1,4 +1,4 @@
-//! Where parts can be seen in a view: the places that lines from their numbers lead to.
+//! The visible points of parts in a view: the places that leaders from their numbers point at.
 
 use super::{Background, RenderOptions, Samples, SurfaceMethod, render};
 use crate::Result;
@@ -12,7 +12,7 @@ use crate::visibility::surface::setup::runs;
 /// Rows of the picture in which parts are looked for: what is narrower than a thousandth of it is not found.
 const ROWS: u32 = 1000;
 
-/// What belongs to no part.
+/// Marks what belongs to no part.
 const NONE: u32 = u32::MAX;
 
 /// Finds for each kind of part a place where one of it is seen, as far from what is around it as can be, in
@@ -54,7 +54,7 @@ pub fn seen_at(
     Ok(found.into_iter().map(|pixel| pixel.map(place)).collect())
 }
 
-/// The kind of part that each pixel shows, or [`NONE`].
+/// Returns the kind of part that each pixel shows, or [`NONE`].
 fn kinds(scene: &Scene, components: &[Component], items: &Pixels<u32>) -> Result<Vec<u32>> {
     let mut of_instance = vec![NONE; scene.instances.len()];
     for (kind, component) in (0..).zip(components) {

@@ -1,4 +1,4 @@
-//! Which outlines have nothing behind them: the contour of all that is seen.
+//! The outlines that have nothing behind them: the contour of everything visible.
 //!
 //! Beside an outline lies, on one side, what it bounds, and on the other what is behind that. Points on both sides are
 //! looked up among the faces as they are seen; where one is in none of them, the line is part of the contour. Where
@@ -11,13 +11,14 @@ use crate::scene::{Camera, Scene};
 use crate::target::drawing::{Drawing, Line, LineClass};
 use crate::view::picture_plane::PicturePlane;
 
-/// How far beside a line is looked, as a part of the drawing's size: half a pen's width on A4.
+/// Distance beside a line at which depth is sampled, as a part of the drawing's size: half a pen's
+/// width on A4.
 const BESIDE: f64 = 1.5e-3;
 
 /// Lines are looked beside at least so often along the drawing's size.
 const LOOKS: f64 = 200.0;
 
-/// How often the place where a line changes is halved.
+/// Number of halvings that locate the place where a line changes.
 const HALVINGS: usize = 12;
 
 /// Parts shorter than this many times [`BESIDE`] come from what lies near to their ends.
@@ -46,7 +47,7 @@ pub fn contoured(drawing: Drawing, scene: &Scene, camera: &Camera) -> Result<Dra
     Ok(Drawing { lines, ..drawing })
 }
 
-/// What of each face lies behind the near plane, as seen.
+/// Returns the part of each face behind the near plane, as seen.
 fn faces(scene: &Scene, plane: &PicturePlane) -> Vec<Face> {
     let mut found = Vec::new();
     for instance in &scene.instances {
@@ -82,7 +83,7 @@ impl Face {
         (low.is_finite() && high.is_finite()).then_some(Self { corners, low, high })
     }
 
-    /// Whether a point lies within it or on its border.
+    /// Returns whether a point lies within it or on its border.
     fn contains(&self, p: DVec2) -> bool {
         let next = self.corners.iter().cycle().skip(1);
         let mut sides = [false; 2];
@@ -115,7 +116,7 @@ impl Faces {
         tree
     }
 
-    /// As deep as the logarithm of the faces.
+    /// Sorts; the recursion is as deep as the logarithm of the number of faces.
     fn sort(&mut self, node: usize, from: usize, to: usize, along_x: bool) {
         let part = &mut self.faces[from..to];
         let none = (DVec2::MAX, DVec2::MIN);
@@ -130,7 +131,7 @@ impl Faces {
         self.sort(node * 2 + 1, from + middle, to, !along_x);
     }
 
-    /// Whether any of them contains a point.
+    /// Returns whether any of them contains a point.
     fn contain(&self, p: DVec2) -> bool {
         self.any(1, 0, self.faces.len(), p)
     }
@@ -155,13 +156,13 @@ struct Seen {
 }
 
 impl Seen {
-    /// Whether a point of a line that runs along `to` has nothing behind it on one side.
+    /// Returns whether a point of a line that runs along `to` has nothing behind it on one side.
     fn is_outer(&self, p: DVec2, to: DVec2) -> bool {
         let beside = to.normalize_or_zero().perp() * (BESIDE * self.size);
         !(self.faces.contain(p + beside) && self.faces.contain(p - beside))
     }
 
-    /// The pieces of a line, and whether each is part of the contour.
+    /// Returns the pieces of a line, and whether each is part of the contour.
     fn pieces(&self, line: &Line) -> Vec<Known<bool>> {
         let points: Vec<DVec2> = around(line).collect();
         let mut pieces: Vec<Known<bool>> =
@@ -183,7 +184,7 @@ impl Seen {
         pieces
     }
 
-    /// A straight piece, cut where it becomes part of the contour or ceases to be.
+    /// Returns A straight piece, cut where it becomes part of the contour or ceases to be.
     fn divide(&self, a: DVec2, b: DVec2) -> Vec<Known<bool>> {
         let count = ((a.distance(b) / self.size * LOOKS).ceil()).clamp(1.0, LOOKS * 4.0) as usize;
         let outer = |t: f64| self.is_outer(a.lerp(b, t), b - a);

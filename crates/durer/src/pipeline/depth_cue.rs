@@ -1,4 +1,5 @@
-//! How near the visible lines of a drawing are, in a few steps, for pens that tell near from far.
+//! The nearness of a drawing's visible lines, in a few steps, for pens that distinguish near from
+//! far.
 //!
 //! Lines run along edges, so their points are where vertices of the model are seen; of vertices seen at one place
 //! the nearest is the one that can be seen. Between them depth is linear in the plane of the picture, also in
@@ -17,7 +18,7 @@ use std::cmp::Ordering;
 /// Vertices within this part of the drawing's size are seen at one place.
 const ONE_PLACE: f64 = 1e-4;
 
-/// How many of the vertices seen at one place, but for rounding, are looked at.
+/// Number of vertices seen at one place, except for rounding, that are examined.
 const VERTICES: usize = 16;
 
 /// Drawings whose depth is less than this part of their size have no near and far.
@@ -55,7 +56,7 @@ pub fn depth_cued(drawing: Drawing, scene: &Scene, camera: &Camera) -> Result<Dr
     Ok(Drawing { lines, nearness, ..drawing })
 }
 
-/// Whether a line lies along an edge that can be seen.
+/// Returns whether a line lies along an edge that can be seen.
 fn told(line: &Line) -> bool {
     let apart = matches!(
         line.class,
@@ -96,7 +97,7 @@ impl Vertices {
         Ok(Self { seen, tree, one_place })
     }
 
-    /// The depths at the points of a line; `None` where there are no vertices.
+    /// Returns the depths at the points of a line; `None` where there are no vertices.
     fn along(&self, line: &Line) -> Option<Vec<f64>> {
         let mut nearest = Nearest::new(VERTICES);
         let mut at = |p: &DVec2| {
@@ -151,7 +152,7 @@ impl Steps {
         (((depth - self.near) / self.size) as u8).min(NEARNESS_STEPS - 1)
     }
 
-    /// A line in parts that are in one step each.
+    /// Returns A line in parts that are in one step each.
     fn divide(&self, line: &Line, depths: &[f64]) -> Vec<(Line, Option<u8>)> {
         let depth = depths.iter().chain(depths.first()).copied();
         let points: Vec<(DVec2, f64)> = around(line).zip(depth).collect();
@@ -161,7 +162,7 @@ impl Steps {
         parts.into_iter().map(|(step, part)| (part, Some(step))).collect()
     }
 
-    /// A straight piece, cut where it comes from one step to the next.
+    /// Returns A straight piece, cut where it comes from one step to the next.
     fn pieces(&self, from: (DVec2, f64), to: (DVec2, f64)) -> Vec<Known<u8>> {
         let (a, b) = (self.of(from.1), self.of(to.1));
         let border = |step: u8| self.near + f64::from(step) * self.size;

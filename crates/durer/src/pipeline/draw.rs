@@ -13,7 +13,7 @@ use crate::visibility::surface::Cull;
 use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
-/// What a drawing shows.
+/// Content of a drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum DrawStyle {
     /// The edges that can be seen, and those that cannot, told apart.
@@ -34,7 +34,7 @@ impl DrawStyle {
     pub const ALL: &'static [Self] =
         &[Self::HiddenLine, Self::Wireframe, Self::Regions, Self::RegionsAndLines, Self::Shadows];
 
-    /// The name used on the command line.
+    /// Returns the name used on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::HiddenLine => "hidden-line",
@@ -45,7 +45,7 @@ impl DrawStyle {
         }
     }
 
-    /// Whether it has filled parts.
+    /// Returns whether it has filled parts.
     pub const fn has_regions(self) -> bool {
         matches!(self, Self::Regions | Self::RegionsAndLines | Self::Shadows)
     }
@@ -70,29 +70,30 @@ impl std::str::FromStr for DrawStyle {
 /// Everything about a drawing but the scene and the paper.
 #[derive(Debug, Clone)]
 pub struct DrawOptions {
-    /// What it shows.
+    /// Style of the drawing.
     pub style: DrawStyle,
-    /// Where the eye is.
+    /// Options for the camera.
     pub camera: Camera,
     /// Width over height of what the camera sees; 1/1000 … 1000.
     pub aspect: f64,
-    /// Which lines, and how; also for [`DrawStyle::RegionsAndLines`] and [`DrawStyle::Shadows`].
+    /// Classes of lines, and options for finding them; also for [`DrawStyle::RegionsAndLines`] and
+    /// [`DrawStyle::Shadows`].
     pub lines: hidden_line::Options,
-    /// Where light comes from, for filled parts.
+    /// Source of light for filled parts.
     pub lighting: Lighting,
-    /// How strong light is shown, as in [`super::RenderOptions::exposure`].
+    /// Exposure, as in [`super::RenderOptions::exposure`].
     pub exposure: Option<Exposure>,
-    /// Which faces are left out of filled parts.
+    /// Faces to leave out of filled parts.
     pub cull: Cull,
-    /// Which neighbours become one region.
+    /// Rule that joins neighbours to one region.
     pub merge: Merge,
-    /// Whether regions reach under their neighbours, so that viewers show no hairline cracks;
+    /// True if regions reach under their neighbours, so that viewers show no hairline cracks;
     /// otherwise they share their borders.
     pub trapped: bool,
     /// The material of a section's caps ([`crate::view::section::Section::cap_material`]): their
     /// regions are told apart and get the hatching of sections.
     pub cap_material: Option<usize>,
-    /// What it may cost, and whether it goes on; for its lines this counts, not that of [`Self::lines`].
+    /// Budget of the work, and its cancellation; for its lines this counts, not that of [`Self::lines`].
     pub work: Work,
 }
 
@@ -171,7 +172,7 @@ fn faces(scene: &Scene, options: &DrawOptions) -> Result<Charge> {
     options.work.charge("faces of the drawing", bytes)
 }
 
-/// What of a section's caps can be seen, to be filled or hatched among lines.
+/// Returns the visible parts of a section's caps, to be filled or hatched among lines.
 fn caps(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing> {
     let options = DrawOptions { trapped: false, merge: Merge::Material, ..options.clone() };
     region::draw_caps(scene, view, &lights(scene, &options), &region_options(&options))
@@ -203,7 +204,7 @@ fn region_options(options: &DrawOptions) -> region::Options {
     }
 }
 
-/// The height of the picture in the plane through the target, model units.
+/// Returns the height of the picture in the plane through the target, model units.
 pub(super) fn seen_height(camera: &Camera) -> f64 {
     match camera.projection {
         Projection::Orthographic { height } => height,
@@ -232,7 +233,7 @@ pub fn with_marks(drawing: Drawing, marks: Vec<Line>) -> Drawing {
     Drawing { lines, nearness, ..drawing }
 }
 
-/// The classes that `names` name, joined by commas; `all` is all that edges can be but
+/// Returns the classes that `names` name, joined by commas; `all` is all that edges can be but
 /// [`LineClass::Wire`].
 ///
 /// # Errors

@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::target::Framebuffer;
 use crate::visibility::line::hidden_line;
 
-/// How edges are drawn over a picture.
+/// Look of edges over a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EdgeStyle {
     /// Width in pixels, above 0.
@@ -60,5 +60,5 @@ pub fn draw_edges(
     canvas.render(&mut picture.color)
 }
 
-/// As for drawings that are looked at ([`hidden_line::Options::stubs`]).
+/// Length of stubs, as in drawings that are looked at ([`hidden_line::Options::stubs`]).
 const STUBS: f64 = 0.01;

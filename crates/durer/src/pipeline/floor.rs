@@ -1,4 +1,5 @@
-//! What a model may stand on: a grid, axes, and the shadow where it touches the floor.
+//! The surroundings that a model can be placed on: a grid, axes, and the shadow where it touches
+//! the floor.
 //!
 //! All of it is added to the scene as meshes, so that every way to render shows it.
 
@@ -13,7 +14,7 @@ use crate::target::Pixels;
 use crate::view::projection::NamedView;
 use crate::visibility::surface::Samples;
 
-/// How far the shadow reaches beyond the model, as a part of its size.
+/// Distance that the shadow extends beyond the model, as a part of its size.
 const REACH: f64 = 0.3;
 
 /// Texels along the side of the shadow.
@@ -50,7 +51,7 @@ impl Floor {
         Self { axes, min: low, max: high }
     }
 
-    /// The length of the longest side.
+    /// Returns the length of the longest side.
     fn size(&self) -> f64 {
         (self.max - self.min).max_element()
     }
@@ -193,8 +194,8 @@ pub fn add_ground(scene: &mut Scene, model: &Scene, around: &Aabb) -> Result<()>
     Ok(())
 }
 
-/// How high over the floor the lowest surface is, world units; endless where there is none. `None`
-/// where the model has no height that numbers can hold.
+/// Returns the height over the floor of the lowest surface, in world units; infinite if there is
+/// none. `None` if the model has no height that numbers can represent.
 fn heights(scene: &Scene, floor: &Floor, side: f64) -> Result<Option<Vec<f64>>> {
     let size = floor.size();
     let height = (floor.max.z - floor.min.z).max(size * 1e-6);
@@ -229,13 +230,13 @@ fn heights(scene: &Scene, floor: &Floor, side: f64) -> Result<Option<Vec<f64>>> 
     Ok(picture.depth.as_ref().map(|depth| texels(depth).map(|d| over(&d)).collect()))
 }
 
-/// The pixels of a picture from below in the order of the floor's texels: rows along the first axis,
-/// columns along the second.
+/// Returns the pixels of a picture from below in the order of the floor's texels: rows along the
+/// first axis, columns along the second.
 fn texels(depth: &Pixels<f32>) -> impl Iterator<Item = f32> + '_ {
     (0..TEXELS).rev().flat_map(move |y| (0..TEXELS).rev().filter_map(move |x| depth.get(x, y)))
 }
 
-/// The darkness of the floor, texel by texel.
+/// Returns the darkness of the floor, texel by texel.
 fn shadow(heights: &[f64], reach: f64, side: f64) -> Vec<f32> {
     let mut sum = vec![0.0_f32; heights.len()];
     for (part, share) in LEVELS {

@@ -14,7 +14,7 @@ use crate::view::View;
 use crate::visibility::surface::z_buffer::survey;
 use crate::{Error, Result};
 
-/// What is to be done instead of a picture in pieces.
+/// Alternative to a picture in pieces.
 const INSTEAD: &str = "all of the scene has to be held";
 
 /// Checks that a picture can be made of pieces; these have normals at their vertices or have none, and no lights of their

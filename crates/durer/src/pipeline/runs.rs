@@ -6,8 +6,8 @@ use crate::target::drawing::Line;
 /// A straight piece of a line, and what is known of it.
 pub type Known<K> = (K, [DVec2; 2]);
 
-/// The runs of a line whose pieces, in their order, have the same key. A closed line whose last run has the key of the
-/// first has one less.
+/// Returns the runs of a line whose pieces, in their order, have the same key. A closed line whose last run
+/// has the key of the first has one less.
 pub fn divided<K: Copy + PartialEq>(line: Line, pieces: &[Known<K>]) -> Vec<(K, Line)> {
     let runs: Vec<&[Known<K>]> = pieces.chunk_by(|a, b| a.0 == b.0).collect();
     if let [only] = runs[..] {
@@ -25,13 +25,13 @@ pub fn divided<K: Copy + PartialEq>(line: Line, pieces: &[Known<K>]) -> Vec<(K, 
     parts.into_iter().map(part).collect()
 }
 
-/// The points of pieces that follow each other.
+/// Returns the points of pieces that follow each other.
 fn chain<K>(run: &[Known<K>]) -> Vec<DVec2> {
     let first = run.first().map(|p| p.1[0]);
     first.into_iter().chain(run.iter().map(|p| p.1[1])).collect()
 }
 
-/// The points of a line, the first again at the end of a closed one.
+/// Returns the points of a line, the first again at the end of a closed one.
 pub fn around(line: &Line) -> impl Iterator<Item = DVec2> {
     let again = line.points.first().filter(|_| line.closed);
     line.points.iter().chain(again).copied()

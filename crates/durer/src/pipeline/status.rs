@@ -1,4 +1,4 @@
-//! Whether a picture or a drawing shows anything of its scene, and if not, why.
+//! The visibility of a scene in its picture or drawing, with the reason if nothing is visible.
 //!
 //! An empty picture is either right or the work of one wrong number in a file, and looks the same. The
 //! check costs a look at the first rows of most pictures; only where nothing is seen the reason is
@@ -15,18 +15,18 @@ use crate::target::drawing::Drawing;
 use crate::view::View;
 use crate::visibility::surface::{Background, Cull};
 
-/// What a picture or a drawing shows of its scene.
+/// Visibility of a scene in its picture or drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Status {
     /// Something of it.
     Ok,
-    /// Nothing: the scene has no triangles, lines or points.
+    /// The scene has no triangles, lines or points.
     Empty,
-    /// Nothing of what the scene has.
+    /// Nothing of the scene is visible.
     Invisible(Unseen),
 }
 
-/// Why nothing of a scene is seen, as far as is known.
+/// Reason why nothing of a scene is visible, as far as it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Unseen {
     /// No vertex is finite.
@@ -50,7 +50,7 @@ pub enum Unseen {
 }
 
 impl Status {
-    /// The name used in reports.
+    /// Returns the name used in reports.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Ok => "ok",
@@ -122,13 +122,13 @@ pub fn drawing_status(
     Ok(status_of_vertices(scene, &view).unwrap_or(Status::Invisible(Unseen::Missed)))
 }
 
-/// Whether a row has pixels of different colours; a background has not.
+/// Returns whether a row has pixels of different colours; a background has not.
 fn varies_in_rows(picture: &Framebuffer) -> bool {
     let width = picture.width().max(1) as usize;
     picture.color.data().chunks(width).any(|row| row.iter().any(|pixel| *pixel != row[0]))
 }
 
-/// A colour that is well apart from the background's.
+/// Returns A colour that is well apart from the background's.
 fn other_color(background: Background) -> Vec4 {
     let ink = background.ink();
     Vec4::new(ink.x, 0.5, 1.0 - ink.z, 1.0)
@@ -141,7 +141,7 @@ fn status_of_vertices(scene: &Scene, view: &View) -> Option<Status> {
     places.status()
 }
 
-/// Where all vertices lie that something is drawn with, of a scene that may come in pieces.
+/// Positions of all vertices that something is drawn with, of a scene that may come in pieces.
 pub struct Places<'a> {
     view: &'a View,
     any: bool,
@@ -150,7 +150,7 @@ pub struct Places<'a> {
 }
 
 impl<'a> Places<'a> {
-    /// Of no vertices so far.
+    /// Creates the positions of no vertices.
     pub fn new(view: &'a View) -> Self {
         Self { view, any: false, beyond_all: None, behind_all: true }
     }
@@ -169,7 +169,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// What they tell; `None` where some may be seen.
+    /// Returns the status that follows from them; `None` if some may be visible.
     pub fn status(&self) -> Option<Status> {
         if !self.any {
             return Some(Status::Empty);
@@ -193,7 +193,7 @@ impl<'a> Places<'a> {
     }
 }
 
-/// All vertices that a triangle, a line or a point uses, in world space.
+/// Returns all vertices that a triangle, a line or a point uses, in world space.
 fn drawn_vertices(scene: &Scene) -> impl Iterator<Item = DVec3> + '_ {
     scene.instances.iter().flat_map(|instance| {
         let mesh = &scene.meshes[instance.mesh];
@@ -210,7 +210,7 @@ fn drawn_vertices(scene: &Scene) -> impl Iterator<Item = DVec3> + '_ {
     })
 }
 
-/// The scene with all materials opaque.
+/// Returns the scene with all materials opaque.
 fn made_opaque(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     for material in &mut scene.materials {

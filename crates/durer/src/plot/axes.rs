@@ -170,7 +170,7 @@ fn axis(
     marks.labels.push(name);
 }
 
-/// The box of a label in the plane; `letter` is the height of a letter there.
+/// Returns the box of a label in the plane; `letter` is the height of a letter there.
 pub fn box_of(label: &Label, letter: f64) -> Option<Rect> {
     let width = label.text.chars().count() as f64 * LETTER * letter;
     let left = match label.anchor {
@@ -182,14 +182,14 @@ pub fn box_of(label: &Label, letter: f64) -> Option<Rect> {
     Rect::new(low, low + DVec2::new(width, letter)).ok()
 }
 
-/// Whether a label overlaps no other.
+/// Returns whether a label overlaps no other.
 fn is_free(label: &Label, others: &[Label], letter: f64) -> bool {
     let Some(own) = box_of(label, letter) else { return true };
     let mut boxes = others.iter().filter_map(|other| box_of(other, letter));
     !boxes.any(|other| other.overlaps(&own))
 }
 
-/// Whether each label stands apart from the next.
+/// Returns whether no label touches the next.
 fn stand_apart(placed: &[(DVec2, Label)], letter: f64) -> bool {
     let boxes: Vec<Rect> = placed.iter().filter_map(|(_, l)| box_of(l, letter)).collect();
     let room = DVec2::splat(APART * letter);
@@ -199,12 +199,12 @@ fn stand_apart(placed: &[(DVec2, Label)], letter: f64) -> bool {
     })
 }
 
-/// How far a text of this width reaches in a direction, in heights of a letter.
+/// Returns the extent of a text of this width in a direction, in heights of a letter.
 fn reach(out: DVec2, width: f64) -> f64 {
     (width * out.x.abs()).max(out.y.abs())
 }
 
-/// A text that begins at a point and goes in a direction.
+/// Returns A text that begins at a point and goes in a direction.
 fn label(at: DVec2, out: DVec2, text: String, letter: f64, height: f64) -> Label {
     let anchor = match out.x {
         x if x < -0.35 => Anchor::End,

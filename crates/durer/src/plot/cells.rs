@@ -15,7 +15,7 @@ use crate::{Error, Result};
 /// More cells are not filled one by one: files would be of no use.
 const MOST: u64 = 4_000_000;
 
-/// All cells in the order of painting.
+/// Returns all cells in the order of painting.
 pub fn regions(
     field: &HeightField,
     camera: &Camera,
@@ -59,7 +59,8 @@ pub fn regions(
     Ok(regions)
 }
 
-/// Whether the neighbour before (−1) or after (1) in the grid is nearer to the eye; 0 for none.
+/// Returns the order of depth with the neighbour before (−1) or after (1) in the grid, whichever is
+/// nearer to the eye; 0 for none.
 fn before(order: &[usize], i: usize) -> i64 {
     let at = order[i] as i64;
     let nearer = |step: i64| order[..i].iter().rev().take(2).any(|&o| o as i64 == at + step);
@@ -81,7 +82,7 @@ struct Cell<'a> {
 }
 
 impl Cell<'_> {
-    /// The corner of the cell itself: bit 0 the column, bit 1 the row.
+    /// Returns the corner of the cell itself: bit 0 the column, bit 1 the row.
     fn corner(&self, k: usize) -> DVec3 {
         // A cell has all its corners.
         self.field.point(self.column + (k & 1), self.row + (k >> 1)).unwrap_or_default()
@@ -105,7 +106,7 @@ impl Cell<'_> {
         point.map_or(corner, |p| corner.lerp(p, 0.5))
     }
 
-    /// The outline: the cell's corners, and points half-way into nearer neighbours.
+    /// Returns the outline: the cell's corners, and points half-way into nearer neighbours.
     fn ring(&self) -> Vec<DVec3> {
         let [dc, dr] = self.near;
         let (aside, ahead) = ([dc, 0], [0, dr]);

@@ -6,8 +6,8 @@ use crate::math::DVec2;
 use crate::target::drawing::Anchor;
 use crate::target::sheet::{Mark, Pen, Sheet};
 
-/// The heights that it tells, with the share of its length at which they stand from its foot; empty where there is no
-/// bar.
+/// Returns the heights that it tells, with the share of its length at which they stand from its foot; empty
+/// where there is no bar.
 pub fn labels(heights: Option<[f64; 2]>, options: &Options) -> Vec<(f64, String)> {
     let Some([low, high]) = heights else { return Vec::new() };
     if !options.color_bar || options.color_map.is_none() {
@@ -29,12 +29,12 @@ pub fn labels(heights: Option<[f64; 2]>, options: &Options) -> Vec<(f64, String)
     labels
 }
 
-/// The length of the bar, millimetres.
+/// Returns the length of the bar, millimetres.
 fn length(options: &Options) -> f64 {
     options.page.y * BAR[2]
 }
 
-/// The bar on the right of the page, with its labels.
+/// Returns the bar on the right of the page, with its labels.
 pub fn marks(sheet: &mut Sheet, heights: Option<[f64; 2]>, options: &Options) -> Vec<Mark> {
     let (labels, Some(map)) = (labels(heights, options), options.color_map) else {
         return Vec::new();

@@ -44,7 +44,7 @@ impl ColorMap {
     /// All of them.
     pub const ALL: &'static [Self] = &[Self::Viridis, Self::Terrain, Self::CoolWarm, Self::Grey];
 
-    /// The name used on the command line.
+    /// Returns the name used on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Viridis => "viridis",
@@ -54,7 +54,8 @@ impl ColorMap {
         }
     }
 
-    /// The colour of a number from 0 to 1, sRGB, opaque; what lies beyond is taken for the end.
+    /// Returns the colour of a number from 0 to 1, sRGB, opaque; what lies beyond is taken for the
+    /// end.
     pub fn at(self, part: f64) -> [u8; 4] {
         let table: &[[u8; 3]] = match self {
             Self::Viridis => &VIRIDIS,

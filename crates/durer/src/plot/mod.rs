@@ -21,27 +21,28 @@ use crate::view::projection::{FitOptions, Lens, ViewDirection, fit_box};
 use crate::visibility::line::floating_horizon::{self, Curve, Family};
 use crate::{Error, Result};
 
-/// How a surface is plotted.
+/// Options for plotting a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// From where.
     pub direction: ViewDirection,
     /// Perspective or parallel.
     pub lens: Lens,
-    /// Where the eye stands and what it looks at, (x, height, z), instead of `direction`: in perspective
-    /// only, and all of the surface's box has to lie before it. The plot fits the paper all the same.
+    /// Position of the eye and the point that it looks at, (x, height, z), instead of `direction`: in
+    /// perspective only, and all of the surface's box has to lie before it. The plot fits the paper all
+    /// the same.
     pub eye: Option<[DVec3; 2]>,
-    /// Which rows and columns become lines, and whether hidden parts do.
+    /// Rows and columns that become lines, and the treatment of hidden parts.
     pub lines: floating_horizon::Options,
-    /// What heights are multiplied with before they are seen; labels tell the true ones.
+    /// Factor for heights; labels show the true ones.
     pub exaggeration: f64,
     /// Depth over width of the ground as it is seen; labels tell the true coordinates. `None` has one scale for both.
     pub aspect: Option<f64>,
-    /// Whether a bar tells which colours stand for which heights, where there is a colour map.
+    /// True if a bar tells which colours stand for which heights, where there is a colour map.
     pub color_bar: bool,
     /// Colours by height; `None` draws all lines with `ink`, and fills with `paper`.
     pub color_map: Option<ColorMap>,
-    /// Whether cells are filled, too: with the colours of the map, lines then are `ink`.
+    /// True if cells are filled, too: with the colours of the map, lines then are `ink`.
     pub fill: bool,
     /// Colour of axes, labels, and lines without a colour of their own; sRGB with straight alpha.
     pub ink: [u8; 4],
@@ -53,7 +54,7 @@ pub struct Options {
     pub title: String,
     /// Width and height of the paper, millimetres.
     pub page: DVec2,
-    /// What the paper is filled with; `None` leaves it blank.
+    /// Colour of the paper; `None` leaves it blank.
     pub background: Option<[u8; 4]>,
     /// Width of the surface's lines, millimetres.
     pub pen: f64,
@@ -61,12 +62,12 @@ pub struct Options {
     pub text: f64,
 }
 
-/// What the axes are called, and which way they count.
+/// Names of the axes, and their directions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axes {
     /// Names of x, y and z; empty ones are not written.
     pub names: [String; 3],
-    /// Whether labels along z tell −z: the northing of a map.
+    /// True if labels along z tell −z: the northing of a map.
     pub z_is_south: bool,
 }
 
@@ -78,7 +79,7 @@ pub struct Plot {
     /// The camera, in coordinates with exaggerated heights.
     pub camera: Camera,
     layout: Layout,
-    /// Of each line of the drawing its layer and colour.
+    /// Layer and colour of each line of the drawing.
     inks: Vec<Ink>,
     /// The lowest and the highest height.
     heights: Option<[f64; 2]>,
@@ -107,7 +108,7 @@ const SHORTEST: f64 = 0.02;
 const LAYERS: [&str; 5] =
     ["hidden-along-x", "hidden-along-z", "lines-along-x", "lines-along-z", "axes"];
 
-/// What a line is drawn in.
+/// Layer and colour of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Ink {
     /// Index into [`LAYERS`].
@@ -176,7 +177,7 @@ pub fn surface(field: &HeightField, options: &Options) -> Result<Plot> {
     Ok(Plot { drawing, camera, layout, inks, heights, options: options.clone() })
 }
 
-/// The lines of the grid.
+/// Returns the lines of the grid.
 fn surface_lines(
     field: &HeightField,
     camera: &Camera,
@@ -198,7 +199,7 @@ fn stretch(field: &HeightField, options: &Options) -> f64 {
     if by > 0.0 && by.is_finite() { by } else { 1.0 }
 }
 
-/// A field with its heights and depths as they are seen.
+/// Returns A field with its heights and depths as they are seen.
 fn as_seen(field: &HeightField, options: &Options) -> Result<HeightField> {
     let by = stretch(field, options);
     let seen = field.map(|y| y * options.exaggeration);
@@ -216,7 +217,7 @@ fn with_height(bounds: &Aabb) -> Aabb {
     Aabb { min: bounds.min - DVec3::Y * up, max: bounds.max + DVec3::Y * up }
 }
 
-/// The camera of an eye that stands somewhere, in coordinates with exaggerated heights.
+/// Returns the camera of an eye that stands somewhere, in coordinates with exaggerated heights.
 fn standing(
     bounds: &Aabb,
     places: [DVec3; 2],
@@ -245,8 +246,8 @@ fn standing(
 }
 
 impl Default for Options {
-    /// All lines, black, in parallel projection from azimuth 30° and elevation 30°, on 180 × 135 mm, with
-    /// axes; true heights.
+    /// Returns all lines, black, in parallel projection from azimuth 30° and elevation 30°, on 180 × 135
+    /// mm, with axes; true heights.
     fn default() -> Self {
         let direction = crate::view::projection::NamedView::Iso.direction(crate::scene::UpAxis::Y);
         Self {
@@ -298,7 +299,7 @@ impl Options {
         Ok(())
     }
 
-    /// The colour of a height, 0 the lowest and 1 the highest.
+    /// Returns the colour of a height, 0 the lowest and 1 the highest.
     fn color_at(&self, part: f64) -> Option<[u8; 4]> {
         self.color_map.map(|map| map.at(part))
     }
@@ -356,23 +357,25 @@ fn colored(
     add(&chain, color(now));
 }
 
-/// Where a height lies between the lowest and the highest, 0 … 1; a half where all are one.
+/// Returns the position of a height between the lowest and the highest, 0 … 1; a half if all are
+/// equal.
 fn part(y: f64, low: f64, high: f64) -> f64 {
     let part = (y - low) / (high - low);
     if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.5 }
 }
 
-/// Where the plot lies on the paper.
+/// Placement of the plot on the paper.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Layout {
     /// Millimetres per plane unit.
     scale: f64,
-    /// Where the plane's origin lies on the paper.
+    /// Position of the plane's origin on the paper.
     origin: DVec2,
 }
 
 impl Layout {
-    /// The largest plot for which its labels, laid out at a scale, the title and the bar of colours have room.
+    /// Creates the largest plot for which its labels, laid out at a scale, the title and the bar of colours
+    /// have room.
     fn new(
         bounds: &Aabb,
         plane: &PicturePlane,
@@ -407,7 +410,7 @@ impl Layout {
         self.origin + DVec2::new(p.x, -p.y) * self.scale
     }
 
-    /// The points of a line or ring on the paper.
+    /// Returns the points of a line or ring on the paper.
     fn placed(&self, mut points: Vec<DVec2>) -> Vec<DVec2> {
         points.iter_mut().for_each(|p| *p = self.place(*p));
         points
@@ -486,7 +489,7 @@ impl Layout {
     }
 }
 
-/// The title in lines that fit the page, broken at blanks.
+/// Returns the title in lines that fit the page, broken at blanks.
 fn title_lines(options: &Options) -> Vec<String> {
     let width = options.text * TITLE[0] * axes::LETTER;
     let most = (((options.page.x - 2.0 * MARGIN) / width) as usize).max(1);
@@ -503,7 +506,7 @@ fn title_lines(options: &Options) -> Vec<String> {
     lines
 }
 
-/// The room of the bar of colours with its labels, millimetres.
+/// Returns the room of the bar of colours with its labels, millimetres.
 fn bar_width(heights: Option<[f64; 2]>, options: &Options) -> f64 {
     let labels = color_bar::labels(heights, options);
     let widest = labels.iter().map(|(_, text)| text.chars().count()).max();

@@ -44,7 +44,7 @@ impl<E> Chunk<E> {
 }
 
 impl<E> Edges<E> {
-    /// What stands in the list from a place on, there or, if it is much, in a chunk.
+    /// Takes the items of the list from a place on, in the list or, if they are many, in a chunk.
     pub fn from_list(list: &mut Vec<E>, first: usize, rows: impl Fn(&E) -> (i32, i32)) -> Self {
         match (u32::try_from(first), u32::try_from(list.len())) {
             (Ok(first), Ok(end)) if (end - first) as usize <= FEW_EDGES => Self::Few(first..end),
@@ -52,7 +52,7 @@ impl<E> Edges<E> {
         }
     }
 
-    /// What chunks hold, there or, if it is little, in the list.
+    /// Takes the items of chunks, or, if they are few, of the list.
     pub fn from_chunks(
         chunks: Vec<Chunk<E>>,
         list: &mut Vec<E>,
@@ -66,7 +66,7 @@ impl<E> Edges<E> {
         Self::from_list(list, first, rows)
     }
 
-    /// What those take that are in no list, bytes.
+    /// Returns the size of the chunks that are not in the list, in bytes.
     pub fn bytes(&self) -> u64 {
         let Self::Many(chunks) = self else { return 0 };
         let index = |index: &BandIndex| 8 * index.stretches.len() + 4 * index.starts.len();
@@ -74,7 +74,8 @@ impl<E> Edges<E> {
         chunks.iter().map(of).sum::<usize>() as u64
     }
 
-    /// The edges of the band at row `top` in the order of the path, perhaps with others too.
+    /// Returns the edges of the band at row `top` in the order of the path, perhaps with others
+    /// too.
     #[inline(always)]
     pub fn of_band<'a>(&'a self, list: &'a [E], top: i32) -> impl Iterator<Item = &'a [E]> {
         let (few, chunks) = match self {
@@ -89,7 +90,7 @@ impl<E> Edges<E> {
     }
 }
 
-/// Each of eight numbers with all those before it, of which the sum is `before`.
+/// Returns each of eight numbers with all those before it, of which the sum is `before`.
 ///
 /// Halves are summed for themselves first: to move numbers from one to the other takes longest.
 #[inline(always)]
@@ -101,7 +102,8 @@ pub(crate) fn running_sums<S: Simd>(simd: S, v: i32x8<S>, before: i32x8<S>) -> i
     v + before + i32x4::splat(simd, 0).combine(first_half)
 }
 
-/// What `make` gives for chunks of the contours' points, so many at once, in their order.
+/// Applies `make` to chunks of the contours' points, several at once, and returns the results in
+/// order.
 pub(crate) fn by_chunks<M: Send>(
     contours: &Contours,
     size: usize,
@@ -119,7 +121,7 @@ struct Run {
     bands: (i32, i32),
 }
 
-/// Which edges of a chunk touch each band.
+/// Index of the edges of a chunk that touch each band.
 #[derive(Debug, Default)]
 struct BandIndex {
     /// The first band touched.
@@ -127,7 +129,8 @@ struct BandIndex {
     /// Edges that follow each other and all touch one band, first and one past the last, band after band, for those
     /// of a band are read one after the other.
     stretches: Vec<(u32, u32)>,
-    /// Where in that list each band's begin, from the first band touched on, and the end of the last.
+    /// Start of each band's edges in that list, from the first band touched on, and the end of the
+    /// last.
     starts: Vec<u32>,
 }
 
@@ -184,7 +187,7 @@ impl BandIndex {
         Self { base, stretches, starts }
     }
 
-    /// The stretches of edges, in the order of the path, that touch the band at row `top`.
+    /// Returns the stretches of edges, in the order of the path, that touch the band at row `top`.
     #[inline(always)]
     fn stretches(&self, top: i32) -> &[(u32, u32)] {
         let Ok(band) = usize::try_from(top / BAND_ROWS - self.base) else { return &[] };

@@ -19,7 +19,8 @@ pub(crate) enum Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// The first lines of those of a closed contour that begin at a range of its points, which then begins after them.
+    /// Returns the first lines of those of a closed contour that begin at a range of its points, which then
+    /// begins after them.
     #[inline(always)]
     pub fn next(
         points: &'a [DVec2],
@@ -47,7 +48,8 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// The lines of a closed contour that begin at a range of its points; points that are not finite are left out.
+/// Returns the lines of a closed contour that begin at a range of its points; points that are not finite are
+/// left out.
 pub(crate) fn lines(points: &[DVec2], own: Range<usize>) -> impl Iterator<Item = (DVec2, DVec2)> {
     let begin = own.start;
     let own = points.get(own).unwrap_or_default().iter().enumerate();
@@ -58,8 +60,8 @@ pub(crate) fn lines(points: &[DVec2], own: Range<usize>) -> impl Iterator<Item =
     })
 }
 
-/// What remains of an edge within the rows of a box, in the direction of travel: up to three pieces, those left
-/// or right of the box moved onto its border, for left of it they still wind around everything in their rows.
+/// Clips an edge to the rows of a box, in the direction of travel: up to three pieces remain, those left or
+/// right of the box moved onto its border, for left of it they still wind around everything in their rows.
 ///
 /// Which pieces they are depends on the two ends alone and not on the direction, so both faces of a shared edge
 /// get the same. `None` where the edge lies wholly above or below the box.

@@ -42,21 +42,21 @@ pub const INFO: Info = Info {
 /// The largest radius, in pixels: products of four of them fit i128 with room to spare, and time is bounded.
 pub const MAX_RADIUS: u32 = 1 << 20;
 
-/// Which part of the curve is being made.
+/// Part of the curve that is being made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Region {
     /// The octant of a circle from the top to the diagonal.
     Octant,
-    /// Of an ellipse: from the top to where the curve falls by 45°; x is stepped.
+    /// Part of an ellipse from the top to where the curve falls by 45°; x is stepped.
     Flat,
     /// From there to the right; y is stepped.
     Steep,
 }
 
-/// What there is to see: a pixel of the part that is mirrored.
+/// Step of the algorithm: a pixel of the part that is mirrored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Step {
-    /// Which part.
+    /// Part of the curve.
     pub region: Region,
     /// The pixel, seen from the centre, with y up.
     pub pixel: IVec2,
@@ -65,7 +65,7 @@ pub struct Step {
     pub d: i128,
 }
 
-/// The pixels that a list of steps leads to, seen from the centre, in no order.
+/// Returns the pixels that a list of steps leads to, seen from the centre, in no order.
 pub fn replay(steps: &[Step]) -> Vec<IVec2> {
     let mut pixels = Vec::new();
     for step in steps {

@@ -18,7 +18,7 @@ pub const HALF_PIXEL: i32 = SUBPIXELS / 2;
 /// block of 16 × 8 pixels that an edge crosses; the coordinates are at most 2¹⁷ · 2⁸ = 2²⁵.
 pub const GUARD_BAND: f64 = 131_072.0;
 
-/// The grid point nearest to a screen coordinate in pixels, ties to even.
+/// Returns the grid point nearest to a screen coordinate in pixels, ties to even.
 ///
 /// The coordinate must lie within ± [`GUARD_BAND`]; others are clamped to it, NaN becomes 0.
 #[inline]
@@ -28,13 +28,13 @@ pub fn snap(pixels: f64) -> i32 {
     (pixels.clamp(-GUARD_BAND, GUARD_BAND) * f64::from(SUBPIXELS) + WHOLE - WHOLE) as i32
 }
 
-/// The screen coordinate of a grid point, in pixels; exact.
+/// Returns the screen coordinate of a grid point, in pixels; exact.
 #[inline]
 pub fn unsnap(fixed: i32) -> f64 {
     f64::from(fixed) / f64::from(SUBPIXELS)
 }
 
-/// The first pixel whose centre is not left of (above) the coordinate.
+/// Returns the first pixel whose centre is not left of (above) the coordinate.
 #[inline]
 pub fn first_center(fixed: i32) -> i32 {
     (fixed + HALF_PIXEL - 1) >> SUBPIXEL_BITS

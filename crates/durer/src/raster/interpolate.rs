@@ -32,20 +32,20 @@ pub const INFO: Info = Info {
     limits: "vertices before the eye",
 };
 
-/// Twice the signed area of a triangle by the short formula, in square units of its coordinates;
-/// positive where a, b, c turn to the left with y up.
+/// Returns twice the signed area of a triangle by the short formula, in square units of its
+/// coordinates; positive where a, b, c turn to the left with y up.
 pub fn doubled_area([a, b, c]: [DVec2; 3]) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// The area of a triangle in space, in square units of its coordinates; not negative.
+/// Returns the area of a triangle in space, in square units of its coordinates; not negative.
 pub fn area_3d([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).length() * 0.5
 }
 
-/// The signed area of a polygon by the short formula, A = ½ Σ xᵢ (yᵢ₊₁ − yᵢ₋₁); positive where it
-/// turns to the left with y up. The ring is closed by itself. Coordinates are taken from the first
-/// vertex, so that a small polygon far from the origin keeps its area.
+/// Returns the signed area of a polygon by the short formula, A = ½ Σ xᵢ (yᵢ₊₁ − yᵢ₋₁); positive
+/// where it turns to the left with y up. The ring is closed by itself. Coordinates are taken from
+/// the first vertex, so that a small polygon far from the origin keeps its area.
 ///
 /// ```
 /// use durer::math::DVec2;
@@ -61,7 +61,8 @@ pub fn polygon_area(ring: &[DVec2]) -> f64 {
     0.5 * ring.iter().enumerate().map(term).sum::<f64>()
 }
 
-/// The barycentric coordinates of a point of the plane: weights that add up to 1 and give the point.
+/// Returns the barycentric coordinates of a point of the plane: weights that add up to 1 and give
+/// the point.
 ///
 /// All are in 0 … 1 for a point in the triangle. `None` for a triangle without area.
 pub fn barycentric_2d([a, b, c]: [DVec2; 3], p: DVec2) -> Option<[f64; 3]> {
@@ -70,8 +71,8 @@ pub fn barycentric_2d([a, b, c]: [DVec2; 3], p: DVec2) -> Option<[f64; 3]> {
     normalized(weights, area)
 }
 
-/// The barycentric coordinates of a point in space, projected along the normal onto the triangle's
-/// plane. `None` for a triangle without area.
+/// Returns the barycentric coordinates of a point in space, projected along the normal onto the
+/// triangle's plane. `None` for a triangle without area.
 pub fn barycentric_3d([a, b, c]: [DVec3; 3], p: DVec3) -> Option<[f64; 3]> {
     let normal = (b - a).cross(c - a);
     // Areas of the three parts, as seen along the normal.
@@ -83,7 +84,7 @@ fn normalized(weights: [f64; 3], total: f64) -> Option<[f64; 3]> {
     (total != 0.0 && total.is_finite()).then(|| weights.map(|w| w / total))
 }
 
-/// The weighted sum of a value at the corners.
+/// Returns the weighted sum of a value at the corners.
 pub fn blend<T: Mul<f64, Output = T> + Add<Output = T>>(weights: [f64; 3], [a, b, c]: [T; 3]) -> T {
     a * weights[0] + b * weights[1] + c * weights[2]
 }
@@ -107,16 +108,17 @@ pub fn perspective_correct(screen: [f64; 3], inv_w: [f64; 3]) -> [f64; 3] {
 /// attribute divided by w.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScreenPlane {
-    /// Where `value` holds, in pixels: a corner, so that far-off triangles lose no digits.
+    /// Point at which `value` holds, in pixels: a corner, so that far-off triangles lose no digits.
     pub origin: DVec2,
     /// The function at `origin`.
     pub value: f64,
-    /// What it gains per pixel to the right and downwards.
+    /// Increase per pixel to the right and downwards.
     pub gradient: DVec2,
 }
 
 impl ScreenPlane {
-    /// The plane through three values at three screen points; `None` for a triangle without area.
+    /// Returns the plane through three values at three screen points; `None` for a triangle without
+    /// area.
     pub fn through([a, b, c]: [DVec2; 3], [fa, fb, fc]: [f64; 3]) -> Option<Self> {
         let (u, v) = (b - a, c - a);
         let area = u.perp_dot(v);
@@ -125,7 +127,7 @@ impl ScreenPlane {
         (area != 0.0 && gradient.is_finite()).then_some(Self { origin: a, value: fa, gradient })
     }
 
-    /// The function at a screen point in pixels.
+    /// Returns the function at a screen point in pixels.
     #[inline]
     pub fn at(&self, p: DVec2) -> f64 {
         let d = p - self.origin;
@@ -150,7 +152,7 @@ impl PerspectivePlane {
         })
     }
 
-    /// The attribute at a screen point in pixels.
+    /// Returns the attribute at a screen point in pixels.
     #[inline]
     pub fn at(&self, p: DVec2) -> f64 {
         self.over_w.at(p) / self.inv_w.at(p)

@@ -29,7 +29,7 @@ fn weight(density: &Pixels<f32>, x: u32, y: u32) -> f64 {
     if value.is_finite() { value.max(0.0) } else { 0.0 }
 }
 
-/// A dot each time that the density along Hilbert's curve adds up to one.
+/// Returns A dot each time that the density along Hilbert's curve adds up to one.
 fn along_hilbert(density: &Pixels<f32>) -> Vec<DVec2> {
     let (width, height) = (density.width(), density.height());
     let total: f64 = (0..height).flat_map(|y| (0..width).map(move |x| weight(density, x, y))).sum();
@@ -52,7 +52,7 @@ fn along_hilbert(density: &Pixels<f32>) -> Vec<DVec2> {
     dots
 }
 
-/// The pixel at a place along Hilbert's curve over a square whose side is a power of two.
+/// Returns the pixel at a place along Hilbert's curve over a square whose side is a power of two.
 fn hilbert(side: u32, step: u64) -> [u32; 2] {
     let (mut x, mut y) = (0, 0);
     let (mut rest, mut size) = (step, 1);
@@ -104,7 +104,7 @@ struct Cells {
     side: f64,
     columns: usize,
     rows: usize,
-    /// Where the dots of each cell begin among `dots`, and the end.
+    /// Start of each cell's dots among `dots`, and the end.
     starts: Vec<u32>,
     dots: Vec<u32>,
 }
@@ -138,7 +138,8 @@ impl Cells {
         place(p.y, self.rows) * self.columns + place(p.x, self.columns)
     }
 
-    /// The dot nearest to a place, the first of several; looks at rings of cells from the inside out.
+    /// Returns the dot nearest to a place, the first of several; looks at rings of cells from the
+    /// inside out.
     fn nearest(&self, p: DVec2, dots: &[DVec2]) -> Option<usize> {
         let (cx, cy) = ((p.x / self.side) as i64, (p.y / self.side) as i64);
         let mut best: Option<(f64, usize)> = None;
@@ -182,7 +183,7 @@ mod tests {
         Pixels::new(width, height, value)
     }
 
-    /// The distance from each dot to the nearest other one.
+    /// Returns the distance from each dot to the nearest other one.
     fn gaps(dots: &[DVec2]) -> Vec<f64> {
         let others = |i: usize| dots.iter().enumerate().filter(move |(j, _)| *j != i);
         let gap = |(i, p): (usize, &DVec2)| {

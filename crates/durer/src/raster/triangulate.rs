@@ -35,7 +35,7 @@ pub struct Triangulation {
 }
 
 impl Triangulation {
-    /// The sum of the triangles' areas.
+    /// Returns the sum of the triangles' areas.
     pub fn area(&self) -> f64 {
         let at = |i: u32| self.points.get(i as usize).copied().unwrap_or_default();
         let area = |t: &[u32; 3]| (at(t[1]) - at(t[0])).perp_dot(at(t[2]) - at(t[0])).abs() / 2.0;

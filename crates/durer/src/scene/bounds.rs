@@ -12,7 +12,7 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The smallest box around the finite points; `None` where there is none.
+    /// Returns the smallest box around the finite points; `None` where there is none.
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
         let mut points = points.into_iter().filter(|p| p.is_finite());
         let first = points.next()?;
@@ -20,12 +20,12 @@ impl Aabb {
         Some(Self { min, max })
     }
 
-    /// The smallest box around both.
+    /// Returns the smallest box around both.
     pub fn union(&self, other: &Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// The middle.
+    /// Returns the middle.
     pub fn center(&self) -> DVec3 {
         self.min + (self.max - self.min) * 0.5
     }
@@ -35,7 +35,7 @@ impl Aabb {
         self.max - self.min
     }
 
-    /// The eight corners; bit k of the index chooses max on axis k.
+    /// Returns the eight corners; bit k of the index chooses max on axis k.
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|i| {
             let pick = |bit: usize, lo: f64, hi: f64| if i >> bit & 1 == 1 { hi } else { lo };
@@ -53,6 +53,6 @@ impl Aabb {
 pub struct BoundingSphere {
     /// The middle.
     pub center: DVec3,
-    /// Not negative.
+    /// Radius; not negative.
     pub radius: f64,
 }

@@ -3,7 +3,7 @@
 use crate::math::{DMat4, DVec3};
 use crate::{Error, Result};
 
-/// How the view space is projected.
+/// Projection of the view space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Projection {
     /// Lines through the eye.
@@ -21,7 +21,7 @@ pub enum Projection {
 /// An eye that looks from one point to another; right-handed, looks down −z of its own space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// Where the eye is, world space.
+    /// Position of the eye, world space.
     pub eye: DVec3,
     /// A point in the middle of the picture, world space.
     pub target: DVec3,
@@ -109,7 +109,7 @@ impl Camera {
         }
     }
 
-    /// The camera's axes in world space, each of unit length: right, up, and backward (+z).
+    /// Returns the camera's axes in world space, each of unit length: right, up, and backward (+z).
     pub fn axes(&self) -> [DVec3; 3] {
         let back = (self.eye - self.target).normalize();
         let right = self.up.normalize().cross(back).normalize();

@@ -39,11 +39,11 @@ pub struct HeightField {
     z: [f64; 2],
     /// Row by row; NaN where missing.
     heights: Vec<f64>,
-    /// Where the surface is cut off, below and above.
+    /// Heights at which the surface is cut off, below and above.
     levels: Option<[f64; 2]>,
 }
 
-/// How a cell of a height field is cut into its two triangles.
+/// Diagonal that divides a cell of a height field into its two triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Diagonal {
     /// From the corner with the smallest x and z to the one with the largest.
@@ -53,8 +53,8 @@ pub enum Diagonal {
 }
 
 impl Diagonal {
-    /// The corners of the two triangles, counter-clockwise seen from above; bit 0 of a corner is
-    /// its column, bit 1 its row, relative to the cell's first point.
+    /// Returns the corners of the two triangles, counter-clockwise seen from above; bit 0 of a
+    /// corner is its column, bit 1 its row, relative to the cell's first point.
     pub const fn triangles(self) -> [[usize; 3]; 2] {
         match self {
             Self::Rising => [[0, 2, 3], [0, 3, 1]],
@@ -67,7 +67,8 @@ impl HeightField {
     /// The most points a field may have.
     pub const MAX_POINTS: u64 = 1 << 27;
 
-    /// The field of `size` = columns × rows points, given row by row, over the ranges of x and z.
+    /// Creates the field of `size` = columns × rows points, given row by row, over the ranges of x
+    /// and z.
     ///
     /// What is not finite, or beyond ±1e100, is missing.
     ///
@@ -87,8 +88,8 @@ impl HeightField {
         Ok(Self { columns: size[0], rows: size[1], x, z, heights, levels: None })
     }
 
-    /// The field of a function, called with x and z of each point; what [`Self::new`] says of
-    /// heights holds for its values.
+    /// Returns the field of a function, called with x and z of each point; what [`Self::new`] says
+    /// of heights holds for its values.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -107,12 +108,12 @@ impl HeightField {
         Self::new(size, x, z, heights)
     }
 
-    /// Points along x.
+    /// Returns points along x.
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Points along z.
+    /// Returns points along z.
     pub fn rows(&self) -> usize {
         self.rows
     }
@@ -137,7 +138,7 @@ impl HeightField {
         between(self.z, row, self.rows)
     }
 
-    /// The height of a point; `None` where it is missing or outside the grid.
+    /// Returns the height of a point; `None` where it is missing or outside the grid.
     pub fn height(&self, column: usize, row: usize) -> Option<f64> {
         if column >= self.columns {
             return None;
@@ -145,18 +146,18 @@ impl HeightField {
         self.heights.get(row * self.columns + column).copied().filter(|h| !h.is_nan())
     }
 
-    /// A point of the surface; `None` where its height is missing.
+    /// Returns A point of the surface; `None` where its height is missing.
     pub fn point(&self, column: usize, row: usize) -> Option<DVec3> {
         self.height(column, row).map(|y| DVec3::new(self.x(column), y, self.z(row)))
     }
 
-    /// How many points have no height.
+    /// Returns the number of points without a height.
     pub fn missing(&self) -> usize {
         self.heights.iter().filter(|h| h.is_nan()).count()
     }
 
-    /// The same surface, cut off where it is below the first or above the second level. [`Self::height`] still tells
-    /// the heights beyond.
+    /// Returns the same surface, cut off where it is below the first or above the second level.
+    /// [`Self::height`] still tells the heights beyond.
     ///
     /// # Errors
     /// [`Error::Parameter`] for levels that are not finite or do not increase.
@@ -169,17 +170,18 @@ impl HeightField {
         Ok(Self { levels: Some([low, high]), ..self })
     }
 
-    /// The levels at which the surface is cut off, if it is.
+    /// Returns the levels at which the surface is cut off, if it is.
     pub fn levels(&self) -> Option<[f64; 2]> {
         self.levels
     }
 
-    /// Whether a height lies between the levels.
+    /// Returns whether a height lies between the levels.
     pub fn keeps(&self, y: f64) -> bool {
         self.levels.is_none_or(|[low, high]| (low..=high).contains(&y))
     }
 
-    /// The lowest and the highest height, between the levels; `None` where all are missing or beyond them.
+    /// Returns the lowest and the highest height, between the levels; `None` where all are missing or
+    /// beyond them.
     pub fn range(&self) -> Option<[f64; 2]> {
         let start = [f64::INFINITY, f64::NEG_INFINITY];
         // `min` and `max` pass over NaN.
@@ -189,21 +191,23 @@ impl HeightField {
         any.then_some([lo.max(low), hi.min(high)])
     }
 
-    /// The box around the grid and all heights of the [range](Self::range); `None` where there are none.
+    /// Returns the box around the grid and all heights of the [range](Self::range); `None` where there
+    /// are none.
     pub fn bounds(&self) -> Option<Aabb> {
         let [lo, hi] = self.range()?;
         let corner = |x, y, z| DVec3::new(x, y, z);
         Some(Aabb { min: corner(self.x[0], lo, self.z[0]), max: corner(self.x[1], hi, self.z[1]) })
     }
 
-    /// The same surface with each height, and the levels, taken through `f`, which does not turn their order.
+    /// Returns the same surface with each height, and the levels, taken through `f`, which does not turn
+    /// their order.
     pub fn map(&self, f: impl Fn(f64) -> f64) -> Self {
         let heights = self.heights.iter().map(|&h| f(h));
         let heights = heights.map(|h| if h.abs() <= LARGEST { h } else { f64::NAN }).collect();
         Self { heights, levels: self.levels.map(|levels| levels.map(&f)), ..*self }
     }
 
-    /// The same surface over other ranges.
+    /// Creates the same surface over other ranges.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a range that is not finite or does not increase.
@@ -212,8 +216,9 @@ impl HeightField {
         Ok(Self { x, z, ..self })
     }
 
-    /// The surface with other numbers of columns and rows over the same ranges, interpolated
-    /// bilinearly; missing where a corner of the cell that a point falls into is missing.
+    /// Returns the surface with other numbers of columns and rows over the same ranges,
+    /// interpolated bilinearly; missing where a corner of the cell that a point falls into is
+    /// missing.
     ///
     /// # Errors
     /// As [`Self::new`] for the new size.
@@ -243,8 +248,8 @@ impl HeightField {
         Ok(Self { levels: self.levels, ..Self::new(size, self.x, self.z, heights)? })
     }
 
-    /// How the cell between this point and the next column and row is cut; `None` where a corner is
-    /// missing, nothing of it lies between the levels, or there is no such cell.
+    /// Returns the diagonal of the cell between this point and the next column and row; `None` if a
+    /// corner is missing, no part of it lies between the levels, or there is no such cell.
     pub fn cell(&self, column: usize, row: usize) -> Option<Diagonal> {
         let [a, b] = [self.height(column, row)?, self.height(column + 1, row)?];
         let [c, d] = [self.height(column, row + 1)?, self.height(column + 1, row + 1)?];
@@ -259,7 +264,8 @@ impl HeightField {
         Some(if falling < rising { Diagonal::Falling } else { Diagonal::Rising })
     }
 
-    /// The triangles of the surface, in single precision, relative to `origin`; front faces look up.
+    /// Returns the triangles of the surface, in single precision, relative to `origin`; front faces
+    /// look up.
     ///
     /// A face of the mesh is a cell. Triangles that are cut at a level have vertices of their own. Cost: one pass.
     pub fn to_mesh(&self, origin: DVec3) -> Mesh {
@@ -297,7 +303,7 @@ impl HeightField {
         Mesh { positions, indices: Some(indices), faces, ..Mesh::default() }
     }
 
-    /// A scene of the surface alone, in its place.
+    /// Returns A scene of the surface alone, in its place.
     pub fn to_scene(&self) -> Scene {
         let origin = self.bounds().map_or(DVec3::ZERO, |b| b.center());
         let world_from_mesh = DMat4::from_translation(origin);
@@ -331,7 +337,7 @@ pub(crate) fn cut(ring: &mut Vec<DVec3>, levels: Option<[f64; 2]>) -> bool {
     true
 }
 
-/// The part, 0 … 1, of a segment between two heights that lies between two levels.
+/// Returns the part, 0 … 1, of a segment between two heights that lies between two levels.
 pub(crate) fn part_between([from, to]: [f64; 2], levels: Option<[f64; 2]>) -> Option<[f64; 2]> {
     let Some([low, high]) = levels else { return Some([0.0, 1.0]) };
     let (lowest, highest) = (from.min(to), from.max(to));
@@ -345,7 +351,7 @@ pub(crate) fn part_between([from, to]: [f64; 2], levels: Option<[f64; 2]>) -> Op
     (part[0] < part[1]).then_some(part)
 }
 
-/// Where point `i` of `count` lies; the ends are exact.
+/// Returns the position of point `i` of `count`; the ends are exact.
 fn between([first, last]: [f64; 2], i: usize, count: usize) -> f64 {
     if i + 1 >= count && count > 1 {
         return last;
@@ -354,7 +360,7 @@ fn between([first, last]: [f64; 2], i: usize, count: usize) -> f64 {
     first + (last - first) * part
 }
 
-/// The number of points, where the size and the ranges are right.
+/// Returns the number of points, where the size and the ranges are right.
 fn check(size: [usize; 2], x: [f64; 2], z: [f64; 2]) -> Result<usize> {
     let count = (size[0] as u64).saturating_mul(size[1] as u64);
     if count == 0 {

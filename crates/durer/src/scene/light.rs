@@ -14,14 +14,14 @@ pub enum LightKind {
     },
     /// From a point, falling off with the square of the distance.
     Point {
-        /// Where it is.
+        /// Position of the feature.
         position: DVec3,
         /// Distance at which it ends; `None` = never.
         range: Option<f64>,
     },
     /// A point light that shines into a cone.
     Spot {
-        /// Where it is.
+        /// Position of the feature.
         position: DVec3,
         /// Unit vector along the cone's axis, in which the light travels.
         direction: DVec3,

@@ -1,4 +1,4 @@
-//! What surfaces are made of.
+//! The materials of surfaces.
 
 use crate::math::{DMat3, Vec3, Vec4};
 
@@ -7,13 +7,13 @@ use crate::math::{DMat3, Vec3, Vec4};
 pub struct TextureRef {
     /// Index into [`super::Scene::textures`].
     pub texture: usize,
-    /// Which set of [`super::Mesh::tex_coords`].
+    /// Index of the set in [`super::Mesh::tex_coords`].
     pub tex_coord: u32,
     /// Takes the mesh's texture coordinates to the texture's (KHR_texture_transform).
     pub transform: DMat3,
 }
 
-/// What to do with a surface's alpha.
+/// Use of a surface's alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum AlphaMode {
     /// Alpha is ignored: the surface is opaque.
@@ -28,7 +28,7 @@ pub enum AlphaMode {
     Blend,
 }
 
-/// Which formula a material was written for.
+/// Formula that a material was written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum ShadingModel {
     /// glTF's metallic-roughness model.
@@ -45,7 +45,7 @@ pub enum ShadingModel {
 pub struct Material {
     /// Name in the file.
     pub name: String,
-    /// Which formula it was written for.
+    /// Formula that it was written for.
     pub model: ShadingModel,
     /// Linear RGBA, straight alpha.
     pub base_color: Vec4,
@@ -95,14 +95,14 @@ pub struct Material {
     /// Metallic-roughness: part of the light that the dielectric lets through instead of scattering it
     /// diffusely, 0 … 1 (KHR_materials_transmission).
     pub transmission: f32,
-    /// What alpha means.
+    /// Use of alpha.
     pub alpha_mode: AlphaMode,
-    /// Whether back faces are seen, with the normal turned over.
+    /// True if back faces are seen, with the normal turned over.
     pub double_sided: bool,
 }
 
 impl Default for Material {
-    /// A light grey, slightly shiny plastic: what a file without materials is shown in.
+    /// Creates A light grey, slightly shiny plastic: what a file without materials is shown in.
     fn default() -> Self {
         Self {
             name: String::new(),
@@ -136,7 +136,7 @@ impl Default for Material {
 }
 
 impl Material {
-    /// All textures that the material uses.
+    /// Returns all textures that the material uses.
     pub fn textures(&self) -> impl Iterator<Item = &TextureRef> {
         [
             &self.base_color_texture,

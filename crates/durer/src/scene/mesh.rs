@@ -4,7 +4,7 @@ use crate::math::{Vec2, Vec3, Vec4};
 use crate::{Error, Result};
 use std::ops::Range;
 
-/// What consecutive indices are joined to. Strips, fans and loops become lists when they are read.
+/// Shapes that consecutive indices form. Strips, fans and loops become lists when they are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Topology {
     /// Each index is a point.
@@ -19,7 +19,7 @@ pub enum Topology {
 /// A run of primitives of a mesh that share a material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// Which primitives (triangles, lines or points), as a range of their indices.
+    /// Primitives (triangles, lines or points), as a range of their indices.
     pub range: Range<u32>,
     /// Index into [`super::Scene::materials`]; `None` is the default material.
     pub material: Option<usize>,
@@ -36,7 +36,7 @@ pub struct Part {
 pub struct Mesh {
     /// Name in the file, empty where it has none.
     pub name: String,
-    /// What indices are joined to.
+    /// Shapes that the indices form.
     pub topology: Topology,
     /// One per vertex.
     pub positions: Vec<Vec3>,
@@ -75,12 +75,12 @@ impl Mesh {
         Self { positions, ..Self::default() }
     }
 
-    /// The number of indices, explicit or not.
+    /// Returns the number of indices, explicit or not.
     pub fn index_count(&self) -> usize {
         self.indices.as_ref().map_or(self.positions.len(), Vec::len)
     }
 
-    /// The number of points, lines or triangles.
+    /// Returns the number of points, lines or triangles.
     pub fn primitive_count(&self) -> usize {
         match self.topology {
             Topology::Points => self.index_count(),
@@ -89,12 +89,12 @@ impl Mesh {
         }
     }
 
-    /// The number of triangles; 0 for points and lines.
+    /// Returns the number of triangles; 0 for points and lines.
     pub fn triangle_count(&self) -> usize {
         if self.topology == Topology::Triangles { self.primitive_count() } else { 0 }
     }
 
-    /// The three vertex numbers of triangle `i < triangle_count()`.
+    /// Returns the three vertex numbers of triangle `i < triangle_count()`.
     pub fn triangle(&self, i: usize) -> [u32; 3] {
         match &self.indices {
             Some(indices) => [indices[3 * i], indices[3 * i + 1], indices[3 * i + 2]],
@@ -102,7 +102,7 @@ impl Mesh {
         }
     }
 
-    /// The ends of line `i`, or twice the vertex of point `i`; `i < primitive_count()`.
+    /// Returns the ends of line `i`, or twice the vertex of point `i`; `i < primitive_count()`.
     pub fn line_or_point(&self, i: usize) -> [u32; 2] {
         let index = |i: usize| self.indices.as_ref().map_or(i as u32, |indices| indices[i]);
         match self.topology {
@@ -117,8 +117,8 @@ impl Mesh {
         self.parts.iter().map(|p| (p.range.clone(), p.material)).chain(whole)
     }
 
-    /// Which vertices have an index; `None` where there are no indices, and all are used. Indices
-    /// beyond the vertices are left out. Cost: O(indices).
+    /// Returns true for each vertex that has an index; `None` if there are no indices, and all are
+    /// used. Indices beyond the vertices are left out. Cost: O(indices).
     pub fn used_vertices(&self) -> Option<Vec<bool>> {
         let indices = self.indices.as_ref()?;
         let mut used = vec![false; self.positions.len()];

@@ -1,4 +1,5 @@
-//! What a model file becomes: meshes placed in a right-handed world, with materials, lights, cameras.
+//! The contents of a model file: meshes placed in a right-handed world, with materials, lights,
+//! cameras.
 
 mod bounds;
 mod camera;
@@ -20,7 +21,7 @@ pub use texture::{Filter, Image, MipFilter, Sampler, Texture, Wrap};
 use crate::math::{DMat4, DVec3};
 use crate::{Error, Result};
 
-/// Which axis of the file points up in the model's own world.
+/// Axis of the file that points up in the model's own world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum UpAxis {
     /// y up: glTF, most OBJ and PLY files.
@@ -43,7 +44,7 @@ impl UpAxis {
     pub const ALL: &'static [Self] =
         &[Self::Y, Self::Z, Self::X, Self::NegY, Self::NegZ, Self::NegX];
 
-    /// The axis with its sign, as options and reports write it, e.g. `-y`.
+    /// Returns the axis with its sign, as options and reports write it, e.g. `-y`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Y => "y",
@@ -125,10 +126,10 @@ pub struct Scene {
     /// nothing to do with each other; those beyond the end, and all where it is empty, are of tree 0. Borders of one tree that lie on each other are
     /// one ([`crate::visibility::object::Weld`]).
     pub trees: Vec<u32>,
-    /// What a unit of the last digit is worth with which the file gives the meshes' coordinates, in their units:
-    /// 0.001 where it has three decimals. 0 where it is not text, or not known.
+    /// Value of a unit in the last digit of the meshes' coordinates in the file, in their units: 0.001 for three
+    /// decimals. 0 if the file is not text, or if it is not known.
     pub last_digit: f64,
-    /// What the parts of the meshes are made of.
+    /// Materials of the meshes' parts.
     pub materials: Vec<Material>,
     /// Images with samplers.
     pub textures: Vec<Texture>,
@@ -138,18 +139,18 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// The file's own cameras, in world space.
     pub cameras: Vec<NamedCamera>,
-    /// Which axis is up.
+    /// Axis that points up.
     pub up_axis: UpAxis,
 }
 
 impl Scene {
-    /// The number of triangles over all instances: one more than the largest item index.
+    /// Returns the number of triangles over all instances: one more than the largest item index.
     pub fn triangle_count(&self) -> u64 {
         let of = |i: &Instance| self.meshes.get(i.mesh).map_or(0, |m| m.triangle_count() as u64);
         self.instances.iter().map(of).sum()
     }
 
-    /// The box around all finite vertices that some instance uses, in world space.
+    /// Returns the box around all finite vertices that some instance uses, in world space.
     pub fn bounds(&self) -> Option<Aabb> {
         let mut bounds: Option<Aabb> = None;
         for instance in &self.instances {
@@ -165,8 +166,8 @@ impl Scene {
         bounds
     }
 
-    /// A sphere around all finite vertices in world space, centred on the box's centre: tighter than
-    /// the box's own sphere, and found in one more pass.
+    /// Returns A sphere around all finite vertices in world space, centred on the box's centre:
+    /// tighter than the box's own sphere, and found in one more pass.
     pub fn bounding_sphere(&self) -> Option<BoundingSphere> {
         let center: DVec3 = self.bounds()?.center();
         let mut radius2: f64 = 0.0;

@@ -11,8 +11,8 @@ use crate::math::{DVec3, Vec3};
 const CREASE_COSINE: f64 = 0.766_044_443_118_978;
 
 impl Mesh {
-    /// The same triangles with normals: each corner has the average over the faces that share its
-    /// position and lie within 40° of its own face. Vertices are no longer shared.
+    /// Creates the same triangles with normals: each corner has the average over the faces that
+    /// share its position and lie within 40° of its own face. Vertices are no longer shared.
     ///
     /// A mesh with normals, and lines and points, are given back as they are.
     pub fn with_smooth_normals(&self) -> Self {
@@ -37,7 +37,7 @@ impl Mesh {
         mesh
     }
 
-    /// Twice the area of a triangle along its normal.
+    /// Returns twice the area of a triangle along its normal.
     fn area_vector(&self, corners: &[u32]) -> DVec3 {
         let at = |i: usize| self.positions[corners[i] as usize].as_dvec3();
         let (a, b, c) = (at(0), at(1), at(2));
@@ -45,7 +45,7 @@ impl Mesh {
         if normal.is_finite() { normal } else { DVec3::ZERO }
     }
 
-    /// The mesh with one vertex per corner.
+    /// Returns the mesh with one vertex per corner.
     fn unshared(&self, corners: &[u32]) -> Self {
         fn gather<T: Copy>(values: &[T], corners: &[u32]) -> Vec<T> {
             if values.is_empty() {

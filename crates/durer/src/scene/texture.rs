@@ -15,7 +15,7 @@ pub struct Image {
     pub data: Vec<[u8; 4]>,
 }
 
-/// How a texel is chosen from one image.
+/// Filter within one image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Filter {
     /// The texel whose area holds the point.
@@ -25,7 +25,7 @@ pub enum Filter {
     Linear,
 }
 
-/// How the level of the mip chain is chosen.
+/// Filter between the levels of the mip chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum MipFilter {
     /// Always the full image.
@@ -37,7 +37,7 @@ pub enum MipFilter {
     Linear,
 }
 
-/// What lies outside 0…1.
+/// Extension outside 0…1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Wrap {
     /// The image again.
@@ -49,12 +49,12 @@ pub enum Wrap {
     ClampToEdge,
 }
 
-/// How a texture is sampled.
+/// Options for sampling a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Sampler {
-    /// Where a texel is larger than a pixel.
+    /// Filter if a texel is larger than a pixel.
     pub mag: Filter,
-    /// Where a texel is smaller than a pixel.
+    /// Filter if a texel is smaller than a pixel.
     pub min: Filter,
     /// The choice of level where a texel is smaller than a pixel.
     pub mip: MipFilter,
@@ -69,6 +69,6 @@ pub struct Sampler {
 pub struct Texture {
     /// Index into [`super::Scene::images`].
     pub image: usize,
-    /// How it is sampled.
+    /// Options for sampling it.
     pub sampler: Sampler,
 }

@@ -27,10 +27,11 @@ const FIRST_BUCKET: u32 = LOWEST_EXPONENT << BUCKET_BITS;
 /// The code of each bucket's lower end.
 static BUCKET_CODE: [u8; BUCKETS] = bucket_table();
 
-/// Of each bucket the code of its lower end in the upper half, and in the lower half what has to be
-/// added to a number's bits below the bucket number to carry into the code where the next threshold
-/// is reached; all of it in the upper half of a word, as [`Encoding::look_up`] puts two into one. As
-/// long as a power of two, so that no index is too large.
+/// Table of buckets: in the upper half the code of the bucket's lower end, and in the lower half the
+/// number that has to be added to a number's bits below the bucket number to carry into the code
+/// where the next threshold is reached; all of it in the upper half of a word, as
+/// [`Encoding::look_up`] puts two into one. As long as a power of two, so that no index is too
+/// large.
 static BUCKET_STEP: [u64; 1 << INDEX_BITS] = step_table();
 
 /// Bits of a bucket's number.
@@ -110,14 +111,14 @@ const fn bucket_table() -> [u8; BUCKETS] {
     table
 }
 
-/// Linear value of an 8-bit sRGB code.
+/// Returns linear value of an 8-bit sRGB code.
 #[inline(always)]
 pub fn decode_srgb8(code: u8) -> f32 {
     LINEAR_FROM_SRGB[usize::from(code)]
 }
 
-/// The 8-bit sRGB code nearest to a linear value, halves upwards; NaN and all below 0 give 0, all
-/// above 1 give 255.
+/// Returns the 8-bit sRGB code nearest to a linear value, halves upwards; NaN and all below 0 give
+/// 0, all above 1 give 255.
 ///
 /// Monotone, never more than half a step off, and the inverse of [`decode_srgb8`] on all 256 codes.
 /// Cost: two look-ups and a comparison.
@@ -154,7 +155,7 @@ struct Encoding {
 }
 
 impl Encoding {
-    /// The buckets of colours.
+    /// Creates the buckets of colours.
     #[inline(always)]
     fn new<S: Simd>(simd: S, [r, g, b]: [f32x16<S>; 3]) -> Self {
         let (r, g, b) = (buckets_x16(simd, r), buckets_x16(simd, g), buckets_x16(simd, b));
@@ -177,7 +178,7 @@ impl Encoding {
         }
     }
 
-    /// The codes, from steps.
+    /// Returns the codes, from steps.
     #[inline(always)]
     fn codes<S: Simd>(&self, simd: S) -> u32x16<S> {
         let [r, g, b] = &self.steps;
@@ -192,7 +193,7 @@ impl Encoding {
     }
 }
 
-/// The buckets of linear values, each in the highest bits, and what is below in their bits.
+/// Returns the buckets of linear values, each in the highest bits, and what is below in their bits.
 #[inline(always)]
 fn buckets_x16<S: Simd>(simd: S, linear: f32x16<S>) -> [u32x16<S>; 2] {
     // From the first bucket to the largest number below 1; NaN is not above the first.
@@ -205,13 +206,13 @@ fn buckets_x16<S: Simd>(simd: S, linear: f32x16<S>) -> [u32x16<S>; 2] {
     [bucket, bits & ((1 << BUCKET_SHIFT) - 1)]
 }
 
-/// Linear RGBA to 8-bit sRGB with 8-bit linear alpha.
+/// Returns linear RGBA to 8-bit sRGB with 8-bit linear alpha.
 #[inline(always)]
 pub fn encode_rgba8(color: Vec4) -> [u8; 4] {
     [encode_srgb8(color.x), encode_srgb8(color.y), encode_srgb8(color.z), encode_unorm8(color.w)]
 }
 
-/// Linear RGBA, premultiplied, to 8-bit sRGB with straight 8-bit alpha.
+/// Returns linear RGBA, premultiplied, to 8-bit sRGB with straight 8-bit alpha.
 #[inline(always)]
 pub(crate) fn encode_premultiplied(color: Vec4) -> [u8; 4] {
     encode_rgba8(if color.w >= 1.0 { color } else { unpremultiply(color) })
@@ -228,7 +229,7 @@ pub fn decode_rgba8(code: [u8; 4]) -> Vec4 {
     )
 }
 
-/// The nearest of 256 equal steps over 0…1; NaN gives 0.
+/// Returns the nearest of 256 equal steps over 0…1; NaN gives 0.
 #[inline(always)]
 pub fn encode_unorm8(value: f32) -> u8 {
     // `as` saturates and takes NaN to 0.
@@ -248,7 +249,7 @@ const fn unorm_table() -> [f32; 256] {
     table
 }
 
-/// The value of one of 256 equal steps over 0…1.
+/// Returns the value of one of 256 equal steps over 0…1.
 #[inline(always)]
 pub fn decode_unorm8(code: u8) -> f32 {
     UNORM[usize::from(code)]
@@ -260,7 +261,7 @@ pub fn luminance(color: Vec3) -> f32 {
     0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z
 }
 
-/// Straight alpha to premultiplied alpha (Porter and Duff 1984).
+/// Returns straight alpha to premultiplied alpha (Porter and Duff 1984).
 #[inline(always)]
 pub fn premultiply(color: Vec4) -> Vec4 {
     Vec4::new(color.x * color.w, color.y * color.w, color.z * color.w, color.w)

@@ -1,4 +1,4 @@
-//! What surrounds the scene: light from all around, and what mirrors show.
+//! The surroundings of the scene: light from all around, and the reflections in mirrors.
 //!
 //! Mirrors show nothing where there is nothing around them. By itself the surrounding is a hemisphere of
 //! sky over one of ground, in closed form: a function of the height over the horizon alone, a slope from
@@ -13,13 +13,13 @@ use crate::math::Vec3;
 use crate::scene::UpAxis;
 use std::sync::Arc;
 
-/// What surrounds a scene, as a picture's options name it.
+/// Surroundings of a scene, as a picture's options name it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Surroundings {
     /// Metals, smooth plastics and clear layers mirror a studio; it goes with the camera where the lights do.
     #[default]
     Studio,
-    /// Nothing but the sky over the ground that lights make.
+    /// Only the sky over the ground that lights make.
     None,
     /// A panorama, which lights the scene instead of the lights that go with the camera, and beside others.
     Panorama(Arc<Panorama>),
@@ -40,11 +40,11 @@ pub struct Environment {
     pub gradient: f32,
     /// By which part sky and ground differ from the mean besides; `gradient + step ≤ 1`.
     pub step: f32,
-    /// What mirrors show in place of sky and ground.
+    /// Reflection in mirrors in place of sky and ground.
     pub mirrored: Mirrored,
 }
 
-/// What mirrors show.
+/// Reflection in mirrors.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Mirrored {
     /// Sky and ground.
@@ -54,7 +54,7 @@ pub enum Mirrored {
     Studio(Studio),
     /// A panorama, to which matte surfaces owe light too.
     Panorama {
-        /// What it shows.
+        /// Style of the drawing.
         panorama: Arc<Panorama>,
         /// Unit vectors to the right, up and to the front, in world space.
         axes: [Vec3; 3],
@@ -65,7 +65,7 @@ pub enum Mirrored {
 const SHARPEST: f32 = 0.12;
 
 impl Environment {
-    /// The same light from everywhere.
+    /// Returns the same light from everywhere.
     pub fn uniform(ambient: Vec3) -> Self {
         Self {
             up: Vec3::Y,
@@ -78,7 +78,7 @@ impl Environment {
         }
     }
 
-    /// What a matte white surface with unit normal `n` reflects.
+    /// Returns the light reflected by a matte white surface with unit normal `n`.
     #[inline(always)]
     pub fn diffuse<L: Lane>(&self, n: Vec3Lane<L>) -> Vec3Lane<L> {
         if let Mirrored::Panorama { panorama, axes } = &self.mirrored {
@@ -89,8 +89,8 @@ impl Environment {
         Vec3Lane::new(k * self.ambient.x, k * self.ambient.y, k * self.ambient.z)
     }
 
-    /// What a mirror shows in the unit direction `r`; `alpha` is its roughness, squared. `lamps`: how bright the
-    /// screens of a studio are, for metal, what is smooth and clear layers; `None` shows no studio.
+    /// Returns the reflection in the unit direction `r`; `alpha` is its roughness, squared. `lamps`: how bright
+    /// the screens of a studio are, for metal, what is smooth and clear layers; `None` shows no studio.
     #[inline(always)]
     pub fn reflection<L: Lane>(&self, r: Vec3Lane<L>, alpha: L, lamps: Option<L>) -> Vec3Lane<L> {
         let k = match (&self.mirrored, lamps) {
@@ -104,7 +104,7 @@ impl Environment {
         Vec3Lane::new(k * self.radiance.x, k * self.radiance.y, k * self.radiance.z)
     }
 
-    /// Whether there is more to mirror than sky and ground.
+    /// Returns whether there is more to mirror than sky and ground.
     pub(crate) fn is_furnished(&self) -> bool {
         self.mirrored != Mirrored::Sky
     }
@@ -122,7 +122,7 @@ impl Environment {
     }
 }
 
-/// The components of a vector along axes.
+/// Returns the components of a vector along axes.
 #[inline(always)]
 pub(super) fn turned<L: Lane>(v: Vec3Lane<L>, [x, y, z]: &[Vec3; 3]) -> Vec3Lane<L> {
     Vec3Lane::new(v.dot_all(*x), v.dot_all(*y), v.dot_all(*z))

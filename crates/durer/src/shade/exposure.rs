@@ -14,11 +14,11 @@ use super::light::PreparedLights;
 use crate::math::{DVec3, Vec3};
 use crate::scene::{Instance, Mesh, Scene};
 
-/// How strong the light of a picture is shown.
+/// Exposure of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Exposure {
-    /// So that a white matte surface where much light falls is nearly white; see [the module](self).
-    /// Light that comes with the camera is made so and stays.
+    /// Automatic: a white matte surface where much light falls is nearly white; see [the
+    /// module](self). Light that comes with the camera is made so and stays.
     #[default]
     Auto,
     /// All light, with that of what shines by itself, times two to this power, −64 … 64; 0 shows lights
@@ -31,21 +31,21 @@ pub enum Exposure {
 const LEVEL: f64 = 0.8;
 /// The part of all lit points that are at most as bright as [`LEVEL`].
 const PART: f64 = 0.97;
-/// So many triangles of a scene are looked at at most.
+/// Limit on the triangles of a scene that are examined.
 const TRIANGLES: u64 = 1 << 16;
-/// So many points of them are measured.
+/// Number of their points that are measured.
 const POINTS: usize = 1 << 12;
 /// The part of its light on a surface by which a point light is seen in mirrors: as of a directional
 /// light, a quarter of what it is where it falls straight, which is twice what falls on the average
 /// surface that is lit.
 const IN_MIRRORS: f32 = 0.5;
 
-/// What was measured.
+/// Measured light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Metered {
     /// By which all lights are to be made stronger; 1 where no light falls on anything.
     pub factor: f32,
-    /// What mirrors show of point lights, before that.
+    /// Reflections of point lights in mirrors, before that.
     pub from_points: Vec3,
 }
 
@@ -74,11 +74,12 @@ impl Metered {
 struct Point {
     /// Relative to the lights' origin.
     position: Vec3,
-    /// Of unit length, on either side: both are lit.
+    /// Normal of unit length, on either side: both are lit.
     normal: Vec3,
 }
 
-/// Light on a point by what is infinitely far, a panorama too, and by point and spot lights.
+/// Returns light on a point by what is infinitely far, a panorama too, and by point and spot
+/// lights.
 fn irradiance(lights: &PreparedLights, point: &Point) -> (Vec3, Vec3) {
     let side = |normal: Vec3| Vec3::from(lights.environment.diffuse(normal.into()));
     let around = side(point.normal).max(side(-point.normal));
@@ -96,7 +97,7 @@ struct Summed {
     area: f64,
 }
 
-/// Points spread evenly over the triangles of a scene.
+/// Returns points spread evenly over the triangles of a scene.
 fn points(scene: &Scene, origin: DVec3) -> Vec<Point> {
     let triangles = summed(scene);
     let whole = triangles.last().map_or(0.0, |t| t.area);
@@ -113,8 +114,8 @@ fn points(scene: &Scene, origin: DVec3) -> Vec<Point> {
     points
 }
 
-/// The `i`th of points that are spread over a triangle, by M. Roberts, *The Unreasonable Effectiveness of
-/// Quasirandom Sequences*, 2018.
+/// Returns the `i`th of points that are spread over a triangle, by M. Roberts, *The Unreasonable
+/// Effectiveness of Quasirandom Sequences*, 2018.
 fn point(triangle: &Summed, i: f64, origin: DVec3) -> Point {
     let [a, b, c] = triangle.corners;
     let (u, v) = ((i * 0.754_877_666_246_692_8).fract(), (i * 0.569_840_290_998_053_3).fract());
@@ -124,7 +125,7 @@ fn point(triangle: &Summed, i: f64, origin: DVec3) -> Point {
     Point { position: position.as_vec3(), normal: normal.as_vec3() }
 }
 
-/// Triangles at even distances in the order of the scene, those that have an area.
+/// Returns triangles at even distances in the order of the scene, those that have an area.
 fn summed(scene: &Scene) -> Vec<Summed> {
     let stride = scene.triangle_count().div_ceil(TRIANGLES).max(1);
     let (mut skipped, mut area) = (0, 0.0);
@@ -170,7 +171,7 @@ mod tests {
         }
     }
 
-    /// A square floor, from −half to half, in `cells` × `cells` squares.
+    /// Returns A square floor, from −half to half, in `cells` × `cells` squares.
     fn floor(half: f32, cells: u32) -> Scene {
         let at = |i: u32| (i as f32 / cells as f32 * 2.0 - 1.0) * half;
         let side = cells + 1;

@@ -24,7 +24,7 @@ pub const INFO: Info = Info {
     limits: "curved surfaces look faceted",
 };
 
-/// The light on a whole face, for [`super::Surface::lit`].
+/// Returns the light on a whole face, for [`super::Surface::lit`].
 ///
 /// `centroid` is relative to the lights' origin, `view` points from it to the eye (any length),
 /// `face` is the face's unit normal. Cost: O(lights).

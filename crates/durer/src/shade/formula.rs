@@ -22,11 +22,11 @@ pub(super) struct Inputs<'a, L> {
     pub shininess: Shininess,
     /// Light of its own.
     pub emission: Vec3Lane<L>,
-    /// What the metallic-roughness model has besides, the same in all lanes.
+    /// Further lobes of the metallic-roughness model, the same in all lanes.
     pub lobes: Option<&'a Lobes>,
 }
 
-/// The displayed colour; `lit` is interpolated or per-face light where the caller has it.
+/// Returns the displayed colour; `lit` is interpolated or per-face light where the caller has it.
 #[inline(always)]
 pub(super) fn display<L: Lane>(
     frame: &Frame<L>,

@@ -36,7 +36,7 @@ pub struct Reflected {
 }
 
 impl Reflected {
-    /// The value at barycentric coordinates of three vertices' values.
+    /// Returns the value at barycentric coordinates of three vertices' values.
     #[inline(always)]
     pub fn interpolate(corners: [Self; 3], weights: [f32; 3]) -> Self {
         let [a, b, c] = corners;
@@ -48,7 +48,7 @@ impl Reflected {
     }
 }
 
-/// The light at one vertex of a face, for [`super::Surface::lit`].
+/// Returns the light at one vertex of a face, for [`super::Surface::lit`].
 ///
 /// `position` is relative to the lights' origin, `view` points to the eye (any length), `normal` is
 /// the vertex's and `face` the face's unit normal, which decides from which side it is seen.

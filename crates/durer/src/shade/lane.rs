@@ -23,25 +23,26 @@ pub trait Lane:
 {
     /// `value` in every lane; `self` only says how many there are.
     fn splat(self, value: f32) -> Self;
-    /// The square root, correctly rounded.
+    /// Returns the square root, correctly rounded.
     fn sqrt(self) -> Self;
     /// `then` where `self > limit`, `otherwise` elsewhere and where `self` is NaN.
     fn if_above(self, limit: f32, then: Self, otherwise: Self) -> Self;
-    /// The larger of two; where either is NaN, `other`.
+    /// Returns the larger of two; where either is NaN, `other`.
     fn larger(self, other: Self) -> Self;
-    /// Whether all lanes are at most `limit`; NaN is not.
+    /// Returns whether all lanes are at most `limit`; NaN is not.
     fn all_at_most(self, limit: f32) -> bool;
     /// Splits a positive number into its exponent and a mantissa between √½ and √2.
     fn split(self) -> (Self, Self);
-    /// Two to the power `self`, a whole number between −126 and 127.
+    /// Returns two to the power `self`, a whole number between −126 and 127.
     fn exp2_whole(self) -> Self;
-    /// The nearest whole number below or equal.
+    /// Returns the nearest whole number below or equal.
     fn floor(self) -> Self;
     /// Calls `f` without making it part of the caller: for what is long and seldom asked for.
     fn apart<R>(self, f: impl FnOnce() -> R) -> R;
-    /// A function of one number per value, lane by lane: for what has no formula, such as looking up.
+    /// Creates A function of one number per value, lane by lane: for what has no formula, such as
+    /// looking up.
     fn lanewise<const N: usize>(values: [Self; N], f: impl Fn([f32; N]) -> f32) -> Self;
-    /// The same of three numbers, by a function that is not made part of the caller.
+    /// Returns the same of three numbers, by a function that is not made part of the caller.
     fn looked_up<const N: usize>(
         values: [Self; N],
         look_up: &dyn Fn([f32; N]) -> [f32; 3],
@@ -87,7 +88,7 @@ pub trait Lane:
         (self.at_least(1e-37).log2() * exponent).exp2()
     }
 
-    /// The logarithm to base 2 of a positive normal number.
+    /// Returns the logarithm to base 2 of a positive normal number.
     #[inline(always)]
     fn log2(self) -> Self {
         let (exponent, m) = self.split();
@@ -98,7 +99,7 @@ pub trait Lane:
         exponent + s * (series + 1.0) * (2.0 * std::f32::consts::LOG2_E)
     }
 
-    /// Two to the power `self`, which is held between −126 and 127.
+    /// Returns two to the power `self`, which is held between −126 and 127.
     #[inline(always)]
     fn exp2(self) -> Self {
         let x = self.at_least(-126.0).at_most(127.0);
@@ -289,7 +290,7 @@ impl<L: Lane> Vec3Lane<L> {
         Self { x, y, z }
     }
 
-    /// The same vector in every lane; `like` only says how many there are.
+    /// Returns the same vector in every lane; `like` only says how many there are.
     #[inline(always)]
     pub fn splat(like: L, v: Vec3) -> Self {
         Self::new(like.splat(v.x), like.splat(v.y), like.splat(v.z))
@@ -329,7 +330,7 @@ impl<L: Lane> Vec3Lane<L> {
         Self::new(self.x - o.x, self.y - o.y, self.z - o.z)
     }
 
-    /// Each component times one factor.
+    /// Returns each component times one factor.
     #[inline(always)]
     pub fn scale(self, k: L) -> Self {
         Self::new(self.x * k, self.y * k, self.z * k)
@@ -363,14 +364,14 @@ impl<L: Lane> Vec3Lane<L> {
         )
     }
 
-    /// Unit length, where the squared length has a reciprocal; elsewhere anything.
+    /// Returns unit length, where the squared length has a reciprocal; elsewhere anything.
     #[inline(always)]
     pub fn unit(self) -> Self {
         let length2 = self.dot(self);
         self.scale(length2.splat(1.0) / length2.sqrt())
     }
 
-    /// Unit length; `otherwise` where there is no direction: zero, NaN, or beyond 1e18.
+    /// Returns unit length; `otherwise` where there is no direction: zero, NaN, or beyond 1e18.
     #[inline(always)]
     pub fn unit_or(self, otherwise: Self) -> Self {
         let (length2, unit) = (self.dot(self), self.unit());

@@ -53,9 +53,9 @@ pub struct PreparedLights {
     pub directional: Vec<DirectionalLight>,
     /// Point and spot lights.
     pub points: Vec<PointLight>,
-    /// What the lights see; empty where none throws shadows.
+    /// Shadow maps of the lights; empty if none throws shadows.
     pub shadows: ShadowMaps,
-    /// What is done to light before it is shown.
+    /// Changes to light before it is shown.
     pub tone: Tone,
 }
 
@@ -75,17 +75,17 @@ impl PreparedLights {
         Self::within(None, lights, camera)
     }
 
-    /// As [`Self::new`], where a panorama, if there is one, takes the place of ambient light that is not
-    /// among the lights, and of what mirrors show.
+    /// Builds it like [`Self::new`], with a panorama, if there is one, in place of ambient light that is
+    /// not among the lights, and of the reflection in mirrors.
     pub fn within(around: Around<'_>, lights: &[Light], camera: &Camera) -> Self {
         let mut prepared = Self::without_ambient(around, lights, camera);
         prepared.surround(ambient(lights), 1.0, Vec3::ZERO);
         prepared
     }
 
-    /// As [`Self::within`], but makes all light stronger or weaker by one factor, so that a
-    /// white matte surface where much of it falls on the scene is nearly white: see
-    /// [`super::exposure`]. Where there is no ambient light, [`DEFAULT_AMBIENT`] is added as it is.
+    /// Builds it like [`Self::within`], but makes all light stronger or weaker by one factor, so
+    /// that a white matte surface where much of it falls on the scene is nearly white: see
+    /// [`super::exposure`]. If there is no ambient light, [`DEFAULT_AMBIENT`] is added as it is.
     /// The scene must pass [`Scene::check`].
     pub fn exposed(around: Around<'_>, lights: &[Light], scene: &Scene, camera: &Camera) -> Self {
         let mut prepared = Self::without_ambient(around, lights, camera);
@@ -146,7 +146,8 @@ impl PreparedLights {
         prepared
     }
 
-    /// The scene's own lights, [exposed](Self::exposed), or, where it has none, [`PreparedLights::auto`].
+    /// Returns the scene's own lights, [exposed](Self::exposed), or, where it has none,
+    /// [`PreparedLights::auto`].
     pub fn of(scene: &Scene, camera: &Camera) -> Self {
         match &scene.lights[..] {
             [] => Self::auto(camera),
@@ -154,8 +155,8 @@ impl PreparedLights {
         }
     }
 
-    /// What a perfect mirror shows of the surroundings in a unit direction, as a display shows it; `None`
-    /// where they are but sky and ground.
+    /// Returns the surroundings that a perfect mirror reflects in a unit direction, as a display shows
+    /// them; `None` if they are only sky and ground.
     pub(crate) fn mirrored(&self, direction: Vec3) -> Option<Vec3> {
         let environment = &self.environment;
         environment.is_furnished().then(|| {
@@ -202,20 +203,20 @@ impl PreparedLights {
     }
 }
 
-/// The sum of all ambient lights; `None` where there is none.
+/// Returns the sum of all ambient lights; `None` where there is none.
 fn ambient(lights: &[Light]) -> Option<Vec3> {
     let ambient = lights.iter().filter(|l| l.kind == LightKind::Ambient);
     ambient.map(|l| l.color).reduce(|a, b| a + b)
 }
 
 impl PointLight {
-    /// The unit vector along the axis of a spot light and the cosine of the angle at which its light is
-    /// gone; `None` for a light that shines everywhere.
+    /// Returns the unit vector along the axis of a spot light and the cosine of the angle at which its
+    /// light is gone; `None` for a light that shines everywhere.
     pub fn cone(&self) -> Option<(Vec3, f32)> {
         (self.axis != Vec3::ZERO).then(|| (self.axis, -self.offset / self.scale))
     }
 
-    /// Unit vector from `position` to the light, and the light's strength there.
+    /// Returns unit vector from `position` to the light, and the light's strength there.
     #[inline(always)]
     pub fn seen_from<L: Lane>(&self, position: Vec3Lane<L>) -> (Vec3Lane<L>, L) {
         let d = Vec3Lane::splat(position.x, self.position).minus(position);
@@ -229,8 +230,8 @@ impl PointLight {
     }
 }
 
-/// The light that shows the form of any model: key light from the upper left, weaker fill light from
-/// the right, rim light from behind, ambient light; all of them go with the camera.
+/// Returns the light that shows the form of any model: key light from the upper left, weaker fill
+/// light from the right, rim light from behind, ambient light; all of them go with the camera.
 ///
 /// Made so that white matte surfaces stay below white and no side is black: on a matte sphere of
 /// reflectance 0.8 the 8-bit colours lie between 76 and 220.

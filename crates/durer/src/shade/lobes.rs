@@ -1,5 +1,5 @@
-//! What glTF's extensions add to the metallic-roughness formula: another refractive index, a tinted or weak
-//! reflection, a clear coat, sheen, and glass.
+//! The additions of glTF's extensions to the metallic-roughness formula: another refractive index, a tinted
+//! or weak reflection, a clear coat, sheen, and glass.
 //!
 //! Khronos, *KHR_materials_ior*, *_specular*, *_clearcoat*, *_sheen*, *_transmission*, 2020–2021. Sheen: A.
 //! Estevez and C. Kulla, *Production Friendly Microfacet Sheen BRDF*, SIGGRAPH 2017 (the "Charlie"
@@ -17,7 +17,8 @@ use super::normal::Frame;
 use crate::math::Vec3;
 use crate::scene::{AlphaMode, Material, ShadingModel};
 
-/// What a material has beyond base colour, metalness and roughness; the same at all of its points.
+/// Properties of a material beyond base colour, metalness and roughness; the same at all of its
+/// points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Lobes {
     dielectric: Dielectric,
@@ -25,7 +26,7 @@ pub(super) struct Lobes {
     sheen: Option<Sheen>,
     /// The part of light that goes through what is not blended.
     through: f32,
-    /// Whether what is blended shows its reflections in full, as glass does.
+    /// True if what is blended shows its reflections in full, as glass does.
     glass: bool,
 }
 
@@ -48,7 +49,7 @@ struct Sheen {
     more: f32,
 }
 
-/// A number of a file, held; `default` for what is none.
+/// Returns A number of a file, held; `default` for what is none.
 fn held(value: f32, most: f32, default: f32) -> f32 {
     if value.is_nan() { default } else { value.clamp(0.0, most) }
 }
@@ -81,12 +82,12 @@ impl Lobes {
         (m.model == ShadingModel::MetallicRoughness && !plain).then_some(lobes)
     }
 
-    /// Whether reflections are seen on what is blended, however clear it is.
+    /// Returns whether blended surfaces show reflections, however clear they are.
     pub fn is_glass(&self) -> bool {
         self.glass
     }
 
-    /// The light that leaves a point towards the eye, with that of its own.
+    /// Returns the light that leaves a point towards the eye, with that of its own.
     #[inline(always)]
     pub fn reflect<L: Lane>(
         &self,
@@ -142,7 +143,8 @@ impl Lobes {
         )
     }
 
-    /// The surroundings straight behind the surface, tinted, where nothing behind it is drawn.
+    /// Returns the surroundings straight behind the surface, tinted, where nothing behind it is
+    /// drawn.
     #[inline(always)]
     fn seen_through<L: Lane>(
         &self,
@@ -158,7 +160,7 @@ impl Lobes {
     }
 }
 
-/// The plain formula, once for all that call it.
+/// Returns the plain formula, once for all that call it.
 #[inline(always)]
 fn reflect_apart<L: Lane>(
     frame: &Frame<L>,
@@ -188,7 +190,7 @@ fn dielectric(m: &Material) -> Dielectric {
 }
 
 impl Coat {
-    /// A coat over what leaves the surface.
+    /// Returns A coat over what leaves the surface.
     #[inline(always)]
     fn over<L: Lane>(
         self,
@@ -231,7 +233,7 @@ impl Sheen {
         Self { color: color.min(Vec3::ONE), sharpness, slope, offset, more }
     }
 
-    /// The part of light from all around that the fibres send towards the eye.
+    /// Returns the part of light from all around that the fibres send towards the eye.
     #[inline(always)]
     fn albedo<L: Lane>(&self, nv: L) -> L {
         let exponent = (nv * self.slope + self.offset) * std::f32::consts::LOG2_E;
@@ -266,7 +268,8 @@ impl Sheen {
         under.scale(left).plus(sheen.times_all(self.color))
     }
 
-    /// The part of one light that the fibres send towards the eye; π is contained in the light's unit.
+    /// Returns the part of one light that the fibres send towards the eye; π is contained in the
+    /// light's unit.
     #[inline(always)]
     fn towards_eye<L: Lane>(&self, frame: &Frame<L>, nv: L, l: Vec3Lane<L>) -> L {
         let nl = frame.normal.dot(l).at_least(0.0).at_most(1.0);
@@ -280,8 +283,8 @@ impl Sheen {
     }
 }
 
-/// What glass over a background is: the colour, and the alpha by which its scattered light covers with
-/// `alpha` and its reflections, `shine`, in full.
+/// Returns the look of glass over a background: the colour, and the alpha by which its scattered light
+/// covers with `alpha` and its reflections, `shine`, in full.
 pub(super) fn glass(whole: Vec3, shine: Vec3, alpha: f32) -> (Vec3, f32) {
     let shine = shine.max(Vec3::ZERO);
     let premultiplied = whole * alpha + shine * (1.0 - alpha);

@@ -20,11 +20,11 @@ use fearless_simd_macros::simd;
 /// Texture coordinates and how they change over the screen, in lanes.
 #[derive(Debug, Clone, Copy)]
 pub struct TexCoords<L> {
-    /// As [`super::TexCoord::uv`].
+    /// Coordinates, as in [`super::TexCoord::uv`].
     pub uv: [L; 2],
-    /// As [`super::TexCoord::ddx`].
+    /// Derivative, as in [`super::TexCoord::ddx`].
     pub ddx: [L; 2],
-    /// As [`super::TexCoord::ddy`].
+    /// Derivative, as in [`super::TexCoord::ddy`].
     pub ddy: [L; 2],
 }
 
@@ -35,7 +35,7 @@ const NEAR: i32 = 32;
 const MAX_SIDE: u32 = 1 << 18;
 
 impl PreparedTexture<'_> {
-    /// Whether [`Self::sample_x16`] may be used: bilinear at all sizes, and not too large.
+    /// Returns whether [`Self::sample_x16`] may be used: bilinear at all sizes, and not too large.
     pub(super) fn suits_lanes(&self) -> bool {
         let base = self.chain.level(0);
         let linear = self.sampler.mag == Filter::Linear && self.sampler.min == Filter::Linear;
@@ -43,7 +43,7 @@ impl PreparedTexture<'_> {
         linear && base.width.max(base.height) <= MAX_SIDE && texels <= i32::MAX as u64
     }
 
-    /// Whether [`Self::sample_x16`] asks how the coordinates change over the screen.
+    /// Returns whether [`Self::sample_x16`] asks how the coordinates change over the screen.
     pub(super) fn has_levels(&self) -> bool {
         self.sampler.mip != MipFilter::None
     }
@@ -99,7 +99,7 @@ impl PreparedTexture<'_> {
         sums
     }
 
-    /// Each point in its level.
+    /// Returns each point in its level.
     #[inline(always)]
     fn in_levels<S: Simd>(&self, simd: S, uv: &[f32x16<S>; 2], levels: &[usize; 16]) -> Rows<S> {
         let mut rows = Self::filtered_x16(simd, self, uv, self.chain.level(levels[0]));
@@ -121,7 +121,7 @@ impl PreparedTexture<'_> {
         rows
     }
 
-    /// All points in one level; premultiplied where alpha weights the colour.
+    /// Returns all points in one level; premultiplied where alpha weights the colour.
     #[simd]
     fn filtered_x16<S: Simd>(
         simd: S,
@@ -209,7 +209,8 @@ fn decode_all(codes: &[[u8; 4]], out: &mut [[f32; 4]], decode: impl Fn([u8; 4]) 
 /// Sixteen colours, four side by side.
 type Rows<S> = [f32x16<S>; 4];
 
-/// Four colours side by side: those of the points from `4 i` on, so many texels after their first.
+/// Returns four colours side by side: those of the points from `4 i` on, so many texels after their
+/// first.
 #[inline(always)]
 fn four_near<S: Simd>(
     simd: S,
@@ -222,7 +223,7 @@ fn four_near<S: Simd>(
     four(simd, [texel(0), texel(1), texel(2), texel(3)].map(Vec4::from_array))
 }
 
-/// Four colours side by side.
+/// Returns four colours side by side.
 #[inline(always)]
 fn four<S: Simd>(simd: S, [a, b, c, d]: [Vec4; 4]) -> f32x16<S> {
     let (a, b) = (f32x4::simd_from(simd, a.to_array()), f32x4::simd_from(simd, b.to_array()));
@@ -230,7 +231,7 @@ fn four<S: Simd>(simd: S, [a, b, c, d]: [Vec4; 4]) -> f32x16<S> {
     simd.combine_f32x8(simd.combine_f32x4(a, b), simd.combine_f32x4(c, d))
 }
 
-/// Each of sixteen numbers four times, for the channels of the colours in [`Rows`].
+/// Returns each of sixteen numbers four times, for the channels of the colours in [`Rows`].
 #[inline(always)]
 fn spread<S: Simd>(simd: S, v: f32x16<S>) -> Rows<S> {
     let (low, high) = (simd.zip_low_f32x16(v, v), simd.zip_high_f32x16(v, v));
@@ -238,7 +239,7 @@ fn spread<S: Simd>(simd: S, v: f32x16<S>) -> Rows<S> {
     [first, second, simd.zip_low_f32x16(high, high), simd.zip_high_f32x16(high, high)]
 }
 
-/// The bilinear mean of four texels, the upper two first.
+/// Returns the bilinear mean of four texels, the upper two first.
 #[inline(always)]
 fn mean<S: Simd>([a, b, c, d]: Rows<S>, [tx, ty]: [f32x16<S>; 2]) -> f32x16<S> {
     let (left, upper) = (1.0 - tx, 1.0 - ty);
@@ -247,7 +248,7 @@ fn mean<S: Simd>([a, b, c, d]: Rows<S>, [tx, ty]: [f32x16<S>; 2]) -> f32x16<S> {
     top * upper + low * ty
 }
 
-/// The least and the largest of sixteen numbers.
+/// Returns the least and the largest of sixteen numbers.
 #[inline(always)]
 fn ends<S: Simd>(simd: S, v: i32x16<S>) -> [i32; 2] {
     let (a, b) = simd.split_i32x16(v);
@@ -270,7 +271,7 @@ fn straight_x16<S: Simd>(simd: S, [r, g, b, a]: [f32x16<S>; 4], usage: Usage) ->
     [seen.select(r, zero), seen.select(g, zero), seen.select(b, zero), a]
 }
 
-/// The reds, greens, blues and alphas of sixteen colours.
+/// Returns the reds, greens, blues and alphas of sixteen colours.
 #[inline(always)]
 fn columns<S: Simd>(simd: S, mut from: Rows<S>) -> [f32x16<S>; 4] {
     // Each shuffle rotates the six bits of a number's row and lane by one; two bring its channel to the front.
@@ -285,14 +286,14 @@ fn columns<S: Simd>(simd: S, mut from: Rows<S>) -> [f32x16<S>; 4] {
     from
 }
 
-/// Of a change of coordinates, in texels.
+/// Returns the squared length of a change of coordinates, in texels.
 #[inline(always)]
 fn squared_length<S: Simd>(d: [f32x16<S>; 2], size: Vec2) -> [f32; 16] {
     let (x, y) = (d[0] * size.x, d[1] * size.y);
     (x * x + y * y).into()
 }
 
-/// The two texels around each coordinate and the weight of the second.
+/// Returns the two texels around each coordinate and the weight of the second.
 #[inline(always)]
 fn linear_x16<S: Simd>(
     simd: S,
@@ -304,8 +305,8 @@ fn linear_x16<S: Simd>(
     (inside_x16(simd, first, size, wrap), inside_x16(simd, first + 1, size, wrap), weight)
 }
 
-/// The first texel of the two around each coordinate, −1 … size − 1, and the weight of the second, which may be
-/// beyond the border too.
+/// Returns the first texel of the two around each coordinate, −1 … size − 1, and the weight of the second,
+/// which may be beyond the border too.
 #[inline(always)]
 fn fixed_x16<S: Simd>(simd: S, u: f32x16<S>, size: i32, wrap: Wrap) -> (i32x16<S>, f32x16<S>) {
     let fixed = (wrapped_x16(simd, u, wrap) * size as f32 + 0.5) * SUBTEXEL + 0.5;
@@ -330,7 +331,8 @@ fn wrapped_x16<S: Simd>(simd: S, u: f32x16<S>, wrap: Wrap) -> f32x16<S> {
     }
 }
 
-/// The neighbour beyond a border: the other end where the image repeats, else the border itself.
+/// Returns the neighbour beyond a border: the other end where the image repeats, else the border
+/// itself.
 #[inline(always)]
 fn inside_x16<S: Simd>(simd: S, i: i32x16<S>, size: i32, wrap: Wrap) -> i32x16<S> {
     let (zero, last) = (i32x16::splat(simd, 0), i32x16::splat(simd, size - 1));

@@ -29,12 +29,12 @@ use fearless_simd_macros::simd;
 /// be told from the sky, which takes less time.
 const SMOOTH: f32 = 0.4;
 
-/// Whether a formula takes Phong's inputs.
+/// Returns whether a formula takes Phong's inputs.
 fn by_phong(shading: Shading) -> bool {
     !matches!(shading, Shading::MetallicRoughness | Shading::Unlit)
 }
 
-/// How the directions to the eye, of the face and of the normal become a frame.
+/// Function from the directions to the eye, of the face and of the normal to a frame.
 type Framing = fn(Vec3Lane<f32>, Vec3Lane<f32>, Vec3Lane<f32>) -> Frame<f32>;
 
 /// A material with its textures.
@@ -51,9 +51,9 @@ pub struct PreparedMaterial<'a> {
     specular: Vec3,
     /// Phong's parameters without textures.
     phong: Colors,
-    /// Whether it is a metal, if only in places, or smooth, or has a clear layer or goes through.
+    /// True if it is a metal, if only in places, or smooth, or has a clear layer or goes through.
     mirrors: bool,
-    /// What the metallic-roughness model has besides.
+    /// Further lobes of the metallic-roughness model.
     lobes: Option<Lobes>,
     base_color_slot: Option<Slot<'a>>,
     metallic_roughness_slot: Option<Slot<'a>>,
@@ -110,8 +110,9 @@ impl<'a> PreparedMaterial<'a> {
         slots.into_iter().flatten()
     }
 
-    /// The one set of texture coordinates that all textures use, where samples of the material may
-    /// also be looked up sixteen at a time, by [`Self::shade_x16`]; nothing has vertex colours.
+    /// Returns the one set of texture coordinates that all textures use, where samples of the
+    /// material may also be looked up sixteen at a time, by [`Self::shade_x16`]; nothing has vertex
+    /// colours.
     pub fn looked_up_together(&self, shading: Shading) -> Option<usize> {
         let set = self.slots().next()?.set;
         let suits = |slot: &Slot<'_>| slot.set == set && slot.texture.suits_lanes();
@@ -120,14 +121,14 @@ impl<'a> PreparedMaterial<'a> {
         (together && self.slots().all(suits)).then_some(set)
     }
 
-    /// Whether [`Self::shade_x16`] asks how texture coordinates change over the screen.
+    /// Returns whether [`Self::shade_x16`] asks how texture coordinates change over the screen.
     pub fn has_levels(&self) -> bool {
         self.slots().any(|slot| slot.texture.has_levels())
     }
 
-    /// Linear red, green and blue of sixteen points and their alpha, each bit for bit what [`shade`] gives, but
-    /// that colours without alpha are not black; the material must be [looked up together](Self::looked_up_together). Cost: O(lights) and sixteen samples per
-    /// texture.
+    /// Returns linear red, green and blue of sixteen points and their alpha, each bit for bit what [`shade`]
+    /// gives, but that colours without alpha are not black; the material must be [looked up
+    /// together](Self::looked_up_together). Cost: O(lights) and sixteen samples per texture.
     #[simd]
     pub fn shade_x16<S: Simd>(
         simd: S,
@@ -161,7 +162,8 @@ impl<'a> PreparedMaterial<'a> {
         Vec3Lane::splat(texel.0[0], self.base_color.truncate()).times(texel.color())
     }
 
-    /// The alpha that is left of that of the base colour with its texture, without the vertex colour; of masked materials 1.
+    /// Returns the alpha that is left of that of the base colour with its texture, without the vertex colour;
+    /// of masked materials 1.
     #[inline(always)]
     pub(super) fn alpha_times<L: Lane>(&self, texel: &Texel<L>) -> L {
         let alpha = texel.0[3] * self.base_color.w;
@@ -171,34 +173,34 @@ impl<'a> PreparedMaterial<'a> {
         }
     }
 
-    /// The formula the material was written for.
+    /// Returns the formula the material was written for.
     pub fn shading(&self) -> Shading {
         self.model.into()
     }
 
-    /// Whether the material has one alpha, no textures and no more lobes than most, so that [`super::shade_points`] may be used
-    /// on meshes without vertex colours.
+    /// Returns whether the material has one alpha, no textures and no more lobes than most, so that [`super::shade_points`]
+    /// may be used on meshes without vertex colours.
     pub fn is_plain(&self) -> bool {
         let clear = matches!(self.alpha_mode, AlphaMode::Opaque | AlphaMode::Blend);
         !self.textured && clear && self.lobes.is_none()
     }
 
-    /// The alpha of all points of a [plain](Self::is_plain) material.
+    /// Returns the alpha of all points of a [plain](Self::is_plain) material.
     pub fn plain_alpha(&self) -> f32 {
         self.coverage(self.base_color.w)
     }
 
-    /// Whether any slot has a texture, so that texture coordinates are needed.
+    /// Returns whether any slot has a texture, so that texture coordinates are needed.
     pub fn is_textured(&self) -> bool {
         self.textured
     }
 
-    /// Whether tangents or position derivatives are needed.
+    /// Returns whether tangents or position derivatives are needed.
     pub fn has_normal_map(&self) -> bool {
         self.normal_slot.is_some()
     }
 
-    /// What alpha means.
+    /// Use of alpha.
     pub fn alpha_mode(&self) -> AlphaMode {
         self.alpha_mode
     }
@@ -208,7 +210,7 @@ impl<'a> PreparedMaterial<'a> {
         self.phong.shininess
     }
 
-    /// The inputs of all formulas where no texture has a say.
+    /// Returns the inputs of all formulas where no texture has a say.
     #[inline(always)]
     pub(super) fn constant_inputs<L: Lane>(&self, like: L) -> Inputs<'_, L> {
         let substance = Substance {
@@ -236,12 +238,12 @@ impl<'a> PreparedMaterial<'a> {
         self.base_color_slot.as_ref().map_or(base, |slot| base * slot.sample(surface))
     }
 
-    /// The alpha of a point, as [`shade`] gives it, without lighting it.
+    /// Returns the alpha of a point, as [`shade`] gives it, without lighting it.
     pub fn alpha(&self, surface: &Surface<'_>) -> f32 {
         self.coverage(self.base(surface).w)
     }
 
-    /// The alpha that is left of `alpha`: 1 or 0 unless the material blends.
+    /// Returns the alpha that is left of `alpha`: 1 or 0 unless the material blends.
     #[inline]
     fn coverage(&self, alpha: f32) -> f32 {
         match self.alpha_mode {
@@ -252,7 +254,7 @@ impl<'a> PreparedMaterial<'a> {
         }
     }
 
-    /// The inputs of all formulas, with what the textures say.
+    /// Returns the inputs of all formulas, with what the textures say.
     #[inline(always)]
     fn inputs<L: Lane>(
         &self,
@@ -294,13 +296,13 @@ impl<'a> PreparedMaterial<'a> {
         }
     }
 
-    /// Whether samples of the material may be lit by [`super::Samples`]: nothing shines through, and
-    /// what the formula takes for all of them at once is one number.
+    /// Returns whether samples of the material may be lit by [`super::Samples`]: nothing shines
+    /// through, and the formula's parameter for all of them at once is one number.
     pub fn is_lit_together(&self, shading: Shading) -> bool {
         self.has_one_exponent(shading) && self.alpha_mode != AlphaMode::Blend
     }
 
-    /// Whether what the formula takes for eight points at once is one number.
+    /// Returns whether the formula's parameter for eight points at once is one number.
     fn has_one_exponent(&self, shading: Shading) -> bool {
         match shading {
             Shading::MetallicRoughness | Shading::Unlit => true,
@@ -309,8 +311,8 @@ impl<'a> PreparedMaterial<'a> {
         }
     }
 
-    /// A point with what the textures say of it, to be lit with others; its geometric normal must be on the
-    /// viewer's side, as for [`shade_seen`].
+    /// Returns A point with what the textures say of it, to be lit with others; its geometric normal must
+    /// be on the viewer's side, as for [`shade_seen`].
     pub fn sample(&self, surface: &Surface<'_>, shading: Shading) -> Sample<'_> {
         self.sample_with(surface, face_seen, self.base(surface), shading)
     }
@@ -350,7 +352,7 @@ impl<'a> PreparedMaterial<'a> {
         Sample { frame, position: surface.position.into(), inputs }
     }
 
-    /// The interpolated normal, bent by the normal map.
+    /// Returns the interpolated normal, bent by the normal map.
     #[inline]
     fn normal(&self, surface: &Surface<'_>) -> Vec3 {
         let Some(slot) = &self.normal_slot else { return surface.normal };
@@ -361,7 +363,7 @@ impl<'a> PreparedMaterial<'a> {
     }
 }
 
-/// The metallic-roughness parameters of a material, whichever formula it was written for.
+/// Returns the metallic-roughness parameters of a material, whichever formula it was written for.
 fn metallic_roughness_of(m: &Material) -> (f32, f32) {
     if m.model == ShadingModel::Phong {
         // The GGX lobe as wide as the Blinn–Phong lobe: α² = 2/(s + 2), roughness = √α.

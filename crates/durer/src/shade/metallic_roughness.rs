@@ -31,7 +31,7 @@ pub const INFO: Info = Info {
 /// Smoother surfaces than this would lose the highlight's shape in single precision.
 const LEAST_ROUGHNESS: f32 = 0.06;
 
-/// What the dielectric part of a surface does with light, the same at all points of a material.
+/// Reflection and scattering of a surface's dielectric part, the same at all points of a material.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Dielectric {
     /// Reflectance seen straight on, by colour.
@@ -45,7 +45,7 @@ pub(super) struct Dielectric {
 }
 
 impl Dielectric {
-    /// Of refractive index 1.5, which is that of most plastics and glasses.
+    /// Dielectric of refractive index 1.5, which is that of most plastics and glasses.
     pub const PLAIN: Self =
         Self { straight: Vec3::splat(0.04), most: 0.04, grazing: 1.0, matte: 1.0 };
 }
@@ -60,7 +60,7 @@ pub(super) struct Substance<L> {
     pub roughness: L,
     /// Part of the ambient light that gets there.
     pub occlusion: L,
-    /// Whether the material shows what surrounds the scene clearly: metals, what is smooth, clear layers.
+    /// True if the material shows what surrounds the scene clearly: metals, what is smooth, clear layers.
     pub mirrors: bool,
 }
 
@@ -68,7 +68,7 @@ pub(super) struct Substance<L> {
 /// and metals what they would burn out with.
 const BRIGHTER: f32 = 1.5;
 
-/// What all lights have in common at one point.
+/// Terms that all lights share at one point.
 struct Point<L> {
     nv: L,
     alpha: L,
@@ -106,7 +106,7 @@ impl<L: Lane> Layers<L> {
     }
 }
 
-/// The light that leaves a point towards the eye, without emission.
+/// Returns the light that leaves a point towards the eye, without emission.
 #[inline(always)]
 pub(super) fn reflect<L: Lane>(
     frame: &Frame<L>,
@@ -182,7 +182,8 @@ fn surroundings<L: Lane>(
     around.plus(environment.reflection(mirrored, p.alpha, lamps).times(specular))
 }
 
-/// The part of one light's colour that leaves towards the eye; π is contained in the light's unit.
+/// Returns the part of one light's colour that leaves towards the eye; π is contained in the
+/// light's unit.
 #[inline(always)]
 fn lit<L: Lane>(frame: &Frame<L>, p: &Point<L>, l: Vec3Lane<L>) -> Vec3Lane<L> {
     let half = p.nv.splat(0.5);
@@ -211,9 +212,10 @@ fn lit<L: Lane>(frame: &Frame<L>, p: &Point<L>, l: Vec3Lane<L>) -> Vec3Lane<L> {
     p.diffuse.scale(through).plus(specular).scale(nl)
 }
 
-/// What a white rough mirror loses by single scattering, over what it reflects: 1/E − 1, where E is
-/// the formula of [`lit`] integrated over the hemisphere. A least-squares fit to that integral on
-/// 20 × 20 roughnesses and cosines: mean error 0.015, largest 0.11 at grazing angles.
+/// Returns the light that a white rough mirror loses by single scattering, over its reflection: 1/E
+/// − 1, where E is the formula of [`lit`] integrated over the hemisphere. A least-squares fit to
+/// that integral on 20 × 20 roughnesses and cosines: mean error 0.015, largest 0.11 at grazing
+/// angles.
 #[inline(always)]
 fn lack<L: Lane>(alpha: L, nv: L) -> L {
     let first = (nv * -1.9565 + 1.0881) * nv + 0.4286;
@@ -284,7 +286,8 @@ mod tests {
         }
     }
 
-    /// The whole hemisphere of directional lights, each with its share of a uniform surrounding.
+    /// Returns the whole hemisphere of directional lights, each with its share of a uniform
+    /// surrounding.
     fn hemisphere() -> PreparedLights {
         let mut directional = Vec::new();
         let (rings, sectors) = (96, 192);

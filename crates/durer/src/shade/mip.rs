@@ -27,7 +27,7 @@ pub(super) struct MipChain<'a> {
     /// Width, height and first texel of the levels from 1 on.
     sizes: Vec<(u32, u32, usize)>,
     texels: Vec<[u8; 4]>,
-    /// How texels are read and weighted.
+    /// Reading and weighting of texels.
     pub usage: Usage,
 }
 
@@ -68,7 +68,7 @@ impl<'a> MipChain<'a> {
         }
     }
 
-    /// The number of the 1 × 1 level.
+    /// Returns the number of the 1 × 1 level.
     #[inline(always)]
     pub fn last(&self) -> usize {
         self.sizes.len()
@@ -86,7 +86,8 @@ impl<'a> MipChain<'a> {
     }
 }
 
-/// Three source weights of destination texel `i`; the source starts at `2 i`. Their sum is 1.
+/// Returns three source weights of destination texel `i`; the source starts at `2 i`. Their sum is
+/// 1.
 fn weights(source: u32, destination: u32, i: u32) -> [f32; 3] {
     let (s, d, i) = (source as f32, destination as f32, i as f32);
     if source == 1 {
@@ -98,7 +99,7 @@ fn weights(source: u32, destination: u32, i: u32) -> [f32; 3] {
     }
 }
 
-/// A level of `size` from the one before: box filter over each texel's own area.
+/// Returns A level of `size` from the one before: box filter over each texel's own area.
 fn halve(from: Level<'_>, size: (u32, u32), usage: Usage) -> Vec<[u8; 4]> {
     let mut texels = Vec::with_capacity(size.0 as usize * size.1 as usize);
     for y in 0..size.1 {
@@ -111,7 +112,7 @@ fn halve(from: Level<'_>, size: (u32, u32), usage: Usage) -> Vec<[u8; 4]> {
     texels
 }
 
-/// The mean of up to 3 × 3 texels from `at` on.
+/// Returns the mean of up to 3 × 3 texels from `at` on.
 fn area(
     from: Level<'_>,
     at: (u32, u32),

@@ -51,7 +51,7 @@ pub use texture::PreparedTexture;
 pub use tone_map::ToneMap;
 
 crate::info::family! {
-    /// How intensities are interpolated and which formula lights a surface.
+    /// Interpolation of intensities, and the formula that lights a surface.
     pub enum Shading {
         /// One intensity per face (Bouknight 1970).
         Flat => flat::INFO,

@@ -32,7 +32,7 @@ pub(super) fn face_viewer<L: Lane>(
     framed(view, Vec3Lane::if_above(facing, 0.0, face, behind), normal)
 }
 
-/// The unit vectors where the face's normal is on the viewer's side already.
+/// Returns the unit vectors where the face's normal is on the viewer's side already.
 #[inline(always)]
 pub(super) fn face_seen<L: Lane>(
     view: Vec3Lane<L>,
@@ -53,7 +53,8 @@ fn framed<L: Lane>(view: Vec3Lane<L>, face: Vec3Lane<L>, normal: Vec3Lane<L>) ->
     Frame { view, face, normal }
 }
 
-/// The normal of a normal map, in the space of the surface and on the side of `surface.normal`.
+/// Returns the normal of a normal map, in the space of the surface and on the side of
+/// `surface.normal`.
 ///
 /// `map` holds the map's x, y (up in the image) and z, scaled. Without tangents the frame comes from
 /// the screen derivatives: Mikkelsen, *Bump Mapping Unparametrized Surfaces on the GPU*, 2010.

@@ -40,7 +40,7 @@ struct Texels {
 
 /// The sharpest level is at most this wide, and half as high.
 const WIDEST: usize = 512;
-/// What is blurred is at most this wide.
+/// Largest width of a picture that is blurred.
 const SOURCE: usize = 128;
 /// Roughness, squared, and width of the blurred levels.
 const LEVELS: [(f32, usize); 5] = [(0.04, 128), (0.12, 64), (0.3, 32), (0.65, 32), (1.0, 32)];
@@ -79,7 +79,7 @@ impl Panorama {
         Ok(Self { levels, harmonics })
     }
 
-    /// What a matte white surface with unit normal `n` reflects.
+    /// Returns the light reflected by a matte white surface with unit normal `n`.
     #[inline(always)]
     pub(super) fn diffuse<L: Lane>(&self, n: Vec3Lane<L>) -> Vec3Lane<L> {
         n.x.apart(
@@ -98,7 +98,7 @@ impl Panorama {
         Vec3Lane::new(sum.x.at_least(0.0), sum.y.at_least(0.0), sum.z.at_least(0.0))
     }
 
-    /// What a mirror of roughness √`alpha` shows in the unit direction `r`.
+    /// Returns the reflection of a mirror of roughness √`alpha` in the unit direction `r`.
     #[inline(always)]
     pub(super) fn reflection<L: Lane>(&self, r: Vec3Lane<L>, alpha: L) -> Vec3Lane<L> {
         let at = [r.x, r.y, r.z, alpha];
@@ -106,7 +106,7 @@ impl Panorama {
         Vec3Lane::new(x, y, z)
     }
 
-    /// The colour in a direction along the axes, at a roughness, squared.
+    /// Returns the colour in a direction along the axes, at a roughness, squared.
     fn at(&self, [x, y, z, alpha]: [f32; 4]) -> Vec3 {
         let u = libm::atan2f(x, -z) * (0.5 * std::f32::consts::FRAC_1_PI) + 0.5;
         let v = libm::acosf(y.clamp(-1.0, 1.0)) * std::f32::consts::FRAC_1_PI;
@@ -123,7 +123,8 @@ impl Texels {
         self.colors[y * self.width + x]
     }
 
-    /// A picture of at most `widest` × `widest` / 2 texels, each the mean of what it covers.
+    /// Creates A picture of at most `widest` × `widest` / 2 texels, each the mean of what it
+    /// covers.
     fn shrunk(
         [width, height]: [usize; 2],
         widest: usize,
@@ -141,7 +142,7 @@ impl Texels {
         Self { width: w, height: h, colors }
     }
 
-    /// The picture as mirrors of roughness √`alpha` show it that are seen straight on.
+    /// Returns the picture as mirrors of roughness √`alpha` show it that are seen straight on.
     fn blurred(&self, alpha: f32, width: usize) -> Self {
         let height = width / 2;
         let source: Vec<(Vec3, f32, Vec3)> = (0..self.width * self.height)
@@ -158,7 +159,7 @@ impl Texels {
         Self { colors, ..empty }
     }
 
-    /// The colour at a place from (0, 0) to (1, 1), between four texels; columns go around.
+    /// Returns the colour at a place from (0, 0) to (1, 1), between four texels; columns go around.
     fn sample(&self, u: f32, v: f32) -> Vec3 {
         let (x, y) = (u * self.width as f32 - 0.5, v * self.height as f32 - 0.5);
         let (left, top) = (x.floor(), y.floor());
@@ -171,7 +172,7 @@ impl Texels {
     }
 }
 
-/// The direction to the middle of a texel, along the panorama's axes.
+/// Returns the direction to the middle of a texel, along the panorama's axes.
 fn direction(x: usize, y: usize, texels: &Texels) -> Vec3 {
     let longitude = ((x as f64 + 0.5) / texels.width as f64 - 0.5) * TAU;
     let polar = (y as f64 + 0.5) / texels.height as f64 * PI;
@@ -180,12 +181,13 @@ fn direction(x: usize, y: usize, texels: &Texels) -> Vec3 {
     Vec3::new(x as f32, libm::cos(polar) as f32, z as f32)
 }
 
-/// The solid angle of a texel, but for a factor that all have.
+/// Returns the solid angle of a texel, but for a factor that all have.
 fn solid_angle(y: usize, texels: &Texels) -> f32 {
     libm::sin((y as f64 + 0.5) / texels.height as f64 * PI) as f32
 }
 
-/// The mean of directions, solid angles and colours around `r`, weighted by Trowbridge and Reitz's lobe.
+/// Returns the mean of directions, solid angles and colours around `r`, weighted by Trowbridge and
+/// Reitz's lobe.
 fn lobe(r: Vec3, alpha: f32, source: &[(Vec3, f32, Vec3)]) -> Vec3 {
     let alpha2 = alpha * alpha;
     let (mut sum, mut whole) = (Vec3::ZERO, 0.0);
@@ -209,7 +211,8 @@ fn functions<L: Lane>(Vec3Lane { x, y, z }: Vec3Lane<L>) -> [L; 9] {
     [one, x, y, z, x * y, y * z, x * z, z * z * 3.0 - 1.0, x * x - y * y]
 }
 
-/// The factors of the [`functions`]: the panorama's share of each, by how much a matte surface keeps of it.
+/// Returns the factors of the [`functions`]: the panorama's share of each, by how much a matte surface
+/// keeps of it.
 fn harmonics(source: &Texels) -> [Vec3; 9] {
     /// Squares of the functions' constants, times what a cosine lobe keeps: 1, 2/3 and 1/4.
     const KEPT: [f64; 9] = {
@@ -234,7 +237,7 @@ fn harmonics(source: &Texels) -> [Vec3; 9] {
 mod tests {
     use super::*;
 
-    /// A panorama of a function of the direction.
+    /// Returns A panorama of a function of the direction.
     fn panorama(light: impl Fn(Vec3) -> Vec3) -> Panorama {
         let size = Texels { width: 64, height: 32, colors: Vec::new() };
         let places = (0..32).flat_map(|y| (0..64).map(move |x| (x, y)));

@@ -41,7 +41,7 @@ pub struct Shininess {
 const LARGEST_WHOLE: f32 = 1024.0;
 
 impl Shininess {
-    /// An exponent; below 0 and NaN count as 0.
+    /// Creates an exponent; below 0 and NaN count as 0.
     pub fn new(exponent: f32) -> Self {
         let exponent = if exponent > 0.0 { exponent.min(1e6) } else { 0.0 };
         let whole = exponent <= LARGEST_WHOLE && exponent.fract() == 0.0;
@@ -135,7 +135,7 @@ fn add_lights<L: Lane, const SHADOWED: bool>(
     }
 }
 
-/// The same for one point.
+/// Returns the same for one point.
 #[inline]
 pub(super) fn reflect_one(
     frame: &Frame<f32>,

@@ -26,13 +26,13 @@ pub struct Points<L> {
 pub enum Faces<L> {
     /// Unit normals of the faces' planes, on the viewer's side; zero where there is none.
     Seen(Vec3Lane<L>),
-    /// Nothing needs to be known: interpolated normals have a length and are on the viewer's side of the faces,
-    /// and neither flat shading nor shadows ask for the faces' own normals.
+    /// No correction needed: interpolated normals have a length and are on the viewer's side of the faces, and
+    /// neither flat shading nor shadows need the faces' own normals.
     Settled,
 }
 
 impl<L: Lane> Points<L> {
-    /// The unit vectors at the points, all on the viewer's side.
+    /// Returns the unit vectors at the points, all on the viewer's side.
     #[inline(always)]
     pub(crate) fn frame(&self) -> Frame<L> {
         match self.faces {
@@ -45,7 +45,8 @@ impl<L: Lane> Points<L> {
     }
 }
 
-/// Linear red, green and blue of sixteen samples, each bit for bit what [`super::shade_seen`] gives.
+/// Returns linear red, green and blue of sixteen samples, each bit for bit what
+/// [`super::shade_seen`] gives.
 ///
 /// The material must be [plain](PreparedMaterial::is_plain): textures and vertex colours are not
 /// looked at, alpha is [`PreparedMaterial::plain_alpha`]. Cost: O(lights), a tenth of [`super::shade`] per sample
@@ -62,7 +63,8 @@ pub fn shade_points<S: Simd>(
     [color.x.into(), color.y.into(), color.z.into()]
 }
 
-/// The second half of [`shade_points`], which comes after [`Points::frame`], to become part of the loop that calls it.
+/// Returns the second half of [`shade_points`], which comes after [`Points::frame`], to become part of the
+/// loop that calls it.
 #[inline(always)]
 pub(crate) fn shade_frame<L: Lane>(
     frame: &Frame<L>,

@@ -76,7 +76,8 @@ impl<'a> Samples<'a> {
         (self.shininess, self.mirrors, self.lobes) = (inputs.shininess, s.mirrors, inputs.lobes);
     }
 
-    /// Linear red, green and blue, each bit for bit what [`super::shade`] gives. Cost: O(lights).
+    /// Returns linear red, green and blue, each bit for bit what [`super::shade`] gives. Cost:
+    /// O(lights).
     #[simd]
     pub fn shade<S: Simd>(
         simd: S,
@@ -109,7 +110,7 @@ impl<'a> Samples<'a> {
         [color.x.into(), color.y.into(), color.z.into()]
     }
 
-    /// Three numbers of all samples.
+    /// Returns three numbers of all samples.
     #[inline(always)]
     fn vector<S: Simd>(&self, simd: S, first: usize) -> Vec3Lane<f32x8<S>> {
         let x = f32x8::from_slice(simd, &self.numbers[first]);
@@ -142,7 +143,7 @@ mod tests {
         }
     }
 
-    /// One of each kind of lobe, and all together.
+    /// Returns one of each kind of lobe, and all together.
     fn materials() -> Vec<Material> {
         let plain = Material {
             model: ShadingModel::MetallicRoughness,

@@ -28,14 +28,14 @@ pub const INFO: Info = Info {
     limits: "as sharp as the map is fine; blended surfaces, lines and points throw no shadow",
 };
 
-/// How much of the slope's depth over a texel a point is moved by: four texels around it are asked,
-/// whose centres are up to √2 texels away. Less makes surfaces speckled.
+/// Factor of the slope's depth over a texel by which a point is moved: four texels around it are
+/// sampled, whose centres are up to √2 texels away. Less makes surfaces speckled.
 const SLOPE_BIAS: f32 = 1.6;
 
-/// How much of a texel a point is moved by in any case, for the rounding of depths and vertices.
+/// Part of a texel by which a point is always moved, for the rounding of depths and vertices.
 const BIAS: f32 = 0.1;
 
-/// What one light sees: depth by texel.
+/// Depths that one light sees, by texel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShadowMap {
     /// From points relative to [`super::PreparedLights::origin`] to texels times w and depth times w.
@@ -49,7 +49,7 @@ pub struct ShadowMap {
 }
 
 impl ShadowMap {
-    /// A map from its depths: window depths, 1 where nothing is.
+    /// Creates A map from its depths: window depths, 1 where nothing is.
     ///
     /// `map_from_position` takes points relative to the lights' origin to homogeneous screen space of the
     /// map, as [`crate::view::View::screen_from_world`] does; `texel` is the size of a texel in world
@@ -75,7 +75,7 @@ impl ShadowMap {
         Ok(Self { map_from_position, texel, perspective, axis, depths })
     }
 
-    /// How much of the light reaches a point, 0 … 1; `None` where the map does not look.
+    /// Returns the share of the light that reaches a point, 0 … 1; `None` outside the map.
     ///
     /// `face` is the unit normal of the surface, turned to the light's side.
     pub fn reach(&self, position: Vec3, face: Vec3) -> Option<f32> {
@@ -98,7 +98,7 @@ impl ShadowMap {
         Some(self.filtered(x - 0.5, y - 0.5, depth))
     }
 
-    /// The share of the four texels around a place that are not nearer to the light.
+    /// Returns the share of the four texels around a place that are not nearer to the light.
     fn filtered(&self, x: f32, y: f32, depth: f32) -> f32 {
         let (left, top) = (x.floor(), y.floor());
         let (fx, fy) = (x - left, y - top);
@@ -124,13 +124,14 @@ pub struct ShadowMaps {
 }
 
 impl ShadowMaps {
-    /// Whether there are no maps.
+    /// Returns whether there are no maps.
     pub fn is_empty(&self) -> bool {
         self.directional.is_empty() && self.points.is_empty()
     }
 }
 
-/// How much of a light reaches points, by its maps; all of it without maps and outside of them.
+/// Returns the share of a light that reaches points, by its maps; all of it without maps and
+/// outside of them.
 ///
 /// What faces away from the light is dark without a map, so all reaches it here.
 #[inline(always)]
@@ -147,7 +148,7 @@ pub(super) fn reach<L: Lane>(
     }
 }
 
-/// Not inlined: formulas would make ready for it before they know that there are maps.
+/// Not inlined: formulas would prepare for it before they know that there are maps.
 #[inline(never)]
 fn reach_by<L: Lane>(maps: &[ShadowMap], p: Vec3Lane<L>, n: Vec3Lane<L>, l: Vec3Lane<L>) -> L {
     L::lanewise([p.x, p.y, p.z, n.x, n.y, n.z, l.x, l.y, l.z], |v| reach_one(maps, v))
@@ -168,7 +169,8 @@ mod tests {
     use super::*;
     use crate::math::DVec3;
 
-    /// A light above the plane z = 0 that looks down −z; texels of one unit, depth 0 at z = 10.
+    /// Returns A light above the plane z = 0 that looks down −z; texels of one unit, depth 0 at z =
+    /// 10.
     fn map(depths: Vec<f32>) -> ShadowMap {
         let matrix = DMat4::from_cols_array_2d(&[
             [1.0, 0.0, 0.0, 0.0],

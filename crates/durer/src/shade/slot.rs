@@ -69,13 +69,13 @@ impl<L: Lane> Texel<L> {
     }
 }
 
-/// A weighted sum of two coordinates.
+/// Returns A weighted sum of two coordinates.
 #[inline(always)]
 fn sum<S: Simd>([a, b]: [f32x16<S>; 2], [of_a, of_b]: [f32; 2]) -> f32x16<S> {
     a * of_a + b * of_b
 }
 
-/// What a material's textures say of a point, but for its base colour.
+/// Values of a material's textures at a point, except for its base colour.
 pub(super) struct Texels<L> {
     pub emissive: Option<Texel<L>>,
     pub occlusion: Option<Texel<L>>,
@@ -109,7 +109,7 @@ impl<'a> Chains<'a> {
         Self { scene, made: Vec::new() }
     }
 
-    /// A slot for a texture; none where it refers to nothing.
+    /// Returns A slot for a texture; none where it refers to nothing.
     pub fn slot(&mut self, reference: Option<TextureRef>, usage: Usage) -> Option<Slot<'a>> {
         let reference = reference?;
         let texture = self.scene.textures.get(reference.texture)?;

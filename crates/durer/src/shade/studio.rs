@@ -10,7 +10,7 @@ use super::lane::{Lane, Vec3Lane};
 use crate::math::{DVec3, Vec3};
 use crate::scene::{Camera, UpAxis};
 
-/// Where a studio stands.
+/// Position of a studio.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Studio {
     /// Unit vectors to the right, up and to the front, in world space.
@@ -24,11 +24,11 @@ struct SoftBox {
     sides: [Vec3; 2],
     /// Half its sides, as sines.
     half: [f32; 2],
-    /// How much brighter it is than the studio's mean.
+    /// Brightness relative to the studio's mean.
     light: f32,
 }
 
-/// Where the lights that go with the camera are, from the left, from the right and from behind
+/// Positions of the lights that go with the camera, from the left, from the right and from behind
 /// ([`super::light::auto_lights`]), so that their highlights lie in them; and a strip at the left.
 const BOXES: [SoftBox; 4] = [
     SoftBox {
@@ -74,20 +74,20 @@ const SHARPEST: f32 = 0.035;
 const SPREAD: f32 = 1.1;
 
 impl Studio {
-    /// The studio that goes with a camera.
+    /// Returns the studio that goes with a camera.
     pub fn of_camera(camera: &Camera) -> Self {
         let [right, up, back] = camera.axes();
         let unit = |v: DVec3, otherwise: DVec3| v.normalize_or(otherwise).as_vec3();
         Self { axes: [unit(right, DVec3::X), unit(up, DVec3::Y), unit(back, DVec3::Z)] }
     }
 
-    /// The studio whose front is the scene's.
+    /// Returns the studio whose front is the scene's.
     pub fn of_world(up: UpAxis) -> Self {
         Self { axes: world_axes(up) }
     }
 
-    /// Light from the unit direction `r` as a mirror of roughness √`alpha` shows it; about 1 in the mean where
-    /// its screens are as bright as metals mirror them, `lamps` = 1.
+    /// Returns light from the unit direction `r` as a mirror of roughness √`alpha` shows it; about 1 in the
+    /// mean where its screens are as bright as metals mirror them, `lamps` = 1.
     #[inline(always)]
     pub(super) fn radiance<L: Lane>(&self, r: Vec3Lane<L>, alpha: L, lamps: L) -> L {
         alpha.apart(

@@ -17,7 +17,7 @@ pub struct TexCoord {
 /// A visible point. World axes, positions relative to [`super::PreparedLights::origin`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surface<'a> {
-    /// Where it is. Only read where there are point or spot lights.
+    /// Position. Only read if there are point or spot lights.
     pub position: Vec3,
     /// Towards the eye, any length: `−position` in perspective, one direction for parallel lines.
     pub view: Vec3,
@@ -42,7 +42,7 @@ pub struct Surface<'a> {
 }
 
 impl Default for Surface<'_> {
-    /// A white point that faces the eye, without textures.
+    /// Creates A white point that faces the eye, without textures.
     fn default() -> Self {
         Self {
             position: Vec3::ZERO,

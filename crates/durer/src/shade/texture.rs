@@ -10,7 +10,7 @@ use crate::math::{Vec2, Vec4};
 use crate::scene::{Filter, Image, MipFilter, Sampler, Wrap};
 use std::sync::Arc;
 
-/// What a texture's 8-bit values mean, which decides how they are averaged.
+/// Meaning of a texture's 8-bit values, which decides how they are averaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Usage {
     /// sRGB colour, averaged in linear light; alpha has no say.
@@ -22,7 +22,7 @@ pub enum Usage {
 }
 
 impl Usage {
-    /// One texel as numbers 0…1; colours become linear.
+    /// Returns one texel as numbers 0…1; colours become linear.
     #[inline(always)]
     pub(super) fn decode(self, code: [u8; 4]) -> Vec4 {
         match self {
@@ -62,8 +62,8 @@ impl<'a> PreparedTexture<'a> {
         Self { chain, sampler, size }
     }
 
-    /// The colour or data at `uv`, where `ddx` and `ddy` are the derivatives of `uv` by the pixel's
-    /// x and y. Straight alpha. Coordinates that are not finite count as 0.
+    /// Returns the colour or data at `uv`, where `ddx` and `ddy` are the derivatives of `uv` by the
+    /// pixel's x and y. Straight alpha. Coordinates that are not finite count as 0.
     ///
     /// Cost: one fetch for nearest, four for bilinear, eight between two levels.
     #[inline]
@@ -82,7 +82,7 @@ impl<'a> PreparedTexture<'a> {
         self.straight(sum)
     }
 
-    /// Which levels, after the square of the longer screen derivative in texels.
+    /// Returns the levels for the square of the longer screen derivative in texels.
     #[inline(always)]
     pub(super) fn detail(&self, footprint2: f32) -> Detail {
         // Also where a derivative is NaN: both comparisons of `max` let the other one win.
@@ -105,7 +105,7 @@ impl<'a> PreparedTexture<'a> {
         }
     }
 
-    /// One level, filtered; premultiplied where alpha weights the colour.
+    /// Returns one level, filtered; premultiplied where alpha weights the colour.
     #[inline(always)]
     fn filtered(&self, level: usize, uv: Vec2, filter: Filter) -> Vec4 {
         let level = self.chain.level(level);
@@ -151,7 +151,7 @@ pub(super) enum Detail {
     Between(usize, f32),
 }
 
-/// Half the logarithm to base 2 of x > 1: the level for a squared footprint.
+/// Returns half the logarithm to base 2 of x > 1: the level for a squared footprint.
 ///
 /// Mitchell's reading of the float's own bits (1962) with a parabola for what it lacks: 0.004 off
 /// at most, less than a hundredth of a level, at a few cycles.
@@ -164,7 +164,7 @@ fn half_log2(x: f32) -> f32 {
     0.5 * (exponent + m + 0.344 * m * (1.0 - m))
 }
 
-/// The nearest whole number below or equal; in registers, where `f32::floor` may be a call.
+/// Returns the nearest whole number below or equal; in registers, where `f32::floor` may be a call.
 #[inline(always)]
 fn floor(x: f32) -> f32 {
     // From 2^23 on every float is whole.
@@ -175,7 +175,7 @@ fn floor(x: f32) -> f32 {
     if whole > x { whole - 1.0 } else { whole }
 }
 
-/// A coordinate brought to 0…1 (both ends possible) by the wrap mode; not finite = 0.
+/// Returns A coordinate brought to 0…1 (both ends possible) by the wrap mode; not finite = 0.
 #[inline(always)]
 fn wrapped(u: f32, wrap: Wrap) -> f32 {
     if !u.is_finite() {
@@ -191,13 +191,13 @@ fn wrapped(u: f32, wrap: Wrap) -> f32 {
     }
 }
 
-/// The texel whose area holds the coordinate.
+/// Returns the texel whose area holds the coordinate.
 #[inline(always)]
 fn nearest(u: f32, size: u32, wrap: Wrap) -> u32 {
     ((wrapped(u, wrap) * size as f32) as u32).min(size - 1)
 }
 
-/// The two texels around the coordinate and the weight of the second.
+/// Returns the two texels around the coordinate and the weight of the second.
 #[inline(always)]
 fn linear(u: f32, size: u32, wrap: Wrap) -> (u32, u32, f32) {
     // One texel too far, so that the number is positive and cutting off its fraction rounds down.
@@ -207,7 +207,8 @@ fn linear(u: f32, size: u32, wrap: Wrap) -> (u32, u32, f32) {
     (inside(first, size, wrap), inside(first + 1, size, wrap), weight)
 }
 
-/// The neighbour beyond a border: the other end where the image repeats, else the border itself.
+/// Returns the neighbour beyond a border: the other end where the image repeats, else the border
+/// itself.
 #[inline(always)]
 fn inside(i: i64, size: u32, wrap: Wrap) -> u32 {
     let size = i64::from(size);

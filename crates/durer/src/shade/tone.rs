@@ -4,13 +4,13 @@
 use super::lane::{Lane, Vec3Lane};
 use super::tone_map::{self, ToneMap};
 
-/// What is done to light before it is shown. Surfaces without light, which are shown as they are, know
-/// nothing of it.
+/// Changes to light before it is shown. Surfaces without light, which are shown as they are, are not
+/// changed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tone {
     /// Factor of all light, 1 = as it is.
     pub gain: f32,
-    /// How the range of brightness is brought to a display's.
+    /// Mapping from the range of brightness to that of a display.
     pub map: ToneMap,
 }
 
@@ -22,7 +22,7 @@ impl Default for Tone {
 }
 
 impl Tone {
-    /// What becomes of light; by default exactly the light itself.
+    /// Returns the changed light; by default exactly the light itself.
     #[inline(always)]
     pub(super) fn of<L: Lane>(self, light: Vec3Lane<L>) -> Vec3Lane<L> {
         if self == Self::default() {

@@ -5,7 +5,7 @@
 use super::lane::{Lane, Vec3Lane};
 use crate::math::Vec3;
 
-/// How light of any brightness becomes colours that a display can show.
+/// Mapping from light of any brightness to colours that a display can show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum ToneMap {
     /// Colours within 0…1 stay exactly as they are; brighter ones keep their hue and grow whiter.
@@ -26,7 +26,7 @@ impl ToneMap {
     /// All of them.
     pub const ALL: &'static [Self] = &[Self::None, Self::KhronosNeutral, Self::Aces, Self::Agx];
 
-    /// The name used on the command line.
+    /// Returns the name used on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -50,7 +50,7 @@ fn each<L: Lane>(c: Vec3Lane<L>, f: impl Fn(L) -> L) -> Vec3Lane<L> {
     Vec3Lane::new(f(c.x), f(c.y), f(c.z))
 }
 
-/// The smaller of two.
+/// Returns the smaller of two.
 #[inline(always)]
 fn smaller<L: Lane>(a: L, b: L) -> L {
     (a - b).if_above(0.0, b, a)
@@ -59,7 +59,7 @@ fn smaller<L: Lane>(a: L, b: L) -> L {
 /// Khronos PBR Neutral.
 #[inline(always)]
 pub(super) fn khronos_neutral<L: Lane>(c: Vec3Lane<L>) -> Vec3Lane<L> {
-    /// Where compression begins, less the reflection of 4 % that is taken off.
+    /// Brightness at which compression begins, less the reflection of 4 % that is taken off.
     const START: f32 = 0.8 - 0.04;
     const DESATURATION: f32 = 0.15;
     let least = smaller(c.x, smaller(c.y, c.z));

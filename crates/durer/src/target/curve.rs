@@ -12,10 +12,10 @@ pub struct Arc {
     pub axis: DVec2,
     /// The shorter axis over the longer one, in (0, 1]; 1 for circles.
     pub ratio: f64,
-    /// Where it begins, in radians: an angle on the circle that the ellipse is when it is stretched along its shorter
-    /// axis, from `axis` towards `axis.perp()`.
+    /// Start, in radians: an angle on the circle that the ellipse is when it is stretched along its shorter axis,
+    /// from `axis` towards `axis.perp()`.
     pub start: f64,
-    /// How far it goes from there, in radians: from −2π to 2π, ±2π for a whole ellipse.
+    /// Sweep from the start, in radians: from −2π to 2π, ±2π for a whole ellipse.
     pub turn: f64,
 }
 
@@ -88,11 +88,11 @@ impl Piece {
 /// A chain of pieces, each beginning where the one before it ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// Where the first piece begins.
+    /// Start of the first piece.
     pub start: DVec2,
     /// The pieces in order.
     pub pieces: Vec<Piece>,
-    /// Whether its end, which then is its start to the bit, is joined to its start.
+    /// True if its end, which then is its start to the bit, is joined to its start.
     pub closed: bool,
 }
 

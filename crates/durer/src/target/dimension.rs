@@ -3,7 +3,7 @@
 use super::sheet::Mark;
 use crate::math::DVec2;
 
-/// What a dimension measures; all points in the sheet's millimetres, y down.
+/// Measured quantity of a dimension; all points in the sheet's millimetres, y down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Measure {
     /// The distance of two points along a direction.
@@ -41,11 +41,11 @@ pub enum Measure {
 /// The text of a dimension, in its middle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DimensionText {
-    /// Where the middle of the base line is, millimetres.
+    /// Middle of the base line, in millimetres.
     pub at: DVec2,
     /// The way it runs, of unit length.
     pub along: DVec2,
-    /// What it says.
+    /// Subject of the text.
     pub text: String,
     /// Height of capital letters, millimetres.
     pub height: f64,
@@ -56,13 +56,13 @@ pub struct DimensionText {
 /// A dimension: what it measures, for programs that measure anew, and how it is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dimension {
-    /// What it measures.
+    /// Measured quantity.
     pub measure: Measure,
-    /// What that is in truth: a length in units of the model, or an angle in radians.
+    /// True value: a length in units of the model, or an angle in radians.
     pub value: f64,
     /// Units of the model per millimetre of the sheet.
     pub units_per_millimetre: f64,
-    /// Whether the text says just the value, with the usual sign before it.
+    /// True if the text says just the value, with the usual sign before it.
     pub is_plain: bool,
     /// Strokes and fills: the lines, and the arrows.
     pub marks: Vec<Mark>,

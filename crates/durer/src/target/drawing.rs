@@ -3,26 +3,26 @@
 
 use crate::math::{DVec2, Rect};
 
-/// What a line of a drawing shows; layers, pens and line types follow it.
+/// Class of a drawing's line; layers, pens and line types follow it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum LineClass {
     /// A silhouette or border with nothing behind it, where these are told apart.
     Contour,
-    /// Where a face that looks to the eye meets one that looks away.
+    /// Edge between a face that looks to the eye and one that looks away.
     Silhouette,
-    /// Where two faces meet at an angle above the crease angle.
+    /// Edge between two faces at an angle above the crease angle.
     Crease,
     /// The edge of one face only: the rim of an open shell.
     Border,
     /// An edge of three faces or more, or of two that run against each other.
     NonManifold,
-    /// Where two materials meet.
+    /// Edge between two materials.
     Material,
-    /// Where two faces penetrate each other.
+    /// Intersection of two faces that penetrate each other.
     Intersection,
     /// The outline of a cut by a section plane.
     Section,
-    /// Where a curved face meets another smoothly, as a fillet a plane.
+    /// Edge between a curved face and another that it meets smoothly, as a fillet meets a plane.
     Tangent,
     /// Any other edge of the mesh.
     Wire,
@@ -38,7 +38,7 @@ pub enum LineClass {
     Axis,
     /// A line or a point that the model itself has.
     Mark,
-    /// Where a view is broken: what lies between two of them is left out.
+    /// End of a view's part where the view is broken: the model between two of them is left out.
     Break,
 }
 
@@ -64,7 +64,7 @@ impl LineClass {
         Self::Break,
     ];
 
-    /// The name used on the command line, for layers and in GeoJSON.
+    /// Returns the name used on the command line, for layers and in GeoJSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Contour => "contour",
@@ -108,18 +108,18 @@ impl std::str::FromStr for LineClass {
 /// A chain of straight pieces of one class, all hidden by the same number of faces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// What it shows.
+    /// Style of the drawing.
     pub class: LineClass,
     /// Its quantitative invisibility: how many surfaces lie in front of it. 0 is visible.
     pub invisibility: u32,
     /// At least two points, plane units; no two neighbours are equal.
     pub points: Vec<DVec2>,
-    /// Whether the last point is joined to the first (which is not repeated).
+    /// True if the last point is joined to the first (which is not repeated).
     pub closed: bool,
 }
 
 impl Line {
-    /// Whether nothing lies in front of it.
+    /// Returns whether nothing lies in front of it.
     pub const fn is_visible(&self) -> bool {
         self.invisibility == 0
     }
@@ -134,7 +134,7 @@ impl Line {
     }
 }
 
-/// Of what a region is a part.
+/// Kind of the surface that a region is a part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum RegionKind {
     /// A surface of the scene; lit by all lights, where shadows are asked for.
@@ -148,7 +148,7 @@ pub enum RegionKind {
 /// A part of the picture that shows one thing in one colour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
-    /// What it is a part of.
+    /// Kind of the surface that it is a part of.
     pub kind: RegionKind,
     /// Outer rings counter-clockwise (y up), holes clockwise, plane units, open (the first point is not
     /// repeated); filled by the non-zero rule.
@@ -157,12 +157,12 @@ pub struct Region {
     pub color: [u8; 4],
     /// The face that it shows: the triangle's index in scene order; `None` where several are merged.
     pub item: Option<u32>,
-    /// Of a cap, the instance that was cut, where that is known: parts are hatched in directions of their own.
+    /// Instance that was cut, for a cap, if it is known: parts are hatched in directions of their own.
     pub part: Option<u32>,
 }
 
 impl Region {
-    /// Area in squared plane units: what lies in holes is not counted.
+    /// Returns the area in squared plane units: what lies in holes is not counted.
     pub fn area(&self) -> f64 {
         let ring = |points: &Vec<DVec2>| {
             let Some((&origin, rest)) = points.split_first() else { return 0.0 };
@@ -172,7 +172,7 @@ impl Region {
     }
 }
 
-/// How a label stands to its point.
+/// Alignment of a label with its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Anchor {
     /// The text starts at the point.
@@ -185,7 +185,7 @@ pub enum Anchor {
 }
 
 impl Anchor {
-    /// Which share of its length the text has before the point.
+    /// Returns the share of the text's length before the point.
     pub fn share(self) -> f64 {
         match self {
             Self::Start => 0.0,
@@ -198,20 +198,20 @@ impl Anchor {
 /// A line of text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
-    /// Where its base line stands, plane units.
+    /// Position of its base line, in plane units.
     pub at: DVec2,
-    /// What it says.
+    /// Subject of the text.
     pub text: String,
     /// Height of capital letters; millimetres on paper, whatever the scale.
     pub height: f64,
-    /// How it stands to `at`.
+    /// Alignment with `at`.
     pub anchor: Anchor,
 }
 
-/// How many steps of [`Drawing::nearness`] there are.
+/// Number of steps of [`Drawing::nearness`].
 pub const NEARNESS_STEPS: u8 = 4;
 
-/// What a view shows, as geometry in the plane of the picture.
+/// Content of a view, as geometry in the plane of the picture.
 ///
 /// **Plane units**: model units on the plane through the camera's target, at right angles to the line
 /// of sight; x to the right, y up, the origin at the target. For a parallel projection that is
@@ -220,7 +220,7 @@ pub const NEARNESS_STEPS: u8 = 4;
 /// Painted in this order: regions as listed, then hidden lines, visible lines, labels.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Drawing {
-    /// What the view shows of the plane; `None` where nothing bounds it.
+    /// Window of the plane that the view shows; `None` if nothing bounds it.
     pub window: Option<Rect>,
     /// Filled parts, in the order of painting.
     pub regions: Vec<Region>,
@@ -228,14 +228,14 @@ pub struct Drawing {
     pub lines: Vec<Line>,
     /// Text.
     pub labels: Vec<Label>,
-    /// How the faces meet whose lines these are.
+    /// Counts of the edges between the faces that the lines belong to.
     pub edges: EdgeCount,
     /// For each line how near it is, in steps from 0, the nearest, below [`NEARNESS_STEPS`]; `None` for lines of
     /// which that is not told. Empty where it is told of none.
     pub nearness: Vec<Option<u8>>,
 }
 
-/// How the faces of a model meet.
+/// Counts of a model's edges by the number of faces that meet there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EdgeCount {
     /// All edges.
@@ -245,7 +245,8 @@ pub struct EdgeCount {
 }
 
 impl Drawing {
-    /// The smallest rectangle around all regions, lines and labels' points; `None` where there are none.
+    /// Returns the smallest rectangle around all regions, lines and labels' points; `None` where there
+    /// are none.
     pub fn bounds(&self) -> Option<Rect> {
         let regions = self.regions.iter().flat_map(|r| r.rings.iter().flatten());
         let lines = self.lines.iter().flat_map(|l| &l.points);

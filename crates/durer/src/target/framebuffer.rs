@@ -3,7 +3,7 @@
 use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
-/// Which row of a picture comes first in memory.
+/// Row of a picture that comes first in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Origin {
     /// Row 0 is the top row, as in PNG; y grows downwards.
@@ -22,18 +22,19 @@ pub struct Pixels<T> {
     width: u32,
     height: u32,
     data: Vec<T>,
-    /// What the values take of a budget.
+    /// Charge of the values to a budget.
     charge: Charge,
 }
 
 impl<T: Copy> Pixels<T> {
-    /// A plane filled with one value. Zero-size planes are allowed and empty.
+    /// Creates A plane filled with one value. Zero-size planes are allowed and empty.
     pub fn new(width: u32, height: u32, value: T) -> Self {
         let data = vec![value; width as usize * height as usize];
         Self { width, height, data, charge: Charge::default() }
     }
 
-    /// A plane filled with one value, which takes its memory from a budget and gives it back when it is dropped.
+    /// Creates A plane filled with one value, which takes its memory from a budget and gives it back when it
+    /// is dropped.
     ///
     /// # Errors
     /// [`Error::Memory`] where the budget has not so much left, [`Error::OutOfMemory`] where the system has not.
@@ -49,7 +50,7 @@ impl<T: Copy> Pixels<T> {
         Ok(Self { charge, ..Self::new(width, height, value) })
     }
 
-    /// A plane from rows laid one after the other.
+    /// Creates A plane from rows laid one after the other.
     ///
     /// # Errors
     /// [`Error::Parameter`] unless `data.len() == width · height`.
@@ -61,17 +62,17 @@ impl<T: Copy> Pixels<T> {
         }
     }
 
-    /// Width in pixels.
+    /// Returns the width in pixels.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Height in pixels.
+    /// Returns the height in pixels.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// The value at column x, row y; `None` outside.
+    /// Returns the value at column x, row y; `None` outside.
     pub fn get(&self, x: u32, y: u32) -> Option<T> {
         (x < self.width && y < self.height)
             .then(|| self.data[y as usize * self.width as usize + x as usize])
@@ -84,31 +85,31 @@ impl<T: Copy> Pixels<T> {
         }
     }
 
-    /// Row y, from left to right. Empty for a row that does not exist.
+    /// Returns the row y, from left to right. Empty for a row that does not exist.
     pub fn row(&self, y: u32) -> &[T] {
         let start = (y as usize * self.width as usize).min(self.data.len());
         let end = (start + self.width as usize).min(self.data.len());
         &self.data[start..end]
     }
 
-    /// Row y, to write to.
+    /// Returns the row y, to write to.
     pub fn row_mut(&mut self, y: u32) -> &mut [T] {
         let start = (y as usize * self.width as usize).min(self.data.len());
         let end = (start + self.width as usize).min(self.data.len());
         &mut self.data[start..end]
     }
 
-    /// All values, row after row.
+    /// Returns all values, row after row.
     pub fn data(&self) -> &[T] {
         &self.data
     }
 
-    /// All values, to write to.
+    /// Returns all values, to write to.
     pub fn data_mut(&mut self) -> &mut [T] {
         &mut self.data
     }
 
-    /// All values, by value.
+    /// Returns all values, by value.
     pub fn into_data(self) -> Vec<T> {
         self.data
     }
@@ -129,7 +130,7 @@ pub const NO_ITEM: u32 = u32::MAX;
 /// The planes a picture is made in. Colour is always there; the others when asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Framebuffer {
-    /// Which row is first; the algorithms work from the top and a reader may turn it over.
+    /// Row that comes first; the algorithms work from the top and a reader may turn it over.
     pub origin: Origin,
     /// 8-bit sRGB with straight (not premultiplied) alpha.
     pub color: Pixels<[u8; 4]>,
@@ -146,11 +147,11 @@ pub struct Framebuffer {
     pub index: Option<Pixels<u8>>,
 }
 
-/// What planes are called in errors about memory.
+/// Name of planes in errors about memory.
 const PLANES: &str = "planes of the picture";
 
 impl Framebuffer {
-    /// A framebuffer with a colour plane only, transparent black.
+    /// Creates A framebuffer with a colour plane only, transparent black.
     pub fn new(width: u32, height: u32) -> Self {
         Self {
             origin: Origin::TopLeft,
@@ -163,7 +164,7 @@ impl Framebuffer {
         }
     }
 
-    /// A framebuffer as [`Self::new`] makes it, within a budget.
+    /// Creates A framebuffer as [`Self::new`] makes it, within a budget.
     ///
     /// # Errors
     /// As [`Pixels::within`].
@@ -190,41 +191,42 @@ impl Framebuffer {
         Ok(())
     }
 
-    /// Width in pixels.
+    /// Returns the width in pixels.
     pub fn width(&self) -> u32 {
         self.color.width()
     }
 
-    /// Height in pixels.
+    /// Returns the height in pixels.
     pub fn height(&self) -> u32 {
         self.color.height()
     }
 
-    /// The same framebuffer with a depth plane cleared to 1, the far end.
+    /// Creates the same framebuffer with a depth plane cleared to 1, the far end.
     pub fn with_depth(mut self) -> Self {
         self.depth = Some(Pixels::new(self.width(), self.height(), 1.0));
         self
     }
 
-    /// The same framebuffer with an item plane cleared to [`NO_ITEM`].
+    /// Creates the same framebuffer with an item plane cleared to [`NO_ITEM`].
     pub fn with_items(mut self) -> Self {
         self.item = Some(Pixels::new(self.width(), self.height(), NO_ITEM));
         self
     }
 
-    /// The same framebuffer with a normal plane cleared to zero.
+    /// Creates the same framebuffer with a normal plane cleared to zero.
     pub fn with_normals(mut self) -> Self {
         self.normal = Some(Pixels::new(self.width(), self.height(), [0.0; 3]));
         self
     }
 
-    /// The same framebuffer with a stencil plane cleared to zero.
+    /// Creates the same framebuffer with a stencil plane cleared to zero.
     pub fn with_stencil(mut self) -> Self {
         self.stencil = Some(Pixels::new(self.width(), self.height(), 0));
         self
     }
 
-    /// The same framebuffer with a plane of colour indices cleared to zero: a colour-index framebuffer.
+    /// Creates the same framebuffer with a plane of colour indices cleared to zero: a colour-index
+    /// framebuffer.
     pub fn with_indices(mut self) -> Self {
         self.index = Some(Pixels::new(self.width(), self.height(), 0));
         self

@@ -1,4 +1,4 @@
-//! Where pictures and drawings go.
+//! The targets of pictures and drawings.
 
 mod curve;
 pub mod dimension;

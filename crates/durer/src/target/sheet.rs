@@ -26,7 +26,7 @@ pub enum Mark {
     Stroke {
         /// At least two points.
         points: Vec<DVec2>,
-        /// Whether the last point is joined to the first.
+        /// True if the last point is joined to the first.
         closed: bool,
         /// Index into [`Sheet::pens`].
         pen: usize,
@@ -54,13 +54,13 @@ pub enum Mark {
     },
     /// A line of text.
     Text {
-        /// Where the base line stands.
+        /// Position of the base line.
         at: DVec2,
-        /// What it says.
+        /// Subject of the text.
         text: String,
         /// Height of capital letters, millimetres.
         height: f64,
-        /// How it stands to `at`.
+        /// Alignment with `at`.
         anchor: Anchor,
         /// Index into [`Sheet::pens`].
         pen: usize,
@@ -88,11 +88,11 @@ impl Mark {
 /// A piece of paper. Coordinates are millimetres from the upper left corner, y down.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sheet {
-    /// What is drawn, for the file's title; may be empty.
+    /// Title of the file; may be empty.
     pub title: String,
     /// Width and height, millimetres.
     pub size: DVec2,
-    /// What the paper is filled with; `None` leaves it blank.
+    /// Colour of the paper; `None` leaves it blank.
     pub background: Option<[u8; 4]>,
     /// The pens that marks refer to.
     pub pens: Vec<Pen>,

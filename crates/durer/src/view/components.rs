@@ -5,9 +5,9 @@ use crate::scene::{Instance, Scene, Topology};
 /// Parts of one kind.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Component {
-    /// What they are called; never empty.
+    /// Common name; never empty.
     pub name: String,
-    /// How many there are of it.
+    /// Number of its instances.
     pub count: usize,
     /// Indices into [`Scene::instances`] of all that they are made of.
     pub instances: Vec<usize>,
@@ -44,8 +44,8 @@ pub fn components(scene: &Scene) -> Vec<Component> {
     kinds.into_iter().enumerate().map(component).collect()
 }
 
-/// The instances of each part: those that follow each other in one place under one name, as files have an instance for
-/// each material of an object.
+/// Returns the instances of each part: those that follow each other in one place under one name, as files
+/// have an instance for each material of an object.
 pub(super) fn parts(scene: &Scene) -> Vec<Vec<usize>> {
     let mut parts: Vec<Vec<usize>> = Vec::new();
     let mut last: Option<&Instance> = None;
@@ -65,7 +65,7 @@ pub(super) fn parts(scene: &Scene) -> Vec<Vec<usize>> {
     parts
 }
 
-/// What instances of one kind are called, or by its number.
+/// Returns the common name of instances of one kind, or one made of its number.
 fn common_name(names: &[&str], number: usize) -> String {
     let first = names.first().copied().unwrap_or_default();
     let alike = names.iter().all(|n| *n == first);
@@ -79,7 +79,7 @@ fn common_name(names: &[&str], number: usize) -> String {
     }
 }
 
-/// A name without the number at its end, and what divides the two.
+/// Returns A name without the number at its end, and what divides the two.
 pub(super) fn number_off(name: &str) -> &str {
     let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
     name.trim_end_matches(['.', '_', '-', ' ', ':', '#'])

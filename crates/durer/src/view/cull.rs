@@ -1,4 +1,4 @@
-//! What cannot be seen: boxes and spheres outside a volume, faces turned away.
+//! The detection of invisible things: boxes and spheres outside a volume, faces turned away.
 //!
 //! Bounding volumes against planes: James Clark, *Hierarchical Geometric Models for Visible Surface
 //! Algorithms*, CACM 1976. Normals of polygons: Martin Newell, in Sutherland, Sproull and Schumacker,
@@ -22,13 +22,13 @@ pub const INFO: Info = Info {
     limits: "conservative: what lies outside near a corner can pass for crossing",
 };
 
-/// How a thing lies to a volume.
+/// Relation of a thing to a volume.
 ///
 /// Conservative: `Outside` and `Inside` are certain, also with respect to rounding; `Crossing` may be
 /// said of a thing that lies outside near a corner of the volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Containment {
-    /// Nothing of it lies in the volume.
+    /// No part of it lies in the volume.
     Outside,
     /// All of it lies in the volume.
     Inside,
@@ -46,13 +46,13 @@ impl Containment {
     }
 }
 
-/// A box of the plane against a window; exact, as nothing is computed.
+/// Returns A box of the plane against a window; exact, as nothing is computed.
 pub fn rect_in_window(window: &Rect, thing: &Rect) -> Containment {
     let inside = window.contains(thing.min()) && window.contains(thing.max());
     Containment::of(!window.overlaps(thing), inside)
 }
 
-/// A disk of the plane against a window.
+/// Returns A disk of the plane against a window.
 pub fn disk_in_window(window: &Rect, center: DVec2, radius: f64) -> Containment {
     let nearest = center.clamp(window.min(), window.max());
     let distance2 = (center - nearest).length_squared();
@@ -79,28 +79,28 @@ pub struct ConvexVolume {
 }
 
 impl ConvexVolume {
-    /// The region inside all planes, normals inward; without planes all of space.
+    /// Creates the region inside all planes, normals inward; without planes all of space.
     pub fn new(planes: Vec<Plane>) -> Self {
         Self { planes }
     }
 
-    /// The view volume of a matrix that takes world space to clip space.
+    /// Returns the view volume of a matrix that takes world space to clip space.
     pub fn frustum(clip_from_world: &DMat4, depth: DepthRange) -> Self {
         Self::new(planes_in_source(clip_from_world, depth).into())
     }
 
-    /// Its planes, normals inward.
+    /// Returns its planes, normals inward.
     pub fn planes(&self) -> &[Plane] {
         &self.planes
     }
 
-    /// A box against the region; two corners a plane are looked at, whatever its size.
+    /// Returns A box against the region; two corners a plane are looked at, whatever its size.
     pub fn contains_box(&self, b: &Aabb) -> Containment {
         let (center, half) = (b.min * 0.5 + b.max * 0.5, b.max * 0.5 - b.min * 0.5);
         self.contains(center, |normal| normal.abs().dot(half))
     }
 
-    /// A sphere against the region.
+    /// Returns A sphere against the region.
     pub fn contains_sphere(&self, s: &BoundingSphere) -> Containment {
         self.contains(s.center, |normal| normal.length() * s.radius)
     }
@@ -122,7 +122,7 @@ impl ConvexVolume {
     }
 }
 
-/// Which side of a face is seen.
+/// Visible side of a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Face {
     /// The side from which its corners run counter-clockwise.
@@ -133,8 +133,8 @@ pub enum Face {
     Edge,
 }
 
-/// The vector area of a closed polygon in space by Newell's method: along its normal, on the side
-/// from which the corners run counter-clockwise, as long as its area.
+/// Returns the vector area of a closed polygon in space by Newell's method: along its normal, on
+/// the side from which the corners run counter-clockwise, as long as its area.
 ///
 /// Right for concave polygons too, and the best plane's where the corners are not quite in one.
 pub fn newell_area(ring: &[DVec3]) -> DVec3 {
@@ -144,17 +144,18 @@ pub fn newell_area(ring: &[DVec3]) -> DVec3 {
     ring.iter().zip(next).map(|(&a, &b)| (a - origin).cross(b - origin)).sum::<DVec3>() * 0.5
 }
 
-/// The vector area of a triangle by the cross product; see [`newell_area`].
+/// Returns the vector area of a triangle by the cross product; see [`newell_area`].
 pub fn triangle_area([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a) * 0.5
 }
 
-/// The side of a face that an eye at a point sees. `point` is any point of the face's plane.
+/// Returns the side of a face that an eye at a point sees. `point` is any point of the face's
+/// plane.
 pub fn face_from_point(normal: DVec3, point: DVec3, eye: DVec3) -> Face {
     side(normal.dot(eye - point))
 }
 
-/// The side of a face seen along a direction, as by an orthographic camera.
+/// Returns the side of a face seen along a direction, as by an orthographic camera.
 pub fn face_along(normal: DVec3, direction: DVec3) -> Face {
     side(-normal.dot(direction))
 }

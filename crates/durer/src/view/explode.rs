@@ -9,7 +9,7 @@ use crate::math::{DMat4, DVec3, Vec3};
 use crate::scene::{Aabb, Instance, Mesh, Scene, Topology};
 use crate::{Error, Result};
 
-/// Which way parts are moved.
+/// Direction in which parts are moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Way {
     /// Along the x axis of the world.
@@ -141,7 +141,7 @@ fn along(
     shifts.into_iter().map(|s| up * (s + back)).collect()
 }
 
-/// Which parts lie above others along an axis.
+/// Order of parts along an axis.
 struct Stacks<'a> {
     parts: &'a [Part],
     axis: usize,
@@ -149,7 +149,7 @@ struct Stacks<'a> {
 }
 
 impl Stacks<'_> {
-    /// Whether two parts overlap across the axis.
+    /// Returns whether two parts overlap across the axis.
     fn overlap(&self, i: usize, j: usize) -> bool {
         let (a, b) = (&self.parts[i].1, &self.parts[j].1);
         (0..3).filter(|k| *k != self.axis).all(|k| {
@@ -199,7 +199,8 @@ fn add_traces(scene: &mut Scene, traces: &[[DVec3; 2]]) {
 mod tests {
     use super::*;
 
-    /// A scene of boxes, each as the corners of its diagonal, as two triangles between them.
+    /// Returns A scene of boxes, each as the corners of its diagonal, as two triangles between
+    /// them.
     fn boxes(corners: &[[[f32; 3]; 2]]) -> Scene {
         let mesh = |[a, b]: &[[f32; 3]; 2]| Mesh {
             positions: vec![Vec3::from(*a), Vec3::from(*b), Vec3::new(a[0], b[1], a[2])],

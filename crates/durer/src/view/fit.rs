@@ -38,7 +38,8 @@ pub fn fit_turning(
     fit_points(rims(scene, direction.to_eye(), direction.up()), direction, options)
 }
 
-/// Points of the discs that a turning model is taken for, seen from a direction with another one up.
+/// Returns points of the discs that a turning model is taken for, seen from a direction with another
+/// one up.
 fn rims(scene: &Scene, to_eye: DVec3, up: DVec3) -> Vec<DVec3> {
     let axis = NamedView::Front.direction(scene.up_axis).up();
     // Level directions, to the viewer and to the right: rims begin there, so that they look the same
@@ -82,7 +83,8 @@ pub fn aspect(camera: &Camera, scene: &Scene, turning: bool) -> f64 {
     extent.x / extent.y
 }
 
-/// Radii and heights of circles around an axis; the model, turned around it, stays within their hull.
+/// Returns radii and heights of circles around an axis; the model, turned around it, stays within
+/// their hull.
 fn circles(scene: &Scene, center: DVec3, axis: DVec3) -> Vec<(f64, f64)> {
     let place = |p: DVec3| {
         let height = axis.dot(p - center);
@@ -107,7 +109,7 @@ fn circles(scene: &Scene, center: DVec3, axis: DVec3) -> Vec<(f64, f64)> {
     discs.into_iter().flatten().flat_map(|(r, low, high)| [(r, low), (r, high)]).collect()
 }
 
-/// All finite vertices that something is drawn with, in world space.
+/// Returns all finite vertices that something is drawn with, in world space.
 fn points(scene: &Scene) -> impl Iterator<Item = DVec3> + '_ {
     let used: Vec<Option<Vec<bool>>> = scene.meshes.iter().map(Mesh::used_vertices).collect();
     scene.instances.iter().flat_map(move |instance| {
@@ -172,7 +174,7 @@ mod tests {
     use crate::scene::Instance;
     use crate::view::projection::{Lens, fit_scene};
 
-    /// Points of a skew, flat, off-centre box.
+    /// Returns points of a skew, flat, off-centre box.
     fn scene(scale: f32, offset: f32) -> Scene {
         let positions = (0..60)
             .map(|i| {
@@ -185,7 +187,8 @@ mod tests {
         Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
     }
 
-    /// The smallest and largest clip coordinate over w, over all points and both axes; all inside.
+    /// Returns the smallest and largest clip coordinate over w, over all points and both axes; all
+    /// inside.
     fn seen_by(camera: &Camera, scene: &Scene, aspect: f64) -> f64 {
         camera.check().unwrap();
         let clip = camera.clip_from_view(aspect) * camera.view_from_world();

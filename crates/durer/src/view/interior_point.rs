@@ -12,18 +12,18 @@ use crate::info::{Class, Info};
 use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 
-/// How far the search goes.
+/// Options for the extent of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// How much farther from the border the farthest point may be than the one found, in units of the
-    /// coordinates; cost grows with its inverse.
+    /// Largest difference between the distances from the border of the farthest point and of the one
+    /// found, in units of the coordinates; cost grows with its inverse.
     pub precision: f64,
-    /// So many squares are looked at, at most; then the best point so far is taken.
+    /// Limit on the squares that are examined; then the best point so far is taken.
     pub max_squares: usize,
 }
 
 impl Default for Options {
-    /// Half a unit, for coordinates in pixels; 2,000 squares.
+    /// Returns half a unit, for coordinates in pixels; 2,000 squares.
     fn default() -> Self {
         Self { precision: 0.5, max_squares: 2_000 }
     }
@@ -61,10 +61,10 @@ pub struct Interior {
     pub distance: f64,
 }
 
-/// The point of a polygon that is farthest from its rings — the inside by the even-odd rule — to within
-/// `options.precision`; `None` where nothing is inside. Of points that are as far, as in long rectangles, the
-/// centre of the largest ring's area is taken, if it is one, else one in their middle. Points that are not finite
-/// are left out.
+/// Returns the point of a polygon that is farthest from its rings — the inside by the even-odd rule — to
+/// within `options.precision`; `None` where nothing is inside. Of points that are as far, as in long
+/// rectangles, the centre of the largest ring's area is taken, if it is one, else one in their middle. Points
+/// that are not finite are left out.
 ///
 /// ```
 /// use durer::math::DVec2;
@@ -122,7 +122,7 @@ pub fn interior_point(
     Some(Interior { point: center, distance })
 }
 
-/// So many times the way to where points are no longer far enough is halved.
+/// Number of times that the way to the first point that is too near is halved.
 const HALVINGS: u32 = 24;
 
 /// Moves a point up and down, then left and right, to the middle of those that are at least so far from the border.
@@ -143,7 +143,7 @@ fn balanced(best: Interior, least: f64, rings: &[Vec<DVec2>], size: DVec2) -> In
     })
 }
 
-/// The centre of the area of the ring that holds the most.
+/// Returns the centre of the area of the ring that holds the most.
 fn center_of_largest(rings: &[Vec<DVec2>]) -> Option<DVec2> {
     let centers = rings.iter().filter_map(|ring| {
         let origin = *ring.first()?;

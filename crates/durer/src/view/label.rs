@@ -104,7 +104,7 @@ impl Placer {
         self.taken.push(rect);
     }
 
-    /// The buckets that a rectangle touches.
+    /// Returns the buckets that a rectangle touches.
     fn touched(&self, rect: &Rect) -> impl Iterator<Item = usize> + use<> {
         let columns = self.columns;
         let counts = DVec2::new(columns as f64, self.rows as f64);
@@ -118,7 +118,7 @@ impl Placer {
     }
 }
 
-/// Whether two rectangles share more than a border.
+/// Returns whether two rectangles share more than a border.
 fn overlap(a: &Rect, b: &Rect) -> bool {
     a.min().x < b.max().x && b.min().x < a.max().x && a.min().y < b.max().y && b.min().y < a.max().y
 }

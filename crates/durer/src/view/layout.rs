@@ -30,7 +30,7 @@ pub struct Layout {
 pub const MAX_CELLS: usize = 4096;
 
 impl Layout {
-    /// A grid of `columns` × `rows` cells with their names, row by row.
+    /// Creates A grid of `columns` × `rows` cells with their names, row by row.
     ///
     /// # Errors
     /// [`Error::Parameter`] where a name is empty, there are none, or there are more than cells or so
@@ -51,12 +51,12 @@ impl Layout {
         Ok(Self { columns, rows, names })
     }
 
-    /// The names of the cells, row by row.
+    /// Returns the names of the cells, row by row.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// The viewports with their names, in order, on a screen of this size in pixels.
+    /// Returns the viewports with their names, in order, on a screen of this size in pixels.
     ///
     /// # Errors
     /// [`Error::Parameter`] where a cell would have no pixel, [`Error::Limit`] for a side above
@@ -105,7 +105,7 @@ fn parse_grid(grid: &str) -> Result<(usize, usize)> {
     }
 }
 
-/// The fewest columns whose square holds `n`, and the rows they need.
+/// Returns the fewest columns whose square holds `n`, and the rows they need.
 fn squarish(n: usize) -> (usize, usize) {
     let columns = (1..=n).find(|c| c.saturating_mul(*c) >= n).unwrap_or(1);
     (columns, n.div_ceil(columns))

@@ -37,7 +37,7 @@ pub struct View {
 }
 
 impl View {
-    /// The view of a camera on a screen of `width × height` square pixels.
+    /// Creates the view of a camera on a screen of `width × height` square pixels.
     ///
     /// # Errors
     /// What [`Camera::check`] finds, and [`Error::Parameter`] for a size of zero.
@@ -58,17 +58,17 @@ impl View {
         Ok(Self { camera, width, height, clip_from_world, screen_from_world })
     }
 
-    /// The camera.
+    /// Returns the camera.
     pub fn camera(&self) -> &Camera {
         &self.camera
     }
 
-    /// Width of the screen in pixels.
+    /// Returns the width of the screen in pixels.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Height of the screen in pixels.
+    /// Returns the height of the screen in pixels.
     pub fn height(&self) -> u32 {
         self.height
     }

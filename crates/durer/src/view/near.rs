@@ -19,7 +19,7 @@ pub(crate) struct Places {
 pub(crate) struct Found {
     /// The number of the point.
     pub number: u32,
-    /// Where on the segment it comes nearest, 0 … 1.
+    /// Parameter on the segment at which it is nearest, 0 … 1.
     pub at: f64,
 }
 
@@ -122,7 +122,7 @@ impl Places {
     }
 }
 
-/// The axis along which the points are spread most.
+/// Returns the axis along which the points are spread most.
 fn widest(points: &[(DVec3, u32)]) -> usize {
     let (min, max) = points
         .iter()
@@ -137,7 +137,7 @@ fn widest(points: &[(DVec3, u32)]) -> usize {
     }
 }
 
-/// Of a range of t what has start + t · step at most at `limit`.
+/// Returns the part of a range of t where start + t · step is at most `limit`.
 fn below(start: f64, step: f64, limit: f64, (from, to): (f64, f64)) -> Option<(f64, f64)> {
     if step == 0.0 {
         return (start <= limit).then_some((from, to));

@@ -72,7 +72,7 @@ fn shared(meshes: &mut Vec<Mesh>, objects: Vec<Mesh>, last_digit: f64) -> Vec<Pl
     placed
 }
 
-/// How a mesh is to be moved to become another one, up to rounding.
+/// Returns the translation that makes a mesh equal to another one, up to rounding.
 fn shift(from: &Mesh, to: &Mesh, last_digit: f64) -> Option<DVec3> {
     let like = from.indices == to.indices
         && from.tex_coords == to.tex_coords
@@ -99,7 +99,8 @@ fn shift(from: &Mesh, to: &Mesh, last_digit: f64) -> Option<DVec3> {
     all.then_some(way)
 }
 
-/// The objects of a mesh by name, in the order of their first parts; none where there are not two.
+/// Returns the objects of a mesh by name, in the order of their first parts; none where there are
+/// not two.
 fn objects(mesh: &Mesh) -> Vec<Mesh> {
     let mut order: Vec<(&str, Vec<&Part>)> = Vec::new();
     let mut place: BTreeMap<&str, usize> = BTreeMap::new();
@@ -116,7 +117,7 @@ fn objects(mesh: &Mesh) -> Vec<Mesh> {
     order.iter().map(|(name, parts)| object(mesh, name, parts)).collect()
 }
 
-/// The mesh of some parts of another.
+/// Returns the mesh of some parts of another.
 fn object(mesh: &Mesh, name: &str, parts: &[&Part]) -> Mesh {
     let triangles = || parts.iter().flat_map(|p| p.range.clone()).map(|i| i as usize);
     let corners: Vec<u32> = triangles().flat_map(|i| mesh.triangle(i)).collect();
@@ -147,7 +148,7 @@ fn object(mesh: &Mesh, name: &str, parts: &[&Part]) -> Mesh {
     found
 }
 
-/// The attributes of some vertices; none where there are none.
+/// Returns the attributes of some vertices; none where there are none.
 fn chosen<T: Copy>(all: &[T], used: &[u32]) -> Vec<T> {
     used.iter().filter_map(|i| all.get(*i as usize).copied()).collect()
 }

@@ -15,8 +15,8 @@ const GROUP: usize = 16;
 /// Vertices of a group: pieces of meshes end where groups do.
 pub const PIECE: usize = BATCH * GROUP;
 
-/// What a box of transformed points grows by, relative to its numbers, so that rounding does not
-/// leave a point outside: far above the 2⁻⁵³ that each of a few operations may be off.
+/// Growth of a box of transformed points, relative to its numbers, so that rounding does not leave
+/// a point outside: far above the 2⁻⁵³ that each of a few operations may be off.
 const SLACK: f64 = 1e-14;
 
 /// The outermost points along directions that are given, and along the axes.
@@ -31,7 +31,7 @@ pub(super) struct Outermost<const N: usize> {
 #[derive(Clone, Copy)]
 struct Furthest {
     direction: DVec3,
-    /// What of the direction is above zero, and what below.
+    /// Positive and negative parts of the direction.
     above_below: [DVec3; 2],
     distance: f64,
     point: DVec3,
@@ -43,7 +43,7 @@ impl Furthest {
         Self { direction, above_below, distance: f64::NEG_INFINITY, point: DVec3::ZERO }
     }
 
-    /// Whether a point in a box may be further. Where the box is not finite, it may.
+    /// Returns whether a point in a box may be further. Where the box is not finite, it may.
     fn may_be_in(&self, around: &Aabb) -> bool {
         let [above, below] = self.above_below;
         // Of each sum one half is zero. The other is a product as a point's, at least as large, also when rounded;
@@ -64,7 +64,7 @@ impl Furthest {
 }
 
 impl<const N: usize> Outermost<N> {
-    /// Of no points so far.
+    /// Creates a bound of no points.
     pub fn new(directions: [DVec3; N]) -> Self {
         let both = |axis: DVec3| [Furthest::along(axis), Furthest::along(-axis)];
         let extremes = DVec3::AXES.map(both);
@@ -138,12 +138,12 @@ impl<const N: usize> Outermost<N> {
         }
     }
 
-    /// The outermost points along the directions; the origin where there are none.
+    /// Returns the outermost points along the directions; the origin where there are none.
     pub fn points(&self) -> [DVec3; N] {
         self.furthest.map(|f| f.point)
     }
 
-    /// The box around all points.
+    /// Returns the box around all points.
     pub fn bounds(&self) -> Option<Aabb> {
         let [[right, left], [top, bottom], [front, back]] = self.extremes;
         let max = DVec3::new(right.point.x, top.point.y, front.point.z);
@@ -187,12 +187,13 @@ impl Placed<'_> {
 /// The outermost points of a mesh that comes in pieces: of points that are equally far out the same as of the mesh as a
 /// whole.
 pub(super) struct OutermostOfPieces<const N: usize> {
-    /// Of the first batches of groups, and of the others, which are looked at after all of those.
+    /// Bounds of the first batches of groups, and of the others, which are examined after all of
+    /// those.
     found: [Outermost<N>; 2],
 }
 
 impl<const N: usize> OutermostOfPieces<N> {
-    /// Of no points so far.
+    /// Creates a bound of no points.
     pub fn new(directions: [DVec3; N]) -> Self {
         Self { found: [Outermost::new(directions), Outermost::new(directions)] }
     }
@@ -209,7 +210,7 @@ impl<const N: usize> OutermostOfPieces<N> {
         }
     }
 
-    /// Those of all pieces.
+    /// Returns those of all pieces.
     pub fn whole(&self) -> Outermost<N> {
         let [mut whole, others] = self.found.clone();
         let others = others.furthest.iter().chain(others.extremes.as_flattened());
@@ -222,7 +223,8 @@ impl<const N: usize> OutermostOfPieces<N> {
     }
 }
 
-/// A box in world space around placed positions of an extent; not finite where one of them is not.
+/// Returns A box in world space around placed positions of an extent; not finite where one of them
+/// is not.
 fn around([min, max]: [Vec3; 2], place: &DMat4) -> Aabb {
     let (min, max) = (min.as_dvec3(), max.as_dvec3());
     let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
@@ -237,7 +239,8 @@ fn around([min, max]: [Vec3; 2], place: &DMat4) -> Aabb {
 /// The extent of no points.
 const NOTHING: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
 
-/// The least and the largest coordinates of points, of those that are numbers; [`NOTHING`] where there are none.
+/// Returns the least and the largest coordinates of points, of those that are numbers; [`NOTHING`] where
+/// there are none.
 fn extent(positions: &[Vec3]) -> [Vec3; 2] {
     // Four points are twelve numbers: three registers, whose lanes are put together in the end.
     let (mut least, mut most) = ([f32::INFINITY; 12], [f32::NEG_INFINITY; 12]);
@@ -263,7 +266,8 @@ fn extent(positions: &[Vec3]) -> [Vec3; 2] {
 mod tests {
     use super::*;
 
-    /// Points in an order that runs from one end of a skew body to the other; some are not finite.
+    /// Returns points in an order that runs from one end of a skew body to the other; some are not
+    /// finite.
     fn points(count: usize) -> Vec<Vec3> {
         let point = |i: usize| {
             let (t, turn) = (i as f32 / count as f32, i as f32 * 0.37);

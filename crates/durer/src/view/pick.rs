@@ -28,7 +28,7 @@ pub const INFO: Info = Info {
     limits: "what is transparent is met like all else",
 };
 
-/// How far from a picked point lines and points of a model may be, in pixels.
+/// Largest distance of a model's lines and points from a picked point, in pixels.
 pub const REACH: f64 = 3.0;
 
 /// A part of the screen, in pixels, x right and y down; pixel (0, 0) is the square from 0 to 1.
@@ -45,7 +45,7 @@ pub enum Area {
 pub struct Hit {
     /// Index into [`Scene::instances`].
     pub instance: usize,
-    /// What it is.
+    /// Kind of the feature.
     pub topology: Topology,
     /// Index of the triangle, line or point in the instance's mesh.
     pub primitive: usize,
@@ -54,7 +54,7 @@ pub struct Hit {
     pub item: u32,
     /// Window depth, 0 (near plane) … 1 (far plane), of its nearest point in the area.
     pub depth: f64,
-    /// That point, in the world.
+    /// Position of that point, in the world.
     pub position: DVec3,
 }
 
@@ -65,13 +65,13 @@ pub struct Object {
     pub instance: usize,
     /// Its nearest triangle, line or point in the area.
     pub nearest: Hit,
-    /// How many of its triangles, lines or points are in the area.
+    /// Number of its triangles, lines or points in the area.
     pub primitives: usize,
 }
 
-/// The triangles, lines and points behind an area of the screen, whether others hide them or not, from
-/// either side; nearest first, of equally near ones the lower item. Triangles that are seen edge on
-/// under a point are not picked.
+/// Returns the triangles, lines and points behind an area of the screen, whether others hide them or
+/// not, from either side; nearest first, of equally near ones the lower item. Triangles that are seen
+/// edge on under a point are not picked.
 pub fn pick(scene: &Scene, view: &View, area: Area) -> Vec<Hit> {
     let Some(around) = window(area) else { return Vec::new() };
     let pick_from_world = pick_from_screen(&around) * view.screen_from_world();
@@ -122,7 +122,7 @@ pub fn pick(scene: &Scene, view: &View, area: Area) -> Vec<Hit> {
     hits
 }
 
-/// The instances with their meshes in the order of items: those of triangles first.
+/// Returns the instances with their meshes in the order of items: those of triangles first.
 pub(crate) fn in_item_order(scene: &Scene) -> impl Iterator<Item = (usize, &Mesh)> {
     let of = |triangles: bool| {
         let mesh = |(i, placed): (usize, &crate::scene::Instance)| (i, &scene.meshes[placed.mesh]);
@@ -133,7 +133,7 @@ pub(crate) fn in_item_order(scene: &Scene) -> impl Iterator<Item = (usize, &Mesh
     of(true).chain(of(false))
 }
 
-/// The instances of hits, nearest first.
+/// Returns the instances of hits, nearest first.
 pub fn objects(hits: &[Hit]) -> Vec<Object> {
     let mut by_instance: Vec<(usize, &Hit)> = hits.iter().enumerate().collect();
     by_instance.sort_by_key(|(place, hit)| (hit.instance, *place));
@@ -149,7 +149,7 @@ pub fn objects(hits: &[Hit]) -> Vec<Object> {
     found.into_iter().map(|(_, object)| object).collect()
 }
 
-/// The rectangle whose frustum holds everything that may be hit.
+/// Returns the rectangle whose frustum holds everything that may be hit.
 fn window(area: Area) -> Option<Rect> {
     match area {
         // Wide enough to be free of rounding.
@@ -174,7 +174,8 @@ fn corners(mesh: &Mesh, triangle: usize) -> [DVec3; 3] {
     mesh.triangle(triangle).map(|v| mesh.positions[v as usize].as_dvec3())
 }
 
-/// The nearest point of a triangle's part in a frustum: its depth, and where it is in the mesh.
+/// Returns the nearest point of a triangle's part in a frustum: its depth, and where it is in the
+/// mesh.
 fn in_window(corners: &[DVec3; 3], pick_from_mesh: &DMat4) -> Option<(f64, DVec3)> {
     let ring =
         corners.map(|p| ClipVertex { position: *pick_from_mesh * p.extend(1.0), attributes: p });
@@ -185,7 +186,8 @@ fn in_window(corners: &[DVec3; 3], pick_from_mesh: &DMat4) -> Option<(f64, DVec3
         .min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// The point of a triangle under a point of the screen: its depth, and where it is in the mesh.
+/// Returns the point of a triangle under a point of the screen: its depth, and where it is in the
+/// mesh.
 fn at_point(corners: &[DVec3; 3], screen_from_mesh: &DMat4, p: DVec2) -> Option<(f64, DVec3)> {
     // Counted from the point, x and y of a vertex are exact enough wherever the point is.
     let h = corners.map(|c| {
@@ -206,7 +208,7 @@ fn at_point(corners: &[DVec3; 3], screen_from_mesh: &DMat4, p: DVec2) -> Option<
     (0.0..=1.0).contains(&depth).then(|| (depth, at / sum))
 }
 
-/// The nearest point of a line's part in a frustum: its depth, and where it is in the mesh.
+/// Returns the nearest point of a line's part in a frustum: its depth, and where it is in the mesh.
 fn mark_in_window(ends: &[DVec3; 2], pick_from_mesh: &DMat4) -> Option<(f64, DVec3)> {
     let ends =
         ends.map(|p| ClipVertex { position: *pick_from_mesh * p.extend(1.0), attributes: p });
@@ -219,8 +221,8 @@ fn mark_in_window(ends: &[DVec3; 2], pick_from_mesh: &DMat4) -> Option<(f64, DVe
         .min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// The point of a line that is nearest to a point of the screen, within [`REACH`]: its depth, and where
-/// it is in the mesh.
+/// Returns the point of a line that is nearest to a point of the screen, within [`REACH`]: its depth,
+/// and where it is in the mesh.
 fn near_point(
     ends: &[DVec3; 2],
     pick_from_mesh: &DMat4,

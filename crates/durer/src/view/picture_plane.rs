@@ -16,7 +16,7 @@ pub struct PlanePoint {
     pub depth: f64,
 }
 
-/// Which borders of the view volume faces and lines are cut at.
+/// Borders of the view volume at which faces and lines are clipped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Borders {
     /// Cut at the near and the far plane.
@@ -32,7 +32,7 @@ pub struct Borders {
 pub struct PicturePlane {
     eye: DVec3,
     axes: [DVec3; 3],
-    /// Of the target along the line of sight.
+    /// Distance of the target along the line of sight.
     distance: f64,
     perspective: bool,
     near: f64,
@@ -41,14 +41,14 @@ pub struct PicturePlane {
 }
 
 impl PicturePlane {
-    /// The plane of a view's picture.
+    /// Creates the plane of a view's picture.
     pub fn new(view: &View) -> Self {
         let aspect = f64::from(view.width()) / f64::from(view.height());
         Self::seen_by(view.camera(), aspect)
     }
 
-    /// The plane of a camera, for pictures whose width / height is `aspect`; that bears on the window and
-    /// its sides only.
+    /// Returns the plane of a camera, for pictures whose width / height is `aspect`; that bears on the
+    /// window and its sides only.
     ///
     /// # Errors
     /// What [`Camera::check`] finds.
@@ -75,22 +75,22 @@ impl PicturePlane {
         }
     }
 
-    /// What the view shows of the plane, plane units.
+    /// Returns the window of the plane that the view shows, in plane units.
     pub fn window(&self) -> Option<Rect> {
         Rect::new(-self.half, self.half).ok()
     }
 
-    /// Whether lines of sight meet in the eye.
+    /// Returns whether lines of sight meet in the eye.
     pub fn is_perspective(&self) -> bool {
         self.perspective
     }
 
-    /// Where the eye is, world space; for parallel projection, a point in front.
+    /// Returns the position of the eye, world space; for parallel projection, a point in front.
     pub fn eye(&self) -> DVec3 {
         self.eye
     }
 
-    /// The way sight travels at a point of the world; not of unit length in perspective.
+    /// Returns the way sight travels at a point of the world; not of unit length in perspective.
     pub fn sight_at(&self, p: DVec3) -> DVec3 {
         if self.perspective { p - self.eye } else { self.axes[2] }
     }
@@ -120,19 +120,19 @@ impl PicturePlane {
         self.plane_from_view(self.view_from_world(p))
     }
 
-    /// Whether a point of the world does not lie before the near plane.
+    /// Returns whether a point of the world does not lie before the near plane.
     pub fn is_behind_near(&self, p: DVec3) -> bool {
         self.view_from_world(p).z >= self.near
     }
 
-    /// Where a point of the world is seen; `None` where it lies before the near plane.
+    /// Projects a point of the world; `None` if it lies before the near plane.
     pub fn project(&self, p: DVec3) -> Option<DVec2> {
         let p = self.view_from_world(p);
         (p.z >= self.near).then(|| self.plane_from_view(p).at)
     }
 
-    /// The part of a segment of the world that lies behind the near plane, as seen; `None` where all
-    /// of it lies before.
+    /// Returns the part of a segment of the world that lies behind the near plane, as seen; `None`
+    /// where all of it lies before.
     pub fn project_segment(&self, a: DVec3, b: DVec3) -> Option<[DVec2; 2]> {
         let ends = cut(|p| self.inside(0, p, 1.0), [a, b].map(|p| self.view_from_world(p)))?;
         Some(ends.map(|p| self.plane_from_view(p).at))
@@ -155,8 +155,9 @@ impl PicturePlane {
         self.eye + right * v.x + up * v.y + sight * v.z
     }
 
-    /// How far inside the border `index` (0 near, 1 far, 2…5 left, right, bottom, top) a point of view
-    /// space lies; below 0 it is outside. Linear, so that edges can be cut where it is 0.
+    /// Returns the signed distance of a view-space point from the border `index` (0 near, 1 far, 2…5
+    /// left, right, bottom, top); below 0 it is outside. Linear, so that edges can be cut where it is
+    /// 0.
     fn inside(&self, index: usize, p: DVec3, widened: f64) -> f64 {
         let half = self.half * widened;
         let slope = if self.perspective { p.z / self.distance } else { 1.0 };
@@ -175,14 +176,14 @@ impl PicturePlane {
         from..if borders.sides.is_some() { 6 } else { 2.max(from) }
     }
 
-    /// Whether a point of view space lies inside the borders.
+    /// Returns whether a point of view space lies inside the borders.
     #[inline]
     pub fn contains(&self, p: DVec3, borders: Borders) -> bool {
         Self::borders(borders).all(|b| self.inside(b, p, borders.sides.unwrap_or(1.0)) >= 0.0)
     }
 
-    /// The part of a segment in view space that lies inside the borders. Either direction gives the
-    /// same points.
+    /// Returns the part of a segment in view space that lies inside the borders. Either direction
+    /// gives the same points.
     pub fn clip_segment(&self, ends: [DVec3; 2], borders: Borders) -> Option<[DVec3; 2]> {
         let mut ends = ends;
         for border in Self::borders(borders) {
@@ -191,8 +192,9 @@ impl PicturePlane {
         Some(ends)
     }
 
-    /// The part of a convex polygon in view space that lies inside the borders: what neighbours share
-    /// they still share. Empty where nothing is left. (Sutherland–Hodgman, border by border.)
+    /// Returns the part of a convex polygon in view space that lies inside the borders: what
+    /// neighbours share they still share. Empty where nothing is left. (Sutherland–Hodgman, border by
+    /// border.)
     pub fn clip_face(&self, corners: &[DVec3], borders: Borders) -> Vec<DVec3> {
         let mut ring = corners.to_vec();
         for border in Self::borders(borders) {
@@ -219,7 +221,7 @@ impl PicturePlane {
     }
 }
 
-/// The part of a segment where `inside` is not below 0.
+/// Returns the part of a segment where `inside` is not below 0.
 fn cut(inside: impl Fn(DVec3) -> f64, [a, b]: [DVec3; 2]) -> Option<[DVec3; 2]> {
     let (da, db) = (inside(a), inside(b));
     match (da >= 0.0, db >= 0.0) {
@@ -230,8 +232,8 @@ fn cut(inside: impl Fn(DVec3) -> f64, [a, b]: [DVec3; 2]) -> Option<[DVec3; 2]> 
     }
 }
 
-/// Where the border is met between a point inside and one outside; the inside one comes first, so
-/// both directions of an edge give the same bits.
+/// Returns the intersection of the border with the line between a point inside and one outside; the
+/// inside one comes first, so both directions of an edge give the same bits.
 fn crossing(inside: DVec3, d_in: f64, outside: DVec3, d_out: f64) -> DVec3 {
     (outside * d_in - inside * d_out) / (d_in - d_out)
 }

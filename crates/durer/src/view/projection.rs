@@ -49,7 +49,7 @@ impl NamedView {
     pub const ALL: &'static [Self] =
         &[Self::Iso, Self::Front, Self::Back, Self::Left, Self::Right, Self::Top, Self::Bottom];
 
-    /// The name used on the command line.
+    /// Returns the name used on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Iso => "iso",
@@ -75,7 +75,7 @@ impl NamedView {
         }
     }
 
-    /// The direction of this view.
+    /// Returns the direction of this view.
     pub fn direction(self, up_axis: UpAxis) -> ViewDirection {
         let (azimuth, elevation) = self.angles();
         ViewDirection::turned(azimuth, elevation, up_axis)
@@ -148,7 +148,7 @@ impl ViewDirection {
     }
 }
 
-/// Sine and cosine, exact for multiples of 90°, the same bits on every machine.
+/// Returns the sine and cosine, exact for multiples of 90°, the same bits on every machine.
 fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     let turned = degrees % 360.0;
     let quarters = (turned / 90.0).round();
@@ -174,7 +174,7 @@ pub enum Lens {
     Orthographic,
 }
 
-/// How the frame is drawn around the model.
+/// Options for the frame around the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitOptions {
     /// Perspective or parallel.
@@ -200,7 +200,7 @@ pub const CLOSEST: f64 = 0.02;
 /// Near and far plane keep this part of the radius from the model.
 const DEPTH_PAD: f64 = 0.01;
 
-/// The camera whose picture holds the box as large as it can be, in the middle.
+/// Returns the camera whose picture holds the box as large as it can be, in the middle.
 ///
 /// The box's own corners are projected: at least two opposite borders of the frame (less the margin)
 /// are touched, unless the nearest point would come nearer than [`CLOSEST`]. `None` (an empty scene), a point, and a line are seen too: what has no extent is
@@ -217,8 +217,9 @@ pub fn fit_box(
     fit(&extent.corners(), &extent, direction, options)
 }
 
-/// The camera whose picture holds the points as large as they can be, in the middle: tighter than
-/// [`fit_box`] where a model does not fill its box. Points that are not finite are left out.
+/// Returns the camera whose picture holds the points as large as they can be, in the middle:
+/// tighter than [`fit_box`] where a model does not fill its box. Points that are not finite are
+/// left out.
 ///
 /// One pass; keeps only the points that some side of the frame may rest on.
 ///
@@ -245,8 +246,8 @@ pub fn fit_scene(scene: &Scene, direction: &ViewDirection, options: &FitOptions)
     fit_outermost(&outermost, direction, options)
 }
 
-/// The box around all finite vertices that a scene draws something with, in world space; `None` where there
-/// are none.
+/// Returns the box around all finite vertices that a scene draws something with, in world space; `None`
+/// where there are none.
 ///
 /// Cost: O(vertices), a few operations each.
 pub fn drawn_bounds(scene: &Scene) -> Option<Aabb> {
@@ -255,8 +256,8 @@ pub fn drawn_bounds(scene: &Scene) -> Option<Aabb> {
     outermost.bounds()
 }
 
-/// Of all finite vertices that a scene draws something with, in world space, those furthest along a direction
-/// and against it; `None` where there are none.
+/// Returns the finite vertices, among those that a scene draws something with, that are furthest along a
+/// direction and against it, in world space; `None` if there are none.
 ///
 /// Cost: O(vertices), a few operations each.
 pub fn drawn_ends(scene: &Scene, direction: DVec3) -> Option<[DVec3; 2]> {
@@ -276,7 +277,7 @@ pub struct FitPieces {
 }
 
 impl FitPieces {
-    /// Of no pieces so far.
+    /// Creates the fit of no pieces.
     ///
     /// # Errors
     /// [`Error::Parameter`] for an option out of range.
@@ -291,7 +292,7 @@ impl FitPieces {
         self.outermost.add_piece(piece);
     }
 
-    /// The camera that sees all pieces.
+    /// Returns the camera that sees all pieces.
     ///
     /// # Errors
     /// As [`fit_scene`].
@@ -306,7 +307,7 @@ pub struct EndsOfPieces {
 }
 
 impl EndsOfPieces {
-    /// Of no pieces so far; along a direction, and against it.
+    /// Creates the ends of no pieces; along a direction, and against it.
     pub fn new(direction: DVec3) -> Self {
         Self { outermost: OutermostOfPieces::new([direction, -direction]) }
     }
@@ -364,8 +365,8 @@ fn fit(
     finished(world(eye), world(target), direction, options, height, nearest..farthest, radius)
 }
 
-/// The camera whose picture holds the sphere, centred: the frame stays the same from all directions,
-/// as a turntable needs it.
+/// Returns the camera whose picture holds the sphere, centred: the frame stays the same from all
+/// directions, as a turntable needs it.
 ///
 /// # Errors
 /// [`Error::Parameter`] for an option out of range or a sphere that is not finite.
@@ -410,14 +411,14 @@ fn finished(
     Ok(camera)
 }
 
-/// What to add to an extent so that it can be seen: nothing, unless it is none, or lost in the digits
-/// of its place.
+/// Returns the amount to add to an extent so that it is visible: nothing, unless it is 0, or lost in
+/// the digits of its place.
 fn smallest_extent(center: DVec3, size: f64) -> f64 {
     let place = center.abs().max_element();
     if size > place * 1e-9 { 0.0 } else { (place * 1e-6).max(if size > 0.0 { 0.0 } else { 1.0 }) }
 }
 
-/// The box itself, or a cube where it has no extent at all.
+/// Returns the box itself, or a cube where it has no extent at all.
 fn visible_extent(bounds: Option<&Aabb>) -> Aabb {
     let bounds = bounds.copied().unwrap_or(Aabb { min: DVec3::ZERO, max: DVec3::ZERO });
     let center = bounds.center();
@@ -425,7 +426,7 @@ fn visible_extent(bounds: Option<&Aabb>) -> Aabb {
     Aabb { min: bounds.min - half, max: bounds.max + half }
 }
 
-/// The smallest and the largest of one coordinate.
+/// Returns the smallest and the largest of one coordinate.
 fn range(points: &[DVec3], k: usize) -> (f64, f64) {
     let grow = |(lo, hi): (f64, f64), p: &DVec3| (lo.min(p[k]), hi.max(p[k]));
     points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), grow)
@@ -460,7 +461,7 @@ impl Frame {
         Ok(Self { lens, slope: DVec3::new(half_height * aspect, half_height, 0.0) * free })
     }
 
-    /// Of no points so far.
+    /// Creates a bound of no points.
     fn outermost(&self, direction: &ViewDirection) -> Outermost<10> {
         Outermost::new(self.outermost_directions(direction))
     }
@@ -472,7 +473,8 @@ impl Frame {
         [x, -x, y, -y, z, -z, x + in_x, in_x - x, y + in_y, in_y - y]
     }
 
-    /// Where the eye must be for the frame to hold the points; x right, y up, z toward the eye.
+    /// Returns the position of the eye at which the frame holds the points; x right, y up, z toward
+    /// the eye.
     fn eye_for(&self, points: &[DVec3], radius: f64) -> DVec3 {
         let largest =
             |f: &dyn Fn(&DVec3) -> f64| points.iter().map(f).fold(f64::NEG_INFINITY, f64::max);
@@ -496,7 +498,7 @@ impl Frame {
         }
     }
 
-    /// The height of an orthographic picture whose frame holds the points.
+    /// Returns the height of an orthographic picture whose frame holds the points.
     fn height_for(&self, points: &[DVec3]) -> f64 {
         let extent = |k: usize| {
             let (lo, hi) = range(points, k);

@@ -1,18 +1,18 @@
-//! Whether a mesh is the surface of a body, and which way its faces are turned.
+//! The check that a mesh is the surface of a body, and the orientation of its faces.
 
 use super::cull::triangle_area;
 use super::near::{self, OF_EDGE, Places, STEP};
 use crate::math::{DVec3, Vec3};
 use crate::scene::{Aabb, Mesh};
 
-/// What [`mesh_topology`] finds. Vertices at one place count as one: where no coordinate differs by more than 2⁻²⁶ of the
-/// model's extent, and where ends of borders lie as near to each other as rounding may have moved them, as in
+/// Result of [`mesh_topology`]. Vertices at one place count as one: those of which no coordinate differs by more than
+/// 2⁻²⁶ of the model's extent, and ends of borders that are as near to each other as rounding may have moved them, as in
 /// [`crate::visibility::object::Weld::Auto`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MeshTopology {
-    /// Whether each edge belongs to exactly two triangles: the mesh bounds a body.
+    /// True if each edge belongs to exactly two triangles: the mesh bounds a body.
     pub closed: bool,
-    /// Whether no edge is run through more often in one direction than in the other, borders aside:
+    /// True if no edge is run through more often in one direction than in the other, borders aside:
     /// neighbours agree on which side is the front.
     pub oriented: bool,
     /// Edges of one triangle only.
@@ -29,13 +29,13 @@ pub struct MeshTopology {
 }
 
 impl MeshTopology {
-    /// Whether all faces of a closed body are turned to its inside.
+    /// Returns whether all faces of a closed body are turned to its inside.
     pub fn inside_out(&self) -> bool {
         self.closed && self.oriented && self.signed_volume < 0.0
     }
 }
 
-/// Edges, border, volume and area of a triangle mesh, in its own coordinates.
+/// Returns edges, border, volume and area of a triangle mesh, in its own coordinates.
 ///
 /// O(n log n) time, O(n) memory. Triangles with a vertex that is not finite or does not exist are left
 /// out; meshes of points or lines have none.
@@ -54,8 +54,8 @@ pub fn mesh_topology(mesh: &Mesh) -> MeshTopology {
     written_topology(mesh, 0.0)
 }
 
-/// The same for a mesh of a file whose coordinates have a last digit that is worth `last_digit`, as
-/// [`crate::scene::Scene::last_digit`] tells.
+/// Returns the same for a mesh of a file whose coordinates have a last digit that is worth
+/// `last_digit`, as [`crate::scene::Scene::last_digit`] tells.
 pub fn written_topology(mesh: &Mesh, last_digit: f64) -> MeshTopology {
     let welded = weld(mesh, last_digit);
     let mut found = MeshTopology { oriented: true, ..MeshTopology::default() };
@@ -128,7 +128,8 @@ pub(super) fn weld(mesh: &Mesh, last_digit: f64) -> Vec<u32> {
     welded
 }
 
-/// The vertices at which edges of one triangle end, in order, and the longest of these edges.
+/// Returns the vertices at which edges of one triangle end, in order, and the longest of these
+/// edges.
 fn border_ends(mesh: &Mesh, welded: &[u32]) -> Vec<(u32, f64)> {
     let mut edges: Vec<[u32; 2]> = Vec::with_capacity(mesh.triangle_count() * 3);
     for corners in (0..mesh.triangle_count()).map(|i| mesh.triangle(i)) {
@@ -150,7 +151,7 @@ fn border_ends(mesh: &Mesh, welded: &[u32]) -> Vec<(u32, f64)> {
     ends
 }
 
-/// The same for those within [`WELD`].
+/// Returns the same for those within [`WELD`].
 fn weld_places(positions: &[Vec3]) -> Vec<u32> {
     let bounds = Aabb::around(positions.iter().map(|p| p.as_dvec3()));
     let tolerance = bounds.map_or(0.0, |b| b.size().max_element() * WELD);

@@ -54,12 +54,12 @@ pub struct Source<'a> {
     pub camera: Camera,
 }
 
-/// How holes look.
+/// Options for the look of holes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Options {
     /// The colour of pixels that no picture shows.
     pub hole: [u8; 4],
-    /// What it may cost, and whether it goes on.
+    /// Budget of the work, and its cancellation.
     pub work: Work,
 }
 
@@ -70,7 +70,7 @@ impl Default for Options {
     }
 }
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A pixel of a picture finds its place.
@@ -79,7 +79,7 @@ pub enum Step {
         source: usize,
         /// Its column and row there.
         from: [u32; 2],
-        /// Where its middle lies in the new picture, in pixels.
+        /// Position of its middle in the new picture, in pixels.
         to: DVec2,
         /// Its depth there.
         depth: f64,
@@ -99,7 +99,7 @@ pub enum Step {
 pub struct Warped {
     /// Colour and depth; holes have depth 1.
     pub framebuffer: Framebuffer,
-    /// Which picture a pixel comes from; [`HOLE`] where none shows it.
+    /// Source picture of each pixel; [`HOLE`] if none shows it.
     pub source: Pixels<u32>,
     /// Pixels that no picture shows.
     pub holes: u64,
@@ -151,10 +151,10 @@ pub fn warp(
     Ok(Warped { framebuffer, source: chosen, holes })
 }
 
-/// What the buffers are called in errors about memory.
+/// Name of the buffers in errors about memory.
 const STAGE: &str = "places of moved pixels";
 
-/// What one picture shows in the new view.
+/// Contribution of one picture to the new view.
 struct Layer {
     width: u32,
     height: u32,
@@ -272,14 +272,14 @@ fn endless(old: &View, new: &View) -> DMat4 {
     new.screen_from_world() * direction
 }
 
-/// A point of the old screen on the new one; `None` behind the eye.
+/// Returns A point of the old screen on the new one; `None` behind the eye.
 fn moved(new_from_old: &DMat4, p: DVec3) -> Option<DVec3> {
     let q: DVec4 = *new_from_old * p.extend(1.0);
     let place = q.truncate() / q.w;
     (q.w > 0.0 && place.is_finite()).then_some(place)
 }
 
-/// The corners of a pixel's square in the new picture.
+/// Returns the corners of a pixel's square in the new picture.
 fn corners(new_from_old: &DMat4, center: DVec3, slope: DVec2) -> Option<[DVec3; 4]> {
     let corner = |x: f64, y: f64| {
         let z = center.z + slope.x * x + slope.y * y;
@@ -305,7 +305,8 @@ fn slope(depth: &Pixels<f32>, x: u32, y: u32) -> DVec2 {
     )
 }
 
-/// The depth of a triangle at a point of the screen, if it covers it; its border belongs to it.
+/// Returns the depth of a triangle at a point of the screen, if it covers it; its border belongs to
+/// it.
 fn depth_in([a, b, c]: [DVec3; 3], p: DVec2) -> Option<f64> {
     let edge = |u: DVec3, v: DVec3| (v - u).truncate().perp_dot(p - u.truncate());
     let e = [edge(b, c), edge(c, a), edge(a, b)];

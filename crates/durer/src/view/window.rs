@@ -31,7 +31,7 @@ impl PixelRect {
         }
     }
 
-    /// All pixels of a picture from the origin.
+    /// Returns all pixels of a picture from the origin.
     ///
     /// # Errors
     /// [`Error::Limit`] for a side above 2³¹ − 1.
@@ -47,17 +47,17 @@ impl PixelRect {
         Ok(Self { min: [0; 2], max: [side(width)?, side(height)?] })
     }
 
-    /// The rectangle between two corners, empty where they are reversed.
+    /// Returns the rectangle between two corners, empty where they are reversed.
     pub fn spanning(x0: i32, y0: i32, x1: i32, y1: i32) -> Self {
         Self { min: [x0, y0], max: [x1.max(x0), y1.max(y0)] }
     }
 
-    /// First column.
+    /// Returns the first column.
     pub fn x0(&self) -> i32 {
         self.min[0]
     }
 
-    /// First row.
+    /// Returns the first row.
     pub fn y0(&self) -> i32 {
         self.min[1]
     }
@@ -72,7 +72,7 @@ impl PixelRect {
         self.max[1]
     }
 
-    /// Columns.
+    /// Returns columns.
     pub fn width(&self) -> u32 {
         self.max[0].abs_diff(self.min[0])
     }
@@ -82,17 +82,17 @@ impl PixelRect {
         self.max[1].abs_diff(self.min[1])
     }
 
-    /// Whether there is no pixel in it.
+    /// Returns whether there is no pixel in it.
     pub fn is_empty(&self) -> bool {
         self.min[0] == self.max[0] || self.min[1] == self.max[1]
     }
 
-    /// Whether the pixel lies in it.
+    /// Returns whether the pixel lies in it.
     pub fn contains(&self, x: i32, y: i32) -> bool {
         (self.min[0]..self.max[0]).contains(&x) && (self.min[1]..self.max[1]).contains(&y)
     }
 
-    /// The pixels in both; where there are none, some empty rectangle.
+    /// Returns the pixels in both; where there are none, some empty rectangle.
     pub fn intersection(&self, other: &Self) -> Self {
         let lo = [0, 1].map(|k| self.min[k].max(other.min[k]));
         let hi = [0, 1].map(|k| self.max[k].min(other.max[k]));
@@ -114,7 +114,7 @@ pub struct Window {
 const WINDOW_LIMIT: f64 = 1e100;
 
 impl Window {
-    /// The window from `left` to `right` and from `bottom` to `top`, in world units.
+    /// Creates the window from `left` to `right` and from `bottom` to `top`, in world units.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a number that is NaN, infinite or beyond ± 10¹⁰⁰, and for a window
@@ -133,7 +133,7 @@ impl Window {
         Ok(Self { rect: Rect::new(DVec2::new(left, bottom), DVec2::new(right, top))? })
     }
 
-    /// The same as a closed rectangle, for clipping.
+    /// Returns the same as a closed rectangle, for clipping.
     pub fn rect(&self) -> &Rect {
         &self.rect
     }
@@ -159,13 +159,13 @@ impl Viewport {
         Ok(Self { pixels })
     }
 
-    /// Its pixels.
+    /// Returns its pixels.
     pub fn pixels(&self) -> &PixelRect {
         &self.pixels
     }
 }
 
-/// What happens where window and viewport differ in shape.
+/// Treatment of windows and viewports that differ in shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Aspect {
     /// Each axis has its own scale; corners map to corners.
@@ -177,7 +177,7 @@ pub enum Aspect {
     Fill,
 }
 
-/// Which way y grows on the screen.
+/// Direction of y on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum YAxis {
     /// The top of the window is the top row: y is flipped, as row 0 is on top.
@@ -209,7 +209,7 @@ pub struct WindowToViewport {
 }
 
 impl WindowToViewport {
-    /// The mapping of `window` to `viewport`.
+    /// Creates the mapping of `window` to `viewport`.
     pub fn new(window: &Window, viewport: &Viewport, aspect: Aspect, y_axis: YAxis) -> Self {
         let (lo, hi, p) = (window.rect.min(), window.rect.max(), &viewport.pixels);
         let x = Axis::stretched([lo.x, hi.x], [p.x0().into(), p.x1().into()]);
@@ -266,7 +266,7 @@ impl Axis {
         Self { from, to, scale, inverse }
     }
 
-    /// The same axis with the size of the other's scale, the middle staying in the middle.
+    /// Returns the same axis with the size of the other's scale, the middle staying in the middle.
     fn rescaled(&self, other: &Self, from: [f64; 2], to: [f64; 2]) -> Self {
         let sign = (self.scale.hi * other.scale.hi).signum();
         let (scale, inverse) = (other.scale.times(sign), other.inverse.times(sign));
@@ -335,7 +335,7 @@ impl Double {
     }
 }
 
-/// Two halves of 26 bits that add up to `a`.
+/// Returns two halves of 26 bits that add up to `a`.
 fn split(a: f64) -> (f64, f64) {
     let c = a * 134_217_729.0;
     let high = c - (c - a);

@@ -55,7 +55,7 @@ pub enum Eye {
 }
 
 impl Eye {
-    /// The eye of a camera, world space.
+    /// Returns the eye of a camera, world space.
     pub fn of(camera: &Camera) -> Self {
         match camera.projection {
             Projection::Perspective { .. } => Self::At(camera.eye),
@@ -63,7 +63,7 @@ impl Eye {
         }
     }
 
-    /// The side of a face that is seen from here.
+    /// Returns the side of a face that is seen from here.
     pub(crate) fn side(self, normal: DVec3, point: DVec3) -> Face {
         match self {
             Self::At(eye) => face_from_point(normal, point, eye),
@@ -72,13 +72,13 @@ impl Eye {
     }
 }
 
-/// What is left out.
+/// Options for the faces to leave out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
-    /// Whether faces are kept whose plane the eye lies in; they cover no area.
+    /// True to keep faces whose plane contains the eye; they cover no area.
     pub keep_edge_on: bool,
-    /// Of a scene: whether the triangles of a polygon ([`Mesh::faces`]) stay or go together, by the
-    /// polygon's normal, or each by its own.
+    /// True if the triangles of a polygon ([`Mesh::faces`]) in a scene stay or go together, by the
+    /// polygon's normal; false if each does by its own.
     pub whole_polygons: bool,
 }
 
@@ -89,7 +89,7 @@ impl Default for Options {
     }
 }
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// The eye was put into the equation of a face's plane.
@@ -103,7 +103,7 @@ pub enum Step {
     },
 }
 
-/// The places of the polygons that turn their front to the eye, in order. Corners run
+/// Returns the places of the polygons that turn their front to the eye, in order. Corners run
 /// counter-clockwise seen from the front; faces that are not finite or have no area count as seen
 /// edge-on.
 pub fn remove<'a>(
@@ -118,9 +118,9 @@ pub fn remove<'a>(
     kept.map(|(face, _)| face).collect()
 }
 
-/// The items of a scene's triangles that turn their front to the eye, in order; the scene has passed
-/// [`Scene::check`]. Faces are numbered through all instances. Matrices that mirror turn no front into
-/// a back.
+/// Returns the items of a scene's triangles that turn their front to the eye, in order; the scene has
+/// passed [`Scene::check`]. Faces are numbered through all instances. Matrices that mirror turn no
+/// front into a back.
 pub fn remove_of_scene(
     scene: &Scene,
     eye: Eye,
@@ -155,7 +155,7 @@ fn mean(corners: &[DVec3]) -> DVec3 {
     corners.iter().sum::<DVec3>() / corners.len() as f64
 }
 
-/// Whether a face stays whose plane goes through a point, across its vector area.
+/// Returns whether a face stays whose plane goes through a point, across its vector area.
 fn stays(
     face: usize,
     area: DVec3,
@@ -173,7 +173,7 @@ fn stays(
     }
 }
 
-/// The triangles of each face of a mesh.
+/// Returns the triangles of each face of a mesh.
 fn polygons(mesh: &Mesh, whole: bool) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
     let count = mesh.triangle_count();
     let faces = if whole { mesh.faces.as_slice() } else { &[] };

@@ -1,4 +1,4 @@
-//! Which surfaces and lines can be seen.
+//! Algorithms for visible surfaces and lines.
 
 pub mod back_face;
 pub mod line;

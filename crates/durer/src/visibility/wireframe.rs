@@ -29,7 +29,7 @@ pub const INFO: Info = Info {
     limits: "ambiguous: what is in front cannot be told",
 };
 
-/// How lines look.
+/// Options for the look of lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
     /// 8-bit sRGB with straight alpha; replaces what is there.
@@ -37,13 +37,13 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Black.
+    /// Returns black.
     fn default() -> Self {
         Self { color: [0, 0, 0, 255] }
     }
 }
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// An edge, or what the view volume leaves of it, is drawn between two pixels.
@@ -84,7 +84,7 @@ pub fn render(
     }
 }
 
-/// The edges of a mesh, each once, by their vertices.
+/// Returns the edges of a mesh, each once, by their vertices.
 fn edges(mesh: &Mesh) -> Vec<[u32; 2]> {
     let mut edges = Vec::new();
     match mesh.topology {
@@ -102,7 +102,7 @@ fn edges(mesh: &Mesh) -> Vec<[u32; 2]> {
     edges
 }
 
-/// The pixels at the ends of what is left of an edge within the view volume.
+/// Returns the pixels at the ends of what is left of an edge within the view volume.
 fn pixels_of(
     mesh: &Mesh,
     vertices: [u32; 2],

@@ -36,13 +36,13 @@ fn render(scene: &Scene, view: &View, options: &Options) -> (Framebuffer, Vec<St
     (framebuffer, steps.into_steps())
 }
 
-/// Linear grey of each pixel of a scene in black and white.
+/// Returns linear grey of each pixel of a scene in black and white.
 fn linear(framebuffer: &Framebuffer) -> Vec<f64> {
     let of = |rgba: &[u8; 4]| f64::from(color::decode_srgb8(rgba[0]));
     framebuffer.color.data().iter().map(of).collect()
 }
 
-/// The z-buffer's picture with `scale`² times 16 samples in each pixel.
+/// Returns the z-buffer's picture with `scale`² times 16 samples in each pixel.
 fn sampled(scene: &Scene, camera: Camera, side: u32, scale: u32) -> Vec<f64> {
     let mut options = RenderOptions::new(camera);
     (options.width, options.height) = (side * scale, side * scale);
@@ -57,7 +57,7 @@ fn sampled(scene: &Scene, camera: Camera, side: u32, scale: u32) -> Vec<f64> {
     sums.iter().map(|sum| sum / f64::from(scale * scale)).collect()
 }
 
-/// Mean absolute difference at the pixels where the truth is neither black nor white.
+/// Returns the mean absolute difference at the pixels where the truth is neither black nor white.
 fn error_at_edges(found: &[f64], truth: &[f64]) -> f64 {
     let at_edges = |t: &f64| *t > 0.002 && *t < 0.998;
     let edges = truth.iter().filter(|t| at_edges(t)).count();
@@ -85,7 +85,7 @@ fn assert_better(errors: [f64; 4], what: &str) {
     assert!(mask_64 < samples_64, "{what}: {errors:?}");
 }
 
-/// All of a scene in one black material.
+/// Returns all of a scene in one black material.
 fn black(mut scene: Scene) -> Scene {
     scene.materials = vec![flat(Vec3::ZERO.extend(1.0))];
     for mesh in &mut scene.meshes {
@@ -117,7 +117,7 @@ fn edges_are_closer_to_the_truth_than_by_as_many_samples() {
     }
 }
 
-/// A camera that sees all of a model.
+/// Returns A camera that sees all of a model.
 fn around(scene: &Scene) -> Camera {
     let points = scene.instances.iter().flat_map(|i| {
         let place = |p: &Vec3| i.world_from_mesh.transform_point3(p.as_dvec3());
@@ -179,7 +179,7 @@ fn blended_surfaces_are_composed_as_if_sorted() {
     }
 }
 
-/// A scene with opaque and blended faces in each other.
+/// Returns A scene with opaque and blended faces in each other.
 fn glass() -> Scene {
     let mut scene = spheres();
     scene.materials[1] = flat(Vec4::new(0.9, 0.4, 0.2, 0.4));
@@ -251,8 +251,8 @@ fn faces_that_meet_leave_no_gap() {
     assert_eq!(black, 256);
 }
 
-/// A view of the plane z = 0, a pixel for each unit, x to the right from the left border and y down
-/// from the upper one; z = 0 lies in the far plane.
+/// Returns A view of the plane z = 0, a pixel for each unit, x to the right from the left border
+/// and y down from the upper one; z = 0 lies in the far plane.
 fn upright() -> View {
     let camera = Camera {
         eye: DVec3::new(4.0, -4.0, 10.0),
@@ -268,7 +268,7 @@ fn upright() -> View {
 /// x, y and z.
 type Corners = [(f32, f32, f32); 3];
 
-/// Triangles, each in its own material.
+/// Returns triangles, each in its own material.
 fn faces(triangles: &[(Corners, Vec3)]) -> Scene {
     let mut scene = Scene::default();
     for (i, (corners, color)) in triangles.iter().enumerate() {
@@ -281,7 +281,7 @@ fn faces(triangles: &[(Corners, Vec3)]) -> Scene {
     scene
 }
 
-/// The linear grey of pixel (2, 3) by both masks.
+/// Returns the linear grey of pixel (2, 3) by both masks.
 fn grey(scene: &Scene) -> [f64; 2] {
     [Mask::M16, Mask::M64].map(|mask| {
         let options = Options { mask, ..Options::default() };

@@ -18,7 +18,7 @@ use durer::visibility::object::Faces;
 const TOP: DVec3 = DVec3::Z;
 const FRONT: DVec3 = DVec3::NEG_Y;
 
-/// A plate of 80 × 40 × 6 with two pegs of ⌀10 and one of ⌀6 on it.
+/// Returns A plate of 80 × 40 × 6 with two pegs of ⌀10 and one of ⌀6 on it.
 fn plate() -> Scene {
     let mut triangles: Vec<Triangle> = cuboid([0.0; 3], [80.0, 40.0, 6.0]);
     for (x, radius) in [(15.0, 5.0), (65.0, 5.0), (40.0, 3.0)] {
@@ -208,7 +208,7 @@ fn a_thread_is_three_quarters_of_a_circle_or_two_lines() {
     assert_eq!(marks(&annotated(&scene, FRONT, &wanted).0, "thread").len(), 2);
 }
 
-/// What a text takes up, along its way and across.
+/// Returns the extent of a text, along its way and across.
 fn boxes(laid: &LaidOut) -> Vec<Rect> {
     let rect = |d: &&Dimension| Rect::around(dimension_strokes(&d.text).into_iter().flatten());
     dimensions(laid).iter().filter_map(rect).collect()

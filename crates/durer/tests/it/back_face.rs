@@ -21,8 +21,9 @@ fn input<'a>(scene: &'a Scene, view: &'a View, cull: Cull) -> SurfaceInput<'a> {
     SurfaceInput::new(scene, view, Filter::new(cull, 128)).expect("input")
 }
 
-/// Whether rounding its corners to the grid can have turned a triangle over: each corner moves by half
-/// a step at most, so twice the area changes by half the way around (|dx| + |dy|), and 3/2 more.
+/// Returns whether rounding its corners to the grid can have turned a triangle over: each corner moves
+/// by half a step at most, so twice the area changes by half the way around (|dx| + |dy|), and 3/2
+/// more.
 fn may_be_turned(t: &ScreenTriangle) -> bool {
     let side = |v: &[i32; 3], i: usize| i64::from(v[i]) - i64::from(v[(i + 1) % 3]);
     let around: i64 = (0..3).map(|i| side(&t.x, i).abs() + side(&t.y, i).abs()).sum();
@@ -30,7 +31,7 @@ fn may_be_turned(t: &ScreenTriangle) -> bool {
     2 * area.abs() <= around + 3
 }
 
-/// The step removes exactly what the production path culls, but for slivers.
+/// Returns the step removes exactly what the production path culls, but for slivers.
 fn check_against_culling(name: &str, scene: &Scene, view: &View) -> [usize; 2] {
     let options = Options { whole_polygons: false, keep_edge_on: false };
     let kept = remove_of_scene(scene, Eye::of(view.camera()), &options, &mut NoTrace);
@@ -125,8 +126,8 @@ fn a_closed_body_looks_the_same_without_its_back() {
     }
 }
 
-/// A sphere whose first and last column and whose poles are the same points to the last bit: nothing
-/// shows through the seam.
+/// Returns A sphere whose first and last column and whose poles are the same points to the last bit:
+/// nothing shows through the seam.
 fn closed_sphere(rings: u32) -> Mesh {
     let mut mesh = sphere(rings, None);
     let columns = 2 * rings as usize + 1;
@@ -139,8 +140,8 @@ fn closed_sphere(rings: u32) -> Mesh {
     mesh
 }
 
-/// Of one convex body all is seen that is kept and covers a pixel's centre, and nothing else but single
-/// pixels at the silhouette.
+/// Checks that of one convex body everything is visible that is kept and covers a pixel's centre, and
+/// nothing else except single pixels at the silhouette.
 #[test]
 fn one_convex_body_needs_nothing_else() {
     let scene =

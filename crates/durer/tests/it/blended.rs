@@ -10,7 +10,7 @@ use durer::target::Framebuffer;
 use durer::trace::NoTrace;
 use durer::visibility::surface::warnock;
 
-/// Random triangles, every second one blended, unlit.
+/// Returns random triangles, every second one blended, unlit.
 fn half_glass(seed: u64) -> Scene {
     let mut numbers = Numbers(seed.wrapping_mul(7919).wrapping_add(3));
     let triangles: Vec<[Vec3; 3]> = (0..24)
@@ -61,7 +61,8 @@ fn all_methods_compose_what_the_z_buffer_sorts() {
     }
 }
 
-/// So many panes through each other that they are lit in several turns, and of which the last are not seen.
+/// Draws so many panes through each other that they are lit in several turns, and of which the last are not
+/// visible.
 #[test]
 fn all_methods_agree_where_next_to_nothing_comes_through_many_panes() {
     let mut numbers = Numbers(5);

@@ -35,7 +35,7 @@ fn on_screen<A>(v: &NdcVertex<A>) -> DVec2 {
     (DVec2::new(v.position.x, -v.position.y) + DVec2::ONE) * f64::from(SIDE) * 0.5
 }
 
-/// The pixels of a convex polygon, as a fan.
+/// Returns the pixels of a convex polygon, as a fan.
 fn pixels(polygon: &[DVec2]) -> BTreeSet<(i32, i32)> {
     let options = Options { clip: PixelRect::new(0, 0, SIDE, SIDE).unwrap() };
     let mut lit = BTreeSet::new();
@@ -49,8 +49,8 @@ fn pixels(polygon: &[DVec2]) -> BTreeSet<(i32, i32)> {
     lit
 }
 
-/// The pixels of a convex polygon whose depth there lies in the volume; the rasterizer's window is the
-/// scissor rectangle.
+/// Returns the pixels of a convex polygon whose depth there lies in the volume; the rasterizer's
+/// window is the scissor rectangle.
 fn pixels_by_depth(ring: &[NdcVertex<DVec3>]) -> BTreeSet<(i32, i32)> {
     let corners: Vec<DVec2> = ring.iter().map(on_screen).collect();
     let mut lit = pixels(&corners);
@@ -67,7 +67,7 @@ fn pixels_by_depth(ring: &[NdcVertex<DVec3>]) -> BTreeSet<(i32, i32)> {
     lit
 }
 
-/// Distance of a point from the outline, in pixels.
+/// Returns the distance of a point from the outline, in pixels.
 fn from_outline(polygon: &[DVec2], p: DVec2) -> f64 {
     (0..polygon.len())
         .map(|k| {
@@ -145,7 +145,7 @@ proptest! {
     }
 }
 
-/// The ring rebuilt from the steps; after the border at the eye it is divided by w.
+/// Returns the ring rebuilt from the steps; after the border at the eye it is divided by w.
 fn replay(input: Vec<DVec4>, steps: &[Step]) -> Vec<DVec4> {
     let divided = |ring: Vec<DVec4>| ring.into_iter().map(|p| (p.truncate() / p.w).extend(1.0));
     let (mut ring, mut next, mut border) = (input, Vec::new(), None);
@@ -195,7 +195,7 @@ proptest! {
     }
 }
 
-/// How rarely the places differ at all: the law above allows pixels near an outline, this counts them.
+/// Counts how rarely the places differ: the law above allows pixels near an outline.
 #[test]
 fn differing_pixels_are_rare() {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;

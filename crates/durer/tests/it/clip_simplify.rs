@@ -9,8 +9,8 @@ use proptest::prelude::*;
 
 const SIDE: usize = 9;
 
-/// The areas of a map of labels, one polygon set per label, with a point at every corner of a square: neighbours
-/// have the same points. The corners are moved by less than would make squares overlap.
+/// Returns the areas of a map of labels, one polygon set per label, with a point at every corner of a square:
+/// neighbours have the same points. The corners are moved by less than would make squares overlap.
 fn areas(labels: &[u8], moved: &[(i8, i8)]) -> Vec<Shapes> {
     let place = |p: DVec2| {
         let (dx, dy) = moved[(p.y as usize * (SIDE + 1) + p.x as usize) % moved.len()];
@@ -51,7 +51,7 @@ fn areas(labels: &[u8], moved: &[(i8, i8)]) -> Vec<Shapes> {
         .collect()
 }
 
-/// What is left of the areas.
+/// Returns the areas that remain.
 fn kept(areas: &[Shapes], weights: &[f64], tolerance: f64) -> Vec<Shapes> {
     let mut weights = weights.iter();
     areas
@@ -81,7 +81,7 @@ fn edges(areas: &[Shapes]) -> Vec<(DVec2, DVec2)> {
     areas.iter().flat_map(|area| area.rings().flat_map(of).collect::<Vec<_>>()).collect()
 }
 
-/// Whether two edges have more in common than ends of both, or all.
+/// Returns whether two edges have more in common than ends of both, or all.
 fn conflict((a, b): (DVec2, DVec2), (c, d): (DVec2, DVec2)) -> bool {
     if (a, b) == (c, d) || (a, b) == (d, c) {
         return false;

@@ -126,7 +126,7 @@ trait Whole {
 }
 
 impl Whole for Shapes<I64Vec2> {
-    /// The smallest and the largest x.
+    /// Returns the smallest and the largest x.
     fn bounds_of_whole(&self) -> (i64, i64) {
         let x = || self.points().iter().map(|p| p.x);
         (x().min().unwrap(), x().max().unwrap())

@@ -205,7 +205,7 @@ proptest! {
     }
 }
 
-/// How far inside all borders, by the definition.
+/// Returns the smallest distance inside all borders, by the definition.
 fn boundary(p: DVec4, options: &Options) -> f64 {
     let d = boundary_coordinates(p, options.depth);
     match options.borders {

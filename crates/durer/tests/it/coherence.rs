@@ -17,7 +17,7 @@ use durer::visibility::surface::spanning_scan_line as spanning;
 
 const SIDE: u32 = 64;
 
-/// What is seen after turning by some degrees.
+/// Returns the view after turning by some degrees.
 fn turned(scene: &Scene, degrees: f64) -> View {
     let mut camera = options(scene, SIDE, SIDE).camera;
     camera.eye =
@@ -30,7 +30,7 @@ fn input<'a>(scene: &'a Scene, view: &'a View) -> SurfaceInput<'a> {
     SurfaceInput::new(scene, view, filter).expect("input")
 }
 
-/// The places of items in the order, seen after turning by some degrees.
+/// Returns the places of items in the order, seen after turning by some degrees.
 fn places(scene: &Scene, degrees: f64) -> Vec<usize> {
     let view = turned(scene, degrees);
     let input = input(scene, &view);
@@ -41,7 +41,7 @@ fn places(scene: &Scene, degrees: f64) -> Vec<usize> {
     places
 }
 
-/// The share of neighbours in one order that stand the same way round in another.
+/// Returns the share of neighbours in one order that stand the same way round in another.
 fn kept(a: &[usize], b: &[usize]) -> f64 {
     let mut items: Vec<usize> = (0..a.len()).filter(|&i| a[i].max(b[i]) != usize::MAX).collect();
     items.sort_by_key(|&i| a[i]);
@@ -59,7 +59,7 @@ fn the_order_hardly_changes_from_frame_to_frame() {
     assert!(after[0] > after[2] && after[0] > 0.7, "{after:?}");
 }
 
-/// The items that an order paints, each over those before it.
+/// Returns the items that an order paints, each over those before it.
 fn painted(input: &SurfaceInput<'_>, polygons: &[ScreenPolygon]) -> Vec<u32> {
     let mut items = vec![NO_ITEM; (SIDE * SIDE) as usize];
     for polygon in polygons {
@@ -136,7 +136,8 @@ fn orders_that_are_wrong_are_put_right() {
     }
 }
 
-/// Which item a span shows at each pixel; nothing where pixels were compared one by one.
+/// Returns the item that a span shows at each pixel; nothing for pixels that were compared one by
+/// one.
 fn spans(scene: &Scene, degrees: f64) -> Vec<u32> {
     let view = turned(scene, degrees);
     let lights = PreparedLights::of(scene, view.camera());

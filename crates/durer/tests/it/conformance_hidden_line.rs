@@ -56,7 +56,7 @@ fn lengths_of_visible_and_hidden_lines() {
     }
 }
 
-/// The lines of Open CASCADE of one visibility.
+/// Returns the lines of Open CASCADE of one visibility.
 fn exact(view: &Value, visibility: &str) -> Vec<[DVec2; 2]> {
     let point = |p: &Value| DVec2::new(p[0].as_f64().expect("x"), p[1].as_f64().expect("y"));
     let lines = |kind: &str| view[format!("{visibility}_{kind}")].as_array();
@@ -64,7 +64,7 @@ fn exact(view: &Value, visibility: &str) -> Vec<[DVec2; 2]> {
     all.map(|line| [point(&line[0]), point(&line[1])]).collect()
 }
 
-/// How far the ends of some segments lie from others at most.
+/// Returns the largest distance of the ends of some segments from others.
 fn farthest(of: &[[DVec2; 2]], from: &[[DVec2; 2]]) -> f64 {
     let nearest = |p| from.iter().map(|s| distance(p, *s)).fold(f64::INFINITY, f64::min);
     of.iter().flatten().map(|p| nearest(*p)).fold(0.0, f64::max)

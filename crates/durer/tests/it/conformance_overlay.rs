@@ -23,7 +23,8 @@ fn checked(name: &str, a: &Shapes, b: &Shapes, op: BooleanOp, options: &Options)
     out
 }
 
-/// What snapping may change at most: no point of an edge moves further than half a cell's diagonal.
+/// Returns a bound on the changes by snapping: no point of an edge moves further than half a cell's
+/// diagonal.
 fn bound(a: &Shapes, b: &Shapes, cell: f64) -> f64 {
     let around =
         |r: &[DVec2]| (0..r.len()).map(|i| r[i].distance(r[(i + 1) % r.len()])).sum::<f64>();
@@ -126,7 +127,7 @@ fn clipper2_polygons_within_its_own_tolerances() {
     assert_eq!(odd_counts, [24, 35, 37, 62]);
 }
 
-/// How many rings there are if those that share a vertex count as one.
+/// Returns the number of rings if those that share a vertex count as one.
 fn joined_rings(shapes: &Shapes) -> usize {
     let mut owner: Vec<usize> = (0..shapes.ring_count()).collect();
     let mut seen = std::collections::BTreeMap::new();
@@ -174,7 +175,7 @@ fn clipper2_polytree_hole_owner_as_a_tree() {
     }
 }
 
-/// The region of simple-feature polygons: each outer ring without its holes, all together.
+/// Returns the region of simple-feature polygons: each outer ring without its holes, all together.
 fn region(shapes: &Shapes) -> Shapes {
     let nonzero = Options::with_rule(FillRule::NonZero);
     let mut all = Shapes::new();
@@ -328,8 +329,8 @@ fn i_overlay_ogc_holes_lie_in_their_shells() {
     }
 }
 
-/// The length of polylines within the polygons, border and all: between crossings with the borders a segment
-/// is inside as its middle is.
+/// Returns the length of polylines within the polygons, border and all: between crossings with the borders a
+/// segment is inside as its middle is.
 fn length_inside(lines: &[Vec<DVec2>], clip: &Shapes) -> f64 {
     let edges: Vec<[DVec2; 2]> = clip
         .rings()
@@ -409,7 +410,7 @@ fn clipper2_lines_are_cut_at_the_border() {
     }
 }
 
-/// Operand names of GEOS XML cases and their geometries.
+/// Returns operand names of GEOS XML cases and their geometries.
 fn geos_operands(case: roxmltree::Node) -> Option<(Shapes, Shapes)> {
     let text = |name: &str| {
         let node = case.children().find(|n| n.has_tag_name(name))?;

@@ -43,7 +43,7 @@ fn read_png(path: &Path) -> Vec<u32> {
         .collect()
 }
 
-/// What differs between a picture of ours and the reference.
+/// Difference between a picture of ours and the reference.
 #[derive(Debug, Default)]
 struct Difference {
     covered: usize,
@@ -72,7 +72,7 @@ fn concave_quads(scene: &Scene) -> Vec<Option<u32>> {
     quads
 }
 
-/// Whether the quad of two triangles may be cut by its other diagonal as well.
+/// Returns whether the quad of two triangles may be cut by its other diagonal as well.
 fn is_convex(mesh: &Mesh, first: usize) -> bool {
     let [one, two] = [mesh.triangle(first), mesh.triangle(first + 1)];
     let apex = |of: [u32; 3], other: [u32; 3]| of.iter().position(|v| !other.contains(v));
@@ -87,7 +87,8 @@ fn is_convex(mesh: &Mesh, first: usize) -> bool {
     (0..4).all(|k| turn(k).dot(whole) > 0.0)
 }
 
-/// The depth of an item's plane at a pixel's centre, in f64 from the file's own coordinates.
+/// Returns the depth of an item's plane at a pixel's centre, in f64 from the file's own
+/// coordinates.
 fn exact_depth(scene: &Scene, view: &View, item: u32, x: u32, y: u32) -> f64 {
     let mut first = 0;
     for instance in &scene.instances {

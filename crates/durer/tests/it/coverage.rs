@@ -31,8 +31,8 @@ struct Layer {
 }
 
 impl Layer {
-    /// A square that is parted again and again by chords from edge to edge; what lies beyond an edge gets
-    /// the vertex where a chord ends.
+    /// Creates A square that is parted again and again by chords from edge to edge; what lies beyond an
+    /// edge gets the vertex where a chord ends.
     fn new(random: &mut Random, parts: usize) -> Self {
         let points = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(DVec2::from).to_vec();
         let mut layer = Self { points, cells: vec![vec![0, 1, 2, 3]] };
@@ -62,7 +62,7 @@ impl Layer {
         layer
     }
 
-    /// A new vertex on an edge, in both cells that have it.
+    /// Returns A new vertex on an edge, in both cells that have it.
     fn divide(&mut self, u: usize, v: usize, t: f64) -> usize {
         let new = self.points.len();
         self.points.push(self.points[u] + (self.points[v] - self.points[u]) * t);
@@ -91,7 +91,7 @@ impl Layer {
         self.cells.push(other);
     }
 
-    /// The same at another place and of another size.
+    /// Returns the same at another place and of another size.
     fn moved(mut self, size: f64, origin: DVec2) -> Self {
         self.points.iter_mut().for_each(|p| *p = origin + *p * size);
         self
@@ -103,7 +103,7 @@ impl Layer {
     }
 }
 
-/// A star around a place in the layer; some of its corners are vertices of that.
+/// Returns A star around a place in the layer; some of its corners are vertices of that.
 fn star(random: &mut Random, layer: &Layer, size: f64, corners: usize) -> Shapes {
     let low = layer.points[0];
     let center = low + DVec2::new(random.unit(), random.unit()) * size;
@@ -123,7 +123,7 @@ fn star(random: &mut Random, layer: &Layer, size: f64, corners: usize) -> Shapes
     Shapes::from_rings([ring])
 }
 
-/// Where so large coordinates are, and of what size a layer may be.
+/// Positions of large coordinates, and the sizes of layers there.
 const PLACES: [(f64, f64); 5] = [
     (0.0, 0.0),
     (13.377_704, 52.516_272),
@@ -136,11 +136,11 @@ struct Case {
     layer: Layer,
     mask: Shapes,
     size: f64,
-    /// How far rounding moves a point.
+    /// Distance that rounding moves a point.
     ulp: f64,
 }
 
-/// The first case from a seed on whose polygons are valid.
+/// Returns the first case from a seed on whose polygons are valid.
 fn case(seed: u64, corners: usize) -> Case {
     let found = (0..64).find_map(|step| valid_case(seed.wrapping_add(step), corners));
     found.expect("six of seven are valid")
@@ -167,7 +167,7 @@ fn cut(shapes: &Shapes, mask: &Prepared, op: BooleanOp) -> coverage::Cut {
 
 type Edge = [DVec2; 2];
 
-/// The edges that no other polygon has in the other direction.
+/// Returns the edges that no other polygon has in the other direction.
 fn unmatched(all: &[Shapes]) -> Vec<Edge> {
     let key = |p: DVec2| [p.x.to_bits(), p.y.to_bits()];
     let mut open: HashMap<[[u64; 2]; 2], Edge> = HashMap::new();
@@ -193,8 +193,8 @@ fn lies_on(p: DVec2, [a, b]: Edge, ulp: f64) -> bool {
     beside && orient2d_value(a, b, p).abs() <= 4.0 * ulp * a.distance(b)
 }
 
-/// Whether an edge without a neighbour lies where there is none: on one edge of the mask or of the layer's
-/// border, or between two corners of the mask so near that they are one.
+/// Returns whether an edge without a neighbour lies where there is none: on one edge of the mask or of the
+/// layer's border, or between two corners of the mask so near that they are one.
 fn is_outer(edge: Edge, borders: &[Edge], ulp: f64) -> bool {
     borders.iter().any(|&border| edge.iter().all(|&p| lies_on(p, border, ulp)))
         || edge[0].distance(edge[1]) <= 8.0 * ulp
@@ -236,7 +236,7 @@ fn check(case: &Case) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// How many cases; more by the variable PROPTEST_CASES.
+/// Returns the number of cases; more by the variable PROPTEST_CASES.
 pub fn cases(usual: u32) -> u32 {
     let asked = std::env::var("PROPTEST_CASES").ok();
     asked.and_then(|count| count.parse().ok()).unwrap_or(usual)

@@ -17,7 +17,7 @@ fn round(points: &[DVec2], closed: bool) -> Curve {
     fitted(points, closed, &[], true).curve
 }
 
-/// A regular polygon.
+/// Returns A regular polygon.
 fn polygon(sides: u32, radius: f64) -> Vec<DVec2> {
     let angle = |i: u32| f64::from(i) * TAU / f64::from(sides) + 0.3;
     (0..sides).map(|i| DVec2::new(50.0, 40.0) + unit(angle(i)) * radius).collect()
@@ -37,7 +37,7 @@ fn letters(curve: &Curve) -> String {
     curve.pieces.iter().map(letter).collect()
 }
 
-/// The distance of a point from a chain of chords.
+/// Returns the distance of a point from a chain of chords.
 fn distance(p: DVec2, chain: &[DVec2], closed: bool) -> f64 {
     let chords = chain.len() - usize::from(!closed);
     let to = |i: usize| {
@@ -84,7 +84,7 @@ fn circles_seen_at_an_angle_are_ellipses() {
     assert_eq!((half.start, end), (points[0], points[24]));
 }
 
-/// A slot: two half circles of so many chords, and lines.
+/// Returns A slot: two half circles of so many chords, and lines.
 fn slot(chords: u32) -> Vec<DVec2> {
     let half = |x: f64, from: f64| {
         let angle = move |i: u32| from + f64::from(i) * PI / f64::from(chords);
@@ -199,7 +199,7 @@ impl Numbers {
     }
 }
 
-/// Lines, arcs and waves in a row, with corners and noise.
+/// Returns lines, arcs and waves in a row, with corners and noise.
 fn any_chain(numbers: &mut Numbers) -> Vec<DVec2> {
     let mut points = vec![DVec2::new(numbers.next(), numbers.next()) * 50.0];
     let mut way = numbers.next() * TAU;

@@ -3,8 +3,8 @@
 use durer_formats::{Model, Pose, ReadOptions, Resources};
 use std::path::{Path, PathBuf};
 
-/// The folder of shared data: `DURER_DATA`, else `../shared/data` beside the workspace. Says that a
-/// test is skipped where there is none.
+/// Returns the folder of shared data: `DURER_DATA`, else `../shared/data` beside the workspace.
+/// Says that a test is skipped where there is none.
 pub fn folder() -> Option<PathBuf> {
     let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("DURER_DATA").map_or(default, PathBuf::from);

@@ -20,7 +20,7 @@ fn ripples(columns: usize, rows: usize) -> HeightField {
     .expect("field")
 }
 
-/// A camera that sees a field of this extent from an azimuth and an elevation in degrees.
+/// Returns A camera that sees a field of this extent from an azimuth and an elevation in degrees.
 fn camera(azimuth: f64, elevation: f64, perspective: bool) -> Camera {
     let (sa, ca) = libm::sincos(azimuth.to_radians());
     let (se, ce) = libm::sincos(elevation.to_radians());
@@ -38,7 +38,7 @@ fn camera(azimuth: f64, elevation: f64, perspective: bool) -> Camera {
     }
 }
 
-/// The triangles of a field in double precision.
+/// Returns the triangles of a field in double precision.
 fn triangles(field: &HeightField) -> Vec<[DVec3; 3]> {
     let mut all = Vec::new();
     for row in 0..field.rows() {
@@ -51,9 +51,9 @@ fn triangles(field: &HeightField) -> Vec<[DVec3; 3]> {
     all
 }
 
-/// How deep the ray from `p` towards the eye goes into a triangle: the least distance of its point
-/// of passage from the triangle's sides in barycentric terms, about 0 on a side, and where on the ray that is;
-/// `None` where it does not pass.
+/// Returns how deep the ray from `p` towards the eye passes into a triangle: the least distance of its point
+/// of passage from the triangle's sides in barycentric terms, about 0 on a side, and the parameter of that
+/// point on the ray; `None` if it does not pass.
 fn passes(p: DVec3, to_eye: DVec3, length: f64, [a, b, c]: &[DVec3; 3]) -> Option<(f64, f64)> {
     let (e1, e2) = (*b - *a, *c - *a);
     let h = to_eye.cross(e2);
@@ -70,7 +70,8 @@ fn passes(p: DVec3, to_eye: DVec3, length: f64, [a, b, c]: &[DVec3; 3]) -> Optio
     (t > 1e-7 && t < length && inside > -1e-9).then_some((inside, t))
 }
 
-/// Whether something hides the point: how far inside of a triangle, or of what the levels leave of it, at most.
+/// Returns how far inside of a triangle, or of the part that the levels leave of it, the point lies behind
+/// something; nothing if it is visible.
 fn hidden_by(
     p: DVec3,
     camera: &Camera,

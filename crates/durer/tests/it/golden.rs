@@ -105,7 +105,7 @@ fn looks_made_by_code() {
     }
 }
 
-/// The whole scene from the front or from the corner.
+/// Returns the whole scene from the front or from the corner.
 fn camera(scene: &Scene, view: NamedView) -> Camera {
     let bounds: Aabb = scene.bounds().expect("something to see");
     let lens = Lens::Perspective { fov_y: 35f64.to_radians() };

@@ -188,7 +188,8 @@ fn visible_lines_are_the_same_without_the_hidden_ones() {
     assert_eq!(visible, without.lines);
 }
 
-/// The drawing of faces that penetrate each other, and how many faces were found in front of its lines, per line.
+/// Returns the drawing of faces that penetrate each other, and how many faces were found in front of its
+/// lines, per line.
 fn penetrating(count: usize, hidden: bool) -> (Drawing, f64) {
     let mut random = Random(5);
     let mut point = || DVec3::from(std::array::from_fn(|_| random.next()));

@@ -12,7 +12,7 @@ fn p(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
 }
 
-/// Whether two numbers are the same but for rounding.
+/// Returns whether two numbers are equal up to rounding.
 fn near(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-12
 }

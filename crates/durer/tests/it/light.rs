@@ -1,4 +1,4 @@
-//! How strong light is shown, and what surrounds a scene, by whole pictures.
+//! The exposure of light, and the surroundings of a scene, by whole pictures.
 
 use crate::scenes;
 use durer::math::{DVec3, Vec3, Vec4};
@@ -25,12 +25,12 @@ fn lamps(factor: f32) -> Vec<Light> {
     ]
 }
 
-/// The brightest channel of any pixel.
+/// Returns the brightest channel of any pixel.
 fn brightest(picture: &Pixels<[u8; 4]>) -> u8 {
     picture.data().iter().map(|p| p[0].max(p[1]).max(p[2])).max().unwrap_or(0)
 }
 
-/// The largest difference of two pictures.
+/// Returns the largest difference of two pictures.
 fn difference(a: &Pixels<[u8; 4]>, b: &Pixels<[u8; 4]>) -> u8 {
     let pairs = a.data().as_flattened().iter().zip(b.data().as_flattened());
     pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)

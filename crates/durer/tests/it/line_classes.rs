@@ -1,4 +1,4 @@
-//! Which edges are lines where it is delicate: thin triangles, materials, faces that share a vertex.
+//! The edges that are lines in delicate cases: thin triangles, materials, faces that share a vertex.
 
 use crate::line_scenes::{Triangle, cuboid, quad, soup, view};
 use durer::math::DVec3;
@@ -37,7 +37,7 @@ fn where_materials_meet_there_is_a_line() {
     assert!((length(&found, LineClass::Border) - 12.0).abs() < 1e-5, "{:?}", found.lines);
 }
 
-/// A roof along x whose ridge turns by these angles, in degrees, one after the other.
+/// Returns A roof along x whose ridge turns by these angles, in degrees, one after the other.
 fn ridge(angles: &[f64]) -> Vec<Triangle> {
     let eaves = |i: usize, y: f64| {
         let slope = (angles[i.min(angles.len() - 1)] / 2.0).to_radians().tan();
@@ -154,7 +154,8 @@ fn walls_hide_from_an_eye_inside_too() {
     assert_eq!(visible([2.2, 2.4]), 0.0);
 }
 
-/// The lines of a drawing of these triangles in any order, begun anywhere and turned any way.
+/// Returns the lines of a drawing of these triangles in any order, begun anywhere and turned any
+/// way.
 fn drawn_in_any_order(triangles: &[Triangle], view: &View) -> Drawing {
     let drawing = drawn(&soup(triangles), view);
     let count = triangles.len();

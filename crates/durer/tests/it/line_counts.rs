@@ -1,6 +1,6 @@
-//! What a plotter sees: over scenes at which solvers fail, each class of lines is complete and nothing is
-//! there that should not be; no specks, nothing twice; counts of polylines. By other means than the
-//! solver's: every feature edge is sampled, and rays say what hides it.
+//! The completeness of drawings for plotters: over scenes at which solvers fail, each class of lines is
+//! complete and nothing is there that should not be; no specks, nothing twice; counts of polylines. By
+//! other means than the solver's: every feature edge is sampled, and rays decide what hides it.
 
 use crate::line_oracle::{Edge, Oracle, Score, distance, drawn_twice, segments};
 use crate::line_scenes::{
@@ -23,7 +23,8 @@ struct Feature {
     edge: Edge,
 }
 
-/// The features, found from the triangles alone; those whose class hangs on rounding have none.
+/// Returns the features, found from the triangles alone; those whose class hangs on rounding have
+/// none.
 fn features(oracle: &Oracle, triangles: &[Triangle]) -> Vec<Feature> {
     let normal = |i: u32| {
         let [a, b, c] = oracle.triangles()[i as usize];
@@ -58,7 +59,7 @@ fn features(oracle: &Oracle, triangles: &[Triangle]) -> Vec<Feature> {
     found
 }
 
-/// Where two triangles penetrate each other.
+/// Returns the intersection of two triangles.
 fn meeting(a: &Triangle, b: &Triangle, least: f64) -> Option<[DVec3; 2]> {
     let plane = |t: &Triangle| {
         let n = (t[1] - t[0]).cross(t[2] - t[0]).normalize_or_zero();
@@ -84,7 +85,7 @@ fn meeting(a: &Triangle, b: &Triangle, least: f64) -> Option<[DVec3; 2]> {
     ((to - from).dot(along) > 10.0 * least).then_some([from, to])
 }
 
-/// What was found out about a drawing.
+/// Observations about a drawing.
 #[derive(Debug, Default)]
 struct Marks {
     precision: BTreeMap<LineClass, Score>,
@@ -211,7 +212,7 @@ fn drawn(scene: &Scene, view: &View) -> Drawing {
         .expect("drawing")
 }
 
-/// Moved and scaled: by 32-bit numbers what was exact stays so.
+/// Returns moved and scaled: by 32-bit numbers what was exact stays so.
 fn placings() -> [(f64, DVec3); 5] {
     [
         (1.0, DVec3::ZERO),

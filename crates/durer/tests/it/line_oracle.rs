@@ -1,4 +1,4 @@
-//! What lines should be there, by other means than the solver's: edges found by a map of positions,
+//! The expected lines, by other means than the solver's: edges found by a map of positions,
 //! visibility by casting rays at points of them.
 
 use crate::line_scenes::Triangle;
@@ -26,7 +26,7 @@ pub struct Edge {
     pub triangles: Vec<u32>,
 }
 
-/// How many samples there were, and how many were right.
+/// Number of samples, and of the right ones among them.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Score {
     pub right: usize,
@@ -81,12 +81,12 @@ impl Oracle {
         oracle
     }
 
-    /// Each once.
+    /// Returns each once.
     pub fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }
 
-    /// The larger side of the picture.
+    /// Returns the larger side of the picture.
     pub fn extent(&self) -> f64 {
         self.extent
     }
@@ -110,7 +110,7 @@ impl Oracle {
         }
     }
 
-    /// Origin and direction of the sight through a point of the plane.
+    /// Returns the origin and direction of the sight through a point of the plane.
     pub fn sight(&self, at: DVec2) -> (DVec3, DVec3) {
         let camera = self.view.camera();
         let [right, up, back] = camera.axes();
@@ -122,7 +122,8 @@ impl Oracle {
         }
     }
 
-    /// Whether a surface lies before a distance along the sight through a point of the plane.
+    /// Returns whether a surface lies before a distance along the sight through a point of the
+    /// plane.
     fn blocked(&self, at: DVec2, z: f64) -> bool {
         let (origin, direction) = self.sight(at);
         let [x, y] = self.cell(at);
@@ -144,7 +145,7 @@ impl Oracle {
         })
     }
 
-    /// Whether a point of an edge is hidden on both sides of the edge.
+    /// Returns whether a point of an edge is hidden on both sides of the edge.
     pub fn hidden(&self, edge: &Edge, t: f64) -> bool {
         let (a, b) = (self.project(edge.ends[0]).0, self.project(edge.ends[1]).0);
         let (at, z) = self.project(edge.ends[0].lerp(edge.ends[1], t));
@@ -170,7 +171,7 @@ impl Oracle {
         edges.into_values().filter(|e| e.ends[0] != e.ends[1]).collect()
     }
 
-    /// Whether an edge has to be drawn whatever rounding does.
+    /// Returns whether an edge has to be drawn whatever rounding does.
     pub fn surely_drawn(&self, edge: &Edge) -> bool {
         let [a, b] = edge.triangles[..] else { return true };
         let normal = |i: u32| {
@@ -225,7 +226,8 @@ impl Oracle {
         scores
     }
 
-    /// Parameter of the point of an edge that is nearest in the picture, and its distance there.
+    /// Returns the parameter of the point of an edge that is nearest in the picture, and its
+    /// distance there.
     pub fn nearest(&self, edge: &Edge, p: DVec2) -> (f64, f64) {
         let ((a, za), (b, zb)) = (self.project(edge.ends[0]), self.project(edge.ends[1]));
         let s = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-300)).clamp(0.0, 1.0);
@@ -292,7 +294,7 @@ pub fn distance(p: DVec2, [a, b]: [DVec2; 2]) -> f64 {
     a.lerp(b, s).distance(p)
 }
 
-/// The length of pieces that have a parallel piece within `close` over their middle.
+/// Returns the length of pieces that have a parallel piece within `close` over their middle.
 pub fn drawn_twice(drawing: &Drawing, close: f64) -> f64 {
     let all: Vec<[DVec2; 2]> = drawing.lines.iter().flat_map(segments).collect();
     let twice = |i: usize, [a, b]: [DVec2; 2]| {

@@ -6,7 +6,7 @@ use durer::view::View;
 
 pub type Triangle = [DVec3; 3];
 
-/// The twelve triangles of a box, turned outwards.
+/// Returns the twelve triangles of a box, turned outwards.
 pub fn cuboid(min: [f64; 3], max: [f64; 3]) -> Vec<Triangle> {
     let p = |i: usize| {
         DVec3::from(std::array::from_fn(|k| if i >> k & 1 == 1 { max[k] } else { min[k] }))
@@ -16,13 +16,13 @@ pub fn cuboid(min: [f64; 3], max: [f64; 3]) -> Vec<Triangle> {
     quads.iter().flat_map(|&[a, b, c, d]| [[p(a), p(b), p(c)], [p(a), p(c), p(d)]]).collect()
 }
 
-/// A flat rectangle with one side along x, seen from above, tilted by its corners' heights.
+/// Returns A flat rectangle with one side along x, seen from above, tilted by its corners' heights.
 pub fn quad(corners: [[f64; 3]; 4]) -> Vec<Triangle> {
     let [a, b, c, d] = corners.map(DVec3::from);
     vec![[a, b, c], [a, c, d]]
 }
 
-/// An upright cylinder of `n` sides.
+/// Returns an upright cylinder of `n` sides.
 pub fn cylinder(center: [f64; 2], radius: f64, heights: [f64; 2], n: usize) -> Vec<Triangle> {
     let at = |i: usize, z: f64| {
         let a = (i % n) as f64 / n as f64 * std::f64::consts::TAU;
@@ -42,12 +42,12 @@ pub fn cylinder(center: [f64; 2], radius: f64, heights: [f64; 2], n: usize) -> V
         .collect()
 }
 
-/// A scene of one mesh without shared vertices.
+/// Returns A scene of one mesh without shared vertices.
 pub fn soup(triangles: &[Triangle]) -> Scene {
     placed(triangles, DMat4::IDENTITY)
 }
 
-/// The same, moved.
+/// Returns the same, moved.
 pub fn placed(triangles: &[Triangle], world_from_mesh: DMat4) -> Scene {
     let positions: Vec<Vec3> = triangles.iter().flatten().map(|p| p.as_vec3()).collect();
     let mesh = Mesh { positions, ..Mesh::default() };
@@ -55,7 +55,7 @@ pub fn placed(triangles: &[Triangle], world_from_mesh: DMat4) -> Scene {
     Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
 }
 
-/// A view of `height` world units from a direction, z up.
+/// Returns A view of `height` world units from a direction, z up.
 pub fn view(target: DVec3, to_eye: DVec3, height: f64, perspective: bool) -> View {
     let to_eye = to_eye.normalize();
     let up = if to_eye.z.abs() > 0.999 { DVec3::Y } else { DVec3::Z };
@@ -106,7 +106,7 @@ pub fn city(side: usize) -> Vec<Triangle> {
     triangles
 }
 
-/// A ring around z of radii 2 and 0.8.
+/// Returns A ring around z of radii 2 and 0.8.
 pub fn torus(around: usize, across: usize) -> Vec<Triangle> {
     let at = |i: usize, k: usize| {
         let turn = |n: usize, of: usize| (n % of) as f64 / of as f64 * std::f64::consts::TAU;

@@ -23,7 +23,8 @@ fn breaks(texts: &[&str], camera: &Camera) -> durer::Result<ViewBreaks> {
     Ok(Breaks::new(&all, BOUNDS, &[*camera])?.seen_by(camera))
 }
 
-/// The outline, closed, a line along the axis and a region, with a label at each end and in the middle.
+/// Returns the outline, closed, a line along the axis and a region, with a label at each end and in the
+/// middle.
 fn bar() -> Drawing {
     let p = DVec2::new;
     let ring = vec![p(0.0, -10.0), p(300.0, -10.0), p(300.0, 10.0), p(0.0, 10.0)];

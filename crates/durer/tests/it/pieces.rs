@@ -15,7 +15,8 @@ use durer::view::projection::{
 };
 use durer::work::Work;
 
-/// Triangles at random, each in a colour of its own, some twice in another colour, one after the other and far apart.
+/// Returns triangles at random, each in a colour of its own, some twice in another colour, one after the
+/// other and far apart.
 fn soup(triangles: usize) -> Scene {
     let mut scene = scenes::soup(triangles, 7);
     let mesh = &mut scene.meshes[0];
@@ -29,7 +30,7 @@ fn soup(triangles: usize) -> Scene {
     scene
 }
 
-/// The same with points in place of triangles.
+/// Returns the same with points in place of triangles.
 fn cloud(triangles: usize) -> Scene {
     let mut scene = soup(triangles);
     scene.meshes[0].topology = Topology::Points;
@@ -40,7 +41,7 @@ fn corners(scene: &Scene) -> usize {
     if scene.meshes[0].topology == Topology::Points { 1 } else { 3 }
 }
 
-/// A scene of some primitives of one without indices.
+/// Returns A scene of some primitives of one without indices.
 fn only(scene: &Scene, numbers: impl Iterator<Item = usize>) -> Scene {
     let (mesh, corners) = (&scene.meshes[0], corners(scene));
     let vertices: Vec<usize> = numbers.flat_map(|i| corners * i..corners * (i + 1)).collect();
@@ -113,7 +114,8 @@ fn pictures_in_pieces_are_those_of_the_whole() {
     compare(&scene, &options);
 }
 
-/// Of points that are equally far out a camera may rest on either; the last bits of its place depend on it.
+/// Checks that cameras of pieces are those of the whole. Of points that are equally far out a
+/// camera may rest on either; the last bits of its place depend on it.
 #[test]
 fn cameras_of_pieces_are_those_of_the_whole() {
     let mut numbers = Numbers(3);

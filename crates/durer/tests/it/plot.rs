@@ -12,7 +12,7 @@ fn plot(x: [f64; 2], z: [f64; 2], f: impl Fn(f64, f64) -> f64, options: &Options
     surface(&field, options).expect("plot")
 }
 
-/// All texts with their boxes on the page, of letters 0.6 as wide as high.
+/// Returns all texts with their boxes on the page, of letters 0.6 as wide as high.
 fn texts(plot: &Plot) -> Vec<(String, Rect)> {
     let marks = plot.clone().into_sheet().layers.into_iter().flat_map(|layer| layer.marks);
     let boxed = |mark: Mark| {

@@ -13,7 +13,7 @@ fn screen() -> Screen {
     Screen { width: 32, height: 32, ..Screen::default() }
 }
 
-/// A star-shaped polygon with corners on a fine grid, in a plane with a random slope.
+/// Returns A star-shaped polygon with corners on a fine grid, in a plane with a random slope.
 fn star(random: &mut Random, corners: usize) -> Face {
     let grid = |v: f64| (v * 64.0).round() / 64.0 + 1.0 / 256.0;
     let (center, slope) = (random.point(4.0, 28.0), random.point(-0.4, 0.4));
@@ -33,7 +33,7 @@ fn scene(random: &mut Random, count: usize) -> Vec<Face> {
     (0..count).map(|k| star(random, 3 + k % 4)).collect()
 }
 
-/// A beam from p to q, z from first to last.
+/// Returns A beam from p to q, z from first to last.
 fn beam(p: (f64, f64), q: (f64, f64), [first, last]: [f64; 2]) -> Face {
     let (p, q) = (DVec2::from(p), DVec2::from(q));
     let side = (q - p).perp().normalize() * 2.0;
@@ -41,7 +41,7 @@ fn beam(p: (f64, f64), q: (f64, f64), [first, last]: [f64; 2]) -> Face {
     Face::new(&corners.map(|(p, z)| p.extend(z))).unwrap()
 }
 
-/// Three beams of which each lies over the next.
+/// Returns three beams of which each lies over the next.
 fn beams() -> [Face; 3] {
     [
         beam((4.0, 8.0), (28.0, 8.0), [1.0, 5.0]),
@@ -50,7 +50,8 @@ fn beams() -> [Face; 3] {
     ]
 }
 
-/// Whether both pictures show the same, but for faces that are equally near to within rounding.
+/// Returns whether both pictures show the same, except for faces that are equally near to within
+/// rounding.
 fn same(faces: &[Face], a: &Pixels<u32>, b: &Pixels<u32>) -> bool {
     let all = (0..a.height()).flat_map(|y| (0..a.width()).map(move |x| (x, y)));
     all.into_iter().all(|(x, y)| {
@@ -200,7 +201,7 @@ fn trees_order_pieces_for_every_eye() {
     }
 }
 
-/// Whether the first piece lies before the second on a ray to the middle of one of them.
+/// Returns whether the first piece lies before the second on a ray to the middle of one of them.
 fn hides(tree: &Tree, faces: &[Face], eye: DVec3, first: u32, second: u32) -> bool {
     let face = |piece: u32| &faces[tree.face(piece) as usize];
     let corners = tree.corners(second);

@@ -43,8 +43,8 @@ fn edges(contours: &Contours) -> Vec<(DVec2, DVec2)> {
     edges
 }
 
-/// The area of each pixel of one row inside the outline: the row is cut at every vertex, at every
-/// crossing of two edges and at every crossing of an edge with a border of pixels.
+/// Returns the area of each pixel of one row inside the outline: the row is cut at every vertex, at
+/// every crossing of two edges and at every crossing of an edge with a border of pixels.
 fn row_areas(edges: &[(DVec2, DVec2)], y: u32, width: u32, rule: FillRule) -> Vec<f64> {
     let (top, bottom) = (f64::from(y), f64::from(y) + 1.0);
     let x_at = |e: &(DVec2, DVec2), y: f64| e.0.x + (e.1.x - e.0.x) * (y - e.0.y) / (e.1.y - e.0.y);
@@ -91,12 +91,12 @@ fn row_areas(edges: &[(DVec2, DVec2)], y: u32, width: u32, rule: FillRule) -> Ve
     areas
 }
 
-/// The largest difference from the exact coverage, in 1/255.
+/// Returns the largest difference from the exact coverage, in 1/255.
 fn worst_error(contours: &Contours, width: u32, height: u32, rule: FillRule) -> f64 {
     error_of(&mask(contours, width, height, rule), contours, rule)
 }
 
-/// The same for coverage that has been found.
+/// Returns the same for coverage that has been found.
 fn error_of(found: &Pixels<u8>, contours: &Contours, rule: FillRule) -> f64 {
     let edges = edges(contours);
     let (width, height) = (found.width(), found.height());
@@ -163,7 +163,7 @@ fn small_crowded_drawings_are_exact() {
     }
 }
 
-/// So many triangles of about six pixels, strewn over a drawing.
+/// Makes many triangles of about six pixels, strewn over a drawing.
 fn crowd(count: usize, size: DVec2, random: &mut Random) -> Contours {
     let mut contours = Contours::new();
     for _ in 0..count {
@@ -292,7 +292,7 @@ fn steps_smaller_than_pixels_may_be_taken_either_way_from_anywhere() {
     }
 }
 
-/// A star with its spikes in a circle, from one of its points on.
+/// Returns A star with its spikes in a circle, from one of its points on.
 fn star(center: DVec2, radius: f64, start: usize) -> Vec<DVec2> {
     let point = |i: usize| {
         let angle = 0.3 + (i + start) as f64 * 2.0 / 5.0 * std::f64::consts::TAU;
@@ -437,7 +437,7 @@ fn a_million_vertices_that_cross_themselves_are_filled() {
     assert!(mask.data().iter().filter(|c| **c > 0).count() > 4000);
 }
 
-/// Triangles of a jittered grid over the whole target, each with random colour.
+/// Returns triangles of a jittered grid over the whole target, each with random colour.
 fn mesh(random: &mut Random, cells: usize, side: f64) -> Vec<Face> {
     let step = side / cells as f64;
     let points: Vec<DVec2> = (0..(cells + 1) * (cells + 1))

@@ -40,7 +40,8 @@ proptest! {
         }
     }
 
-    /// What is seen through a pixel is where the ray through it meets the plane of the triangle.
+    /// Checks that the point seen through a pixel is the intersection of the ray through it with
+    /// the plane of the triangle.
     #[test]
     fn perspective_correct_equals_ray_and_plane(t in [point3(), point3(), point3()], screen in weights()) {
         let t = t.map(|p| p - DVec3::Z * 6.0); // in front of an eye that looks down −z

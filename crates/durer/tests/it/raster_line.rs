@@ -19,7 +19,7 @@ fn point(random: &mut Random, reach: f64) -> IVec2 {
     IVec2::new(p.x as i32, p.y as i32)
 }
 
-/// Whether a pixel is within half a pixel of the line along its shorter axis; exact.
+/// Returns whether a pixel is within half a pixel of the line along its shorter axis; exact.
 fn is_near(p: IVec2, a: IVec2, b: IVec2) -> bool {
     let wide = |v: IVec2| (i128::from(v.x), i128::from(v.y));
     let ((px, py), (ax, ay), (bx, by)) = (wide(p), wide(a), wide(b));

@@ -20,7 +20,7 @@ fn spans(
     spans
 }
 
-/// How often each pixel is covered; all methods say the same.
+/// Returns how often each pixel is covered; all methods agree.
 fn covered(contours: &Contours, side: u32, rule: FillRule) -> Vec<u32> {
     let found = spans(PolygonRasterizer::EdgeTable, contours, (side, side), rule);
     for method in PolygonRasterizer::ALL {
@@ -33,7 +33,8 @@ fn covered(contours: &Contours, side: u32, rule: FillRule) -> Vec<u32> {
     counts
 }
 
-/// The winding number of a pixel's centre, in integers: twice the coordinates, the centre at odd ones.
+/// Returns the winding number of a pixel's centre, in integers: twice the coordinates, the centre at
+/// odd ones.
 fn winding(points: &[(i128, i128)], x: i128, y: i128) -> i32 {
     let (cx, cy) = (4 * x + 2, 4 * y + 2);
     let mut winding = 0;

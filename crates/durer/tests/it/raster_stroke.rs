@@ -8,7 +8,7 @@ use durer::target::Pixels;
 
 const BLACK: Paint = Paint::Color([0, 0, 0, 255]);
 
-/// The alphas of a stroke on a ground of 60×60 pixels.
+/// Returns the alphas of a stroke on a ground of 60×60 pixels.
 fn alphas(path: &Path, stroke: &Stroke, transform: DAffine2) -> Pixels<u8> {
     let mut canvas = Canvas::new(60, 60, Options::default()).expect("canvas");
     canvas.set_transform(transform);
@@ -18,7 +18,7 @@ fn alphas(path: &Path, stroke: &Stroke, transform: DAffine2) -> Pixels<u8> {
     Pixels::from_data(60, 60, picture.data().iter().map(|p| p[3]).collect()).expect("size")
 }
 
-/// Which of the pixels from x = 10 on are covered by a dashed line from there to 50.
+/// Returns which of the pixels from x = 10 on are covered by a dashed line from there to 50.
 fn dashes(dashes: &[f64], dash_offset: f64) -> String {
     let line = Path::polyline([DVec2::new(10.0, 30.0), DVec2::new(50.0, 30.0)]);
     let stroke = Stroke { width: 2.0, dashes: dashes.to_vec(), dash_offset, ..Stroke::default() };

@@ -1,4 +1,5 @@
-//! Which points a stroke covers: against the distance from its path, and against the union of its pieces.
+//! The points that a stroke covers: against the distance from its path, and against the union of its
+//! pieces.
 
 use std::f64::consts::SQRT_2;
 
@@ -13,7 +14,7 @@ use durer::trace::{Counts, NoTrace, Recorder};
 const TOLERANCE: f64 = 0.01;
 const FINE: f64 = 1e-4;
 
-/// How often an outline goes round a point.
+/// Returns how often an outline winds around a point.
 fn winding(outline: &Contours, p: DVec2) -> i32 {
     let mut winding = 0;
     for (points, _) in outline.iter() {
@@ -220,7 +221,8 @@ fn tight_bends_are_swept_on_both_sides() {
     }
 }
 
-/// What the pen sweeps beyond the centre of a bend ends in a circle, however few chords the bend itself needs.
+/// Checks that the area swept beyond the centre of a bend ends in a circle, however few chords the bend itself
+/// needs.
 #[test]
 fn the_far_side_of_a_tight_bend_is_round() {
     let (centre, r) = (DVec2::new(100.0, 100.0), 0.2);

@@ -57,7 +57,8 @@ fn rect(x0: i32, y0: i32, x1: i32, y1: i32) -> PixelRect {
     PixelRect::new(x0, y0, x1, y1).expect("not reversed")
 }
 
-/// Corners within 40 pixels, often on pixel centres and corners, often in line with each other.
+/// Returns corners within 40 pixels, often on pixel centres and corners, often in line with each
+/// other.
 fn small() -> impl Strategy<Value = Corners> {
     let coordinate = prop_oneof![
         -2000..9000i32,
@@ -171,7 +172,7 @@ fn replay_tiles(steps: &[tiles::Step], clip: &PixelRect) -> Vec<Span> {
     joined(pixels)
 }
 
-/// How often each pixel of a square picture is lit.
+/// Returns how often each pixel of a square picture is lit.
 fn lit(method: TriangleRasterizer, triangles: &[Corners], side: i32) -> Vec<u8> {
     let mut counts = vec![0u8; (side * side) as usize];
     for &corners in triangles {
@@ -184,7 +185,8 @@ fn lit(method: TriangleRasterizer, triangles: &[Corners], side: i32) -> Vec<u8> 
     counts
 }
 
-/// A grid of cells whose inner corners are moved by up to a quarter cell, each cell cut in two.
+/// Returns A grid of cells whose inner corners are moved by up to a quarter cell, each cell cut in
+/// two.
 fn jittered_grid(cells: usize, side: i32, random: &[(i32, i32, bool)]) -> Vec<Corners> {
     let n = cells + 1;
     let cell = side * 256 / cells as i32;
@@ -214,7 +216,7 @@ fn jittered_grid(cells: usize, side: i32, random: &[(i32, i32, bool)]) -> Vec<Co
     triangles
 }
 
-/// Points inserted one after another, each splitting the triangle that holds it in three.
+/// Returns points inserted one after another, each splitting the triangle that holds it in three.
 fn split_by_points(side: i32, points: &[[i32; 2]]) -> Vec<Corners> {
     let s = side * 256;
     let mut triangles = vec![[[0, 0], [s, 0], [s, s]], [[0, 0], [s, s], [0, s]]];

@@ -27,7 +27,7 @@ fn area(regions: &[&Region]) -> f64 {
     rings.map(|ring| durer::clip::polygon::signed_area(ring)).sum()
 }
 
-/// Both ways to the caps; how much of them can be seen, and how much there is.
+/// Returns both ways to the caps; how much of them can be seen, and how much there is.
 fn assert_same(name: &str, scene: &Scene, planes: &[Plane], view: &View) -> f64 {
     let section = cut(scene, planes, &SectionOptions::default()).expect("a section");
     let options = Options {

@@ -8,7 +8,7 @@ use durer::scene::{
 };
 use durer::target::Framebuffer;
 
-/// A floor, a sphere above it, and a tilted plate.
+/// Returns A floor, a sphere above it, and a tilted plate.
 fn scene() -> Scene {
     let quad = |[a, b, c, d]: [Vec3; 4]| vec![a, b, c, a, c, d];
     let floor = quad([
@@ -74,7 +74,7 @@ fn picture(
     render(&scene(), &options).expect("picture").0
 }
 
-/// Whether rays say the same, lit or in shadow, of all pixels around one.
+/// Returns whether rays say the same, lit or in shadow, of all pixels around one.
 fn is_inner(none: &Framebuffer, rays: &Framebuffer, x: u32, y: u32) -> bool {
     let dark = |x: u32, y: u32| none.color.get(x, y) != rays.color.get(x, y);
     let mut around = (y.saturating_sub(2)..=y + 2)

@@ -16,7 +16,7 @@ fn smooth(triangles: &[Triangle], view: &View) -> Drawing {
     draw(&soup(triangles), view, &options, &mut NoTrace).expect("drawing")
 }
 
-/// A ball of radius 1 of `n` by 2 `n` quadrilaterals.
+/// Returns A ball of radius 1 of `n` by 2 `n` quadrilaterals.
 fn ball(n: usize) -> Vec<Triangle> {
     let at = |i: usize, k: usize| {
         let angle = |j: usize, of: usize| (j % of) as f64 / of as f64 * std::f64::consts::TAU;
@@ -97,7 +97,7 @@ fn outlines_of_balls_are_one_line_whatever_the_mesh() {
     assert!(pieces < drawings + 3, "{pieces} in {drawings} drawings");
 }
 
-/// The lengths of outlines, visible and hidden.
+/// Returns the lengths of outlines, visible and hidden.
 fn lengths(triangles: &[Triangle], view: &View) -> [f64; 2] {
     let options = Options { smooth: Smooth::On, tolerance: 1e-6, ..Options::default() };
     let drawing = draw(&soup(triangles), view, &options, &mut NoTrace).expect("drawing");
@@ -125,7 +125,7 @@ fn outlines_of_a_torus_are_as_long_as_they_are_exactly() {
     }
 }
 
-/// A ball with slivers: over some edges stand triangles on a third point of the sphere.
+/// Returns A ball with slivers: over some edges stand triangles on a third point of the sphere.
 fn ball_with_slivers(n: usize) -> Vec<Triangle> {
     let halves = |(i, [a, b, c]): (usize, Triangle)| {
         let over = ((a + b) / 2.0).normalize();
@@ -154,7 +154,7 @@ fn slivers_of_a_ball_make_no_lines() {
     }
 }
 
-/// A bar along y with these corners in x and z, counter-clockwise seen from −y.
+/// Returns A bar along y with these corners in x and z, counter-clockwise seen from −y.
 fn bar(corners: &[[f64; 2]]) -> Vec<Triangle> {
     let at = |i: usize, y: f64| {
         let [x, z] = corners[i % corners.len()];
@@ -223,8 +223,8 @@ fn outlines_of_cylinders_and_cones_are_straight() {
     }
 }
 
-/// The length of an outline of a cone of radius 1 and height 3 in a picture in which its height is 3 `cos`: that of the
-/// tangent from the tip to the ellipse of the rim.
+/// Returns the length of an outline of a cone of radius 1 and height 3 in a picture in which its height is 3
+/// `cos`: that of the tangent from the tip to the ellipse of the rim.
 fn cone_side(cos: f64) -> f64 {
     let (height, sin2) = (3.0 * cos, 1.0 - cos * cos);
     let y = sin2 / height;
@@ -232,7 +232,8 @@ fn cone_side(cos: f64) -> f64 {
     (x2 + (height - y).powi(2)).sqrt()
 }
 
-/// A body of revolution of `n` facets around z with this profile of radii and heights, from the bottom up, without lids.
+/// Returns A body of revolution of `n` facets around z with this profile of radii and heights, from the
+/// bottom up, without lids.
 fn turned(profile: &[[f64; 2]], n: usize) -> Vec<Triangle> {
     let at = |k: usize, [r, z]: [f64; 2]| {
         let (s, c) = (k as f64 / n as f64 * std::f64::consts::TAU).sin_cos();

@@ -1,4 +1,4 @@
-//! What is put around a model, and how it darkens: occlusion, ground, grid, axes, edges.
+//! The surroundings of a model and their darkening: occlusion, ground, grid, axes, edges.
 
 use crate::scenes::{instance, sphere};
 use durer::math::{DMat4, DVec2, DVec3, Rect, Vec3, Vec4};
@@ -12,7 +12,7 @@ use durer::scene::{
 use durer::view::View;
 use durer::view::projection::drawn_bounds;
 
-/// Two walls at a right angle in the line x = z = 0, one along +x, one along +z.
+/// Returns two walls at a right angle in the line x = z = 0, one along +x, one along +z.
 fn corner() -> Scene {
     let quad = |a: [f32; 3], b: [f32; 3]| {
         let [a, b] = [Vec3::from(a), Vec3::from(b)];
@@ -34,7 +34,7 @@ fn options(camera: Camera, side: u32) -> RenderOptions {
     RenderOptions { width: side, height: side, samples, ..RenderOptions::new(camera) }
 }
 
-/// The light at a place of the corner.
+/// Returns the light at a place of the corner.
 fn light(camera: Camera, radius: f64, at: DVec3) -> f32 {
     let options = RenderOptions { depth: true, normal: true, ..options(camera, 240) };
     let (picture, _) = render(&corner(), &options).expect("picture");
@@ -78,7 +78,7 @@ fn occlusion_darkens_and_leaves_no_planes_that_are_not_asked_for() {
     assert!(render(&corner(), &none).expect("none").0.color == before.color);
 }
 
-/// A sphere of radius 1 whose lowest point is at the height −1.
+/// Returns A sphere of radius 1 whose lowest point is at the height −1.
 fn ball(up_axis: UpAxis) -> Scene {
     Scene {
         meshes: vec![sphere(12, Some(0))],

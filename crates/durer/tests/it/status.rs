@@ -1,4 +1,4 @@
-//! Whether anything of a scene is seen, and if not, why.
+//! The visibility of scenes, and the reason if nothing is visible.
 
 use crate::scenes::{instance, sphere};
 use durer::math::{DVec3, Vec3, Vec4};
@@ -100,7 +100,7 @@ fn what_hides_a_scene_is_told() {
     assert_eq!(of(&tiny, &options()), invisible(Unseen::Missed));
 }
 
-/// The faces of a mesh of which all corners have z above 0.
+/// Returns the faces of a mesh of which all corners have z above 0.
 fn half(mesh: &Mesh) -> Mesh {
     let indices = mesh.indices.clone().unwrap_or_default();
     let front = |t: &&[u32; 3]| t.iter().all(|&v| mesh.positions[v as usize].z > 0.1);

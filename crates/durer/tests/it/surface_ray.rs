@@ -220,7 +220,7 @@ fn mirrors_show_the_studio_where_they_show_nothing_else() {
     assert!(r > 100 && r == b && a == 255, "{r} {b} {a}");
 }
 
-/// The rays of a kind that a picture takes.
+/// Returns the rays of a kind that a picture takes.
 fn rays(p: &Prepared<'_>, options: &Options, wanted: RayKind) -> usize {
     let mut recorder = Recorder::default();
     render(&p.fine_input(), &p.lights, options, &mut p.framebuffer(), &mut recorder);

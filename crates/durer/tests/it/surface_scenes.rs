@@ -10,7 +10,7 @@ use durer::view::View;
 use durer::visibility::surface::input::SurfaceInput;
 use durer::visibility::surface::setup::Filter;
 
-/// One mesh of separate triangles.
+/// Returns one mesh of separate triangles.
 pub fn of_triangles(triangles: &[[Vec3; 3]]) -> Scene {
     let positions = triangles.iter().flatten().copied().collect();
     let mesh = Mesh { positions, ..Mesh::default() };
@@ -21,13 +21,13 @@ fn quad([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-/// A beam between two points, as a strip of two triangles that faces the viewer.
+/// Returns A beam between two points, as a strip of two triangles that faces the viewer.
 fn beam(a: Vec3, b: Vec3, width: f32) -> [[Vec3; 3]; 2] {
     let side = (b - a).cross(Vec3::Z).normalize() * width;
     quad([a - side, b - side, b + side, a + side])
 }
 
-/// Three beams, each of which lies over one and under the other.
+/// Returns three beams, each of which lies over one and under the other.
 pub fn three_beams() -> Scene {
     let corner = |i: usize| {
         let angle = i as f32 * std::f32::consts::TAU / 3.0;
@@ -42,7 +42,7 @@ pub fn three_beams() -> Scene {
     of_triangles(beams.as_flattened())
 }
 
-/// Two squares that penetrate each other.
+/// Returns two squares that penetrate each other.
 pub fn crossing_quads() -> Scene {
     let square = |depth: f32| {
         quad([
@@ -55,7 +55,8 @@ pub fn crossing_quads() -> Scene {
     of_triangles([square(1.0), square(-1.0)].as_flattened())
 }
 
-/// The same faces twice, each time with other vertices first, and coplanar ones that overlap.
+/// Returns the same faces twice, each time with other vertices first, and coplanar ones that
+/// overlap.
 pub fn duplicates() -> Scene {
     let mut triangles = Vec::new();
     let mut numbers = Numbers(11);
@@ -66,7 +67,7 @@ pub fn duplicates() -> Scene {
     of_triangles(&triangles)
 }
 
-/// Triangles of all sizes: crossing, behind the eye, without area, equal, at one distance.
+/// Returns triangles of all sizes: crossing, behind the eye, without area, equal, at one distance.
 pub fn random(seed: u64) -> Scene {
     let mut numbers = Numbers(seed.wrapping_mul(977).wrapping_add(5));
     let count = 1 + (numbers.next() * 40.0) as usize;
@@ -86,7 +87,8 @@ pub fn random(seed: u64) -> Scene {
     of_triangles(&triangles)
 }
 
-/// Flat needles across the view, a pixel high or less and steep in depth, close behind one another.
+/// Returns flat needles across the view, a pixel high or less and steep in depth, close behind one
+/// another.
 pub fn needles(seed: u64) -> Scene {
     let mut numbers = Numbers(seed.wrapping_mul(7919).wrapping_add(3));
     let camera = options(&Scene::default(), 1, 1).camera;
@@ -107,7 +109,7 @@ pub fn needles(seed: u64) -> Scene {
     of_triangles(&triangles)
 }
 
-/// What an algorithm gets to see of a scene.
+/// View of a scene that an algorithm works on.
 pub struct Prepared<'a> {
     pub scene: &'a Scene,
     pub options: RenderOptions,
@@ -150,7 +152,7 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// The sizes at which scenes are looked at; the large ones seldom.
+/// Returns the sizes at which scenes are looked at; the large ones seldom.
 pub fn size(seed: u64) -> (u32, u32) {
     match seed % 16 {
         0 => (256, 256),

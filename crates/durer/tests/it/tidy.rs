@@ -23,10 +23,10 @@ fn library() -> (PathBuf, Vec<PathBuf>) {
     (root, found)
 }
 
-/// Code lines of a file: without comments, up to its test module.
+/// Returns the code lines of a file: without comments, up to its test module.
 fn code(path: &Path) -> String {
     let text = fs::read_to_string(path).expect("source");
-    let text = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
     text.lines().filter(|l| !l.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
 }
 
@@ -80,7 +80,7 @@ fn dependencies_run_in_the_order_of_the_modules() {
     }
 }
 
-/// What names its cost and can be called is an algorithm and has its facts.
+/// Checks that everything that names its cost and can be called is an algorithm and has its facts.
 #[test]
 fn every_algorithm_has_its_facts() {
     let (_, files) = library();
@@ -116,4 +116,32 @@ fn every_algorithm_is_in_the_catalogue() {
         // Descartes is the oldest.
         assert!((1637..2100).contains(&info.year), "{}", info.title);
     }
+}
+
+/// Checks that comments say what a thing is or does, in that order: a noun for types, values and modules, a verb for
+/// functions.
+#[test]
+fn doc_comments_begin_with_nouns_and_verbs() {
+    const CLAUSES: [&str; 8] =
+        ["What", "Of", "How", "Where", "Whether", "Which", "So many", "As many"];
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut files = Vec::new();
+    for name in ["durer", "durer-formats", "durer-cli"] {
+        sources(&crates.join(name), &mut files);
+    }
+    let mut wrong = Vec::new();
+    for path in files {
+        let text = fs::read_to_string(&path).expect("source");
+        let mut before = "";
+        for (number, line) in text.lines().map(str::trim_start).enumerate() {
+            let comment = line.strip_prefix("/// ").or_else(|| line.strip_prefix("//! "));
+            let begins = !before.starts_with("///") && !before.starts_with("//!");
+            let first = comment.filter(|_| begins).unwrap_or_default();
+            if CLAUSES.iter().any(|clause| first.starts_with(&format!("{clause} "))) {
+                wrong.push(format!("{}:{}: {first}", path.display(), number + 1));
+            }
+            before = line;
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

@@ -30,7 +30,7 @@ fn inside(planes: &[Plane], p: DVec3) -> bool {
     planes.iter().all(|plane| plane.evaluate(p) >= 0.0)
 }
 
-/// What must hold of any verdict about a thing with these points.
+/// Checks the laws of any verdict about a thing with these points.
 fn check(verdict: Containment, mut points: impl Iterator<Item = bool>) -> bool {
     match verdict {
         Containment::Outside => !points.any(|p| p),
@@ -135,7 +135,7 @@ fn faces_are_seen_from_their_side() {
     assert_eq!(face_along(DVec3::ZERO, DVec3::Z), Face::Edge);
 }
 
-/// A cube of side 2 around `center`, its vertices not shared, as in STL.
+/// Returns A cube of side 2 around `center`, its vertices not shared, as in STL.
 fn cube(center: Vec3) -> Mesh {
     let mut positions = Vec::new();
     for axis in 0..3 {
@@ -247,7 +247,7 @@ mod conformance_topology {
         index.then_some(folder)
     }
 
-    /// The triangles of a binary STL file; `None` for a text one.
+    /// Returns the triangles of a binary STL file; `None` for a text one.
     fn binary_stl(bytes: &[u8]) -> Option<Mesh> {
         let count = u32::from_le_bytes(bytes.get(80..84)?.try_into().ok()?) as usize;
         let records = bytes.get(84..).filter(|r| r.len() == count * 50)?;

@@ -36,7 +36,7 @@ fn the_first_triangle_under_a_pixel_is_the_visible_one() {
     assert!(differing * 500 < pixels, "{differing} of {pixels}");
 }
 
-/// Whether some of a fine raster of points in the rectangle lies on the triangle.
+/// Returns whether some of a fine raster of points in the rectangle lies on the triangle.
 fn some_point_hits(scene: &Scene, p: &Prepared<'_>, rect: &Rect, item: u32) -> bool {
     let steps = 40;
     (0..=steps).flat_map(|j| (0..=steps).map(move |i| (i, j))).any(|(i, j)| {

@@ -13,7 +13,7 @@ fn ndc(camera: &Camera, aspect: f64, p: DVec3) -> DVec3 {
     clip.truncate() / clip.w
 }
 
-/// Whether the eye is as near to the points as it may come.
+/// Checks that the eye is as near to the points as it may come.
 fn at_closest(
     camera: &Camera,
     points: impl IntoIterator<Item = DVec3> + Clone,

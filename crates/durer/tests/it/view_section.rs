@@ -20,7 +20,7 @@ fn sectioned(mesh: Mesh, planes: &[Plane]) -> Section {
     cut(&scene(mesh), planes, &Options::default()).expect("cut")
 }
 
-/// A box with corners at ± size; its faces look out, or in.
+/// Returns A box with corners at ± size; its faces look out, or in.
 fn cuboid(size: f32, inwards: bool) -> Mesh {
     let positions = (0..8).map(|i| {
         let sign = |bit: u32| if i >> bit & 1 == 1 { size } else { -size };
@@ -33,7 +33,7 @@ fn cuboid(size: f32, inwards: bool) -> Mesh {
     Mesh { positions: positions.collect(), indices: Some(turned.collect()), ..Mesh::default() }
 }
 
-/// Two meshes as one.
+/// Returns two meshes as one.
 fn joined(a: Mesh, b: Mesh) -> Mesh {
     let offset = a.positions.len() as u32;
     let mut mesh = Mesh { parts: Vec::new(), ..a };

@@ -28,7 +28,7 @@ fn from_above(height: f64) -> Camera {
     }
 }
 
-/// How often rings run around a point.
+/// Returns how often rings wind around a point.
 fn winding(rings: &[Vec<DVec2>], p: DVec2) -> i32 {
     let mut sum = 0;
     for ring in rings {
@@ -53,8 +53,8 @@ fn distance(rings: &[Vec<DVec2>], p: DVec2) -> f64 {
     sides.map(to).fold(f64::INFINITY, f64::min)
 }
 
-/// The item of the nearest triangle on the line of sight through a point of the plane; `None` where
-/// another is as near but for rounding.
+/// Returns the item of the nearest triangle on the line of sight through a point of the plane;
+/// `None` where another is as near but for rounding.
 fn by_ray(scene: &Scene, camera: &Camera, p: DVec2) -> Option<Option<u32>> {
     let [right, up, back] = camera.axes();
     let at = camera.target + right * p.x + up * p.y;
@@ -282,7 +282,8 @@ fn visible_regions_trapped_look_like_disjoint_ones() {
     assert!(compared > 20, "{compared} points compared");
 }
 
-/// Nothing that has a colour loses it: what a shape gives up at its corners would be a hole.
+/// Checks that nothing with a colour loses it: an area that a shape gives up at its corners would
+/// be a hole.
 #[test]
 fn visible_regions_trapped_cover_what_disjoint_ones_do() {
     for seed in 0..6 {

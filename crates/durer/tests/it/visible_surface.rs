@@ -17,7 +17,7 @@ fn mesh_scene(positions: Vec<Vec3>) -> Scene {
     Scene { meshes: vec![mesh], instances: vec![scenes::instance(0)], ..Scene::default() }
 }
 
-/// Three beams, each over the next.
+/// Returns three beams, each over the next.
 fn cyclic() -> Scene {
     let mut positions = Vec::new();
     for i in 0..3 {
@@ -31,7 +31,7 @@ fn cyclic() -> Scene {
     mesh_scene(positions)
 }
 
-/// Faces that share edges, planes and depths: three parallel squares twice, crossed by one.
+/// Returns faces that share edges, planes and depths: three parallel squares twice, crossed by one.
 fn ties() -> Scene {
     let mut positions = Vec::new();
     for z in [0.0, 0.0, 0.25, 0.25, -0.5] {
@@ -45,7 +45,7 @@ fn ties() -> Scene {
     mesh_scene(positions)
 }
 
-/// A scene of the random kind that this number stands for.
+/// Returns A scene of the random kind that this number stands for.
 fn random_scene(seed: u64) -> Scene {
     match seed % 10 {
         8 => cyclic(),
@@ -54,7 +54,7 @@ fn random_scene(seed: u64) -> Scene {
     }
 }
 
-/// A camera somewhere around the scene, sometimes amid it, and a size from 1 × 1 to 256².
+/// Returns A camera somewhere around the scene, sometimes amid it, and a size from 1 × 1 to 256².
 fn random_view(seed: u64) -> View {
     let mut numbers = scenes::Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
     for _ in 0..3 {
@@ -77,7 +77,7 @@ fn random_view(seed: u64) -> View {
     View::new(camera, width, height).expect("view")
 }
 
-/// A view in which parts of the scene are behind the eye.
+/// Returns A view in which parts of the scene are behind the eye.
 fn amid(width: u32, height: u32) -> View {
     let camera = scenes::options(&Scene::default(), 1, 1).camera;
     View::new(camera, width, height).expect("view")
@@ -99,7 +99,7 @@ fn picture(method: SurfaceMethod, scene: &Scene, view: &View) -> Framebuffer {
     framebuffer
 }
 
-/// Whether a method shows one surface per pixel, so that colours are the z-buffer's too.
+/// Returns whether a method shows one surface per pixel, so that colours are the z-buffer's too.
 fn one_surface_per_pixel(method: SurfaceMethod) -> bool {
     use SurfaceMethod::{ScanLineZ, SpanningScanLine, ZBuffer};
     matches!(method, ZBuffer | ScanLineZ | SpanningScanLine)
@@ -210,7 +210,7 @@ fn masked_and_textured_surfaces_lines_and_points_agree_too() {
     }
 }
 
-/// The same triangles in another order, and where each came from.
+/// Returns the same triangles in another order, and where each came from.
 fn shuffled(scene: &Scene, seed: u64) -> (Scene, Vec<u32>) {
     let mut numbers = scenes::Numbers(seed);
     let triangles: Vec<[Vec3; 3]> = scene.meshes[0].positions.as_chunks().0.to_vec();
@@ -239,7 +239,7 @@ fn the_order_of_triangles_changes_nothing() {
     }
 }
 
-/// A scene with something in two instances, so that runs change within rows.
+/// Returns A scene with something in two instances, so that runs change within rows.
 fn two_instances() -> Scene {
     let mut scene = scenes::soup(170, 4);
     let world_from_mesh = DMat4::from_rotation_y(0.7);
@@ -321,7 +321,7 @@ fn spanning_scan_line_is_rebuilt_from_its_steps() {
     assert!(spans > 100 && splits > 10 && inside == 0, "{spans} {splits} {inside}");
 }
 
-/// Where faces do not lie in each other, spans decide nearly all pixels.
+/// Checks that spans decide nearly all pixels if faces do not intersect.
 #[test]
 fn spanning_scan_line_compares_few_pixels() {
     use spanning_scan_line::Step;

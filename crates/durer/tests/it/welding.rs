@@ -28,7 +28,7 @@ fn assert_like(name: &str, found: &Drawing, expected: &Drawing) {
     }
 }
 
-/// A cuboid with noise in all corners of all triangles.
+/// Returns A cuboid with noise in all corners of all triangles.
 fn noisy(amount: f64) -> Vec<Triangle> {
     let mut random = Random(5);
     let mut number = || (random.next() - 0.5) * 2.0 * amount;
@@ -65,8 +65,8 @@ fn what_few_digits_have_moved_is_one() {
     assert!(drawn(&scene, Weld::Auto).edges.borders > 0);
 }
 
-/// Each second triangle in parts, as fans from one corner: its sides are divided and those of its
-/// neighbours are not.
+/// Returns each second triangle in parts, as fans from one corner: its sides are divided and those
+/// of its neighbours are not.
 fn with_junctions(triangles: &[Triangle], parts: usize) -> Vec<Triangle> {
     let mut made = Vec::new();
     for (i, &[a, b, c]) in triangles.iter().enumerate() {
@@ -112,7 +112,7 @@ fn triangles_without_height_make_no_lines() {
     }
 }
 
-/// Each face of a body as a mesh of its own, under matrices of its own.
+/// Returns each face of a body as a mesh of its own, under matrices of its own.
 fn facewise(triangles: &[Triangle]) -> Scene {
     let mut scene = Scene::default();
     for (pair, i) in triangles.chunks(2).zip(0..) {

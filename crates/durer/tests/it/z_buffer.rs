@@ -11,7 +11,7 @@ use durer::view::window::PixelRect;
 use durer::visibility::surface::input::SurfaceInput;
 use durer::visibility::surface::setup::Filter;
 
-/// Nearest item and its depth at each pixel's centre.
+/// Returns nearest item and its depth at each pixel's centre.
 fn by_the_book(scene: &Scene, view: &View) -> (Vec<u32>, Vec<f32>) {
     let filter = Filter::new(Cull::None, 0);
     let input = SurfaceInput::new(scene, view, filter).expect("triangles");
@@ -80,8 +80,8 @@ fn items_and_depths_of_small_triangles_are_those_of_the_definition() {
     }
 }
 
-/// Triangles whose corners lie on pixel centres and corners, seen so that a unit is a pixel; they reach over as many
-/// pixels as `reach`.
+/// Returns triangles whose corners lie on pixel centres and corners, seen so that a unit is a pixel; they
+/// reach over as many pixels as `reach`.
 fn on_the_grid(seed: u64, size: f64, reach: f64) -> (Scene, Camera) {
     let mut numbers = Numbers(seed);
     let mut at = |extent: f64| (numbers.next() * 2.0 * extent as f32).floor() * 0.5;

@@ -25,7 +25,7 @@ fn point(x: f64, y: f64) -> (i32, i32) {
     ((x * EXTENT).round() as i32, (y * EXTENT).round() as i32)
 }
 
-/// A ring like a coast: a circle whose radius is fractal noise, by midpoint displacement.
+/// Returns A ring like a coast: a circle whose radius is fractal noise, by midpoint displacement.
 pub fn coast(n: usize, seed: u64, x: f64) -> Rings {
     let mut random = Random(seed);
     let mut radius = vec![0.6; 8];
@@ -51,7 +51,7 @@ pub fn coast(n: usize, seed: u64, x: f64) -> Rings {
     vec![ring]
 }
 
-/// A star of n points: every second one far out, the others close in, at random.
+/// Returns A star of n points: every second one far out, the others close in, at random.
 pub fn star(n: usize, seed: u64, x: f64, turn: f64) -> Rings {
     let mut random = Random(seed);
     let ring = (0..n)
@@ -103,7 +103,7 @@ pub fn checkerboard(n: usize, shift: f64) -> Rings {
         .collect()
 }
 
-/// The measured pair of a name like `coast-10k`.
+/// Returns the measured pair of a name like `coast-10k`.
 pub fn named(name: &str) -> Option<Pair> {
     let (family, size) = name.split_once('-')?;
     let n = size.strip_suffix('k')?.parse::<usize>().ok()? * 1000;

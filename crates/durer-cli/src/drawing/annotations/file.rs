@@ -30,7 +30,7 @@ pub fn read(path: &Path) -> Result<Listed, Failure> {
     })
 }
 
-/// Where something is wrong, as an offset, and what.
+/// Offset of an error in the file and its message.
 type Wrong = (usize, String);
 
 fn parse(text: &str) -> Result<Listed, Wrong> {
@@ -118,7 +118,7 @@ impl Entry<'_> {
         self.keys.iter().find(|(key, _)| key.get_ref().as_ref() == name).map(|(_, value)| value)
     }
 
-    /// Where a key's value stands, or the table where it has none.
+    /// Returns the offset of a key's value, or of the table if the key is missing.
     fn at(&self, name: &str) -> usize {
         self.get(name).map_or(self.start, |value| value.span().start)
     }

@@ -29,7 +29,7 @@ pub struct FeatureReport {
     pub object: String,
     /// In units of the model.
     pub diameter: f64,
-    /// Where its axis begins and ends.
+    /// Ends of its axis.
     pub ends: [[f64; 3]; 2],
     /// The angle of the arc that is there, degrees.
     pub angle: f64,
@@ -97,7 +97,7 @@ impl Annotated {
 pub struct Look {
     /// Millimetres per unit of the model.
     pub unit: f64,
-    /// Whether hidden lines are drawn.
+    /// True if hidden lines are drawn.
     pub hidden: bool,
     /// The colour of pens.
     pub color: [u8; 4],

@@ -5,7 +5,7 @@ use super::projection::{Method, Projection, scale_of_parallel};
 use super::{Crs, Kind};
 use durer::math::DVec2;
 
-/// What is known, for messages.
+/// List of known systems, for messages.
 pub const KNOWN: &str = "known are EPSG:4326 and other longitudes and latitudes close to it (4258, 4269, 4171 …), \
 3857, UTM (326zz, 327zz, 258zz, 269zz …), 2154, 3942 to 3950, 3034, 3035, 3395, 5070, 3031, 3413, 3995, 2193, 3006, 3067, \
 2180, 3577, 3978 and more; on older frames 27700, 31466 to 31469, 230zz, 31370, 31254 to 31256 and 31284 to 31287; robinson, equal-earth, mercator; and definitions as well-known text of such projections";
@@ -24,7 +24,7 @@ const NAMES: [(&str, i32); 10] = [
     ("EQUAL-EARTH", 8857),
 ];
 
-/// The number behind a name in capitals.
+/// Returns the number behind a name in capitals.
 pub fn of_name(name: &str) -> Option<i32> {
     NAMES.iter().find(|(known, _)| *known == name).map(|(_, code)| *code)
 }
@@ -146,7 +146,7 @@ const UTM: [(i32, i32, i32, bool, i32, &str); 8] = [
     (31960, 17, 25, true, 4674, "SIRGAS_2000_UTM_Zone_"),
 ];
 
-/// A system of the list: its name in definitions, and what it is.
+/// Returns A system of the list: its name in definitions, and what it is.
 fn entry(code: i32) -> Option<(String, &'static Datum, Kind)> {
     if let Some(datum) = datum::of_code(code) {
         return Some((format!("GCS_{}", datum.name), datum, Kind::Geographic));
@@ -159,7 +159,7 @@ fn entry(code: i32) -> Option<(String, &'static Datum, Kind)> {
     Some((name, datum, Kind::Projected { projection, unit: 1.0 }))
 }
 
-/// Whether it is the sphere that web maps use.
+/// Returns whether it is the sphere that web maps use.
 fn is_web(code: i32) -> bool {
     code == WEB
 }
@@ -260,19 +260,19 @@ const ALIASES: [(i32, i32); 7] = [
     (54035, 8857),
 ];
 
-/// A system by its number.
+/// Returns A system by its number.
 pub fn crs(code: i32) -> Option<Crs> {
     let code = ALIASES.iter().find(|(alias, _)| *alias == code).map_or(code, |(_, own)| *own);
     let (_, datum, kind) = entry(code)?;
     Some(Crs { code: Some(code), datum, kind })
 }
 
-/// The name of a system in definitions.
+/// Returns the name of a system in definitions.
 pub fn name(code: i32) -> String {
     entry(code).map_or_else(String::new, |(name, ..)| name)
 }
 
-/// All numbers, without aliases.
+/// Returns all numbers, without aliases.
 fn all() -> impl Iterator<Item = i32> {
     let utm = UTM.iter().flat_map(|(start, first, last, ..)| start + first..=start + last);
     let conic = CONFORMAL.iter().chain(&ALBERS).map(|c| c.0);
@@ -288,7 +288,7 @@ fn all() -> impl Iterator<Item = i32> {
         .chain(polar)
 }
 
-/// The number of a system that is like another one but for what rounding does.
+/// Returns the number of a system that is like another one but for what rounding does.
 pub fn of_crs(crs: &Crs) -> Option<i32> {
     all().find(|&code| {
         entry(code).is_some_and(|(_, datum, kind)| datum == crs.datum && is_close(&kind, &crs.kind))
@@ -312,7 +312,7 @@ fn is_close(one: &Kind, other: &Kind) -> bool {
     }
 }
 
-/// All numbers of a projection; parallels in one order, for it says nothing.
+/// Returns all numbers of a projection; parallels in one order, for it says nothing.
 fn numbers(projection: &Projection) -> [f64; 8] {
     let two = |[a, b]: [f64; 2]| [a.min(b), a.max(b)];
     let [p, q, r, s] = match projection.method {

@@ -17,18 +17,18 @@ pub struct Parameter {
 }
 
 impl Crs {
-    /// Its ellipsoid.
+    /// Returns its ellipsoid.
     pub(in super::super) fn ellipsoid(&self) -> &'static Spheroid {
         &self.datum.spheroid
     }
 
-    /// The names of its frame and of itself.
+    /// Returns the names of its frame and of itself.
     pub(in super::super) fn names(&self) -> (&'static str, String) {
         (self.datum.name, self.code.map_or_else(|| "unnamed".to_owned(), codes::name))
     }
 
-    /// The name of the projection's method, its parameters, and the unit of coordinates in metres; `None` where
-    /// coordinates are longitude and latitude.
+    /// Returns the name of the projection's method, its parameters, and the unit of coordinates in metres;
+    /// `None` where coordinates are longitude and latitude.
     pub(in super::super) fn conversion(&self) -> Option<(&'static str, Vec<Parameter>, f64)> {
         let Kind::Projected { projection, unit } = &self.kind else { return None };
         let degrees = |angle: f64| (angle.to_degrees() * 1e10).round() / 1e10;

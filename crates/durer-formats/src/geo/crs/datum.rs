@@ -31,13 +31,14 @@ pub struct Datum {
     pub code: i32,
     /// Its name in definitions, without `D_`.
     pub name: &'static str,
-    /// What its names contain, in lower case and without what is no letter or digit.
+    /// Parts of its names, in lower case and without anything but letters and digits.
     marks: &'static [&'static str],
     /// Its ellipsoid.
     pub spheroid: Spheroid,
-    /// How it lies to WGS 84.
+    /// Shift to WGS 84.
     pub shift: Shift,
-    /// How far coordinates may be off after that, in metres; 0 where that is less than frames of today differ.
+    /// Largest error of coordinates after the shift, in metres; 0 if it is less than the difference between
+    /// today's frames.
     pub accuracy: f64,
 }
 
@@ -46,7 +47,7 @@ impl Datum {
         Ellipsoid::flattened(self.spheroid.a, self.spheroid.inverse)
     }
 
-    /// The frame that a definition names.
+    /// Returns the frame that a definition names.
     pub fn of_name(name: &str) -> Option<&'static Self> {
         let letters = name.chars().filter(char::is_ascii_alphanumeric);
         let name: String = letters.map(|c| c.to_ascii_lowercase()).collect();
@@ -100,7 +101,7 @@ const REFUSED: [(i32, i32, &str); 38] = [
     (29_168, 29_195, "SAD69"),
 ];
 
-/// The name of the frame of a system that is refused for it.
+/// Returns the name of the frame of a system that is refused for it.
 pub fn refused(code: i32) -> Option<&'static str> {
     REFUSED.iter().find(|(from, to, _)| (*from..=*to).contains(&code)).map(|(.., name)| *name)
 }
@@ -233,7 +234,7 @@ pub static DATUMS: [Datum; 15] = [
     },
 ];
 
-/// The frame of a number of longitudes and latitudes.
+/// Returns the frame of a number of longitudes and latitudes.
 pub fn of_code(code: i32) -> Option<&'static Datum> {
     DATUMS.iter().find(|datum| datum.code == code)
 }

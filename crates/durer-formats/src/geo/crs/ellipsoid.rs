@@ -1,4 +1,4 @@
-//! What projections share: an ellipsoid of revolution, and the latitudes that come with it.
+//! The common ground of projections: an ellipsoid of revolution, and its auxiliary latitudes.
 //!
 //! After J. P. Snyder, *Map Projections: A Working Manual*, 1987, and C. F. F. Karney, *Transverse Mercator with an
 //! accuracy of a few nanometers*, 2011. Angles are in radians.
@@ -19,13 +19,13 @@ impl Ellipsoid {
     #[cfg(test)]
     pub const WGS84: Self = Self::flattened(6_378_137.0, 298.257_223_563);
 
-    /// An ellipsoid by its inverse flattening, 0 for a sphere.
+    /// Creates an ellipsoid by its inverse flattening, 0 for a sphere.
     pub const fn flattened(a: f64, inverse: f64) -> Self {
         let f = if inverse == 0.0 { 0.0 } else { 1.0 / inverse };
         Self { a, e2: f * (2.0 - f) }
     }
 
-    /// A sphere of the same longer axis.
+    /// Creates A sphere of the same longer axis.
     pub fn sphere(self) -> Self {
         Self { e2: 0.0, ..self }
     }
@@ -34,25 +34,25 @@ impl Ellipsoid {
         self.e2.sqrt()
     }
 
-    /// The third flattening.
+    /// Returns the third flattening.
     pub fn n(self) -> f64 {
         let root = (1.0 - self.e2).sqrt();
         (1.0 - root) / (1.0 + root)
     }
 
-    /// The radius of a parallel, in units of the longer axis.
+    /// Returns the radius of a parallel, in units of the longer axis.
     pub fn parallel(self, lat: f64) -> f64 {
         let (sin, cos) = libm::sincos(lat);
         cos / (1.0 - self.e2 * sin * sin).sqrt()
     }
 
-    /// The isometric latitude.
+    /// Returns the isometric latitude.
     pub fn isometric(self, lat: f64) -> f64 {
         let e = self.e();
         libm::asinh(libm::tan(lat)) - e * libm::atanh(e * libm::sin(lat))
     }
 
-    /// The tangent of the conformal latitude, from that of the latitude.
+    /// Returns the tangent of the conformal latitude, from that of the latitude.
     pub fn conformal_tan(self, tau: f64) -> f64 {
         let e = self.e();
         let root = (1.0 + tau * tau).sqrt();
@@ -60,7 +60,7 @@ impl Ellipsoid {
         tau * (1.0 + sigma * sigma).sqrt() - sigma * root
     }
 
-    /// The latitude whose conformal latitude has this tangent, by Newton's method.
+    /// Returns the latitude whose conformal latitude has this tangent, by Newton's method.
     pub fn latitude_of_conformal(self, tan: f64) -> f64 {
         /// Three suffice for the earth; a few more for flatter bodies.
         const STEPS: usize = 8;
@@ -81,34 +81,35 @@ impl Ellipsoid {
         libm::atan(tau)
     }
 
-    /// The latitude of an isometric one.
+    /// Returns the latitude of an isometric one.
     pub fn latitude_of_isometric(self, psi: f64) -> f64 {
         self.latitude_of_conformal(libm::sinh(psi))
     }
 
-    /// What grows with the area below a latitude, from -[`Self::polar_q`] to that.
+    /// Returns a quantity that grows with the area below a latitude, from -[`Self::polar_q`] to
+    /// that.
     pub fn q(self, lat: f64) -> f64 {
         let (sin, e) = (libm::sin(lat), self.e());
         let far = if e == 0.0 { sin } else { libm::atanh(e * sin) / e };
         (1.0 - self.e2) * (sin / (1.0 - self.e2 * sin * sin) + far)
     }
 
-    /// The value of [`Self::q`] at the pole.
+    /// Returns the value of [`Self::q`] at the pole.
     pub fn polar_q(self) -> f64 {
         self.q(FRAC_PI_2)
     }
 
-    /// The radius of the sphere of the same area.
+    /// Returns the radius of the sphere of the same area.
     pub fn authalic_radius(self) -> f64 {
         self.a * (self.polar_q() / 2.0).sqrt()
     }
 
-    /// Sine of the authalic latitude.
+    /// Returns the sine of the authalic latitude.
     pub fn authalic_sin(self, lat: f64) -> f64 {
         (self.q(lat) / self.polar_q()).clamp(-1.0, 1.0)
     }
 
-    /// The latitude of a [`Self::q`], by Newton's method.
+    /// Returns the latitude of a [`Self::q`], by Newton's method.
     pub fn latitude_of_q(self, q: f64) -> f64 {
         const STEPS: usize = 10;
         let share = q / self.polar_q();

@@ -41,7 +41,7 @@ pub struct Crs {
     kind: Kind,
 }
 
-/// What coordinates are.
+/// Kind of coordinates.
 #[derive(Debug, Clone, PartialEq)]
 enum Kind {
     /// Longitude and latitude in degrees.
@@ -51,13 +51,14 @@ enum Kind {
 }
 
 impl Crs {
-    /// A system by its number in the EPSG's list, or in Esri's; `None` for one that is not known.
+    /// Creates A system by its number in the EPSG's list, or in Esri's; `None` for one that is not
+    /// known.
     pub fn of_code(code: i32) -> Option<Self> {
         codes::crs(code)
     }
 
-    /// A system as it is said on a command line: `EPSG:4326`, `4326`, `CRS84`, `robinson`, or a definition as
-    /// well-known text.
+    /// Returns A system as it is said on a command line: `EPSG:4326`, `4326`, `CRS84`, `robinson`, or a
+    /// definition as well-known text.
     ///
     /// # Errors
     /// A sentence that says what is known instead.
@@ -83,7 +84,7 @@ impl Crs {
         code.and_then(Self::of_code).ok_or_else(unknown)
     }
 
-    /// The system that a file says it is in.
+    /// Returns the system that a file says it is in.
     ///
     /// # Errors
     /// A sentence that says what of it is not known.
@@ -98,18 +99,18 @@ impl Crs {
         }
     }
 
-    /// Its number, where it has one.
+    /// Returns its number, where it has one.
     pub fn code(&self) -> Option<i32> {
         self.code
     }
 
-    /// What a file is told about it.
+    /// Returns the system as a file states it.
     pub fn system(&self) -> System {
         let wkt = self.code.is_none().then(|| wkt::of_crs(self, "unnamed"));
         System { code: self.code, wkt }
     }
 
-    /// Whether coordinates are longitude and latitude.
+    /// Returns whether coordinates are longitude and latitude.
     pub fn is_geographic(&self) -> bool {
         self.kind == Kind::Geographic
     }
@@ -145,26 +146,26 @@ impl Transform {
         Self { from: from.clone(), to: to.clone() }
     }
 
-    /// Whether coordinates stay as they are, to the bit.
+    /// Returns whether coordinates stay as they are, to the bit.
     pub fn is_identity(&self) -> bool {
         self.from.kind == self.to.kind && !self.is_shifted()
     }
 
-    /// Whether both lie on frames that are hundreds of metres apart.
+    /// Returns whether both lie on frames that are hundreds of metres apart.
     fn is_shifted(&self) -> bool {
         let [from, to] = [self.from.datum, self.to.datum];
         !std::ptr::eq(from, to) && from.shift != to.shift
     }
 
-    /// How far coordinates may be off, in metres, where frames are shifted by parameters, and the frame that is least well
-    /// known; `None` where none is.
+    /// Returns the largest error of coordinates, in metres, if frames are shifted by parameters, and the frame that is
+    /// least well known; otherwise `None`.
     pub fn accuracy(&self) -> Option<(&'static str, f64)> {
         let [from, to] = [self.from.datum, self.to.datum];
         let worst = if from.accuracy > to.accuracy { from } else { to };
         self.is_shifted().then_some((worst.name, from.accuracy + to.accuracy))
     }
 
-    /// A place in the other system; `None` where it has none there.
+    /// Returns A place in the other system; `None` where it has none there.
     pub fn apply(&self, p: DVec2) -> Option<DVec2> {
         if self.is_identity() {
             return Some(p);
@@ -177,8 +178,8 @@ impl Transform {
         self.to.place(place).filter(|p| p.is_finite())
     }
 
-    /// A geometry with all its positions in the other system; heights and measures stay. `None` where a position has
-    /// no place there.
+    /// Returns A geometry with all its positions in the other system; heights and measures stay. `None` where
+    /// a position has no place there.
     pub fn geometry(&self, geometry: &Geometry) -> Option<Geometry> {
         let all =
             |runs: &[Points]| runs.iter().map(|run| self.points(run)).collect::<Option<Vec<_>>>();
@@ -203,7 +204,7 @@ impl Transform {
     }
 }
 
-/// The number of the system that a definition is of, where it is known.
+/// Returns the number of the system that a definition is of, where it is known.
 pub fn code_of_wkt(text: &str) -> Option<i32> {
     code_of_node(&wkt::Node::parse(text)?)
 }
@@ -212,12 +213,12 @@ fn code_of_node(node: &wkt::Node) -> Option<i32> {
     node.code().or_else(|| codes::of_crs(&node.crs().ok()?))
 }
 
-/// Whether a text is a definition of the first version, as .prj files have them.
+/// Returns whether a text is a definition of the first version, as .prj files have them.
 pub fn is_wkt1(text: &str) -> bool {
     wkt::Node::parse(text).is_some_and(|node| node.is_first_version())
 }
 
-/// The definition of a system for a .prj; `None` for a number that is not known.
+/// Returns the definition of a system for a .prj; `None` for a number that is not known.
 pub fn wkt_of_code(code: i32) -> Option<String> {
     let crs = Crs::of_code(code)?;
     Some(wkt::of_crs(&crs, &codes::name(code)))

@@ -6,7 +6,7 @@ use super::world;
 use durer::math::DVec2;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// How an ellipsoid becomes a plane; angles in radians, lengths in metres.
+/// Projection from an ellipsoid to a plane; angles in radians, lengths in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method {
     /// Mercator with a scale at the equator.
@@ -34,7 +34,7 @@ pub struct Projection {
     pub body: Ellipsoid,
     /// The meridian in the middle.
     pub meridian: f64,
-    /// What is added to coordinates, in metres.
+    /// Offset added to coordinates, in metres.
     pub offset: DVec2,
 }
 
@@ -78,7 +78,7 @@ impl Projection {
         Some(p + self.offset).filter(|p| p.is_finite() && p.abs().max_element() < LARGEST)
     }
 
-    /// Whether a latitude is that of a pole which lies at infinity.
+    /// Returns whether a latitude is that of a pole which lies at infinity.
     fn is_far(&self, lat: f64) -> bool {
         let far = match self.method {
             Method::Mercator { .. } => true,
@@ -132,7 +132,7 @@ const LARGEST: f64 = 1e9;
 /// Rounding may lead so far, in radians, beyond the border of the world.
 const SLACK: f64 = 1e-9;
 
-/// An angle that is beyond ±π, within.
+/// Returns an angle that is beyond ±π, within.
 pub fn around(angle: f64) -> f64 {
     if angle.abs() <= PI + 1e-12 {
         return angle;
@@ -141,7 +141,7 @@ pub fn around(angle: f64) -> f64 {
     if turned < 0.0 { turned + PI } else { turned - PI }
 }
 
-/// A value within ±`most`, or a little beyond by rounding.
+/// Returns A value within ±`most`, or a little beyond by rounding.
 fn beside_pole(q: f64, most: f64) -> Option<f64> {
     (q.abs() <= most * (1.0 + SLACK)).then(|| q.clamp(-most, most))
 }
@@ -195,7 +195,7 @@ impl Cone {
         DVec2::new(rho * sin, origin - rho * cos)
     }
 
-    /// Longitude and radius; radii have the sign of the cone.
+    /// Returns the longitude and radius; radii have the sign of the cone.
     fn roll(&self, p: DVec2, origin: f64) -> (f64, f64) {
         let sign = 1_f64.copysign(self.n);
         let y = origin - p.y;
@@ -204,14 +204,14 @@ impl Cone {
     }
 }
 
-/// The radius of the circle that the equator becomes, by the scale at the pole.
+/// Returns the radius of the circle that the equator becomes, by the scale at the pole.
 fn polar_radius(body: Ellipsoid, scale: f64) -> f64 {
     let e = body.e();
     let power = libm::pow(1.0 + e, 1.0 + e) * libm::pow(1.0 - e, 1.0 - e);
     2.0 * body.a * scale / power.sqrt()
 }
 
-/// The scale at the pole of a stereographic projection that is true on a parallel.
+/// Returns the scale at the pole of a stereographic projection that is true on a parallel.
 pub fn scale_of_parallel(body: Ellipsoid, lat: f64) -> f64 {
     let lat = lat.abs();
     if lat >= FRAC_PI_2 - 1e-10 {
@@ -220,12 +220,13 @@ pub fn scale_of_parallel(body: Ellipsoid, lat: f64) -> f64 {
     body.a * body.parallel(lat) / (polar_radius(body, 1.0) * libm::exp(-body.isometric(lat)))
 }
 
-/// Whether a latitude is that of a pole.
+/// Returns whether a latitude is that of a pole.
 fn is_pole(lat: f64) -> bool {
     lat.abs() > FRAC_PI_2 - 1e-10
 }
 
-/// The factor by which scales along both axes differ from that of the sphere of the same area.
+/// Returns the factor by which scales along both axes differ from that of the sphere of the same
+/// area.
 fn skew(body: Ellipsoid, origin: f64, cos_authalic: f64) -> f64 {
     body.a * body.parallel(origin) / (body.authalic_radius() * cos_authalic)
 }
@@ -274,7 +275,7 @@ fn azimuthal_back(body: Ellipsoid, origin: f64, p: DVec2) -> Option<(f64, f64)> 
     Some((lon, body.latitude_of_q(sin.clamp(-1.0, 1.0) * body.polar_q())))
 }
 
-/// The scale at the equator of a Mercator projection that is true on a parallel.
+/// Returns the scale at the equator of a Mercator projection that is true on a parallel.
 pub fn mercator_scale(body: Ellipsoid, lat: f64) -> f64 {
     body.parallel(lat)
 }

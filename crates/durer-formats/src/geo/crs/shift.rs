@@ -6,7 +6,7 @@
 use super::ellipsoid::Ellipsoid;
 use durer::math::DVec3;
 
-/// How a frame lies to WGS 84.
+/// Transformation of a frame to WGS 84.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shift {
     /// In metres.
@@ -21,7 +21,7 @@ pub struct Shift {
 const SECOND: f64 = std::f64::consts::PI / 648_000.0;
 
 impl Shift {
-    /// Where WGS 84 lies.
+    /// The shift of WGS 84 itself.
     pub const NONE: Self = Self::new([0.0; 3], [0.0; 3], 0.0);
 
     /// Metres, seconds of arc, and parts in a million.
@@ -41,7 +41,7 @@ impl Shift {
     }
 }
 
-/// Longitude and latitude in another frame; angles in radians.
+/// Returns the longitude and latitude in another frame; angles in radians.
 pub fn apply(
     (lon, lat): (f64, f64),
     from: (Ellipsoid, Shift),

@@ -36,7 +36,7 @@ pub struct Transverse {
     back: [f64; 6],
     /// The scale times the radius of the circle as long as a meridian, in metres.
     radius: f64,
-    /// Where the latitude of the origin lies.
+    /// Northing of the origin's latitude.
     origin: f64,
 }
 
@@ -52,7 +52,7 @@ impl Transverse {
         new
     }
 
-    /// The sums of the series at ξ, η.
+    /// Returns the sums of the series at ξ, η.
     fn series(&self, coefficients: &[f64; 6], xi: f64, eta: f64) -> (f64, f64) {
         let (mut dx, mut de) = (0.0, 0.0);
         // From the smallest terms on, which rounds best.

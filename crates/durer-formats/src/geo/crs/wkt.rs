@@ -46,7 +46,7 @@ impl Node {
         }
     }
 
-    /// The next text, number, word or node.
+    /// Returns the next text, number, word or node.
     fn item(&mut self, rest: &mut &str, depth: usize) -> Option<()> {
         if let Some(text) = rest.strip_prefix('"') {
             let end = text.find('"')?;
@@ -76,19 +76,19 @@ impl Node {
         self.value(index).parse().ok().filter(|n: &f64| n.is_finite())
     }
 
-    /// The number that the definition says it has in the EPSG's list, or in Esri's.
+    /// Returns the number that the definition says it has in the EPSG's list, or in Esri's.
     pub fn code(&self) -> Option<i32> {
         let own = self.nodes.iter().find(|n| matches!(&n.keyword[..], "AUTHORITY" | "ID"))?;
         let known = matches!(&own.value(0).to_ascii_uppercase()[..], "EPSG" | "ESRI");
         own.value(1).parse().ok().filter(|_| known)
     }
 
-    /// Whether it is of the first version.
+    /// Returns whether it is of the first version.
     pub fn is_first_version(&self) -> bool {
         matches!(&self.keyword[..], "PROJCS" | "GEOGCS")
     }
 
-    /// The coordinate system that it defines.
+    /// Returns the coordinate system that it defines.
     ///
     /// # Errors
     /// What of it is not known.
@@ -196,7 +196,7 @@ impl Node {
 /// A degree in radians.
 const DEGREE: f64 = 0.017_453_292_519_943_295;
 
-/// The definition of a system, as .prj files have it.
+/// Returns the definition of a system, as .prj files have it.
 pub fn of_crs(crs: &Crs, name: &str) -> String {
     let datum = crs.datum;
     let (spheroid, own) = (&datum.spheroid, datum.name);
@@ -216,7 +216,7 @@ pub fn of_crs(crs: &Crs, name: &str) -> String {
     )
 }
 
-/// The name and the parameters of a projection, but for its offset.
+/// Returns the name and the parameters of a projection, but for its offset.
 fn parameters(projection: &Projection) -> (&'static str, Vec<(&'static str, f64)>) {
     // Degrees as they were given: what radians make of them is beyond what anybody writes.
     let degrees = |angle: f64| (angle.to_degrees() * 1e10).round() / 1e10;
@@ -260,7 +260,7 @@ fn parameters(projection: &Projection) -> (&'static str, Vec<(&'static str, f64)
     }
 }
 
-/// The parallel on which a polar projection of this scale at the pole is true, by halving.
+/// Returns the parallel on which a polar projection of this scale at the pole is true, by halving.
 pub fn parallel_of(body: Ellipsoid, scale: f64) -> f64 {
     let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
     for _ in 0..60 {

@@ -16,7 +16,7 @@ pub fn equal_earth(lon: f64, sin: f64) -> DVec2 {
     DVec2::new(lon * libm::cos(theta) / (M * slope), y)
 }
 
-/// The height over the equator, and how it grows.
+/// Returns the height over the equator, and how it grows.
 fn equal_earth_height(theta: f64) -> (f64, f64) {
     let [a1, a2, a3, a4] = EQUAL_EARTH;
     let t2 = theta * theta;
@@ -41,9 +41,9 @@ pub fn equal_earth_back(p: DVec2) -> Option<(f64, f64)> {
     (sin.abs() <= 1.0 + 1e-9).then(|| (M * p.x * slope / libm::cos(theta), sin.clamp(-1.0, 1.0)))
 }
 
-/// How far x and y are from the middle at every fifth degree of latitude, as cubic pieces: value, slope and further
-/// coefficients per degree. A. H. Robinson gave the values, 1974; the pieces are those that other software uses,
-/// so that maps fit theirs.
+/// Distances of x and y from the middle at every fifth degree of latitude, as cubic pieces: value, slope and
+/// further coefficients per degree. A. H. Robinson gave the values, 1974; the pieces are those that other software
+/// uses, so that maps fit theirs.
 #[rustfmt::skip]
 const ROBINSON_X: [[f32; 4]; 19] = [
     [1.0, 2.2199e-17, -7.15515e-05, 3.1103e-06],
@@ -94,13 +94,13 @@ const ROBINSON_Y: [[f32; 4]; 19] = [
 const WIDTH: f64 = 0.8487;
 const HEIGHT: f64 = 1.3523;
 
-/// The value of a piece at so many degrees from its start, and how it grows.
+/// Returns the value of a piece at so many degrees from its start, and how it grows.
 fn piece(c: &[f32; 4], z: f64) -> (f64, f64) {
     let [c0, c1, c2, c3] = c.map(f64::from);
     (c0 + z * (c1 + z * (c2 + z * c3)), c1 + z * (2.0 * c2 + z * 3.0 * c3))
 }
 
-/// The piece that a latitude lies in, and how many degrees from its start.
+/// Returns the piece that a latitude lies in, and how many degrees from its start.
 fn at(lat: f64) -> (usize, f64) {
     /// Five degrees in radians, and how many times they are in one.
     const STEP: f64 = 0.087_266_462_599_716_47;

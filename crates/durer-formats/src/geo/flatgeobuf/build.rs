@@ -29,17 +29,17 @@ pub struct Builder {
     out: Vec<u8>,
 }
 
-/// Where an offset stands that has yet to be set.
+/// Position of an offset that has yet to be set.
 #[derive(Debug, Clone, Copy)]
 pub struct Later(usize);
 
 impl Builder {
-    /// A buffer, and the offset to its root.
+    /// Returns A buffer, and the offset to its root.
     pub fn new() -> (Self, Later) {
         (Self { out: vec![0; 8] }, Later(4))
     }
 
-    /// The whole buffer.
+    /// Returns the whole buffer.
     pub fn finish(mut self) -> Vec<u8> {
         let length = u32::try_from(self.out.len() - 4).unwrap_or(u32::MAX);
         self.set(0, &length.to_le_bytes());
@@ -125,7 +125,7 @@ impl Builder {
         numbers.for_each(|n| self.out.extend(n.to_le_bytes()));
     }
 
-    /// A vector of tables that are written next.
+    /// Returns A vector of tables that are written next.
     pub fn tables(&mut self, later: Later, count: usize) -> Vec<Later> {
         self.count(later, count, 4);
         let start = self.out.len();

@@ -18,7 +18,8 @@ const BITS: u8 = 16;
 struct Node {
     low: DVec2,
     high: DVec2,
-    /// Of a feature its place after the index in bytes, else the number of the first child.
+    /// Position of a feature after the index, in bytes; for inner nodes the number of the first
+    /// child.
     offset: u64,
 }
 
@@ -52,8 +53,8 @@ impl Node {
     }
 }
 
-/// The order of features along the curve, from its end: those without a place last, and in their order where they are
-/// at the same one.
+/// Returns the order of features along the curve, from its end: those without a place last, and in their
+/// order where they are at the same one.
 pub fn order(bounds: &[Option<Rect>]) -> Vec<usize> {
     let corners = bounds.iter().flatten().flat_map(|b| [b.min(), b.max()]);
     let (low, size) = match Rect::around(corners) {
@@ -73,7 +74,7 @@ pub fn order(bounds: &[Option<Rect>]) -> Vec<usize> {
     order.into_iter().map(|(_, i)| i).collect()
 }
 
-/// The index of features in their order, each with its box and its place in bytes.
+/// Returns the index of features in their order, each with its box and its place in bytes.
 pub fn build(features: impl Iterator<Item = (Option<Rect>, u64)>) -> Vec<u8> {
     let leaves: Vec<Node> = features.map(|(bounds, at)| Node::around(bounds, at)).collect();
     if leaves.is_empty() {
@@ -100,8 +101,8 @@ fn parent(children: &[Node], offset: u64) -> Node {
     children.iter().fold(Node { offset, ..Node::EMPTY }, join)
 }
 
-/// The number of the first node of each level, the root's first; empty where there is no index. One feature has a root
-/// above it.
+/// Returns the number of the first node of each level, the root's first; empty where there is no index. One
+/// feature has a root above it.
 fn starts(count: u64, width: u16) -> Vec<u64> {
     if count == 0 || width == 0 {
         return Vec::new();
@@ -131,8 +132,8 @@ pub fn size(count: u64, width: u16) -> u64 {
     nodes.saturating_mul(NODE as u64)
 }
 
-/// The places, in bytes, of features whose boxes meet a window, in the order of the file; `None` where the index leads
-/// beyond itself, or twice to the same.
+/// Returns the places, in bytes, of features whose boxes meet a window, in the order of the file; `None`
+/// where the index leads beyond itself, or twice to the same.
 pub fn search(index: &[u8], count: u64, width: u16, window: &Rect) -> Option<Vec<u64>> {
     let starts = starts(count, width);
     let (_, lower) = starts.split_first()?;

@@ -12,13 +12,13 @@ mod write;
 pub use read::Reader;
 pub use write::write;
 
-/// What a file begins with; the byte after it is the number of a patch.
+/// First bytes of a file; the byte after them is the number of a patch.
 const MAGIC: [u8; 7] = *b"fgb\x03fgb";
 
 /// Bytes before the header.
 const HEAD: usize = 8;
 
-/// Whether the bytes begin like a file of this version.
+/// Returns whether the bytes begin like a file of this version.
 pub fn sniff(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC)
 }

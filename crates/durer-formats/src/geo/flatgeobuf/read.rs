@@ -31,7 +31,7 @@ pub struct Reader {
     kind: u8,
     has_z: bool,
     has_m: bool,
-    /// What the header says.
+    /// System that the header states.
     pub system: System,
     binary: Tally,
     infinite: Tally,
@@ -73,7 +73,7 @@ impl Reader {
         self.chosen = found.into_iter().rev().map(at).collect();
     }
 
-    /// The next feature; `None` at the end.
+    /// Returns the next feature; `None` at the end.
     pub fn next_feature(&mut self, warnings: &mut Warnings) -> Result<Option<Feature>> {
         if let Some(chosen) = &mut self.chosen {
             self.at = chosen.pop().unwrap_or(self.bytes.len());
@@ -138,7 +138,7 @@ fn is_finite(geometry: &Geometry) -> bool {
     finite
 }
 
-/// The bytes of a piece after its length, which stands at a place.
+/// Returns the bytes of a piece after its length, which stands at a place.
 fn piece(bytes: &[u8], at: usize) -> Option<(usize, usize)> {
     let length = u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?) as usize;
     let start = at + 4;
@@ -161,7 +161,8 @@ fn system(header: &Table<'_>) -> System {
     System { code: code.or_else(|| crs::code_of_wkt(wkt.as_deref()?)), wkt }
 }
 
-/// The values of a feature: numbers of columns, each followed by a value. Columns without one are null.
+/// Returns the values of a feature: numbers of columns, each followed by a value. Columns without one
+/// are null.
 fn fields(
     bytes: &[u8],
     columns: &[Column],
@@ -191,7 +192,7 @@ fn fields(
         .collect())
 }
 
-/// A value in JSON, nothing where it is binary, and what follows it.
+/// Returns A value in JSON, nothing where it is binary, and what follows it.
 fn value(kind: u8, bytes: &[u8]) -> Option<(Option<String>, &[u8])> {
     macro_rules! number {
         ($type:ty) => {{
@@ -244,7 +245,7 @@ struct Shapes<'a> {
     left: usize,
     place: &'a Place,
     warnings: &'a mut Warnings,
-    /// Whether the header says that there are heights and measures.
+    /// True if the header says that there are heights and measures.
     header: (bool, bool),
 }
 
@@ -316,7 +317,7 @@ impl Shapes<'_> {
         self.run(table, &xy, 0, xy.len / 2)
     }
 
-    /// The positions from one to another.
+    /// Returns the positions from one to another.
     fn run(
         &mut self,
         table: &Table<'_>,
@@ -338,7 +339,7 @@ impl Shapes<'_> {
         Ok(points)
     }
 
-    /// The positions of all parts, which a list of ends parts.
+    /// Returns the positions of all parts, which a list of ends parts.
     fn runs(&mut self, table: &Table<'_>) -> Result<Vec<Points>> {
         let Some(xy) = table.vector(1, 8) else { return Ok(Vec::new()) };
         let Some(ends) = table.vector(0, 4).filter(|ends| ends.len > 1) else {

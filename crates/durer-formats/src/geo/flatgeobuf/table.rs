@@ -8,7 +8,7 @@
 pub struct Table<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Where the list of its fields is.
+    /// Position of the list of its fields.
     list: usize,
 }
 
@@ -24,13 +24,13 @@ fn take<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..)?.first_chunk().copied()
 }
 
-/// Where the offset that stands at a place leads.
+/// Returns the position that the offset at a place points to.
 fn follow(bytes: &[u8], at: usize) -> Option<usize> {
     at.checked_add(u32::from_le_bytes(take(bytes, at)?) as usize)
 }
 
 impl<'a> Table<'a> {
-    /// The table that a buffer begins with.
+    /// Returns the table that a buffer begins with.
     pub fn root(bytes: &'a [u8]) -> Option<Self> {
         Self::at(bytes, follow(bytes, 0)?)
     }
@@ -42,7 +42,7 @@ impl<'a> Table<'a> {
         Some(Self { bytes, at, list })
     }
 
-    /// Where a field stands; `None` where it is not there.
+    /// Returns the position of a field; `None` if the field is missing.
     fn field(&self, slot: usize) -> Option<usize> {
         let length = usize::from(u16::from_le_bytes(take(self.bytes, self.list)?));
         let entry = 4 + 2 * slot;

@@ -27,7 +27,7 @@ pub fn write(out: &mut impl Write, features: &[Feature], system: &System) -> io:
     out.write_all(&bytes)
 }
 
-/// The number of the kind that all geometries are; 0 where they differ.
+/// Returns the number of the kind that all geometries are; 0 where they differ.
 fn common_kind(features: &[Feature]) -> u8 {
     let mut kinds = features.iter().filter_map(|f| f.geometry.as_ref()).map(wkb::kind);
     let first = kinds.next();
@@ -121,7 +121,8 @@ fn feature(feature: &Feature, schema: &Schema, kind: u8) -> Vec<u8> {
     buffer.finish()
 }
 
-/// The values of a feature's fields, each after the number of its column; null ones are not there.
+/// Returns the values of a feature's fields, each after the number of its column; null ones are not
+/// there.
 fn properties(feature: &Feature, schema: &Schema) -> Vec<u8> {
     let mut out = Vec::new();
     for member in members(feature.properties.as_deref().unwrap_or_default()) {

@@ -13,7 +13,7 @@ pub struct Geometries {
     pub further: Vec<Member>,
 }
 
-/// What positions of one run must make up.
+/// Shape that the positions of one run must form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Run {
     Points,
@@ -22,7 +22,7 @@ enum Run {
 }
 
 impl Geometries {
-    /// A geometry by its type; `None` where there is no such type.
+    /// Returns A geometry by its type; `None` where there is no such type.
     pub fn geometry(
         &mut self,
         kind: &str,
@@ -77,7 +77,7 @@ impl Geometries {
         Ok(Some(geometry))
     }
 
-    /// A geometry object.
+    /// Returns A geometry object.
     pub fn object(&mut self, text: Text<'_>, depth: usize) -> Result<Geometry> {
         if depth > MAX_DEPTH {
             return Err(text.error("geometries are nested too deep"));
@@ -129,7 +129,7 @@ impl Geometries {
         Ok(runs)
     }
 
-    /// An array of positions; empty where it had to be left out.
+    /// Returns an array of positions; empty where it had to be left out.
     fn run(&mut self, cursor: &mut Cursor<'_>, kind: Run) -> Result<Points> {
         // Places cost a look at all of the text before them, so they wait until they are needed.
         let start = cursor.clone();
@@ -189,7 +189,7 @@ pub fn further_members(members: &[RawMember<'_>]) -> Result<Vec<Member>> {
         .collect()
 }
 
-/// Whether the format defines a member of geometries.
+/// Returns whether the format defines a member of geometries.
 fn is_of_geometry(name: &Text<'_>) -> bool {
     matches!(name.as_bytes(), b"\"type\"" | b"\"coordinates\"" | b"\"geometries\"" | b"\"bbox\"")
 }

@@ -8,7 +8,7 @@ use crate::{Error, Place, Result};
 #[derive(Debug, Clone, Copy)]
 pub struct Text<'a> {
     bytes: &'a [u8],
-    /// Where the value begins and ends in the piece.
+    /// Range of the value in the piece.
     from: usize,
     to: usize,
     /// Line and column of the piece's first byte in the file, from 1.
@@ -19,17 +19,17 @@ pub struct Text<'a> {
 pub type RawMember<'a> = (Text<'a>, Text<'a>);
 
 impl<'a> Text<'a> {
-    /// A piece that is one value.
+    /// Creates A piece that is one value.
     pub fn new(bytes: &'a [u8], start: (u64, u64)) -> Self {
         Self { bytes, from: 0, to: bytes.len(), start }
     }
 
-    /// The value's bytes.
+    /// Returns the value's bytes.
     pub fn as_bytes(&self) -> &'a [u8] {
         self.bytes.get(self.from..self.to).unwrap_or_default()
     }
 
-    /// The value as it stands; checked to be JSON.
+    /// Returns the value as it stands; checked to be JSON.
     pub fn checked(&self) -> Result<String> {
         let text = std::str::from_utf8(self.as_bytes())
             .map_err(|e| self.error_at(self.from + e.valid_up_to(), "this is not UTF-8"))?;
@@ -41,7 +41,7 @@ impl<'a> Text<'a> {
         Ok(text.to_owned())
     }
 
-    /// Where a byte of the piece stands in the file.
+    /// Returns the place in the file of a byte of the piece.
     fn place_at(&self, at: usize) -> Place {
         let before = self.bytes.get(..at).unwrap_or(self.bytes);
         let lines = before.iter().filter(|&&b| b == b'\n').count() as u64;
@@ -52,7 +52,7 @@ impl<'a> Text<'a> {
         Place::Line(self.start.0 + lines, column)
     }
 
-    /// Where the value stands in the file.
+    /// Returns the place of the value in the file.
     pub fn place(&self) -> Place {
         self.place_at(self.from)
     }
@@ -61,22 +61,22 @@ impl<'a> Text<'a> {
         Error::Decode { place: self.place_at(at), message: message.into() }
     }
 
-    /// An error where the value begins.
+    /// Returns an error where the value begins.
     pub fn error(&self, message: impl Into<String>) -> Error {
         self.error_at(self.from, message)
     }
 
-    /// A walk through the value.
+    /// Returns A walk through the value.
     pub fn cursor(self) -> Cursor<'a> {
         Cursor { text: self, at: self.from }
     }
 
-    /// Whether the value is the word `null`.
+    /// Returns whether the value is the word `null`.
     pub fn is_null(&self) -> bool {
         self.as_bytes() == b"null"
     }
 
-    /// The members of an object.
+    /// Returns the members of an object.
     pub fn members(self) -> Result<Vec<RawMember<'a>>> {
         let mut cursor = self.cursor();
         let mut members = Vec::new();
@@ -124,13 +124,13 @@ impl<'a> Cursor<'a> {
         found
     }
 
-    /// An error at the next byte.
+    /// Returns an error at the next byte.
     pub fn error(&mut self, message: impl Into<String>) -> Error {
         self.peek();
         self.text.error_at(self.at, message)
     }
 
-    /// Where the next byte stands.
+    /// Returns the place of the next byte.
     pub fn place(&mut self) -> Place {
         self.peek();
         self.text.place_at(self.at)
@@ -145,7 +145,7 @@ impl<'a> Cursor<'a> {
         Err(self.error(format!("{what} is expected, not {found}")))
     }
 
-    /// What comes next, for messages.
+    /// Returns a description of the next token, for messages.
     pub fn found(&mut self) -> String {
         match self.peek() {
             None => "the end".to_owned(),
@@ -158,7 +158,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// The next value, whatever it is.
+    /// Returns the next value, whatever it is.
     pub fn value(&mut self, what: &str) -> Result<Text<'a>> {
         self.peek();
         let from = self.at;
@@ -182,7 +182,7 @@ impl<'a> Cursor<'a> {
         Ok(Text { from, to: self.at, ..self.text })
     }
 
-    /// The next number.
+    /// Returns the next number.
     pub fn number(&mut self) -> Result<f64> {
         let first = self.peek();
         let rest = self.text.bytes.get(self.at..self.text.to).unwrap_or_default();
@@ -222,8 +222,8 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// Whether a number, as it is read elsewhere, follows the stricter grammar of JSON (RFC 8259, 6): no zeros in
-/// front, digits before and after the point.
+/// Returns whether a number, as it is read elsewhere, follows the stricter grammar of JSON (RFC 8259, 6): no
+/// zeros in front, digits before and after the point.
 fn is_number_of_json(text: &[u8]) -> bool {
     let text = text.strip_prefix(b"-").unwrap_or(text);
     let whole = text.iter().take_while(|byte| byte.is_ascii_digit()).count();

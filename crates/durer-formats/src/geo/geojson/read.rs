@@ -30,7 +30,7 @@ struct Stream<R> {
     at: usize,
     /// Line and column of the next byte, from 1.
     here: (u64, u64),
-    /// Whether values end with their line.
+    /// True if values end with their line.
     by_lines: bool,
 }
 
@@ -67,7 +67,7 @@ impl<R: Read> Stream<R> {
         Error::line(self.here.0, self.here.1, message)
     }
 
-    /// The next byte that is no blank.
+    /// Returns the next byte that is no blank.
     fn next(&mut self) -> Result<Option<u8>> {
         while let Some(byte) = self.peek()? {
             if !matches!(byte, b' ' | b'\t' | b'\r' | b'\n') {
@@ -131,7 +131,7 @@ impl<R: Read> Stream<R> {
     }
 }
 
-/// Where the reader is.
+/// State of the reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum State {
     Between,
@@ -267,7 +267,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Whether nothing that has been read says that this is no collection.
+    /// Returns whether nothing that has been read says that this is no collection.
     fn may_be_collection(&self) -> bool {
         let kind = self.open.iter().find(|(name, _)| name.bytes == b"\"type\"");
         kind.is_none_or(|(_, value)| value.bytes == b"\"FeatureCollection\"")
@@ -293,7 +293,7 @@ impl<R: Read> Reader<R> {
         Ok(())
     }
 
-    /// The document whose members have been read.
+    /// Returns the document whose members have been read.
     fn document(&mut self) -> Result<Feature> {
         let open = std::mem::take(&mut self.open);
         let members: Vec<RawMember<'_>> = open.iter().map(|(n, v)| (n.text(), v.text())).collect();
@@ -370,7 +370,7 @@ impl<R: Read> Reader<R> {
     }
 }
 
-/// The value of the member `type`, if it is a string.
+/// Returns the value of the member `type`, if it is a string.
 pub fn kind(members: &[RawMember<'_>]) -> Option<String> {
     let (_, value) = members.iter().rfind(|(name, _)| name.as_bytes() == b"\"type\"")?;
     serde_json::from_slice(value.as_bytes()).ok()

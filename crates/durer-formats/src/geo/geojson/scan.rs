@@ -1,8 +1,8 @@
-//! Where JSON values end, without taking them apart.
+//! A scanner that finds the ends of JSON values without parsing them.
 
 use crate::geo::MAX_DEPTH;
 
-/// What a byte means for the value being looked at.
+/// Effect of a byte on the current value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Progress {
     /// The value goes on.

@@ -75,7 +75,7 @@ fn open_geometry<W: Write>(out: &mut W, geometry: &Geometry) -> io::Result<()> {
     }
 }
 
-/// An array; `write` writes each item.
+/// Returns an array; `write` writes each item.
 fn list<W: Write, T>(
     out: &mut W,
     items: &[T],

@@ -3,7 +3,7 @@
 use crate::geo::{Dimensions, Feature, Geometry, Warnings, wkb};
 use crate::{Error, Place, Result};
 
-/// What a geometry begins with, and its version.
+/// First bytes of a geometry, and its version.
 const MAGIC: &[u8] = b"GP\0";
 
 /// Numbers of the envelope, by its kind.
@@ -34,7 +34,7 @@ pub fn read(bytes: &[u8], warnings: &mut Warnings, place: &Place) -> Result<Opti
     feature.map(|feature| feature.and_then(|feature| feature.geometry))
 }
 
-/// A geometry with its header, with an envelope of x and y but for points.
+/// Returns A geometry with its header, with an envelope of x and y but for points.
 pub fn write(geometry: &Geometry, system: i32) -> Vec<u8> {
     let bounds = geometry.bounds();
     let envelope = bounds.filter(|_| !matches!(geometry, Geometry::Point(_)));
@@ -50,7 +50,8 @@ pub fn write(geometry: &Geometry, system: i32) -> Vec<u8> {
     bytes
 }
 
-/// The name of a kind of geometry, by its number in well-known binary; of any where they differ.
+/// Returns the name of a kind of geometry, by its number in well-known binary; of any where they
+/// differ.
 pub fn kind_name(kind: Option<u32>) -> &'static str {
     match kind {
         Some(1) => "POINT",
@@ -64,14 +65,14 @@ pub fn kind_name(kind: Option<u32>) -> &'static str {
     }
 }
 
-/// Which ordinates geometries have: in all, in some, in none.
+/// Ordinates of geometries: in all, in some, in none.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Ordinates {
     z: Presence,
     m: Presence,
 }
 
-/// How often an ordinate was there, and how often not.
+/// Counts of geometries with and without an ordinate.
 #[derive(Debug, Clone, Copy, Default)]
 struct Presence {
     with: bool,
@@ -101,7 +102,7 @@ impl Ordinates {
         self.m.add(dimensions.has_m());
     }
 
-    /// The numbers by which tables tell it, of heights and measures.
+    /// Returns the numbers by which tables tell it, of heights and measures.
     pub fn codes(self) -> [i64; 2] {
         [self.z.code(), self.m.code()]
     }

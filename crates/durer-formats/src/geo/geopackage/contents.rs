@@ -1,4 +1,4 @@
-//! What a GeoPackage says of its tables.
+//! The tables that a GeoPackage lists as its contents.
 
 use crate::geo::{System, crs};
 use crate::sqlite::{Column, Database, Table, Value, columns};
@@ -16,18 +16,18 @@ pub struct Layer {
     pub columns: Vec<Column>,
     /// The place of the column of geometries, where it has one.
     pub geometry: Option<usize>,
-    /// Which columns hold JSON.
+    /// True for each column that holds JSON.
     pub json: Vec<bool>,
     /// The system of its coordinates.
     pub system: System,
 }
 
-/// What a file holds.
+/// Report on a file's contents.
 #[derive(Debug, Default)]
 pub struct Contents {
     /// Tables of features; then those of attributes, which have no geometry.
     pub layers: Vec<Layer>,
-    /// What is left out: names, and why.
+    /// Names of what is left out, with reasons.
     pub left_out: Vec<(String, &'static str)>,
 }
 
@@ -94,7 +94,8 @@ fn layer(
     Ok(Layer { name: table.name.clone(), root: table.root, columns, geometry: place, json, system })
 }
 
-/// The coordinate systems of the file by their numbers in it. Two stand for what is not known.
+/// Returns the coordinate systems of the file by their numbers in it. Two stand for what is not
+/// known.
 fn systems(database: &Database, tables: &[Table]) -> Result<BTreeMap<i64, System>> {
     let rows = Records::of(database, tables, "gpkg_spatial_ref_sys")?.unwrap_or_default();
     let system = |row: &Record| {
@@ -119,7 +120,7 @@ fn json_columns(database: &Database, tables: &[Table]) -> Result<Vec<(String, St
     Ok(of_json.map(names).map(|[table, column]| (table, column)).collect())
 }
 
-/// What a database is that has no list of contents.
+/// Describes a database that has no list of contents.
 fn foreign(database: &Database, tables: &[Table]) -> String {
     /// "MPBX".
     const TILES: u32 = 0x4d50_4258;
@@ -142,7 +143,7 @@ type Record = BTreeMap<String, Value<'static>>;
 struct Records(Vec<Record>);
 
 impl Records {
-    /// All rows of the table of a name; `None` where there is none.
+    /// Returns all rows of the table of a name; `None` where there is none.
     fn of(database: &Database, tables: &[Table], name: &str) -> Result<Option<Self>> {
         let Some(table) = tables.iter().find(|t| t.kind == "table" && is(&t.name, name)) else {
             return Ok(None);
@@ -176,7 +177,7 @@ fn integer(record: &Record, key: &str) -> Option<i64> {
     record.get(key).and_then(Value::integer)
 }
 
-/// Whether names are the same for SQLite.
+/// Returns whether names are the same for SQLite.
 fn is(one: &str, other: &str) -> bool {
     one.eq_ignore_ascii_case(other)
 }

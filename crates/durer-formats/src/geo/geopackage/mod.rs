@@ -15,7 +15,8 @@ use crate::sqlite::MAGIC;
 /// "GPKG", what a file says that it is for.
 const APPLICATION: u32 = 0x4750_4b47;
 
-/// Whether the bytes begin like a GeoPackage: a database that says so itself, or by its tables.
+/// Returns whether the bytes begin like a GeoPackage: a database that says so itself, or by its
+/// tables.
 pub fn sniff(bytes: &[u8]) -> bool {
     const TABLE: &[u8] = b"gpkg_contents";
     let says_so = bytes.get(68..72).is_some_and(|own| matches!(own, b"GPKG" | b"GP10" | b"GP11"));

@@ -19,12 +19,12 @@ pub struct Reader {
     faults: Faults,
 }
 
-/// What had to be left out, told at the end.
+/// Omissions, reported at the end.
 #[derive(Debug, Default)]
 struct Faults {
     binary: Tally,
     geometries: Tally,
-    /// What is wrong with the first of them.
+    /// Description of the first fault.
     why: String,
 }
 
@@ -41,17 +41,17 @@ impl Reader {
         Ok(Self { database, layers, at: 0, rows: None, faults: Faults::default() })
     }
 
-    /// The names of the layers that are read.
+    /// Returns the names of the layers that are read.
     pub fn layers(&self) -> Vec<String> {
         self.layers.iter().map(|layer| layer.name.clone()).collect()
     }
 
-    /// The system of all layers.
+    /// Returns the system of all layers.
     pub fn system(&self) -> System {
         self.layers.first().map(|layer| layer.system.clone()).unwrap_or_default()
     }
 
-    /// The next feature; `None` at the end.
+    /// Returns the next feature; `None` at the end.
     pub fn next_feature(&mut self, warnings: &mut Warnings) -> Result<Option<Feature>> {
         if self.at == 0 && self.rows.is_none() {
             self.check_systems()?;
@@ -141,7 +141,7 @@ fn names(layers: &[Layer]) -> String {
     layers.iter().map(|layer| &layer.name[..]).collect::<Vec<_>>().join(", ")
 }
 
-/// The layers to read; all features, where none is named.
+/// Returns the layers to read; all features, where none is named.
 fn chosen(contents: Contents, name: Option<&str>, warnings: &mut Warnings) -> Result<Vec<Layer>> {
     let Contents { layers, left_out } = contents;
     if let Some(name) = name {
@@ -211,7 +211,7 @@ impl Row<'_> {
         })
     }
 
-    /// A value in JSON; nothing for what is binary.
+    /// Returns A value in JSON; nothing for what is binary.
     fn value(
         &mut self,
         column: &Column,

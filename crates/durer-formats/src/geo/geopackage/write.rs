@@ -24,7 +24,8 @@ const MAX_FIELDS: usize = 1998;
 /// 1.3.0.
 const VERSION: u32 = 10_300;
 
-/// When it was changed: a file with the same features is the same file at any time.
+/// Time of the last change in every file: a file with the same features is the same file at any
+/// time.
 const CHANGED: &str = "1970-01-01T00:00:00.000Z";
 
 /// Writes features to pages.
@@ -39,7 +40,7 @@ pub struct Writer {
     held: Vec<(Feature, i64)>,
     positions: usize,
     is_settled: bool,
-    /// How values of fields were written last.
+    /// Kinds in which values of fields were last written.
     written: Vec<FieldKind>,
     /// Fields whose values were numbers first, and texts later.
     mixed: Vec<String>,
@@ -51,7 +52,7 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// A file without a feature.
+    /// Creates A file without a feature.
     pub fn new() -> Self {
         Self {
             database: NewDatabase::new(),
@@ -76,7 +77,7 @@ impl Writer {
         self.system = system;
     }
 
-    /// The pages since the last call.
+    /// Returns the pages since the last call.
     pub fn take(&mut self) -> Vec<u8> {
         self.database.take()
     }
@@ -189,7 +190,8 @@ impl Writer {
         Ok((first, rest, warnings))
     }
 
-    /// The text that makes the table, the name of its geometries, and fields that got another name.
+    /// Returns the text that makes the table, the name of its geometries, and fields that got
+    /// another name.
     fn definition(&self, name: &str) -> (String, String, Vec<String>) {
         let mut taken: Vec<String> = Vec::new();
         let mut renamed = Vec::new();
@@ -230,7 +232,8 @@ impl Writer {
     }
 }
 
-/// The feature and its number: its id, where that is a whole number above the last one. Any other id becomes a field.
+/// Returns the feature and its number: its id, where that is a whole number above the last one. Any other id
+/// becomes a field.
 fn with_number(feature: &Feature, last: i64) -> (Feature, i64) {
     let number = feature.id.as_ref().and_then(|id| id.parse::<i64>().ok());
     match number.filter(|&number| number > last && number < i64::MAX / 2) {
@@ -260,12 +263,12 @@ fn type_name(kind: FieldKind) -> &'static str {
     }
 }
 
-/// A name in SQL.
+/// Returns A name in SQL.
 fn quote(name: &str) -> String {
     format!("\"{}\"", name.replace('"', "\"\""))
 }
 
-/// A name that a table may have: at most 200 bytes, none that belongs to the format.
+/// Returns A name that a table may have: at most 200 bytes, none that belongs to the format.
 fn layer_name(name: &str) -> String {
     let mut own = String::new();
     for c in name.chars().filter(|c| !c.is_control()) {
@@ -282,7 +285,7 @@ fn layer_name(name: &str) -> String {
     }
 }
 
-/// The number of a system in the file; -1 for one that is not known.
+/// Returns the number of a system in the file; -1 for one that is not known.
 fn system_id(system: &System) -> i32 {
     /// For a system that has a definition and no number.
     const OWN: i32 = 300_000;
@@ -328,7 +331,7 @@ fn systems(database: &mut NewDatabase, system: &System) -> Result<()> {
     Ok(())
 }
 
-/// Whether a number is of Esri's list, which has others than the EPSG's.
+/// Returns whether a number is of Esri's list, which has others than the EPSG's.
 fn is_esri(code: i32) -> bool {
     code >= 50_000
 }

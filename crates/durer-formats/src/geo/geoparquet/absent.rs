@@ -1,4 +1,4 @@
-//! What stands in for GeoParquet without the feature `geoparquet`.
+//! A replacement for GeoParquet without the feature `geoparquet`.
 
 use crate::geo::reader::Beside;
 use crate::geo::{Feature, System, Warnings};
@@ -7,7 +7,7 @@ use std::io::Write;
 
 /// Gives no features.
 pub struct Reader {
-    /// Nothing.
+    /// An unknown system.
     pub system: System,
 }
 

@@ -57,7 +57,7 @@ impl Walk<'_> {
         None
     }
 
-    /// The next field of a structure: its number and type; type 0 at the end.
+    /// Returns the next field of a structure: its number and type; type 0 at the end.
     fn field(&mut self, number: &mut i64) -> Option<u8> {
         let head = self.byte()?;
         let (step, kind) = (head >> 4, head & 15);
@@ -103,7 +103,7 @@ impl Walk<'_> {
         }
     }
 
-    /// The length of a list and the type of its items, each of at least a byte.
+    /// Returns the length of a list and the type of its items, each of at least a byte.
     fn list(&mut self) -> Option<(u64, u8)> {
         let head = self.byte()?;
         let count = if head >> 4 == 15 { self.number()? } else { u64::from(head >> 4) };
@@ -114,7 +114,7 @@ impl Walk<'_> {
         if matches!(kind, 1 | 2) { self.skip(1) } else { self.value(kind, depth) }
     }
 
-    /// The description of the file, with its columns as field 2.
+    /// Returns the description of the file, with its columns as field 2.
     fn file(&mut self) -> Option<()> {
         let mut number = 0;
         loop {
@@ -126,7 +126,7 @@ impl Walk<'_> {
         }
     }
 
-    /// The columns, of which groups tell how many of the next are in them.
+    /// Returns the columns, of which groups tell how many of the next are in them.
     fn columns(&mut self) -> Option<()> {
         let (count, kind) = self.list()?;
         let mut open: Vec<u64> = Vec::new();
@@ -148,7 +148,7 @@ impl Walk<'_> {
         Some(())
     }
 
-    /// How many children a column has.
+    /// Returns the number of a column's children.
     fn column(&mut self) -> Option<u64> {
         let (mut number, mut children) = (0, 0);
         loop {

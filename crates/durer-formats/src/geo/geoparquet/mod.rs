@@ -25,7 +25,7 @@ pub use read::Reader;
 #[cfg(feature = "geoparquet")]
 pub use write::write;
 
-/// Whether the bytes begin like a Parquet file.
+/// Returns whether the bytes begin like a Parquet file.
 pub fn sniff(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PAR1")
 }

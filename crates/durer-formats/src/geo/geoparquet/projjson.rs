@@ -5,7 +5,8 @@ use crate::geo::crs::{Crs, Parameter};
 use crate::geo::{System, Warnings};
 use serde_json::{Value, json};
 
-/// The system that a member `crs` tells; longitude and latitude where there is none, nothing where it is null.
+/// Returns the system that a member `crs` tells; longitude and latitude where there is none, nothing where it
+/// is null.
 pub fn system(told: Option<&Value>, warnings: &mut Warnings) -> System {
     let Some(told) = told else { return System::LONLAT };
     if told.is_null() {
@@ -28,7 +29,7 @@ pub fn system(told: Option<&Value>, warnings: &mut Warnings) -> System {
     System { code, wkt: None }
 }
 
-/// A system; `None` for one that is not known.
+/// Returns A system; `None` for one that is not known.
 pub fn of_system(system: &System) -> Option<Value> {
     Crs::of_system(system).ok().map(|crs| of_crs(&crs))
 }

@@ -22,9 +22,9 @@ pub struct Reader {
     geometry: String,
     /// Columns that are no fields: boxes around geometries, and further geometries.
     hidden: Vec<String>,
-    /// What columns say of their values, in their order.
+    /// Meanings of columns' values, in the columns' order.
     meanings: Vec<Meaning>,
-    /// What the file says.
+    /// System that the file states.
     pub system: System,
     binary: Tally,
     broken: Tally,
@@ -60,7 +60,7 @@ impl Reader {
         Ok(Self { rows, row, geometry, hidden, meanings, system, binary, broken, why })
     }
 
-    /// The next feature; `None` at the end.
+    /// Returns the next feature; `None` at the end.
     pub fn next_feature(&mut self, warnings: &mut Warnings) -> Result<Option<Feature>> {
         let row = caught(|| self.rows.next())?;
         let Some(row) = row else {
@@ -117,7 +117,7 @@ impl Reader {
     }
 }
 
-/// A geometry as well-known binary.
+/// Returns A geometry as well-known binary.
 fn shape(bytes: &ByteArray, place: &Place, warnings: &mut Warnings) -> Result<Geometry> {
     let mut reader = wkb::Reader::new(bytes.data());
     let feature = reader.next_feature();
@@ -164,7 +164,7 @@ fn broken(message: &str) -> Error {
     Error::whole(format!("the Parquet file is broken: {message}"))
 }
 
-/// What is made, where that does not panic.
+/// Returns the result of a function, or an error if it panics.
 fn caught<T>(make: impl FnOnce() -> T) -> Result<T> {
     catch_unwind(AssertUnwindSafe(make)).map_err(|_| broken("it says what cannot be"))
 }

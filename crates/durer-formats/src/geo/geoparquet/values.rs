@@ -8,10 +8,10 @@ use parquet::data_type::Decimal;
 use parquet::record::Field;
 use parquet::schema::types::Type;
 
-/// What a column says of its values beyond what they are stored as.
+/// Meaning of a column's values beyond their stored type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Meaning {
-    /// Nothing more.
+    /// No further meaning.
     Plain,
     /// Texts that are JSON.
     Json,
@@ -22,7 +22,7 @@ pub enum Meaning {
 }
 
 impl Meaning {
-    /// Of a column.
+    /// Returns the meaning of a column's values.
     pub fn of(column: &Type) -> Self {
         let parts = |unit: &TimeUnit| match unit {
             TimeUnit::MILLIS => 1000,
@@ -42,7 +42,7 @@ impl Meaning {
     }
 }
 
-/// A value in JSON; `None` for what is binary.
+/// Returns A value in JSON; `None` for what is binary.
 pub fn json(field: &Field, meaning: Meaning) -> Option<String> {
     Some(match (field, meaning) {
         (Field::Null, _) => "null".to_owned(),
@@ -105,7 +105,7 @@ fn is_json(text: &str) -> bool {
     serde_json::from_str::<serde::de::IgnoredAny>(text).is_ok()
 }
 
-/// A number of up to 38 digits, all of them kept.
+/// Returns A number of up to 38 digits, all of them kept.
 fn decimal(value: &Decimal) -> String {
     let (bytes, scale) = (value.data(), usize::try_from(value.scale()).unwrap_or(0));
     let sign = if bytes.first().is_some_and(|b| b & 0x80 != 0) { -1 } else { 0 };

@@ -59,7 +59,7 @@ fn failed(error: ParquetError) -> Error {
 /// A field with the kind that it is stored as.
 type Column = (String, FieldKind);
 
-/// All fields; texts that only look like days are texts.
+/// Returns all fields; texts that only look like days are texts.
 fn columns(features: &[Feature]) -> Vec<Column> {
     let schema = Schema::of(features);
     let mut columns: Vec<Column> =
@@ -77,13 +77,13 @@ fn columns(features: &[Feature]) -> Vec<Column> {
     columns
 }
 
-/// A name that no field has.
+/// Returns A name that no field has.
 fn free(name: &str, columns: &[Column]) -> String {
     let mut names = std::iter::once(name.to_owned()).chain((1..).map(|i| format!("{name}_{i}")));
     names.find(|name| !columns.iter().any(|(key, _)| key == name)).unwrap_or_default()
 }
 
-/// What the metadata say of the geometries.
+/// Returns the metadata of the geometries.
 fn column(features: &[Feature], system: &System) -> Value {
     let geometries = || features.iter().filter_map(|f| f.geometry.as_ref());
     let kinds: BTreeSet<String> = geometries().map(kind).collect();

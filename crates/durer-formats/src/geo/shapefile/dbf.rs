@@ -55,7 +55,7 @@ impl Table {
         Ok(Self { columns, encoding, head, length, rows: count.min(held), bytes })
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.rows
     }
@@ -65,12 +65,12 @@ impl Table {
         self.bytes.get(start..start.checked_add(self.length)?).filter(|_| row < self.rows)
     }
 
-    /// Whether a row is marked as deleted.
+    /// Returns whether a row is marked as deleted.
     pub fn is_deleted(&self, row: usize) -> bool {
         self.bytes_of(row).is_some_and(|bytes| bytes.first() == Some(&b'*'))
     }
 
-    /// The values of a row as a JSON object.
+    /// Returns the values of a row as a JSON object.
     pub fn row(&self, row: usize, faults: &mut Faults) -> String {
         let Some(bytes) = self.bytes_of(row) else {
             faults.rows.add(|| Place::Path(format!("record {}", row + 1)));
@@ -84,7 +84,7 @@ impl Table {
         object(&self.columns.iter().map(member).collect::<Vec<_>>())
     }
 
-    /// A value in JSON.
+    /// Returns A value in JSON.
     fn value(
         &self,
         column: &Column,
@@ -151,7 +151,7 @@ fn decode(encoding: Option<Encoding>, bytes: &[u8]) -> (Cow<'_, str>, bool) {
     }
 }
 
-/// The fields whose descriptions stand in a head, as far as rows have bytes for them.
+/// Returns the fields whose descriptions stand in a head, as far as rows have bytes for them.
 fn columns(bytes: &[u8], head: usize, length: usize, encoding: Option<Encoding>) -> Vec<Column> {
     let described = bytes.get(FIELD..head.min(bytes.len())).unwrap_or_default();
     let mut at = 1;
@@ -183,7 +183,8 @@ fn double(value: f64) -> Option<String> {
     String::from_utf8(text).ok()
 }
 
-/// A decimal number in JSON: with its digits where they are such, but for zeros at their end after the first.
+/// Returns A decimal number in JSON: with its digits where they are such, but for zeros at their end after
+/// the first.
 fn decimal(value: &[u8]) -> Option<String> {
     let value: Vec<u8> = value.iter().copied().filter(|b| !matches!(b, b' ' | 0)).collect();
     let text = std::str::from_utf8(&value).ok()?;
@@ -204,7 +205,7 @@ fn day(value: &[u8]) -> Option<String> {
     whole.then(|| format!("\"{}-{}-{}\"", &digits[..4], &digits[4..6], &digits[6..]))
 }
 
-/// A Julian day and milliseconds as a moment of JSON; by Fliegel and Van Flandern, 1968.
+/// Returns A Julian day and milliseconds as a moment of JSON; by Fliegel and Van Flandern, 1968.
 fn moment(day: [u8; 4], milliseconds: [u8; 4]) -> Option<String> {
     let (julian, time) = (i64::from(i32::from_le_bytes(day)), i32::from_le_bytes(milliseconds));
     if !(1_721_426..5_373_485).contains(&julian) || !(0..86_400_000).contains(&time) {

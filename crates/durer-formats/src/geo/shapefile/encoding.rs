@@ -1,11 +1,11 @@
-//! How texts of tables are encoded.
+//! Text encodings of tables.
 
 use crate::Place;
 use crate::geo::Warnings;
 use crate::text::name;
 use std::borrow::Cow;
 
-/// How texts are encoded.
+/// Encoding of texts.
 #[derive(Debug, Clone, Copy)]
 pub enum Encoding {
     /// One of those that browsers know.
@@ -27,7 +27,7 @@ const CP852: &str = "ÇüéâäůćçłëŐőîŹÄĆÉĹĺôöĽľŚśÖÜŤť�
 └┴┬├─┼Ăă╚╔╩╦╠═╬¤đĐĎËďŇÍÎě┘┌█▄ŢŮ▀ÓßÔŃńňŠšŔÚŕŰýÝţ´\u{ad}˝˛ˇ˘§÷¸°¨˙űŘř■\u{a0}";
 
 impl Encoding {
-    /// The encoding that a .cpg names; `None`, with a warning, for an unknown one.
+    /// Returns the encoding that a .cpg names; `None`, with a warning, for an unknown one.
     pub fn of_name(text: &str, warnings: &mut Warnings) -> Option<Self> {
         let label = text.trim().to_ascii_lowercase();
         let digits = label.trim_start_matches(|c: char| !c.is_ascii_digit());
@@ -41,7 +41,8 @@ impl Encoding {
         found
     }
 
-    /// The encoding of a Windows or MS-DOS code page, or a part of ISO 8859 by `88591` and the like.
+    /// Returns the encoding of a Windows or MS-DOS code page, or a part of ISO 8859 by `88591` and
+    /// the like.
     fn of_page(page: u32) -> Option<Self> {
         let label = match page {
             437 => return Some(Self::Page(CP437)),
@@ -61,7 +62,7 @@ impl Encoding {
         encoding_rs::Encoding::for_label(label.as_bytes()).map(Self::Known)
     }
 
-    /// The encoding that the language driver of a table stands for.
+    /// Returns the encoding that the language driver of a table stands for.
     pub fn of_driver(driver: u8) -> Option<Self> {
         Self::of_page(match driver {
             0x01 | 0x09 | 0x0b | 0x0d | 0x0f | 0x11 | 0x15 | 0x18 | 0x19 | 0x1b => 437,
@@ -83,7 +84,7 @@ impl Encoding {
         })
     }
 
-    /// The text that bytes stand for, and whether all of them stand for something.
+    /// Returns the text that bytes stand for, and whether all of them stand for something.
     pub fn decode<'a>(self, bytes: &'a [u8]) -> (Cow<'a, str>, bool) {
         match self {
             Self::Known(encoding) => {
@@ -104,7 +105,7 @@ impl Encoding {
     }
 }
 
-/// The bytes without the beginning of a letter of UTF-8 at their end.
+/// Returns the bytes without the beginning of a letter of UTF-8 at their end.
 pub fn whole_letters(bytes: &[u8]) -> &[u8] {
     match std::str::from_utf8(bytes) {
         Err(e) if e.error_len().is_none() => bytes.get(..e.valid_up_to()).unwrap_or(bytes),

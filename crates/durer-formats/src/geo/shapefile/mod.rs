@@ -22,7 +22,7 @@ const HEADER: usize = 100;
 /// The number that a .shp or .shx begins with.
 const MAGIC: [u8; 4] = 9994_u32.to_be_bytes();
 
-/// Whether the bytes begin like a .shp; an index begins alike.
+/// Returns whether the bytes begin like a .shp; an index begins alike.
 pub fn sniff(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC) && bytes.get(28..32) == Some(&1000_u32.to_le_bytes())
 }
@@ -34,12 +34,12 @@ pub struct Reader {
     /// Records read.
     row: usize,
     table: Option<Table>,
-    /// What the .prj says.
+    /// System that the .prj states.
     pub system: System,
     faults: Faults,
 }
 
-/// What had to be repaired, told at the end.
+/// Repairs, reported at the end.
 #[derive(Debug, Default)]
 pub struct Faults {
     pub values: Tally,
@@ -77,7 +77,7 @@ impl Reader {
         Ok(Self { bytes, at: HEADER, row: 0, table, system, faults: Faults::default() })
     }
 
-    /// The next record; `None` at the end.
+    /// Returns the next record; `None` at the end.
     pub fn next_feature(&mut self, warnings: &mut Warnings) -> Result<Option<Feature>> {
         loop {
             let Some(content) = self.content(warnings) else {
@@ -99,7 +99,7 @@ impl Reader {
         }
     }
 
-    /// The bytes of the next record's content.
+    /// Returns the bytes of the next record's content.
     fn content(&mut self, warnings: &mut Warnings) -> Option<std::ops::Range<usize>> {
         let head = self.bytes.get(self.at..)?.first_chunk::<8>();
         let Some([.., a, b, c, d]) = head else {

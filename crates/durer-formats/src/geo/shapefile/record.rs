@@ -31,7 +31,7 @@ impl Numbers<'_> {
         self.take().map(f64::from_le_bytes)
     }
 
-    /// How many things of so many bytes there are; `None` where there is no room for them.
+    /// Returns the number of items of the given size in bytes; `None` if there is no room for them.
     fn count(&mut self, size: usize) -> Option<usize> {
         let count = self.whole()? as usize;
         let left = self.bytes.len().checked_sub(self.at)?;
@@ -43,12 +43,12 @@ impl Numbers<'_> {
     }
 }
 
-/// What a record holds, before it is made a geometry.
+/// Content of a record before it becomes a geometry.
 struct Content {
     points: Points,
     /// The first position of each part.
     starts: Vec<usize>,
-    /// Of a multipatch, what its parts are.
+    /// Kinds of a multipatch's parts.
     kinds: Vec<u32>,
 }
 
@@ -58,7 +58,7 @@ impl Content {
         self.starts.iter().zip(ends).map(|(&start, end)| self.part(start, end))
     }
 
-    /// The positions from one to another, none where they do not come in this order.
+    /// Returns the positions from one to another, none where they do not come in this order.
     fn part(&self, start: usize, end: usize) -> Points {
         let mut part = Points::new(self.points.dimensions);
         part.xy = self.points.xy.get(start..end).unwrap_or_default().to_vec();

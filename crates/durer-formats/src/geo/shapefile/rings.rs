@@ -1,4 +1,4 @@
-//! Which hole lies in which ring.
+//! The assignment of holes to rings.
 
 use crate::Place;
 use crate::geo::{Points, Warnings};
@@ -54,12 +54,13 @@ pub fn polygons(
     polygons
 }
 
-/// Whether a ring lies in another, as the first of its points says that is not on the other's border.
+/// Returns whether a ring lies in another, as the first of its points says that is not on the other's
+/// border.
 fn surrounds(outer: &[DVec2], hole: &[DVec2]) -> bool {
     hole.iter().find_map(|&p| is_inside(outer, p)).unwrap_or(true)
 }
 
-/// Whether a point lies in a ring; `None` on its border.
+/// Returns whether a point lies in a ring; `None` on its border.
 fn is_inside(ring: &[DVec2], p: DVec2) -> Option<bool> {
     let mut inside = false;
     let next = ring.iter().cycle().skip(1);

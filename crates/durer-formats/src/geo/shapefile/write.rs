@@ -19,10 +19,10 @@ const MAX_KEY: usize = 10;
 /// A day for the head of tables, which must have one, but not that of writing: the same input gives the same bytes.
 const DAY: [u8; 3] = [95, 7, 26];
 
-/// What is beside the .shp: ends of names, and bytes.
+/// Files beside the .shp: ends of names, and bytes.
 pub type Sidecars = Vec<(&'static str, Vec<u8>)>;
 
-/// The bytes of a .shp, and what belongs beside it.
+/// Returns the bytes of a .shp, and what belongs beside it.
 ///
 /// # Errors
 /// Where features have several kinds of geometry, of which a Shapefile holds one; or are too many.
@@ -102,7 +102,7 @@ impl Shape {
     }
 }
 
-/// What all records are: the number of the flat kind, and whether they have heights and measures.
+/// Kind of all records: the number of the flat kind, and whether they have heights and measures.
 #[derive(Debug, Clone, Copy)]
 struct Kind {
     shape: u32,
@@ -149,7 +149,7 @@ fn kind(shapes: &[Shape]) -> Result<Kind> {
     Ok(Kind { shape, dimensions: Dimensions::new(z, m) })
 }
 
-/// The .shp and the .shx.
+/// Returns the .shp and the .shx.
 fn records(shapes: &[Shape], kind: Kind) -> Result<(Vec<u8>, Vec<u8>)> {
     let (mut shp, mut shx) = (vec![0; HEADER], vec![0; HEADER]);
     for (number, shape) in (1_u32..).zip(shapes) {
@@ -184,7 +184,7 @@ fn records(shapes: &[Shape], kind: Kind) -> Result<(Vec<u8>, Vec<u8>)> {
     Ok((shp, shx))
 }
 
-/// The least and the most of numbers, zeros where there are none.
+/// Returns the least and the most of numbers, zeros where there are none.
 fn range(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     let joined = numbers.map(|n| [n, n]).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
     joined.unwrap_or_default()
@@ -197,7 +197,7 @@ fn put_bounds(out: &mut Vec<u8>, bounds: Option<Rect>) {
     }
 }
 
-/// The content of a record.
+/// Returns the content of a record.
 fn content(shape: &Shape, kind: Kind) -> Vec<u8> {
     let mut out = Vec::new();
     if shape.len() == 0 {
@@ -297,7 +297,7 @@ fn table(features: &[Feature], warnings: &mut Vec<Warning>) -> Result<Vec<u8>> {
     Ok(out)
 }
 
-/// Columns with names that are short enough and differ.
+/// Returns columns with names that are short enough and differ.
 fn named<'a>(fields: &[Option<&'a Field>], warnings: &mut Vec<Warning>) -> Vec<Column<'a>> {
     let mut taken = BTreeSet::new();
     let mut cut = Vec::new();
@@ -339,7 +339,7 @@ fn named<'a>(fields: &[Option<&'a Field>], warnings: &mut Vec<Warning>) -> Vec<C
     columns
 }
 
-/// The values of a feature, as they stand in a row.
+/// Returns the values of a feature, as they stand in a row.
 fn values(feature: &Feature, index: u64, columns: &[Column<'_>], schema: &Schema) -> Vec<Vec<u8>> {
     let mut given = vec![None; schema.columns().len()];
     for member in members(feature.properties.as_deref().unwrap_or_default()) {

@@ -1,4 +1,4 @@
-//! What attributes of SVG say: matrices, lengths, properties, and the numbers in all of them.
+//! Parsers for attributes of SVG: matrices, lengths, properties, and the numbers in all of them.
 
 use crate::foreign;
 use durer::math::DVec2;
@@ -24,7 +24,7 @@ pub fn apply(m: &Matrix, p: DVec2) -> DVec2 {
     DVec2::new(m[0] * p.x + m[2] * p.y + m[4], m[1] * p.x + m[3] * p.y + m[5])
 }
 
-/// First `inner`, then `outer`.
+/// Returns the matrix that applies `inner`, then `outer`.
 pub fn compose(outer: &Matrix, inner: &Matrix) -> Matrix {
     let linear = [outer[0], outer[1], outer[2], outer[3], 0.0, 0.0];
     let x = apply(&linear, DVec2::new(inner[0], inner[1]));
@@ -41,12 +41,12 @@ pub fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>,
         .map_err(|_| foreign::entity())
 }
 
-/// What `href`, of SVG 2 or of XLink, refers to.
+/// Returns the target of `href`, of SVG 2 or of XLink.
 pub fn reference(element: &BytesStart<'_>) -> Result<Option<String>, String> {
     Ok(attribute(element, "href")?.or(attribute(element, "xlink:href")?))
 }
 
-/// A length in pixels.
+/// Returns A length in pixels.
 pub fn length(element: &BytesStart<'_>, name: &str) -> Result<Option<f64>, String> {
     let text = attribute(element, name)?.unwrap_or_default();
     let mut scanner = Scanner::new(&text);
@@ -63,8 +63,8 @@ pub fn length(element: &BytesStart<'_>, name: &str) -> Result<Option<f64>, Strin
     Ok(Some(value * pixels))
 }
 
-/// What an element itself says of a property by one of these words: its style before its attribute. Where it
-/// inherits there is nothing; other words are none.
+/// Returns an element's own value for a property that takes one of these words: its style before its
+/// attribute. Inherited properties give nothing; other words are ignored.
 pub fn property<T: Copy>(
     element: &BytesStart<'_>,
     name: &str,
@@ -89,8 +89,9 @@ pub fn property<T: Copy>(
     Ok(found.map(|(_, value)| *value))
 }
 
-/// The value that declarations of CSS give a property: of several the last, but one that is important first. simplecss, which
-/// usvg reads them with, ends at the first declaration that it cannot read, as `font:12px/1.5 serif` or `--own:1`.
+/// Returns the value that declarations of CSS give a property: of several the last, but one that is important
+/// first. simplecss, which usvg reads them with, ends at the first declaration that it cannot read, as
+/// `font:12px/1.5 serif` or `--own:1`.
 fn declared(style: &str, property: &str) -> Option<String> {
     let style = without_comments(style);
     let mut found: Option<(bool, &str)> = None;
@@ -152,7 +153,7 @@ fn rotation(degrees: f64, center: DVec2) -> Matrix {
     [cos, sin, -sin, cos, x - cos * x + sin * y, y - sin * x - cos * y]
 }
 
-/// All numbers of a text.
+/// Returns all numbers of a text.
 pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
     Scanner::new(text).all()
 }
@@ -185,7 +186,7 @@ impl<'a> Scanner<'a> {
         Some(char::from(*first))
     }
 
-    /// A number, or `None` at the end.
+    /// Returns A number, or `None` at the end.
     pub fn number(&mut self) -> Result<Option<f64>, String> {
         if self.at_end() {
             return Ok(None);
@@ -202,7 +203,7 @@ impl<'a> Scanner<'a> {
         self.number()?.ok_or_else(|| "a number is missing at the end".to_owned())
     }
 
-    /// A flag of an arc, which needs nothing to part it from what follows.
+    /// Returns A flag of an arc, which needs nothing to part it from what follows.
     pub fn flag(&mut self) -> Result<bool, String> {
         self.skip();
         match self.rest {

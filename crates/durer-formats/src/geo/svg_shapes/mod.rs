@@ -49,23 +49,23 @@ const NOT_DRAWN: [&str; 19] = [
 /// Bytes of the document that `use` may show elsewhere, all together: uses of uses are many soon.
 const MAX_USED: u64 = 64 << 20;
 
-/// Where an element's coordinates and name come from.
+/// Coordinate system and name that an element inherits.
 #[derive(Debug, Clone)]
 struct Level {
     /// The byte of its tag, and the length of its name.
     start: (usize, usize),
     matrix: Matrix,
     id: Option<Arc<str>>,
-    /// Whether ids within give way to this one: they are those of what a `use` shows.
+    /// True if ids within give way to this one: they are those of what a `use` shows.
     keeps_id: bool,
     fill_rule: FillRule,
-    /// Whether what is in it is drawn at all.
+    /// True if what is in it is drawn at all.
     drawn: bool,
-    /// Whether it is seen; what is in it may say otherwise.
+    /// True if it is seen; what is in it may say otherwise.
     visible: bool,
 }
 
-/// What an element shows.
+/// Part of an element that is shown.
 enum Drawn {
     Nothing,
     Shape(Geometry),
@@ -89,9 +89,9 @@ const OUTERMOST: Level = Level {
 struct Frame {
     /// The next byte.
     at: usize,
-    /// What is around it, then the elements that are open.
+    /// Levels around it, then those of the open elements.
     levels: Vec<Level>,
-    /// Whether all of it has been read.
+    /// True if all of it has been read.
     is_done: bool,
 }
 
@@ -109,13 +109,13 @@ impl Reader {
         Self { text, walk }
     }
 
-    /// The next shape; `None` at the end.
+    /// Returns the next shape; `None` at the end.
     pub fn next_feature(&mut self, warnings: &mut Warnings) -> Result<Option<Feature>> {
         self.walk.next(&self.text, warnings)
     }
 }
 
-/// Where a reader is in its text.
+/// Position of a reader in its text.
 #[derive(Debug)]
 struct Walk {
     /// The document, then what the `use`s being followed show.
@@ -129,7 +129,8 @@ struct Walk {
     told: (usize, u64, usize),
 }
 
-/// The events of a text from a byte on. Whether names match is looked at by [`Walk`], which goes on from any byte.
+/// Returns the events of a text from a byte on. Whether names match is looked at by [`Walk`], which goes on
+/// from any byte.
 fn events(text: &[u8], from: usize) -> quick_xml::Reader<&[u8]> {
     let mut reader = quick_xml::Reader::from_reader(text.get(from..).unwrap_or_default());
     let config = reader.config_mut();
@@ -273,7 +274,7 @@ impl Walk {
         Ok(())
     }
 
-    /// A tag: what it draws.
+    /// Returns A tag: what it draws.
     fn element(
         &mut self,
         text: &[u8],
@@ -354,7 +355,7 @@ impl Walk {
         Ok(())
     }
 
-    /// The first byte of what a `use` shows.
+    /// Returns the first byte of what a `use` shows.
     fn target(&mut self, text: &[u8], element: &BytesStart<'_>) -> Result<usize, String> {
         let uri = reference(element)?.ok_or("`use` needs an `href`")?;
         let quoted = crate::text::quote(uri.as_bytes());
@@ -371,7 +372,8 @@ impl Walk {
     }
 }
 
-/// The first byte of all elements that have an `id`; of several with the same, of the first.
+/// Returns the first byte of all elements that have an `id`; of several with the same, of the
+/// first.
 fn ids(text: &[u8]) -> HashMap<Box<str>, usize> {
     let (mut reader, mut ids) = (events(text, 0), HashMap::new());
     loop {
@@ -389,12 +391,12 @@ fn ids(text: &[u8]) -> HashMap<Box<str>, usize> {
     }
 }
 
-/// The name in a tag.
+/// Returns the name in a tag.
 fn name_at(text: &[u8], (start, length): (usize, usize)) -> &[u8] {
     text.get(start + 1..start + 1 + length).unwrap_or_default()
 }
 
-/// What holds in an element: what is around it, and what it says itself.
+/// Computes an element's level from the one around it and its own attributes.
 fn enter(
     element: &BytesStart<'_>,
     start: usize,
@@ -440,7 +442,7 @@ fn nested(element: &BytesStart<'_>, level: &mut Level) -> Result<(), String> {
     Ok(())
 }
 
-/// The geometry of an element; `None` where it is no shape, or an empty one.
+/// Returns the geometry of an element; `None` where it is no shape, or an empty one.
 fn shape(
     element: &BytesStart<'_>,
     level: &Level,

@@ -21,7 +21,7 @@ pub struct Arcs {
 }
 
 impl Arcs {
-    /// Of lines, and of rings, which are told by `true`.
+    /// Builds arcs from lines, and from rings, which are marked by `true`.
     pub fn of(runs: &[(&Points, bool)]) -> Self {
         let (paths, places) = numbered(runs);
         let junctions = junctions(&paths, places.len());
@@ -42,10 +42,10 @@ impl Arcs {
     }
 }
 
-/// Where a position stands.
+/// Place of a position.
 type Spot<'a> = (&'a Points, usize);
 
-/// All of a position's numbers, to the bit; zeros of both signs are alike.
+/// Returns all of a position's numbers, to the bit; zeros of both signs are alike.
 fn key((points, i): Spot<'_>) -> [u64; 5] {
     let (p, [z, m]) = (points.xy[i], points.zm(i));
     let [x, y, z, m] = [p.x, p.y, z, m].map(|n| (n + 0.0).to_bits());
@@ -77,7 +77,7 @@ fn numbered<'a>(runs: &[(&'a Points, bool)]) -> (Vec<Path>, Vec<Spot<'a>>) {
     (paths, sorted.into_iter().map(|(_, spot)| spot).collect())
 }
 
-/// Which positions are junctions.
+/// Returns true for each position that is a junction.
 fn junctions(paths: &[Path], count: usize) -> Vec<bool> {
     let mut junctions = vec![false; count];
     let mut beside: Vec<Option<[u32; 2]>> = vec![None; count];
@@ -127,7 +127,7 @@ impl Maker {
         made
     }
 
-    /// A ring without a junction, which other rings may have from another position on.
+    /// Returns A ring without a junction, which other rings may have from another position on.
     fn loose(&mut self, run: Run) -> i64 {
         let least = run.iter().enumerate().min_by_key(|(_, number)| **number).map_or(0, |(i, _)| i);
         let mut key = run.clone();
@@ -146,7 +146,7 @@ impl Maker {
         self.known(if is_turned { backwards } else { run.clone() }, run, is_turned)
     }
 
-    /// The number of an arc, which is kept as it came first.
+    /// Returns the number of an arc, which is kept as it came first.
     fn known(&mut self, key: Run, run: Run, is_turned: bool) -> i64 {
         if let Some(&number) = self.known.get(&key) {
             // What is kept tells by its sign whether it was turned to get the key.

@@ -8,7 +8,7 @@ mod write;
 pub use read::read;
 pub use write::write;
 
-/// Whether a JSON text begins like a topology.
+/// Returns whether a JSON text begins like a topology.
 pub fn sniff(text: &[u8]) -> bool {
     /// Members that may come before the type are short.
     const PROBE: usize = 4096;

@@ -6,14 +6,14 @@ use crate::geo::{Dimensions, Feature, Geometry, MAX_DEPTH, Member, Points, Warni
 use crate::{Error, Limits, Result};
 use durer::math::DVec2;
 
-/// Where the integers of a quantized topology lie.
+/// Transformation of a quantized topology's integers.
 #[derive(Debug, Clone, Copy)]
 struct Transform {
     scale: DVec2,
     translate: DVec2,
 }
 
-/// What is read of a topology.
+/// Contents of a topology.
 struct Topology<'a> {
     arcs: Vec<Points>,
     transform: Option<Transform>,
@@ -52,7 +52,7 @@ pub fn read(
     Ok((topology.features, further.collect::<Result<_>>()?))
 }
 
-/// The value of a member by its name in quotes.
+/// Returns the value of a member by its name in quotes.
 fn get<'a>(members: &[RawMember<'a>], name: &str) -> Option<Text<'a>> {
     members.iter().rfind(|(n, _)| n.as_bytes() == name.as_bytes()).map(|(_, value)| *value)
 }
@@ -68,7 +68,7 @@ fn transform(text: Text<'_>) -> Result<Transform> {
     Ok(Transform { scale: pair("\"scale\"")?, translate: pair("\"translate\"")? })
 }
 
-/// The numbers of a position, and how many there are.
+/// Returns the numbers of a position, and how many there are.
 fn numbers(cursor: &mut Cursor<'_>) -> Result<([f64; 4], usize)> {
     let start = cursor.clone();
     let (mut numbers, mut count) = ([0.0; 4], 0);
@@ -84,7 +84,7 @@ fn numbers(cursor: &mut Cursor<'_>) -> Result<([f64; 4], usize)> {
     Ok((numbers, count.min(4)))
 }
 
-/// The positions of all arcs, as coordinates.
+/// Returns the positions of all arcs, as coordinates.
 fn arcs(list: Text<'_>, transform: Option<Transform>) -> Result<Vec<Points>> {
     let mut arcs = Vec::new();
     list.cursor().array("an array of arcs", |cursor| {
@@ -285,7 +285,7 @@ impl Topology<'_> {
         Ok(rings)
     }
 
-    /// The arcs of a line or ring, one after the other; their common ends come once.
+    /// Returns the arcs of a line or ring, one after the other; their common ends come once.
     fn join(&mut self, cursor: &mut Cursor<'_>) -> Result<Points> {
         let start = cursor.clone();
         let mut joined = Points::default();
@@ -305,7 +305,8 @@ impl Topology<'_> {
         Ok(joined)
     }
 
-    /// The numbers of arcs, and whether each is turned; their positions are charged before they are taken.
+    /// Returns the numbers of arcs, and whether each is turned; their positions are charged before they
+    /// are taken.
     fn numbers(
         &mut self,
         cursor: &mut Cursor<'_>,

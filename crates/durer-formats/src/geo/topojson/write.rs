@@ -103,7 +103,7 @@ fn numbers(out: &mut impl Write, paths: &mut Paths<'_>) -> io::Result<()> {
     list(out, paths.next().into_iter().flatten(), |out, arc| write!(out, "{arc}"))
 }
 
-/// An array; `write` writes each item.
+/// Returns an array; `write` writes each item.
 fn list<W: Write, T>(
     out: &mut W,
     items: impl IntoIterator<Item = T>,

@@ -8,7 +8,7 @@ const GROUP: usize = 16;
 const BLOCK_BYTES: usize = 8192;
 const BLOCK_ELEMENTS: usize = 256;
 
-/// How the four bytes of a channel differ from those of the element before.
+/// Coding of a channel's four bytes relative to those of the element before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Channel {
     /// Four single bytes, each by its zigzag difference.
@@ -93,7 +93,8 @@ fn decode_block(
     Ok(())
 }
 
-/// The differences at one byte position of a block's elements; `lane` is rounded up to groups.
+/// Returns the differences at one byte position of a block's elements; `lane` is rounded up to
+/// groups.
 fn decode_lane(
     body: &mut Bytes<'_>,
     lane: &mut [u8],
@@ -143,7 +144,7 @@ fn decode_group(body: &mut Bytes<'_>, group: &mut [u8; GROUP], width: u32) -> Re
     Ok(())
 }
 
-/// The channel's next four bytes.
+/// Returns the channel's next four bytes.
 fn step(channel: Channel, last: [u8; 4], delta: [u8; 4]) -> [u8; 4] {
     match channel {
         Channel::Bytes => {

@@ -1,4 +1,4 @@
-//! What was done to attributes before they were packed, undone in place.
+//! The filters applied to attributes before packing, reversed in place.
 
 use super::Refusal;
 use std::f32::consts::FRAC_1_SQRT_2;
@@ -50,7 +50,8 @@ pub fn apply(bytes: &mut [u8], stride: usize, filter: &str) -> Result<(), Refusa
     Ok(())
 }
 
-/// A unit vector from the octahedron: x, y, and the value of 1.0; the fourth passes through.
+/// Returns A unit vector from the octahedron: x, y, and the value of 1.0; the fourth passes
+/// through.
 fn octahedral<T: Copy>([x, y, one, _]: [f32; 4], max: f32, fourth: T, to: fn(f32) -> T) -> [T; 4] {
     let (mut x, mut y) = (x / one, y / one);
     let z = 1.0 - x.abs() - y.abs();
@@ -62,7 +63,7 @@ fn octahedral<T: Copy>([x, y, one, _]: [f32; 4], max: f32, fourth: T, to: fn(f32
     [to((x * scale).round()), to((y * scale).round()), to((z * scale).round()), fourth]
 }
 
-/// A unit quaternion from its three smaller components and the place of the largest.
+/// Returns A unit quaternion from its three smaller components and the place of the largest.
 fn quaternion(v: [i16; 4]) -> [i16; 4] {
     let scale = FRAC_1_SQRT_2 / f32::from(v[3] | 3);
     let [x, y, z] = [v[0], v[1], v[2]].map(|c| f32::from(c) * scale);

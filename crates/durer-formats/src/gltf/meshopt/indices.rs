@@ -21,14 +21,14 @@ impl<T: Copy> Queue<T> {
         self.pushed = self.pushed.wrapping_add(1);
     }
 
-    /// The entry pushed `age` before the last one.
+    /// Returns the entry pushed `age` before the last one.
     fn get(&self, age: u8) -> Result<T, Refusal> {
         let at = self.pushed.wrapping_sub(1 + usize::from(age)) % QUEUE;
         self.entries[at].ok_or("an edge or vertex that was never stored")
     }
 }
 
-/// What the decoder of triangles remembers.
+/// State of the decoder of triangles.
 struct Triangles<'a> {
     data: Bytes<'a>,
     edges: Queue<(u32, u32)>,
@@ -84,7 +84,7 @@ impl Triangles<'_> {
         Ok(self.last)
     }
 
-    /// A triangle on an edge of the queue (high four bits), with a third vertex (low four).
+    /// Returns A triangle on an edge of the queue (high four bits), with a third vertex (low four).
     fn on_edge(&mut self, code: u8) -> Result<[u32; 3], Refusal> {
         let (a, b) = self.edges.get(code >> 4)?;
         let third = code & 15;
@@ -105,7 +105,8 @@ impl Triangles<'_> {
         Ok([a, b, c])
     }
 
-    /// A triangle of three vertices, each fresh (0), from the queue (1 … 14) or written out (15).
+    /// Returns A triangle of three vertices, each fresh (0), from the queue (1 … 14) or written out
+    /// (15).
     fn of_vertices(&mut self, first: u8, pair: u8) -> Result<[u32; 3], Refusal> {
         let kinds = [first, pair >> 4, pair & 15];
         let mut triangle = [0; 3];

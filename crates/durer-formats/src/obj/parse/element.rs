@@ -141,7 +141,7 @@ impl Parser<'_> {
     }
 }
 
-/// What names the primitives that follow.
+/// Part that names the primitives after it.
 #[derive(Clone, Copy)]
 pub(super) struct Part<'a> {
     material: Option<usize>,

@@ -1,4 +1,4 @@
-//! What the statements amount to, once all are read.
+//! The conversion of the statements after all are read.
 
 use super::super::corners::NONE;
 use super::{Parsed, Parser};
@@ -46,7 +46,8 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Whether any triangle, line or point has all its coordinates; of a cloud of points, any vertex.
+    /// Returns whether any triangle, line or point has all its coordinates; of a cloud of points, any
+    /// vertex.
     fn has_place(&self, cloud: bool) -> bool {
         let out = &self.out;
         let finite = |&i: &u32| out.positions.get(i as usize).is_some_and(|p| p.is_finite());
@@ -61,8 +62,8 @@ impl Parser<'_> {
             || out.points.iter().any(finite)
     }
 
-    /// Where lines that look like vertices were the continuation of others, there are fewer things
-    /// than counted, and an index may lead nowhere.
+    /// Checks files in which lines that look like vertices continued others: there are fewer items
+    /// than counted, and an index may point nowhere.
     fn check_joined(&self) -> Result<()> {
         let out = &self.out;
         let positions = out.lines.iter().chain(&out.points).copied();

@@ -1,4 +1,4 @@
-//! What `use` elements show, where custom properties around them change it.
+//! The copies of elements shown by `use` that differ because of custom properties around them.
 
 use super::Walk;
 use super::scope::Scope;
@@ -7,7 +7,7 @@ use crate::svg::write::{self, Changes, attributes};
 use std::borrow::Cow;
 use usvg::roxmltree::{Node, NodeId};
 
-/// So many elements may be copied for the sake of custom properties.
+/// Limit on the elements copied because of custom properties.
 const MAX_COPIED: usize = 100_000;
 
 impl<'a, 'i> Walk<'a, 'i> {

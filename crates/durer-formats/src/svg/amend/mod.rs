@@ -20,7 +20,7 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use usvg::roxmltree::{Document, Node, NodeId};
 
-/// What a document becomes.
+/// Result of amending a document.
 #[derive(Default)]
 pub(super) struct Amended {
     /// `None` where nothing has to be other.
@@ -75,11 +75,11 @@ struct Walk<'a, 'i> {
     first_picture: usize,
     has_markers: bool,
     told: Vec<(usize, String)>,
-    /// What has been told.
+    /// Messages that were given already.
     seen: BTreeSet<String>,
 }
 
-/// What becomes of attributes of an element: other values, or none.
+/// Changes to attributes of an element: new values, or removal.
 type Edits<'a> = Vec<(Cow<'a, str>, Option<Cow<'a, str>>)>;
 
 impl<'a, 'i> Walk<'a, 'i> {
@@ -318,7 +318,7 @@ impl<'a, 'i> Walk<'a, 'i> {
         }
     }
 
-    /// What was found.
+    /// Returns the amended document and the messages.
     fn finish(mut self) -> Result<Amended> {
         self.copy_shown()?;
         self.told.append(&mut self.styles.told);
@@ -341,14 +341,14 @@ impl<'a, 'i> Walk<'a, 'i> {
 /// Attributes that are properties of which not all is drawn.
 const PRESENTATION: [&str; 3] = ["vector-effect", "font-variant", "text-decoration"];
 
-/// Whether a value is one that all properties may have.
+/// Returns whether a value is one that all properties may have.
 fn is_general(value: &str) -> bool {
     ["inherit", "initial", "unset", "revert", "revert-layer"]
         .iter()
         .any(|word| value.eq_ignore_ascii_case(word))
 }
 
-/// What such a value is as an attribute.
+/// Returns such a value as an attribute.
 fn general(name: &str, value: &str) -> Option<Cow<'static, str>> {
     match (value.to_ascii_lowercase().as_str(), initial(name)) {
         ("initial", Some(value)) => Some(Cow::Borrowed(value)),

@@ -1,4 +1,4 @@
-//! What is said around an element.
+//! The values that an element inherits.
 
 use super::Walk;
 use crate::css;
@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use usvg::roxmltree::Node;
 
-/// What is said around an element.
+/// The values that an element inherits.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Scope {
     pub(super) around: Around,
@@ -22,7 +22,7 @@ pub(super) struct Scope {
 }
 
 impl<'a, 'i> Walk<'a, 'i> {
-    /// What an element says that its own values are relative to.
+    /// Enters an element and records the values that its own ones are relative to.
     pub(super) fn enter(
         &mut self,
         node: Node<'a, 'i>,

@@ -1,15 +1,15 @@
-//! Which elements selectors match.
+//! The matching of selectors and elements.
 
 use super::selector::{Combinator, Compound, Selector, Simple, Test};
 use std::cell::Cell;
 use std::collections::HashMap;
 use usvg::roxmltree::{Document, Node, NodeId};
 
-/// So many elements are looked at in all; more would keep a small file busy for ever.
+/// Limit on the elements examined in all; more would keep a small file busy for ever.
 const MAX_STEPS: u64 = 300_000_000;
 
-/// Where elements stand among their siblings, from 1 on: from the start, from the end, and so among those of the same
-/// type.
+/// Positions of elements among their siblings, from 1 on: from the start, from the end, and likewise among those of
+/// the same type.
 type Positions = HashMap<NodeId, [i64; 4]>;
 
 /// Matches selectors with elements of a document.
@@ -29,7 +29,7 @@ impl Matcher {
         Self { positions, steps: Cell::new(0) }
     }
 
-    /// Whether too much was looked at, so that answers are not to be relied on.
+    /// Returns whether too much was looked at, so that answers are not to be relied on.
     pub fn is_exhausted(&self) -> bool {
         self.steps.get() > MAX_STEPS
     }
@@ -39,7 +39,7 @@ impl Matcher {
         !self.is_exhausted()
     }
 
-    /// Whether an element is what a selector describes.
+    /// Returns whether an element matches a selector.
     ///
     /// From the last part on backwards it keeps the elements that may be meant; of several that stand one within
     /// another the innermost is enough where any ancestor will do. Cost: parts times ancestors and siblings.
@@ -57,7 +57,8 @@ impl Matcher {
         true
     }
 
-    /// The elements that are `compound` and to which one of those stands so, the innermost first.
+    /// Returns the elements that are `compound` and to which one of those stands so, the innermost
+    /// first.
     fn step_back<'a, 'i>(
         &self,
         combinator: Combinator,
@@ -96,7 +97,7 @@ impl Matcher {
         found
     }
 
-    /// Whether an element is all that.
+    /// Returns whether an element is all that.
     fn fits(&self, compound: &Compound, node: Node<'_, '_>) -> bool {
         self.step() && compound.iter().all(|simple| self.is(simple, node))
     }
@@ -128,12 +129,12 @@ impl Matcher {
     }
 }
 
-/// The classes of an element.
+/// Returns the classes of an element.
 pub(super) fn classes<'a>(node: Node<'a, '_>) -> impl Iterator<Item = &'a str> {
     node.attribute("class").unwrap_or_default().split_ascii_whitespace()
 }
 
-/// Whether a position is a·n + b for some n from 0 on.
+/// Returns whether a position is a·n + b for some n from 0 on.
 fn is_step(position: i64, a: i64, b: i64) -> bool {
     let over = position.saturating_sub(b);
     if a == 0 {
@@ -178,7 +179,7 @@ impl Test {
     }
 }
 
-/// Whether a selector looks at positions among siblings.
+/// Returns whether a selector looks at positions among siblings.
 fn counts(selector: &Selector) -> bool {
     let mut parts =
         std::iter::once(&selector.last).chain(selector.before.iter().map(|(_, part)| part));
@@ -217,7 +218,7 @@ mod tests {
     use crate::css::tokens;
     use crate::svg::style::selector;
 
-    /// The ids of all elements that a selector matches.
+    /// Returns the ids of all elements that a selector matches.
     fn found(selector: &str) -> String {
         let text = "<svg id='0' xml:lang='de-AT'><g id='1' class='a b'><rect id='2' class='b'/><circle id='3' data-x='One Two'/>
             <rect id='4'/></g><g id='5'><g id='6' class='c'><rect id='7' href='x-y'/></g></g><a href='#' id='8'/></svg>";

@@ -1,10 +1,10 @@
-//! What `@media` asks for.
+//! The conditions of `@media`.
 //!
 //! Source: *Media Queries Level 4*, W3C. Answered as for a light screen that is as large as the drawing.
 
 use crate::css::{Piece, Token, Units, split, words};
 
-/// What the drawing is seen on.
+/// Screen that the drawing is seen on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Screen {
     /// In pixels.
@@ -19,7 +19,7 @@ impl Default for Screen {
 }
 
 impl Screen {
-    /// Whether one of the queries holds.
+    /// Returns whether one of the queries holds.
     ///
     /// # Errors
     /// Where none holds and one is not understood.
@@ -35,7 +35,7 @@ impl Screen {
         if is_unknown { Err(()) } else { Ok(false) }
     }
 
-    /// Whether a query holds: a medium and features, joined by `and`.
+    /// Returns whether a query holds: a medium and features, joined by `and`.
     fn query(&self, query: &[Piece<'_>]) -> Option<bool> {
         let (mut holds, mut is_not) = (true, false);
         for (i, part) in words(query).into_iter().enumerate() {
@@ -58,7 +58,7 @@ impl Screen {
         Some(holds != is_not)
     }
 
-    /// Whether what stands in parentheses holds.
+    /// Returns whether the condition in parentheses holds.
     fn feature(&self, inside: &[Piece<'_>]) -> Option<bool> {
         let inside = inside.split_last().map_or(inside, |(_, rest)| rest);
         let parts = split(inside, ':');

@@ -1,4 +1,4 @@
-//! What style sheets and `style` attributes say of the elements of a drawing.
+//! The values that style sheets and `style` attributes give to the elements of a drawing.
 //!
 //! Source: *CSS Cascading and Inheritance Level 5*, W3C; *SVG 2*, W3C, § 6.
 
@@ -23,10 +23,11 @@ use std::rc::Rc;
 use usvg::roxmltree::{Document, Node};
 use variables::Variables;
 
-/// What elements are given in all may be so much, in bytes: few rules for all elements would fill the memory.
+/// Limit on the sum of all values given to elements, in bytes: few rules for all elements would fill the
+/// memory.
 const MAX_APPLIED: usize = 1 << 29;
 
-/// What a declaration that an element is given counts for, beside its value.
+/// Cost of a declaration for an element, beside its value.
 const COST: usize = 64;
 
 /// Something in a style sheet or attribute to be told, and where in the document it stands.
@@ -35,18 +36,19 @@ pub(super) type Told = (usize, String);
 /// The style sheets of a document, and what of them elements get.
 pub(super) struct Styles {
     rules: Vec<Rule>,
-    /// Which selectors of which rules may match elements, by what these must have.
+    /// Selectors of rules that may match elements, by an id, class or type that the elements must
+    /// have.
     by_id: HashMap<String, Vec<(usize, usize)>>,
     by_class: HashMap<String, Vec<(usize, usize)>>,
     by_type: HashMap<String, Vec<(usize, usize)>>,
     by_nothing: Vec<(usize, usize)>,
     matcher: Matcher,
-    /// What `style` attributes that were met say.
+    /// Parsed `style` attributes.
     known: HashMap<String, Rc<Vec<Declaration>>>,
     pub variables: Variables,
     applied: usize,
     pub told: Vec<Told>,
-    /// Whether the document has style sheets.
+    /// True if the document has style sheets.
     pub has_sheets: bool,
 }
 
@@ -61,7 +63,7 @@ pub(super) struct Declared {
 }
 
 impl Styles {
-    /// The style sheets of a document.
+    /// Creates the style sheets of a document.
     pub fn new(document: &Document<'_>) -> Self {
         let screen = screen(document);
         let (mut rules, mut told, mut has_sheets) = (Vec::new(), Vec::new(), false);
@@ -117,7 +119,7 @@ impl Styles {
         }
     }
 
-    /// The rules that match an element, the one that counts most last.
+    /// Returns the rules that match an element, the one that counts most last.
     fn matching(&self, node: Node<'_, '_>) -> Vec<usize> {
         let of_id = node.attribute("id").and_then(|id| self.by_id.get(id));
         let of_classes = classes(node).filter_map(|class| self.by_class.get(class));
@@ -135,7 +137,7 @@ impl Styles {
         found.into_iter().map(|(_, rule)| rule).collect()
     }
 
-    /// What counts for an element, of rules and its own `style`.
+    /// Returns the declarations for an element, of rules and its own `style`.
     ///
     /// # Errors
     /// Where rules and elements are too many.
@@ -164,7 +166,7 @@ impl Styles {
         Ok(said)
     }
 
-    /// What a `style` attribute says.
+    /// Returns the declarations of a `style` attribute.
     fn own(&mut self, node: Node<'_, '_>, text: &str) -> Rc<Vec<Declaration>> {
         if let Some(known) = self.known.get(text) {
             return known.clone();
@@ -186,7 +188,7 @@ impl Styles {
     }
 }
 
-/// What of a selector an element has to have.
+/// Returns the part of a selector that an element must have.
 fn key(selector: &Selector) -> Option<&Simple> {
     let of = |fits: fn(&Simple) -> bool| selector.last.iter().find(|simple| fits(simple));
     of(|s| matches!(s, Simple::Id(_)))
@@ -194,7 +196,8 @@ fn key(selector: &Selector) -> Option<&Simple> {
         .or_else(|| of(|s| matches!(s, Simple::Type(_))))
 }
 
-/// A rule of which shorthands are divided and values that cannot be used are taken out and told.
+/// Returns A rule of which shorthands are divided and values that cannot be used are taken out and
+/// told.
 fn usable(rule: Rule, start: usize, is_sheet: bool, told: &mut Vec<Told>) -> Rule {
     let mut declarations = Vec::new();
     for mut declaration in rule.declarations {
@@ -207,7 +210,7 @@ fn usable(rule: Rule, start: usize, is_sheet: bool, told: &mut Vec<Told>) -> Rul
     Rule { declarations, ..rule }
 }
 
-/// Where in a document the content of a text begins.
+/// Returns the offset in a document at which the content of a text begins.
 fn start_of(document: &Document<'_>, text: Node<'_, '_>, content: &str) -> usize {
     let range = text.range();
     let raw = document.input_text().get(range.clone()).unwrap_or_default();
@@ -215,13 +218,14 @@ fn start_of(document: &Document<'_>, text: Node<'_, '_>, content: &str) -> usize
     range.start + raw.find(content).unwrap_or_default()
 }
 
-/// The screen that a drawing is for: its own size, as far as it says it.
+/// Returns the screen that a drawing is for: its own size, as far as it says it.
 fn screen(document: &Document<'_>) -> Screen {
     let [width, height] = viewport(document.root_element()).unwrap_or([100.0; 2]);
     Screen { width, height }
 }
 
-/// Width and height of what percentages within an `svg` element are of, where it says them.
+/// Returns the width and height of what percentages within an `svg` element are of, where it says
+/// them.
 pub(super) fn viewport(svg: Node<'_, '_>) -> Option<[f64; 2]> {
     let view_box = svg.attribute("viewBox").and_then(|text| text.parse::<svgtypes::ViewBox>().ok());
     if let Some(view_box) = view_box {

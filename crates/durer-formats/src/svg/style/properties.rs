@@ -131,7 +131,7 @@ const NOT_DRAWN: [&str; 26] = [
     "text-decoration-color",
 ];
 
-/// The value that a property has where nothing is said, if elements take it from around.
+/// Returns the value that a property has where nothing is said, if elements take it from around.
 pub(crate) fn initial(name: &str) -> Option<&'static str> {
     INHERITED.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
 }
@@ -140,7 +140,7 @@ fn is_known(name: &str) -> bool {
     initial(name).is_some() || OTHERS.contains(&name)
 }
 
-/// Whether a property means something for an element.
+/// Returns whether a property means something for an element.
 pub(crate) fn takes(element: &str, name: &str) -> bool {
     match name {
         "x" | "y" | "width" | "height" => {
@@ -165,7 +165,7 @@ fn is_general(value: &str) -> bool {
         .any(|word| value.eq_ignore_ascii_case(word))
 }
 
-/// What a declaration says of properties that drawings have.
+/// Returns the usable values of a declaration for properties that drawings have.
 ///
 /// # Errors
 /// What is to be told where it cannot be used.
@@ -226,7 +226,7 @@ pub(super) fn usable(
     Err(format!("`{name}` of `style` is `{}`: {}; it is passed over", shown(value), kind.wanted()))
 }
 
-/// What is to be told of a declaration that changes a picture in browsers, but not here.
+/// Returns a warning about a declaration that changes a picture in browsers, but not here.
 pub(crate) fn not_drawn(name: &str, value: &str) -> Option<String> {
     let is_usual = ["none", "normal", "auto", "0", "1"].contains(&value) || is_general(value);
     let fate = match name {
@@ -242,18 +242,18 @@ pub(crate) fn not_drawn(name: &str, value: &str) -> Option<String> {
     Some(format!("`{name}: {}` is {fate}", shown(value)))
 }
 
-/// What is drawn of `text-decoration`.
+/// Lines of `text-decoration` that are drawn.
 const LINES: [&str; 5] = ["underline", "overline", "line-through", "blink", "solid"];
 
 /// Lengths that are none in style sheets without a unit, in browsers.
 const NEED_UNITS: [&str; 5] = ["font-size", "height", "letter-spacing", "width", "word-spacing"];
 
-/// Where it does not matter what relative values are relative to.
+/// Returns a context for values that are not relative.
 fn around() -> Around {
     Around { color: Some(crate::css::Color::of_bytes([0, 0, 0, 255])), ..Around::default() }
 }
 
-/// The properties that `font` sets.
+/// Returns the properties that `font` sets.
 pub(crate) fn font(value: &str) -> Option<Vec<(&'static str, String)>> {
     let font = svgtypes::FontShorthand::from_str(value).ok()?;
     let or_normal = |part: Option<&str>| part.unwrap_or("normal").to_owned();

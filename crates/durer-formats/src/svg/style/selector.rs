@@ -35,7 +35,7 @@ const NEVER: [&str; 24] = [
     "visited",
 ];
 
-/// How an element stands to the one that the next part describes.
+/// Relation of an element to the one that the next part describes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Combinator {
     Descendant,
@@ -44,7 +44,7 @@ pub(super) enum Combinator {
     LaterSibling,
 }
 
-/// What an element must be.
+/// Condition on an element.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Simple {
     Type(String),
@@ -71,7 +71,7 @@ pub(super) enum Simple {
     Never,
 }
 
-/// What the value of an attribute must be.
+/// Condition on an attribute's value.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Test {
     Present,
@@ -85,23 +85,24 @@ pub(super) enum Test {
     Contains(String),
 }
 
-/// What one element must be, all of it.
+/// Conditions on one element, all of which must hold.
 pub(super) type Compound = Vec<Simple>;
 
-/// How many ids, classes and types a selector names: which rule comes before others.
+/// Specificity of a selector: its numbers of ids, classes and types, which order rules.
 pub(super) type Specificity = [u32; 3];
 
 /// An element, and what stands around it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Selector {
-    /// What the element itself must be.
+    /// Conditions on the element itself.
     pub last: Compound,
-    /// What comes before, from the nearest on, and how that stands to what follows it.
+    /// Conditions on elements before it, from the nearest on, each with its relation to the element
+    /// after it.
     pub before: Vec<(Combinator, Compound)>,
     pub specificity: Specificity,
 }
 
-/// The selectors of a list; `None` where one is not understood, as then none counts.
+/// Returns the selectors of a list; `None` where one is not understood, as then none counts.
 pub(super) fn list(pieces: &[Piece<'_>]) -> Option<Vec<Selector>> {
     list_at(pieces, 0)
 }
@@ -194,7 +195,8 @@ impl<'a, 'b> Parser<'a, 'b> {
         (self.at > start).then_some(compound)
     }
 
-    /// The name of a type, if there is one; `*` is all, and prefixes of namespaces are passed over.
+    /// Returns the name of a type, if there is one; `*` is all, and prefixes of namespaces are
+    /// passed over.
     fn type_name(&mut self) -> Option<Option<String>> {
         let mut name = None;
         loop {
@@ -212,7 +214,7 @@ impl<'a, 'b> Parser<'a, 'b> {
         }
     }
 
-    /// What stands in brackets; ends before the last of them.
+    /// Parses the content of brackets; ends before the closing one.
     fn attribute(&mut self) -> Option<Simple> {
         self.at += 1;
         self.skip_blanks();
@@ -267,7 +269,7 @@ impl<'a, 'b> Parser<'a, 'b> {
         }
     }
 
-    /// A pseudo-class or pseudo-element, to its end.
+    /// Returns A pseudo-class or pseudo-element, to its end.
     fn pseudo(&mut self, specificity: &mut Specificity) -> Option<Simple> {
         self.at += 1;
         let is_element = self.peek() == Some(&Token::Other(':'));
@@ -363,7 +365,7 @@ fn pseudo_class(name: &str) -> Option<Simple> {
     }
 }
 
-/// The numbers of `an+b`.
+/// Returns the numbers of `an+b`.
 fn nth(pieces: &[Piece<'_>]) -> Option<(i64, i64)> {
     let mut text = String::new();
     for piece in pieces {

@@ -9,7 +9,7 @@ use crate::css::{Piece, Token, tokens};
 /// Rules within `@media` and `@supports` may be so deep.
 const MAX_DEPTH: u32 = 8;
 
-/// What is said of a property.
+/// Value of a property.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Declaration {
     /// In small letters, unless it is a custom property.
@@ -27,7 +27,8 @@ pub(super) struct Rule {
     pub declarations: Vec<Declaration>,
 }
 
-/// What a style sheet says, and what in it is not understood, with bytes from the start of the text.
+/// Rules of a style sheet, and the parts that were not understood, by their bytes from the start of
+/// the text.
 #[derive(Debug, Default)]
 pub(super) struct Sheet {
     pub rules: Vec<Rule>,
@@ -37,7 +38,7 @@ pub(super) struct Sheet {
 /// Letters of what is not understood that a message shows.
 const SHOWN: usize = 40;
 
-/// The beginning of a text.
+/// Returns the beginning of a text.
 pub(crate) fn shown(text: &str) -> String {
     let text = text.trim();
     let mut shown: String = text.chars().take(SHOWN).collect();
@@ -47,7 +48,7 @@ pub(crate) fn shown(text: &str) -> String {
     shown
 }
 
-/// The rules of a style sheet that hold on this screen.
+/// Returns the rules of a style sheet that hold on this screen.
 pub(super) fn parse(text: &str, screen: &Screen) -> Sheet {
     let pieces = tokens(text);
     let mut reader = Reader { text, pieces: &pieces, screen, sheet: Sheet::default() };
@@ -55,7 +56,7 @@ pub(super) fn parse(text: &str, screen: &Screen) -> Sheet {
     reader.sheet
 }
 
-/// The declarations of a `style` attribute, and what in it is not understood.
+/// Returns the declarations of a `style` attribute, and what in it is not understood.
 pub(super) fn declarations(text: &str) -> (Vec<Declaration>, Vec<(usize, String)>) {
     let pieces = tokens(text);
     let screen = Screen::default();
@@ -77,14 +78,15 @@ impl Reader<'_, '_> {
         self.sheet.told.push((place, message));
     }
 
-    /// The text from one token to before another.
+    /// Returns the text from one token to before another.
     fn text(&self, from: usize, to: usize) -> &str {
         let start = self.pieces.get(from).map_or(self.text.len(), |piece| piece.start);
         let end = to.checked_sub(1).and_then(|last| self.pieces.get(last)).map_or(start, |p| p.end);
         self.text.get(start..end.max(start)).unwrap_or_default()
     }
 
-    /// The first token from `from` on, before `end`, that is one of those; blocks are stepped over.
+    /// Returns the first token from `from` on, before `end`, that is one of those; blocks are
+    /// stepped over.
     fn find(&self, from: usize, end: usize, wanted: &[Token<'_>]) -> usize {
         let mut at = from;
         while let Some(piece) = self.pieces.get(at).filter(|_| at < end) {
@@ -128,7 +130,7 @@ impl Reader<'_, '_> {
         self.sheet.rules.push(Rule { selectors, declarations });
     }
 
-    /// A rule that begins with `@`; gives where it is over.
+    /// Returns A rule that begins with `@`; gives where it is over.
     fn at_rule(&mut self, name: &str, at: usize, end: usize, depth: u32) -> usize {
         let open = self.find(at + 1, end, &[Token::Open('{'), Token::Other(';')]);
         let is_block = self.pieces.get(open).is_some_and(|piece| piece.token == Token::Open('{'));
@@ -205,7 +207,7 @@ impl Reader<'_, '_> {
         found
     }
 
-    /// The declaration that reaches from one token to before another.
+    /// Returns the declaration that reaches from one token to before another.
     fn declaration(&self, at: usize, over: usize) -> Option<Declaration> {
         let Token::Ident(name) = &self.pieces.get(at)?.token else { return None };
         let mut from = at + 1;
@@ -246,7 +248,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The text of tokens; comments between them are blanks.
+/// Returns the text of tokens; comments between them are blanks.
 fn without_comments(text: &str, pieces: &[Piece<'_>]) -> String {
     if !text.contains("/*") {
         return text.to_owned();

@@ -19,7 +19,7 @@ pub(crate) struct Variables {
     written: usize,
 }
 
-/// What putting a value together counts for, beside its length.
+/// Cost of composing a value, beside its length.
 const COST: usize = 64;
 
 /// All values together may be so long.
@@ -33,7 +33,7 @@ struct Set {
 }
 
 impl Variables {
-    /// A set of what an element says itself, within the one around it. Values are as said.
+    /// Returns A set of what an element says itself, within the one around it. Values are as said.
     pub fn add(&mut self, around: Option<usize>, said: BTreeMap<String, String>) -> usize {
         let mut values = BTreeMap::new();
         for name in said.keys() {
@@ -43,7 +43,7 @@ impl Variables {
         self.sets.len() - 1
     }
 
-    /// The value of one of the properties that an element says itself.
+    /// Returns the value of one of the properties that an element says itself.
     fn own(
         &mut self,
         around: Option<usize>,
@@ -62,7 +62,7 @@ impl Variables {
         }
     }
 
-    /// The value of a custom property in a set or those around it.
+    /// Returns the value of a custom property in a set or those around it.
     fn value(&self, set: Option<usize>, name: &str) -> Option<String> {
         let mut set = set;
         while let Some(found) = set.and_then(|at| self.sets.get(at)) {
@@ -74,7 +74,8 @@ impl Variables {
         None
     }
 
-    /// A value with what its `var()` stand for; `None` where one stands for nothing, or for too much.
+    /// Returns A value with what its `var()` stand for; `None` where one stands for nothing, or for
+    /// too much.
     pub fn replaced(&mut self, value: &str, set: Option<usize>) -> Option<String> {
         if !has_variables(value) {
             return Some(value.to_owned());
@@ -82,7 +83,8 @@ impl Variables {
         self.replace(value, set, &BTreeMap::new(), &mut Vec::new())
     }
 
-    /// As [`Self::replaced`]; `said` are values that are not replaced yet, `open` the names of those that are being replaced.
+    /// Replaces like [`Self::replaced`]; `said` are values that are not replaced yet, `open` the names of those that are
+    /// being replaced.
     fn replace(
         &mut self,
         value: &str,
@@ -126,7 +128,7 @@ impl Variables {
         Some(out)
     }
 
-    /// What a name stands for.
+    /// Returns the value of a name.
     fn variable(
         &mut self,
         name: &str,
@@ -148,7 +150,7 @@ impl Variables {
     }
 }
 
-/// Whether a value has to be looked at for what its parts stand for.
+/// Returns whether a value contains variables to replace.
 pub(super) fn has_variables(value: &str) -> bool {
     value.as_bytes().windows(4).any(|part| part.eq_ignore_ascii_case(b"var("))
 }

@@ -45,7 +45,7 @@ impl Pair {
         Self(high, ((ah * bh - high) + ah * bl + al * bh) + al * bl)
     }
 
-    /// The same value, where the first term may have become too small.
+    /// Returns the same value, where the first term may have become too small.
     #[inline(always)]
     fn settled(high: f64, low: f64) -> Self {
         let sum = high + low;
@@ -64,7 +64,8 @@ impl Pair {
         self.0 == 0.0 || TAME.contains(&self.0.abs())
     }
 
-    /// The first term, if a value that is off by no more than `error` rounds to it for sure.
+    /// Returns the first term, if a value that is off by no more than `error` rounds to it for
+    /// sure.
     #[inline(always)]
     fn rounded(self, error: f64) -> Option<f64> {
         let next = if self.1 > 0.0 { self.0.next_up() } else { self.0.next_down() };
@@ -103,7 +104,8 @@ impl Mul for Pair {
     }
 }
 
-/// The coordinate on axis k of the crossing of two segments' lines, where this tells how it is rounded.
+/// Returns the coordinate on axis k of the crossing of two segments' lines, where this tells how it is
+/// rounded.
 pub(super) fn crossing(k: usize, [a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<f64> {
     let minus = |p: DVec2, q: DVec2| [0, 1].map(|k| Pair::difference(p[k], q[k]));
     let (along, across, between) = (minus(b, a), minus(d, c), minus(c, a));
@@ -127,7 +129,8 @@ pub(super) fn crossing(k: usize, [a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Opti
     sum.rounded(error)
 }
 
-/// The coordinate of a segment on the other axis where that on `axis` is `border`, likewise.
+/// Returns the coordinate of a segment on the other axis where that on `axis` is `border`,
+/// likewise.
 #[inline]
 pub(super) fn on_border([a, b]: [DVec2; 2], axis: usize, border: f64) -> Option<f64> {
     let other = 1 - axis;

@@ -43,12 +43,12 @@ pub struct Segments<'a> {
     pub y1: &'a [f64],
 }
 
-/// How the work is done; no choice changes a bit of the result.
+/// Options for the work; no choice changes a bit of the result.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// Instructions to use; the best the machine has by default.
     pub level: Level,
-    /// Whether to share the work among the threads of the current rayon pool.
+    /// True to share the work among the threads of the current rayon pool.
     pub threads: bool,
 }
 
@@ -76,12 +76,12 @@ pub struct Clipped {
 }
 
 impl Clipped {
-    /// Whether segment `index` meets the window.
+    /// Returns whether segment `index` meets the window.
     pub fn is_accepted(&self, index: usize) -> bool {
         self.accepted.get(index / 64).is_some_and(|word| word >> (index % 64) & 1 == 1)
     }
 
-    /// The accepted segments, each with its index in the input.
+    /// Returns the accepted segments, each with its index in the input.
     pub fn iter(&self) -> impl Iterator<Item = (usize, Segment<DVec2>)> + '_ {
         let point = |x: &[f64], y: &[f64], i: usize| DVec2::new(x[i], y[i]);
         (0..self.x0.len()).filter(|&i| self.is_accepted(i)).map(move |i| {
@@ -286,7 +286,7 @@ fn range_kernel<S: Simd>(
     }
 }
 
-/// The numbers, and zeros behind them.
+/// Returns the numbers, and zeros behind them.
 fn filled(some: &[f64]) -> [f64; BLOCK] {
     let mut block = [0.0; BLOCK];
     block[..some.len()].copy_from_slice(some);
@@ -436,8 +436,8 @@ struct CutLanes<S: Simd> {
 }
 
 impl<S: Simd> Lines<S> {
-    /// The crossing with an x border where `by_x`, else with a y border; each is given as its signed
-    /// distance from p and its coordinate.
+    /// Returns the crossing with an x border where `by_x`, else with a y border; each is given as
+    /// its signed distance from p and its coordinate.
     #[inline(always)]
     fn cut(
         &self,

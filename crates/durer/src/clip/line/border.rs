@@ -1,4 +1,5 @@
-//! What the algorithms for axis-parallel windows share: borders, canonical direction, cut points.
+//! The code that algorithms for axis-parallel windows share: borders, canonical direction, cut
+//! points.
 
 use super::Segment;
 use crate::clip::exact;
@@ -17,7 +18,7 @@ pub enum End {
 }
 
 impl End {
-    /// The other end where `swapped`.
+    /// Returns the other end where `swapped`.
     pub(super) fn swapped_if(self, swapped: bool) -> Self {
         match (self, swapped) {
             (Self::Start, true) => Self::End,
@@ -49,7 +50,7 @@ pub struct ClipBox<const N: usize> {
 }
 
 impl ClipBox<3> {
-    /// The box between two corners.
+    /// Creates the box between two corners.
     ///
     /// # Errors
     /// [`Error::Parameter`] where a number is not finite or `min > max` on an axis.
@@ -65,7 +66,7 @@ impl ClipBox<3> {
 }
 
 impl ClipBox<3> {
-    /// The six planes of the border, normals inwards: smallest and largest x, y, z.
+    /// Returns the six planes of the border, normals inwards: smallest and largest x, y, z.
     pub fn planes(&self) -> [Plane; 6] {
         std::array::from_fn(|i| {
             let (axis, upper) = (i / 2, i % 2);
@@ -86,7 +87,7 @@ impl From<&Rect> for ClipBox<2> {
     }
 }
 
-/// The outcode bit of a border; bit 0 of `upper` chooses the larger coordinate.
+/// Returns the outcode bit of a border; bit 0 of `upper` chooses the larger coordinate.
 #[inline]
 pub(super) fn bit(axis: usize, upper: usize) -> Outcode {
     Outcode(1 << (2 * axis + upper))
@@ -118,7 +119,7 @@ impl<const N: usize> ClipBox<N> {
 pub(crate) struct Canonical<const N: usize> {
     pub(super) p: [f64; N],
     pub(super) q: [f64; N],
-    /// Whether the caller's segment runs the other way.
+    /// True if the caller's segment runs the other way.
     pub(crate) swapped: bool,
 }
 
@@ -135,7 +136,7 @@ impl<const N: usize> Canonical<N> {
         Ok(Self { p, q, swapped })
     }
 
-    /// The two points in the caller's direction.
+    /// Returns the two points in the caller's direction.
     #[inline]
     pub(super) fn in_order<P: From<[f64; N]>>(&self, p: [f64; N], q: [f64; N]) -> Segment<P> {
         let [start, end] = exchanged_if(self.swapped, p, q);
@@ -227,14 +228,15 @@ impl<const N: usize> Canonical<N> {
         if finite(&point) { point } else { self.at_huge(t) }
     }
 
-    /// The same where a difference overflows: with everything an eighth as large.
+    /// Returns the same where a difference overflows: with everything an eighth as large.
     #[cold]
     fn at_huge(&self, t: f64) -> [f64; N] {
         let (p, q) = (self.p.map(|v| v * 0.125), self.q.map(|v| v * 0.125));
         std::array::from_fn(|k| clamped((p[k] + (q[k] - p[k]) * t) * 8.0, f64::MIN, f64::MAX))
     }
 
-    /// The exact crossing's coordinate `k` compared with `other`; `near` is its rounded value.
+    /// Returns the exact crossing's coordinate `k` compared with `other`; `near` is its rounded
+    /// value.
     #[inline]
     fn compare_cut(
         &self,
@@ -250,7 +252,8 @@ impl<const N: usize> Canonical<N> {
         self.compare_cut_exactly((axis, border), (k, other))
     }
 
-    /// Which of two borders the segment, which must span both, crosses first; decided exactly.
+    /// Compares the parameters at which the segment, which must span both borders, crosses them;
+    /// decided exactly.
     pub(super) fn compare_parameters(&self, a: (usize, f64), b: (usize, f64)) -> Ordering {
         let (ta, tb) = (self.parameter(a.0, a.1), self.parameter(b.0, b.1));
         // Each is off by at most 3ε of itself.
@@ -265,8 +268,8 @@ impl<const N: usize> Canonical<N> {
         if self.p[b.0] < self.q[b.0] { order } else { order.reverse() }
     }
 
-    /// The exact crossing with border `a` compared with border `b` of another axis: −, 0, + where
-    /// its coordinate there is smaller, equal, larger.
+    /// Returns the exact crossing with border `a` compared with border `b` of another axis: −, 0, +
+    /// where its coordinate there is smaller, equal, larger.
     ///
     /// The corner (border, other) lies left or right of the segment projected on the two axes.
     #[inline(never)]
@@ -280,7 +283,8 @@ impl<const N: usize> Canonical<N> {
     }
 }
 
-/// Whether a comes after b lexicographically; no branches, which half of all segments would miss.
+/// Returns whether a comes after b lexicographically; no branches, which half of all segments would
+/// miss.
 #[inline]
 pub(super) fn is_greater<const N: usize>(a: &[f64; N], b: &[f64; N]) -> bool {
     (0..N).rev().fold(false, |rest, k| (a[k] > b[k]) | ((a[k] == b[k]) & rest))
@@ -299,20 +303,20 @@ fn exchanged_if<const N: usize>(swap: bool, a: [f64; N], b: [f64; N]) -> [[f64; 
     [x, y]
 }
 
-/// Whether no coordinate is NaN or infinite; zero times anything else is zero.
+/// Returns whether no coordinate is NaN or infinite; zero times anything else is zero.
 #[inline]
 pub(super) fn finite<const N: usize>(p: &[f64; N]) -> bool {
     p.iter().fold(0.0, |sum, &v| sum + v * 0.0) == 0.0
 }
 
-/// Whether that holds for both; one comparison.
+/// Returns whether that holds for both; one comparison.
 #[inline]
 fn both_finite<const N: usize>(p: &[f64; N], q: &[f64; N]) -> bool {
     (0..N).fold(0.0, |sum, k| sum + (p[k] * 0.0 + q[k] * 0.0)) == 0.0
 }
 
-/// How far a coordinate computed between p and q can be off, with room to spare: it is less than
-/// 5 halves of an ulp of the larger of them, or what underflow costs.
+/// Returns a bound on the error of a coordinate computed between p and q: it is less than 5 halves
+/// of an ulp of the larger of them, or the error of underflow.
 #[inline]
 pub(super) fn doubt(p: f64, q: f64) -> f64 {
     (p.abs() + q.abs()) * (16.0 * exact::EPSILON) + 1e-290
@@ -330,7 +334,7 @@ pub(super) fn clamped(v: f64, min: f64, max: f64) -> f64 {
     }
 }
 
-/// The error for a segment whose start, if not its end, has a NaN or infinite coordinate.
+/// Returns the error for a segment whose start, if not its end, has a NaN or infinite coordinate.
 #[cold]
 pub(super) fn non_finite(start: &[f64]) -> Error {
     let index = usize::from(start.iter().all(|v| v.is_finite()));

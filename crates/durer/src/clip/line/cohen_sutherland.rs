@@ -32,14 +32,14 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
-/// What the algorithm did.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step<P> {
     /// The codes of both ends, in the caller's order.
     Codes {
-        /// Of the start.
+        /// Outcode of the start.
         start: Outcode,
-        /// Of the end.
+        /// Outcode of the end.
         end: Outcode,
     },
     /// OR of the codes is empty: what is left lies inside.
@@ -48,18 +48,18 @@ pub enum Step<P> {
     Rejected,
     /// One end moved to a border.
     Cut {
-        /// Which end.
+        /// End that moves.
         end: End,
         /// The border; one bit.
         border: Outcode,
-        /// Where the end is now.
+        /// New position of the end.
         point: P,
         /// The code of the new end.
         code: Outcode,
     },
 }
 
-/// The result that a list of steps leads to.
+/// Returns the result that a list of steps leads to.
 pub fn replay<P: Copy>(mut segment: Segment<P>, steps: &[Step<P>]) -> Option<Segment<P>> {
     for step in steps {
         match *step {
@@ -72,7 +72,7 @@ pub fn replay<P: Copy>(mut segment: Segment<P>, steps: &[Step<P>]) -> Option<Seg
     None
 }
 
-/// The part of a segment in the closed rectangle.
+/// Returns the part of a segment in the closed rectangle.
 ///
 /// ```
 /// use durer::clip::line::{Segment, cohen_sutherland};
@@ -97,7 +97,7 @@ pub fn clip(
     run(&window.into(), segment, segment.start.to_array(), segment.end.to_array(), t)
 }
 
-/// The part of a segment in the closed box; six-bit outcodes.
+/// Returns the part of a segment in the closed box; six-bit outcodes.
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
@@ -174,7 +174,7 @@ impl<const N: usize> Line<N> {
         Self { ends: [start, end], way: std::array::from_fn(|k| end[k] - start[k]) }
     }
 
-    /// What only an exact test tells of a cut.
+    /// Cuts that only an exact test decides.
     ///
     /// # Errors
     /// [`crate::Error::NonFinite`], with index 0 for the start and 1 for the end.
@@ -243,16 +243,16 @@ impl<const N: usize> Line<N> {
         Ok(code)
     }
 
-    /// Whether the second end is lexicographically smaller. Of a segment in the plane that is not
-    /// parallel to an axis x tells.
+    /// Returns whether the second end is lexicographically smaller. Of a segment in the plane that
+    /// is not parallel to an axis x tells.
     #[inline(always)]
     fn is_turned(&self) -> bool {
         let [start, end] = &self.ends;
         if N == 2 { start[0] > end[0] } else { is_greater(start, end) }
     }
 
-    /// The other coordinate of a crossing with a border at a right angle: it is inside, or the AND test would have
-    /// rejected the segment. Adding zero turns −0 into 0, as the long way does.
+    /// Returns the other coordinate of a crossing with a border at a right angle: it is inside, or the AND
+    /// test would have rejected the segment. Adding zero turns −0 into 0, as the long way does.
     #[cold]
     #[inline(never)]
     fn short_way(&self, k: usize) -> Result<f64> {

@@ -1,4 +1,4 @@
-//! What the algorithms for convex windows share: half spaces, exact sides, order of crossings.
+//! The code that algorithms for convex windows share: half spaces, exact sides, order of crossings.
 
 use super::border::{Canonical, finite};
 use crate::clip::exact::{EPSILON, Exact};
@@ -16,7 +16,7 @@ pub struct HalfPlane {
 }
 
 impl HalfPlane {
-    /// The four half-planes whose intersection is the rectangle: left, right, bottom, top.
+    /// Returns the four half-planes whose intersection is the rectangle: left, right, bottom, top.
     pub fn of_rect(window: &Rect) -> [Self; 4] {
         let (min, max) = (window.min(), window.max());
         [(DVec2::X, min), (-DVec2::X, max), (DVec2::Y, min), (-DVec2::Y, max)]
@@ -35,7 +35,8 @@ pub struct ConvexPolygon {
 }
 
 impl ConvexPolygon {
-    /// The polygon with these vertices, in either direction; repeated neighbours are dropped.
+    /// Creates the polygon with these vertices, in either direction; repeated neighbours are
+    /// dropped.
     ///
     /// # Errors
     /// [`Error::NonFinite`]; [`Error::Parameter`] where the ring is not convex or has no area.
@@ -61,12 +62,12 @@ impl ConvexPolygon {
         }
     }
 
-    /// The vertices, counter-clockwise.
+    /// Returns the vertices, counter-clockwise.
     pub fn vertices(&self) -> &[DVec2] {
         &self.vertices
     }
 
-    /// The edges, each with the inside on its left.
+    /// Returns the edges, each with the inside on its left.
     pub fn edges(&self) -> Vec<Edge> {
         pairs(&self.vertices).map(|(from, to)| Edge { from, to }).collect()
     }
@@ -106,16 +107,16 @@ pub trait HalfSpace<const N: usize> {
     /// E(p) itself.
     #[doc(hidden)]
     fn exact(&self, p: [f64; N]) -> Exact;
-    /// The gradient of E, rounded.
+    /// Returns the gradient of E, rounded.
     fn normal(&self) -> [f64; N];
     /// Axis and coordinate of a border that is parallel to all other axes and has such a number.
     fn coordinate(&self) -> Option<(usize, f64)>;
-    /// Corners of the window on this border, if known.
+    /// Returns corners of the window on this border, if known.
     fn corners(&self) -> Vec<[f64; N]> {
         Vec::new()
     }
 
-    /// The exact sign of E(p).
+    /// Returns the exact sign of E(p).
     #[inline]
     fn sign(&self, p: [f64; N]) -> Ordering {
         let (value, bound) = self.value(p);
@@ -214,8 +215,8 @@ impl HalfSpace<3> for Plane {
     }
 }
 
-/// The point where the segment crosses the border of half space `index`, inside all half spaces if
-/// a floating-point point that close is.
+/// Returns the point where the segment crosses the border of half space `index`, inside all half
+/// spaces if a floating-point point that close is.
 pub(super) fn crossing<const N: usize, H: HalfSpace<N>>(
     spaces: &[H],
     index: usize,
@@ -243,8 +244,8 @@ fn size<const N: usize>(v: [f64; N]) -> f64 {
     v.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
 }
 
-/// The crossing with every coordinate computed exactly and rounded once: for windows so thin that
-/// an ulp of the segment's ends is too much.
+/// Returns the crossing with every coordinate computed exactly and rounded once: for windows so
+/// thin that an ulp of the segment's ends is too much.
 fn exact_crossing<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N>) -> [f64; N] {
     let (p, q) = (space.exact(line.p), space.exact(line.q));
     let divisor = q.clone() - p.clone();
@@ -254,7 +255,8 @@ fn exact_crossing<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N
     })
 }
 
-/// A corner that rounding cannot tell from the cut: in the tip of a needle no other number is inside.
+/// Returns A corner that rounding cannot tell from the cut: in the tip of a needle no other number is
+/// inside.
 fn nearest_corner<const N: usize, H: HalfSpace<N>>(
     space: &H,
     cut: [f64; N],
@@ -332,7 +334,7 @@ fn slid<const N: usize, H: HalfSpace<N>>(
     })
 }
 
-/// The point moved inwards by a quarter ulp of `scale`.
+/// Returns the point moved inwards by a quarter ulp of `scale`.
 fn pushed<const N: usize, H: HalfSpace<N>>(space: &H, point: [f64; N], scale: f64) -> [f64; N] {
     if let Some((axis, border)) = space.coordinate() {
         let mut point = point;

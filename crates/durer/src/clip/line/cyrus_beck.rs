@@ -34,7 +34,7 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
-/// The part of a segment in the closed rectangle, taken as four half-planes.
+/// Returns the part of a segment in the closed rectangle, taken as four half-planes.
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
@@ -47,7 +47,7 @@ pub fn clip(
     Ok(clip_convex(&HalfPlane::of_rect(window), segment, &line, t))
 }
 
-/// The part of a segment in a closed convex polygon.
+/// Returns the part of a segment in a closed convex polygon.
 ///
 /// ```
 /// use durer::clip::line::{ConvexPolygon, Segment, cyrus_beck};
@@ -72,8 +72,8 @@ pub fn clip_polygon(
     Ok(clip_convex(&window.edges(), segment, &line, t))
 }
 
-/// The part of a segment in the closed convex polyhedron that is the intersection of the positive
-/// sides of the planes; it may be unbounded.
+/// Returns the part of a segment in the closed convex polyhedron that is the intersection of the
+/// positive sides of the planes; it may be unbounded.
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] for a NaN or infinite coordinate; the same for a plane

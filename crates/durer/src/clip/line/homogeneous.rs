@@ -38,7 +38,7 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
-/// The part of a segment in the closed rectangle: with w = 1 at both ends.
+/// Returns the part of a segment in the closed rectangle: with w = 1 at both ends.
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
@@ -52,8 +52,8 @@ pub fn clip(
     Ok(clipped.map(|s| Segment::new(s.start.truncate(), s.end.truncate())))
 }
 
-/// The part of a segment of homogeneous points (x, y, w) whose places (x/w, y/w) are in the closed
-/// rectangle; w > 0 at both of its ends.
+/// Returns the part of a segment of homogeneous points (x, y, w) whose places (x/w, y/w) are in the
+/// closed rectangle; w > 0 at both of its ends.
 ///
 /// ```
 /// use durer::clip::line::{Segment, homogeneous::clip_homogeneous};
@@ -84,7 +84,8 @@ pub fn clip_homogeneous(
     Ok(clipped.filter(|s| s.start.z > 0.0 && s.end.z > 0.0))
 }
 
-/// The borders as planes through the origin of (x, y, w): left, right, bottom, top, and w = 0.
+/// Returns the borders as planes through the origin of (x, y, w): left, right, bottom, top, and w =
+/// 0.
 fn boundary_planes(window: &ClipBox<2>) -> [Plane; 5] {
     let [[left, right], [bottom, top]] = window.borders;
     let normals = [
@@ -97,7 +98,8 @@ fn boundary_planes(window: &ClipBox<2>) -> [Plane; 5] {
     normals.map(|normal| Plane { normal, distance: 0.0 })
 }
 
-/// The point on a border, exactly on it and inside the others, where rounding left it beside.
+/// Returns the point on a border, exactly on it and inside the others, where rounding left it
+/// beside.
 fn crossing(
     window: &ClipBox<2>,
     planes: &[Plane; 5],
@@ -120,8 +122,8 @@ fn crossing(
     point
 }
 
-/// Whether a segment crosses a border in the null vector, where all borders meet: w, given rounded,
-/// is exactly 0 there.
+/// Returns whether a segment crosses a border in the null vector, where all borders meet: w, given
+/// rounded, is exactly 0 there.
 fn is_null(border: &Plane, line: &Canonical<3>, w: f64) -> bool {
     if w.abs() > doubt(line.p[2], line.q[2]) {
         return false;

@@ -35,7 +35,7 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
-/// The part of a segment in the closed rectangle.
+/// Returns the part of a segment in the closed rectangle.
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
@@ -48,7 +48,7 @@ pub fn clip(
     run(&window.into(), segment, segment.start.to_array(), segment.end.to_array(), t)
 }
 
-/// The part of a segment in the closed box.
+/// Returns the part of a segment in the closed box.
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
@@ -60,8 +60,8 @@ pub fn clip_box(
     run(window, segment, segment.start.to_array(), segment.end.to_array(), t)
 }
 
-/// The part of a segment in the intersection of closed half-planes, which may be unbounded: with
-/// E(P) = n · (P − Q), the border is crossed at t = E(p) / (E(p) − E(q)).
+/// Returns the part of a segment in the intersection of closed half-planes, which may be unbounded:
+/// with E(P) = n · (P − Q), the border is crossed at t = E(p) / (E(p) − E(q)).
 ///
 /// ```
 /// use durer::clip::line::{HalfPlane, Segment, liang_barsky};
@@ -141,7 +141,7 @@ fn report<const N: usize, P>(
     }
 }
 
-/// Of the borders in `code`, the one with the largest (`Greater`) or smallest (`Less`) parameter.
+/// Returns the border in `code` with the largest (`Greater`) or smallest (`Less`) parameter.
 #[inline]
 fn tightest<const N: usize>(
     window: &ClipBox<N>,

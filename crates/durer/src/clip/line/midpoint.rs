@@ -45,7 +45,7 @@ pub struct PixelWindow {
 }
 
 impl PixelWindow {
-    /// The rectangle between two pixels.
+    /// Creates the rectangle between two pixels.
     ///
     /// # Errors
     /// [`Error::Parameter`] where `min > max` on an axis.
@@ -58,12 +58,12 @@ impl PixelWindow {
         }
     }
 
-    /// The pixel with the smallest coordinates.
+    /// Returns the pixel with the smallest coordinates.
     pub fn min(&self) -> IVec2 {
         self.min
     }
 
-    /// The pixel with the largest coordinates.
+    /// Returns the pixel with the largest coordinates.
     pub fn max(&self) -> IVec2 {
         self.max
     }
@@ -74,7 +74,7 @@ impl PixelWindow {
     }
 }
 
-/// What the algorithm did.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
     /// The middle between two pixels was looked at.
@@ -86,18 +86,18 @@ pub enum Step {
     },
     /// One end moves to a visible pixel whose neighbour on the segment is not.
     Cut {
-        /// Which end.
+        /// End that moves.
         end: End,
-        /// Where the end is now.
+        /// New position of the end.
         point: IVec2,
     },
-    /// What is left is inside.
+    /// The rest is inside.
     Accepted,
-    /// Nothing is left.
+    /// Nothing remains.
     Rejected,
 }
 
-/// The result that a list of steps leads to.
+/// Returns the result that a list of steps leads to.
 pub fn replay(mut segment: Segment<IVec2>, steps: &[Step]) -> Option<Segment<IVec2>> {
     for step in steps {
         match *step {
@@ -110,7 +110,7 @@ pub fn replay(mut segment: Segment<IVec2>, steps: &[Step]) -> Option<Segment<IVe
     None
 }
 
-/// The part of a segment in the window.
+/// Returns the part of a segment in the window.
 ///
 /// ```
 /// use durer::clip::line::{Segment, midpoint};
@@ -162,7 +162,7 @@ impl From<IVec2> for Fine {
 }
 
 impl Fine {
-    /// The nearest pixel, halves up.
+    /// Returns the nearest pixel, halves up.
     fn pixel(self) -> IVec2 {
         let nearest = |v: i64| ((v >> (FRACTION - 1)) + 1) >> 1;
         IVec2::new(nearest(self.x) as i32, nearest(self.y) as i32)
@@ -172,7 +172,7 @@ impl Fine {
         Self { x: (self.x + other.x) >> 1, y: (self.y + other.y) >> 1 }
     }
 
-    /// Whether the two are a pixel apart or less on both axes.
+    /// Returns whether the two are a pixel apart or less on both axes.
     fn adjacent(self, other: Self) -> bool {
         self.x.abs_diff(other.x) <= 1 << FRACTION && self.y.abs_diff(other.y) <= 1 << FRACTION
     }
@@ -185,7 +185,8 @@ struct Gap {
     visible: Fine,
 }
 
-/// A gap for each end, found by halving while both ends are outside; `None` where nothing is visible.
+/// Returns A gap for each end, found by halving while both ends are outside; `None` where nothing is
+/// visible.
 fn gaps(
     window: &PixelWindow,
     [mut p, mut q]: [Fine; 2],

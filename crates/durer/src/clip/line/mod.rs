@@ -42,19 +42,19 @@ use crate::{Error, Result};
 /// A straight piece from `start` to `end`, both included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Segment<P> {
-    /// Where it begins.
+    /// Start of the visible part.
     pub start: P,
-    /// Where it ends.
+    /// End of the visible part.
     pub end: P,
 }
 
 impl<P> Segment<P> {
-    /// The segment from `start` to `end`.
+    /// Creates the segment from `start` to `end`.
     pub const fn new(start: P, end: P) -> Self {
         Self { start, end }
     }
 
-    /// The same points in the other direction.
+    /// Returns the same points in the other direction.
     pub fn reversed(self) -> Self {
         Self { start: self.end, end: self.start }
     }
@@ -79,7 +79,7 @@ crate::info::family! {
 }
 
 impl LineClipper {
-    /// The part of the segment in the closed window; `None` where there is none.
+    /// Returns the part of the segment in the closed window; `None` where there is none.
     ///
     /// # Errors
     /// [`Error::NonFinite`] for a NaN or infinite coordinate; [`Error::Unsupported`] for
@@ -100,7 +100,7 @@ impl LineClipper {
     }
 }
 
-/// The part of a segment with finite ends in the closed rectangle, for other clippers.
+/// Returns the part of a segment with finite ends in the closed rectangle, for other clippers.
 #[inline]
 pub(crate) fn cut_inside(window: &Rect, start: DVec2, end: DVec2) -> Option<Segment<DVec2>> {
     let segment = Segment::new(start, end);

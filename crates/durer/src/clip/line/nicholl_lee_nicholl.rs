@@ -33,7 +33,7 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
-/// What the algorithm did.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// The region the first end lies in: inside, beside a border, or at a corner (two bits).
@@ -45,26 +45,26 @@ pub enum Step {
     Corner {
         /// The two borders that meet there.
         corner: Outcode,
-        /// Whether, where it crosses the corner's vertical border, the segment is below (`Less`) or
-        /// above (`Greater`) the corner.
+        /// Side of the corner on which the segment crosses the corner's vertical border: below
+        /// (`Less`) or above (`Greater`).
         passes: Ordering,
     },
     /// One end moves to a border.
     Cut {
-        /// Which end.
+        /// End that moves.
         end: End,
         /// The border; one bit.
         border: Outcode,
-        /// Where the end is now.
+        /// New position of the end.
         point: DVec2,
     },
-    /// What is left is inside.
+    /// The rest is inside.
     Accepted,
-    /// Nothing is left.
+    /// Nothing remains.
     Rejected,
 }
 
-/// The result that a list of steps leads to.
+/// Returns the result that a list of steps leads to.
 pub fn replay(mut segment: Segment<DVec2>, steps: &[Step]) -> Option<Segment<DVec2>> {
     for step in steps {
         match *step {
@@ -77,7 +77,7 @@ pub fn replay(mut segment: Segment<DVec2>, steps: &[Step]) -> Option<Segment<DVe
     None
 }
 
-/// The part of a segment in the closed rectangle.
+/// Returns the part of a segment in the closed rectangle.
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
@@ -110,13 +110,14 @@ struct Search {
     line: Canonical<2>,
 }
 
-/// Which border of an axis a code names, if any: 0 the smaller, 1 the larger coordinate.
+/// Returns the border of an axis that a code names, if any: 0 the smaller, 1 the larger coordinate.
 fn beyond(code: Outcode, axis: usize) -> Option<usize> {
     (0..2).find(|&upper| code.contains(bit(axis, upper)))
 }
 
 impl Search {
-    /// Whether, where the line crosses border (axis, a), it is beyond border b of the other axis.
+    /// Returns whether  where the line crosses border (axis, a), it is beyond border b of the other
+    /// axis.
     fn passes_beyond(&self, axis: usize, a: usize, b: usize, t: &mut impl Tracer<Step>) -> bool {
         let other = 1 - axis;
         let borders = &self.window.borders;
@@ -126,7 +127,7 @@ impl Search {
         passes == if b == 0 { Ordering::Less } else { Ordering::Greater }
     }
 
-    /// Whether a line whose first end is outside, in the region `code`, meets the window.
+    /// Returns whether a line whose first end is outside, in the region `code`, meets the window.
     fn enters(&self, code: Outcode, t: &mut impl Tracer<Step>) -> bool {
         match (beyond(code, 0), beyond(code, 1)) {
             (Some(x), Some(y)) if self.passes_beyond(0, x, y, t) => {
@@ -139,7 +140,8 @@ impl Search {
         }
     }
 
-    /// The crossing with the border on the side of an end in the region `code`; `None` for inside.
+    /// Returns the crossing with the border on the side of an end in the region `code`; `None` for
+    /// inside.
     fn end(&self, code: Outcode, end: End, t: &mut impl Tracer<Step>) -> Option<[f64; 2]> {
         let (axis, upper) = match (beyond(code, 0), beyond(code, 1)) {
             (Some(x), Some(y)) if self.passes_beyond(0, x, y, t) => (1, y),

@@ -1,5 +1,5 @@
-//! What the parametric methods share: a segment enters and leaves a convex window at two parameters,
-//! those of the last border crossed inwards and of the first crossed outwards.
+//! The code that parametric methods share: a segment enters and leaves a convex window at two
+//! parameters, those of the last border crossed inwards and of the first crossed outwards.
 
 use super::border::Canonical;
 use super::convex::{self, HalfSpace};
@@ -8,7 +8,7 @@ use crate::clip::exact::EPSILON;
 use crate::trace::Tracer;
 use std::cmp::Ordering;
 
-/// What an algorithm did, in the direction of the caller's segment.
+/// Step of an algorithm, in the direction of the caller's segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step<P> {
     /// A border was looked at: every one of a rectangle or box by Liang and Barsky, otherwise all up to the first
@@ -16,22 +16,22 @@ pub enum Step<P> {
     Border {
         /// Its index in the window; of a rectangle or box 2·axis, plus 1 for the larger coordinate.
         border: usize,
-        /// How the segment lies to it; [`Relation::Entering`] raises the lower bound of the parameter,
-        /// [`Relation::Leaving`] lowers the upper.
+        /// Relation of the segment to it; [`Relation::Entering`] raises the lower bound of the
+        /// parameter, [`Relation::Leaving`] lowers the upper.
         relation: Relation,
-        /// What is computed of it.
+        /// Numbers computed for the border.
         numbers: Numbers,
     },
     /// One end moves to the border that bounds it.
     Cut {
-        /// Which end.
+        /// End that moves.
         end: End,
         /// The border's index.
         border: usize,
-        /// Where the end is now.
+        /// New position of the end.
         point: P,
     },
-    /// What is left is inside.
+    /// The rest is inside.
     Accepted,
     /// The lower bound passed the upper, or a border has both ends beyond it.
     Rejected,
@@ -60,8 +60,8 @@ impl Numbers {
         self.start - self.end
     }
 
-    /// The parameter at which the segment's line crosses the border, r = q / p: 0 at the start, 1 at the end;
-    /// none along the border.
+    /// Returns the parameter at which the segment's line crosses the border, r = q / p: 0 at the start, 1 at
+    /// the end; none along the border.
     pub fn t(&self) -> Option<f64> {
         // A quarter of each, because the difference of two huge values overflows.
         let p = self.start * 0.25 - self.end * 0.25;
@@ -79,7 +79,7 @@ pub(super) struct Bounds {
 impl Bounds {
     pub const WHOLE: Self = Self { lower: 0.0, upper: 1.0 };
 
-    /// The step of the next border, from what is known of the canonical segment.
+    /// Returns the step of the next border, from what is known of the canonical segment.
     pub fn step<const N: usize, P>(
         &mut self,
         line: &Canonical<N>,
@@ -101,7 +101,7 @@ impl Bounds {
     }
 }
 
-/// The result that a list of steps leads to.
+/// Returns the result that a list of steps leads to.
 pub fn replay<P: Copy>(mut segment: Segment<P>, steps: &[Step<P>]) -> Option<Segment<P>> {
     for step in steps {
         match *step {
@@ -114,7 +114,8 @@ pub fn replay<P: Copy>(mut segment: Segment<P>, steps: &[Step<P>]) -> Option<Seg
     None
 }
 
-/// The part of a segment in the intersection of half spaces; `at(b)` is its point on border b.
+/// Returns the part of a segment in the intersection of half spaces; `at(b)` is its point on border
+/// b.
 pub(super) fn clip<const N: usize, P: From<[f64; N]>, H: HalfSpace<N>>(
     spaces: &[H],
     segment: Segment<P>,
@@ -137,7 +138,7 @@ pub(super) fn clip<const N: usize, P: From<[f64; N]>, H: HalfSpace<N>>(
     Some(finish(segment, line, cut(passage.entering), cut(passage.leaving), t))
 }
 
-/// The same with the cut points of [`convex::crossing`].
+/// Returns the same with the cut points of [`convex::crossing`].
 pub(super) fn clip_convex<const N: usize, P: From<[f64; N]>, H: HalfSpace<N>>(
     spaces: &[H],
     segment: Segment<P>,
@@ -169,7 +170,7 @@ pub(super) fn finish<const N: usize, P: From<[f64; N]>>(
     }
 }
 
-/// How a segment lies to one half space.
+/// Relation of a segment to one half space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Relation {
     /// Both ends inside: nothing to do.
@@ -251,7 +252,8 @@ fn relate<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N>) -> Re
     Relation::of([line.p, line.q].map(|p| space.sign(p) != Ordering::Less))
 }
 
-/// The exact order along the segment of its crossings with two borders, both of which it spans.
+/// Returns the exact order along the segment of its crossings with two borders, both of which it
+/// spans.
 fn crossing_order<const N: usize, H: HalfSpace<N>>(a: &H, b: &H, line: &Canonical<N>) -> Ordering {
     let ((ap, ap_off), (aq, aq_off)) = (a.value(line.p), a.value(line.q));
     let ((bp, bp_off), (bq, bq_off)) = (b.value(line.p), b.value(line.q));

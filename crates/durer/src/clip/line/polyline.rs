@@ -40,7 +40,7 @@ pub const INFO: Info = Info {
     limits: "even-odd rule; parts between cuts that round to one point are ignored",
 };
 
-/// Which part is wanted.
+/// Part of the polylines to keep: inside or outside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Part {
     /// In the closed polygon.
@@ -50,14 +50,14 @@ pub enum Part {
     Outside,
 }
 
-/// What can be chosen.
+/// Options for clipping polylines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
-    /// Which part is wanted.
+    /// Part of the polylines to keep: inside or outside.
     pub part: Part,
 }
 
-/// What the algorithm did.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A part of a segment, between cuts or ends, was judged.
@@ -66,16 +66,16 @@ pub enum Step {
         line: usize,
         /// The segment: the index of its first point in the flat buffer.
         segment: usize,
-        /// Where the part begins.
+        /// Start of the part.
         start: DVec2,
-        /// Where it ends.
+        /// End of the visible part.
         end: DVec2,
-        /// Whether it is in the closed polygon.
+        /// True if it is in the closed polygon.
         inside: bool,
     },
 }
 
-/// The pieces that a list of steps leads to, each with its polyline.
+/// Returns the pieces that a list of steps leads to, each with its polyline.
 pub fn replay(options: &Options, steps: &[Step]) -> Vec<(usize, Vec<DVec2>)> {
     let mut pieces: Vec<(usize, Vec<DVec2>)> = Vec::new();
     let mut open = None;
@@ -94,8 +94,8 @@ pub fn replay(options: &Options, steps: &[Step]) -> Vec<(usize, Vec<DVec2>)> {
     pieces
 }
 
-/// The wanted part of polylines against a polygon with holes, given by all its rings (any direction,
-/// even-odd); `ends[i]` is where polyline i ends in `points`.
+/// Returns the wanted part of polylines against a polygon with holes, given by all its rings (any
+/// direction, even-odd); `ends[i]` is where polyline i ends in `points`.
 ///
 /// ```
 /// use durer::clip::line::polyline::{Options, clip};
@@ -129,7 +129,7 @@ pub fn clip(
     run(&Near::all(polygon.clone()), points, ends, options, t)
 }
 
-/// The same for polygons that were made ready: only those near the polylines are looked at.
+/// Returns the same for polygons that were made ready: only those near the polylines are looked at.
 ///
 /// # Errors
 /// As [`clip`].
@@ -221,7 +221,8 @@ fn clip_one(
     out.end_piece(line);
 }
 
-/// Where a segment meets the border: points in its order, and stretches that run along an edge.
+/// Intersections of a segment with the border: points in its order, and stretches that run along an
+/// edge.
 struct Cuts {
     points: Vec<DVec2>,
     along: Vec<(DVec2, DVec2)>,
@@ -232,14 +233,14 @@ impl Cuts {
         self.points.is_empty()
     }
 
-    /// The parts between the cuts, those without length left out.
+    /// Returns the parts between the cuts, those without length left out.
     fn parts(&self, a: DVec2, b: DVec2) -> Vec<(DVec2, DVec2)> {
         let stops: Vec<DVec2> =
             std::iter::once(a).chain(self.points.iter().copied()).chain([b]).collect();
         stops.windows(2).map(|w| (w[0], w[1])).filter(|(p, q)| p != q).collect()
     }
 
-    /// Whether a part between two neighbouring cuts lies in a stretch along the border.
+    /// Returns whether a part between two neighbouring cuts lies in a stretch along the border.
     fn on_border(&self, start: DVec2, end: DVec2) -> bool {
         let between = |p: DVec2, (from, to): (DVec2, DVec2)| {
             let (low, high) = (from.min(to), from.max(to));
@@ -280,7 +281,7 @@ impl Border {
         border
     }
 
-    /// The slabs that the heights from `low` to `high` touch.
+    /// Returns the slabs that the heights from `low` to `high` touch.
     fn slabs_of(&self, low: f64, high: f64) -> std::ops::RangeInclusive<usize> {
         let index = |y: f64| {
             let Some(bounds) = self.bounds else { return 0 };
@@ -292,7 +293,7 @@ impl Border {
         index(low)..=index(high)
     }
 
-    /// All places where the closed segment meets the border, in the segment's direction.
+    /// Returns all places where the closed segment meets the border, in the segment's direction.
     fn cuts(&self, a: DVec2, b: DVec2) -> Cuts {
         let mut cuts = Cuts { points: Vec::new(), along: Vec::new() };
         let Some(extent) = Rect::around([a, b]) else { return cuts };
@@ -321,7 +322,7 @@ impl Border {
         cuts
     }
 
-    /// Whether the middle of a part that crosses no edge is inside, by the even-odd rule.
+    /// Returns whether the middle of a part that crosses no edge is inside, by the even-odd rule.
     fn contains_middle(&self, start: DVec2, end: DVec2) -> bool {
         let p = start * 0.5 + end * 0.5;
         if self.bounds.is_none_or(|bounds| !bounds.contains(p)) {
@@ -338,7 +339,7 @@ impl Border {
     }
 }
 
-/// The axis on which a segment is longer; halves, because the difference may overflow.
+/// Returns the axis on which a segment is longer; halves, because the difference may overflow.
 fn longer_axis(a: DVec2, b: DVec2) -> usize {
     let d = (b * 0.5 - a * 0.5).abs();
     usize::from(d.y > d.x)

@@ -53,7 +53,8 @@ fn case() -> impl Strategy<Value = (Rect, Segment<DVec2>)> {
     })
 }
 
-/// Whether closed segment and rectangle meet: no axis and not the segment's normal separates them.
+/// Returns whether closed segment and rectangle meet: no axis and not the segment's normal
+/// separates them.
 fn meets(w: &Rect, s: &Segment<DVec2>) -> bool {
     let Some(around) = Rect::around([s.start, s.end]) else { return false };
     let (min, max) = (w.min(), w.max());
@@ -165,7 +166,7 @@ proptest! {
         }
     }
 
-    /// Of a segment that ends behind the eye, what is seen leads to the infinite.
+    /// Checks that the visible part of a segment that ends behind the eye leads to the infinite.
     #[test]
     fn what_runs_behind_the_eye_is_a_ray((w, s) in case()) {
         let direction = s.end;
@@ -269,7 +270,7 @@ proptest! {
     }
 }
 
-/// The convex hull by Andrew's monotone chain.
+/// Returns the convex hull by Andrew's monotone chain.
 fn hull(mut cloud: Vec<DVec2>) -> Option<ConvexPolygon> {
     cloud.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let half = |points: &mut dyn Iterator<Item = &DVec2>| {
@@ -290,7 +291,8 @@ fn hull(mut cloud: Vec<DVec2>) -> Option<ConvexPolygon> {
     ConvexPolygon::new(&ring).ok()
 }
 
-/// Whether the window is wider than some ulps, so that there are numbers inside near every cut.
+/// Returns whether the window is wider than some ulps, so that there are numbers inside near every
+/// cut.
 fn is_thick(w: &ConvexPolygon) -> bool {
     let ring = w.vertices();
     let size = ring.iter().fold(0.0f64, |m, v| m.max(v.abs().max_element()));

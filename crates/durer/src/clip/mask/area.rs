@@ -152,12 +152,12 @@ impl Area {
     }
 }
 
-/// So many pairs of a place and a vertex may be looked at for heights within a polygon, half a second or
-/// less; beyond that heights go on along the border from the known ones.
+/// Limit on the pairs of a position and a vertex that are searched for heights within a polygon: half a
+/// second or less; beyond it heights are interpolated along the border from the known ones.
 const PAIRS: usize = 1 << 26;
 
-/// Values where none is known: along the ring, by length, between
-/// the known ones before and after; where the ring has none, by `otherwise`.
+/// Returns values where none is known: along the ring, by length, between the known ones before and
+/// after; where the ring has none, by `otherwise`.
 fn fill(ring: &[DVec2], known: &[Option<Zm>], otherwise: impl Fn(DVec2) -> Zm) -> Vec<Zm> {
     let count = ring.len();
     let Some(first) = known.iter().position(Option::is_some) else {
@@ -183,7 +183,8 @@ fn fill(ring: &[DVec2], known: &[Option<Zm>], otherwise: impl Fn(DVec2) -> Zm) -
     values
 }
 
-/// The same geometry with outer rings counter-clockwise and holes clockwise, each from its first vertex.
+/// Returns the same geometry with outer rings counter-clockwise and holes clockwise, each from its first
+/// vertex.
 pub(super) fn oriented(mut geometry: Geometry) -> Geometry {
     orient_all(&mut geometry);
     geometry
@@ -209,7 +210,7 @@ fn orient(rings: &mut [Points]) {
     }
 }
 
-/// The pieces of lines, from the sources of their vertices.
+/// Returns the pieces of lines, from the sources of their vertices.
 pub(super) fn pieces(
     lines: &[&Points],
     cut: &crate::clip::polygon::rectangle::ClippedLines,

@@ -51,7 +51,7 @@ impl Algorithm {
         }
     }
 
-    /// Whether it clips with rectangles only.
+    /// Returns whether it clips with rectangles only.
     pub fn needs_window(self) -> bool {
         match self {
             Self::Polygon(clipper) => clipper.needs_rectangle(),
@@ -59,17 +59,18 @@ impl Algorithm {
         }
     }
 
-    /// Whether it joins the polygons of all features.
+    /// Returns whether it joins the polygons of all features.
     pub fn joins(self) -> bool {
         matches!(self, Self::Polygon(PolygonClipper::Overlay | PolygonClipper::Vatti))
     }
 
-    /// Whether polygons are cut on a grid and by a fill rule; so they are beside algorithms for lines.
+    /// Returns whether polygons are cut on a grid and by a fill rule; so they are beside algorithms
+    /// for lines.
     pub fn takes_rules(self) -> bool {
         self.joins() || matches!(self, Self::Line(_))
     }
 
-    /// Whether it keeps the inside only.
+    /// Returns whether it keeps the inside only.
     pub fn needs_intersection(self) -> bool {
         match self {
             Self::Polygon(clipper) => clipper.keeps_inside_only(),
@@ -283,7 +284,7 @@ fn one_or_many(mut lines: Vec<Points>) -> Option<Geometry> {
     }
 }
 
-/// The part of valid polygons in a window.
+/// Returns the part of valid polygons in a window.
 fn clip_area(window: &Rect, area: &Area) -> Result<Area> {
     let options = rectangle::Options;
     let (shapes, sources) =

@@ -26,12 +26,12 @@ pub struct MeanValues<'a> {
 struct Sums {
     weight: f64,
     values: Zm,
-    /// Whether a ray to the right crosses the polygon's border an odd number of times.
+    /// True if a ray to the right crosses the polygon's border an odd number of times.
     odd: bool,
 }
 
 impl<'a> MeanValues<'a> {
-    /// Of all polygons.
+    /// Builds the edges of all polygons.
     pub fn new(values: &Values<'a>) -> Self {
         let shapes = values.shapes;
         let ring = |index: usize, outer: bool| {
@@ -47,7 +47,7 @@ impl<'a> MeanValues<'a> {
         Self { polygons: all.map(polygon).collect() }
     }
 
-    /// The values at a place within a polygon; `None` where it is in none.
+    /// Returns the values at a place within a polygon; `None` where it is in none.
     pub fn at(&self, place: DVec2) -> Option<Zm> {
         self.polygons.iter().find_map(|polygon| within(polygon, place))
     }

@@ -50,7 +50,7 @@ impl Rules {
         mask.polygons().filter_map(|p| size(p.outer())).any(|size| size.max_element() < cell)
     }
 
-    /// The overlay's options: the finest grid that it takes, unless one is given.
+    /// Returns the overlay's options: the finest grid that it takes, unless one is given.
     fn options(&self, area: &Area, clip: &Shapes, subject_rule: FillRule) -> overlay::Options {
         let fit = || coverage::finest_grid([area.shapes.bounds(), clip.bounds()]);
         overlay::Options {

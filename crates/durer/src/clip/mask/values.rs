@@ -7,11 +7,11 @@ use crate::math::DVec2;
 /// Height and measure of a vertex.
 pub type Zm = [f64; 2];
 
-/// What is nearer to an edge than this share of the shape's size lies on it: some times what the overlay's
-/// grid moves a vertex by.
+/// Largest distance from an edge, as a share of the shape's size, at which a point counts as on it:
+/// several times the distance that the overlay's grid moves a vertex.
 const NEAR: f64 = 1e-12;
 
-/// The values at t between a (0) and b (1).
+/// Returns the values at t between a (0) and b (1).
 pub fn mix(a: Zm, b: Zm, t: f64) -> Zm {
     [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]
 }
@@ -23,8 +23,8 @@ pub struct Values<'a> {
     pub zm: &'a [Zm],
 }
 
-/// The values at a place on the edge from a to b, each given by its place and values: the same bits
-/// for either direction, so that neighbours agree.
+/// Returns the values at a place on the edge from a to b, each given by its place and values: the
+/// same bits for either direction, so that neighbours agree.
 pub fn between(a: (DVec2, Zm), b: (DVec2, Zm), p: DVec2) -> Zm {
     let order = |p: DVec2, q: DVec2| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y));
     let (a, b) = if order(a.0, b.0).is_le() { (a, b) } else { (b, a) };
@@ -36,7 +36,7 @@ pub fn between(a: (DVec2, Zm), b: (DVec2, Zm), p: DVec2) -> Zm {
 }
 
 impl Values<'_> {
-    /// The values at a place on the edge between two vertices.
+    /// Returns the values at a place on the edge between two vertices.
     pub fn along(&self, ends: [usize; 2], p: DVec2) -> Option<Zm> {
         let [a, b] =
             ends.map(|i| self.shapes.points().get(i).copied().zip(self.zm.get(i).copied()));
@@ -74,7 +74,7 @@ impl Values<'_> {
         }
     }
 
-    /// The numbers of the vertices by their x, to find the nearest ones.
+    /// Returns the numbers of the vertices by their x, to find the nearest ones.
     pub fn by_x(&self) -> Vec<usize> {
         let points = self.shapes.points();
         let mut order: Vec<usize> = (0..points.len()).collect();
@@ -82,7 +82,7 @@ impl Values<'_> {
         order
     }
 
-    /// The values of the vertex nearest to a place, of several the first; `by_x` as above.
+    /// Returns the values of the vertex nearest to a place, of several the first; `by_x` as above.
     pub fn nearest(&self, by_x: &[usize], place: DVec2) -> Zm {
         let points = self.shapes.points();
         let (mut best, mut squared) = (usize::MAX, f64::INFINITY);

@@ -25,9 +25,9 @@ pub(super) struct Vertex {
     pub at: DVec2,
     pub next: usize,
     pub previous: usize,
-    /// Where it crosses the other border: the same point in the other list.
+    /// Crossing with the other border: the same point in the other list.
     pub twin: Option<usize>,
-    /// Where it crosses: whether the list comes into the other's inside here.
+    /// True at a crossing where the list enters the other's inside.
     pub enters: bool,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Vertex {
 pub(super) struct Start {
     /// Its first vertex.
     pub vertex: usize,
-    /// Whether the edge from there, before a crossing at its end, is inside the other.
+    /// True if the edge from there, before a crossing at its end, is inside the other.
     pub inside: bool,
 }
 
@@ -62,18 +62,18 @@ impl Lists {
         lists
     }
 
-    /// The vertices of the ring of a vertex, once around from it.
+    /// Returns the vertices of the ring of a vertex, once around from it.
     pub fn ring(&self, start: usize) -> impl Iterator<Item = usize> + '_ {
         let follow = move |&v: &usize| Some(self.vertices[v].next).filter(|&next| next != start);
         std::iter::successors(Some(start), follow)
     }
 
-    /// Where the list goes from and comes to at a vertex.
+    /// Returns the points before and after a vertex of the list.
     pub fn neighbours(&self, v: usize) -> [DVec2; 2] {
         [self.vertices[v].previous, self.vertices[v].next].map(|v| self.vertices[v].at)
     }
 
-    /// The edge that starts at a vertex.
+    /// Returns the edge that starts at a vertex.
     fn edge(&self, v: usize) -> [DVec2; 2] {
         [self.vertices[v].at, self.vertices[self.vertices[v].next].at]
     }
@@ -82,7 +82,7 @@ impl Lists {
         (0..self.vertices.len()).map(|v| self.edge(v))
     }
 
-    /// The last of the vertices that stand for one common point, from the first.
+    /// Returns the last of the vertices that stand for one common point, from the first.
     pub fn leaves(&self, mut v: usize) -> usize {
         while self.vertices[self.vertices[v].next].at == self.vertices[v].at {
             v = self.vertices[v].next;
@@ -109,7 +109,8 @@ pub(super) struct Linked {
     rings: [Shapes; 2],
 }
 
-/// The rings without repeated points and flat rings, outer ones counter-clockwise, holes clockwise.
+/// Returns the rings without repeated points and flat rings, outer ones counter-clockwise, holes
+/// clockwise.
 fn tidy(shapes: &Shapes) -> Shapes {
     let rings = shapes.rings().map(|ring| {
         let mut ring = ring.to_vec();
@@ -185,7 +186,7 @@ impl Linked {
         if apart { Ok(()) } else { Err(NOT_SIMPLE) }
     }
 
-    /// The pairs of edges that cross inside both, by the vertices where they start.
+    /// Returns the pairs of edges that cross inside both, by the vertices where they start.
     fn crossings(&self) -> Vec<[usize; 2]> {
         let count = self.lists[0].vertices.len();
         let edges: Vec<[DVec2; 2]> = self.lists.iter().flat_map(Lists::edges).collect();
@@ -273,7 +274,8 @@ impl Linked {
         }
     }
 
-    /// The rings that nothing crosses and that belong to the result, the inside on their left.
+    /// Returns the rings that nothing crosses and that belong to the result, the inside on their
+    /// left.
     pub fn whole_rings(&self, op: BooleanOp) -> Vec<Vec<DVec2>> {
         let mut rings = Vec::new();
         for (k, list) in self.lists.iter().enumerate() {
@@ -300,12 +302,12 @@ impl Linked {
     }
 }
 
-/// Whether a point lies on a segment, but not at its ends; exact.
+/// Returns whether a point lies on a segment, but not at its ends; exact.
 fn lies_within(a: DVec2, b: DVec2, p: DVec2) -> bool {
     p != a && p != b && on_segment(a, b, p)
 }
 
-/// Whether two segments cross inside both; exact.
+/// Returns whether two segments cross inside both; exact.
 fn crosses([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
     let opposite = |s: Orientation, t: Orientation| {
         s != t && s != Orientation::Collinear && t != Orientation::Collinear
@@ -313,13 +315,13 @@ fn crosses([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
     opposite(orient2d(a, b, c), orient2d(a, b, d)) && opposite(orient2d(c, d, a), orient2d(c, d, b))
 }
 
-/// Where two segments cross, correctly rounded.
+/// Returns the intersection of two segments, correctly rounded.
 fn crossing_point(e: [DVec2; 2], f: [DVec2; 2]) -> DVec2 {
     exact::crossing(e, f).unwrap_or(e[0])
 }
 
-/// Which of two segments, which do not cross each other, crosses a → b first; exact. Of two that do
-/// not cross, one lies on one side of the other's line.
+/// Compares the places at which two segments, which do not cross each other, cross a → b; exact. Of
+/// two that do not cross, one lies on one side of the other's line.
 fn order_along([_, b]: [DVec2; 2], first: [DVec2; 2], second: [DVec2; 2]) -> Ordering {
     let side = |[c, d]: [DVec2; 2], of: [DVec2; 2]| match of.map(|p| orient2d(c, d, p)) {
         [Orientation::Collinear, s] | [s, Orientation::Collinear] => Some(s),

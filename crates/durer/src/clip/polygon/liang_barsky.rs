@@ -27,16 +27,16 @@ pub const INFO: Info = Info {
     limits: "rectangles; one ring, with bridging edges along the border",
 };
 
-/// What the algorithm did.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// An edge's parameters: 0 at its start, 1 at its end, infinite where it is parallel to a border.
     Edge {
         /// Its index.
         edge: usize,
-        /// Where it enters the window's slab of x and that of y: the later one is t_in2.
+        /// Parameters at which it enters the window's slabs of x and y: the later one is t_in2.
         enters: [f64; 2],
-        /// Where it leaves them: the earlier one is t_out1, the later one t_out2.
+        /// Parameters at which it leaves them: the earlier one is t_out1, the later one t_out2.
         leaves: [f64; 2],
     },
     /// A point where the edge comes in, goes out, or ends.
@@ -45,7 +45,7 @@ pub enum Step {
     Turn(DVec2),
 }
 
-/// The result that a list of steps leads to.
+/// Returns the result that a list of steps leads to.
 pub fn replay(steps: &[Step]) -> Vec<DVec2> {
     let point = |step: &Step| match *step {
         Step::Point(p) | Step::Turn(p) => Some(p),
@@ -55,7 +55,7 @@ pub fn replay(steps: &[Step]) -> Vec<DVec2> {
     if signed_area(&ring) == 0.0 { Vec::new() } else { ring }
 }
 
-/// The part of a ring in a rectangle, as one ring; empty where there is none.
+/// Returns the part of a ring in a rectangle, as one ring; empty where there is none.
 ///
 /// ```
 /// use durer::clip::polygon::{liang_barsky, signed_area};
@@ -137,12 +137,12 @@ impl Line {
         Self { from, to, x, y: Slab::new(low.y, high.y, from.y, to.y) }
     }
 
-    /// Where it meets a border of x.
+    /// Returns the intersection with a border of x.
     fn at_x(&self, border: f64, t: f64) -> DVec2 {
         DVec2::new(border, self.from.y + (self.to.y - self.from.y) * t)
     }
 
-    /// Where it meets a border of y.
+    /// Returns the intersection with a border of y.
     fn at_y(&self, border: f64, t: f64) -> DVec2 {
         DVec2::new(self.from.x + (self.to.x - self.from.x) * t, border)
     }

@@ -1,9 +1,10 @@
-//! Where a point lies of rings, and which ring lies in which: exact, by looking at every edge.
+//! The location of points relative to rings, and the nesting of rings: exact, by examining every
+//! edge.
 
 use super::{Ring, Shapes, signed_area};
 use crate::math::{DVec2, Orientation, Rect, orient2d};
 
-/// Where a point lies of a region.
+/// Location of a point relative to a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Place {
     /// Within it.
@@ -14,13 +15,14 @@ pub enum Place {
     Outside,
 }
 
-/// Whether a point lies on a closed segment; exact.
+/// Returns whether a point lies on a closed segment; exact.
 pub(super) fn on_segment(a: DVec2, b: DVec2, p: DVec2) -> bool {
     let (low, high) = (a.min(b), a.max(b));
     p.cmpge(low).all() && p.cmple(high).all() && orient2d(a, b, p) == Orientation::Collinear
 }
 
-/// Where a point lies of the region that rings enclose by the even-odd rule; exact.
+/// Returns the location of a point relative to the region that rings enclose by the even-odd rule;
+/// exact.
 pub(super) fn locate<'a>(rings: impl IntoIterator<Item = &'a Ring>, p: DVec2) -> Place {
     let mut inside = false;
     for ring in rings {
@@ -40,7 +42,8 @@ pub(super) fn locate<'a>(rings: impl IntoIterator<Item = &'a Ring>, p: DVec2) ->
     if inside { Place::Inside } else { Place::Outside }
 }
 
-/// Whether `inner` lies within `outer`, for rings that touch at most in points or along edges.
+/// Returns whether `inner` lies within `outer`, for rings that touch at most in points or along
+/// edges.
 fn within(inner: &Ring, outer: &Ring) -> bool {
     let next = |i: usize| inner.get(i + 1).or(inner.first()).copied().unwrap_or_default();
     let middles = inner.iter().enumerate().map(|(i, &p)| (p + next(i)) * 0.5);
@@ -48,7 +51,7 @@ fn within(inner: &Ring, outer: &Ring) -> bool {
     places.into_iter().find(|&place| place != Place::Border) == Some(Place::Inside)
 }
 
-/// Whether all points of a ring lie on one line; exact.
+/// Returns whether all points of a ring lie on one line; exact.
 pub(super) fn is_flat(ring: &Ring) -> bool {
     let Some(&a) = ring.first() else { return true };
     let Some(&b) = ring.iter().find(|&&b| b != a) else { return true };

@@ -1,5 +1,5 @@
-//! Whether polygons side by side are a coverage: none overlaps another, and where two share a border, both have the same
-//! edges there, point for point.
+//! The check that polygons side by side are a coverage: none overlaps another, and where two share a border, both have
+//! the same edges there, point for point.
 //!
 //! M. Davis, *Polygonal coverage validation in JTS*, 2022: by edges, without an overlay. An edge of two features must run
 //! the other way in the second one; edges that cross, run along each other in part, or end on one another
@@ -34,7 +34,7 @@ pub const INFO: Info = Info {
     limits: "features must be valid",
 };
 
-/// What is wrong between two features.
+/// Mismatch between two features.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Mismatch {
     /// They have an area in common.
@@ -70,7 +70,7 @@ impl Mismatch {
 /// A mismatch and its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Misfit {
-    /// What is wrong.
+    /// Kind of the mismatch.
     pub mismatch: Mismatch,
     /// A point of it.
     pub at: DVec2,
@@ -151,7 +151,7 @@ fn sorted([i, j]: [usize; 2]) -> [usize; 2] {
     [i.min(j), i.max(j)]
 }
 
-/// A point as a key; zeros of either sign are one.
+/// Returns A point as a key; zeros of either sign are one.
 fn key(p: DVec2) -> [u64; 2] {
     (p + 0.0).to_array().map(f64::to_bits)
 }
@@ -311,7 +311,8 @@ impl<'a> Layer<'a> {
     }
 }
 
-/// Whether an edge from a corner to `end` leads between its sides, to the left of the way through it, and not along them.
+/// Returns whether an edge from a corner to `end` leads between its sides, to the left of the way through it, and not
+/// along them.
 fn leads_into(end: DVec2, [at, from, to]: Way) -> bool {
     let along = |side: DVec2| {
         orient2d(at, side, end) == Orientation::Collinear && (side - at).dot(end - at) > 0.0
@@ -323,7 +324,7 @@ fn has_same_ends(p: &Edge, q: &Edge) -> bool {
     (p.a == q.a && p.b == q.b) || (p.a == q.b && p.b == q.a)
 }
 
-/// Whether a point of an edge's line is between its ends.
+/// Returns whether a point of an edge's line is between its ends.
 fn is_within(p: DVec2, edge: &Edge) -> bool {
     let (low, high) = (edge.a.min(edge.b), edge.a.max(edge.b));
     p != edge.a && p != edge.b && p.cmpge(low).all() && p.cmple(high).all()
@@ -342,7 +343,7 @@ fn first_within(inner: &Shapes, outer: &Prepared) -> Option<DVec2> {
     })
 }
 
-/// Whether a point lies on a feature's border, but for the rounding of its coordinates.
+/// Returns whether a point lies on a feature's border, but for the rounding of its coordinates.
 fn is_on_border(of: &Prepared, p: DVec2) -> bool {
     let reach = 2.0 * reach(p);
     match Rect::new(p - reach, p + reach) {

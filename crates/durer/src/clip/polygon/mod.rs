@@ -107,18 +107,18 @@ impl PolygonClipper {
         })
     }
 
-    /// Whether intersection is the only operation.
+    /// Returns whether intersection is the only operation.
     pub const fn keeps_inside_only(self) -> bool {
         matches!(self, Self::Rectangle | Self::SutherlandHodgman)
     }
 
-    /// Whether the clip must be an axis-parallel rectangle.
+    /// Returns whether the clip must be an axis-parallel rectangle.
     pub const fn needs_rectangle(self) -> bool {
         matches!(self, Self::Rectangle)
     }
 }
 
-/// The rectangle that the shapes are, if they are one ring of its four corners.
+/// Returns the rectangle that the shapes are, if they are one ring of its four corners.
 fn as_rectangle(shapes: &Shapes) -> Option<Rect> {
     let [a, b, c, d] = *shapes.points() else { return None };
     let upright = a.x == b.x && b.y == c.y && c.x == d.x && d.y == a.y;
@@ -127,8 +127,8 @@ fn as_rectangle(shapes: &Shapes) -> Option<Rect> {
     one.then(|| Rect::around([a, c])).flatten()
 }
 
-/// Which points a set of closed curves encloses, told by the winding number w around the point: the five rules of
-/// OpenGL's tessellator (GLU 1.3, 5.1).
+/// Rule that decides from the winding number w around a point whether a set of closed curves
+/// encloses it: the five rules of OpenGL's tessellator (GLU 1.3, 5.1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum FillRule {
     /// w is odd.
@@ -149,7 +149,7 @@ impl FillRule {
     pub const ALL: &'static [Self] =
         &[Self::EvenOdd, Self::NonZero, Self::Positive, Self::Negative, Self::AbsGeqTwo];
 
-    /// The name used on the command line.
+    /// Returns the name used on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::EvenOdd => "even-odd",
@@ -160,7 +160,7 @@ impl FillRule {
         }
     }
 
-    /// Whether a point of this winding number is inside.
+    /// Returns whether a point of this winding number is inside.
     #[inline]
     pub const fn fills(self, winding: i32) -> bool {
         match self {
@@ -173,7 +173,7 @@ impl FillRule {
     }
 }
 
-/// What to make of two regions, the subject A and the clip B.
+/// Boolean operation on two regions, the subject A and the clip B.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum BooleanOp {
     /// A ∩ B: what is in both.
@@ -192,7 +192,7 @@ impl BooleanOp {
     pub const ALL: &'static [Self] =
         &[Self::Intersection, Self::Union, Self::Difference, Self::Xor];
 
-    /// The name used on the command line.
+    /// Returns the name used on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Intersection => "intersection",
@@ -202,7 +202,7 @@ impl BooleanOp {
         }
     }
 
-    /// Whether a point belongs to the result, from whether it belongs to subject and clip.
+    /// Returns whether a point belongs to the result, from whether it belongs to subject and clip.
     #[inline]
     pub const fn keeps(self, subject: bool, clip: bool) -> bool {
         match self {

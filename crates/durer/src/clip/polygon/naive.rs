@@ -15,10 +15,10 @@ use crate::{Error, Result};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
-/// What the algorithm did.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
-    /// What is left of an edge was joined to the ring.
+    /// The rest of an edge was joined to the ring.
     Kept {
         /// The edge's index.
         edge: usize,
@@ -27,14 +27,14 @@ pub enum Step {
         /// Its last visible point.
         end: DVec2,
     },
-    /// Nothing of an edge is visible.
+    /// No part of an edge is visible.
     Dropped {
         /// The edge's index.
         edge: usize,
     },
 }
 
-/// The result that a list of steps leads to.
+/// Returns the result that a list of steps leads to.
 pub fn replay(steps: &[Step]) -> Vec<DVec2> {
     let mut ring = Vec::new();
     for step in steps {

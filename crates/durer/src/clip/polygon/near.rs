@@ -1,8 +1,9 @@
-//! Which segments may meet: those whose parts in a horizontal slab are near each other.
+//! The search for segments that may meet: those whose parts in a horizontal slab are near each
+//! other.
 
 use crate::math::DVec2;
 
-/// How far a part is taken beyond its slab, in slabs: more than rounding moves a height by.
+/// Margin of a part beyond its slab, in slabs: more than rounding moves a height.
 const MARGIN: f64 = 1e-6;
 
 /// A segment's part in a slab.
@@ -31,7 +32,7 @@ pub(super) fn pairs(segments: &[[DVec2; 2]], mut tell: impl FnMut(usize, usize))
     }
 }
 
-/// The parts of all segments in slabs of equal height.
+/// Returns the parts of all segments in slabs of equal height.
 fn slabs(segments: &[[DVec2; 2]]) -> Vec<Vec<Part>> {
     let bottom = segments.iter().flatten().fold(f64::INFINITY, |y, p| y.min(p.y));
     let top = segments.iter().flatten().fold(f64::NEG_INFINITY, |y, p| y.max(p.y));
@@ -65,7 +66,7 @@ mod tests {
     use super::*;
     use crate::math::{Orientation, orient2d};
 
-    /// Whether two segments have a point in common, told by the signs of their ends.
+    /// Returns whether two segments have a point in common, by the signs of their ends.
     fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
         let side = |a, b, p| match orient2d(a, b, p) {
             Orientation::CounterClockwise => 1,

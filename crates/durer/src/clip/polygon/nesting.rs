@@ -1,4 +1,4 @@
-//! Which ring lies in which: the tree of shells, their holes, the islands in these, and so on.
+//! The nesting of rings: the tree of shells, their holes, the islands in these, and so on.
 
 use std::cmp::Ordering;
 
@@ -73,27 +73,27 @@ impl NestingTree {
         Self { parents, depths, starts, children, roots }
     }
 
-    /// How many rings there are.
+    /// Returns the number of rings.
     pub fn len(&self) -> usize {
         self.parents.len()
     }
 
-    /// Whether there is no ring.
+    /// Returns whether there is no ring.
     pub fn is_empty(&self) -> bool {
         self.parents.is_empty()
     }
 
-    /// The rings that lie in no other, in the order of their indices.
+    /// Returns the rings that lie in no other, in the order of their indices.
     pub fn roots(&self) -> &[usize] {
         &self.roots
     }
 
-    /// The ring directly around a ring; `None` for roots and where there is no such ring.
+    /// Returns the ring directly around a ring; `None` for roots and where there is no such ring.
     pub fn parent(&self, ring: usize) -> Option<usize> {
         self.parents.get(ring).copied().flatten()
     }
 
-    /// The rings directly in a ring, in the order of their indices.
+    /// Returns the rings directly in a ring, in the order of their indices.
     pub fn children(&self, ring: usize) -> &[usize] {
         match (self.starts.get(ring), self.starts.get(ring.saturating_add(1))) {
             (Some(&start), Some(&end)) => &self.children[start..end],
@@ -101,18 +101,18 @@ impl NestingTree {
         }
     }
 
-    /// How many rings are around a ring: 0 for roots, odd for holes.
+    /// Returns the number of rings around a ring: 0 for roots, odd for holes.
     pub fn depth(&self, ring: usize) -> usize {
         self.depths.get(ring).copied().unwrap_or(0)
     }
 
-    /// Whether a ring is a hole.
+    /// Returns whether a ring is a hole.
     pub fn is_hole(&self, ring: usize) -> bool {
         self.depth(ring) % 2 == 1
     }
 }
 
-/// What is known of the parent of a ring.
+/// Knowledge about the parent of a ring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Place {
     Unknown,
@@ -131,7 +131,7 @@ impl Place {
 
 struct Sweep<P> {
     edges: Vec<Edge<P>>,
-    /// Of each ring, the outer ring of its polygon; itself for outer rings.
+    /// Outer ring of each ring's polygon; itself for outer rings.
     outers: Vec<usize>,
     parents: Vec<Place>,
     /// The lower of the two edges at the first point of each outer ring, once the sweep met it.
@@ -221,7 +221,7 @@ impl<P: Vertex> Sweep<P> {
         }
     }
 
-    /// Where an outer ring is that starts just above an edge of a ring.
+    /// Returns the place of an outer ring that starts just above an edge of a ring.
     fn above(&self, ring: usize) -> Place {
         if self.outers[ring] == ring { self.parents[ring] } else { Place::In(ring) }
     }

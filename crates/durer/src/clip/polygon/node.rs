@@ -27,7 +27,7 @@ pub(super) struct Node {
     passages: [Vec<Passage>; 2],
 }
 
-/// The points that are passed more than once, by their coordinates.
+/// Returns the points that are passed more than once, by their coordinates.
 pub(super) fn common(lists: &[Lists; 2]) -> Vec<Node> {
     let of = |k: usize| (0..lists[k].vertices.len()).map(move |v| (lists[k].vertices[v].at, k, v));
     let mut all: Vec<(DVec2, usize, usize)> = of(0).chain(of(1)).collect();
@@ -50,17 +50,17 @@ fn order(a: DVec2, b: DVec2) -> Ordering {
 }
 
 impl Node {
-    /// How its place compares with a point.
+    /// Compares its place with a point.
     pub fn compare(&self, p: DVec2) -> Ordering {
         order(self.at, p)
     }
 
-    /// Whether a direction that is none of its own lies to the left of a passage.
+    /// Returns whether a direction that is none of its own lies to the left of a passage.
     fn is_left(&self, of: &Passage, x: DVec2) -> bool {
         in_sector(self.at, of.to, x, of.from)
     }
 
-    /// Whether the passages of each operand keep apart from one another.
+    /// Checks that the passages of each operand keep apart from one another.
     pub fn check(&self) -> Result<()> {
         for passages in &self.passages {
             for (i, p) in passages.iter().enumerate() {
@@ -87,8 +87,8 @@ impl Node {
         [side(s.from, c.from, c.to), side(s.to, c.to, c.from)]
     }
 
-    /// Whether the edge from a vertex of an operand goes into the other's inside; `None` where the
-    /// other does not pass here.
+    /// Returns whether the edge from a vertex of an operand goes into the other's inside; `None`
+    /// where the other does not pass here.
     pub fn inside(&self, k: usize, vertex: usize, grown: bool) -> Option<bool> {
         let x = self.passages[k].iter().find(|p| p.vertex == vertex)?.to;
         let rays = self.passages[1 - k].iter().flat_map(|p| [(p.to, true), (p.from, false)]);
@@ -149,7 +149,8 @@ impl Node {
         }
     }
 
-    /// Whether a passage crosses one of two others first: it comes from where the second is not.
+    /// Returns whether a passage crosses one of two others first: it comes from where the second is
+    /// not.
     fn is_before(&self, [k, i]: [usize; 2], m: &Passage, n: &Passage, grown: bool) -> bool {
         let own = &self.passages[k][i];
         let [_, goes] = if k == 0 {

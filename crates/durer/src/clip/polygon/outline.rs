@@ -20,7 +20,7 @@ fn order(a: &DVec2, b: &DVec2) -> Ordering {
     (a.x + 0.0).total_cmp(&(b.x + 0.0)).then((a.y + 0.0).total_cmp(&(b.y + 0.0)))
 }
 
-/// The rings of the region that walks bound, the inside on the left of them.
+/// Returns the rings of the region that walks bound, the inside on the left of them.
 pub(super) fn simple_rings(walks: &[Vec<DVec2>]) -> Vec<Vec<DVec2>> {
     let mut places: Vec<DVec2> = walks.iter().flatten().copied().collect();
     places.sort_by(order);
@@ -63,7 +63,7 @@ fn edges(walks: &[Vec<DVec2>], places: &[DVec2]) -> Vec<Edge> {
     edges
 }
 
-/// The edges without pairs of opposite ones.
+/// Returns the edges without pairs of opposite ones.
 fn remaining(edges: &[Edge]) -> Vec<Edge> {
     let key = |i: usize| (edges[i].from.min(edges[i].to), edges[i].from.max(edges[i].to));
     let mut order: Vec<usize> = (0..edges.len()).collect();

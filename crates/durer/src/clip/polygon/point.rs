@@ -1,4 +1,4 @@
-//! Whether a point lies in a polygon: by the winding number, of which both rules are read.
+//! Point in polygon: by the winding number, from which all rules follow.
 //!
 //! M. Shimrat, *Algorithm 112: Position of point relative to polygon*, Communications of the ACM 5(8), 1962, counts the
 //! edges that a ray to the right crosses; counted with their directions they give the winding number. Object space.
@@ -24,24 +24,24 @@ pub const INFO: Info = Info {
     limits: "none",
 };
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// An edge crosses the ray from the point to the right.
     Crosses {
-        /// Where it begins and ends.
+        /// Start and end of the edge.
         edge: [DVec2; 2],
         /// 1 where it goes up, −1 where it goes down (y up).
         winding: i32,
     },
     /// The point lies on an edge.
     Border {
-        /// Where it begins and ends.
+        /// Start and end of the edge.
         edge: [DVec2; 2],
     },
 }
 
-/// The winding number that a list of steps leads to; none on the border.
+/// Returns the winding number that a list of steps leads to; none on the border.
 pub fn replay(steps: &[Step]) -> Option<i32> {
     steps.iter().try_fold(0, |sum, step| match step {
         Step::Crosses { winding, .. } => Some(sum + winding),
@@ -49,7 +49,8 @@ pub fn replay(steps: &[Step]) -> Option<i32> {
     })
 }
 
-/// How often rings run around a point, counter-clockwise counted positive (y up); none for a point on one of them.
+/// Returns how often rings wind around a point, counter-clockwise counted positive (y up); `None`
+/// for a point on one of them.
 ///
 /// ```
 /// use durer::clip::polygon::point::winding_number;
@@ -90,7 +91,7 @@ pub fn winding_number<'a>(
     Some(sum)
 }
 
-/// Where a point lies of what rings enclose by a rule; exact.
+/// Returns the location of a point relative to the region that rings enclose by a rule; exact.
 pub fn locate<'a>(rings: impl IntoIterator<Item = &'a Ring>, p: DVec2, rule: FillRule) -> Place {
     match winding_number(rings, p, &mut NoTrace) {
         Some(winding) if rule.fills(winding) => Place::Inside,

@@ -28,12 +28,12 @@ pub const INFO: Info = Info {
     limits: "the result is trapezoids; crossings are rounded to f64",
 };
 
-/// How polygons are swept.
+/// Options for sweeping polygons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
-    /// Which points the subject encloses.
+    /// Fill rule of the subject.
     pub subject_rule: FillRule,
-    /// Which points the clip encloses.
+    /// Fill rule of the clip.
     pub clip_rule: FillRule,
     /// The most trapezoids that are made.
     pub max_trapezoids: usize,
@@ -58,33 +58,33 @@ pub struct Trapezoid {
 }
 
 impl Trapezoid {
-    /// Its area.
+    /// Returns its area.
     pub fn area(&self) -> f64 {
         let width = |[left, right]: [f64; 2]| right - left;
         (self.y[1] - self.y[0]) * 0.5 * (width(self.bottom) + width(self.top))
     }
 }
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A local minimum of a ring: two bounds begin here.
     Minimum {
-        /// Where.
+        /// Position of the fault.
         at: DVec2,
-        /// Whether it is of the clip.
+        /// True if it belongs to the clip.
         clip: bool,
     },
     /// A beam begins.
     Beam {
         /// From here to there.
         y: [f64; 2],
-        /// So many edges are active.
+        /// Number of active edges.
         active: usize,
     },
     /// Two edges cross in the beam.
     Crossing {
-        /// Where.
+        /// Position of the fault.
         at: DVec2,
     },
     /// An active edge, from left to right, within a beam or between crossings in it.
@@ -93,14 +93,14 @@ pub enum Step {
         x: [f64; 2],
         /// The winding numbers of subject and clip to the right of it.
         winding: [i32; 2],
-        /// Whether it bounds the result.
+        /// True if it bounds the result.
         contributes: bool,
     },
     /// A part of the result.
     Part(Trapezoid),
 }
 
-/// The result that a list of steps leads to.
+/// Returns the result that a list of steps leads to.
 pub fn replay(steps: &[Step]) -> Vec<Trapezoid> {
     let part = |step: &Step| if let Step::Part(part) = *step { Some(part) } else { None };
     steps.iter().filter_map(part).collect()
@@ -111,7 +111,8 @@ pub fn replay(steps: &[Step]) -> Vec<Trapezoid> {
 struct Edge {
     lower: DVec2,
     upper: DVec2,
-    /// What passing it from left to right adds: 1 where the ring goes down, as on the left of a counter-clockwise one.
+    /// Change of the winding number from left to right: 1 where the ring goes down, as on the left
+    /// of a counter-clockwise one.
     winding: i32,
     /// 0 of the subject, 1 of the clip.
     operand: usize,
@@ -124,7 +125,8 @@ impl Edge {
     }
 }
 
-/// The result of a boolean operation as trapezoids, from the lowest beam up and from left to right.
+/// Returns the result of a boolean operation as trapezoids, from the lowest beam up and from left
+/// to right.
 ///
 /// ```
 /// use durer::clip::polygon::scan_beams::{Trapezoid, scan_beams};

@@ -8,8 +8,8 @@ use crate::math::{DVec2, Rect};
 /// Units and space are the caller's; orientation is told with y up.
 pub type Ring = [DVec2];
 
-/// The shoelace sum: the signed area of a ring, positive where it runs counter-clockwise
-/// (y up), in squared units of its coordinates.
+/// Returns the shoelace sum: the signed area of a ring, positive where it runs counter-clockwise (y
+/// up), in squared units of its coordinates.
 ///
 /// Taken relative to the first point, so that small rings far from the origin keep their digits.
 pub fn signed_area<P: Vertex>(ring: &[P]) -> f64 {
@@ -59,58 +59,58 @@ impl<P> Shapes<P> {
         }
     }
 
-    /// All points, ring after ring.
+    /// Returns all points, ring after ring.
     pub fn points(&self) -> &[P] {
         &self.points
     }
 
-    /// All points, to be moved in place.
+    /// Returns all points, to be moved in place.
     pub fn points_mut(&mut self) -> &mut [P] {
         &mut self.points
     }
 
-    /// How many rings there are, over all polygons.
+    /// Returns the number of rings in all polygons.
     pub fn ring_count(&self) -> usize {
         self.ring_ends.len()
     }
 
-    /// All rings, polygon after polygon.
+    /// Returns all rings, polygon after polygon.
     pub fn rings(&self) -> impl ExactSizeIterator<Item = &[P]> {
         (0..self.ring_ends.len()).map(|i| self.ring(i))
     }
 
-    /// The indices into [`Shapes::points`] of a ring; empty where there is no such ring.
+    /// Returns the indices into [`Shapes::points`] of a ring; empty where there is no such ring.
     pub fn ring_range(&self, index: usize) -> std::ops::Range<usize> {
         let Some(&end) = self.ring_ends.get(index) else { return 0..0 };
         let start = index.checked_sub(1).and_then(|i| self.ring_ends.get(i)).copied();
         start.unwrap_or(0)..end
     }
 
-    /// A ring by its index over all polygons; empty where there is none.
+    /// Returns A ring by its index over all polygons; empty where there is none.
     pub fn ring(&self, index: usize) -> &[P] {
         self.points.get(self.ring_range(index)).unwrap_or_default()
     }
 
-    /// The index of the point that follows a point on its ring, around its end.
+    /// Returns the index of the point that follows a point on its ring, around its end.
     pub fn next_point(&self, index: usize) -> usize {
         let ring = self.ring_ends.partition_point(|&end| end <= index);
         let range = self.ring_range(ring);
         if index + 1 < range.end { index + 1 } else { range.start }
     }
 
-    /// The index of the point that precedes a point on its ring, around its start.
+    /// Returns the index of the point that precedes a point on its ring, around its start.
     pub fn previous_point(&self, index: usize) -> usize {
         let ring = self.ring_ends.partition_point(|&end| end <= index);
         let range = self.ring_range(ring);
         if index > range.start { index - 1 } else { range.end.saturating_sub(1) }
     }
 
-    /// How many polygons there are; rings after the last [`Shapes::end_polygon`] are in none.
+    /// Returns the number of polygons; rings after the last [`Shapes::end_polygon`] are in none.
     pub fn polygon_count(&self) -> usize {
         self.polygon_ends.len()
     }
 
-    /// All polygons.
+    /// Returns all polygons.
     pub fn polygons(&self) -> impl ExactSizeIterator<Item = Polygon<'_, P>> {
         (0..self.polygon_ends.len()).map(move |i| {
             let start = i.checked_sub(1).map_or(0, |before| self.polygon_ends[before]);
@@ -118,7 +118,7 @@ impl<P> Shapes<P> {
         })
     }
 
-    /// Whether there is no point at all.
+    /// Returns whether there is no point at all.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
@@ -138,7 +138,7 @@ impl<P> Shapes<P> {
 }
 
 impl<P: Vertex> Shapes<P> {
-    /// Each ring as a polygon of its own.
+    /// Returns each ring as a polygon of its own.
     pub fn from_rings<R: AsRef<[P]>>(rings: impl IntoIterator<Item = R>) -> Self {
         let mut shapes = Self::new();
         for ring in rings {
@@ -148,14 +148,15 @@ impl<P: Vertex> Shapes<P> {
         shapes
     }
 
-    /// The sum of the signed areas of all rings: the area of the region where the shapes are valid.
+    /// Returns the sum of the signed areas of all rings: the area of the region where the shapes
+    /// are valid.
     pub fn area(&self) -> f64 {
         self.rings().map(signed_area).sum()
     }
 }
 
 impl Shapes {
-    /// The smallest rectangle around all finite points; `None` where there is none.
+    /// Returns the smallest rectangle around all finite points; `None` where there is none.
     pub fn bounds(&self) -> Option<Rect> {
         Rect::around(self.points.iter().copied())
     }
@@ -170,29 +171,29 @@ pub struct Polygon<'a, P = DVec2> {
 }
 
 impl<'a, P> Polygon<'a, P> {
-    /// The outer ring.
+    /// Returns the outer ring.
     pub fn outer(&self) -> &'a [P] {
         self.shapes.ring(self.start)
     }
 
-    /// The holes.
+    /// Returns the holes.
     pub fn holes(&self) -> impl ExactSizeIterator<Item = &'a [P]> {
         let shapes = self.shapes;
         (self.start + 1..self.end).map(move |i| shapes.ring(i))
     }
 
-    /// The outer ring, then the holes.
+    /// Returns the outer ring, then the holes.
     pub fn rings(&self) -> impl ExactSizeIterator<Item = &'a [P]> {
         let shapes = self.shapes;
         (self.start..self.end).map(move |i| shapes.ring(i))
     }
 
-    /// The indices of its rings, as [`Shapes::ring`] takes them.
+    /// Returns the indices of its rings, as [`Shapes::ring`] takes them.
     pub fn ring_indices(&self) -> std::ops::Range<usize> {
         self.start..self.end
     }
 
-    /// The sum of the signed areas of its rings.
+    /// Returns the sum of the signed areas of its rings.
     pub fn area(&self) -> f64
     where
         P: Vertex,

@@ -15,8 +15,8 @@ pub struct Edge<P> {
 }
 
 impl<P: Vertex> Edge<P> {
-    /// Whether it passes above another one, where one line of the sweep cuts both and they do not
-    /// cross; upright edges count as leaning to the right.
+    /// Returns whether it passes above another one, where one line of the sweep cuts both and they
+    /// do not cross; upright edges count as leaning to the right.
     pub fn is_above(&self, other: &Self) -> bool {
         let side = |of: &Self, from: &Self| match P::turn(from.a, from.b, of.a) {
             Orientation::Collinear => P::turn(from.a, from.b, of.b),
@@ -87,7 +87,7 @@ impl Status {
         self.replace(self.nodes[edge].parent, edge, NONE);
     }
 
-    /// The edge next below one that is on the line.
+    /// Returns the edge next below one that is on the line.
     pub fn below(&self, edge: usize) -> Option<usize> {
         let mut at = self.nodes[edge].children[0];
         if at != NONE {
@@ -131,7 +131,7 @@ impl Status {
     }
 }
 
-/// Bits that look random (S. Vigna's finalizer of splitmix64).
+/// Returns bits that look random (S. Vigna's finalizer of splitmix64).
 fn priority(edge: usize) -> u64 {
     let mut z = (edge as u64).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

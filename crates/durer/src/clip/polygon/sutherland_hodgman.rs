@@ -42,11 +42,11 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
-/// What a vertex must know: its place, and how to mix two vertices of an edge.
+/// Vertex with a position that can be mixed with another vertex of an edge.
 pub trait Vertex<const N: usize>: Copy {
     /// Coordinates, in the space of the window.
     fn position(&self) -> [f64; N];
-    /// The vertex at `position` on the edge from self (t = 0) to `other` (t = 1).
+    /// Returns the vertex at `position` on the edge from self (t = 0) to `other` (t = 1).
     fn cut(&self, other: &Self, t: f64, position: [f64; N]) -> Self;
 }
 
@@ -103,12 +103,13 @@ pub struct Stage<H, V> {
 }
 
 impl<H, V> Stage<H, V> {
-    /// A stage that has seen nothing.
+    /// Creates A stage that has seen nothing.
     pub fn new(border: H) -> Self {
         Self { border, first: None, previous: None }
     }
 
-    /// The next vertex; up to two come out: the cut of the edge that leads to it, and itself.
+    /// Returns the next vertex; up to two come out: the cut of the edge that leads to it, and
+    /// itself.
     fn take<const N: usize>(&mut self, vertex: V) -> [Option<V>; 2]
     where
         H: HalfSpace<N>,
@@ -121,8 +122,8 @@ impl<H, V> Stage<H, V> {
         [cut, inside.then_some(vertex)]
     }
 
-    /// The end of the ring: the cut of the edge that closes it, if there is one. Afterwards the stage
-    /// is as new.
+    /// Returns the end of the ring: the cut of the edge that closes it, if there is one. Afterwards
+    /// the stage is as new.
     fn close<const N: usize>(&mut self) -> Option<V>
     where
         H: HalfSpace<N>,
@@ -133,7 +134,8 @@ impl<H, V> Stage<H, V> {
     }
 }
 
-/// The cut of an edge whose ends are on different sides of a border; none where one end is on it.
+/// Returns the cut of an edge whose ends are on different sides of a border; none where one end is
+/// on it.
 fn cut<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
     border: &H,
     (a, a_in): (V, bool),
@@ -163,7 +165,7 @@ fn finite_vertices<const N: usize, V: Vertex<N>>(ring: &[V]) -> Result<()> {
     }
 }
 
-/// What the algorithm did.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step<V> {
     /// A vertex came into a stage.
@@ -180,7 +182,7 @@ pub enum Step<V> {
     },
 }
 
-/// The result that a list of steps leads to.
+/// Returns the result that a list of steps leads to.
 pub fn replay<V: Copy>(steps: &[Step<V>]) -> Vec<V> {
     let leaves = |step: &Step<V>| match *step {
         Step::Leaves { vertex } => Some(vertex),
@@ -212,7 +214,7 @@ pub struct Pipeline<H, V> {
 }
 
 impl<H, V> Pipeline<H, V> {
-    /// One stage for each border, in this order.
+    /// Creates one stage for each border, in this order.
     pub fn new(borders: impl IntoIterator<Item = H>) -> Self {
         Self { stages: borders.into_iter().map(Stage::new).collect() }
     }
@@ -264,7 +266,7 @@ impl<H, V> Pipeline<H, V> {
     }
 }
 
-/// The part of a ring in a rectangle, as one ring; empty where there is none.
+/// Returns the part of a ring in a rectangle, as one ring; empty where there is none.
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a vertex with a NaN or infinite coordinate.
@@ -276,7 +278,7 @@ pub fn clip<V: Vertex<2>>(
     run(HalfPlane::of_rect(window), ring, t)
 }
 
-/// The part of a ring in a convex polygon, as one ring; empty where there is none.
+/// Returns the part of a ring in a convex polygon, as one ring; empty where there is none.
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a vertex with a NaN or infinite coordinate.
@@ -288,8 +290,8 @@ pub fn clip_polygon<V: Vertex<2>>(
     run(window.edges(), ring, t)
 }
 
-/// The parts of all rings in a rectangle; rings of which no area is left are left out, and so are the
-/// holes of such an outer ring.
+/// Returns the parts of all rings in a rectangle; rings of which no area is left are left out, and so
+/// are the holes of such an outer ring.
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a point with a NaN or infinite coordinate.
@@ -301,8 +303,8 @@ pub fn clip_shapes(
     map_rings(shapes, |ring| clip(window, ring, t))
 }
 
-/// The parts of all rings in a convex polygon; rings of which no area is left are left out, and so are
-/// the holes of such an outer ring.
+/// Returns the parts of all rings in a convex polygon; rings of which no area is left are left out,
+/// and so are the holes of such an outer ring.
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a point with a NaN or infinite coordinate.
@@ -334,7 +336,7 @@ fn map_rings(
     Ok(out)
 }
 
-/// Whether a ring encloses more than rounding of its coordinates could.
+/// Returns whether a ring encloses more than rounding of its coordinates could.
 fn has_area(ring: &[DVec2]) -> bool {
     let Some(around) = Rect::around(ring.iter().copied()) else { return false };
     let reach = around.min().abs().max(around.max().abs());
@@ -342,8 +344,8 @@ fn has_area(ring: &[DVec2]) -> bool {
     !is_flat(ring) && signed_area(ring).abs() > rounding
 }
 
-/// The part of a planar polygon of space in a box: left, right, bottom, top, and the two planes in
-/// front and at the back (smallest and largest z).
+/// Returns the part of a planar polygon of space in a box: left, right, bottom, top, and the two
+/// planes in front and at the back (smallest and largest z).
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a vertex with a NaN or infinite coordinate.
@@ -355,7 +357,7 @@ pub fn clip_box<V: Vertex<3>>(
     run(window.planes(), ring, t)
 }
 
-/// The part of a planar polygon of space on the positive side of all planes.
+/// Returns the part of a planar polygon of space on the positive side of all planes.
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a vertex or plane with a NaN or infinite number.

@@ -8,22 +8,22 @@ use crate::math::{DVec2, I64Vec2, Orientation, orient2d};
 
 /// A point of [`Shapes`](super::Shapes): [`DVec2`] or [`I64Vec2`], and no other type.
 pub trait Vertex: Copy + PartialEq + Default + Debug + Send + Sync + GridPoint + 'static {
-    /// Whether no coordinate is infinite or no number.
+    /// Returns whether no coordinate is infinite or no number.
     fn is_finite(self) -> bool;
 
     /// By x, then by y.
     fn order(self, other: Self) -> Ordering;
 
-    /// The smaller x and the smaller y of two points.
+    /// Returns the smaller x and the smaller y of two points.
     fn low(self, other: Self) -> Self;
 
-    /// The larger x and the larger y of two points.
+    /// Returns the larger x and the larger y of two points.
     fn high(self, other: Self) -> Self;
 
-    /// The vector from `origin`, rounded to f64.
+    /// Returns the vector from `origin`, rounded to f64.
     fn minus(self, origin: Self) -> DVec2;
 
-    /// The orientation of three points; exact, of f64 as [`orient2d`] is.
+    /// Returns the orientation of three points; exact, of f64 as [`orient2d`] is.
     fn turn(a: Self, b: Self, c: Self) -> Orientation;
 }
 

@@ -1,4 +1,4 @@
-//! What the clippers that walk along linked borders share: steps, and xor as two differences.
+//! The code that clippers along linked borders share: steps, and xor as two differences.
 
 use super::cyclic::{Linked, link};
 use super::locate::group;
@@ -21,7 +21,7 @@ pub enum Operand {
     Clip,
 }
 
-/// How a list goes on at a crossing.
+/// Direction of a list at a crossing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Mark {
     /// Into the other polygon.
@@ -30,37 +30,37 @@ pub enum Mark {
     Leaving,
 }
 
-/// What happens, step by step, in the direction of the subject's first ring.
+/// Step of the algorithm, in the direction of the subject's first ring.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
     /// A vertex of a list once crossings are inserted: ring after ring, each in its order.
     Listed {
-        /// Which list.
+        /// Operand of the list.
         list: Operand,
-        /// Where.
+        /// Position of the fault.
         at: DVec2,
-        /// Of a crossing: how the list goes on.
+        /// Direction of the list at a crossing.
         mark: Option<Mark>,
     },
     /// The walk passes a vertex, which belongs to the ring that is being made.
     Passed {
         /// Along which list.
         list: Operand,
-        /// Where.
+        /// Position of the fault.
         at: DVec2,
     },
     /// Greiner and Hormann: the borders cross here; the subject enters or leaves the clip.
     Crossing {
-        /// Where.
+        /// Position of the fault.
         at: DVec2,
-        /// Whether the subject enters.
+        /// True if the subject enters.
         entry: bool,
     },
     /// Weiler and Atherton: the walk turns from one border to the other.
     Turn {
-        /// Where.
+        /// Position of the fault.
         at: DVec2,
-        /// Whether it goes on along the subject.
+        /// True if it goes on along the subject.
         to_subject: bool,
     },
     /// A ring of the result is complete.
@@ -107,8 +107,8 @@ pub(super) fn walk_all<'t, T: Tracer<Step>>(
     Ok(if mirrored { reversed(&found) } else { found })
 }
 
-/// How coordinates are seen while walking: at a power of two of their size, and in a mirror where the subject
-/// runs clockwise. For walks have the inside on their left, and are to go in the caller's direction.
+/// Coordinate frame of the walk: scaled by a power of two, and mirrored if the subject runs
+/// clockwise. Walks have the inside on their left, and have to go in the caller's direction.
 #[derive(Clone, Copy)]
 struct Frame {
     shift: i32,
@@ -138,7 +138,7 @@ fn times_power(p: DVec2, shift: i32) -> DVec2 {
     if shift == 0 { p } else { DVec2::new(libm::scalbn(p.x, shift), libm::scalbn(p.y, shift)) }
 }
 
-/// The same shapes, each ring in the other direction.
+/// Returns the same shapes, each ring in the other direction.
 fn reversed(shapes: &Shapes) -> Shapes {
     let mut out = Shapes::new();
     for polygon in shapes.polygons() {

@@ -35,17 +35,17 @@ pub const INFO: Info = Info {
     limits: "borders are shared where neighbours have the same points; nodes stay",
 };
 
-/// How much is left out.
+/// Options for the amount that is left out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// What decides on the order.
+    /// Method that orders points.
     pub method: LineSimplifier,
     /// Points of a larger weight are not looked at and weigh infinitely; infinite for all weights. In units of the
     /// coordinates. The time falls as it gets smaller.
     pub limit: f64,
 }
 
-/// What happened.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A place is left out of all lines and rings.
@@ -97,8 +97,8 @@ impl Coverage {
         self.chains.push(Chain { points: start..self.points.len(), closed });
     }
 
-    /// The weights of all points, in the order in which they were added: see [`super`]. Of a point that is repeated on
-    /// the spot the first has the weight of the place, and the others weigh nothing.
+    /// Returns the weights of all points, in the order in which they were added: see [`super`]. Of a point
+    /// that is repeated on the spot the first has the weight of the place, and the others weigh nothing.
     ///
     /// # Errors
     /// [`Error::NonFinite`] names the first point with a NaN or infinite coordinate; [`Error::Parameter`] for a
@@ -152,8 +152,8 @@ impl Coverage {
         all
     }
 
-    /// The weights of places by Douglas and Peucker, for each stretch between nodes; those of rings without a node
-    /// are held at their smallest place and at the one farthest from it.
+    /// Returns the weights of places by Douglas and Peucker, for each stretch between nodes; those of rings
+    /// without a node are held at their smallest place and at the one farthest from it.
     fn distances(&self, network: &Network, links: &Links) -> Result<Vec<f64>> {
         let mut weights: Vec<Option<f64>> = (0..network.places.len() as u32)
             .map(|i| (!links.is_free(i)).then_some(f64::INFINITY))

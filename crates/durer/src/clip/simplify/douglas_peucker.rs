@@ -31,15 +31,15 @@ pub const INFO: Info = Info {
     limits: "one line by itself may come to cross itself; a coverage keeps it from that",
 };
 
-/// How much is left out.
+/// Options for the amount that is left out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// How far a point that is left out may lie from the line that stays, in units of the coordinates. The time
-    /// does not depend on it.
+    /// Largest distance of a point that is left out from the line that stays, in units of the coordinates. The
+    /// time does not depend on it.
     pub tolerance: f64,
 }
 
-/// What happened.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A point is kept: an end, or the farthest of its part.
@@ -56,7 +56,7 @@ pub fn replay(steps: &[Step]) -> Vec<usize> {
     kept
 }
 
-/// The indices of the points of a line that are kept.
+/// Returns the indices of the points of a line that are kept.
 ///
 /// # Errors
 /// As [`super::LineSimplifier::simplify`].
@@ -82,7 +82,7 @@ pub fn simplify(
     Ok(kept)
 }
 
-/// The weight of every point of a line: see [`super`].
+/// Returns the weight of every point of a line: see [`super`].
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] names the first point with a NaN or infinite coordinate.
@@ -111,8 +111,8 @@ fn divide(points: &[DVec2], tolerance: f64, mut found: impl FnMut(usize, f64)) {
     }
 }
 
-/// The first of the points between two that are farthest from the segment between these, and its squared
-/// distance; `None` where no point is between them.
+/// Returns the first of the points between two that are farthest from the segment between these, and its
+/// squared distance; `None` where no point is between them.
 fn farthest(points: &[DVec2], from: usize, to: usize) -> Option<(usize, f64)> {
     let (&a, &b) = (points.get(from)?, points.get(to)?);
     let between = points.get(from + 1..to)?;

@@ -1,10 +1,10 @@
-//! Which points lie in a triangle, of those that are left: boxes around points that are near one another, boxes
-//! around boxes, and so on, each with the number of points that are left in it.
+//! An index of the remaining points in a triangle: boxes around points that are near one another, boxes around
+//! boxes, and so on, each with the number of points that remain in it.
 
 use crate::clip::hilbert;
 use crate::math::{DVec2, Orientation, Rect, orient2d};
 
-/// So many points, or boxes, are in a box.
+/// Number of points, or boxes, in a box.
 const BRANCH: usize = 16;
 
 /// Points are put in order by their squares in a grid of 2^16 by 2^16.
@@ -15,11 +15,11 @@ const GRID_BITS: u8 = 16;
 pub struct Index {
     /// The points, those near one another together.
     order: Vec<u32>,
-    /// Where they are, in that order, so that those of a box are side by side in memory.
+    /// Positions in that order, so that those of a box are side by side in memory.
     at: Vec<DVec2>,
     /// The place of each point in that order.
     place_of: Vec<u32>,
-    /// Of each box around points a bit for each of them that is left.
+    /// A bit for each remaining point of each box around points.
     left: Vec<u16>,
     /// Boxes around points, around those, …; the last level has one.
     levels: Vec<Vec<Box>>,
@@ -45,7 +45,7 @@ impl Box {
 }
 
 impl Index {
-    /// All points.
+    /// Creates all points.
     pub fn new(points: &[DVec2]) -> Self {
         let order = near_one_another(points);
         let mut place_of = vec![0; points.len()];
@@ -84,7 +84,7 @@ impl Index {
         }
     }
 
-    /// A point that is left in a closed triangle, beside its corners.
+    /// Returns A point that is left in a closed triangle, beside its corners.
     pub fn in_triangle(&mut self, points: &[DVec2], corners: [u32; 3]) -> Option<u32> {
         let triangle = Triangle::new(corners.map(|i| points[i as usize]));
         let mut open = std::mem::take(&mut self.open);
@@ -119,7 +119,7 @@ impl Index {
         None
     }
 
-    /// As [`Index::in_triangle`], of the points of one box.
+    /// Searches the points of one box, like [`Index::in_triangle`].
     fn look_at_points(&self, triangle: &Triangle, corners: [u32; 3], place: usize) -> Option<u32> {
         let mut left = self.left.get(place).copied().unwrap_or(0);
         while left != 0 {
@@ -133,7 +133,7 @@ impl Index {
     }
 }
 
-/// The indices of points, in the order of the squares they lie in.
+/// Returns the indices of points, in the order of the squares they lie in.
 fn near_one_another(points: &[DVec2]) -> Vec<u32> {
     let Some(around) = Rect::around(points.iter().copied()) else { return Vec::new() };
     let cells = f64::from((1u32 << GRID_BITS) - 1);
@@ -182,7 +182,7 @@ impl Triangle {
             && !self.is_beyond(a, b, c, around)
     }
 
-    /// Whether a box lies on one side of a line, and a point on the other or on the line.
+    /// Returns whether a box lies on one side of a line, and a point on the other or on the line.
     fn is_beyond(&self, a: DVec2, b: DVec2, inner: DVec2, around: &Box) -> bool {
         let side = |p: DVec2| orient2d(a, b, p);
         let own = side(inner);
@@ -193,7 +193,7 @@ impl Triangle {
         first != own && first != Orientation::Collinear && rest.iter().all(|other| *other == first)
     }
 
-    /// Whether a point lies in it or on its border; exact.
+    /// Returns whether a point lies in it or on its border; exact.
     fn contains(&self, p: DVec2) -> bool {
         let [a, b, c] = self.corners;
         if !(p.cmpge(self.min).all() && p.cmple(self.max).all()) {

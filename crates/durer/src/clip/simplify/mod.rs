@@ -31,8 +31,8 @@ crate::info::family! {
 }
 
 impl LineSimplifier {
-    /// The indices of the points of a line that are kept, in ascending order; the first and the last are always
-    /// among them.
+    /// Returns the indices of the points of a line that are kept, in ascending order; the first and the last
+    /// are always among them.
     ///
     /// ```
     /// use durer::clip::simplify::LineSimplifier;
@@ -62,7 +62,8 @@ impl LineSimplifier {
     }
 }
 
-/// The tolerance at which a share of the points with finite weights is kept, rounded down; 0 keeps none of them, 1 all.
+/// Returns the tolerance at which a share of the points with finite weights is kept, rounded down; 0 keeps
+/// none of them, 1 all.
 ///
 /// ```
 /// use durer::clip::simplify::tolerance_for_share;
@@ -79,7 +80,7 @@ pub fn tolerance_for_share(weights: &[f64], share: f64) -> f64 {
     dropped.checked_sub(1).and_then(|last| finite.get(last)).copied().unwrap_or(-1.0)
 }
 
-/// Whether points and tolerance can be worked with.
+/// Checks that points and tolerance are usable.
 fn check(points: &[DVec2], tolerance: f64) -> Result<()> {
     if let Some(index) = points.iter().position(|p| !p.is_finite()) {
         return Err(Error::NonFinite { what: "point", index });
@@ -90,7 +91,8 @@ fn check(points: &[DVec2], tolerance: f64) -> Result<()> {
     Ok(())
 }
 
-/// A measure that is no number, because numbers overflowed on the way, as one that keeps the point.
+/// Returns A measure that is no number, because numbers overflowed on the way, as one that keeps
+/// the point.
 fn or_infinite(measure: f64) -> f64 {
     if measure.is_nan() { f64::INFINITY } else { measure }
 }

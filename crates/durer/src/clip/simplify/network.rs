@@ -18,7 +18,7 @@ pub struct Network {
     pub direct: BTreeSet<[u32; 2]>,
 }
 
-/// Where a chain is among the points, and whether its last point is joined to its first.
+/// Range of a chain among the points, and whether its last point is joined to its first.
 #[derive(Debug, Clone)]
 pub struct Chain {
     pub points: std::ops::Range<usize>,
@@ -26,7 +26,7 @@ pub struct Chain {
 }
 
 impl Network {
-    /// The network of some chains.
+    /// Creates the network of some chains.
     pub fn new(points: &[DVec2], chains: &[Chain]) -> Self {
         let (places, place_of) = merged(points);
         let mut network =
@@ -48,7 +48,8 @@ impl Network {
         Self { links, ..network }
     }
 
-    /// The places of a chain, those repeated on the spot once; of a closed one the first is not repeated at the end.
+    /// Returns the places of a chain, those repeated on the spot once; of a closed one the first is not
+    /// repeated at the end.
     pub fn walk(&self, chain: &Chain) -> Vec<u32> {
         let mut walk = self.place_of.get(chain.points.clone()).unwrap_or_default().to_vec();
         walk.dedup();
@@ -70,8 +71,8 @@ impl Network {
         }
     }
 
-    /// Whether two places are joined by an edge that does not lead over a third one, where `links` are the
-    /// present neighbours.
+    /// Returns whether two places are joined by an edge that does not lead over a third one, where `links`
+    /// are the present neighbours.
     pub fn are_joined(&self, links: &Links, over: u32, [a, c]: [u32; 2]) -> bool {
         let beside = |at: u32, wanted: u32| {
             let pair = links.of(at);
@@ -86,7 +87,7 @@ impl Network {
     }
 }
 
-/// The places of points, each once and in order, and the place of each point.
+/// Returns the places of points, each once and in order, and the place of each point.
 fn merged(points: &[DVec2]) -> (Vec<DVec2>, Vec<u32>) {
     let mut keyed: Vec<(u64, u64, u32)> =
         points.iter().zip(0..).map(|(p, i)| (ordered(p.x), ordered(p.y), i)).collect();
@@ -102,13 +103,13 @@ fn merged(points: &[DVec2]) -> (Vec<DVec2>, Vec<u32>) {
     (places, place_of)
 }
 
-/// A whole number that is in the order of finite numbers; zeros of either sign are one.
+/// Returns A whole number that is in the order of finite numbers; zeros of either sign are one.
 fn ordered(value: f64) -> u64 {
     let bits = (value + 0.0).to_bits();
     if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
 }
 
-/// What is known of the neighbours of a place.
+/// Knowledge about the neighbours of a place.
 #[derive(Debug, Clone, Copy)]
 enum Seen {
     Never,

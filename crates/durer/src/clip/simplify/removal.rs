@@ -13,7 +13,7 @@ pub const NONE: u32 = u32::MAX;
 pub struct Links(pub Vec<[u32; 2]>);
 
 impl Links {
-    /// Those of one line, whose ends stay.
+    /// Returns those of one line, whose ends stay.
     pub fn of_line(count: usize) -> Self {
         let link = |i: usize| match (i.checked_sub(1), i + 1 < count) {
             (Some(before), true) => [before as u32, i as u32 + 1],
@@ -22,12 +22,12 @@ impl Links {
         Self((0..count).map(link).collect())
     }
 
-    /// Whether a point may be left out.
+    /// Returns whether a point may be left out.
     pub fn is_free(&self, point: u32) -> bool {
         self.of(point)[0] != NONE
     }
 
-    /// The neighbours of a point.
+    /// Returns the neighbours of a point.
     pub fn of(&self, point: u32) -> [u32; 2] {
         self.0.get(point as usize).copied().unwrap_or([NONE; 2])
     }
@@ -42,12 +42,12 @@ impl Links {
     }
 }
 
-/// How much a point matters, in units of the coordinates.
+/// Importance of a point, in units of the coordinates.
 #[derive(Debug, Clone)]
 pub enum Measure {
     /// The side of a square as large as its triangle with its neighbours.
     Area,
-    /// What is known of each beforehand.
+    /// Importance of each point, known beforehand.
     Given(Vec<f64>),
 }
 
@@ -64,7 +64,7 @@ impl Measure {
     }
 }
 
-/// Why a point cannot be left out now.
+/// Reason why a point cannot be left out now.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Obstacle {
     /// This one lies where the line would jump over it.
@@ -75,7 +75,7 @@ pub enum Obstacle {
 
 /// Says which points must not be left out.
 pub trait Guard {
-    /// What is in the way of an edge past point b.
+    /// Returns the obstacle to an edge that bypasses point b.
     fn obstacle(&mut self, places: &[DVec2], links: &Links, abc: [u32; 3]) -> Option<Obstacle>;
     /// Takes note that the point in the middle is left out.
     fn removed(&mut self, links: &Links, abc: [u32; 3]);
@@ -103,7 +103,7 @@ pub struct Removal<'a, G> {
     pub guard: G,
 }
 
-/// How much a point matters, in bits, and its index.
+/// Importance of a point, in bits, and its index.
 type Entry = (u64, u32);
 
 /// Points by how much they matter, then by index.
@@ -117,7 +117,7 @@ struct Queue {
     magnitude: u64,
     /// Entries of larger magnitudes.
     later: BTreeMap<u64, Vec<Entry>>,
-    /// What each matters now; entries that say otherwise are out of date.
+    /// Current importance of each point; entries that say otherwise are out of date.
     now: Vec<f64>,
     /// Points that wait until another one is gone, by that one.
     waiting: BTreeMap<u32, Vec<u32>>,
@@ -143,7 +143,7 @@ impl Queue {
         }
     }
 
-    /// The next point and what it matters.
+    /// Returns the next point and what it matters.
     fn pop(&mut self) -> Option<(u32, f64)> {
         loop {
             while let Some(Reverse(entry)) = self.heap.pop() {
@@ -159,12 +159,12 @@ impl Queue {
     }
 }
 
-/// Whether an entry says what its point matters now.
+/// Returns whether an entry has the current importance of its point.
 fn is_current(now: &[f64], &(bits, point): &Entry) -> bool {
     now[point as usize].to_bits() == bits
 }
 
-/// What a point matters that is gone.
+/// Importance that marks a removed point.
 const GONE: f64 = -1.0;
 
 impl<G: Guard> Removal<'_, G> {

@@ -29,7 +29,7 @@ pub const INFO: Info = Info {
     limits: "one line by itself may come to cross itself; a coverage keeps it from that",
 };
 
-/// How much is left out.
+/// Options for the amount that is left out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// The side of a square as large as the largest triangle that is left out, in units of the coordinates. The
@@ -37,12 +37,12 @@ pub struct Options {
     pub tolerance: f64,
 }
 
-/// What happened.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// The line has so many points.
     Begin {
-        /// How many.
+        /// Number of points.
         points: usize,
     },
     /// A point is left out.
@@ -66,7 +66,7 @@ pub fn replay(steps: &[Step]) -> Vec<usize> {
     kept
 }
 
-/// The indices of the points of a line that are kept.
+/// Returns the indices of the points of a line that are kept.
 ///
 /// # Errors
 /// As [`super::LineSimplifier::simplify`].
@@ -81,7 +81,7 @@ pub fn simplify(
     Ok((0..points.len()).filter(|&i| weights[i].is_infinite()).collect())
 }
 
-/// The weight of every point of a line: see [`super`].
+/// Returns the weight of every point of a line: see [`super`].
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] names the first point with a NaN or infinite coordinate.
@@ -90,7 +90,7 @@ pub fn weights(points: &[DVec2]) -> Result<Vec<f64>> {
     Ok(run(points, f64::INFINITY, &mut NoTrace))
 }
 
-/// The weights of points up to a limit, infinite above it.
+/// Returns the weights of points up to a limit, infinite above it.
 fn run(points: &[DVec2], limit: f64, t: &mut impl Tracer<Step>) -> Vec<f64> {
     let links = Links::of_line(points.len());
     let removal = Removal { places: points, links, measure: Measure::Area, limit, guard: Free };

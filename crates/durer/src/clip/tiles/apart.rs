@@ -11,10 +11,10 @@ use crate::math::{I64Vec2, IVec2, Orientation};
 /// Coordinates have so many bits at most, so that products of their differences fit 64.
 const BITS: u32 = 29;
 
-/// So many times as many entries in slabs as edges, at most.
+/// Limit on the ratio of entries in slabs to edges.
 const ENTRIES_PER_EDGE: usize = 4;
 
-/// So many pairs of edges are compared per edge, at most; more of them take longer than the overlay.
+/// Limit on the pairs of edges compared per edge; more of them take longer than the overlay.
 const PAIRS_PER_EDGE: usize = 64;
 
 /// An edge, from its left end to its right one.
@@ -59,7 +59,7 @@ pub fn cleaned(points: impl IntoIterator<Item = I64Vec2>) -> Vec<I64Vec2> {
     Vec::new()
 }
 
-/// Whether a ring encloses the same without the middle of three points.
+/// Returns whether a ring encloses the same without the middle of three points.
 fn is_idle(a: I64Vec2, b: I64Vec2, c: I64Vec2) -> bool {
     a == b || b == c || Vertex::turn(a, b, c) == Orientation::Collinear
 }
@@ -84,7 +84,7 @@ pub fn polygons(rings: &Shapes<I64Vec2>, fill: FillRule) -> Option<Shapes<I64Vec
     Some(nest.polygons(rings, fill))
 }
 
-/// The points relative to the corner of the box around them.
+/// Returns the points relative to the corner of the box around them.
 fn in_few_bits(points: &[I64Vec2]) -> Option<Vec<IVec2>> {
     let first = *points.first()?;
     let (low, high) = points.iter().fold((first, first), |(l, h), p| (l.min(*p), h.max(*p)));
@@ -122,8 +122,8 @@ impl Edge {
         (along.x * to.y - along.y * to.x).signum()
     }
 
-    /// Whether it has nothing in common with another one whose range of x meets its own, beside the vertex between
-    /// them.
+    /// Returns whether it has nothing in common with another one whose range of x meets its own, beside the vertex
+    /// between them.
     fn is_apart(&self, other: &Self) -> bool {
         if self.high() < other.low() || other.high() < self.low() {
             return true;
@@ -134,7 +134,7 @@ impl Edge {
             || other.side(self.left) * other.side(self.right) > 0
     }
 
-    /// Whether it crosses the horizontal line through a point on the left of that.
+    /// Returns whether it crosses the horizontal line through a point on the left of that.
     fn is_left_of(&self, p: IVec2) -> bool {
         if self.low() > p.y || self.high() <= p.y || self.left.x > p.x {
             return false;
@@ -148,7 +148,7 @@ impl Edge {
 /// Edges by heights: each is in all slabs that it touches, in the order of their left ends.
 struct Slabs {
     edges: Vec<Edge>,
-    /// Where each slab ends among the edges.
+    /// End of each slab among the edges.
     ends: Vec<usize>,
     /// The height of a slab.
     height: i32,
@@ -204,7 +204,7 @@ impl Slabs {
         self.edges.get(start.unwrap_or(0)..end).unwrap_or_default()
     }
 
-    /// Whether no two edges have more in common than the vertex between them.
+    /// Returns whether no two edges have more in common than the vertex between them.
     fn are_apart(&self) -> bool {
         let mut budget = self.edges.len() * PAIRS_PER_EDGE;
         (0..self.ends.len()).all(|number| {
@@ -220,7 +220,8 @@ impl Slabs {
         })
     }
 
-    /// The rings of the edges that cross the horizontal line through a point on its left, sorted.
+    /// Returns the rings of the edges that cross the horizontal line through a point on its left,
+    /// sorted.
     fn on_the_left(&self, p: IVec2) -> Vec<u32> {
         let slab = self.slab((p.y / self.height) as usize);
         let before = slab.partition_point(|edge| edge.left.x <= p.x);
@@ -231,7 +232,7 @@ impl Slabs {
     }
 }
 
-/// Which rings lie in which.
+/// Nesting of rings.
 struct Nest {
     /// The leftmost point of each ring.
     first: Vec<IVec2>,
@@ -272,7 +273,7 @@ impl Nest {
         }
     }
 
-    /// Whether the inside and the outside of a ring are filled.
+    /// Returns whether the inside and the outside of a ring are filled.
     fn filled(&self, ring: usize, fill: FillRule) -> [bool; 2] {
         let outside: i32 = self.around[ring].iter().map(|&other| self.turns[other as usize]).sum();
         [outside + self.turns[ring], outside].map(|winding| fill.fills(winding))
@@ -375,7 +376,7 @@ mod tests {
         assert_eq!(polygons(&Shapes::new(), FillRule::EvenOdd), Some(Shapes::new()));
     }
 
-    /// A set of rings in an order that does not depend on where they begin.
+    /// Returns A set of rings in an order that does not depend on where they begin.
     fn sorted(shapes: &Shapes<I64Vec2>) -> Vec<Vec<Vec<I64Vec2>>> {
         let of_ring = |ring: &[I64Vec2]| {
             let first = (0..ring.len()).min_by_key(|&i| (ring[i].x, ring[i].y)).unwrap_or(0);

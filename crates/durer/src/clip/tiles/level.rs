@@ -15,20 +15,20 @@ pub struct Level<'a> {
     pub zoom: u8,
     /// The side of the world in cells.
     cells: f64,
-    /// Of each polygon whether a square stands for it, if it is tiny.
+    /// True for each tiny polygon that a square replaces.
     squares: Vec<bool>,
 }
 
 impl<'a> Level<'a> {
-    /// The features of a pyramid.
+    /// Creates the features of a pyramid.
     pub fn new(pyramid: &'a Pyramid, zoom: u8) -> Self {
         let cells = cells(&pyramid.options, zoom);
         let level = Self { pyramid, zoom, cells, squares: Vec::new() };
         Self { squares: level.squares(), ..level }
     }
 
-    /// The side of a square that polygons smaller than it are joined to, in cells. The last level has all that have
-    /// an area there.
+    /// Returns the side of a square that polygons smaller than it are joined to, in cells. The last level has
+    /// all that have an area there.
     fn tiny(&self) -> f64 {
         let Options { tiny, zooms, .. } = &self.pyramid.options;
         if self.zoom == *zooms.end() { tiny.min(1.0) } else { *tiny }
@@ -39,7 +39,7 @@ impl<'a> Level<'a> {
         area < side * side
     }
 
-    /// Which of the tiny polygons a square stands for: the one that fills it.
+    /// Returns the tiny polygons that a square replaces: those that fill it.
     fn squares(&self) -> Vec<bool> {
         /// Polygons in one square of so many times the side count together.
         const NEAR: f64 = 8.0;
@@ -63,7 +63,7 @@ impl<'a> Level<'a> {
         squares
     }
 
-    /// All features, in all worlds from which they are seen in the first.
+    /// Returns all features, in all worlds from which they are seen in the first.
     pub fn contents(&'a self) -> Vec<Part<'a>> {
         let reach = f64::from(self.pyramid.options.buffer) / self.cells + self.margin();
         let mut contents = Vec::new();
@@ -83,19 +83,19 @@ impl<'a> Level<'a> {
         contents
     }
 
-    /// How far a feature's points on the grid may lie beyond its bounds.
+    /// Returns the largest distance of a feature's points on the grid beyond its bounds.
     fn margin(&self) -> f64 {
         (self.tiny() + 1.0) / self.cells
     }
 
-    /// A tile, in cells.
+    /// Returns A tile, in cells.
     fn square(&self, tile: Tile) -> Option<Rect> {
         let side = self.cells / f64::from(1u32 << tile.zoom);
         let corner = DVec2::new(tile.x.into(), tile.y.into()) * side;
         Rect::around([corner, corner + side])
     }
 
-    /// What features of a tile are cut at, in cells.
+    /// Returns the window that a tile's features are clipped to, in cells.
     fn window(&self, tile: Tile) -> Result<Rect> {
         let buffer = DVec2::splat(self.pyramid.options.buffer.into());
         let square = self.square(tile).map_or([DVec2::ZERO; 2], |s| [s.min(), s.max()]);
@@ -134,7 +134,7 @@ impl Part<'_> {
         &self.level.pyramid.features[self.feature]
     }
 
-    /// A box around the whole feature, in cells.
+    /// Returns A box around the whole feature, in cells.
     fn around(&self) -> Rect {
         let Ready { bounds, .. } = self.ready();
         let (margin, shift) = (DVec2::splat(self.level.margin()), DVec2::new(self.shift, 0.0));
@@ -142,7 +142,7 @@ impl Part<'_> {
         Rect::around(corners.map(|p| p * self.level.cells)).unwrap_or(*bounds)
     }
 
-    /// The whole feature on the grid, with `origin` as its zero.
+    /// Returns the whole feature on the grid, with `origin` as its zero.
     fn on_grid(&self, origin: I64Vec2) -> Result<Shape> {
         let ready = self.ready();
         let place = |p: DVec2| DVec2::new(p.x + self.shift, p.y) * self.level.cells;
@@ -180,14 +180,14 @@ impl Part<'_> {
         body.snapped(origin, ready.fill)
     }
 
-    /// What stands for tiny polygons.
+    /// Returns the square that replaces tiny polygons.
     fn square(&self, around: DVec2) -> [DVec2; 4] {
         let half = (self.level.tiny() * 0.5).max(0.5);
         [(-half, -half), (half, -half), (half, half), (-half, half)]
             .map(|(x, y)| around + DVec2::new(x, y))
     }
 
-    /// What becomes of it in its tile.
+    /// Returns the finished piece for its tile.
     pub fn finished(self, tile: Tile) -> Result<Option<Piece>> {
         let side = i64::from(self.level.pyramid.options.extent);
         let origin = I64Vec2::new(tile.x.into(), tile.y.into()) * side;

@@ -41,7 +41,7 @@ impl Tile {
     /// The finest level: with a grid of 2^14 in each tile, places are still whole numbers of 38 bits.
     pub const MAX_ZOOM: u8 = 24;
 
-    /// The four tiles that it consists of, in the order of Hilbert's curve.
+    /// Returns the four tiles that it consists of, in the order of Hilbert's curve.
     ///
     /// ```
     /// use durer::clip::tiles::Tile;
@@ -56,14 +56,15 @@ impl Tile {
         children
     }
 
-    /// Its number over all levels, coarse ones first, each along Hilbert's curve: the one of PMTiles 3.
+    /// Returns its number over all levels, coarse ones first, each along Hilbert's curve: the one of
+    /// PMTiles 3.
     pub fn id(self) -> u64 {
         let zoom = self.zoom.min(31);
         let before = ((1u64 << (2 * u32::from(zoom))) - 1) / 3;
         before + hilbert::index(zoom, self.x, self.y)
     }
 
-    /// How many tiles of a level it consists of; 1 where that is not a finer one.
+    /// Returns the number of tiles of a level in this one; 1 if the level is not finer.
     pub fn count_at(self, zoom: u8) -> u64 {
         1 << (2 * u32::from(zoom.saturating_sub(self.zoom).min(31)))
     }

@@ -15,7 +15,7 @@ pub enum Body {
     Lines {
         /// All points, line after line.
         points: Vec<DVec2>,
-        /// Where each line ends among them.
+        /// End of each line among the points.
         ends: Vec<usize>,
     },
     /// Polygons.
@@ -34,7 +34,7 @@ pub enum Shape {
 }
 
 impl Body {
-    /// All points.
+    /// Returns all points.
     pub fn points(&self) -> &[DVec2] {
         match self {
             Self::Points(points) | Self::Lines { points, .. } => points,
@@ -42,7 +42,7 @@ impl Body {
         }
     }
 
-    /// All points, to be moved in place.
+    /// Returns all points, to be moved in place.
     pub fn points_mut(&mut self) -> &mut [DVec2] {
         match self {
             Self::Points(points) | Self::Lines { points, .. } => points,
@@ -50,7 +50,7 @@ impl Body {
         }
     }
 
-    /// The part in a closed window; of areas only what has an area. Areas must be valid.
+    /// Returns the part in a closed window; of areas only what has an area. Areas must be valid.
     ///
     /// # Errors
     /// [`crate::Error::NonFinite`] names the first point with a NaN or infinite coordinate.
@@ -70,8 +70,9 @@ impl Body {
         Ok((!part.points().is_empty()).then_some(part))
     }
 
-    /// The same on the grid, with `origin` as its zero: every place goes to the nearest whole numbers, halves up. Lines that
-    /// become points are left out, and so is what has no area any more. Areas are made valid.
+    /// Returns the same on the grid, with `origin` as its zero: every place goes to the nearest whole
+    /// numbers, halves up. Lines that become points are left out, and so is what has no area any more. Areas
+    /// are made valid.
     ///
     /// # Errors
     /// As [`overlay()`].
@@ -96,7 +97,7 @@ impl Body {
 }
 
 impl Shape {
-    /// Whether there is nothing of it.
+    /// Returns whether there is nothing of it.
     pub fn is_empty(&self) -> bool {
         match self {
             Self::Points(points) => points.is_empty(),
@@ -105,7 +106,7 @@ impl Shape {
         }
     }
 
-    /// The same with coordinates of f64.
+    /// Returns the same with coordinates of f64.
     pub fn to_body(&self) -> Body {
         let float = |p: &I64Vec2| p.as_dvec2();
         match self {
@@ -130,12 +131,13 @@ impl Shape {
     }
 }
 
-/// The nearest whole number, halves up, so that the grid of one tile is that of all; less `origin`.
+/// Returns the nearest whole number, halves up, so that the grid of one tile is that of all; less
+/// `origin`.
 fn nearest(value: f64, origin: i64) -> i64 {
     ((value + 0.5).floor() as i64).saturating_sub(origin)
 }
 
-/// The polygons on the grid, made valid: by the overlay where rings cross or touch.
+/// Returns the polygons on the grid, made valid: by the overlay where rings cross or touch.
 fn valid(
     shapes: &Shapes,
     snap: impl Fn(DVec2) -> I64Vec2,

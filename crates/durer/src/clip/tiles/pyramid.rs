@@ -26,26 +26,26 @@ pub struct Feature {
     pub layer: usize,
     /// Its geometry, within [`WORLDS`].
     pub body: Body,
-    /// Which points its areas enclose.
+    /// Fill rule of its areas.
     pub fill: FillRule,
 }
 
-/// So far from the square, in its sides, features may reach.
+/// Distance from the square that features may reach, in its sides.
 pub const WORLDS: f64 = 4.0;
 
-/// What the tiles are like.
+/// Options for tiles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// The levels, within 0 … [`Tile::MAX_ZOOM`].
     pub zooms: RangeInclusive<u8>,
     /// The side of a tile in cells of its grid; 1 to 8192.
     pub extent: u32,
-    /// How far features go on beyond the borders, in cells; less than `extent`.
+    /// Distance that features continue beyond the borders, in cells; less than `extent`.
     pub buffer: u32,
-    /// Which points are left out.
+    /// Method that chooses the points to leave out.
     pub method: LineSimplifier,
-    /// How far lines may move on levels before the last, in cells: 3 of 4096 is three eighths of a pixel where tiles
-    /// have 512. 0 leaves out only what is straight. The last level has all points.
+    /// Largest distance that lines may move on levels before the last, in cells: 3 of 4096 is three eighths of a
+    /// pixel for tiles of 512. 0 leaves out only points on straight lines. The last level has all points.
     pub tolerance: f64,
     /// Polygons smaller than a square of this side, in cells, are left out; whenever those near to each other
     /// are together as large, such a square stands for them. On the last level it is 1 at most; 0 leaves all in.
@@ -87,7 +87,7 @@ pub(super) struct Ready {
     pub levels: Vec<u8>,
     /// The area of each polygon.
     pub areas: Vec<f64>,
-    /// How many polygons the features before have.
+    /// Number of polygons in the features before.
     pub polygons_before: usize,
 }
 
@@ -141,7 +141,8 @@ impl Pyramid {
         })
     }
 
-    /// How many tiles there are on all levels, at least: counted up to a limit. See [`count()`](super::count()).
+    /// Returns a lower bound of the number of tiles on all levels, counted up to a limit. See
+    /// [`count()`](super::count()).
     ///
     /// # Errors
     /// Of the overlay.
@@ -190,7 +191,7 @@ fn check(options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// The first level that has each point, of the lines and areas of a layer.
+/// Returns the first level that has each point, of the lines and areas of a layer.
 fn layer_levels(
     features: &[Feature],
     layer: usize,
@@ -221,12 +222,12 @@ fn layer_levels(
     Ok(levels.collect())
 }
 
-/// The side of the world in cells.
+/// Returns the side of the world in cells.
 pub(super) fn cells(options: &Options, zoom: u8) -> f64 {
     f64::from(options.extent) * f64::from(1u32 << zoom)
 }
 
-/// The ranges between ends.
+/// Returns the ranges between ends.
 pub(super) fn runs(ends: &[usize]) -> impl Iterator<Item = std::ops::Range<usize>> {
     let starts = std::iter::once(0).chain(ends.iter().copied());
     starts.zip(ends.iter().copied()).map(|(start, end)| start..end)
@@ -254,7 +255,7 @@ impl Ready {
     }
 }
 
-/// The area of a polygon, whichever way its rings run.
+/// Returns the area of a polygon, whichever way its rings run.
 fn area(polygon: Polygon<'_>) -> f64 {
     let holes: f64 = polygon.holes().map(|hole| signed_area(hole).abs()).sum();
     (signed_area(polygon.outer()).abs() - holes).max(0.0)

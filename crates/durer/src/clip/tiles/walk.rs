@@ -6,16 +6,17 @@ use crate::parallel;
 
 /// Something that lies in tiles, or a part of it.
 pub trait Content: Send + Sync + Sized {
-    /// The parts in some tiles, which lie in the tile where this part comes from; `None` where nothing is.
+    /// Returns the parts in some tiles, which lie in the tile where this part comes from; `None` where
+    /// nothing is.
     ///
     /// # Errors
     /// Whatever goes wrong.
     fn within(&self, tiles: &[Tile]) -> Result<Vec<Option<Self>>>;
 
-    /// How much there is to do, in positions.
+    /// Returns the amount of work, in positions.
     fn size(&self) -> usize;
 
-    /// Whether it covers a tile wholly, so that it lies in all tiles of this one.
+    /// Returns whether it covers a tile wholly, so that it lies in all tiles of this one.
     fn covers(&self, tile: Tile) -> bool;
 }
 
@@ -67,7 +68,7 @@ pub fn walk<C: Content, R: Send, E: From<crate::Error>>(
     Ok(())
 }
 
-/// What is made of the tiles of a subtree.
+/// Makes the tiles of a subtree.
 fn subtree<C: Content, R>(
     tile: Tile,
     contents: Vec<C>,
@@ -85,10 +86,10 @@ fn subtree<C: Content, R>(
     Ok(done)
 }
 
-/// So many contents are cut by one task.
+/// Number of contents that one task cuts.
 const TASK: usize = 64;
 
-/// The contents of some tiles, of those that have any.
+/// Returns the contents of some tiles, of those that have any.
 fn parts<C: Content>(contents: &[C], tiles: &[Tile]) -> Result<Open<C>> {
     let tasks: Vec<&[C]> = contents.chunks(TASK).collect();
     let cut = parallel::map(tasks, |some| {
@@ -106,8 +107,8 @@ fn parts<C: Content>(contents: &[C], tiles: &[Tile]) -> Result<Open<C>> {
     Ok(open)
 }
 
-/// How many tiles of a level something lies in; counted up to a limit, above which it is more than the limit and
-/// maybe less than the number.
+/// Counts the tiles of a level that are not empty, up to a limit; above it the result exceeds the limit but may
+/// be less than the number.
 ///
 /// Tiles that one content covers wholly are counted without looking at those that they consist of.
 ///

@@ -1,4 +1,4 @@
-//! How a polyline turns: where its corners are, and where it stands for something round.
+//! The turns of a polyline: its corners, and the parts that approximate something round.
 
 use super::Options;
 use crate::math::DVec2;
@@ -17,10 +17,11 @@ const LITTLE: f64 = 0.5;
 /// A chord is not longer than so many times both of those beside it.
 const LENGTHS: f64 = 2.5;
 
-/// So many turns in a row make something round.
+/// Number of turns in a row that make something round.
 const TURNS: usize = 5;
 
-/// How much more than what the turns say a chord of something round may be left.
+/// Factor by which the curve may leave a chord of something round beyond the sagitta that the turns
+/// imply.
 const MORE: f64 = 1.1;
 
 /// A polyline with what is known of its turns.
@@ -32,11 +33,11 @@ pub(super) struct Bends {
     pub along: Vec<f64>,
     /// By how much the polyline turns at each point, in radians; 0 at open ends.
     pub turns: Vec<f64>,
-    /// How far the curve may leave each chord.
+    /// Largest distance of the curve from each chord.
     pub allowed: Vec<f64>,
-    /// Whether a point is a fold; empty where none is.
+    /// True if a point is a fold; empty where none is.
     pub folds: Vec<bool>,
-    /// Where pieces end at any rate, with the first and the last point.
+    /// Points at which pieces have to end, with the first and the last point.
     pub breaks: Vec<usize>,
     pub tolerance: f64,
     /// The index that the first point has in what was given.
@@ -160,7 +161,8 @@ fn turns(points: &[DVec2], closed: bool) -> Vec<f64> {
     (0..=last).map(turn).collect()
 }
 
-/// The turns at both ends of a chord; where one is a corner or an open end, the other one twice.
+/// Returns the turns at both ends of a chord; where one is a corner or an open end, the other one
+/// twice.
 fn both(turns: &[f64], i: usize) -> Option<[f64; 2]> {
     let is_turn = |t: f64| t != 0.0 && t.abs() <= CORNER;
     match (turns[i], turns[i + 1]) {
@@ -214,9 +216,10 @@ fn regular(turns: &[f64], chords: &[f64], closed: bool) -> Vec<bool> {
     regular
 }
 
-/// Which points are folds: two round edges, one behind the other, whose facets are not in step are seen as a polygon whose
-/// points lie on the edges in part, and in part where the chord of one crosses that of the other. At these, the folds, it
-/// turns by little; they are not on the circle but within it, by less than the chords are. Empty where there are none.
+/// Returns true for each point that is a fold: two round edges, one behind the other, whose facets are not in step are
+/// seen as a polygon whose points lie on the edges in part, and in part where the chord of one crosses that of the other.
+/// At these, the folds, it turns by little; they are not on the circle but within it, by less than the chords are. Empty
+/// if there are none.
 fn folds(turns: &[f64], closed: bool, kept: &[bool]) -> Vec<bool> {
     let last = turns.len() - 1;
     let is_fold = |i: usize| {
@@ -245,7 +248,7 @@ fn folds(turns: &[f64], closed: bool, kept: &[bool]) -> Vec<bool> {
 struct Less {
     /// The indices of the points.
     points: Vec<usize>,
-    /// How many chords the whole polyline has.
+    /// Number of chords of the whole polyline.
     count: usize,
     turns: Vec<f64>,
     chords: Vec<f64>,
@@ -282,13 +285,13 @@ impl Less {
     }
 }
 
-/// How far an arc that turns like the polyline leaves a chord.
+/// Returns the sagitta of an arc that turns like the polyline over a chord.
 fn sagitta(turns: &[f64], chords: &[f64], i: usize) -> f64 {
     let turn = both(turns, i).map_or(0.0, |[a, b]| a.abs().max(b.abs()));
     chords[i] * 0.5 * libm::tan(turn * 0.25) * MORE
 }
 
-/// Whether no curve within the tolerance goes through a point without a corner.
+/// Returns whether no curve within the tolerance goes through a point without a corner.
 fn is_corner(i: usize, turns: &[f64], chords: &[f64], allowed: &[f64], tolerance: f64) -> bool {
     let turn = turns[i].abs();
     if turn > CORNER {

@@ -7,7 +7,7 @@
 use super::measure::Run;
 use crate::math::DVec2;
 
-/// How often parameters are moved; more hardly ever helps.
+/// Number of times that parameters are moved; more hardly ever helps.
 const ROUNDS: usize = 4;
 
 /// An error that is so many times too large is not mended by moving parameters.
@@ -50,7 +50,7 @@ fn by_length(points: &[DVec2]) -> Option<Vec<f64>> {
     (length > 0.0).then_some(along)
 }
 
-/// The values of the four Bernstein polynomials.
+/// Returns the values of the four Bernstein polynomials.
 fn weights(t: f64) -> [f64; 4] {
     let s = 1.0 - t;
     [s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t]
@@ -109,7 +109,8 @@ fn move_parameters(points: &[DVec2], parameters: &mut [f64], curve: &[DVec2; 4])
     parameters.windows(2).all(|w| w[0] < w[1]).then_some(())
 }
 
-/// Whether each part of the curve between the parameters of two points stays as near to their chord as is allowed.
+/// Returns whether each part of the curve between the parameters of two points stays as near to their chord as is
+/// allowed.
 ///
 /// The distance to a chord is a convex function, so that it is on the curve at most the mean, by the weights of its
 /// control points, of theirs: of the larger one at the ends, and of the larger one of those between.
@@ -124,7 +125,8 @@ fn is_inside(run: &Run<'_>, parameters: &[f64], curve: &[DVec2; 4]) -> bool {
     })
 }
 
-/// The polar form of the curve: its control points between two parameters are its values at those.
+/// Returns the polar form of the curve: its control points between two parameters are its values at
+/// those.
 fn blossom(curve: &[DVec2; 4], [r, s, t]: [f64; 3]) -> DVec2 {
     let [a, b, c, d] = *curve;
     let (ab, bc, cd) = (a.lerp(b, r), b.lerp(c, r), c.lerp(d, r));

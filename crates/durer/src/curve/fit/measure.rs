@@ -1,4 +1,4 @@
-//! Whether arcs stay near to a run of points.
+//! The distance of arcs from a run of points.
 
 use super::bends::Bends;
 use crate::math::DVec2;
@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 pub(super) struct Run<'a> {
     /// Those that are no folds, and the ends.
     pub points: Cow<'a, [DVec2]>,
-    /// How far the curve may leave the chords between them.
+    /// Largest distances of the curve from the chords between them.
     pub allowed: Cow<'a, [f64]>,
     /// The folds between.
     pub folds: Vec<DVec2>,
@@ -108,13 +108,13 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Whether a point lies within an arc's ellipse, or outside by no more than the tolerance.
+/// Returns whether a point lies within an arc's ellipse, or outside by no more than the tolerance.
 fn is_within(arc: &Arc, p: DVec2, tolerance: f64) -> bool {
     let on = arc.at(angle_of(arc, p));
     on.distance(arc.center) + tolerance >= p.distance(arc.center)
 }
 
-/// How far an ellipse leaves the chord between two of its points.
+/// Returns the largest distance of an ellipse from the chord between two of its points.
 fn rise(arc: &Arc, angle: f64, step: f64, from: DVec2, to: DVec2) -> f64 {
     let middle = arc.at(angle + step * 0.5) - arc.center;
     let height = middle * (1.0 - libm::cos(step * 0.5));
@@ -127,7 +127,8 @@ pub(super) fn angle_of(arc: &Arc, p: DVec2) -> f64 {
     libm::atan2(arc.axis.perp_dot(v) / arc.ratio, arc.axis.dot(v))
 }
 
-/// An angle as what is turned in the direction of another one: with its sign, less than a full turn.
+/// Returns an angle as what is turned in the direction of another one: with its sign, less than a
+/// full turn.
 pub(super) fn forwards(angle: f64, turn: f64) -> f64 {
     match angle {
         a if turn >= 0.0 && a < 0.0 => a + TAU,

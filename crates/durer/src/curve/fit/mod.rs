@@ -26,18 +26,18 @@ use crate::target::{Arc, Curve, Piece};
 use bends::Bends;
 use measure::Run;
 
-/// How curves are fitted.
+/// Options for fitting curves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// How far points of the polyline may lie from the curve, and the curve from the polyline, in the unit of the points.
-    /// 0.02 mm on paper is less than pens, lasers and mills see; ten times as much is seen on paper. The number of
-    /// pieces grows slowly as it gets smaller. With 0 and less the polyline comes back.
+    /// Largest distance of the polyline's points from the curve, and of the curve from the polyline, in the unit of the
+    /// points. 0.02 mm on paper is less than pens, lasers and mills resolve; ten times as much is visible on paper. The
+    /// number of pieces grows slowly as it gets smaller. With 0 and less the polyline comes back.
     pub tolerance: f64,
-    /// Whether polylines that turn regularly stand for round ones. Between two of their points, the curve may then leave
+    /// True if polylines that turn regularly stand for round ones. Between two of their points, the curve may then leave
     /// their chord by as much as an arc through the points does. They turn one way, five times or more in a row, by at
-    /// most 30° and by like angles, over chords of like lengths: a polygon of twelve sides is round, one of
-    /// eight is not. Where two such polylines of one circle cross each other, the crossings, at which they turn by
-    /// little, may lie within it, as far as the chords do.
+    /// most 30° and by like angles, over chords of like lengths: a polygon of twelve sides is round, one of eight is
+    /// not. Where two such polylines of one circle cross each other, the crossings, at which they turn by little, may
+    /// lie within it, as far as the chords do.
     pub round: bool,
 }
 
@@ -55,9 +55,9 @@ const JOINED: f64 = 0.005;
 pub struct Polyline<'a> {
     /// The points; of a closed one the first is not repeated.
     pub points: &'a [DVec2],
-    /// Whether the last point is joined to the first.
+    /// True if the last point is joined to the first.
     pub closed: bool,
-    /// Whether a point stays the end of a piece, for each point; where there are fewer, those beyond need not.
+    /// True if a point stays the end of a piece, for each point; where there are fewer, those beyond need not.
     pub kept: &'a [bool],
 }
 
@@ -118,7 +118,7 @@ pub fn fit(
     Some(Fitted { curve: Curve { start, pieces, closed }, from })
 }
 
-/// The polyline itself.
+/// Returns the polyline itself.
 fn straight(points: &[DVec2], closed: bool) -> Fitted {
     let again = points.first().filter(|_| closed);
     let pieces: Vec<Piece> = points.iter().skip(1).chain(again).map(|p| Piece::Line(*p)).collect();
@@ -126,8 +126,8 @@ fn straight(points: &[DVec2], closed: bool) -> Fitted {
     Fitted { from: (0..pieces.len()).collect(), curve: Curve { start, pieces, closed } }
 }
 
-/// The largest `j` of `least..=end` that `try_to` finds something for, and what it finds, taken that it does for all
-/// below it.
+/// Returns the largest `j` of `least..=end` that `try_to` finds something for, and what it finds, taken that
+/// it does for all below it.
 fn longest<T>(
     from: usize,
     least: usize,
@@ -176,7 +176,8 @@ fn through(arc: &Arc, start: DVec2, end: DVec2) -> Option<Arc> {
     (arc.center.is_finite() && arc.axis.is_finite()).then_some(arc)
 }
 
-/// An arc that begins and ends where a run does: as it is where that is so but for rounding, else moved.
+/// Returns an arc that begins and ends where a run does: as it is where that is so but for rounding,
+/// else moved.
 fn joined(arc: Arc, run: &Run<'_>, tolerance: f64) -> Option<Arc> {
     let (first, last) = (arc.at(arc.start), arc.at(arc.start + arc.turn));
     let apart = first.distance(run.first()).max(last.distance(run.last()));
@@ -195,7 +196,7 @@ pub(crate) fn between(arc: &Arc, start: DVec2, end: DVec2, tolerance: f64) -> Op
     (off <= tolerance * JOINED && turn != 0.0).then_some(part)
 }
 
-/// How much arcs of one circle may differ, as a part of the tolerance.
+/// Largest difference between arcs of one circle, as a part of the tolerance.
 const SAME: f64 = 0.25;
 
 /// Returns the part of a whole that an arc from `start` to `end` is but for a small part of the tolerance.

@@ -1,4 +1,4 @@
-//! What is between exact arcs: from each point the longest arc or cubic curve that fits, or a line.
+//! The fit between exact arcs: from each point the longest arc or cubic curve that fits, or a line.
 
 use super::bends::Bends;
 use super::cubic::{self, Ways};
@@ -63,8 +63,8 @@ fn longest_piece(
     }
 }
 
-/// Where the longest line from a point ends: one that points lie on exactly before one that they are near to and that is
-/// not much longer.
+/// Returns the end of the longest line from a point: one that points lie on exactly is preferred to one that they are
+/// near to and that is not much longer.
 fn longest_line(bends: &Bends, from: usize, to: usize) -> Option<usize> {
     let line = |within: f64| {
         let near = |end: usize| Run::of_all(bends, from, end).is_near_line(within).then_some(());
@@ -76,7 +76,8 @@ fn longest_line(bends: &Bends, from: usize, to: usize) -> Option<usize> {
     exact.or(Some(loose))
 }
 
-/// Whether chords from a point on may be a curve at all: the first ones do not leave it by more than is allowed.
+/// Returns whether chords from a point on may be a curve at all: the first ones do not leave it by more than is
+/// allowed.
 fn is_bent(bends: &Bends, from: usize) -> bool {
     (from..from + 2).all(|i| {
         let chord = bends.along[i + 1] - bends.along[i];
@@ -84,8 +85,8 @@ fn is_bent(bends: &Bends, from: usize) -> bool {
     })
 }
 
-/// The ways in which the next curve may leave a point: that of the curve before it, where one goes over into it, then
-/// that of the polyline.
+/// Returns the ways in which the next curve may leave a point: that of the curve before it, where one goes
+/// over into it, then that of the polyline.
 fn first_ways(
     bends: &Bends,
     from: usize,
@@ -102,7 +103,7 @@ fn first_ways(
     [smooth.map(DVec2::normalize_or_zero), Some(own)]
 }
 
-/// The way in which a curve comes to a point.
+/// Returns the way in which a curve comes to a point.
 fn last_way(bends: &Bends, from: usize, end: usize, to: usize) -> DVec2 {
     if end == to || end + 1 >= bends.points.len() {
         return -end_way(bends, end, end - 1, end - 2.min(end - from));
@@ -113,7 +114,7 @@ fn last_way(bends: &Bends, from: usize, end: usize, to: usize) -> DVec2 {
     (come / come.length_squared() + go / go.length_squared()).normalize_or_zero()
 }
 
-/// The way in which the circle through three points leaves the first one.
+/// Returns the way in which the circle through three points leaves the first one.
 fn end_way(bends: &Bends, first: usize, second: usize, third: usize) -> DVec2 {
     let [a, b, c] = [first, second, third].map(|i| bends.points[i]);
     let (go, on) = (b - a, c - b);

@@ -53,12 +53,12 @@ fn exact_arcs(bends: &Bends, from: usize, to: usize) -> Vec<Found> {
     arcs
 }
 
-/// Where an arc fits exactly but is none, the next one is sought after so many parts of it: from every point, what is all
-/// but straight would take forever.
+/// Number of parts into which an arc that fits exactly but is none is divided: the next one is sought after one part,
+/// since from every point an almost straight polyline would take forever.
 const STEPS: usize = 16;
 
-/// The longest exact arc from a point, where it is one rather than a short way of another curve; else over how many
-/// chords one would go.
+/// Returns the longest exact arc from a point, where it is one rather than a short way of another curve; else
+/// over how many chords one would go.
 fn exact_arc(bends: &Bends, from: usize, to: usize) -> Result<Found, usize> {
     if !goes_round(bends, from) {
         return Err(0);
@@ -88,7 +88,7 @@ fn exact_arc(bends: &Bends, from: usize, to: usize) -> Result<Found, usize> {
     }
 }
 
-/// Whether a circular arc that points lie on exactly is one.
+/// Returns whether a circular arc that points lie on exactly is one.
 fn is_certain(bends: &Bends, from: usize, to: usize, (end, arc): (usize, &Arc)) -> bool {
     if end == to || arc.turn.abs() >= CERTAIN {
         return true;
@@ -100,7 +100,8 @@ fn is_certain(bends: &Bends, from: usize, to: usize, (end, arc): (usize, &Arc)) 
     near.is_none_or(|(near, _)| length(near) <= length(end) * FURTHER)
 }
 
-/// Whether the polyline turns one way at the next points: most that are no arc are told by this.
+/// Returns whether the polyline turns one way at the next points: this excludes most runs that are
+/// no arc.
 fn goes_round(bends: &Bends, from: usize) -> bool {
     let turns = &bends.turns[from + 1..from + LEAST_CIRCLE];
     turns.iter().all(|t| *t > 0.0) || turns.iter().all(|t| *t < 0.0)

@@ -41,7 +41,7 @@ const fn screen() -> [[u8; 8]; 8] {
     screen
 }
 
-/// What there is to see: a pixel was compared with the screen.
+/// Step of the algorithm: a pixel was compared with the screen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
     /// Column and row.
@@ -50,11 +50,11 @@ pub struct Step {
     pub value: f32,
     /// The screen's threshold, as light.
     pub threshold: f32,
-    /// Whether it is white.
+    /// True if it is white.
     pub white: bool,
 }
 
-/// The image that a list of steps leads to.
+/// Returns the image that a list of steps leads to.
 pub fn replay(width: u32, height: u32, steps: &[Step]) -> Pixels<u8> {
     let mut image = Pixels::new(width, height, 0);
     for step in steps {
@@ -63,7 +63,7 @@ pub fn replay(width: u32, height: u32, steps: &[Step]) -> Pixels<u8> {
     image
 }
 
-/// Black (0) and white (1) of an image of linear light.
+/// Returns black (0) and white (1) of an image of linear light.
 ///
 /// ```
 /// use durer::fragment::halftone::clustered_dot::dither;

@@ -21,23 +21,24 @@ pub const INFO: Info = Info {
     limits: "pixels in order: a change moves the pattern of all that come after it",
 };
 
-/// How errors are diffused.
+/// Options for diffusing errors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Options {
     /// Equal steps from black to white, 2 … 255; held to that.
     pub levels: u8,
-    /// Whether every other row goes from right to left, which breaks up the worms of the published form.
+    /// True to process every other row from right to left, which breaks up the worms of the
+    /// published form.
     pub serpentine: bool,
 }
 
 impl Default for Options {
-    /// Black and white, as published.
+    /// Returns black and white, as published.
     fn default() -> Self {
         Self { levels: 2, serpentine: false }
     }
 }
 
-/// What there is to see: a pixel got its level.
+/// Step of the algorithm: a pixel got its level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
     /// Column and row.
@@ -46,18 +47,19 @@ pub struct Step {
     pub value: f32,
     /// The nearest level.
     pub level: u8,
-    /// What it is wrong by: value − level's light, in sixteenths handed on to 7, 3, 5 and 1 neighbours.
+    /// Error of the level: value − level's light, in sixteenths handed on to 7, 3, 5 and 1
+    /// neighbours.
     pub error: f32,
 }
 
-/// The image that a list of steps leads to.
+/// Returns the image that a list of steps leads to.
 pub fn replay(width: u32, height: u32, steps: &[Step]) -> Pixels<u8> {
     let mut image = Pixels::new(width, height, 0);
     steps.iter().for_each(|step| image.set(step.pixel[0], step.pixel[1], step.level));
     image
 }
 
-/// The levels of an image of linear light.
+/// Returns the levels of an image of linear light.
 ///
 /// ```
 /// use durer::fragment::halftone::error_diffusion::{Options, dither};

@@ -8,17 +8,17 @@ pub mod error_diffusion;
 
 use crate::target::Pixels;
 
-/// A value as it counts: from 0 to 1.
+/// Returns A value as it counts: from 0 to 1.
 fn light(value: f32) -> f32 {
     if value > 0.0 { value.min(1.0) } else { 0.0 }
 }
 
-/// The light of a level, of so many steps.
+/// Returns the light of a level, of so many steps.
 fn of_level(level: u8, steps: u8) -> f32 {
     f32::from(level) / f32::from(steps)
 }
 
-/// The image of levels as light, for comparing.
+/// Returns the image of levels as light, for comparing.
 ///
 /// ```
 /// use durer::fragment::halftone::as_light;

@@ -21,7 +21,7 @@ const MOST: f64 = 0.3;
 /// One of the two lines of a break, and the side of it that stays.
 struct Side<'a> {
     of: &'a ViewBreak,
-    /// Where on the axis the line stands.
+    /// Position of the line on the axis.
     at: f64,
     /// 1 where what lies above stays, −1 where what lies below does.
     sign: f64,
@@ -89,23 +89,23 @@ impl<'a> Side<'a> {
         Self { of, at, sign, knots, ends }
     }
 
-    /// The point of the plane so far along the axis and so far along the line.
+    /// Returns the point of the plane so far along the axis and so far along the line.
     fn point(&self, u: f64, v: f64) -> DVec2 {
         self.of.way * u + self.of.way.perp() * v
     }
 
-    /// How far the line swings off at a place along it.
+    /// Returns the offset of the line at a place along it.
     fn swing(&self, v: f64) -> f64 {
         let piece = self.knots.windows(2).find(|w| w[0].0 <= v && v < w[1].0);
         piece.map_or(0.0, |w| w[0].1 + (w[1].1 - w[0].1) * ((v - w[0].0) / (w[1].0 - w[0].0)))
     }
 
-    /// How far a point lies on the side that stays.
+    /// Returns the distance of a point into the side that stays.
     fn off(&self, p: DVec2) -> f64 {
         (p.dot(self.of.way) - self.at - self.swing(p.dot(self.of.way.perp()))) * self.sign
     }
 
-    /// Where a point on the side that stays comes to lie.
+    /// Returns the new position of a point on the side that stays.
     fn moved(&self, p: DVec2) -> DVec2 {
         if self.sign > 0.0 { p - self.of.way * self.of.shift() } else { p }
     }
@@ -118,7 +118,7 @@ impl<'a> Side<'a> {
         Line { class: LineClass::Break, invisibility: 0, points, closed: false }
     }
 
-    /// The parts of a line on the side that stays, moved.
+    /// Returns the parts of a line on the side that stays, moved.
     fn line(&self, line: &Line) -> Vec<Line> {
         let swing = self.knots[1].1;
         let clear = |p: &DVec2| (p.dot(self.of.way) - self.at) * self.sign >= swing;
@@ -130,7 +130,7 @@ impl<'a> Side<'a> {
         kept
     }
 
-    /// The parts of a segment on the side that stays; its ends stay as they are.
+    /// Returns the parts of a segment on the side that stays; its ends stay as they are.
     fn segment(&self, a: DVec2, b: DVec2) -> Vec<[DVec2; 2]> {
         let [from, to] = [a, b].map(|p| p.dot(self.of.way.perp()));
         let bends = self.knots.iter().map(|(v, _)| (v - from) / (to - from));
@@ -160,7 +160,7 @@ impl<'a> Side<'a> {
         spans.into_iter().map(|s| s.map(point)).filter(|[p, q]| p != q).collect()
     }
 
-    /// The part of a region on the side that stays, moved.
+    /// Returns the part of a region on the side that stays, moved.
     fn region(&self, region: &Region, bounds: &Rect) -> Result<Option<Region>> {
         let (mut subject, mut half) = (Shapes::new(), Shapes::new());
         region.rings.iter().for_each(|r| subject.push_ring(r.iter().copied()));
@@ -174,7 +174,7 @@ impl<'a> Side<'a> {
         Ok((!rings.is_empty()).then(|| Region { rings, ..region.clone() }))
     }
 
-    /// A ring around all of the drawing on the side that stays.
+    /// Returns A ring around all of the drawing on the side that stays.
     fn half_plane(&self, bounds: &Rect) -> Vec<DVec2> {
         let reach = bounds.min().abs().max(bounds.max().abs()).length() * 2.0 + self.at.abs();
         let bends = self.knots.iter().map(|(v, off)| (*v, *off));

@@ -13,7 +13,7 @@ use std::str::FromStr;
 pub struct Break {
     /// 0 for x, 1 for y, 2 for z.
     axis: usize,
-    /// Where it begins and ends on the axis, units of the model.
+    /// Start and end on the axis, in units of the model.
     span: [f64; 2],
 }
 
@@ -123,7 +123,7 @@ impl Breaks {
     }
 }
 
-/// The longer side of what a view shows of a box without what breaks leave out.
+/// Returns the longer side of what a view shows of a box without what breaks leave out.
 fn extent(breaks: &[Break], bounds: Aabb, camera: &Camera) -> f64 {
     let mut size = bounds.size();
     for one in breaks.iter().filter(|b| b.is_seen_by(camera)) {
@@ -141,10 +141,10 @@ const ASIDE: f64 = 1e-6;
 struct ViewBreak {
     /// The direction of its axis in the plane, of unit length.
     way: DVec2,
-    /// Where on the axis what is left out begins and ends.
+    /// Start of the part of the axis that is left out; the end follows.
     from: f64,
     to: f64,
-    /// What takes its place.
+    /// Width of the gap that replaces it.
     gap: f64,
 }
 

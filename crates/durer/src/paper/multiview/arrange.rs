@@ -1,4 +1,4 @@
-//! Which page, scale and places the views of a sheet get.
+//! The choice of page, scale and positions for the views of a sheet.
 
 use super::callouts;
 use super::grid::{Extent, Grid};
@@ -18,7 +18,7 @@ const GAP_OF_PARENT: f64 = 20.0;
 /// The paper where none is asked for: A4.
 const PAGE: Page = Page::Either(DVec2::new(210.0, 297.0));
 
-/// So many smaller scales are tried until all views have room: down to a ten-thousandth.
+/// Number of smaller scales that are tried until all views have room: down to a ten-thousandth.
 const SMALLER: usize = 13;
 /// Halvings of the interval in which the largest scale is looked for.
 const HALVINGS: usize = 24;
@@ -26,16 +26,16 @@ const HALVINGS: usize = 24;
 const GROWTH: f64 = 1.05;
 const MOST_GROWTHS: usize = 200;
 
-/// Where a view is.
+/// Position of a view.
 #[derive(Debug, Clone, Copy)]
 pub struct Place {
-    /// Of the origin of its plane, millimetres.
+    /// Position of the origin of its plane, in millimetres.
     pub origin: DVec2,
     /// Millimetres per plane unit.
     pub factor: f64,
 }
 
-/// What becomes of a sheet.
+/// Arrangement of a sheet.
 #[derive(Debug)]
 pub struct Arranged {
     pub page: DVec2,
@@ -117,7 +117,7 @@ impl<'a> Layout<'a> {
         .ok_or_else(|| self.no_room(page, largest))
     }
 
-    /// The largest scale below one at which there is no room.
+    /// Returns the largest scale below one at which there is no room.
     fn largest_below(&self, page: DVec2, scale: f64) -> Option<Arranged> {
         let mut high = scale;
         let mut found = smaller(scale).find_map(|scale| {
@@ -151,13 +151,14 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// What margins and title block take of a page.
+    /// Returns the size of margins and title block on a page.
     fn border(&self) -> DVec2 {
         let title = if self.contents.title.is_some() { title_block::HEIGHT } else { 0.0 };
         DVec2::splat(2.0 * self.options.margin) + DVec2::new(0.0, title)
     }
 
-    /// What a page has for views: all within its border, or what a list of parts leaves below or on the right.
+    /// Returns the areas of a page for views: everything within its border, or the parts below or to the right
+    /// of a parts list.
     fn rooms(&self, page: DVec2) -> Vec<Room> {
         let (parts, size) = (self.contents.parts, page - self.border());
         if parts.is_empty() {
@@ -174,7 +175,7 @@ impl<'a> Layout<'a> {
         rooms.map(|(shape, size)| Room { size, list: Some((shape, corner)) }).collect()
     }
 
-    /// The principal views, at a scale.
+    /// Returns the principal views, at a scale.
     fn grid(&self, scale: f64) -> Grid {
         let principal = |(index, view): (usize, &SheetView)| {
             let side = match view.kind {
@@ -188,7 +189,7 @@ impl<'a> Layout<'a> {
         Grid::new(&views, self.contents.angle)
     }
 
-    /// What a view takes up with its title and callouts, millimetres around its origin.
+    /// Returns the extent of a view with its title and callouts, in millimetres around its origin.
     fn extent(&self, index: usize, view: &SheetView, scale: f64) -> Extent {
         let (bounds, factor) = (view.bounds(), self.factor(view, scale));
         let title = if view.is_principal() { 0.0 } else { TITLE_ROOM };
@@ -209,7 +210,7 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// The views in their places, where they have room.
+    /// Returns the views in their places, where they have room.
     fn at(&self, page: DVec2, scale: f64) -> Option<Arranged> {
         let views = self.contents.views;
         let grid = self.grid(scale);
@@ -242,7 +243,7 @@ impl<'a> Layout<'a> {
     }
 }
 
-/// A scale, and standard ones below it.
+/// Returns A scale, and standard ones below it.
 fn smaller(scale: f64) -> impl Iterator<Item = f64> {
     std::iter::successors(Some(scale), |s| Some(standard_scale(*s * 0.99))).take(SMALLER)
 }

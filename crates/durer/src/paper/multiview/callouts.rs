@@ -7,9 +7,9 @@ use crate::paper::PlacedView;
 /// A part's number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Callout {
-    /// Which of the sheet's views it stands at.
+    /// Index of its view on the sheet.
     pub view: usize,
-    /// What it says.
+    /// Subject of the text.
     pub number: String,
     /// A place of the part, in the plane of that view.
     pub at: DVec2,
@@ -24,10 +24,10 @@ const APART: f64 = 2.0 * RADIUS + 1.5;
 /// The radius of the dot that ends a line on a part.
 const DOT: f64 = 0.6;
 
-/// What circles take up around a view.
+/// Width of the strip that circles take around a view.
 pub const ROOM: f64 = AWAY + RADIUS;
 
-/// So many rounds of better exchanges are made at most.
+/// Largest number of rounds of better exchanges.
 const ROUNDS: usize = 64;
 
 /// Draws the callouts of all views, each at the edge of a rectangle around its view and such that no two lines cross:

@@ -1,5 +1,5 @@
-//! Where a section's plane stands in another view: a chain line with thick ends, arrows that look as the section
-//! does, and its letter twice (ISO 128-3).
+//! The cutting plane of a section in another view: a chain line with thick ends, arrows in the direction of
+//! sight of the section, and its letter twice (ISO 128-3).
 
 use super::marks::{Annotator, LETTER, THICK, THIN};
 use super::{SheetView, ViewKind};
@@ -7,10 +7,10 @@ use crate::math::{DVec2, Plane, Rect};
 use crate::paper::PlacedView;
 use crate::scene::Camera;
 
-/// How far the line goes on beyond the view, and how long its thick ends are, millimetres.
+/// Length of the line beyond the view, and of its thick ends, in millimetres.
 const BEYOND: f64 = 7.0;
 const THICK_END: f64 = 6.0;
-/// How far an arrow's tail is from the line, and a letter's middle from the tail.
+/// Distance of an arrow's tail from the line, and of a letter's middle from the tail.
 const ARROW: f64 = 9.0;
 const TO_LETTER: f64 = 1.0 + LETTER * 0.5;
 
@@ -43,13 +43,13 @@ pub fn put(
 
 /// A plane that is seen edge on.
 struct Trace {
-    /// Where it enters and leaves what is drawn, on the sheet.
+    /// Ends of the line in the drawing, on the sheet.
     ends: [DVec2; 2],
     /// The direction in which the section is looked at, on the sheet; unit length.
     sight: DVec2,
 }
 
-/// The trace of a plane in a view, where that sees it edge on and it meets what is drawn.
+/// Returns the trace of a plane in a view, where that sees it edge on and it meets what is drawn.
 fn trace(plane: &Plane, camera: &Camera, view: &PlacedView) -> Option<Trace> {
     let plane = plane.normalized()?;
     let [right, up, back] = camera.axes();
@@ -64,7 +64,7 @@ fn trace(plane: &Plane, camera: &Camera, view: &PlacedView) -> Option<Trace> {
     Some(Trace { ends, sight })
 }
 
-/// The part of a line in a rectangle, in the direction of the line.
+/// Returns the part of a line in a rectangle, in the direction of the line.
 fn across(rect: &Rect, at: DVec2, along: DVec2) -> Option<[DVec2; 2]> {
     let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in [0, 1] {

@@ -14,9 +14,9 @@ use crate::trace::NoTrace;
 /// A part of a view.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Detail {
-    /// What it is called, e.g. `B`.
+    /// Letter that names it, e.g. `B`.
     pub letter: String,
-    /// Which of the sheet's views it is a part of.
+    /// Index of the view that it is a part of.
     pub of: usize,
     /// The middle of the circle around it, in the plane of that view.
     pub center: DVec2,
@@ -30,7 +30,8 @@ pub struct Detail {
 const DIAMETER: f64 = 50.0;
 
 impl Detail {
-    /// What of a drawing lies within the circle: lines and filled parts cut at it; labels whose points lie within.
+    /// Returns the part of a drawing within the circle: lines and filled parts are clipped to it; labels stay if
+    /// their points lie within.
     ///
     /// # Errors
     /// [`crate::Error::NonFinite`] for regions with a corner that is not finite.
@@ -68,7 +69,7 @@ impl Detail {
         Ok((!rings.is_empty()).then(|| Region { rings, ..region.clone() }))
     }
 
-    /// The parts of a line within the circle.
+    /// Returns the parts of a line within the circle.
     fn cut_line(&self, line: &Line) -> Vec<Line> {
         let within = |p: &DVec2| p.distance(self.center) <= self.radius;
         if line.points.iter().all(within) {
@@ -77,7 +78,7 @@ impl Detail {
         parts(line, |a, b| self.cut_segment(a, b))
     }
 
-    /// The part of a segment within the circle; ends within it stay as they are.
+    /// Returns the part of a segment within the circle; ends within it stay as they are.
     fn cut_segment(&self, a: DVec2, b: DVec2) -> Option<[DVec2; 2]> {
         let (way, from) = (b - a, a - self.center);
         let (square, half) = (way.length_squared(), way.dot(from));
@@ -92,14 +93,15 @@ impl Detail {
         (enter < 1.0 && leave > 0.0 && start != end).then_some([start, end])
     }
 
-    /// The square around the circle.
+    /// Returns the square around the circle.
     pub(super) fn bounds(&self) -> Rect {
         let reach = DVec2::splat(self.radius);
         let around = Rect::around([self.center - reach, self.center + reach]);
         around.unwrap_or_else(|| crate::paper::frame_of(&Drawing::default(), Default::default()))
     }
 
-    /// Its scale, beside views with another one; `unit` is millimetres per unit of the model.
+    /// Returns its scale, beside views with another one; `unit` is millimetres per unit of the
+    /// model.
     pub(super) fn scale_beside(&self, scale: f64, unit: f64) -> f64 {
         self.scale.unwrap_or_else(|| {
             let wide = standard_scale(DIAMETER / (2.0 * self.radius * unit));
@@ -126,7 +128,8 @@ pub fn put(annotator: &mut Annotator, views: &[SheetView], placed: &[PlacedView]
 /// Half the side of the square that a letter takes up, with space around it, millimetres.
 const LETTER_ROOM: f64 = LETTER * 0.7;
 
-/// A place beside a circle for its letter: of eight around it the first that fewest lines go through.
+/// Returns A place beside a circle for its letter: of eight around it the first that fewest lines go
+/// through.
 fn letter_place(drawing: &Drawing, view: &PlacedView, center: DVec2, radius: f64) -> DVec2 {
     let places = [1, 3, 7, 5, 0, 4, 2, 6].map(|eighth: u32| {
         let turn = f64::from(eighth) * std::f64::consts::FRAC_PI_4;

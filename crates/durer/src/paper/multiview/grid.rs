@@ -4,7 +4,7 @@ use super::Angle;
 use crate::math::DVec2;
 use crate::view::projection::NamedView;
 
-/// What a view takes up around the origin of its plane, y down.
+/// Extent of a view around the origin of its plane, y down.
 #[derive(Debug, Clone, Copy)]
 pub struct Extent {
     pub min: DVec2,
@@ -19,7 +19,7 @@ impl Extent {
 
 /// A view in its cell: column and row are 0 where the front view is, and grow to the right and downwards.
 struct Cell {
-    /// Which of the views that were given.
+    /// Index among the given views.
     index: usize,
     at: [i32; 2],
     extent: Extent,
@@ -29,7 +29,7 @@ struct Cell {
 /// A column or a row.
 struct Track {
     at: i32,
-    /// What it takes up; around the common origin of its views where they are aligned, else from 0.
+    /// Start of its extent; around the common origin of its views if they are aligned, else 0.
     from: f64,
     to: f64,
 }
@@ -41,7 +41,7 @@ pub struct Grid {
     tracks: [Vec<Track>; 2],
 }
 
-/// The column and the row of a view in third-angle projection.
+/// Returns the column and the row of a view in third-angle projection.
 fn cell(view: Option<NamedView>) -> [i32; 2] {
     match view.unwrap_or(NamedView::Iso) {
         NamedView::Front => [0, 0],
@@ -74,15 +74,15 @@ impl Grid {
         DVec2::new(columns, rows)
     }
 
-    /// What the columns and rows take up without gaps.
+    /// Returns the size of the columns and rows without gaps.
     pub fn size(&self) -> DVec2 {
         let [width, height] =
             self.tracks.each_ref().map(|t| t.iter().map(|t| t.to - t.from).sum::<f64>());
         DVec2::new(width, height)
     }
 
-    /// Where the origins of the views come, by the index of each, in a room with its corner at `corner`: what is
-    /// left over is shared out around the columns and rows.
+    /// Returns the origins of the views, with each view's index, in a room with its corner at `corner`: the rest
+    /// of the room is distributed around the columns and rows.
     pub fn place(&self, corner: DVec2, room: DVec2) -> Vec<(usize, DVec2)> {
         let gap = (room - self.size()) / self.gaps();
         let along = |axis: usize, cell: &Cell| {
@@ -92,7 +92,7 @@ impl Grid {
         self.cells.iter().map(|c| (c.index, DVec2::new(along(0, c), along(1, c)))).collect()
     }
 
-    /// The place of a cell's origin along an axis.
+    /// Returns the place of a cell's origin along an axis.
     fn origin(&self, axis: usize, cell: &Cell, corner: f64, gap: f64) -> f64 {
         let mut start = corner + gap;
         let mut extent = 0.0;
@@ -116,7 +116,7 @@ impl Grid {
     }
 }
 
-/// The columns (axis 0) or rows (axis 1) of the cells, in order.
+/// Returns the columns (axis 0) or rows (axis 1) of the cells, in order.
 fn tracks(cells: &[Cell], axis: usize) -> Vec<Track> {
     let mut tracks: Vec<Track> = Vec::new();
     for cell in cells {

@@ -10,7 +10,7 @@ use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 pub const LETTER: f64 = 5.0;
 /// Space between a view and its title.
 const TITLE_GAP: f64 = 4.0;
-/// What a title takes up above its view.
+/// Height of a title above its view.
 pub const TITLE_ROOM: f64 = LETTER + TITLE_GAP;
 
 /// Widths of lines, millimetres (ISO 128-2).
@@ -104,7 +104,7 @@ impl<'a> Annotator<'a> {
     }
 }
 
-/// The corners of a circle, counter-clockwise with y up.
+/// Returns the corners of a circle, counter-clockwise with y up.
 pub fn circle(center: DVec2, radius: f64) -> Vec<DVec2> {
     let corner = |i: u32| {
         let turn = f64::from(i) * std::f64::consts::TAU / f64::from(AROUND);

@@ -34,19 +34,19 @@ pub enum Angle {
     Third,
 }
 
-/// What a view shows.
+/// Kind of a view.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ViewKind {
     /// The thing from one of the usual sides; it has its place beside the others.
     Principal(NamedView),
     /// The thing from anywhere; it has the place of an isometric view.
     Free,
-    /// What a plane leaves of the thing where it is positive inside ([`Plane`]), seen from the side that is cut
-    /// away. Its letter stands at the plane in the first principal view that sees it edge on.
+    /// Section: the part of the object on the positive side of a plane ([`Plane`]), seen from the side that is
+    /// cut away. Its letter is drawn at the plane in the first principal view that sees it edge on.
     Section {
         /// E.g. `A`, for a view that is called `A–A`.
         letter: String,
-        /// What cuts, in the model's units.
+        /// Cutting plane, in the model's units.
         plane: Plane,
     },
     /// A part of another view within a circle, enlarged.
@@ -56,18 +56,18 @@ pub enum ViewKind {
 /// A parallel view of a thing; all of a sheet have the same point of the thing at the origin of their planes.
 #[derive(Debug, Clone)]
 pub struct SheetView<'a> {
-    /// What it shows.
+    /// Style of the drawing.
     pub kind: ViewKind,
-    /// What sees it.
+    /// Camera of the view.
     pub camera: Camera,
-    /// What is seen.
+    /// Drawing of the view.
     pub drawing: &'a Drawing,
     /// The breaks of the drawing.
     pub breaks: ViewBreaks,
 }
 
 impl SheetView<'_> {
-    /// What the view is called: `front`, `A–A`, `B`.
+    /// Returns the name of the view: `front`, `A–A`, `B`.
     pub fn name(&self) -> String {
         match &self.kind {
             ViewKind::Principal(view) => view.name().to_owned(),
@@ -77,7 +77,7 @@ impl SheetView<'_> {
         }
     }
 
-    /// What it takes up in its plane.
+    /// Returns its bounds in its plane.
     fn bounds(&self) -> Rect {
         match &self.kind {
             ViewKind::Detail(detail) => detail.bounds(),
@@ -85,16 +85,16 @@ impl SheetView<'_> {
         }
     }
 
-    /// Whether it shows all of the thing.
+    /// Returns whether it shows all of the thing.
     fn is_principal(&self) -> bool {
         matches!(self.kind, ViewKind::Principal(_) | ViewKind::Free)
     }
 }
 
-/// What a sheet shows.
+/// Contents of a sheet.
 #[derive(Debug, Clone)]
 pub struct Contents<'a> {
-    /// Where the principal views stand.
+    /// Arrangement of the principal views.
     pub angle: Angle,
     /// The views, each principal one at most once.
     pub views: &'a [SheetView<'a>],
@@ -102,7 +102,7 @@ pub struct Contents<'a> {
     pub callouts: &'a [Callout],
     /// The list of parts, which stands on the title block, or in its place; nothing for none.
     pub parts: &'a [PartsListRow],
-    /// What the title block says; without one there is no frame either.
+    /// Title block; without one there is no frame either.
     pub title: Option<&'a TitleBlock>,
 }
 

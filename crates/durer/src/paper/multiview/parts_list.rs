@@ -9,11 +9,11 @@ use crate::target::drawing::Anchor;
 /// A row of the list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PartsListRow {
-    /// What the part's callout says.
+    /// Number in the part's callout.
     pub number: String,
-    /// What it is called.
+    /// Letter that names it.
     pub name: String,
-    /// How many there are.
+    /// Returns the number of bytes.
     pub quantity: usize,
 }
 
@@ -28,18 +28,19 @@ const HIGH: usize = 12;
 /// Space between a border and letters.
 const PAD: f64 = 1.6;
 
-/// How a list is divided into blocks beside each other.
+/// Division of a list into blocks beside each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
     /// Rows of a block, without its heading.
     rows: usize,
     blocks: usize,
-    /// Of a block.
+    /// Width of a block.
     width: f64,
 }
 
 impl Shape {
-    /// A list of blocks that are at most so wide together; of one, unless that is higher than [`HIGH`] rows.
+    /// Creates A list of blocks that are at most so wide together; of one, unless that is higher than
+    /// [`HIGH`] rows.
     pub fn within_width(rows: &[PartsListRow], width: f64) -> Self {
         let own = width_of(rows);
         let most = (width / own).floor().max(1.0) as usize;
@@ -47,14 +48,14 @@ impl Shape {
         Self { rows: high, blocks: rows.len().div_ceil(high.max(1)), width: own }
     }
 
-    /// A list of blocks that are at most so high, as few as can be.
+    /// Creates A list of blocks that are at most so high, as few as can be.
     pub fn within_height(rows: &[PartsListRow], height: f64) -> Self {
         let high = ((height / ROW).floor() - 1.0).max(1.0) as usize;
         let high = high.min(rows.len());
         Self { rows: high, blocks: rows.len().div_ceil(high.max(1)), width: width_of(rows) }
     }
 
-    /// Width and height, millimetres; 0 for a list of nothing.
+    /// Returns the width and height, millimetres; 0 for a list of nothing.
     pub fn size(&self) -> DVec2 {
         let blocks = self.blocks as f64;
         DVec2::new(self.width * blocks, (self.rows as f64 + 1.0) * ROW * blocks.min(1.0))

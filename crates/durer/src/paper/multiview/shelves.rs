@@ -2,7 +2,7 @@
 
 use crate::math::DVec2;
 
-/// What has to go into a room, all in millimetres.
+/// Contents to place in a room, all in millimetres.
 #[derive(Debug, Clone, Copy)]
 pub struct Load<'a> {
     /// The principal views.
@@ -15,7 +15,7 @@ pub struct Load<'a> {
     pub gap: f64,
 }
 
-/// What lies where in a room, from its upper left corner.
+/// Contents of a room, with positions from its upper left corner.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shelved {
     /// The part of the room for the principal views, from its corner on.

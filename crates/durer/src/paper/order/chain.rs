@@ -8,7 +8,7 @@ use crate::target::{Arc, Curve, Piece};
 /// Places at which a whole circle or ellipse may be begun.
 const PLACES: usize = 16;
 
-/// What a pen draws without being lifted, millimetres.
+/// Chain that a pen draws without being lifted, in millimetres.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Chain {
     /// Straight pieces.
@@ -18,7 +18,7 @@ pub enum Chain {
 }
 
 impl Chain {
-    /// The points at which it may be begun.
+    /// Returns the points at which it may be begun.
     fn places(&self) -> Stroke {
         match self {
             Self::Straight(stroke) => stroke.clone(),
@@ -36,7 +36,7 @@ impl Chain {
         }
     }
 
-    /// The chain, begun at one of its places.
+    /// Returns the chain, begun at one of its places.
     fn begun_at(self, first: usize) -> Self {
         match self {
             Self::Straight(stroke) => Self::Straight(stroke.begun_at(first)),
@@ -56,7 +56,7 @@ impl Chain {
         }
     }
 
-    /// Where the pen is when it is drawn.
+    /// Returns the position of the pen after the chain.
     pub(super) fn end(&self) -> DVec2 {
         match self {
             Self::Straight(stroke) => stroke.end().unwrap_or_default(),
@@ -64,7 +64,7 @@ impl Chain {
         }
     }
 
-    /// The chain as a curve; closed ones, and those without a length, are none.
+    /// Returns the chain as a curve; closed ones, and those without a length, are none.
     fn open(self) -> Result<Curve, Self> {
         match self {
             Self::Curved(curve) if !curve.closed => Ok(curve),
@@ -89,7 +89,7 @@ impl Chain {
     }
 }
 
-/// The angle of a place of a whole ellipse.
+/// Returns the angle of a place of a whole ellipse.
 fn angle(arc: &Arc, place: usize) -> f64 {
     arc.start + arc.turn * (place as f64 / PLACES as f64)
 }

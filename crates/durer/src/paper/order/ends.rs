@@ -1,4 +1,4 @@
-//! Where strokes can be entered and left.
+//! The points at which strokes can be entered and left.
 
 use super::greedy::other_end;
 use super::nearest::{Nearest, Tree};
@@ -8,7 +8,7 @@ use crate::math::DVec2;
 /// One end of a stroke: twice its place in the list, and 1 more for its end.
 pub type End = u32;
 
-/// How many ends near to each are tried.
+/// Number of nearby ends that are tried for each end.
 const NEIGHBORS: usize = 10;
 
 /// The ends of strokes; the last of them is the pen's home, from which it starts.
@@ -18,12 +18,12 @@ pub struct Ends {
     points: Vec<DVec2>,
     /// The nearest ends of other strokes, up to so many an end, the nearest first.
     near: Vec<End>,
-    /// Where those of an end begin; one more than there are ends.
+    /// Start of each end's list; one more than there are ends.
     firsts: Vec<u32>,
 }
 
 impl Ends {
-    /// Those of strokes as they are drawn first.
+    /// Creates those of strokes as they are drawn first.
     pub fn new(strokes: &[Stroke], turns: &[Turn], home: DVec2) -> Self {
         let finite = |p: DVec2| if p.is_finite() { p } else { home };
         let both = |turn: &Turn| {
@@ -51,13 +51,13 @@ impl Ends {
         self.firsts.push(self.near.len() as u32);
     }
 
-    /// The ends near to one, the nearest first.
+    /// Returns the ends near to one, the nearest first.
     pub fn near(&self, end: End) -> &[End] {
         let [from, to] = [end, end + 1].map(|e| self.firsts[e as usize] as usize);
         &self.near[from..to]
     }
 
-    /// The way from end to end; back home it is none, for the pen may stay anywhere.
+    /// Returns the way from end to end; back home it is none, for the pen may stay anywhere.
     pub fn distance(&self, a: End, b: End) -> f64 {
         let back = self.points.len() as End - 2;
         if a == back || b == back {
@@ -66,7 +66,7 @@ impl Ends {
         self.points[a as usize].distance(self.points[b as usize])
     }
 
-    /// The turn that begins at an end; `None` for home.
+    /// Returns the turn that begins at an end; `None` for home.
     pub fn turn(&self, end: End, strokes: &[Stroke]) -> Option<Turn> {
         let turn = *self.turns.get(end as usize / 2)?;
         let stroke = &strokes[turn.index];
@@ -102,7 +102,8 @@ impl Ends {
         shorter
     }
 
-    /// The point of a closed stroke with the shortest way from end to end, where that is shorter than by `now`.
+    /// Returns the point of a closed stroke with the shortest way from end to end, where that is shorter than
+    /// by `now`.
     fn best_first(&self, stroke: &Stroke, now: usize, before: End, after: End) -> Option<usize> {
         let back = self.points.len() as End - 2;
         let way = |p: DVec2| {

@@ -7,8 +7,8 @@ use super::nearest::{Nearest, Tree};
 use super::{Stroke, Turn};
 use crate::math::DVec2;
 
-/// The strokes that have points, from the one nearest to `start`. Of equally near ones that of the lower
-/// index, forwards.
+/// Returns the strokes that have points, from the one nearest to `start`. Of equally near ones that of
+/// the lower index, forwards.
 pub fn turns(strokes: &[Stroke], start: DVec2) -> Vec<Turn> {
     let starts: Vec<Turn> = strokes.iter().enumerate().flat_map(starts_of).collect();
     let place = |turn: &Turn| strokes[turn.index].points[turn.first];
@@ -28,14 +28,14 @@ pub fn turns(strokes: &[Stroke], start: DVec2) -> Vec<Turn> {
     }
 }
 
-/// All ways to draw a stroke.
+/// Returns all ways to draw a stroke.
 fn starts_of((index, stroke): (usize, &Stroke)) -> impl Iterator<Item = Turn> {
     let count = stroke.points.len();
     let step = if stroke.closed || count < 2 { 1 } else { count - 1 };
     (0..count).step_by(step).map(move |first| Turn { index, first })
 }
 
-/// Where each stroke's starts begin in their list, and the list's end.
+/// Returns the position of each stroke's starts in their list, and the list's end.
 fn first_of_each(starts: &[Turn], strokes: usize) -> Vec<usize> {
     let mut firsts = vec![0; strokes + 1];
     starts.iter().for_each(|turn| firsts[turn.index + 1] += 1);
@@ -45,7 +45,7 @@ fn first_of_each(starts: &[Turn], strokes: usize) -> Vec<usize> {
     firsts
 }
 
-/// Where the pen is after a stroke that is begun at a point.
+/// Returns the position of the pen after a stroke that begins at a point.
 pub fn other_end(stroke: &Stroke, first: usize) -> DVec2 {
     let end = match (stroke.closed, first) {
         (true, first) => first,

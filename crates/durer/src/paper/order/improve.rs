@@ -10,11 +10,11 @@ use super::ends::{End, Ends};
 /// The longest row of strokes that is moved as one.
 const LONGEST_ROW: usize = 3;
 
-/// How many strokes are reversed or passed at most by one change: of larger ways the rare changes that need more
+/// Largest number of strokes that one change reverses or passes: in larger ways the rare changes that need more
 /// save next to nothing.
 const LONGEST_PART: usize = 25_000;
 
-/// How many places in the array may change in all, a stroke: what bounds the time.
+/// Limit on the changed places in the array, for each stroke: it bounds the time.
 const CHANGES: usize = 2000;
 
 /// A change must save this part of the ways that it replaces, so that rounding never makes a circle of changes.
@@ -30,18 +30,18 @@ pub struct Way {
 }
 
 impl Way {
-    /// All of `count` strokes as they come, and the pen's home.
+    /// Creates all of `count` strokes as they come, and the pen's home.
     pub fn new(count: usize) -> Self {
         let sequence = (0..=count as u32).map(|i| i * 2).collect();
         Self { sequence, place: (0..=count as u32).collect(), left: (count + 1) * CHANGES }
     }
 
-    /// The ends that strokes are entered at, in a circle.
+    /// Returns the ends that strokes are entered at, in a circle.
     pub fn sequence(&self) -> &[End] {
         &self.sequence
     }
 
-    /// The same as a row from home on.
+    /// Returns the same as a row from home on.
     pub fn unrolled(mut self) -> Vec<End> {
         let count = self.sequence.len();
         let home = count - 1;
@@ -102,7 +102,7 @@ impl Way {
         self.sequence[place % self.sequence.len()]
     }
 
-    /// The end that the way through the air connects with an end.
+    /// Returns the end that the way through the air connects with an end.
     fn mate(&self, end: End) -> End {
         let (place, count) = (self.place[end as usize / 2] as usize, self.sequence.len());
         if self.is_entry(end) { self.at(place + count - 1) ^ 1 } else { self.at(place + 1) }

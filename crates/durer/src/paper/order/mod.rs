@@ -22,7 +22,8 @@ use ends::Ends;
 /// step some 0.01 mm, and no pen is as thin.
 const JOIN: f64 = 0.01;
 
-/// How often closed strokes are turned to where they are passed, and the way is made shorter again.
+/// Number of times that closed strokes are turned to where they are passed, and the way is
+/// shortened again.
 const ROUNDS: usize = 4;
 
 /// A chain that a pen draws without being lifted.
@@ -30,21 +31,21 @@ const ROUNDS: usize = 4;
 pub struct Stroke {
     /// Its points, millimetres.
     pub points: Vec<DVec2>,
-    /// Whether it goes back to the first point, which is not repeated.
+    /// True if it goes back to the first point, which is not repeated.
     pub closed: bool,
 }
 
 /// A stroke in the order of drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Turn {
-    /// Which stroke.
+    /// Index of the stroke.
     pub index: usize,
     /// The point that it is begun at: of open strokes the first or the last.
     pub first: usize,
 }
 
 impl Stroke {
-    /// The stroke, begun at one of its points.
+    /// Returns the stroke, begun at one of its points.
     fn begun_at(mut self, first: usize) -> Self {
         if self.closed {
             let first = first.min(self.points.len());
@@ -55,7 +56,7 @@ impl Stroke {
         self
     }
 
-    /// Where the pen is when it is drawn.
+    /// Returns the position of the pen after the chain.
     fn end(&self) -> Option<DVec2> {
         if self.closed { self.points.first() } else { self.points.last() }.copied()
     }
@@ -85,7 +86,8 @@ pub fn turns(strokes: &[Stroke], start: DVec2) -> Vec<Turn> {
     way.unrolled().into_iter().filter_map(|end| ends.turn(end, strokes)).collect()
 }
 
-/// The strokes themselves in the order of [`turns`], joined where one begins at the end of another.
+/// Returns the strokes themselves in the order of [`turns`], joined where one begins at the end of
+/// another.
 pub fn ordered(mut strokes: Vec<Stroke>, start: DVec2) -> Vec<Stroke> {
     let turns = turns(&strokes, start);
     let mut take = |t: Turn| Some(std::mem::take(strokes.get_mut(t.index)?).begun_at(t.first));

@@ -10,9 +10,9 @@ const LEAF: usize = 8;
 pub struct Tree {
     /// Sorted so that each half of a range, and so on, lies on one side of its middle.
     points: Vec<(DVec2, u32)>,
-    /// How many are left, by node; the children of node n are 2n and 2n + 1.
+    /// Number of remaining points, by node; the children of node n are 2n and 2n + 1.
     left: Vec<u32>,
-    /// Where each number's point stands.
+    /// Position of each number's point.
     place: Vec<u32>,
 }
 
@@ -48,7 +48,7 @@ impl Node {
 }
 
 impl Tree {
-    /// The tree of finite points, which are numbered as they come.
+    /// Creates the tree of finite points, which are numbered as they come.
     pub fn new(points: impl Iterator<Item = DVec2>) -> Self {
         let points: Vec<(DVec2, u32)> = points.zip(0..).collect();
         let nodes = 4 * (points.len() / LEAF + 1).next_power_of_two();
@@ -65,7 +65,7 @@ impl Tree {
         Node { id: 1, from: 0, to: self.points.len(), along_x: true }
     }
 
-    /// As deep as the logarithm of the points.
+    /// Sorts; the recursion is as deep as the logarithm of the number of points.
     fn sort(&mut self, node: Node) {
         self.left[node.id] = (node.to - node.from) as u32;
         if node.is_leaf() {

@@ -39,7 +39,7 @@ pub fn scattered(count: usize) -> Vec<Stroke> {
     (0..count).map(&mut stroke).collect()
 }
 
-/// The way in the air through strokes as they are drawn.
+/// Returns the way in the air through strokes as they are drawn.
 fn way(strokes: &[Stroke], turns: &[Turn], start: DVec2) -> f64 {
     let mut at = start;
     let mut step = |turn: &Turn| {

@@ -1,5 +1,5 @@
-//! Which of its two principal directions each pixel takes, so that lines do not turn aside where the curvatures change
-//! places.
+//! The choice of each pixel between its two principal directions, so that lines do not turn aside where the curvatures
+//! change places.
 //!
 //! A surface's pixels are taken in the order of how clearly their directions differ, each beside one that is taken
 //! already, and go the way of those around them. In the end the surface as a whole is turned if that gives more of it

@@ -15,7 +15,7 @@ use crate::math::{DVec2, DVec3};
 /// One of two directions at right angles on the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Across {
-    /// That of the strongest curvature, as a rule.
+    /// No exchange: the direction of the strongest curvature, as a rule.
     No,
     /// The other.
     Yes,
@@ -30,14 +30,15 @@ pub struct Directions {
     across: Vec<OnScreen>,
 }
 
-/// Where flat surfaces are cut by planes, their lines run: right, down and back to the eye. A plane that faces the
-/// eye gets lines that rise to the right at 45°.
+/// Normal of the planes whose intersections with flat surfaces give lines their direction: right, down and back to
+/// the eye. A plane that faces the eye gets lines that rise to the right at 45°.
 const SLANT: DVec3 = DVec3::new(1.0, 1.0, 0.4);
 
-/// How much the slant weighs where no curvature is clear.
+/// Weight of the slant where no curvature is clear.
 const WEIGHT_OF_SLANT: f64 = 0.04;
 
-/// How often curvatures are evened out, and how much neighbours then weigh: over some four pixels, so facets do not show.
+/// Number of times that curvatures are smoothed, and the weight of neighbours: over some four pixels, so facets do not
+/// show.
 const CURVATURE: Evening = Evening { rounds: 12, neighbours: 4.0 };
 
 /// The same for directions: over some eight pixels.
@@ -76,7 +77,7 @@ impl Directions {
         Self { along, across }
     }
 
-    /// The direction at a point, between the pixels around it that show one surface.
+    /// Returns the direction at a point, between the pixels around it that show one surface.
     pub fn at(&self, seen: &Seen, p: DVec2, across: Across) -> Option<DVec2> {
         let tensors = if across == Across::Yes { &self.across } else { &self.along };
         let own = (p.cmpge(DVec2::ZERO).all()).then_some((p.x as u32, p.y as u32))?;
@@ -101,7 +102,7 @@ impl Directions {
     }
 }
 
-/// The direction of the larger eigenvalue.
+/// Returns the direction of the larger eigenvalue.
 fn main_direction([xx, xy, yy]: [f64; 3]) -> Option<DVec2> {
     let half = 0.5 * (xx - yy);
     let root = (half * half + xy * xy).sqrt();
@@ -131,9 +132,10 @@ fn evened(seen: &Seen, own: Vec<Tensor>, how: &Evening) -> Vec<Tensor> {
 /// The two principal directions of a pixel's surface, that of the stronger curvature first.
 pub struct Bent {
     pub directions: [DVec3; 2],
-    /// How clear they are: 0 where the surface is flat or bends alike in all directions, towards 1.
+    /// Clarity of the directions: 0 where the surface is flat or bends alike in all directions,
+    /// towards 1.
     pub weight: f64,
-    /// How much stronger the first curvature is, from 0 towards 1.
+    /// Excess of the first curvature over the second, from 0 towards 1.
     pub lead: f64,
 }
 
@@ -165,14 +167,14 @@ impl Sides {
         (area > 0.0 && dual.iter().all(|d| d.is_finite())).then_some(sides)
     }
 
-    /// The second fundamental form as a tensor in space.
+    /// Returns the second fundamental form as a tensor in space.
     fn curvature(&self) -> Tensor {
         let ([a, b], [da, db], [ea, eb]) = (self.place, self.turn, self.dual);
         let mixed = -0.5 * (da.dot(b) + db.dot(a));
         Tensor::of(ea) * -da.dot(a) + Tensor::of(eb) * -db.dot(b) + Tensor::between(ea, eb) * mixed
     }
 
-    /// The principal directions of a curvature, and how clear they are.
+    /// Returns the principal directions of a curvature, and how clear they are.
     fn most_bent(&self, curvature: &Tensor, height: f64) -> Bent {
         let u = self.place[0].normalize_or_zero();
         let v = self.normal.cross(u).normalize_or_zero();
@@ -192,7 +194,7 @@ impl Sides {
         Bent { directions: [strong, self.normal.cross(strong)], weight, lead }
     }
 
-    /// A tensor of directions as it is seen, with a trace of 1.
+    /// Returns A tensor of directions as it is seen, with a trace of 1.
     fn on_screen(&self, tensor: &Tensor) -> OnScreen {
         let [a, b] = self.dual;
         let seen = [tensor.form(a, a), tensor.form(a, b), tensor.form(b, b)];

@@ -59,7 +59,7 @@ const BYTES_OF_PIXEL: u64 = 500;
 /// A dot is a stroke so much shorter than it is wide.
 const DOT_LENGTH: f64 = 0.02;
 
-/// How far lines may be moved when points are left out, in pixels.
+/// Largest distance that lines may move when points are left out, in pixels.
 const TOLERANCE: f64 = 0.05;
 
 /// Marks for the tones of what a drawing by the same options shows, in its plane: visible lines to be drawn with it.
@@ -115,7 +115,7 @@ impl Frame {
         Ok(Self { view, corner: -half, pixel, size: size / pixel })
     }
 
-    /// The picture that tones come from, with smooth normals.
+    /// Returns the picture that tones come from, with smooth normals.
     fn picture(&self, options: &DrawOptions) -> RenderOptions {
         RenderOptions {
             width: self.view.width(),
@@ -133,7 +133,7 @@ impl Frame {
         }
     }
 
-    /// The memory for all that is found at pixels.
+    /// Returns the memory for all that is found at pixels.
     fn bytes(&self) -> u64 {
         u64::from(self.view.width()) * u64::from(self.view.height()) * BYTES_OF_PIXEL
     }
@@ -143,7 +143,7 @@ impl Frame {
     }
 }
 
-/// Lines along the curvature, and where it is darkest across it.
+/// Returns lines along the curvature, and where it is darkest across it.
 fn contours(seen: &Seen, frame: &Frame, height: f64) -> Vec<Line> {
     let directions = Directions::new(seen, height);
     let size = DVec2::new(f64::from(seen.width), f64::from(seen.height));
@@ -216,7 +216,7 @@ const ALONG: Tones = Tones { closest: 0.25, doubled: 0.25, none: 1.0 };
 const ACROSS: Tones = Tones { closest: 0.15, doubled: 0.17, none: 0.5 };
 
 impl Frame {
-    /// A line in the plane, without points that it does not need.
+    /// Returns A line in the plane, without points that it does not need.
     fn line(&self, line: Streamline) -> Option<Line> {
         let options = douglas_peucker::Options { tolerance: TOLERANCE };
         let kept = douglas_peucker::simplify(&line.points, &options, &mut NoTrace).ok()?;
@@ -232,7 +232,7 @@ impl Frame {
     }
 }
 
-/// A dot for each share of tone that it covers.
+/// Returns A dot for each share of tone that it covers.
 fn dots(seen: &Seen, frame: &Frame) -> Vec<Line> {
     let area = std::f64::consts::FRAC_PI_4 * frame.size * frame.size;
     let mut density = Pixels::new(seen.width, seen.height, 0.0);

@@ -1,4 +1,5 @@
-//! What each pixel shows: where it is, how it is turned, how light it is, and which neighbours it goes on to.
+//! The visible surface at each pixel: its position, its normal, its brightness, and the neighbours that it
+//! continues into.
 
 use crate::math::{DMat4, DVec2, DVec3, DVec4};
 use crate::scene::{Scene, Topology};
@@ -24,7 +25,7 @@ pub struct Pixel {
     pub normal: DVec3,
     /// Perceived lightness, 0 … 1.
     tone: f32,
-    /// Whether the same surface goes on to the right, and below.
+    /// True if the same surface goes on to the right, and below.
     right: bool,
     below: bool,
 }
@@ -37,7 +38,8 @@ impl Pixel {
         !self.place.is_nan()
     }
 
-    /// Whether a neighbour shows the same surface: it lies near the plane between the two and is turned alike.
+    /// Returns whether a neighbour shows the same surface: it lies near the plane between the two and is
+    /// turned alike.
     fn goes_on_to(&self, other: &Self) -> bool {
         if !(self.is_seen() && other.is_seen() && self.normal.dot(other.normal) > SHARPEST) {
             return false;
@@ -51,8 +53,8 @@ impl Pixel {
 /// The cosine of the angle between the normals of neighbours on one surface: 53°.
 const SHARPEST: f64 = 0.6;
 
-/// How far a neighbour may lie from the plane between two pixels, as a part of their distance. A round surface of
-/// three pixels' radius stays below it.
+/// Largest distance of a neighbour from the plane between two pixels, as a part of their distance. A round
+/// surface of three pixels' radius stays below it.
 const LARGEST_OFFSET: f64 = 0.3;
 
 impl Seen {
@@ -89,13 +91,13 @@ impl Seen {
         (x < self.width && y < self.height).then(|| (y * self.width + x) as usize)
     }
 
-    /// All pixels, row by row, as [`Self::index`] numbers them.
+    /// Returns all pixels, row by row, as [`Self::index`] numbers them.
     pub fn places(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
         let (width, height) = (self.width, self.height);
         (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)))
     }
 
-    /// The pixels beside one, to the left, right, above and below, on the same surface.
+    /// Returns the pixels beside one, to the left, right, above and below, on the same surface.
     pub fn around_on_surface(&self, i: usize) -> impl Iterator<Item = usize> + '_ {
         let (x, y) = (i as u32 % self.width, i as u32 / self.width);
         let around = [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)];
@@ -107,7 +109,7 @@ impl Seen {
         self.pixels.get(self.index(x, y)?)
     }
 
-    /// The pixel around a point, where a surface is seen.
+    /// Returns the pixel around a point, where a surface is seen.
     fn around(&self, p: DVec2) -> Option<(u32, u32)> {
         if !(p.cmpge(DVec2::ZERO).all() && p.is_finite()) {
             return None;
@@ -116,13 +118,14 @@ impl Seen {
         self.pixel(x, y).is_some_and(Pixel::is_seen).then_some((x, y))
     }
 
-    /// The lightness at a point; `None` where no surface is.
+    /// Returns the lightness at a point; `None` where no surface is.
     pub fn tone(&self, p: DVec2) -> Option<f64> {
         let (x, y) = self.around(p)?;
         self.pixel(x, y).map(|pixel| f64::from(pixel.tone))
     }
 
-    /// Whether the surface goes on from one pixel to a neighbour or the pixel itself, straight or around one corner.
+    /// Returns whether the surface goes on from one pixel to a neighbour or the pixel itself, straight or around one
+    /// corner.
     pub fn goes_on(&self, (x, y): (u32, u32), (u, v): (u32, u32)) -> bool {
         let across = |x: u32, y: u32| {
             let left = x.min(u);
@@ -135,14 +138,14 @@ impl Seen {
         (across(x, y) && along(u, y)) || (along(x, y) && across(x, v))
     }
 
-    /// Whether one surface goes on from one point to another, at most a pixel away.
+    /// Returns whether one surface goes on from one point to another, at most a pixel away.
     pub fn joins(&self, from: DVec2, to: DVec2) -> bool {
         let ends = self.around(from).zip(self.around(to));
         ends.is_some_and(|(from, to)| self.goes_on(from, to))
     }
 }
 
-/// The items of a section's caps.
+/// Returns the items of a section's caps.
 fn caps(scene: &Scene, material: Option<usize>) -> Vec<Range<u32>> {
     let Some(material) = material else { return Vec::new() };
     let (mut found, mut first) = (Vec::new(), 0u32);

@@ -34,7 +34,8 @@ pub(crate) struct PathEdges {
 }
 
 impl PathEdges {
-    /// The edges of contours within a target of the given size; a few are added to the list.
+    /// Creates the edges of contours within a target of the given size; a few are added to the
+    /// list.
     pub fn new(contours: &Contours, width: u32, height: u32, list: &mut Vec<Edge>) -> Self {
         // A triangle cannot be anything else.
         let points = contours.points();
@@ -45,12 +46,12 @@ impl PathEdges {
         Self { edges, rows, columns, convex, whole }
     }
 
-    /// What the edges take that are in no list, bytes.
+    /// Returns the size of the edges that are not in the list, in bytes.
     pub fn bytes(&self) -> u64 {
         self.edges.bytes()
     }
 
-    /// Whether the path touches no row of the band that starts at row `top`.
+    /// Returns whether the path touches no row of the band that starts at row `top`.
     pub fn misses(&self, top: i32) -> bool {
         self.rows.0 >= top + BAND_ROWS || self.rows.1 <= top
     }
@@ -69,25 +70,26 @@ pub(crate) struct Path<'a> {
 }
 
 impl Path<'_> {
-    /// First row and one past the last.
+    /// Returns the first row and one past the last.
     pub fn rows(&self) -> (i32, i32) {
         self.path.rows
     }
 
-    /// The same within the band at row `top`, from there.
+    /// Returns the same within the band at row `top`, from there.
     fn rows_of_band(&self, top: i32) -> (i32, i32) {
         let (first, end) = self.path.rows;
         ((first - top).max(0), (end - top).min(BAND_ROWS))
     }
 
-    /// The edges of the band at row `top` in the order of the path, perhaps with others too.
+    /// Returns the edges of the band at row `top` in the order of the path, perhaps with others
+    /// too.
     #[inline(always)]
     fn of_band(&self, top: i32) -> impl Iterator<Item = &[Edge]> {
         self.path.edges.of_band(self.list, top)
     }
 }
 
-/// Whether a closed contour turns one way only, once around.
+/// Returns whether a closed contour turns one way only, once around.
 pub(super) fn is_convex(points: &[DVec2]) -> bool {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return true };
     let mut from = *last;

@@ -18,7 +18,7 @@ use crate::raster::bands::BAND_ROWS;
 /// Cells after the last pixel that edges on the border may write to.
 const SPILL: usize = 64;
 
-/// Which of 64 pixels have been touched, and which by several chains of edges.
+/// Bits of 64 pixels: those touched, and those touched by several chains of edges.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Marks {
     pub touched: u64,
@@ -41,7 +41,7 @@ pub(crate) struct Cells {
     words: usize,
     /// Not 0 once a pixel has become shared.
     pub any_shared: u64,
-    /// What is still to be added.
+    /// Parts that have yet to be added.
     parts: Box<Parts>,
 }
 
@@ -70,13 +70,13 @@ impl Cells {
         self.words = (last.max(self.first) - self.first) / 64 + 1;
     }
 
-    /// The pixel that rows begin at.
+    /// Returns the pixel that rows begin at.
     #[inline(always)]
     pub fn first(&self) -> usize {
         self.first
     }
 
-    /// One row of the band: its cells and its marks, 64 cells to a mark.
+    /// Returns one row of the band: its cells and its marks, 64 cells to a mark.
     #[inline(always)]
     pub fn row(&mut self, row: i32) -> (&mut [i32], &mut [Marks]) {
         let (from, to) = (row as usize * self.words, (row as usize + 1) * self.words);
@@ -84,13 +84,14 @@ impl Cells {
         (cells, self.marks.get_mut(from..to).unwrap_or_default())
     }
 
-    /// All cells, 64 of them for each mark, all marks, row by row, and how many marks a row has.
+    /// Returns all cells, 64 of them for each mark, all marks, row by row, and how many marks a row
+    /// has.
     #[inline(always)]
     pub fn words(&mut self) -> (&mut [[i32; 64]], &mut [Marks], usize) {
         (self.cells.as_chunks_mut::<64>().0, &mut self.marks, self.words)
     }
 
-    /// The marks of one row of the band.
+    /// Returns the marks of one row of the band.
     pub fn marks_of(&self, row: i32) -> &[Marks] {
         let start = row.clamp(0, BAND_ROWS - 1) as usize * self.words;
         self.marks.get(start..start + self.words).unwrap_or_default()

@@ -18,7 +18,7 @@ use crate::raster::bands::BAND_ROWS;
 
 /// Edges of an outline at most.
 const MOST_EDGES: usize = 4;
-/// So many pixels inside are worth a span of their own.
+/// Number of pixels inside that are worth a span of their own.
 const FULL: i32 = 8;
 /// Wider strips, in pixels, are filled as other paths are.
 const THIN: f64 = 4.0;
@@ -31,7 +31,8 @@ pub(crate) struct Strip {
 }
 
 impl Strip {
-    /// The strip with these corners; `None` where it is not thin, not convex or not inside a target of the given size.
+    /// Creates the strip with these corners; `None` where it is not thin, not convex or not inside a target
+    /// of the given size.
     pub fn new(corners: [DVec2; 4], width: u32, height: u32) -> Option<Self> {
         let size = DVec2::new(f64::from(width), f64::from(height));
         let inside = |p: &DVec2| p.cmpge(DVec2::ZERO).all() && p.cmple(size).all();
@@ -42,14 +43,14 @@ impl Strip {
             .then(|| Self { corners: corners.map(snap) })
     }
 
-    /// First row touched and one past the last.
+    /// Returns the first row touched and one past the last.
     pub fn rows(&self) -> (i32, i32) {
         let ys = self.corners.map(|c| c.1);
         let (low, high) = ys.iter().fold((i32::MAX, 0), |(l, h), y| (l.min(*y), h.max(*y)));
         (low >> BITS, (high + ONE - 1) >> BITS)
     }
 
-    /// Its edges, around.
+    /// Returns its edges, around.
     #[inline(always)]
     pub fn edges(&self) -> [Edge; 4] {
         let [a, b, c, d] = self.corners;
@@ -77,7 +78,7 @@ impl Side {
         Self { edge: *edge, steps, half_inverse, rows: edge.rows(), whole }
     }
 
-    /// What it covers of a row's pixels; nothing where it does not touch it.
+    /// Returns the coverage of a row's pixels; nothing if it does not touch the row.
     #[inline(always)]
     fn ramp(&self, row: i32, limit: i32) -> Option<Ramp> {
         let Edge { x0, x1, y0, y1, .. } = self.edge;
@@ -98,7 +99,7 @@ impl Side {
         })
     }
 
-    /// That of a row that it crosses from top to bottom.
+    /// Returns the coverage of a row that it crosses from top to bottom.
     #[inline(always)]
     fn whole_ramp(&self, row: i32, limit: i32) -> Ramp {
         let slope = self.steps.slope;
@@ -110,13 +111,13 @@ impl Side {
         Ramp::new((x >> BITS) as i32, ((x + slope) >> BITS) as i32, ONE, limit)
     }
 
-    /// The left end of what it crosses of a row as a whole, 32.32.
+    /// Returns the left end of what it crosses of a row as a whole, 32.32.
     #[inline(always)]
     fn left(&self, row: i32) -> i64 {
         self.steps.at(row - self.whole.0) + self.steps.slope.min(0)
     }
 
-    /// Whether it crosses at most two pixels of a row.
+    /// Returns whether it crosses at most two pixels of a row.
     #[inline(always)]
     fn is_steep(&self) -> bool {
         self.steps.slope.unsigned_abs() <= 1 << 32
@@ -168,7 +169,7 @@ struct Pair {
 }
 
 impl Pair {
-    /// Whether both are steep and never more than two pixels apart from a row on.
+    /// Returns whether both are steep and never more than two pixels apart from a row on.
     #[inline(always)]
     fn narrow(&self, row: i32) -> bool {
         let gap = |row: i32| self.right.left(row) - self.left.left(row);
@@ -178,7 +179,7 @@ impl Pair {
     }
 }
 
-/// The two edges that alone cross the rows from one on, if there are just two.
+/// Returns the two edges that alone cross the rows from one on, if there are just two.
 #[inline(always)]
 fn pair(sides: &[Side], row: i32, end: i32) -> Option<Pair> {
     let (mut count, mut end) = (0, end);

@@ -25,12 +25,12 @@ pub(crate) struct Edge {
     pub x0: i32,
     pub y0: i32,
     pub x1: i32,
-    /// Not above `y0`; equal for horizontal edges, which carry no area.
+    /// Lower end's row: not above `y0`; equal for horizontal edges, which carry no area.
     pub y1: i32,
     flags: u32,
 }
 
-/// How an edge goes from row to row.
+/// Step of an edge from row to row.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Steps {
     /// x where the edge first crosses a border of rows, at or below `y0`.
@@ -60,7 +60,7 @@ impl Edge {
         Self { x0, y0, x1: lower as i32, y1: (lower >> 32) as i32, flags }
     }
 
-    /// The one division of an edge, made where it is needed.
+    /// Returns the one division of an edge, made where it is needed.
     #[inline(always)]
     pub fn steps(&self) -> Steps {
         let per_row = f64::from(self.x1 - self.x0) / f64::from((self.y1 - self.y0).max(1));
@@ -77,31 +77,32 @@ impl Edge {
         1 - 2 * (self.flags & REVERSED) as i32
     }
 
-    /// The edge as seen from an x right of the target's border, 16.16.
+    /// Returns the edge as seen from an x right of the target's border, 16.16.
     #[inline(always)]
     pub fn moved(&self, x: i32) -> Self {
         Self { x0: self.x0 - x, x1: self.x1 - x, ..*self }
     }
 
-    /// First row touched and one past the last; a horizontal edge on a border of rows touches none.
+    /// Returns the first row touched and one past the last; a horizontal edge on a border of rows
+    /// touches none.
     pub fn rows(&self) -> (i32, i32) {
         (self.y0 >> BITS, (self.y1 + ONE - 1) >> BITS)
     }
 
-    /// Whether the upper and the lower end are chained.
+    /// Returns whether the upper and the lower end are chained.
     #[inline(always)]
     pub fn chained(&self) -> (bool, bool) {
         (self.flags & CHAINED_UPPER != 0, self.flags & CHAINED_LOWER != 0)
     }
 
-    /// Where the edge starts and where it ends in its path.
+    /// Returns the start and the end of the edge in its path.
     #[inline(always)]
     pub(super) fn course(&self) -> [(i32, i32); 2] {
         let (upper, lower) = ((self.x0, self.y0), (self.x1, self.y1));
         if self.flags & REVERSED != 0 { [lower, upper] } else { [upper, lower] }
     }
 
-    /// Whether it stays within about a pixel.
+    /// Returns whether it stays within about a pixel.
     #[inline(always)]
     pub(super) fn is_short(&self) -> bool {
         share_pixel((self.x0, self.y0), (self.x1, self.y1))
@@ -122,7 +123,7 @@ impl Edge {
         self.flags |= copy.flags;
     }
 
-    /// Which of eight half-planes of directions the edge's own direction lies in.
+    /// Returns which of eight half-planes of directions contain the edge's own direction.
     pub(super) fn directions(&self) -> u8 {
         let sign = self.sign();
         let (dx, dy) = ((self.x1 - self.x0) * sign, (self.y1 - self.y0) * sign);
@@ -141,20 +142,20 @@ impl Edge {
     }
 }
 
-/// Whether a 16.16 point lies on a border of pixels.
+/// Returns whether a 16.16 point lies on a border of pixels.
 #[inline(always)]
 pub(super) fn is_on_border((x, y): (i32, i32)) -> bool {
     x & (ONE - 1) == 0 || y & (ONE - 1) == 0
 }
 
-/// Whether two 16.16 points lie in the same pixel or on its border.
+/// Returns whether two 16.16 points lie in the same pixel or on its border.
 #[inline(always)]
 fn share_pixel(a: (i32, i32), b: (i32, i32)) -> bool {
     let near = |a: i32, b: i32| ((a >> BITS) == (b >> BITS)) | ((a - b).abs() <= 1);
     near(a.0, b.0) & near(a.1, b.1)
 }
 
-/// The nearest grid point to a point within the target, ties to even.
+/// Returns the nearest grid point to a point within the target, ties to even.
 pub(super) fn snap(p: DVec2) -> (i32, i32) {
     // Adding 1.5 · 2⁵² leaves the rounded integer in the low bits of the mantissa.
     const MAGIC: f64 = 6_755_399_441_055_744.0;

@@ -1,4 +1,4 @@
-//! Which edges of a contour run on into each other without being able to cross.
+//! The edges of a contour that continue into each other without being able to cross.
 //!
 //! Joints with only short edges between them make a group, with the edges that lead to it and away from
 //! it. Two edges with a common end cannot cross; more of them not while all run on in one direction. That
@@ -18,7 +18,7 @@ pub(super) struct Part {
     pub edges: Range<usize>,
     /// The two edges, if there are any.
     pub ends: Option<(usize, usize)>,
-    /// Whether edges may be missing between them.
+    /// True if edges may be missing between them.
     pub gaps: bool,
 }
 
@@ -44,7 +44,8 @@ pub(super) fn chain_contour(edges: &mut [Edge], gaps: bool) {
     }
 }
 
-/// The same between the first and the last edge that a group of joints begins at; gives these two.
+/// Returns the same between the first and the last edge that a group of joints begins at; gives
+/// these two.
 pub(super) fn chain_inner(edges: &mut [Edge], gaps: bool) -> Option<(usize, usize)> {
     let begins = |i: &usize| {
         !edges[*i].is_short() || (gaps && *i > 0 && !is_joint(&edges[i - 1], &edges[*i]))

@@ -46,7 +46,7 @@ use band::{BandFiller, PathEdges};
 use edge::{Edge, MAX_SIDE};
 use sweep::Sink;
 
-/// Which winding numbers are inside.
+/// Rule that decides from the winding number what is inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum FillRule {
     /// All but zero.
@@ -56,7 +56,7 @@ pub enum FillRule {
     EvenOdd,
 }
 
-/// What happens in pixels where several contours, or parts of one, overlap.
+/// Treatment of pixels in which several contours, or parts of one, overlap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Overlap {
     /// The area of the union, by the fill rule: opposite windings do not cancel.
@@ -73,12 +73,12 @@ pub enum Overlap {
     Accumulated,
 }
 
-/// How an outline becomes coverage.
+/// Options for computing coverage from an outline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
-    /// Which winding numbers are inside.
+    /// Rule that decides from the winding number what is inside.
     pub rule: FillRule,
-    /// What happens where outlines overlap inside a pixel.
+    /// Treatment of pixels in which outlines overlap.
     pub overlap: Overlap,
 }
 
@@ -107,8 +107,8 @@ pub const INFO: Info = Info {
     limits: "sides up to 32,767 pixels; exact up to 24 edges through one pixel",
 };
 
-/// The coverage 0 … 255 of every pixel of a `width` × `height` target by the outline, whose contours
-/// count as closed; coordinates in pixels, y down.
+/// Returns the coverage 0 … 255 of every pixel of a `width` × `height` target by the outline, whose
+/// contours count as closed; coordinates in pixels, y down.
 ///
 /// Points that are not finite are left out; what lies outside the target is clipped. The error is that
 /// of rounding to 8 bits, plus 2⁻¹⁷ of a pixel per edge through it.
@@ -204,7 +204,7 @@ impl<S: Simd, T: Tracer<Step>> Sink<S> for Mask<'_, T> {
     }
 }
 
-/// Whether targets of this size can be filled.
+/// Checks that targets of this size can be filled.
 pub(crate) fn check_size(width: u32, height: u32) -> Result<()> {
     let side = width.max(height);
     if side > MAX_SIDE {

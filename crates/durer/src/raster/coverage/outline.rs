@@ -9,13 +9,13 @@ use crate::math::DVec2;
 use crate::raster::bands::{CHUNK, Chunk, Edges, FEW_EDGES, by_chunks};
 use crate::raster::clipped::{Lines, lines, pieces};
 
-/// What the edges of a path touch, and whether it has been cut.
+/// Extent of the edges of a path, and whether it has been cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Extent {
     /// The least and the largest coordinates, 16.16.
     low: (i32, i32),
     high: (i32, i32),
-    /// Whether a line reached beyond the target.
+    /// True if a line reached beyond the target.
     pub cut: bool,
 }
 
@@ -33,7 +33,8 @@ impl Extent {
         self.cut |= other.cut;
     }
 
-    /// First row touched and one past the last, not larger where there are none; first and last pixel touched.
+    /// Returns the first row touched and one past the last, not larger where there are none; first and last
+    /// pixel touched.
     pub fn pixels(&self) -> [(i32, i32); 2] {
         if self.low.0 > self.high.0 {
             return [(i32::MAX, 0); 2];
@@ -43,9 +44,9 @@ impl Extent {
     }
 }
 
-/// The edges of contours within a target of the given size in pixels, at most [`MAX_SIDE`] each way; a few are
-/// added to the list. Each contour is closed; points that are not finite are left out. Nobody asks which joints of
-/// `convex` ones are chained.
+/// Returns the edges of contours within a target of the given size in pixels, at most [`MAX_SIDE`] each way;
+/// a few are added to the list. Each contour is closed; points that are not finite are left out. Nobody asks
+/// which joints of `convex` ones are chained.
 pub(super) fn edges(
     contours: &Contours,
     (width, height): (u32, u32),
@@ -63,7 +64,7 @@ pub(super) fn edges(
     (Edges::from_chunks(chunks, list, Edge::rows), extent)
 }
 
-/// The edges of so many points at once; how many changes nothing in them.
+/// Returns the edges of so many points at once; how many changes nothing in them.
 pub(super) fn chunks(
     contours: &Contours,
     size: DVec2,
@@ -133,9 +134,9 @@ fn chain_parts(chunks: &mut [Chunk<Edge>], parts: &[(usize, Part)]) {
 /// Makes edges.
 struct Builder<'a> {
     edges: &'a mut Vec<Edge>,
-    /// Of the target in pixels.
+    /// Size of the target in pixels.
     size: DVec2,
-    /// Whether joints are to be chained.
+    /// True if joints are to be chained.
     joints: bool,
     extent: Extent,
     /// Contours that others make parts of too.

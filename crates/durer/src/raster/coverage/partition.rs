@@ -107,7 +107,7 @@ pub fn fill_partition(
     Ok(full)
 }
 
-/// The sums of a pixel over what was there, straight alpha in and out.
+/// Returns the sums of a pixel over what was there, straight alpha in and out.
 fn over(sum: &Sums, below: [u8; 4]) -> [u8; 4] {
     // All in units of 1/65,536 · 1/255; faces that overlap are scaled down to one pixel.
     let total = u64::from(sum[0].max(65_536));

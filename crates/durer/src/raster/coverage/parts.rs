@@ -1,4 +1,4 @@
-//! What edges do in single rows, put in a queue and made into areas many at a time, eight at once.
+//! The contributions of edges to single rows, queued and turned into areas eight at a time.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{i32x8, u32x8};
@@ -21,8 +21,8 @@ const UP: u32 = 1;
 const OWN_LEFT: u32 = 2;
 const OWN_RIGHT: u32 = 4;
 
-/// What is made of a part: bits of the pixels it touches, from its first on, and of those that count if they have been
-/// touched before.
+/// Flags in the result of a part: bits of the pixels it touches, from its first on, and of those that count if they
+/// have been touched before.
 pub(super) const TOUCHED: u32 = 3;
 pub(super) const COUNTED: u32 = 2;
 /// It touches more than two pixels, or the second one's mark is in the next word.
@@ -65,7 +65,7 @@ impl Default for Parts {
 }
 
 impl Parts {
-    /// Whether it has to be emptied before the next edge.
+    /// Returns whether it has to be emptied before the next edge.
     #[inline(always)]
     pub fn is_full(&self) -> bool {
         self.count > FULL
@@ -187,7 +187,7 @@ impl Parts {
         }
     }
 
-    /// Whether its first and its last pixel are also its neighbours' in the path.
+    /// Returns whether its first and its last pixel are also its neighbours' in the path.
     pub fn own(&self, i: usize) -> (bool, bool) {
         let flags = self.flags[i & (ROOM - 1)];
         (flags & OWN_LEFT != 0, flags & OWN_RIGHT != 0)

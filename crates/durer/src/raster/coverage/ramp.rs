@@ -1,4 +1,5 @@
-//! What an edge covers of the pixels of a row: one row after the other, or eight rows that it crosses steeply.
+//! The coverage of an edge in the pixels of a row: one row after the other, or eight rows that it crosses
+//! steeply.
 //!
 //! Both give the same integers.
 
@@ -7,7 +8,7 @@ use fearless_simd::{f32x8, i32x8, u32x8};
 
 use super::edge::{BITS, ONE};
 
-/// What an edge within one row covers of its pixels, to the right of it.
+/// Coverage to the right of an edge within one row, by pixel.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Ramp {
     /// The first pixel it touches, and what it covers of that.
@@ -18,15 +19,15 @@ pub(super) struct Ramp {
     pub tail: i32,
     /// The pixel after the last one touched, of those that cross three or more.
     pub end: i32,
-    /// What it covers of all pixels after the last: its height.
+    /// Coverage of all pixels after the last: its height.
     pub height: i32,
-    /// What it covers of the ones between, with 16 more bits: so much, and so much more for each from the first on.
+    /// Coverage of the pixels between, with 16 more bits: that of the first, and the increase for each further one.
     pub start: u32,
     pub per_pixel: u32,
 }
 
 impl Ramp {
-    /// An edge from `x0` to `x1`, 16.16, which are moved between 0 and the limit.
+    /// Creates an edge from `x0` to `x1`, 16.16, which are moved between 0 and the limit.
     #[inline(always)]
     pub fn new(x0: i32, x1: i32, height: i32, limit: i32) -> Self {
         let (left, right) = (x0.min(x1).clamp(0, limit), x0.max(x1).clamp(0, limit));
@@ -39,7 +40,8 @@ impl Ramp {
         Self { first, head, last: first + 1, tail: height - after, height, ..Self::default() }
     }
 
-    /// An edge that crosses a whole row and at most two pixels, by its left end and its width.
+    /// Creates an edge that crosses a whole row and at most two pixels, by its left end and its
+    /// width.
     #[inline(always)]
     pub fn steep(left: i32, across: i32, half_inverse: f32, limit: i32) -> Self {
         let left = left.clamp(0, limit);
@@ -49,7 +51,7 @@ impl Ramp {
         Self { first, head, last, tail, height, ..Self::default() }
     }
 
-    /// An edge that crosses three pixels or more.
+    /// Creates an edge that crosses three pixels or more.
     #[inline(always)]
     pub fn wide(left: i32, right: i32, height: i32) -> Self {
         // Covered height per pixel of width, with 32 bits below one; less than a half.
@@ -72,7 +74,7 @@ impl Ramp {
     }
 }
 
-/// Half of one over the width of an edge, 16.16, as [`steep_deltas`] needs it.
+/// Returns half of one over the width of an edge, 16.16, as [`steep_deltas`] needs it.
 #[inline(always)]
 pub(super) fn half_inverse(across: i32) -> f32 {
     0.5 / across.max(1) as f32
@@ -93,7 +95,7 @@ pub(super) fn steep_deltas(a: i32, b: i32, half_inverse: f32) -> [i32; 3] {
     [d0, ONE - d0 - d2, d2]
 }
 
-/// The same for an edge that crosses part of a row's height.
+/// Returns the same for an edge that crosses part of a row's height.
 #[inline(always)]
 pub(super) fn narrow_deltas(a: i32, b: i32, height: i32) -> [i32; 3] {
     let scale = |delta: i32| ((i64::from(delta) * i64::from(height)) >> BITS) as i32;
@@ -128,7 +130,7 @@ pub(super) fn eight_deltas<S: Simd>(
     [d0, height - d0 - d2, d2]
 }
 
-/// What an edge covers of eight pixels.
+/// Returns the coverage of eight pixels by an edge.
 #[inline(always)]
 pub(super) fn area<S: Simd>(simd: S, ramp: &Ramp, x: i32) -> i32x8<S> {
     let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
@@ -143,7 +145,7 @@ pub(super) fn area<S: Simd>(simd: S, ramp: &Ramp, x: i32) -> i32x8<S> {
     i.simd_lt(zero).select(zero, area)
 }
 
-/// How far an edge moves to the right in eight rows one below the other.
+/// Movement of an edge to the right in eight rows one below the other.
 #[derive(Clone, Copy)]
 pub(super) struct Stepped<S: Simd> {
     /// From the first of them on, 16.16, and the 16 bits below, not carried over.
@@ -182,7 +184,8 @@ pub(super) struct Eight<S: Simd> {
 }
 
 impl<S: Simd> Eight<S> {
-    /// An edge by its left end in the first of the rows and its slope, 32.32; moved between 0 and the limit, 16.16.
+    /// Creates an edge by its left end in the first of the rows and its slope, 32.32; moved between 0 and the
+    /// limit, 16.16.
     #[inline(always)]
     pub fn new(simd: S, left: i64, slope: i64, limit: i32) -> Self {
         let across = (slope.unsigned_abs() >> BITS) as i32;

@@ -19,7 +19,8 @@ const IN_NOISE: Limits = Limits { exact: 4, measured: 32, measures: 512, lines: 
 /// A band with at most so many edges is resolved, whatever it shows: that takes no long time, and in small drawings
 /// each pixel is looked at.
 const FEW_EDGES: u32 = 256;
-/// What another band shows is noise as well where more pixels than this are shared, two in a row on average,
+/// Number of shared pixels, two in a row on average, above which another band's content counts as noise as
+/// well,
 const FEW_SHARED: u32 = 2 * BAND_ROWS as u32;
 /// more than one in so many of the touched ones,
 const OFTEN: u32 = 5;
@@ -30,14 +31,14 @@ const MANY_EDGES: u32 = 1024;
 /// End of a list.
 const NONE: u32 = u32::MAX;
 
-/// How pixels are resolved.
+/// Limits of resolving pixels.
 #[derive(Debug, Clone, Copy)]
 struct Limits {
     /// Up to so many pieces exactly,
     exact: usize,
     /// with up to so many along lines; those of more keep the integral's answer.
     measured: u32,
-    /// So many for all pieces together,
+    /// Number of measures for all pieces together,
     measures: usize,
     /// and at least and at most so many.
     lines: (usize, usize),
@@ -49,7 +50,7 @@ impl Default for Limits {
     }
 }
 
-/// What one edge does within one row, relative to a pixel that it touches.
+/// Part of one edge within one row, relative to a pixel that it touches.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     sign: i32,
@@ -102,7 +103,7 @@ pub(crate) struct Resolver {
     limits: Limits,
 }
 
-/// Which bands are resolved.
+/// Bands that are resolved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Noise {
     /// All.
@@ -216,7 +217,7 @@ impl Resolver {
         }
     }
 
-    /// The number of the shared pixel at a bit of a word of the row.
+    /// Returns the number of the shared pixel at a bit of a word of the row.
     #[inline(always)]
     fn number(&self, (row, word): (i32, usize), shared: u64, bit: u32) -> usize {
         let word = (row.max(0) as usize) * self.words + word;
@@ -248,7 +249,7 @@ impl Resolver {
         }
     }
 
-    /// The covered area of one pixel; `None` where the integral already tells.
+    /// Returns the covered area of one pixel; `None` where the integral already tells.
     fn area(&mut self, pixel: Shared, sum: i32, rule: FillRule) -> Option<f64> {
         // Each piece changes the winding number by one, so it has one sign all over the pixel where its
         // mean is so far from zero.
@@ -286,7 +287,7 @@ impl Resolver {
         Some(self.slabs(base, rule))
     }
 
-    /// The area inside, of slabs that are as wide everywhere as in the middle.
+    /// Returns the area inside, of slabs that are as wide everywhere as in the middle.
     fn slabs(&mut self, base: i32, rule: FillRule) -> f64 {
         let inside = |winding: i32| match rule {
             FillRule::NonZero => winding != 0,

@@ -37,7 +37,7 @@ impl Default for SmallCells {
     }
 }
 
-/// What of a band an outline touches.
+/// Part of a band that an outline touches.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Touched {
     /// First row and one past the last.
@@ -151,7 +151,7 @@ fn steep<S: Simd>(simd: S, rows: &mut [Row; AT_ONCE], edge: &Edge, steps: &Steps
     add(rows, left >> BITS, deltas);
 }
 
-/// The left one of two points moved into the row, and how far it is to the other.
+/// Returns the left one of two points moved into the row, and how far it is to the other.
 #[inline(always)]
 fn clamped(a: i32, b: i32) -> (i32, i32) {
     let (left, right) = (a.min(b).clamp(0, LIMIT), a.max(b).clamp(0, LIMIT));

@@ -12,7 +12,7 @@ use super::edge::ONE;
 use super::resolve::Resolver;
 use crate::raster::bands::running_sums;
 
-/// What is done with the coverage of a row, from left to right.
+/// Receiver of a row's coverage, from left to right.
 pub(crate) trait Sink<S: Simd> {
     /// Eight pixels from `x` on, each with its coverage 0 … 255. At the end of the row some of them, or all, may
     /// lie beyond it.
@@ -26,21 +26,21 @@ pub(crate) trait Sink<S: Simd> {
     fn span(&mut self, simd: S, row: i32, x: Range<usize>, coverage: u8);
 }
 
-/// The coverage in the bytes of a number, and none of the next four pixels.
+/// Returns the coverage in the bytes of a number, and none of the next four pixels.
 #[inline(always)]
 pub(crate) fn unpacked<S: Simd>(simd: S, coverage: u32) -> u32x8<S> {
     let [a, b, c, d] = coverage.to_le_bytes().map(u32::from);
     u32x8::from_slice(simd, &[a, b, c, d, 0, 0, 0, 0])
 }
 
-/// Which part of a band is summed, and how.
+/// Part of a band to sum, and options for it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rows {
     /// Rows of the band, the last not included.
     pub rows: (i32, i32),
     /// Pixels of the row.
     pub width: usize,
-    /// What is inside.
+    /// Rule that decides what is inside.
     pub rule: FillRule,
 }
 
@@ -134,7 +134,7 @@ pub(super) fn lanes<S: Simd>(simd: S, v: i32x8<S>, rule: FillRule) -> u32x8<S> {
     ((area + i32x8::splat(simd, ONE / 2)) >> 16).bitcast()
 }
 
-/// The top bit of every byte that is not zero.
+/// Returns the top bit of every byte that is not zero.
 fn nonzero_bytes(word: u64) -> u64 {
     const LOW: u64 = 0x7f7f_7f7f_7f7f_7f7f;
     (((word & LOW) + LOW) | word) & !LOW

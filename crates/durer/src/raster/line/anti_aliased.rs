@@ -118,7 +118,7 @@ fn filtered(distance: f64) -> u8 {
     table.get((distance * TABLE_STEPS as f64 + 0.5) as usize).copied().unwrap_or(0)
 }
 
-/// The volume of a cone of radius 1 and volume 1 over the line, by the midpoint rule.
+/// Returns the volume of a cone of radius 1 and volume 1 over the line, by the midpoint rule.
 fn cone_over_line(step: usize) -> u8 {
     let distance = step as f64 / TABLE_STEPS as f64;
     let (cells, mut volume) = (128, 0.0);
@@ -130,13 +130,13 @@ fn cone_over_line(step: usize) -> u8 {
     (volume * area * 3.0 / std::f64::consts::PI * 255.0 + 0.5).min(255.0) as u8
 }
 
-/// The outline of a straight line of the given width with butt ends, to be filled by
+/// Returns the outline of a straight line of the given width with butt ends, to be filled by
 /// [`crate::raster::coverage::fill`]: the exact form of a smooth line. Empty for a line without length.
 pub fn outline(from: DVec2, to: DVec2, width: f64) -> Contours {
     corners(from, to, width).map_or_else(Contours::new, Contours::polygon)
 }
 
-/// The corners of that outline, around; `None` where it is empty.
+/// Returns the corners of that outline, around; `None` where it is empty.
 pub(crate) fn corners(from: DVec2, to: DVec2, width: f64) -> Option<[DVec2; 4]> {
     let along = to - from;
     let length = along.length();

@@ -46,7 +46,7 @@ impl LineRasterizer {
     }
 }
 
-/// How a thin line is drawn.
+/// Options for drawing a thin line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
     /// Only pixels from the first corner to the second, both included, are lit; `None` = all. The line is
@@ -60,8 +60,8 @@ pub struct Options {
 pub struct Step {
     /// Column and row.
     pub pixel: IVec2,
-    /// Where the line itself is across its longer axis, in pixels: what the equation gives, what the digital
-    /// differential analyzer has summed up; its nearest whole number is the pixel's.
+    /// Position of the line itself across its longer axis, in pixels: the value of the equation, or
+    /// the sum of the digital differential analyzer; its nearest whole number is the pixel's.
     pub across: f64,
     /// Bresenham's E at this pixel, 2Δy − Δx at the first one: twice the distance, times Δx, from the point midway
     /// between the two pixels that may come next to the line. Where it is positive the next pixel lies one further
@@ -74,7 +74,7 @@ pub struct Step {
 /// from here, so all octants and both directions are one case.
 #[derive(Debug, Clone, Copy)]
 struct Course {
-    /// Whether y is the longer axis.
+    /// True if y is the longer axis.
     steep: bool,
     /// Start along and across.
     along: i64,
@@ -84,7 +84,7 @@ struct Course {
     rise: i64,
     /// The direction across.
     sign: i64,
-    /// Whether the caller's line runs the other way.
+    /// True if the caller's line runs the other way.
     swapped: bool,
     /// The steps to take, both included; empty where `first > last`.
     first: i64,
@@ -101,7 +101,7 @@ impl Course {
         course
     }
 
-    /// The whole line between two pixels, column and row.
+    /// Returns the whole line between two pixels, column and row.
     #[inline]
     fn between(a: (i64, i64), b: (i64, i64)) -> Self {
         let steep = (b.1 - a.1).abs() > (b.0 - a.0).abs();
@@ -123,14 +123,14 @@ impl Course {
         }
     }
 
-    /// Column and row as along and across.
+    /// Returns the column and row as along and across.
     #[inline]
     fn turned(&self, (x, y): (i64, i64)) -> (i64, i64) {
         if self.steep { (y, x) } else { (x, y) }
     }
 
-    /// Twice the numerator of the distance across after `step` steps, rounded: floor(n / 2·steps) is that
-    /// distance. Ties go to the smaller coordinate.
+    /// Returns twice the numerator of the distance across after `step` steps, rounded: floor(n / 2·steps)
+    /// is that distance. Ties go to the smaller coordinate.
     fn numerator(&self, step: i64) -> i128 {
         let half = i128::from(self.steps) - i128::from(self.sign >= 0);
         2 * i128::from(step) * i128::from(self.rise) + half.max(0)
@@ -153,7 +153,8 @@ impl Course {
         self.last = self.last.min(self.reaches(far + 1) - 1);
     }
 
-    /// The first step whose distance across is at least `distance`; one past the last where none is.
+    /// Returns the first step whose distance across is at least `distance`; one past the last where
+    /// none is.
     fn reaches(&self, distance: i64) -> i64 {
         if distance <= 0 {
             return 0;

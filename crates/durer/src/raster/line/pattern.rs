@@ -24,55 +24,55 @@ pub const INFO: Info = Info {
     limits: "replicated pixels make diagonals thinner by 1/√2, a square pen makes them thicker by √2",
 };
 
-/// What is drawn at each pixel of the thin line.
+/// Shape drawn at each pixel of the thin line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Pen {
-    /// So many pixels across the longer axis, replicated: columns of flat lines, rows of steep ones.
+    /// Pixels across the longer axis, replicated: columns of flat lines, rows of steep ones.
     Replicated(u32),
     /// A square of so many pixels each way. Pixels may be plotted several times.
     Square(u32),
 }
 
-/// How a line is drawn.
+/// Options for drawing a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Options {
-    /// What is drawn.
+    /// Layers to draw.
     pub pen: Pen,
     /// 16 bits, of which the lowest is used first: the pen is down where they are 1.
     pub pattern: u16,
     /// Each bit counts for so many steps; 0 is taken as 1.
     pub repeat: u32,
-    /// Where in the pattern, in steps, the line begins.
+    /// Step of the pattern at which the line begins.
     pub offset: u64,
 }
 
 impl Default for Options {
-    /// A thin solid line.
+    /// Creates A thin solid line.
     fn default() -> Self {
         Self { pen: Pen::Replicated(1), pattern: u16::MAX, repeat: 1, offset: 0 }
     }
 }
 
 impl Options {
-    /// Whether the pen is down at a step.
+    /// Returns whether the pen is down at a step.
     pub fn is_down(&self, step: u64) -> bool {
         let bit = (self.offset.wrapping_add(step) / u64::from(self.repeat.max(1))) % 16;
         self.pattern >> bit & 1 == 1
     }
 }
 
-/// What there is to see: a pixel of the thin line.
+/// Step of the algorithm: a pixel of the thin line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Step {
     /// Column and row.
     pub pixel: IVec2,
-    /// How far it is from the first end, in steps.
+    /// Distance from the first end, in steps.
     pub step: u64,
-    /// Whether the pen is down.
+    /// True if the pen is down.
     pub down: bool,
 }
 
-/// The pixels that a list of steps leads to, for the line from `from` to `to`.
+/// Returns the pixels that a list of steps leads to, for the line from `from` to `to`.
 pub fn replay(from: IVec2, to: IVec2, options: &Options, steps: &[Step]) -> Vec<IVec2> {
     let mut pixels = Vec::new();
     for step in steps.iter().filter(|step| step.down) {

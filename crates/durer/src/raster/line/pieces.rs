@@ -34,7 +34,7 @@ pub(super) struct Ends {
 pub(super) struct Pieces {
     /// The place of the first pixel, were it not for the distance across.
     base: [i32; AT_ONCE],
-    /// What a step along adds to the place, and a step across.
+    /// Change of the place by a step along, and by a step across.
     step: [i32; AT_ONCE],
     stride: [i32; AT_ONCE],
     /// The distance across, and how much a step adds to it.
@@ -45,7 +45,7 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    /// What of the lines is between the corner and `size` pixels from there.
+    /// Finds the parts of the lines between the corner and `size` pixels from there.
     #[inline(always)]
     pub fn set_up(&mut self, level: Level, ends: &Ends, size: (i32, i32)) {
         dispatch!(level, simd => set_up(simd, ends, size, self));
@@ -110,7 +110,7 @@ fn set_up<S: Simd>(simd: S, ends: &Ends, size: (i32, i32), out: &mut Pieces) {
     (last + unit - first).store_slice(&mut out.count);
 }
 
-/// The first step with a distance across; beyond the last for one more than the line has.
+/// Returns the first step with a distance across; beyond the last for one more than the line has.
 #[inline(always)]
 fn reaches<S: Simd>(
     simd: S,

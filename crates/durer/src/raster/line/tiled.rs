@@ -49,7 +49,7 @@ pub struct Line<T> {
     pub from: IVec2,
     /// Last pixel.
     pub to: IVec2,
-    /// What its pixels become.
+    /// New value of its pixels.
     pub value: T,
 }
 
@@ -109,7 +109,7 @@ struct Tiles<T> {
     across: usize,
     /// Pixels of the target.
     size: (i64, i64),
-    /// Where the entries of each tile begin, and the end of the last.
+    /// Start of each tile's entries, and the end of the last.
     starts: Vec<u32>,
     entries: Vec<Line<T>>,
     /// The pixels of one tile.
@@ -217,7 +217,7 @@ fn draw_tile<T: Copy>(
     }
 }
 
-/// Whether a line may be set up with others.
+/// Returns whether a line may be set up with others.
 #[inline(always)]
 fn is_short<T>(line: &Line<T>) -> bool {
     line.from.x.abs_diff(line.to.x).max(line.from.y.abs_diff(line.to.y)) <= SHORT

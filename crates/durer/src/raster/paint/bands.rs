@@ -59,7 +59,7 @@ pub(super) fn render<'a, P: Space>(
 /// Lines are fetched so many at a time: they lie far apart in memory, and so are waited for together.
 const AT_ONCE: usize = 16;
 
-/// What is to be done in a band.
+/// Work to do in a band.
 struct Todo<'a, P> {
     items: &'a [Item],
     commands: &'a [Prepared<'a, P>],
@@ -79,7 +79,7 @@ struct Painter<'a, P> {
     /// For each layer how many clip paths were open when it was begun: they do not clip what is painted
     /// onto it, but the layer as a whole, or edges would be thinned twice.
     floors: Vec<usize>,
-    /// Whether what was popped can be used again.
+    /// Vectors that were popped, for further use.
     spare: Vec<Vec<P>>,
     /// The lines painted next.
     near: Vec<Line>,
@@ -264,7 +264,7 @@ impl<'a, P: Space> Painter<'a, P> {
     }
 }
 
-/// The coverage that what is painted now is multiplied with.
+/// Returns the coverage that what is painted now is multiplied with.
 fn clip_in_force<'a>(clips: &'a [Vec<u8>], floors: &[usize]) -> Option<&'a Vec<u8>> {
     clips.last().filter(|_| clips.len() > floors.last().copied().unwrap_or(0))
 }
@@ -407,7 +407,7 @@ fn part_covered<S: Simd>(simd: S, coverage: u8, left: usize) -> u32x8<S> {
 
 // No closures here: what they hold would not be compiled for the SIMD level.
 
-/// The eight pixels from `first` on, where all of them come before `end`.
+/// Returns the eight pixels from `first` on, where all of them come before `end`.
 #[inline(always)]
 fn whole_eight<P>(pixels: &mut [P], first: usize, end: usize) -> Option<&mut [P; 8]> {
     if first + 8 > end {
@@ -416,7 +416,7 @@ fn whole_eight<P>(pixels: &mut [P], first: usize, end: usize) -> Option<&mut [P;
     pixels.get_mut(first..first + 8)?.first_chunk_mut()
 }
 
-/// The pixels from `first` to before `end`, and clear ones.
+/// Returns the pixels from `first` to before `end`, and clear ones.
 #[inline(always)]
 fn part_of_eight<P: Space>(pixels: &[P], first: usize, end: usize) -> [P; 8] {
     let mut eight = [P::CLEAR; 8];

@@ -5,8 +5,8 @@
 
 use super::color::Space;
 
-/// How a layer's colour Cs and the backdrop's Cb make one, B(Cb, Cs); all 0 … 1, in the space in which colours
-/// are mixed.
+/// Function B(Cb, Cs) that blends a layer's colour Cs with the backdrop's Cb; all 0 … 1, in the space in which
+/// colours are mixed.
 ///
 /// Where the layer or the backdrop lets light through, only the part that both cover is blended:
 /// Cs·(1 − αb) + B(Cb, Cs)·αb is composited over the backdrop.
@@ -135,7 +135,7 @@ fn soft_light(b: f32, s: f32) -> f32 {
     b + (2.0 * s - 1.0) * (d - b)
 }
 
-/// The luminosity of the specification, which is not that of ITU-R BT.709.
+/// Returns the luminosity of the specification, which is not that of ITU-R BT.709.
 fn luminosity([r, g, b]: [f32; 3]) -> f32 {
     0.3 * r + 0.59 * g + 0.11 * b
 }

@@ -9,11 +9,11 @@ use crate::math::powf;
 
 /// A premultiplied pixel in which source-over can be computed.
 pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
-    /// Nothing.
+    /// An unknown system.
     const CLEAR: Self;
     /// From straight sRGB 0 … 1 and an opacity.
     fn from_srgb(color: [f32; 4], opacity: f32) -> Self;
-    /// The same memory as pixels of this space, where they look alike; to be premultiplied.
+    /// Returns the same memory as pixels of this space, where they look alike; to be premultiplied.
     fn in_place(_rows: &mut [[u8; 4]]) -> Option<&mut [Self]> {
         None
     }
@@ -33,13 +33,13 @@ pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
     fn straight(self) -> Self {
         self
     }
-    /// Whether nothing behind shines through.
+    /// Returns whether nothing behind shines through.
     fn is_opaque(self) -> bool;
-    /// How opaque it is, 0 … 255.
+    /// Returns its opacity, 0 … 255.
     fn alpha(self) -> u8;
-    /// How bright it is over black, 0 … 255 (ITU-R BT.709).
+    /// Returns its luminance over black, 0 … 255 (ITU-R BT.709).
     fn luminance(self) -> u8;
-    /// Whether that holds for all pixels.
+    /// Returns whether that holds for all pixels.
     fn all_opaque(pixels: &[Self]) -> bool {
         pixels.iter().all(|p| p.is_opaque())
     }
@@ -47,7 +47,7 @@ pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
     fn scaled(self, coverage: u8) -> Self;
     /// `self` over `below`, after `self` has been scaled by the coverage.
     fn over(self, coverage: u8, below: Self) -> Self;
-    /// The sum of both, at most what is opaque and white.
+    /// Returns the sum of both, at most what is opaque and white.
     fn plus(self, other: Self) -> Self;
     /// One colour over eight pixels, each with its coverage 0 … 255.
     fn color_over<S: Simd>(simd: S, color: Self, coverage: u32x8<S>, below: &mut [Self; 8]);
@@ -62,7 +62,7 @@ pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
     fn colors_over<S: Simd>(simd: S, colors: &[Self; 8], coverage: u32x8<S>, below: &mut [Self; 8]);
 }
 
-/// Straight 8-bit sRGB with an opacity.
+/// Returns straight 8-bit sRGB with an opacity.
 pub(crate) fn premultiply<P: Space>(color: [u8; 4], opacity: f32) -> P {
     P::from_srgb(color.map(|c| f32::from(c) / 255.0), opacity)
 }
@@ -78,13 +78,13 @@ fn luminance([r, g, b]: [u32; 3]) -> u32 {
     r * 13_933 + g * 46_871 + b * 4_732 + (1 << 15)
 }
 
-/// The straight colour 0 … 1 of a premultiplied one whose channels are at most `full`.
+/// Returns the straight colour 0 … 1 of a premultiplied one whose channels are at most `full`.
 fn unit([r, g, b, alpha]: [f32; 4], full: f32) -> [f32; 4] {
     let straight = |c: f32| if alpha > 0.0 { (c / alpha).min(1.0) } else { 0.0 };
     [straight(r), straight(g), straight(b), alpha / full]
 }
 
-/// The premultiplied channels, half a step up, of a straight colour 0 … 1.
+/// Returns the premultiplied channels, half a step up, of a straight colour 0 … 1.
 fn scaled_unit([r, g, b, alpha]: [f32; 4], full: f32) -> [f32; 4] {
     let part = |c: f32| c * alpha * full + 0.5;
     [part(r), part(g), part(b), alpha * full + 0.5]
@@ -285,12 +285,12 @@ impl Linear {
     }
 }
 
-/// Linear 0 … 1 of an sRGB value 0 … 1 (IEC 61966-2-1).
+/// Returns linear 0 … 1 of an sRGB value 0 … 1 (IEC 61966-2-1).
 fn linear_from_srgb(v: f32) -> f32 {
     if v <= 0.040_45 { v / 12.92 } else { powf((v + 0.055) / 1.055, 2.4) }
 }
 
-/// Linear 16-bit values of the 256 sRGB bytes.
+/// Returns linear 16-bit values of the 256 sRGB bytes.
 fn linear_table() -> &'static [u16; 256] {
     static TABLE: OnceLock<[u16; 256]> = OnceLock::new();
     TABLE.get_or_init(|| {
@@ -298,7 +298,7 @@ fn linear_table() -> &'static [u16; 256] {
     })
 }
 
-/// The sRGB byte nearest to a linear 16-bit value.
+/// Returns the sRGB byte nearest to a linear 16-bit value.
 fn srgb_from_linear(v: u16) -> u8 {
     let table = linear_table();
     let above = table.partition_point(|t| *t < v).min(255);

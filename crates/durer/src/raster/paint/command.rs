@@ -1,4 +1,4 @@
-//! What a canvas has noted, in order.
+//! The commands recorded by a canvas, in order.
 
 use super::color::{Space, premultiply};
 use super::outline::{Drawn, Lists, Outline};
@@ -24,19 +24,19 @@ const LINE: u32 = 1 << 31;
 pub(super) struct Item(u32);
 
 impl Item {
-    /// The number of a line, if it is one.
+    /// Returns the number of a line, if it is one.
     #[inline(always)]
     pub fn line(self) -> Option<usize> {
         (self.0 & LINE != 0).then_some((self.0 & !LINE) as usize)
     }
 
-    /// The number of the command, if it is none.
+    /// Returns the number of the command, if it is none.
     pub fn command(self) -> usize {
         self.0 as usize
     }
 }
 
-/// What can be open.
+/// Kind of an open group or clip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Open {
     /// A clip path, or a mask that is finished.
@@ -49,7 +49,7 @@ pub(super) enum Open {
 }
 
 impl Open {
-    /// What closes it at the end of all commands.
+    /// Returns the commands that close everything at the end.
     pub fn closing<'a, P>(&self) -> impl Iterator<Item = Prepared<'a, P>> + use<'a, P> {
         let (first, second) = match self {
             Self::Clip => (Some(Prepared::PopClip), None),
@@ -63,7 +63,7 @@ impl Open {
     }
 }
 
-/// What an outline is filled with; mostly small.
+/// Paint of an outline; mostly small.
 #[derive(Debug)]
 pub(super) enum Brush {
     /// One colour and its opacity 0 … 1.
@@ -212,7 +212,7 @@ impl Band {
         }
     }
 
-    /// What encloses nothing is dropped.
+    /// Ends an outline; one that encloses nothing is dropped.
     fn end(&mut self, command: Item) {
         match self.open.pop() {
             Some((start, inside)) if inside == self.items.len() => self.items.truncate(start),

@@ -31,13 +31,13 @@ use color::{Linear, Space, Srgb};
 use command::{Brush, Command, Line, Open, Prepared};
 use outline::{Filler, Lists, Outline};
 
-/// What of a picture becomes the coverage of a mask.
+/// Property of a picture that becomes the coverage of a mask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum MaskKind {
-    /// How opaque it is.
+    /// Opacity.
     #[default]
     Alpha,
-    /// How bright it is: 0.2126 R + 0.7152 G + 0.0722 B of the colours as they are mixed, over black.
+    /// Luminance: 0.2126 R + 0.7152 G + 0.0722 B of the colours as they are mixed, over black.
     Luminance,
 }
 
@@ -51,20 +51,19 @@ pub enum Blending {
     Linear,
 }
 
-/// How a canvas paints.
+/// Options of a canvas.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// In which space colours are mixed.
     pub blending: Blending,
-    /// What happens where a path overlaps itself inside a pixel. Strokes, which do so wherever they bend, take
+    /// Treatment of pixels in which a path overlaps itself. Strokes, which do so wherever they bend, take
     /// [`Overlap::Measured`] for [`Overlap::Adaptive`].
     pub overlap: Overlap,
     /// Largest distance between a curve and its chords in pixels. 0.025 is at most 6/255 of coverage
     /// where a curve bends most; the number of chords grows with its inverse square root.
     pub tolerance: f64,
-    /// Whether edges are smoothed; otherwise a pixel is painted when its centre is inside
-    /// ([`super::polygon`]).
-    /// [`Canvas::set_anti_alias`] changes it for what follows.
+    /// True if edges are smoothed; otherwise a pixel is painted when its centre is inside
+    /// ([`super::polygon`]). [`Canvas::set_anti_alias`] changes it for what follows.
     pub anti_alias: bool,
 }
 
@@ -102,7 +101,7 @@ pub struct Canvas {
     height: u32,
     options: Options,
     transform: DAffine2,
-    /// What every pixel is set to first; `None` keeps the target's.
+    /// Colour that every pixel is set to first; `None` keeps the target's.
     background: Option<Color>,
     commands: Vec<Command>,
     /// Thin straight lines, which commands count through.
@@ -114,7 +113,7 @@ pub struct Canvas {
     lists: Lists,
     /// Buffers that threads have painted with, for the next picture.
     fillers: Mutex<Vec<Filler>>,
-    /// What holds the memory of what is noted, and may stop it.
+    /// Budget for the recorded commands, and their cancellation.
     work: Work,
     /// Bytes of edges that commands have for themselves.
     own_edges: u64,
@@ -122,14 +121,14 @@ pub struct Canvas {
     charged: u64,
 }
 
-/// So many bytes are noted between two charges.
+/// Number of bytes recorded between two charges.
 const CHARGE: u64 = 1 << 18;
 
-/// What is noted is called so in errors about memory.
+/// Name of the recorded commands in errors about memory.
 const NOTED: &str = "outlines of what is painted";
 
 impl Canvas {
-    /// An empty list for targets of `width` × `height` pixels.
+    /// Creates an empty list for targets of `width` × `height` pixels.
     ///
     /// # Errors
     /// [`Error::Limit`] for sides beyond 32,767 pixels.
@@ -165,22 +164,22 @@ impl Canvas {
         self.charged = 0;
     }
 
-    /// The work that it is a part of.
+    /// Returns the work that it is a part of.
     pub fn work(&self) -> &Work {
         &self.work
     }
 
-    /// Width of the target in pixels.
+    /// Returns the width of the target in pixels.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Height of the target in pixels.
+    /// Returns the height of the target in pixels.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// How it paints.
+    /// Returns the options.
     pub fn options(&self) -> &Options {
         &self.options
     }
@@ -223,7 +222,7 @@ impl Canvas {
         self.transform = pixel_from_path;
     }
 
-    /// Whether the edges of what follows are smoothed; at first as the options say.
+    /// Sets whether the edges of later shapes are smoothed; at first as the options say.
     pub fn set_anti_alias(&mut self, smooth: bool) {
         self.anti_alias = smooth;
     }
@@ -430,14 +429,14 @@ impl Canvas {
     }
 }
 
-/// The length of the longest image of a unit vector.
+/// Returns the length of the longest image of a unit vector.
 fn stretch(map: DAffine2) -> f64 {
     let (a, b) = (map.matrix2.x_axis, map.matrix2.y_axis);
     let (sum, difference) = (a.dot(a) + b.dot(b), a.dot(a) - b.dot(b));
     ((sum + libm::hypot(difference, 2.0 * a.dot(b))) / 2.0).sqrt()
 }
 
-/// Whether contours are one upright rectangle that holds a picture of this size.
+/// Returns whether contours are one upright rectangle that holds a picture of this size.
 fn holds_all(contours: &Contours, [width, height]: [f64; 2]) -> bool {
     let points = match contours.points() {
         [points @ .., last] if points.len() == 4 && *last == points[0] => points,

@@ -24,7 +24,7 @@ impl Lists {
         self.hard.clear();
     }
 
-    /// What they take, bytes.
+    /// Returns their size in bytes.
     pub fn bytes(&self) -> u64 {
         let smooth = self.smooth.capacity() * size_of::<Edge>();
         (smooth + self.hard.capacity() * size_of::<crossings::Edge>()) as u64
@@ -41,7 +41,8 @@ pub(super) enum Outline {
 }
 
 impl Outline {
-    /// The outline of contours in a target of the given size; a few edges are added to the lists.
+    /// Creates the outline of contours in a target of the given size; a few edges are added to the
+    /// lists.
     pub fn new(
         contours: &Contours,
         (width, height): (u32, u32),
@@ -55,7 +56,7 @@ impl Outline {
         }
     }
 
-    /// What it takes besides what is in the lists, bytes.
+    /// Returns its size besides the lists, in bytes.
     pub fn bytes(&self) -> u64 {
         match self {
             Self::Smooth(path) => path.bytes(),
@@ -63,7 +64,8 @@ impl Outline {
         }
     }
 
-    /// First row touched and one past the last; the second is not larger where there is nothing to fill.
+    /// Returns the first row touched and one past the last; the second is not larger where there is
+    /// nothing to fill.
     pub fn rows(&self) -> (i32, i32) {
         match self {
             Self::Smooth(path) => path.rows,

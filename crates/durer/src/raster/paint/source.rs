@@ -1,4 +1,4 @@
-//! What is painted: one colour, gradients, images. All of it evaluated at pixel centres.
+//! The paints: one colour, gradients, images. All are evaluated at pixel centres.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use crate::target::Pixels;
 /// 8-bit sRGB with straight alpha.
 pub type Color = [u8; 4];
 
-/// What a gradient shows before its first and after its last stop.
+/// Extension of a gradient before its first and after its last stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Spread {
     /// The colour of the end.
@@ -27,9 +27,9 @@ pub enum Spread {
 pub enum Shape {
     /// From one point to another, constant across.
     Linear {
-        /// Where the parameter is 0.
+        /// Point where the parameter is 0.
         start: DVec2,
-        /// Where it is 1.
+        /// Point where it is 1.
         end: DVec2,
     },
     /// From a focal circle to an outer circle, as in SVG and PDF.
@@ -48,11 +48,11 @@ pub enum Shape {
 /// A colour ramp along a line or between two circles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gradient {
-    /// Where the parameter runs.
+    /// Geometry of the parameter.
     pub shape: Shape,
     /// Parameters 0 … 1 in rising order and their colours.
     pub stops: Vec<(f64, Color)>,
-    /// What comes outside 0 … 1.
+    /// Extension outside 0 … 1.
     pub spread: Spread,
     /// From the paint's own space to the path's.
     pub transform: DAffine2,
@@ -65,13 +65,13 @@ pub struct Pattern {
     pub image: Arc<Pixels<Color>>,
     /// From the image's pixels to the path's space.
     pub transform: DAffine2,
-    /// What is outside the image: the pixels at its border, or the image again; `None` = nothing.
+    /// Extension outside the image: the pixels at its border, or the image again; `None` = nothing.
     pub spread: Option<Spread>,
-    /// How colours between its pixels are found.
+    /// Filter between its pixels.
     pub filter: Filter,
 }
 
-/// How the colours between the pixels of an image are found. Colours count as much as they are opaque.
+/// Filter for colours between the pixels of an image. Colours count as much as they are opaque.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Filter {
     /// The nearest pixel.
@@ -87,7 +87,7 @@ pub enum Filter {
     Area,
 }
 
-/// What a path is painted with.
+/// Paint of a path.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Paint {
     /// One colour.
@@ -152,7 +152,7 @@ impl<P: Space> Ramp<P> {
         Self { gradient: gradient.clone(), paint_from_pixel, opacity, colors }
     }
 
-    /// The colour at a parameter.
+    /// Returns the colour at a parameter.
     fn color(&self, t: f64) -> P {
         let within = spread_over(self.gradient.spread, t);
         let place = (within * (RAMP - 1) as f64 + 0.5) as usize;
@@ -173,7 +173,7 @@ pub(crate) struct Image {
     opacity: f64,
 }
 
-/// An opacity 0 … 1; what is no number is 1.
+/// Returns an opacity 0 … 1; what is no number is 1.
 pub(super) fn opacity(opacity: f64) -> f64 {
     if opacity.is_finite() { opacity.clamp(0.0, 1.0) } else { 1.0 }
 }
@@ -228,7 +228,7 @@ impl<P: Space> Source<P> {
         }
     }
 
-    /// Whether it covers what is behind it completely.
+    /// Returns its colour if it covers everything behind it completely.
     pub fn color(&self) -> Option<P> {
         match self {
             Self::Solid(color) => Some(*color),
@@ -237,8 +237,9 @@ impl<P: Space> Source<P> {
     }
 }
 
-/// The centres of eight pixels of row `y` from column `x` on, mapped. Steps begin at every eighth column, so that where
-/// a pixel's centre comes to lie does not depend, in its last bits, on the pixels that are asked for with it.
+/// Returns the centres of eight pixels of row `y` from column `x` on, mapped. Steps begin at every eighth
+/// column, so that where a pixel's centre comes to lie does not depend, in its last bits, on the pixels that
+/// are asked for with it.
 fn centers(map: &DAffine2, x: usize, y: usize) -> impl Iterator<Item = DVec2> {
     let step = map.matrix2.x_axis;
     let begin = x & !7;
@@ -252,7 +253,7 @@ fn inverse(map: DAffine2) -> Option<DAffine2> {
     (determinant.is_finite() && determinant != 0.0 && map.is_finite()).then(|| map.inverse())
 }
 
-/// Straight colour in 0 … 255 at a parameter of the stops.
+/// Returns straight colour in 0 … 255 at a parameter of the stops.
 fn stop_color(stops: &[(f64, Color)], t: f64) -> [f64; 4] {
     // By bisection: drawings may have thousands.
     let after = stops.partition_point(|s| s.0.partial_cmp(&t) != Some(Ordering::Greater));
@@ -262,7 +263,7 @@ fn stop_color(stops: &[(f64, Color)], t: f64) -> [f64; 4] {
     std::array::from_fn(|i| f64::from(c0[i]) + (f64::from(c1[i]) - f64::from(c0[i])) * share)
 }
 
-/// The gradient's parameter at a point; `None` where no circle passes through it.
+/// Returns the gradient's parameter at a point; `None` where no circle passes through it.
 fn parameter(shape: &Shape, p: DVec2) -> Option<f64> {
     match *shape {
         Shape::Linear { start, end } => {
@@ -298,7 +299,7 @@ fn spread_over(spread: Spread, t: f64) -> f64 {
     }
 }
 
-/// The column or row of an image of `n` that stands at place `at`.
+/// Returns the column or row of an image of `n` that stands at place `at`.
 fn within(at: i64, n: i64, pattern: &Pattern) -> Option<u32> {
     let at = match pattern.spread {
         None if (0..n).contains(&at) => at,
@@ -313,8 +314,8 @@ fn within(at: i64, n: i64, pattern: &Pattern) -> Option<u32> {
     u32::try_from(at).ok()
 }
 
-/// The pattern's straight colour in 0 … 255 at a point in its pixels; the map gives the size of a pixel
-/// that is painted there.
+/// Returns the pattern's straight colour in 0 … 255 at a point in its pixels; the map gives the size of
+/// a pixel that is painted there.
 fn image_color(pattern: &Pattern, p: DVec2, image_from_pixel: &DAffine2) -> [f64; 4] {
     match pattern.filter {
         Filter::Nearest => {
@@ -327,7 +328,7 @@ fn image_color(pattern: &Pattern, p: DVec2, image_from_pixel: &DAffine2) -> [f64
     }
 }
 
-/// The straight colour of a pixel of a pattern, or of what is outside its image.
+/// Returns the straight colour of a pixel of a pattern, or of what is outside its image.
 fn pixel(pattern: &Pattern, x: f64, y: f64) -> [f64; 4] {
     let size = (i64::from(pattern.image.width()), i64::from(pattern.image.height()));
     let place = [(x as i64, size.0), (y as i64, size.1)].map(|(at, n)| within(at, n, pattern));
@@ -381,7 +382,8 @@ fn bicubic(pattern: &Pattern, p: DVec2) -> [f64; 4] {
     sum.straight()
 }
 
-/// The weights of the four pixels in a row around a point that is `f` of the way from the second to the third.
+/// Returns the weights of the four pixels in a row around a point that is `f` of the way from the second to
+/// the third.
 fn mitchell(f: f64) -> [f64; 4] {
     let (near, far) = (
         |x: f64| ((7.0 * x - 12.0) * x * x + 16.0 / 3.0) / 6.0,
@@ -403,7 +405,7 @@ impl Mixture {
         self.0.iter_mut().zip(other.0).for_each(|(sum, part)| *sum += part * weight);
     }
 
-    /// The straight colour, within 0 … 255.
+    /// Returns the straight colour, within 0 … 255.
     fn straight(self) -> [f64; 4] {
         let [r, g, b, a] = self.0;
         if a <= 0.0 {

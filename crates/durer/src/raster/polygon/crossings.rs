@@ -1,4 +1,4 @@
-//! Where edges cross the centres of rows, band by band.
+//! The crossings of edges with the centres of rows, band by band.
 //!
 //! Which pixel a crossing falls on is decided exactly though x is followed in binary fractions: crossings are
 //! multiples of 1/(256 · height) of a pixel, heights in 1/256 of a pixel, so x may come out too small by less than
@@ -21,9 +21,8 @@ use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS, first_center};
 const BITS: u32 = 46;
 /// One pixel.
 const ONE: i64 = 1 << BITS;
-/// What x is taken smaller than computed, 2⁻³⁵ pixel. Four roundings in f64 of numbers up to 2¹⁷ (start, slope, their
-/// product and sum) are at most 2⁻³⁵ off together, 32 steps of the cut off slope 2⁻⁴¹, while edges up to 2²⁵ high
-/// allow 2⁻³³.
+/// Amount by which x is reduced, 2⁻³⁵ pixel. Four roundings in f64 of numbers up to 2¹⁷ (start, slope, their product
+/// and sum) are at most 2⁻³⁵ off together, 32 steps of the cut off slope 2⁻⁴¹, while edges up to 2²⁵ high allow 2⁻³³.
 const SLACK: i64 = ONE >> 35;
 /// Crossings of a row that are kept in a list; with more the band counts them per pixel.
 const LISTED: usize = 32;
@@ -31,13 +30,13 @@ const LISTED: usize = 32;
 /// An edge that crosses the centre of at least one row of the target.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Edge {
-    /// Where it crosses the first row's centre, in pixels from the centre of column 0.
+    /// Crossing with the first row's centre, in pixels from the centre of column 0.
     x: f64,
     /// Change of x per row.
     slope: f64,
     /// First row and one past the last.
     rows: (i32, i32),
-    /// Whether it goes down in the path.
+    /// True if it goes down in the path.
     down: bool,
 }
 
@@ -57,8 +56,8 @@ impl Edge {
         Some(Self { x, slope: dx as f64 / dy as f64, rows: (first, last), down })
     }
 
-    /// The rows of the band at `top` whose centres it crosses, seen from there, x at the first of them such that
-    /// cutting it off gives the first pixel not left of the edge, and the change of x per row.
+    /// Returns the rows of the band at `top` whose centres it crosses, seen from there, x at the first of
+    /// them such that cutting it off gives the first pixel not left of the edge, and the change of x per row.
     #[inline(always)]
     fn within(&self, top: i32) -> (i32, i32, i64, i64) {
         let first = self.rows.0.max(top);
@@ -110,12 +109,13 @@ fn add(contours: &Contours, range: Range<usize>, height: i32, list: &mut Vec<Edg
 }
 
 impl CrossingEdges {
-    /// What the edges take that are in no list, bytes.
+    /// Returns the size of the edges that are not in the list, in bytes.
     pub fn bytes(&self) -> u64 {
         self.edges.bytes()
     }
 
-    /// The edges of contours within a target of the given size, at most 32,767 each way; a few are added to the list.
+    /// Creates the edges of contours within a target of the given size, at most 32,767 each way; a few are
+    /// added to the list.
     pub fn new(contours: &Contours, width: u32, height: u32, list: &mut Vec<Edge>) -> Self {
         let (width, height) = (width as i32, height as i32);
         let (count, rows) = (contours.points().len(), |edge: &Edge| edge.rows);
@@ -139,7 +139,7 @@ impl CrossingEdges {
         Self { edges, rows, columns }
     }
 
-    /// Whether the path crosses no row of the band that starts at row `top`.
+    /// Returns whether the path crosses no row of the band that starts at row `top`.
     pub fn misses(&self, top: i32) -> bool {
         self.rows.0 >= top + BAND_ROWS || self.rows.1 <= top
     }
@@ -158,7 +158,7 @@ pub(crate) struct Path<'a> {
 }
 
 impl Path<'_> {
-    /// First row and one past the last.
+    /// Returns the first row and one past the last.
     pub fn rows(&self) -> (i32, i32) {
         self.path.rows
     }
@@ -186,7 +186,7 @@ impl Path<'_> {
 #[derive(Debug, Default)]
 pub(crate) struct CrossingFiller {
     width: usize,
-    /// How many crossings of each row are listed.
+    /// Number of listed crossings of each row.
     counts: [u32; BAND_ROWS as usize],
     /// Twice the pixel of each, and one where the edge goes down.
     lists: Vec<[u32; LISTED]>,

@@ -68,9 +68,9 @@ pub struct Edge {
     /// The accumulator: how far the edge lies right of the centre of that pixel's left neighbour, in 1/`whole` of
     /// a pixel, less one.
     pub error: i64,
-    /// What a row adds to `x` without the accumulator: the whole pixels of Δx/Δy.
+    /// Increment of `x` from row to row without the accumulator: the whole pixels of Δx/Δy.
     pub step: i64,
-    /// What a row adds to the accumulator: the rest of Δx/Δy, in 1/`whole` of a pixel.
+    /// Increment of the accumulator from row to row: the rest of Δx/Δy, in 1/`whole` of a pixel.
     pub remainder: i64,
     /// As much in the accumulator is one pixel: when it is reached, `x` grows by one.
     pub whole: i64,
@@ -79,8 +79,8 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// The edge between two snapped points, set up for row `top` or its first one below; `None` where it
-    /// crosses no row's centres.
+    /// Creates the edge between two snapped points, set up for row `top` or its first one below; `None`
+    /// where it crosses no row's centres.
     fn new(a: (i32, i32), b: (i32, i32), top: i32) -> Option<Self> {
         let (upper, lower, winding) = if a.1 <= b.1 { (a, b, 1) } else { (b, a, -1) };
         let first = first_center(upper.1).max(top);
@@ -107,8 +107,8 @@ impl Edge {
         })
     }
 
-    /// Where the edge crosses the centre of the current row, in pixels from the centre of column 0; what is never
-    /// computed while filling.
+    /// Returns the crossing of the edge with the centre of the current row, in pixels from the
+    /// centre of column 0; filling never computes it.
     pub fn crossing(&self) -> f64 {
         (self.x - 1) as f64 + (self.error + 1) as f64 / self.whole as f64
     }
@@ -171,7 +171,7 @@ pub fn fill(
     }
 }
 
-/// The edges of a polygon that cross rows of the target.
+/// Returns the edges of a polygon that cross rows of the target.
 pub(crate) fn table(contours: &Contours, height: u32) -> Vec<Edge> {
     let mut table = Vec::new();
     snapped_edges(contours, 0..contours.points().len(), |a, b| {

@@ -62,10 +62,10 @@ impl PolygonRasterizer {
     }
 }
 
-/// How a polygon is filled.
+/// Options for filling a polygon.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
-    /// Which winding numbers are inside.
+    /// Rule that decides from the winding number what is inside.
     pub rule: FillRule,
 }
 

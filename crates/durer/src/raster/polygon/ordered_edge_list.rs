@@ -46,7 +46,7 @@ pub enum Step {
         y: i32,
         /// First pixel whose centre is not left of the edge, from 0 to one past the last column.
         x: i32,
-        /// What the winding number changes by there.
+        /// Change of the winding number there.
         winding: i32,
     },
     /// A span is emitted.

@@ -18,7 +18,7 @@ use crate::target::Pixels;
 use crate::trace::Tracer;
 use region::Region;
 
-/// Which pixels are neighbours.
+/// Neighbourhood of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Connectivity {
     /// Those with a common side.
@@ -28,10 +28,10 @@ pub enum Connectivity {
     Eight,
 }
 
-/// How a region is filled.
+/// Options for filling a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
-    /// Which pixels are neighbours.
+    /// Neighbourhood of pixels.
     pub connectivity: Connectivity,
     /// For [`boundary_fill`]: whether pixels that have the new value already stop it, too, as is taught
     /// (`current ≠ boundary and current ≠ fill`). Then what lies behind them is not reached.
@@ -47,7 +47,7 @@ pub struct Step {
     pub x0: u32,
     /// One past the last pixel.
     pub x1: u32,
-    /// How much waits on the stack: pixels of the naive form, runs of the other.
+    /// Size of the stack: pixels of the naive form, runs of the other.
     pub waiting: usize,
 }
 
@@ -87,11 +87,11 @@ family! {
 
 /// Values of pixels that can be more or less alike.
 pub trait PixelValue: Copy {
-    /// What differences are counted in.
+    /// Unit of differences.
     type Level: Copy + Ord + Default;
-    /// The largest difference of a channel.
+    /// Returns the largest difference of a channel.
     fn difference(self, other: Self) -> Self::Level;
-    /// Whether it is 0, with which a channel of opacity shows nothing.
+    /// Returns whether it is 0, with which a channel of opacity shows nothing.
     fn is_zero(self) -> bool;
 }
 

@@ -1,4 +1,4 @@
-//! Which pixels of an image may be filled, one bit each.
+//! The pixels of an image that may be filled, one bit each.
 
 use std::ops::Range;
 
@@ -16,14 +16,14 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// An image of which only one row is known, and nothing open there yet.
+    /// Creates an image of which only one row is known, and nothing open there yet.
     pub fn unread<P: Copy>(image: &Pixels<P>, row: usize) -> Self {
         let (width, height) = (image.width() as usize, image.height() as usize);
         let words = width.div_ceil(64);
         Self { width, height, words, open: vec![0; words * height], known: row..row + 1 }
     }
 
-    /// An image as a whole.
+    /// Creates an image as a whole.
     pub fn new<P: Copy>(image: &Pixels<P>, inside: &impl Fn(P) -> bool) -> Self {
         let mut region = Self::unread(image, 0);
         let rows = region.open.chunks_exact_mut(region.words.max(1));
@@ -71,7 +71,7 @@ impl Region {
         &self.open[y * self.words..(y + 1) * self.words]
     }
 
-    /// The first open pixel of a row in `x..end`.
+    /// Returns the first open pixel of a row in `x..end`.
     pub fn next_open(&self, y: usize, x: usize, end: usize) -> Option<usize> {
         let found = next_bit(self.row(y), x, |w| w)?;
         (found < end).then_some(found)
@@ -114,7 +114,7 @@ pub(super) fn read_row<P: Copy>(
     all == u64::MAX
 }
 
-/// One bit for each of at most 64 pixels.
+/// Returns one bit for each of at most 64 pixels.
 #[inline(always)]
 fn bits<P: Copy>(pixels: &[P], inside: &impl Fn(P) -> bool) -> u64 {
     // Bytes first, for those are compared many at a time.
@@ -136,7 +136,7 @@ fn bits<P: Copy>(pixels: &[P], inside: &impl Fn(P) -> bool) -> u64 {
     bytes.enumerate().fold(0, |word, (i, byte)| word | (byte << (8 * i)))
 }
 
-/// The first bit from `x` on that is set after `map`.
+/// Returns the first bit from `x` on that is set after `map`.
 fn next_bit(row: &[u64], x: usize, map: impl Fn(u64) -> u64) -> Option<usize> {
     let first = map(*row.get(x / 64)?) & (u64::MAX << (x % 64));
     if first != 0 {
@@ -147,7 +147,7 @@ fn next_bit(row: &[u64], x: usize, map: impl Fn(u64) -> u64) -> Option<usize> {
     rest.next().map(|(i, w)| i * 64 + w.trailing_zeros() as usize)
 }
 
-/// The last closed pixel before x.
+/// Returns the last closed pixel before x.
 fn previous_closed(row: &[u64], x: usize) -> Option<usize> {
     let last = !row.get(x / 64)? & !(u64::MAX << (x % 64));
     if last != 0 {

@@ -61,13 +61,13 @@ pub(super) fn fill<P: Copy>(
 /// One row on its way through an image.
 struct Row {
     eight: bool,
-    /// What may be filled.
+    /// Pixels that may be filled.
     open: Vec<u64>,
-    /// Whether all of it may.
+    /// True if all of it may.
     full: bool,
-    /// What is reached; once it is filled, what the rows beside may touch.
+    /// Pixels that are reached; once they are filled, those that the rows beside may touch.
     reached: Vec<u64>,
-    /// Whether something open is left behind in the row filled last.
+    /// True if something open is left behind in the row filled last.
     left: bool,
 }
 

@@ -87,14 +87,14 @@ impl Waiting {
     }
 }
 
-/// What is reached to the right of seeds, which are open, as far as pixels are.
+/// Returns the pixels reached to the right of seeds, which are open, as far as pixels are.
 #[inline(always)]
 pub(super) fn rightwards(seeds: u64, open: u64) -> u64 {
     // The carry of the lowest seed of a run clears it to its end; further seeds only set their own bits again.
     ((open.wrapping_add(seeds) ^ open) & open) | seeds
 }
 
-/// What is reached to the left of seeds, which are open, as far as pixels are.
+/// Returns the pixels reached to the left of seeds, which are open, as far as pixels are.
 #[inline(always)]
 pub(super) fn leftwards(seeds: u64, open: u64) -> u64 {
     let (mut left, mut through) = (seeds, open);

@@ -21,7 +21,7 @@ pub const INFO: Info = Info {
     limits: "coordinates within the guard band",
 };
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
     /// The functions were evaluated at a pixel's centre.
@@ -58,7 +58,7 @@ pub fn rasterize(
     }
 }
 
-/// The run of covered columns of one row; a triangle is convex, so there is at most one.
+/// Returns the run of covered columns of one row; a triangle is convex, so there is at most one.
 fn covered(
     edges: &[Edge; 3],
     mut at: [i64; 3],

@@ -23,7 +23,7 @@ pub const INFO: Info = Info {
     limits: "coordinates within the guard band",
 };
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
     /// The walk turned from the two upper edges to the lower ones, or began.
@@ -95,7 +95,7 @@ impl RowWalk {
         Some((Self { left, right, turn: upper.y1, end: lower.y1 }, y))
     }
 
-    /// First column, and the column after the last; empty where `x0 ≥ x1`.
+    /// Returns the first column, and the column after the last; empty where `x0 ≥ x1`.
     #[inline]
     pub fn span(&self) -> [i64; 2] {
         [self.left.x, self.right.x]

@@ -50,7 +50,7 @@ impl TriangleRasterizer {
     }
 }
 
-/// What all three have in common.
+/// Options of all three.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
     /// Pixels outside are left out; those inside are the same with any clip.
@@ -75,7 +75,7 @@ pub struct SnappedTriangle([[i32; 2]; 3]);
 const GUARD_BAND_FIXED: i32 = (fixed::GUARD_BAND as i32) << SUBPIXEL_BITS;
 
 impl SnappedTriangle {
-    /// A triangle from grid coordinates, [x, y] in 1/256 pixel, y down.
+    /// Creates A triangle from grid coordinates, [x, y] in 1/256 pixel, y down.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a coordinate beyond the guard band.
@@ -86,7 +86,7 @@ impl SnappedTriangle {
         }
     }
 
-    /// A triangle from screen coordinates in pixels, snapped to the nearest grid points.
+    /// Creates A triangle from screen coordinates in pixels, snapped to the nearest grid points.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a coordinate that is NaN or beyond the guard band.
@@ -98,20 +98,20 @@ impl SnappedTriangle {
         }
     }
 
-    /// A triangle whose coordinates are known to lie within the guard band.
+    /// Creates A triangle whose coordinates are known to lie within the guard band.
     #[inline]
     pub(crate) fn within_guard_band(vertices: [[i32; 2]; 3]) -> Self {
         debug_assert!(Self::new(vertices).is_ok());
         Self(vertices)
     }
 
-    /// The corners, [x, y] in 1/256 pixel, y down.
+    /// Returns the corners, [x, y] in 1/256 pixel, y down.
     pub fn vertices(&self) -> [[i32; 2]; 3] {
         self.0
     }
 
-    /// Twice the signed area in 1/256² pixel²; positive where the corners turn clockwise on the
-    /// screen, which has y down. Exact.
+    /// Returns twice the signed area in 1/256² pixel²; positive where the corners turn clockwise on
+    /// the screen, which has y down. Exact.
     pub fn doubled_area(&self) -> i64 {
         let [a, b, c] = self.0;
         // Both products are below 2⁶², the area of the box around all three.
@@ -119,7 +119,7 @@ impl SnappedTriangle {
         d(b, 0) * d(c, 1) - d(b, 1) * d(c, 0)
     }
 
-    /// The three edges in a sense that makes the inside positive; `None` for no area.
+    /// Returns the three edges in a sense that makes the inside positive; `None` for no area.
     fn edges(&self) -> Option<[Edge; 3]> {
         let [a, b, c] = self.0;
         match self.doubled_area() {
@@ -129,7 +129,7 @@ impl SnappedTriangle {
         }
     }
 
-    /// The pixels whose centres lie in the closed bounding box, within `clip`.
+    /// Returns the pixels whose centres lie in the closed bounding box, within `clip`.
     fn pixels(&self, clip: &PixelRect) -> PixelRect {
         let range = |k: usize| {
             let c = self.0.map(|v| v[k]);
@@ -171,12 +171,12 @@ impl Edge {
         self.d[0] * (center(y) - self.a[1]) - self.d[1] * (center(x) - self.a[0]) + self.bias
     }
 
-    /// What E gains from one pixel to the next on the right.
+    /// Returns the increase of E from one pixel to the next on the right.
     fn step_x(&self) -> i64 {
         -self.d[1] * i64::from(SUBPIXELS)
     }
 
-    /// What E gains from one pixel to the next below.
+    /// Returns the increase of E from one pixel to the next below.
     fn step_y(&self) -> i64 {
         self.d[0] * i64::from(SUBPIXELS)
     }

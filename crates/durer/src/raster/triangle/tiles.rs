@@ -27,7 +27,7 @@ pub const INFO: Info = Info {
 /// Width and height of a tile in pixels: a row's mask fits a byte.
 pub const TILE: i32 = 8;
 
-/// What the corners said about a tile.
+/// Result of testing a tile's corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Verdict {
     /// All of it lies outside one edge.
@@ -38,7 +38,7 @@ pub enum Verdict {
     Examined,
 }
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
     /// A tile was decided.
@@ -47,7 +47,7 @@ pub enum Step {
         x: i32,
         /// Its top row, a multiple of 8.
         y: i32,
-        /// How.
+        /// Result of the test.
         verdict: Verdict,
         /// Covered pixels, row by row; bit k is column x + k. Not clipped.
         rows: [u8; TILE as usize],
@@ -125,7 +125,7 @@ fn decide(edges: &[Edge; 3], x: i32, y: i32) -> (Verdict, [u8; TILE as usize]) {
     }
 }
 
-/// The mask of each row of a tile from the functions at its first pixel.
+/// Returns the mask of each row of a tile from the functions at its first pixel.
 fn examine(edges: &[Edge; 3], at: [i64; 3]) -> [u8; TILE as usize] {
     let mut outside = [0u8; TILE as usize];
     for (edge, start) in edges.iter().zip(at) {

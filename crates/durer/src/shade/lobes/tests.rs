@@ -9,7 +9,8 @@ fn plain() -> Material {
     Material { model: ShadingModel::MetallicRoughness, ..Material::default() }
 }
 
-/// What leaves a surface of base colour 0.5 in a white room, seen at an angle of this cosine.
+/// Returns the light that leaves a surface of base colour 0.5 in a white room, seen at an angle of
+/// this cosine.
 fn in_white_room(m: &Material, cosine: f32) -> Vec3 {
     let lights = PreparedLights {
         origin: DVec3::ZERO,

@@ -27,7 +27,8 @@ impl<'a> PreparedMaterials<'a> {
         Self { materials, default, ink }
     }
 
-    /// The same where lines and points that have no material are drawn in a linear colour, unlit.
+    /// Creates the same where lines and points that have no material are drawn in a linear colour,
+    /// unlit.
     #[must_use]
     pub fn with_ink(mut self, color: Vec3) -> Self {
         self.ink.model = ShadingModel::Unlit;
@@ -35,13 +36,14 @@ impl<'a> PreparedMaterials<'a> {
         self
     }
 
-    /// The material of lines or points: as [`Self::get`], but for `None` the ink.
+    /// Returns the material of lines or points: as [`Self::get`], but for `None` the ink.
     #[inline]
     pub fn of_marks(&self, index: Option<usize>) -> &PreparedMaterial<'a> {
         index.map_or(&self.ink, |_| self.get(index))
     }
 
-    /// The material of this index; for `None`, or where there is none, the default material.
+    /// Returns the material of this index; for `None`, or where there is none, the default
+    /// material.
     #[inline]
     pub fn get(&self, index: Option<usize>) -> &PreparedMaterial<'a> {
         index.and_then(|i| self.materials.get(i)).unwrap_or(&self.default)

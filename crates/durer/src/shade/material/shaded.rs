@@ -8,7 +8,8 @@ use crate::shade::sample::Sample;
 use crate::shade::surface::Surface;
 use crate::shade::{Shading, formula, lobes, tone};
 
-/// The colour of a visible point: linear RGBA with straight alpha, all within 0…1 and never NaN.
+/// Returns the colour of a visible point: linear RGBA with straight alpha, all within 0…1 and never
+/// NaN.
 ///
 /// Alpha is 1 for opaque materials, 0 or 1 for masked ones (the caller drops what has 0), else the
 /// surface's alpha. Both sides of a face are lit; what is brighter than white keeps its hue and is

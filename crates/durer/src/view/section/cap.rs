@@ -5,7 +5,8 @@ use crate::math::{DVec2, DVec3, Orientation, Vec3, orient2d};
 use earcut::Earcut;
 use std::collections::HashMap;
 
-/// The triangles that close a cut, their front against `normal`; `None` where its edges do not close.
+/// Returns the triangles that close a cut, their front against `normal`; `None` where its edges do
+/// not close.
 ///
 /// Every edge is a side of exactly one triangle, so that a closed mesh stays closed.
 pub fn triangles(
@@ -42,7 +43,7 @@ pub fn triangles(
     Some(triangles)
 }
 
-/// Closed walks that use each segment once; `None` where some walk cannot be closed.
+/// Returns closed walks that use each segment once; `None` where some walk cannot be closed.
 fn loops(segments: &[[u32; 2]]) -> Option<Vec<Vec<u32>>> {
     // Segments that run both ways bound nothing.
     let mut sorted = segments.to_vec();
@@ -118,7 +119,8 @@ impl<'a> Flat<'a> {
         DVec2::new(p[self.axes[0]], p[self.axes[1]])
     }
 
-    /// Whether a ring lies within another: told by its first point that is not one of the other's.
+    /// Returns whether a ring lies within another, by its first point that is not one of the
+    /// other's.
     fn contains(&self, outer: &[u32], inner: &[u32]) -> bool {
         let ring: Vec<DVec2> = outer.iter().map(|&v| self.point(v)).collect();
         let test = inner.iter().map(|&v| self.point(v)).find(|p| !ring.contains(p));
@@ -198,7 +200,7 @@ fn use_all(ring: &[u32], start: usize, triangles: &mut Vec<[u32; 3]>) {
     }
 }
 
-/// Whether a point lies inside a simple ring; exact.
+/// Returns whether a point lies inside a simple ring; exact.
 fn winds(ring: &Ring, p: DVec2) -> bool {
     let Some(&last) = ring.last() else { return false };
     let mut inside = false;

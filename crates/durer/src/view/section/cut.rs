@@ -13,7 +13,7 @@ pub struct Cut {
     pub segments: Vec<[u32; 2]>,
 }
 
-/// The part of a mesh of triangles inside a plane.
+/// Returns the part of a mesh of triangles inside a plane.
 pub fn triangles(mesh: &Mesh, plane: &Plane, last_digit: f64) -> Cut {
     let welded = weld(mesh, last_digit);
     let heights = heights(mesh, &welded, plane);
@@ -46,7 +46,7 @@ pub fn triangles(mesh: &Mesh, plane: &Plane, last_digit: f64) -> Cut {
 /// Vertices this near to the plane, as a part of the mesh's extent, lie on it: as far as an f32 can tell.
 const ON_PLANE: f64 = 1.0 / (1u64 << 23) as f64;
 
-/// How far inside the plane each vertex lies, the same for all at one place.
+/// Returns the distance of each vertex inside the plane, the same for all at one place.
 fn heights(mesh: &Mesh, welded: &[u32], plane: &Plane) -> Vec<f64> {
     let bounds = Aabb::around(mesh.positions.iter().map(|p| p.as_dvec3()));
     let extent = bounds.map_or(0.0, |b| b.size().max_element());
@@ -58,7 +58,7 @@ fn heights(mesh: &Mesh, welded: &[u32], plane: &Plane) -> Vec<f64> {
     welded.iter().map(height).collect()
 }
 
-/// Lines and points whose first vertex lies inside a plane.
+/// Returns lines and points whose first vertex lies inside a plane.
 pub fn primitives(mesh: &Mesh, plane: &Plane) -> Mesh {
     let mut kept = Mesh { indices: None, parts: Vec::new(), ..mesh.clone() };
     let per = if mesh.topology == crate::scene::Topology::Points { 1 } else { 2 };
@@ -114,9 +114,9 @@ struct Cutter<'a> {
     heights: &'a [f64],
     mesh: Mesh,
     indices: Vec<u32>,
-    /// Of each position on the plane the first vertex made there: what caps use.
+    /// First vertex made at each position on the plane, for caps.
     places: HashMap<[u32; 3], u32>,
-    /// Of each edge of the file, which may have attributes of its own, its new vertex.
+    /// New vertex of each edge of the file, which may have attributes of its own.
     vertices: HashMap<(u32, u32), u32>,
     segments: Vec<[u32; 2]>,
 }
@@ -164,7 +164,7 @@ impl Cutter<'_> {
         }
     }
 
-    /// Where an edge meets the plane: its own vertex, and that of its place.
+    /// Finds the intersection of an edge and the plane: its own vertex, and that of its place.
     fn meet(&mut self, v: u32, w: u32) -> (u32, u32) {
         // From the smaller of the welded vertices, so that both neighbours find the same place.
         let (v, w) =
@@ -189,7 +189,7 @@ impl Cutter<'_> {
         (own, self.place(own))
     }
 
-    /// The first vertex at the position of another.
+    /// Returns the first vertex at the position of another.
     fn place(&mut self, own: u32) -> u32 {
         // Adding zero makes one zero of two.
         let at = (self.mesh.positions[own as usize] + Vec3::ZERO).to_array().map(f32::to_bits);

@@ -28,10 +28,10 @@ pub const INFO: Info = Info {
     limits: "bodies that penetrate each other are capped each by itself",
 };
 
-/// How to cut.
+/// Options for the clipping method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Whether closed bodies are closed again.
+    /// True if closed bodies are closed again.
     pub caps: bool,
     /// Linear RGB of the caps; they are shown unlit, whole in this colour.
     pub cap_color: Vec3,
@@ -47,7 +47,7 @@ impl Default for Options {
 /// A scene after the cut.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Section {
-    /// What is left, each instance with its own mesh; caps are the last part of each.
+    /// Scene that remains, each instance with its own mesh; caps are the last part of each.
     pub scene: Scene,
     /// The material of the caps: index into [`Scene::materials`] of the new scene.
     pub cap_material: usize,
@@ -147,13 +147,13 @@ impl Section {
     }
 }
 
-/// A plane of the world in the coordinates of a mesh.
+/// Returns A plane of the world in the coordinates of a mesh.
 fn in_mesh(plane: &Plane, world_from_mesh: &DMat4) -> Plane {
     let row = world_from_mesh.transpose() * plane.normal.extend(plane.distance);
     Plane { normal: row.truncate(), distance: row.w }
 }
 
-/// The part of a segment inside a plane.
+/// Returns the part of a segment inside a plane.
 fn inside([a, b]: [DVec3; 2], plane: &Plane) -> Option<[DVec3; 2]> {
     let (da, db) = (plane.evaluate(a), plane.evaluate(b));
     let meet = || a.lerp(b, da / (da - db));

@@ -18,15 +18,15 @@ const CLOSE: f64 = 0.4;
 /// Lines closer than this part of a stub run into each other on paper.
 const BESIDE: f64 = 0.15;
 
-/// How lines are made of pieces; lengths are parts of the drawing's extent.
+/// Options for making lines of pieces; lengths are parts of the drawing's extent.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct How {
     pub tolerance: f64,
     /// 0 leaves stubs alone.
     pub stubs: f64,
-    /// How far beside a visible line a hidden one is under it.
+    /// Distance beside a visible line within which a hidden one is under it.
     pub beneath: f64,
-    /// Whether silhouettes that are not sharp are those of smooth surfaces, which do not run to and fro.
+    /// True if silhouettes that are not sharp are those of smooth surfaces, which do not run to and fro.
     pub smooth: bool,
 }
 
@@ -50,11 +50,13 @@ impl How {
 #[derive(Debug, Default)]
 pub(super) struct Pieces {
     pub all: Vec<Piece>,
-    /// Where three sharp edges or more meet, sorted: lines that go through keep that point.
+    /// Points at which three sharp edges or more meet, sorted: lines that continue through keep
+    /// that point.
     pub corners: Vec<GridPoint>,
 }
 
-/// The corners among the ends of lines, which are given with their class and whether they are smooth.
+/// Returns the corners among the ends of lines, which are given with their class and whether they are
+/// smooth.
 pub(super) fn corners(
     lines: impl Iterator<Item = (LineClass, bool, [GridPoint; 2])>,
 ) -> Vec<GridPoint> {
@@ -64,7 +66,7 @@ pub(super) fn corners(
     ends.chunk_by(|a, b| a == b).filter(|same| same.len() > 2).map(|same| same[0]).collect()
 }
 
-/// The finished lines.
+/// Returns the finished lines.
 pub(super) fn arrange(page: &Page, pieces: Pieces, how: How) -> Vec<Line> {
     let Pieces { mut all, corners } = pieces;
     if how.smooth {

@@ -1,4 +1,4 @@
-//! How smooth surfaces bend at their outlines.
+//! The bend of smooth surfaces at their outlines.
 //!
 //! A surface hides its own outline where it bends towards the eye, behind a cusp: there the slope grows against the
 //! sight. Like the radial curvature of Doug DeCarlo, Adam Finkelstein, Szymon Rusinkiewicz and Anthony Santella,
@@ -10,16 +10,17 @@ use super::smooth_surface::SmoothSurface;
 use crate::view::picture_plane::PicturePlane;
 use crate::visibility::object::Faces;
 
-/// How a surface bends at an outline.
+/// Bend of a surface at an outline.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Bend {
     /// The curvature along the sight, in 1 / world units: below 0 where the surface hides the outline itself.
     pub radial: f32,
-    /// How far in front of the outline a facet of the same surface may lie that does not hide it, world units.
+    /// Largest distance in front of the outline of a facet of the same surface that does not hide it, world
+    /// units.
     pub reach: f32,
 }
 
-/// How surfaces bend beside their outlines.
+/// Bends of surfaces beside their outlines.
 pub(super) struct Bends {
     /// The curvature along the sight, by corner of the surface.
     radial: Vec<f64>,
@@ -28,7 +29,7 @@ pub(super) struct Bends {
 }
 
 impl Bends {
-    /// Those at the crossings of outlines.
+    /// Creates those at the crossings of outlines.
     pub fn new(
         faces: &Faces,
         surface: &SmoothSurface,
@@ -39,7 +40,7 @@ impl Bends {
         Self { radial, chords: chords(faces, surface, crossings) }
     }
 
-    /// How the surface bends at a crossing.
+    /// Returns the bend of the surface at a crossing.
     ///
     /// A facet stays within the surface by the chord's sagitta s or reaches over it, and the outline is made of chords
     /// as well. On a surface of curvature k along the sight, what reaches over an outline by 2s has come forward by
@@ -53,8 +54,8 @@ impl Bends {
     }
 }
 
-/// The curvature along the sight at each corner of the surface that is beside an outline: an average over
-/// its triangles, by area.
+/// Returns the curvature along the sight at each corner of the surface that is beside an outline: an
+/// average over its triangles, by area.
 fn radial(
     faces: &Faces,
     surface: &SmoothSurface,
@@ -101,7 +102,8 @@ fn chords(faces: &Faces, surface: &SmoothSurface, crossings: &[Crossing]) -> Vec
     most
 }
 
-/// How far the sides of a triangle lie from the surface at most, and the length of its longest.
+/// Returns the largest distance of a triangle's sides from the surface, and the length of its
+/// longest side.
 fn longest_chord(faces: &Faces, surface: &SmoothSurface, item: u32) -> Option<[f64; 2]> {
     let (places, corners) = (faces.corners(item)?, surface.corners(item)?);
     let normals = corners.map(|c| surface.normals[c as usize]);

@@ -36,7 +36,7 @@ pub(super) struct Walk {
     pub closed: bool,
 }
 
-/// Where an end lies.
+/// Returns the position of an end.
 pub(super) fn point(pieces: &[Piece], end: u32) -> GridPoint {
     pieces[end as usize / 2].ends[end as usize & 1]
 }
@@ -55,7 +55,7 @@ pub(super) fn chains(pieces: &[Piece]) -> Vec<Chain> {
     walks(pieces).into_iter().map(chain).collect()
 }
 
-/// The same as walks over the pieces.
+/// Returns the same as walks over the pieces.
 pub(super) fn walks(pieces: &[Piece]) -> Vec<Walk> {
     let partner = partners(pieces);
     let mut used = vec![false; pieces.len()];
@@ -126,7 +126,7 @@ fn partners(pieces: &[Piece]) -> Vec<u32> {
     partner
 }
 
-/// The cosine between two pieces leaving one point: −1 goes straight on.
+/// Returns the cosine between two pieces leaving one point: −1 goes straight on.
 fn turn(pieces: &[Piece], a: u32, b: u32) -> f64 {
     let away = |end: u32| {
         let ends = pieces[end as usize / 2].ends;

@@ -12,14 +12,15 @@ use crate::target::drawing::LineClass;
 /// The cosine of the turn up to which an edge goes on in the next: 45°.
 const ON: f64 = 0.707;
 
-/// Where more edges meet, none goes on in another: their square would be too much.
+/// Number of edges at a point from which none is continued in another: their square would be too
+/// much.
 const HUB: usize = 64;
 
 /// No end of a line.
 const NONE: u32 = u32::MAX;
 
-/// The lines without the weak creases that go on from no sharp edge; those are of class `otherwise`, or
-/// left out. Does not depend on the order of the lines.
+/// Returns the lines without the weak creases that go on from no sharp edge; those are of class
+/// `otherwise`, or left out. Does not depend on the order of the lines.
 pub(super) fn connected(
     mut lines: Vec<EdgeLine>,
     points: &[DVec3],
@@ -89,7 +90,7 @@ fn partners(lines: &[EdgeLine], points: &[DVec3]) -> Vec<u32> {
     partner
 }
 
-/// Which other end goes on straightest, if any goes on.
+/// Returns the other end that continues most nearly straight, if any continues.
 fn straightest(around: &[End], i: usize) -> Option<usize> {
     let mut best = (ON, None);
     for (k, other) in around.iter().enumerate().filter(|(k, _)| *k != i) {
@@ -107,7 +108,7 @@ mod tests {
     use super::*;
     use Sharpness::{Blunt, Sharp, Weak};
 
-    /// Vertices 0 … 4 in a row along x, 5 beside 2.
+    /// Returns vertices 0 … 4 in a row along x, 5 beside 2.
     fn points() -> Vec<DVec3> {
         let row = (0..5).map(|x| DVec3::new(f64::from(x), 0.0, 0.0));
         row.chain([DVec3::new(2.5, 1.0, 0.0)]).collect()

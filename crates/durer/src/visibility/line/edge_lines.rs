@@ -1,4 +1,4 @@
-//! Which edges are lines: silhouettes, creases, borders and the like.
+//! The choice of edges that become lines: silhouettes, creases, borders and the like.
 
 use super::facing::{Facing, Pair};
 use super::smooth_silhouette::Whole;
@@ -15,30 +15,30 @@ impl ClassSet {
     /// None.
     pub const NONE: Self = Self(0);
 
-    /// The set with these classes.
+    /// Returns the set with these classes.
     pub fn of(classes: &[LineClass]) -> Self {
         classes.iter().fold(Self::NONE, |set, class| set.with(*class))
     }
 
-    /// The set with one more.
+    /// Returns the set with one more.
     pub const fn with(self, class: LineClass) -> Self {
         Self(self.0 | 1 << class as u16)
     }
 
-    /// The set with one less.
+    /// Returns the set with one less.
     pub const fn without(self, class: LineClass) -> Self {
         Self(self.0 & !(1 << class as u16))
     }
 
-    /// Whether a class is in the set.
+    /// Returns whether a class is in the set.
     pub const fn contains(self, class: LineClass) -> bool {
         self.0 >> (class as u16) & 1 == 1
     }
 }
 
 impl Default for ClassSet {
-    /// What a technical drawing shows: all that an edge can be but [`LineClass::Wire`],
-    /// and the lines and points of the model.
+    /// Returns the classes of a technical drawing: all that an edge can be except
+    /// [`LineClass::Wire`], and the lines and points of the model.
     fn default() -> Self {
         Self::NONE
             .with(LineClass::Silhouette)
@@ -52,7 +52,7 @@ impl Default for ClassSet {
     }
 }
 
-/// Where to look for faces that penetrate each other.
+/// Pairs of faces that are searched for intersections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Intersections {
     /// Between different bodies: what is modelled in one piece is taken to be sound.
@@ -72,7 +72,7 @@ pub(super) struct EdgeLine {
     pub class: LineClass,
     /// Two of the triangles at it; [`NO_ITEM`] where there are fewer.
     pub items: [u32; 2],
-    /// Whether the surface is not sharp there.
+    /// True if the surface is not sharp there.
     pub smooth: bool,
     pub sharpness: Sharpness,
     pub outside: Outside,
@@ -89,7 +89,7 @@ pub(super) enum Outside {
     Both,
 }
 
-/// How much the faces at an edge are turned against each other.
+/// Angle between the faces at an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sharpness {
     /// Hardly.
@@ -100,7 +100,7 @@ pub(super) enum Sharpness {
     Sharp,
 }
 
-/// What decides which edges are lines.
+/// Rules that decide which edges are lines.
 pub(super) struct Rules<'a> {
     pub faces: &'a Faces,
     pub edges: &'a Edges,
@@ -108,12 +108,12 @@ pub(super) struct Rules<'a> {
     pub bodies: &'a Bodies,
     /// Materials by item, where there are several.
     pub materials: Option<Vec<u32>>,
-    /// As in `materials`; its faces are the caps of a section.
+    /// Material as in `materials`; its faces are the caps of a section.
     pub cap: Option<u32>,
     pub classes: ClassSet,
     /// Tangent edges, where they are wanted, and what the triangles are parts of.
     pub tangents: Option<&'a Tangents>,
-    /// What is known of edges besides what they turn by, if anything is.
+    /// Knowledge about edges besides their turn, if there is any.
     pub steps: Option<&'a Steps>,
     pub whole: Whole<'a>,
     /// Cosine of the crease angle.
@@ -122,7 +122,7 @@ pub(super) struct Rules<'a> {
     pub crease_end: f32,
 }
 
-/// The material of each item; `None` where all have the same.
+/// Returns the material of each item; `None` where all have the same.
 pub(super) fn materials(faces: &Faces) -> Option<Vec<u32>> {
     let runs = faces.runs();
     runs.iter().any(|r| r.material != runs[0].material).then(|| {
@@ -132,14 +132,14 @@ pub(super) fn materials(faces: &Faces) -> Option<Vec<u32>> {
     })
 }
 
-/// A material among [`materials`].
+/// Returns A material among [`materials`].
 pub(super) fn material_number(material: Option<usize>) -> u32 {
     material.map_or(0, |m| m as u32 + 1)
 }
 
 impl Rules<'_> {
-    /// The lines among the edges whose smaller vertex lies in a range, in the order of the edges. Weak
-    /// creases are among them, whether or not they go on from others.
+    /// Returns the lines among the edges whose smaller vertex lies in a range, in the order of the
+    /// edges. Weak creases are among them, whether or not they go on from others.
     pub fn lines(&self, vertices: std::ops::Range<u32>) -> Vec<EdgeLine> {
         let mut lines = Vec::new();
         for (ends, sides) in self.edges.from_vertices(vertices) {
@@ -167,12 +167,12 @@ impl Rules<'_> {
         self.classes.contains(class).then_some(class)
     }
 
-    /// What an edge is that is nothing else.
+    /// Returns the class of an edge that has no other.
     pub fn wire(&self) -> Option<LineClass> {
         self.wanted(LineClass::Wire)
     }
 
-    /// The first wanted class that an edge belongs to.
+    /// Returns the first wanted class that an edge belongs to.
     fn class(&self, ends: [u32; 2], sides: &[Side]) -> (Option<LineClass>, Sharpness) {
         let blunt = |class: Option<LineClass>| (class, Sharpness::Blunt);
         if self.ends_a_cap(sides)
@@ -199,7 +199,7 @@ impl Rules<'_> {
         }
     }
 
-    /// The same between two triangles of one surface.
+    /// Returns the same between two triangles of one surface.
     fn class_of_two(&self, pair: Pair) -> (Option<LineClass>, Sharpness) {
         let (turns, sharpness) = self.turn(pair);
         let sharpness = self.known(pair, sharpness);
@@ -226,7 +226,8 @@ impl Rules<'_> {
         self.edge_of_whole(pair).is_some_and(|ends| tangents.contains(ends))
     }
 
-    /// The edge between the triangles that a pair are parts of, the smaller vertex first, if it is one.
+    /// Returns the edge between the triangles that a pair are parts of, the smaller vertex first, if it
+    /// is one.
     fn edge_of_whole(&self, pair: Pair) -> Option<[u32; 2]> {
         let [a, b] = pair.items.map(|item| self.whole.triangle(self.faces, item));
         let (a, b) = a.zip(b)?;
@@ -235,7 +236,8 @@ impl Rules<'_> {
         common.next().is_none().then_some([p.min(q), p.max(q)])
     }
 
-    /// How sharp an edge is by what is around it, where that says more than what it turns by.
+    /// Returns the sharpness of an edge by its surroundings, if they decide more than its turn
+    /// does.
     fn known(&self, pair: Pair, sharpness: Sharpness) -> Sharpness {
         let Some(steps) = self.steps else { return sharpness };
         match self.edge_of_whole(pair).and_then(|ends| steps.is_crease(ends)) {
@@ -245,7 +247,7 @@ impl Rules<'_> {
         }
     }
 
-    /// Whether some of the triangles are of a cap and some are not.
+    /// Returns whether some of the triangles are of a cap and some are not.
     fn ends_a_cap(&self, sides: &[Side]) -> bool {
         let (Some(cap), Some(materials)) = (self.cap, &self.materials) else { return false };
         let mut caps = sides.iter().map(|s| materials[s.item() as usize] == cap);
@@ -253,7 +255,7 @@ impl Rules<'_> {
         caps.any(|c| Some(c) != first)
     }
 
-    /// Whether two triangles show different sides, and how sharp the edge is.
+    /// Returns whether two triangles show different sides, and how sharp the edge is.
     fn turn(&self, pair: Pair) -> (bool, Sharpness) {
         let differ = self.differ(pair);
         let pair = self.stand_ins(pair);
@@ -271,8 +273,8 @@ impl Rules<'_> {
         (differ, sharpness)
     }
 
-    /// Whether two triangles show different sides. Of a smooth surface that is known even where a triangle is too
-    /// thin to tell.
+    /// Returns whether two triangles show different sides. Of a smooth surface that is known even where a
+    /// triangle is too thin to tell.
     fn differ(&self, pair: Pair) -> bool {
         if pair.items.iter().all(|item| self.facing.is_smooth(*item)) {
             return self.facing.differ(&pair);
@@ -285,7 +287,7 @@ impl Rules<'_> {
         Pair { items: pair.items.map(|item| self.stand_in(pair.ends, item)), ..pair }
     }
 
-    /// The triangle itself, or for one that is too thin to be turned any way, the neighbour
+    /// Returns the triangle itself, or for one that is too thin to be turned any way, the neighbour
     /// across its longest other edge, if there is one and no more.
     fn stand_in(&self, ends: [u32; 2], item: u32) -> u32 {
         let (mut item, mut ends) = (item, ends);

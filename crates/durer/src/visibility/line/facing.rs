@@ -1,4 +1,4 @@
-//! How faces are turned: towards the eye or away, and against each other.
+//! The orientation of faces: towards the eye or away, and against each other.
 
 use super::page::{GridPoint, Projected, orient};
 use super::smooth_silhouette::Whole;
@@ -6,7 +6,7 @@ use crate::math::DVec3;
 use crate::visibility::object::{Bodies, Edges, Faces};
 use std::cmp::Ordering;
 
-/// How faces are turned, for all that asks.
+/// Orientation of all faces.
 pub(super) struct Facing {
     /// 1 where the front is seen, −1 the back, 0 edge-on; after turning.
     turn: Vec<i8>,
@@ -79,9 +79,9 @@ impl Facing {
         found
     }
 
-    /// Whether a triangle is lower than `tolerance`, and between two faces that are not and go on in each
-    /// other, though not in it. Coordinates of a file are rounded too, often to few digits, and such a triangle
-    /// may then be turned any way.
+    /// Returns whether a triangle is lower than `tolerance`, and between two faces that are not and go on in
+    /// each other, though not in it. Coordinates of a file are rounded too, often to few digits, and such a
+    /// triangle may then be turned any way.
     fn lies_in_surface(&self, faces: &Faces, edges: &Edges, item: u32, tolerance: f64) -> bool {
         let is_low = |item| faces.corners(item).is_none_or(|c| normal(c, tolerance).is_none());
         let Some(t) = faces.triangle(item).filter(|_| is_low(item)) else { return false };
@@ -97,13 +97,13 @@ impl Facing {
         !is_low(a) && !is_low(b) && cosine(a, b) > ONE_SURFACE && cosine(a, item) < ONE_SURFACE
     }
 
-    /// Whether the front is seen; of the smooth surface, where a triangle stands for one.
+    /// Returns whether the front is visible; of the smooth surface, if a triangle approximates one.
     #[inline]
     pub fn front(&self, item: u32) -> bool {
         self.side(item) > 0
     }
 
-    /// Which side is seen: 1 the front, −1 the back, 0 none.
+    /// Returns the visible side: 1 the front, −1 the back, 0 none.
     #[inline]
     fn side(&self, item: u32) -> i8 {
         match self.surface.get(item as usize) {
@@ -112,26 +112,26 @@ impl Facing {
         }
     }
 
-    /// Whether triangles stand for a smooth surface at all.
+    /// Returns whether triangles stand for a smooth surface at all.
     pub fn any_smooth(&self) -> bool {
         !self.surface.is_empty()
     }
 
-    /// Whether it is known from a smooth surface which side is seen.
+    /// Returns whether it is known from a smooth surface which side is seen.
     pub fn is_smooth(&self, item: u32) -> bool {
         self.surface.get(item as usize).is_some_and(|side| *side != 0)
     }
 
-    /// Whether a triangle shows another side than the smooth surface that it stands for: it lies folded over an
-    /// outline.
+    /// Returns whether a triangle shows another side than the smooth surface that it approximates: it lies
+    /// folded over an outline.
     #[inline]
     pub fn folded(&self, item: u32) -> bool {
         let of_surface = self.surface.get(item as usize).copied().unwrap_or(0);
         of_surface * self.turn[item as usize] < 0
     }
 
-    /// Whether one triangle of a pair shows another side than the other; what is seen edge-on shows none. Which
-    /// side of an open body is its front is arbitrary, so fronts and backs count alike.
+    /// Returns whether the triangles of a pair show different sides; those seen edge-on show none. Which side
+    /// of an open body is its front is arbitrary, so fronts and backs count alike.
     pub fn differ(&self, pair: &Pair) -> bool {
         let [a, b] = pair.items.map(|item| self.side(item));
         a != if pair.against { -b } else { b }
@@ -153,7 +153,7 @@ impl Facing {
 pub(super) struct Pair {
     pub ends: [u32; 2],
     pub items: [u32; 2],
-    /// Whether they are turned against each other. A surface with one side only, as Möbius' band, has such edges
+    /// True if they are turned against each other. A surface with one side only, as Möbius' band, has such edges
     /// somewhere, however its triangles are turned; where is of no matter.
     pub against: bool,
 }
@@ -172,8 +172,9 @@ fn normal([a, b, c]: [DVec3; 3], thin: f64) -> Option<DVec3> {
         .then(|| n / double_area)
 }
 
-/// The same as [`turned_on_grid`] for a triangle that is not all in front of the eye. From its sorted corners,
-/// so that copies that begin elsewhere are rounded alike, and such that turn the other way are opposite.
+/// Returns the same as [`turned_on_grid`] for a triangle that is not all in front of the eye. From its sorted
+/// corners, so that copies that begin elsewhere are rounded alike, and such that turn the other way are
+/// opposite.
 fn turned_in_space(faces: &Faces, item: u32, points: [DVec3; 3], projected: &Projected) -> i8 {
     let Some([a, b, c]) = faces.sorted_corners(item) else { return 0 };
     let towards = -(b - a).cross(c - a).dot(projected.plane.sight_at(a));

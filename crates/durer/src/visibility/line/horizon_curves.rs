@@ -28,20 +28,20 @@ pub const INFO: Info = Info {
     limits: "curves in columns, near ones first; exact to a column's width",
 };
 
-/// How curves are drawn.
+/// Options for drawing curves.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Columns of the picture.
     pub columns: usize,
-    /// Whether the horizons reach along the line from where a curve ends to where the next one does, on both
-    /// sides: else curves that begin further out show through the gap.
+    /// True if the horizons extend along the line from the end of a curve to the end of the next
+    /// one, on both sides; otherwise curves that begin further out show through the gap.
     pub fill_ends: bool,
-    /// What memory is charged to.
+    /// Budget of memory.
     pub work: Work,
 }
 
 impl Options {
-    /// A picture of so many columns, with gaps at the ends filled.
+    /// Creates A picture of so many columns, with gaps at the ends filled.
     pub fn columns(columns: usize) -> Self {
         Self { columns, fill_ends: true, work: Work::default() }
     }
@@ -56,7 +56,7 @@ pub struct Curve {
     pub heights: Vec<f64>,
 }
 
-/// Where a point lies of the horizons.
+/// Position of a point relative to the horizons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Seen {
     /// On the upper horizon or above it: seen.
@@ -78,7 +78,7 @@ pub struct Piece {
     pub seen: Seen,
 }
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A point of a curve was compared with both horizons.
@@ -91,7 +91,7 @@ pub enum Step {
         y: f64,
         /// The lower and the upper horizon there.
         horizons: [f64; 2],
-        /// Where it lies.
+        /// Position of the vertex.
         seen: Seen,
     },
     /// A curve passes a horizon between two columns.
@@ -112,13 +112,14 @@ pub enum Step {
     },
 }
 
-/// The result that a list of steps leads to.
+/// Returns the result that a list of steps leads to.
 pub fn replay(steps: &[Step]) -> Vec<Piece> {
     let piece = |step: &Step| if let Step::Draw(piece) = *step { Some(piece) } else { None };
     steps.iter().filter_map(piece).collect()
 }
 
-/// The seen pieces of curves, the nearest curve first; columns beyond the picture's are left out.
+/// Returns the seen pieces of curves, the nearest curve first; columns beyond the picture's are
+/// left out.
 ///
 /// ```
 /// use durer::trace::NoTrace;
@@ -170,7 +171,7 @@ pub fn draw(curves: &[Curve], options: &Options, t: &mut impl Tracer<Step>) -> R
     Ok(pieces)
 }
 
-/// The first and the last point of a curve.
+/// Returns the first and the last point of a curve.
 fn ends(first: usize, heights: &[f64]) -> Option<[DVec2; 2]> {
     let (start, end) = (heights.first()?, heights.last()?);
     let last = first + heights.len() - 1;
@@ -203,7 +204,8 @@ impl Horizons {
         (first..).zip(heights).map(of).collect()
     }
 
-    /// What is seen of a curve between a column and the next one; `k` is the first one's place in the curve.
+    /// Draws the visible pieces of a curve between a column and the next one; `k` is the first
+    /// one's place in the curve.
     fn pieces<T: Tracer<Step>>(
         &self,
         curve: usize,
@@ -243,7 +245,7 @@ impl Horizons {
         }
     }
 
-    /// Where a curve passes a horizon, from 0 at a column to 1 at the next.
+    /// Returns the place at which a curve passes a horizon, from 0 at a column to 1 at the next.
     fn crossing(&self, column: usize, ys: [f64; 2], seen: Seen) -> Option<f64> {
         let which = usize::from(seen == Seen::Above);
         let [a, b] = [self.0[column][which] - ys[0], self.0[column + 1][which] - ys[1]];

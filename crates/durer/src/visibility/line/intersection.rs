@@ -1,4 +1,4 @@
-//! Where faces penetrate each other.
+//! The intersections of faces.
 //!
 //! Pairs come from a hierarchy of boxes over the faces in the order of a Morton curve, descended
 //! against itself (as in Stefan Gottschalk, Ming Lin and Dinesh Manocha, *OBBTree*, 1996, with
@@ -20,7 +20,7 @@ pub(super) struct Meeting {
     pub items: [u32; 2],
 }
 
-/// All of them, by pairs of items.
+/// Returns all of them, by pairs of items.
 pub(super) fn intersections(faces: &Faces, bodies: &Bodies, which: Intersections) -> Vec<Meeting> {
     let between = which == Intersections::BetweenBodies;
     if between && bodies.all().len() < 2 {
@@ -50,7 +50,7 @@ const MIXED: u32 = u32::MAX;
 /// comparison tells whether two boxes touch, and processors make eight at once.
 type Bounds = [f32; 8];
 
-/// Nothing touches it.
+/// Bounds that nothing touches.
 const NOTHING: Bounds = [
     f32::INFINITY,
     f32::INFINITY,
@@ -66,7 +66,7 @@ fn union(a: &Bounds, b: &Bounds) -> Bounds {
     std::array::from_fn(|k| a[k].min(b[k]))
 }
 
-/// What the coordinates of boxes that touch this one are at most.
+/// Returns the largest coordinates of boxes that touch this one.
 fn reach(of: &Bounds) -> Bounds {
     [-of[3], -of[4], -of[5], -of[0], -of[1], -of[2], 0.0, 0.0]
 }
@@ -106,14 +106,14 @@ impl<'a> Tree<'a> {
         Self { faces, between, nodes, bodies, first_leaf: leaves as u32 - 1, order, boxes, body_of }
     }
 
-    /// Whether a pair of nodes may hold a pair of faces that is asked for.
+    /// Returns whether a pair of nodes may contain a requested pair of faces.
     fn may_meet(&self, a: u32, b: u32) -> bool {
         let of = |node: u32| self.bodies[node as usize];
         let same_body = self.between && of(a) == of(b) && of(a) != MIXED;
         !same_body && touches(&self.nodes[a as usize], &reach(&self.nodes[b as usize]))
     }
 
-    /// What a pair of nodes divides into; leaves stay.
+    /// Divides a pair of nodes; leaves stay.
     fn children(&self, (a, b): (u32, u32), into: &mut Vec<(u32, u32)>) {
         if a >= self.first_leaf {
             into.push((a, b));
@@ -170,7 +170,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// The nodes of a complete binary tree over leaves of [`LEAF`] values each.
+/// Returns the nodes of a complete binary tree over leaves of [`LEAF`] values each.
 fn raised<T: Copy>(values: &[T], leaves: usize, none: T, join: impl Fn(&T, &T) -> T) -> Vec<T> {
     let mut nodes = vec![none; 2 * leaves - 1];
     for (leaf, values) in values.chunks(LEAF).enumerate() {
@@ -189,12 +189,12 @@ struct Sided {
     corners: [DVec3; 3],
     /// The product of two sides.
     normal: DVec3,
-    /// How far its product with a vector can be wrong, for vectors no longer than 1 along the axes.
+    /// Largest error of its product with a vector, for vectors no longer than 1 along the axes.
     error: f64,
 }
 
-/// Of a determinant of three vectors, each no longer than 1 along the axes: six products of three factors, each
-/// rounded eight times at most, are off by 48 · 2⁻⁵³ together; this is twice as much.
+/// Error of a determinant of three vectors, each no longer than 1 along the axes: six products of three
+/// factors, each rounded eight times at most, are off by 48 · 2⁻⁵³ together; this is twice as much.
 const ROUNDING: f64 = 1e-14;
 
 impl Sided {
@@ -207,7 +207,7 @@ impl Sided {
         Some(Self { vertices, corners, normal: u.cross(v), error })
     }
 
-    /// As [`side`]: its sign is exact.
+    /// Returns the result of [`side`]: its sign is exact.
     #[inline(always)]
     fn side(&self, p: DVec3) -> f64 {
         let from = p - self.corners[0];
@@ -219,7 +219,7 @@ impl Sided {
         }
     }
 
-    /// Whether the two may meet in more than a vertex or side that they share.
+    /// Returns whether the two may meet in more than a vertex or side that they share.
     #[inline(always)]
     fn may_meet(&self, other: &Self) -> bool {
         let mut shared = (0..3).flat_map(|i| (0..3).map(move |k| (i, k)));
@@ -231,7 +231,7 @@ impl Sided {
         }
     }
 
-    /// Whether all corners of another face lie on one side.
+    /// Returns whether all corners of another face lie on one side.
     #[inline(always)]
     fn is_beside(&self, other: &Self) -> bool {
         let [a, b, c] = other.corners;
@@ -306,8 +306,8 @@ fn side([a, b, c]: &[DVec3; 3], p: DVec3) -> f64 {
     robust::orient3d(coord(a), coord(b), coord(c), coord(&p))
 }
 
-/// The segment that two triangles share, unless they are coplanar or touch in a point. The same to the bit
-/// whichever comes first, and wherever they begin.
+/// Returns the segment that two triangles share, unless they are coplanar or touch in a point. The same to
+/// the bit whichever comes first, and wherever they begin.
 fn meeting(mut s: [DVec3; 3], mut t: [DVec3; 3]) -> Option<[DVec3; 2]> {
     s.sort_unstable_by(by_coordinates);
     t.sort_unstable_by(by_coordinates);
@@ -339,7 +339,8 @@ fn meeting(mut s: [DVec3; 3], mut t: [DVec3; 3]) -> Option<[DVec3; 2]> {
     best.map(|(_, ends)| ends)
 }
 
-/// Where the edges of one triangle, whose corners are sorted, go through the other; `sides` are those of its corners.
+/// Finds the points at which the edges of one triangle, whose corners are sorted, pass through the other; `sides` are
+/// those of its corners.
 fn piercings(
     edges_of: &[DVec3; 3],
     sides: &[f64; 3],
@@ -364,7 +365,7 @@ fn normal([a, b, c]: &[DVec3; 3]) -> DVec3 {
     u.cross(v).normalize_or_zero() * u.length().max(v.length())
 }
 
-/// Whether the line p → q passes through the closed triangle.
+/// Returns whether the line p → q passes through the closed triangle.
 fn inside([a, b, c]: &[DVec3; 3], p: DVec3, q: DVec3) -> bool {
     let d = [(a, b), (b, c), (c, a)].map(|(u, v)| side(&[*u, *v, p], q));
     d.iter().all(|d| *d >= 0.0) || d.iter().all(|d| *d <= 0.0)

@@ -7,7 +7,7 @@ crate::info::family! {
     pub enum LineMethod {
         /// All edges, whatever lies in front.
         Wireframe => wireframe::INFO,
-        /// What can be seen of the edges, and how many surfaces hide the rest.
+        /// Finds the visible parts of edges, and how many surfaces hide the rest.
         HiddenLine => hidden_line::INFO,
         /// The lines of a surface y = f(x, z) that rise above or sink below those before them.
         FloatingHorizon => floating_horizon::INFO,

@@ -15,7 +15,7 @@ pub(super) struct Piece {
     pub ends: [GridPoint; 2],
     pub class: LineClass,
     pub invisibility: u32,
-    /// Whether it is a silhouette across a part of the surface that is not sharp there.
+    /// True if it is a silhouette across a part of the surface that is not sharp there.
     pub smooth: bool,
 }
 
@@ -29,8 +29,9 @@ impl Piece {
         self.ends[0].distance(self.ends[1])
     }
 
-    /// Of lines in a bundle each lies on the next and the first not on the last, so what is left
-    /// depends on which comes first: that must not be left to the order of the faces.
+    /// Returns the rank of a line in a bundle: each lies on the next and the first not on the last,
+    /// so the rest depends on which comes first, and that must not depend on the order of the
+    /// faces.
     fn rank(&self) -> impl Ord + use<> {
         let [dx, dy] = self.ends[1].minus(self.ends[0]);
         (self.invisibility, self.class, Reverse(dx * dx + dy * dy), self.smooth, self.ends)
@@ -41,10 +42,10 @@ impl Piece {
 /// sides of a corner.
 const PARALLEL: f64 = 0.02;
 
-/// How far, as a part of its length, what is left of a piece is turned to end where another does.
+/// Largest turn of a piece's rest, as a part of its length, that makes it end where another does.
 const TURN: f64 = 0.05;
 
-/// How near, in steps, lines are to each other to be drawn once.
+/// Distances, in steps, at which lines are drawn once.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Near<'a> {
     /// Lines within this lie on each other.
@@ -55,12 +56,12 @@ pub(super) struct Near<'a> {
     pub beneath: f64,
     /// Pieces not longer than this that a cut leaves are dropped.
     pub sliver: f64,
-    /// Where sharp edges meet, sorted: hidden lines between two of these may go though they do not run along
-    /// a visible one.
+    /// Points at which sharp edges meet, sorted: hidden lines between two of these may be left out though
+    /// they do not run along a visible one.
     pub corners: &'a [GridPoint],
 }
 
-/// What is left of the pieces where none lies on another along its length.
+/// Returns the pieces without those that lie on another along their length.
 pub(super) fn drawn_once(mut pieces: Vec<Piece>, how: Near<'_>) -> Vec<Piece> {
     pieces.retain(|p| p.ends[0] != p.ends[1]);
     // The first in rank comes last, and is taken from there.
@@ -126,7 +127,7 @@ impl Along {
         Self { length, ends: if a.0 <= b.0 { [a, b] } else { [b, a] } }
     }
 
-    /// What both have along the first.
+    /// Returns the common part of both, along the first.
     fn common(&self) -> Option<Gone> {
         let ([a, b], length) = (self.ends, self.length);
         let from = if a.0 > 0.0 { (a.0, Some(a.2)) } else { (0.0, None) };
@@ -134,14 +135,14 @@ impl Along {
         (to.0 - from.0 > 1.0).then_some(Gone { from, to })
     }
 
-    /// How far the other lies aside of a place.
+    /// Returns the distance of the other from a place, sideways.
     fn aside(&self, s: f64) -> f64 {
         let [a, b] = self.ends;
         a.1 + (b.1 - a.1) * ((s - a.0) / (b.0 - a.0))
     }
 }
 
-/// Which part of `piece` lies on `other`.
+/// Returns the part of `piece` that lies on `other`.
 fn overlap(piece: &Piece, other: &Piece, close: f64) -> Option<Gone> {
     let along = Along::new(piece, other);
     let common = along.common()?;
@@ -150,8 +151,8 @@ fn overlap(piece: &Piece, other: &Piece, close: f64) -> Option<Gone> {
     (is_near(common.from.0) && is_near(common.to.0)).then_some(common)
 }
 
-/// Which part of `piece` lies under `other`, beside it: what runs along it, and short edges whole. Curves that
-/// pass under it are of short pieces too, but those do not end at corners.
+/// Returns the part of `piece` that lies under `other`, beside it: any part that runs along it, and short
+/// edges whole. Curves that pass under it consist of short pieces too, but those do not end at corners.
 fn under(piece: &Piece, other: &Piece, how: Near<'_>) -> Option<Gone> {
     let (along, beneath) = (Along::new(piece, other), how.beneath);
     let is_edge_within =
@@ -168,7 +169,8 @@ fn under(piece: &Piece, other: &Piece, how: Near<'_>) -> Option<Gone> {
     lies.then_some(common)
 }
 
-/// What the sorted parts leave of a piece. It ends at the ends of what it lay on, where that turns it by little.
+/// Adds the parts of a piece outside the sorted parts. It ends at the ends of what it lay on, if that turns it
+/// by little.
 fn rest(piece: &Piece, gone: &[Gone], sliver: f64, kept: &mut Vec<Piece>) {
     let length = piece.length();
     let at = |s: f64| {
@@ -197,7 +199,7 @@ fn rest(piece: &Piece, gone: &[Gone], sliver: f64, kept: &mut Vec<Piece>) {
     keep(done, (length, None));
 }
 
-/// The distance of a point from a piece.
+/// Returns the distance of a point from a piece.
 pub(super) fn distance(p: GridPoint, piece: &Piece) -> f64 {
     let ([px, py], [dx, dy]) = (
         p.minus(piece.ends[0]).map(|d| d as f64),

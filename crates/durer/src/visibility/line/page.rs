@@ -35,7 +35,7 @@ impl GridPoint {
     }
 }
 
-/// Twice the signed area of a, b, c; above 0 where they turn counter-clockwise. Exact.
+/// Returns twice the signed area of a, b, c; above 0 where they turn counter-clockwise. Exact.
 #[inline]
 pub(super) fn orient(a: GridPoint, b: GridPoint, c: GridPoint) -> i64 {
     let ([ux, uy], [vx, vy]) = (b.minus(a), c.minus(a));
@@ -49,7 +49,7 @@ pub(super) struct Vertex {
     pub depth: f64,
 }
 
-/// Where the grid lies in the plane of the picture.
+/// Position of the grid in the plane of the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Page {
     /// Plane units per step; a power of two.
@@ -90,11 +90,11 @@ pub(super) struct Projected {
     pub page: Page,
     pub plane: PicturePlane,
     vertices: Vec<Vertex>,
-    /// Whether the vertex lies inside the view volume; empty where all do.
+    /// True for each vertex inside the view volume; empty if all are.
     inside: Vec<bool>,
-    /// What is left of faces that reach out of the view volume.
+    /// Cut faces: the parts inside the view volume of those that extend beyond it.
     pub cuts: Vec<Cut>,
-    /// Whether lines are cut at the window.
+    /// True if lines are cut at the window.
     windowed: bool,
 }
 
@@ -162,19 +162,20 @@ impl Projected {
         }
     }
 
-    /// The corners of a triangle on the grid; `None` where it reaches out of the view volume.
+    /// Returns the corners of a triangle on the grid; `None` where it reaches out of the view
+    /// volume.
     #[inline]
     pub fn corners(&self, t: [u32; 3]) -> Option<[Vertex; 3]> {
         let whole = self.inside.is_empty() || t.iter().all(|v| self.inside[*v as usize]);
         whole.then(|| t.map(|v| self.vertices[v as usize]))
     }
 
-    /// Whether any face reaches out of the view volume.
+    /// Returns whether any face reaches out of the view volume.
     pub fn any_cut(&self) -> bool {
         !self.inside.is_empty()
     }
 
-    /// An edge of the mesh, cut at the near plane and the window.
+    /// Returns an edge of the mesh, cut at the near plane and the window.
     pub fn edge(&self, faces: &Faces, ends: [u32; 2]) -> Option<[Vertex; 2]> {
         if self.windowed {
             return self.segment(ends.map(|v| faces.points()[v as usize]));
@@ -182,7 +183,7 @@ impl Projected {
         Some(ends.map(|v| self.vertices[v as usize]))
     }
 
-    /// Any segment of the world, cut at the near plane and the window.
+    /// Returns any segment of the world, cut at the near plane and the window.
     pub fn segment(&self, ends: [DVec3; 2]) -> Option<[Vertex; 2]> {
         let mut ends = ends.map(|p| self.plane.view_from_world(p));
         if self.windowed {
@@ -194,7 +195,8 @@ impl Projected {
     }
 }
 
-/// What `pieces` makes of the faces on their page; all but these are let go before lines are made of them.
+/// Returns the result of `pieces` for the faces on their page; everything else is freed before lines are
+/// made of it.
 pub(super) fn on_page(
     faces: &Faces,
     plane: PicturePlane,
@@ -204,12 +206,12 @@ pub(super) fn on_page(
     Some((projected.page, pieces(&projected)))
 }
 
-/// The lines of what [`on_page`] gives.
+/// Returns the lines of what [`on_page`] gives.
 pub(super) fn arranged(found: Option<(Page, Pieces)>, how: How) -> Vec<Line> {
     found.map(|(page, pieces)| arrange(&page, pieces, how)).unwrap_or_default()
 }
 
-/// What the projected points span.
+/// Extent of the projected points.
 struct Around {
     min: DVec3,
     max: DVec3,
@@ -230,7 +232,7 @@ impl Around {
         }
     }
 
-    /// The same of what lies in the window, and the guard around it.
+    /// Returns the same of what lies in the window, and the guard around it.
     fn limited(&self, window: Rect, faces: &Faces, plane: &PicturePlane) -> Self {
         let mut depths = Self::default();
         let volume = Borders { depth: true, sides: Some(GUARD) };
@@ -251,7 +253,7 @@ impl Around {
         }
     }
 
-    /// The grid; `None` where nothing is there, or nothing that numbers can hold.
+    /// Returns the grid; `None` where nothing is there, or nothing that numbers can hold.
     fn page(&self) -> Option<Page> {
         let size = self.max - self.min;
         if !(size.is_finite() && size.min_element() >= 0.0) {

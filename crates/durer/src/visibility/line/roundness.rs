@@ -1,4 +1,4 @@
-//! Which objects stand for smooth surfaces.
+//! The choice of objects that approximate smooth surfaces.
 //!
 //! A mesh of a round part turns a little at each of its edges; one that is modelled in few facets turns by more, and
 //! they are what it is. Told apart by area, object by object, from the angles alone: not by the view, so that all views
@@ -9,7 +9,7 @@ use crate::parallel;
 use crate::visibility::object::{Edges, Faces};
 use std::ops::Range;
 
-/// Whether outlines are those of the smooth surfaces that meshes stand for.
+/// Objects whose outlines are those of the smooth surfaces that meshes approximate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Smooth {
     /// They run along edges of the mesh.
@@ -37,12 +37,13 @@ const COARSE: f64 = 0.906;
 const COARSE_PART: f64 = 0.125;
 
 impl Smooth {
-    /// The angle in radians from which edges of smooth surfaces are sharp, where creases are from `crease` on.
+    /// Returns the angle in radians from which edges of smooth surfaces are sharp, where creases are from
+    /// `crease` on.
     pub(super) fn sharp_from(self, crease: f64) -> f64 {
         if self == Self::Auto { crease.min(ROUND) } else { crease }
     }
 
-    /// Of each item whether it is of an object that has smooth outlines; `None` if none is.
+    /// Returns true for each item of an object that has smooth outlines; `None` if none has.
     pub(super) fn items(self, faces: &Faces, edges: &Edges, crease: f64) -> Option<Vec<bool>> {
         if self == Self::Off || self == Self::On {
             return (self == Self::On).then(|| vec![true; faces.len()]);
@@ -65,21 +66,21 @@ impl Smooth {
     }
 }
 
-/// How much of an object bends: the areas beside its edges, twice.
+/// Share of an object that bends: the areas beside its edges, twice.
 #[derive(Debug, Clone, Copy, Default)]
 struct Bent {
     round: f64,
     coarse: f64,
 }
 
-/// How much bends, in parts of one object each, in an order that is always the same.
+/// Returns the bends in parts of one object each, in an order that is always the same.
 fn bends(faces: &Faces, edges: &Edges, crease: f64) -> Vec<(usize, Bent)> {
     let count = faces.points().len() as u32;
     let jobs: Vec<_> = (0..count).step_by(1 << 15).map(|v| v..(v + (1 << 15)).min(count)).collect();
     parallel::map(jobs, |vertices| bends_from(faces, edges, crease, vertices)).concat()
 }
 
-/// The same of the edges whose smaller vertices lie in a range.
+/// Returns the same of the edges whose smaller vertices lie in a range.
 fn bends_from(
     faces: &Faces,
     edges: &Edges,

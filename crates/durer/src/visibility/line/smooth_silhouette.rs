@@ -34,51 +34,53 @@ pub(super) struct Divided {
     pub faces: Faces,
     /// The faces as they were.
     pub whole: Faces,
-    /// Of each triangle the one in `whole` that it is a part of.
+    /// Triangle in `whole` that each triangle is a part of.
     pub origins: Vec<u32>,
-    /// Of each triangle 1 where the surface shows its front, −1 where its back, 0 where it does not tell.
+    /// Side of the surface at each triangle: 1 for its front, −1 for its back, 0 if it is not known.
     turns: Vec<i8>,
-    /// Of each vertex how the surface bends there, if it is at an outline.
+    /// Bend of the surface at each vertex of an outline.
     bends: Vec<Bend>,
     surface: SmoothSurface,
 }
 
-/// What faces were before they were divided, if they were.
+/// Faces before they were divided, if they were.
 #[derive(Clone, Copy)]
 pub(super) struct Whole<'a>(pub Option<&'a Divided>);
 
 impl Whole<'_> {
-    /// The corners of the triangle that a triangle of `faces` is a part of.
+    /// Returns the corners of the triangle that a triangle of `faces` is a part of.
     pub fn corners(self, faces: &Faces, item: u32) -> Option<[DVec3; 3]> {
         self.0.map_or_else(|| faces.corners(item), |d| d.whole.corners(self.item(item)))
     }
 
-    /// The triangle that one of `faces` is a part of.
+    /// Returns the triangle that one of `faces` is a part of.
     pub fn triangle(self, faces: &Faces, item: u32) -> Option<[u32; 3]> {
         self.0.map_or_else(|| faces.triangle(item), |d| d.whole.triangle(self.item(item)))
     }
 
-    /// The normal of the smooth surface that a sliver lies in, if it is turned against that.
+    /// Returns the normal of the smooth surface that a sliver lies in, if it is turned against
+    /// that.
     pub fn normal_at_sliver(self, item: u32) -> Option<DVec3> {
         self.0.and_then(|d| d.surface.normal_at_sliver(self.item(item)))
     }
 
-    /// Whether it is known from a smooth surface how a triangle is turned.
+    /// Returns whether it is known from a smooth surface how a triangle is turned.
     pub fn is_smooth(self, item: u32) -> bool {
         self.turns().get(item as usize).is_some_and(|turn| *turn != 0)
     }
 
-    /// How the surfaces are turned that triangles stand for, by item; see [`Divided`].
+    /// Returns the sides of the surfaces that triangles approximate, by item; see [`Divided`].
     pub fn turns(&self) -> &[i8] {
         self.0.map_or(&[], |d| &d.turns)
     }
 
-    /// Whether an outline runs through the triangle that one is a part of, or touches it.
+    /// Returns whether an outline runs through the triangle that one is a part of, or touches it.
     pub fn at_outline(self, item: u32) -> bool {
         self.0.is_some_and(|d| d.surface.shows_both(self.item(item)))
     }
 
-    /// Whether the triangle that one is a part of has a vertex of those that others are parts of.
+    /// Returns whether the triangle that one is a part of has a vertex of those that others are
+    /// parts of.
     pub fn is_beside(self, item: u32, others: [u32; 2]) -> bool {
         let Some(divided) = self.0 else { return false };
         let of = |item: u32| divided.whole.triangle(self.item(item)).unwrap_or_default();
@@ -86,12 +88,12 @@ impl Whole<'_> {
         others.iter().any(|o| of(*o).iter().any(|v| own.contains(v)))
     }
 
-    /// How the surface bends at a vertex of an outline; see [`Divided`].
+    /// Returns the bend of the surface at a vertex of an outline; see [`Divided`].
     pub fn bend(self, vertex: u32) -> Bend {
         self.0.and_then(|d| d.bends.get(vertex as usize)).copied().unwrap_or_default()
     }
 
-    /// The item of the scene.
+    /// Returns the item of the scene.
     pub fn item(self, item: u32) -> u32 {
         self.0.map_or(item, |d| d.origins.get(item as usize).copied().unwrap_or(item))
     }
@@ -154,7 +156,8 @@ pub(super) fn divided(
     Divided { faces, whole, origins, turns, bends, surface }
 }
 
-/// Where the normals of all triangles turn away from the eye, two on each that has any.
+/// Returns the points at which the normals of all triangles turn away from the eye, two on each
+/// that has any.
 fn crossings(faces: &Faces, surface: &SmoothSurface) -> Vec<Crossing> {
     let mut found = Vec::new();
     for (item, vertices) in faces.triangles() {
@@ -167,8 +170,8 @@ fn crossings(faces: &Faces, surface: &SmoothSurface) -> Vec<Crossing> {
     found
 }
 
-/// Where a function that is linear along the edges of a triangle changes its sign. Neighbours with
-/// the same values at their common edge find the same place, to the bit.
+/// Finds the points at which a function that is linear along the edges of a triangle changes its
+/// sign. Neighbours with the same values at their common edge find the same place, to the bit.
 fn zeros(
     item: u32,
     vertices: [u32; 3],
@@ -192,7 +195,7 @@ struct Vertices<'a> {
     faces: &'a Faces,
     surface: &'a SmoothSurface,
     crossings: &'a [Crossing],
-    /// Of each crossing its vertex, new or old.
+    /// Vertex of each crossing, new or old.
     vertices: Vec<u32>,
     /// The points of the faces, and the new ones.
     points: Vec<DVec3>,
@@ -231,7 +234,8 @@ impl<'a> Vertices<'a> {
         found
     }
 
-    /// The vertex of a crossing; on the curve over the edge if the surface is `round` there.
+    /// Returns the vertex of a crossing; on the curve over the edge if the surface is `round`
+    /// there.
     fn vertex(&mut self, crossing: &Crossing, round: bool) -> u32 {
         let Crossing { edge, at, corners, .. } = *crossing;
         let ends = edge.map(|v| self.points[v as usize]);
@@ -306,7 +310,7 @@ fn flat([p, q]: [DVec3; 2], t: f64) -> DVec3 {
     p + (q - p) * t
 }
 
-/// A point of the cubic over an edge that is at a right angle to the normals at its ends.
+/// Returns A point of the cubic over an edge that is at a right angle to the normals at its ends.
 fn curve_over([p, q]: [DVec3; 2], [n, m]: [DVec3; 2], t: f64) -> DVec3 {
     let along = q - p;
     let b = (p * 2.0 + q - n * along.dot(n)) / 3.0;
@@ -329,7 +333,8 @@ fn triangulate(mut ring: Vec<Corner>, mut push: impl FnMut([u32; 3])) {
     }
 }
 
-/// How wide a ring is without one of its corners, as a part of its length; 1 where nothing is left of it.
+/// Returns the width of a ring without one of its corners, as a part of its length; 1 if nothing of it
+/// remains.
 fn width_without(ring: &[Corner], gone: usize) -> f64 {
     let left = (1..ring.len()).map(|k| ring[(gone + k) % ring.len()].1);
     let mut rest = left.clone().skip(1);
@@ -343,7 +348,7 @@ fn width_without(ring: &[Corner], gone: usize) -> f64 {
     if any { area.length() / longest } else { 1.0 }
 }
 
-/// The height of a triangle as a part of its longest side.
+/// Returns the height of a triangle as a part of its longest side.
 fn height(corners: [Corner; 3]) -> f64 {
     let [a, b, c] = corners.map(|c| c.1);
     let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));

@@ -32,7 +32,7 @@ pub(super) struct SmoothSurface {
     corners: Vec<[u32; 3]>,
     /// Unit normals, by corner.
     pub normals: Vec<DVec3>,
-    /// How the surface slopes away from the eye, by corner: below 0 where the front is seen.
+    /// Slope of the surface away from the eye, by corner: below 0 where the front is visible.
     pub slopes: Vec<f64>,
     /// The first corner at each vertex, and after each corner the next at the same.
     first: Vec<u32>,
@@ -41,17 +41,18 @@ pub(super) struct SmoothSurface {
     turned: Vec<(u32, DVec3)>,
 }
 
-/// What a surface is made for.
+/// View and options that a surface is made for.
 struct Seen<'a> {
     scene: &'a Scene,
     faces: &'a Faces,
     plane: &'a PicturePlane,
-    /// Of each item whether it stands for a smooth surface.
+    /// True for each item that approximates a smooth surface.
     round: &'a [bool],
 }
 
 impl SmoothSurface {
-    /// The surface of the faces that are said to be `round`, item by item, with edges from the angle `sharp` on, radians.
+    /// Creates the surface of the faces that are said to be `round`, item by item, with edges from the angle
+    /// `sharp` on, radians.
     pub fn new(
         scene: &Scene,
         (faces, edges): (&Faces, &Edges),
@@ -79,7 +80,7 @@ impl SmoothSurface {
         found
     }
 
-    /// The corners of a triangle, if it stands for a surface that is not flat.
+    /// Returns the corners of a triangle, if it stands for a surface that is not flat.
     pub fn corners(&self, item: u32) -> Option<[u32; 3]> {
         self.corners.get(item as usize).copied().filter(|c| c[0] != NONE)
     }
@@ -93,14 +94,14 @@ impl SmoothSurface {
         if steepest.abs() < EDGE_ON { 0 } else { -steepest.signum() as i8 }
     }
 
-    /// Whether both sides of the surface are seen at a triangle's corners.
+    /// Returns whether both sides of the surface are seen at a triangle's corners.
     pub fn shows_both(&self, item: u32) -> bool {
         let slopes = |c: [u32; 3]| c.map(|c| self.slopes[c as usize]);
         let both = |s: [f64; 3]| s.iter().any(|s| *s >= 0.0) && s.iter().any(|s| *s <= 0.0);
         self.corners(item).is_some_and(|c| both(slopes(c)))
     }
 
-    /// The normal of the surface at a sliver that is turned against it.
+    /// Returns the normal of the surface at a sliver that is turned against it.
     pub fn normal_at_sliver(&self, item: u32) -> Option<DVec3> {
         self.turned.binary_search_by_key(&item, |t| t.0).ok().map(|i| self.turned[i].1)
     }
@@ -177,7 +178,7 @@ impl Seen<'_> {
         DMat3::from_mat4(self.scene.instances[run.instance].world_from_mesh).inverse().transpose()
     }
 
-    /// The items of meshes without normals.
+    /// Returns the items of meshes without normals.
     fn without_normals(&self) -> Vec<u32> {
         let runs = self.faces.runs().iter();
         let without = runs.filter(|r| self.scene.meshes[r.mesh].normals.is_empty());
@@ -185,9 +186,9 @@ impl Seen<'_> {
         items.filter(|item| self.round[*item as usize]).collect()
     }
 
-    /// Of each item whether it is at most two triangles away from where faces of both sides meet, or normals
-    /// of both, or from a sliver of which that is not known: outlines run there, and curvatures are
-    /// averaged around them.
+    /// Returns true for each item that is at most two triangles away from where faces of both sides meet, or
+    /// normals of both, or from a sliver of unknown side: outlines run there, and curvatures are averaged
+    /// around them.
     fn near_outlines(&self, directions: &Directions<'_>) -> Vec<bool> {
         let mut sides = self.sides_at_vertices();
         for t in directions.turned.iter().filter_map(|t| self.faces.triangle(t.0)) {
@@ -209,7 +210,7 @@ impl Seen<'_> {
         found
     }
 
-    /// Which sides are seen of the faces around each vertex, and of the file's normals there.
+    /// Returns the visible sides of the faces around each vertex, and of the file's normals there.
     fn sides_at_vertices(&self) -> Vec<u8> {
         let mut sides = vec![0; self.faces.points().len()];
         for run in self.faces.runs() {
@@ -238,10 +239,10 @@ impl Seen<'_> {
 /// Both sides, or one that is not known.
 const BOTH: u8 = 3;
 
-/// How many triangles around those at outlines are of the surface.
+/// Number of rings of triangles around those at outlines that belong to the surface.
 const RINGS: usize = 1;
 
-/// The side that a face of this slope shows.
+/// Returns the side that a face of this slope shows.
 fn side(slope: f64) -> u8 {
     if slope < 0.0 {
         1
@@ -252,14 +253,14 @@ fn side(slope: f64) -> u8 {
     }
 }
 
-/// The normals of a file at the corners of a triangle.
+/// Returns the normals of a file at the corners of a triangle.
 fn given(mesh: &Mesh, run: &FaceRun, matrix: DMat3, item: u32) -> [DVec3; 3] {
     let of_mesh = mesh.triangle((run.first + item - run.items.start) as usize);
     of_mesh.map(|v| (matrix * mesh.normals[v as usize].as_dvec3()).normalize_or_zero())
 }
 
-/// The normals of a triangle; none where they have nothing to do with it, as where a file gives one to the corner of
-/// a cube. On a round surface a sliver may be turned any way, so that is no reason there.
+/// Returns the normals of a triangle; none where they have nothing to do with it, as where a file gives one
+/// to the corner of a cube. On a round surface a sliver may be turned any way, so that is no reason there.
 fn believed(places: [DVec3; 3], normals: [DVec3; 3]) -> Option<[DVec3; 3]> {
     let (own, sliver) = direction(places);
     let own = own.normalize_or_zero();

@@ -37,7 +37,7 @@ pub(super) struct Steps {
 }
 
 impl Steps {
-    /// Those of faces with creases from the angle `crease` on, in radians.
+    /// Creates those of faces with creases from the angle `crease` on, in radians.
     pub fn new(faces: &Faces, edges: &Edges, crease: f64) -> Self {
         let seen = Seen { faces, edges, crease: libm::cos(crease) };
         let mut turns = Turns::default();
@@ -63,7 +63,7 @@ impl Steps {
         Self { creases, facets }
     }
 
-    /// Whether an edge is a crease, where that is known.
+    /// Returns whether an edge is a crease, if that is known.
     pub fn is_crease(&self, ends: Ends) -> Option<bool> {
         if self.creases.binary_search(&ends).is_ok() {
             Some(true)
@@ -72,7 +72,7 @@ impl Steps {
         }
     }
 
-    /// Whether nothing is known of any edge.
+    /// Returns whether nothing is known of any edge.
     pub fn is_empty(&self) -> bool {
         self.creases.is_empty() && self.facets.is_empty()
     }
@@ -85,7 +85,7 @@ struct Turn {
     items: [u32; 2],
 }
 
-/// What there is for the first look at all edges.
+/// Data for the first pass over all edges.
 #[derive(Default)]
 struct Turns {
     /// Items that lie in a plane with a neighbour.
@@ -103,7 +103,8 @@ impl Turns {
         self.sharp.append(&mut more.sharp);
     }
 
-    /// The edges without those that begin or end in the open, where neither one of them goes on nor a sharp edge.
+    /// Returns the edges without those that begin or end in the open, where neither one of them goes on nor a
+    /// sharp edge.
     fn held(&self, edges: Vec<Ends>, vertices: usize) -> Vec<Ends> {
         if edges.is_empty() {
             return edges;
@@ -132,7 +133,7 @@ impl Turns {
         edges.into_iter().zip(kept).filter(|(_, kept)| *kept).map(|(ends, _)| ends).collect()
     }
 
-    /// Lines of edges, in any number at a vertex, that meet no sharp edge and no loop.
+    /// Returns lines of edges, in any number at a vertex, that meet no sharp edge and no loop.
     fn loose(&self, vertices: usize) -> Vec<Vec<Turn>> {
         if self.coarse.is_empty() {
             return Vec::new();
@@ -160,7 +161,7 @@ impl Turns {
 struct Lines(Vec<u32>);
 
 impl Lines {
-    /// The first of those that a vertex is joined with.
+    /// Returns the first of those that a vertex is joined with.
     fn first(&mut self, mut vertex: u32) -> u32 {
         while self.0[vertex as usize] != vertex {
             let before = self.0[vertex as usize];
@@ -171,7 +172,7 @@ impl Lines {
     }
 }
 
-/// Where edges are looked at.
+/// Surface on which edges are examined.
 struct Seen<'a> {
     faces: &'a Faces,
     edges: &'a Edges,
@@ -187,7 +188,7 @@ impl Seen<'_> {
         parallel::map(jobs, f)
     }
 
-    /// The first look at the edges whose smaller vertices lie in a range.
+    /// Returns the first look at the edges whose smaller vertices lie in a range.
     fn turns(&self, vertices: Range<u32>) -> Turns {
         let mut found = Turns::default();
         for (ends, sides) in self.edges.from_vertices(vertices) {
@@ -206,7 +207,8 @@ impl Seen<'_> {
         found
     }
 
-    /// The edges below the crease angle between faces of several triangles, of which `flat` are some.
+    /// Returns the edges below the crease angle between faces of several triangles, of which `flat`
+    /// are some.
     fn blunt(&self, flat: &[u32]) -> Vec<Turn> {
         if flat.is_empty() {
             return Vec::new();
@@ -216,7 +218,7 @@ impl Seen<'_> {
         self.each_job(|vertices| self.blunt_from(vertices, &has_mate)).concat()
     }
 
-    /// The same of those whose smaller vertices lie in a range.
+    /// Returns the same of those whose smaller vertices lie in a range.
     fn blunt_from(&self, vertices: Range<u32>, has_mate: &[bool]) -> Vec<Turn> {
         let mut found = Vec::new();
         for (ends, sides) in self.edges.from_vertices(vertices) {
@@ -231,8 +233,8 @@ impl Seen<'_> {
         found
     }
 
-    /// The triangles at an edge of two, and the cosine of what the surface turns by there. None where there is no
-    /// surface, or a triangle has no direction.
+    /// Returns the triangles at an edge of two, and the cosine of what the surface turns by there. None where
+    /// there is no surface, or a triangle has no direction.
     fn turn(&self, sides: &[Side]) -> Option<([u32; 2], f64)> {
         let [a, b] = sides else { return None };
         let [n, m] = [a, b].map(|side| self.normal(side.item()));

@@ -12,8 +12,8 @@ use super::page::GridPoint;
 use super::table::Table;
 use crate::target::drawing::LineClass;
 
-/// What a stub ended at may end in the open without it, and what was joined may go on further, so all
-/// is repeated.
+/// Number of rounds: the line at which a stub ended may end in the open without it, and joined lines
+/// may continue further, so all is repeated.
 const ROUNDS: usize = 3;
 
 /// A stub of so few edges of the mesh may be [`COARSE_LENGTH`] times as long: on a coarse mesh an
@@ -34,7 +34,7 @@ const STRAIGHT: f64 = 0.978;
 /// pass each other a little.
 const HEAD_ON: f64 = 0.866;
 
-/// What lies within this part of a stub meets on paper: a pen's stroke is as wide.
+/// Part of a stub within which lines meet on paper: a pen's stroke is as wide.
 const MEETS: f64 = 0.1;
 
 /// A line that another leaves so near its tip, in parts of a stub, ends there, if the other runs on beside it: where
@@ -45,7 +45,7 @@ const BESIDE: f64 = 0.4;
 /// each other.
 const DUST: f64 = 0.3;
 
-/// The pieces without stubs up to `length` steps; what lies within `touch` steps touches.
+/// Returns the pieces without stubs up to `length` steps; what lies within `touch` steps touches.
 pub(super) fn without_stubs(mut pieces: Vec<Piece>, length: f64, touch: f64) -> Vec<Piece> {
     let touch = touch.max(4.0);
     for _ in 0..ROUNDS {
@@ -68,7 +68,7 @@ pub(super) fn without_stubs(mut pieces: Vec<Piece>, length: f64, touch: f64) -> 
     pieces
 }
 
-/// What becomes of a piece.
+/// Treatment of a piece.
 enum Cut {
     /// It is left out.
     All(usize),
@@ -80,7 +80,7 @@ enum Cut {
 struct Lines<'a> {
     pieces: &'a [Piece],
     walks: Vec<Walk>,
-    /// Whether the line that a piece belongs to is dust.
+    /// True if the line that a piece belongs to is dust.
     dust: Vec<bool>,
     table: Table,
     length: f64,
@@ -91,7 +91,7 @@ struct Lines<'a> {
 struct Tip {
     end: u32,
     at: GridPoint,
-    /// Where its line comes from, some way back.
+    /// Point of its line, some way back.
     from: GridPoint,
     /// The length of its line.
     length: f64,
@@ -117,7 +117,7 @@ impl<'a> Lines<'a> {
         Some(Self { pieces, walks, dust, table, length, touch })
     }
 
-    /// The open walks, each from both sides, of silhouettes and creases.
+    /// Returns the open walks, each from both sides, of silhouettes and creases.
     fn open_walks(&self) -> Vec<[Vec<u32>; 2]> {
         let class = |w: &Walk| self.pieces[w.ends[0] as usize / 2].class;
         let outlines = |w: &&Walk| matches!(class(w), LineClass::Silhouette | LineClass::Crease);
@@ -161,8 +161,8 @@ impl<'a> Lines<'a> {
         cuts
     }
 
-    /// Where another line leaves the piece with this tip, if it runs on to the tip at most `aside` beside the
-    /// piece, so that nothing is missed between.
+    /// Returns the point at which another line leaves the piece with this tip, if it runs on to the tip at
+    /// most `aside` beside the piece, so that nothing is missed between.
     fn left_beside(&mut self, end: u32, aside: f64) -> Option<GridPoint> {
         let (pieces, touch, most) = (self.pieces, self.touch, self.length * BESIDE);
         let piece = &pieces[end as usize / 2];
@@ -186,7 +186,7 @@ impl<'a> Lines<'a> {
         first.map(|f| f.1)
     }
 
-    /// Whether no other line lies within `radius` of the first point of a walk.
+    /// Returns whether no other line lies within `radius` of the first point of a walk.
     fn is_in_the_open(&mut self, ends: &[u32], radius: f64) -> bool {
         let tip = point(self.pieces, ends[0]);
         // Pieces of the walk that are near only because they are short.
@@ -238,8 +238,8 @@ impl<'a> Lines<'a> {
         cuts.extend(ends.iter().map(|e| Cut::All(*e as usize / 2)));
     }
 
-    /// The first place along a piece of a walk where another line ends on it, or where it ends on another
-    /// line.
+    /// Returns the first place along a piece of a walk where another line ends on it, or where it ends on
+    /// another line.
     fn junction(&mut self, ends: &[u32], k: usize) -> Option<(f64, GridPoint)> {
         let (pieces, touch) = (self.pieces, self.touch);
         let piece = &pieces[ends[k] as usize / 2];
@@ -305,8 +305,8 @@ impl<'a> Lines<'a> {
         found
     }
 
-    /// Whether one line goes on in the other: of one class, with turns below 60°, or straight where it
-    /// is further; or past its tip, where both run to meet each other.
+    /// Returns whether one line goes on in the other: of one class, with turns below 60°, or straight
+    /// where it is further; or past its tip, where both run to meet each other.
     fn go_on(&self, a: &Tip, b: &Tip) -> bool {
         let of = |t: &Tip| &self.pieces[t.end as usize / 2];
         let (p, q) = (of(a), of(b));

@@ -1,4 +1,4 @@
-//! Where curved faces meet others smoothly.
+//! The edges at which curved faces meet others smoothly.
 //!
 //! A mesh does not say where its faces were, but there the curvature changes at once: straight across the first edge of a
 //! fillet, the surface bends as the fillet does on one side, and on the other, of a plane or along a cylinder, hardly. The
@@ -11,15 +11,15 @@ use crate::parallel;
 use crate::visibility::object::{Edges, Faces, Side};
 use std::ops::Range;
 
-/// How much of a facet's own turn an edge turns by: half of it, or less where what meets it is coarse too, or a whole turn
-/// where the triangulation is uneven.
+/// Range of an edge's turn relative to a facet's own: half of it, or less if its neighbour is coarse too, or a whole turn
+/// if the triangulation is uneven.
 const TURN: Range<f64> = 0.25..1.0;
 
 /// The edges of the mesh that are tangent edges, the smaller vertex first, in order.
 pub(super) struct Tangents(Vec<[u32; 2]>);
 
 impl Tangents {
-    /// Those with bends of less than the angle `crease`, in radians.
+    /// Creates those with bends of less than the angle `crease`, in radians.
     pub fn new(faces: &Faces, edges: &Edges, crease: f64) -> Self {
         let items: Vec<u32> = faces.triangles().map(|(item, _)| item).collect();
         let directions = Directions::new(faces, edges, crease, &items);
@@ -35,7 +35,7 @@ impl Tangents {
         Self(parallel::map(jobs, of).concat())
     }
 
-    /// Whether an edge is one.
+    /// Returns whether an edge is one.
     pub fn contains(&self, ends: [u32; 2]) -> bool {
         self.0.binary_search(&ends).is_ok()
     }

@@ -19,7 +19,8 @@ const SLIVER: f64 = 0.125;
 /// Lower than this part of their longest side triangles may still be turned against the surface by half of the crease angle.
 const LOW: f64 = 0.2;
 
-/// How many slivers may lie beside each other; more are a strip of a round part, and turned as that is.
+/// Largest number of slivers beside each other; more are a strip of a round part, and turned as that
+/// is.
 const SLIVERS: usize = 4;
 
 /// Faces beside a sliver lie in one surface with it if they are turned against each other, and against that surface, by
@@ -33,23 +34,24 @@ const SAGITTAS: f64 = 3.0;
 /// The part of a sliver's turn that faces beside it are turned by at most: else it is no more turned than they are.
 const AS_MUCH: f64 = 0.8;
 
-/// How many times as sharp a round part may bend at one side of a facet as at another. Triangulations are irregular, and
-/// springs bend that much more around their wire than along it.
+/// Ratio of the bends of a round part at two sides of a facet. Triangulations are irregular, and springs bend that much
+/// more around their wire than along it.
 pub(super) const UNEVEN: f64 = 8.0;
 
-/// How many triangles a facet of a round part has at most: two, where it is a quadrilateral, and as many beside.
+/// Largest number of triangles in a facet of a round part: two for a quadrilateral, and as many beside.
 const FACET: usize = 4;
 
 /// Vertices of more triangles are hubs, and not round: all pairs of them are too many to look at.
 const HUB: usize = 256;
 
-/// Twice the area of a triangle along its normal, and whether it is a sliver.
+/// Returns twice the area of a triangle along its normal, and whether it is a sliver.
 pub(super) fn direction(corners: [DVec3; 3]) -> (DVec3, bool) {
     let (across, lowness) = lowness(corners);
     (across, lowness < SLIVER)
 }
 
-/// Twice the area of a triangle along its normal, and its height as a part of its longest side.
+/// Returns twice the area of a triangle along its normal, and its height as a part of its longest
+/// side.
 fn lowness([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     let across = (b - a).cross(c - a);
     let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
@@ -92,7 +94,8 @@ impl<'a> Directions<'a> {
         found
     }
 
-    /// The unit normal of a triangle, or of the surface that it lies in; zero where there is none.
+    /// Returns the unit normal of a triangle, or of the surface that it lies in; zero where there
+    /// is none.
     pub fn of(&self, item: u32) -> DVec3 {
         if let Ok(i) = self.turned.binary_search_by_key(&item, |t| t.0) {
             return self.turned[i].1;
@@ -100,8 +103,8 @@ impl<'a> Directions<'a> {
         self.faces.corners(item).map_or(DVec3::ZERO, |c| direction(c).0.normalize_or_zero())
     }
 
-    /// The direction of the surface at a sliver that lies in it but is turned against the faces beside it. `around`
-    /// has the sum of the faces around each vertex.
+    /// Returns the direction of the surface at a sliver that lies in it but is turned against the faces
+    /// beside it. `around` has the sum of the faces around each vertex.
     fn of_surface(&self, item: u32, around: &[DVec3]) -> Option<DVec3> {
         let [_, second, first] = self.sides_by_length(item)?;
         let ends = first.map(|v| around[v as usize].normalize_or_zero());
@@ -128,7 +131,7 @@ impl<'a> Directions<'a> {
             .then_some(surface)
     }
 
-    /// The sides of a triangle, the shortest first.
+    /// Returns the sides of a triangle, the shortest first.
     fn sides_by_length(&self, item: u32) -> Option<[[u32; 2]; 3]> {
         let mut sides = sides(self.faces.triangle(item)?);
         let points = self.faces.points();
@@ -137,7 +140,8 @@ impl<'a> Directions<'a> {
         Some(sides)
     }
 
-    /// The triangle at the other side of an edge, or where that is a sliver too, the one beyond it, and so on.
+    /// Returns the triangle at the other side of an edge, or where that is a sliver too, the one beyond it,
+    /// and so on.
     fn beyond_slivers(&self, mut item: u32, mut ends: [u32; 2]) -> Option<u32> {
         for _ in 0..SLIVERS {
             item = self.edges.across(ends, item)?;
@@ -150,7 +154,7 @@ impl<'a> Directions<'a> {
         None
     }
 
-    /// Whether the surface is not round at an edge between two triangles.
+    /// Returns whether the surface is not round at an edge between two triangles.
     fn is_sharp(&self, ends: [u32; 2], a: u32, b: u32) -> bool {
         let cosine = self.of(a).dot(self.of(b));
         // A bend of less than half the crease angle moves an outline by little.
@@ -160,34 +164,37 @@ impl<'a> Directions<'a> {
         !self.is_round(ends, [a, b])
     }
 
-    /// Whether the surface is round at an edge between two triangles: it bends again beyond one of them.
+    /// Returns whether the surface is round at an edge between two triangles: it bends again beyond
+    /// one of them.
     pub fn is_round(&self, ends: [u32; 2], items: [u32; 2]) -> bool {
         let least = self.bend(ends, items) / (UNEVEN * UNEVEN);
         items.into_iter().any(|item| self.is_facet(ends, item, least))
     }
 
-    /// Half the square of the curvature at an edge between two triangles: of the angle over their mean height.
+    /// Returns half the square of the curvature at an edge between two triangles: of the angle over their
+    /// mean height.
     fn bend(&self, ends: [u32; 2], items: [u32; 2]) -> f64 {
         let height = (self.height(ends, items[0]) + self.height(ends, items[1])) / 2.0;
         (1.0 - self.of(items[0]).dot(self.of(items[1]))) / (height * height)
     }
 
-    /// Whether the flat face that a triangle is a part of bends again, straight across from the edge `ends`, as facets
-    /// of round parts do, by at least `least`. How it bends at its other sides is of no matter: a cylinder is round, and
-    /// the rim where it meets a cone is not.
+    /// Returns whether the flat face that a triangle is a part of bends again, straight across from the edge `ends`, as
+    /// facets of round parts do, by at least `least`. How it bends at its other sides is of no matter: a cylinder is
+    /// round, and the rim where it meets a cone is not.
     fn is_facet(&self, ends: [u32; 2], item: u32, least: f64) -> bool {
         let next = self.next_bend(ends, item).1;
         next.is_some_and(|curvature| curvature * curvature >= 2.0 * least)
     }
 
-    /// How wide the flat face is that a triangle is a part of, straight across from the edge `ends`, as far as that is
-    /// looked at, and how much the surface bends that way at its other end: the turn over the mean width of the faces there,
-    /// if it is round.
+    /// Returns the width of the flat face that a triangle is a part of, straight across from the edge `ends`, as far as that
+    /// is followed, and the bend of the surface in that direction at its other end: the turn over the mean width of the
+    /// faces there, if it is round.
     pub fn next_bend(&self, ends: [u32; 2], item: u32) -> (f64, Option<f64>) {
         self.next_turn(ends, item, FLAT)
     }
 
-    /// Whether the surface bends on at both sides of an edge between two triangles, by half of what it turns by there.
+    /// Returns whether the surface continues to bend at both sides of an edge between two
+    /// triangles, by half of its turn there.
     pub fn bends_on(&self, ends: [u32; 2], items: [u32; 2]) -> bool {
         let cosine = self.of(items[0]).dot(self.of(items[1]));
         // cos(a / 2).
@@ -195,7 +202,8 @@ impl<'a> Directions<'a> {
         items.into_iter().all(|item| self.next_turn(ends, item, half).1.is_some())
     }
 
-    /// The same as [`Self::next_bend`] as far as faces are turned by less than an angle, which is given by its cosine.
+    /// Returns the same as [`Self::next_bend`] as far as faces are turned by less than an angle, which is
+    /// given by its cosine.
     fn next_turn(&self, mut ends: [u32; 2], mut item: u32, until: f64) -> (f64, Option<f64>) {
         let [p, q] = ends.map(|v| self.faces.points()[v as usize]);
         let own = self.of(item);
@@ -216,7 +224,8 @@ impl<'a> Directions<'a> {
         (far, None)
     }
 
-    /// Where a line through a point of one side of a triangle leaves it, and through which other side.
+    /// Finds the point and the side at which a line through a point of one side of a triangle leaves
+    /// it.
     fn walk(
         &self,
         item: u32,
@@ -233,7 +242,7 @@ impl<'a> Directions<'a> {
         Some(([apex, end], place(apex) + (place(end) - place(apex)) * part))
     }
 
-    /// The height of a triangle over one of its sides.
+    /// Returns the height of a triangle over one of its sides.
     fn height(&self, [a, b]: [u32; 2], item: u32) -> f64 {
         let length = self.faces.points()[a as usize].distance(self.faces.points()[b as usize]);
         self.faces.corners(item).map_or(0.0, |c| direction(c).0.length() / length)
@@ -252,7 +261,7 @@ fn same_edge(a: [u32; 2], b: [u32; 2]) -> bool {
 #[derive(Clone, Copy)]
 pub(super) struct Around {
     pub item: u32,
-    /// Which of its corners that is.
+    /// Index of its corner.
     pub corner: u8,
     vertex: u32,
     /// The other two vertices.
@@ -263,7 +272,7 @@ pub(super) struct Around {
 }
 
 impl Around {
-    /// A triangle around one of its corners.
+    /// Creates A triangle around one of its corners.
     fn of(faces: &Faces, directions: &Directions<'_>, item: u32, k: usize) -> Option<Self> {
         let (t, places) = (faces.triangle(item)?, faces.corners(item)?);
         let [p, q, r] = [0, 1, 2].map(|i| places[(k + i) % 3]);
@@ -339,7 +348,7 @@ fn averages(group: &[Around], directions: &Directions<'_>, f: &mut impl FnMut(&A
     }
 }
 
-/// Of each triangle around a vertex the first that no sharp edge divides it from.
+/// Returns for each triangle around a vertex the first that no sharp edge divides it from.
 fn parts(group: &[Around], directions: &Directions<'_>) -> Vec<usize> {
     let mut parts: Vec<usize> = (0..group.len()).collect();
     for (i, a) in group.iter().enumerate() {

@@ -32,12 +32,12 @@ pub const INFO: Info = Info {
     limits: "ambiguous: nothing says what is in front",
 };
 
-/// How it is drawn.
+/// Options of a wireframe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// As in [`super::hidden_line::Options::tolerance`].
+    /// Tolerance, as in [`super::hidden_line::Options::tolerance`].
     pub tolerance: f64,
-    /// Which vertices are one.
+    /// Rule that joins vertices.
     pub weld: Weld,
 }
 
@@ -54,7 +54,7 @@ impl Options {
     }
 }
 
-/// What the algorithm did.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// The grid was laid.
@@ -63,7 +63,7 @@ pub enum Step {
     Edge([DVec2; 2]),
 }
 
-/// The lines that a list of steps leads to.
+/// Returns the lines that a list of steps leads to.
 pub fn replay(steps: &[Step], options: &Options) -> Vec<Line> {
     let Some(Step::Page(page)) = steps.first() else { return Vec::new() };
     let edges = steps.iter().filter_map(|s| match s {
@@ -100,7 +100,7 @@ pub fn draw(
     Ok(Drawing { window, lines: arranged(found, options.how()), edges, ..Drawing::default() })
 }
 
-/// All edges, and the lines and points of the model.
+/// Returns all edges, and the lines and points of the model.
 fn pieces(
     faces: &Faces,
     edges: &Edges,

@@ -1,4 +1,5 @@
-//! What faces bound: connected pieces of surface, whether they are closed, and which way out is.
+//! The bodies that faces bound: connected pieces of surface, whether they are closed, and which way
+//! is out.
 
 use super::{Edges, Faces};
 use crate::math::DVec3;
@@ -6,11 +7,11 @@ use crate::math::DVec3;
 /// A connected piece of surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Body {
-    /// Whether each edge has as many triangles on one side as on the other, after turning triangles
+    /// True if each edge has as many triangles on one side as on the other, after turning triangles
     /// that run against their neighbours: the piece bounds a volume, and whoever looks at it from
     /// outside meets a front face first.
     pub closed: bool,
-    /// How many triangles it has, duplicates left out.
+    /// Number of its triangles, without duplicates.
     pub triangles: u32,
     /// Its volume in cubic units; meaningful where closed. Never negative: triangles are counted as
     /// turned outwards.
@@ -35,7 +36,7 @@ impl Bodies {
         Self::of_edges(faces, Edges::new(faces, |_| true))
     }
 
-    /// The same where the edges of all triangles are known.
+    /// Returns the same where the edges of all triangles are known.
     pub(in crate::visibility) fn of_edges(faces: &Faces, mut edges: Edges) -> (Self, Edges) {
         if let Some(copy) = copies(faces, &edges) {
             edges = Edges::new(faces, |item| !copy[item as usize]);
@@ -115,27 +116,28 @@ impl Bodies {
         }
     }
 
-    /// All bodies, in the order of their first triangles.
+    /// Returns all bodies, in the order of their first triangles.
     pub fn all(&self) -> &[Body] {
         &self.bodies
     }
 
-    /// The index of a triangle's body; `None` for triangles without area, and for those that
-    /// repeat the three vertices of an earlier one.
+    /// Returns the index of a triangle's body; `None` for triangles without area, and for those
+    /// that repeat the three vertices of an earlier one.
     #[inline]
     pub fn of(&self, item: u32) -> Option<u32> {
         self.of_item.get(item as usize).filter(|p| **p != ABSENT).map(|p| p >> 1)
     }
 
-    /// Whether a triangle must be turned over for its front to look out of its body (for an open one:
-    /// for neighbours to agree).
+    /// Returns whether a triangle must be turned over for its front to look out of its body (for an
+    /// open one: for neighbours to agree).
     #[inline]
     pub fn turned(&self, item: u32) -> bool {
         self.of_item.get(item as usize).is_some_and(|p| *p != ABSENT && p & 1 == 1)
     }
 }
 
-/// Which triangles have the same three vertices as an earlier one; `None` where there are none.
+/// Returns true for each triangle with the same three vertices as an earlier one; `None` if there
+/// are none.
 fn copies(faces: &Faces, edges: &Edges) -> Option<Vec<bool>> {
     let vertices = |item: u32| {
         let mut t = faces.triangle(item)?;
@@ -210,7 +212,7 @@ impl TurnedSets {
         }
     }
 
-    /// Whether no way of turning makes all neighbours agree.
+    /// Returns whether no way of turning makes all neighbours agree.
     fn torn(&self, root: u32) -> bool {
         self.torn.contains(&root)
     }

@@ -1,4 +1,4 @@
-//! Which triangles meet at an edge.
+//! The triangles that meet at each edge.
 
 use super::Faces;
 use crate::target::drawing::EdgeCount;
@@ -15,14 +15,14 @@ impl Side {
         Self { other: a.max(b), packed: item << 1 | u32::from(a < b) }
     }
 
-    /// The triangle.
+    /// Returns the triangle.
     #[inline]
     pub fn item(self) -> u32 {
         self.packed >> 1
     }
 
-    /// Whether the triangle runs through the edge from the smaller to the larger vertex number: it
-    /// lies to the left of that direction, seen from its front.
+    /// Returns whether the triangle runs through the edge from the smaller to the larger vertex
+    /// number: it lies to the left of that direction, seen from its front.
     #[inline]
     pub fn forward(self) -> bool {
         self.packed & 1 == 1
@@ -69,8 +69,8 @@ impl Edges {
         Self { starts, sides }
     }
 
-    /// The same after some triangles were changed, which are given in item order. Costs less than to find all
-    /// again where they are few.
+    /// Returns the same after some triangles were changed, which are given in item order. Costs less than to
+    /// find all again where they are few.
     pub(super) fn renewed(self, faces: &Faces, changed: &[u32]) -> Self {
         if changed.len() > faces.len() / 4 {
             return Self::new(faces, |_| true);
@@ -101,7 +101,7 @@ impl Edges {
         Self { starts, sides }
     }
 
-    /// How many edges there are, and how many of them have one triangle only.
+    /// Returns the number of edges, and of those with one triangle only.
     pub fn count(&self) -> EdgeCount {
         let mut count = EdgeCount::default();
         for (_, sides) in self.iter() {
@@ -111,7 +111,7 @@ impl Edges {
         count
     }
 
-    /// The edges with one triangle, which comes with them.
+    /// Returns the edges with one triangle, which comes with them.
     pub(super) fn borders(&self) -> impl Iterator<Item = ([u32; 2], u32)> + '_ {
         self.iter().filter_map(|(ends, sides)| match sides {
             [side] => Some((ends, side.item())),
@@ -119,12 +119,13 @@ impl Edges {
         })
     }
 
-    /// Each edge once: its vertices, the smaller first, and the triangles at it in item order.
+    /// Returns each edge once: its vertices, the smaller first, and the triangles at it in item
+    /// order.
     pub fn iter(&self) -> impl Iterator<Item = ([u32; 2], &[Side])> + '_ {
         self.from_vertices(0..self.starts.len().saturating_sub(1) as u32)
     }
 
-    /// The triangle at the other side of an edge of two that run alike.
+    /// Returns the triangle at the other side of an edge of two that run alike.
     pub(in crate::visibility) fn across(&self, ends: [u32; 2], item: u32) -> Option<u32> {
         match self.at([ends[0].min(ends[1]), ends[0].max(ends[1])]) {
             [a, b] if a.forward() != b.forward() => {
@@ -134,8 +135,8 @@ impl Edges {
         }
     }
 
-    /// The triangles at the edge between two vertices, the smaller first; none where there is no such
-    /// edge.
+    /// Returns the triangles at the edge between two vertices, the smaller first; none where there is
+    /// no such edge.
     pub fn at(&self, [a, b]: [u32; 2]) -> &[Side] {
         let Some([from, to]) = self.starts.get(a as usize..).and_then(|s| s.first_chunk::<2>())
         else {
@@ -147,7 +148,7 @@ impl Edges {
         &sides[start..end]
     }
 
-    /// The edges whose smaller vertex lies in a range.
+    /// Returns the edges whose smaller vertex lies in a range.
     pub fn from_vertices(
         &self,
         vertices: std::ops::Range<u32>,

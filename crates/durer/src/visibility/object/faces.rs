@@ -42,9 +42,9 @@ pub struct Faces {
     marks: Vec<[u32; 2]>,
     /// Triangles on whose sides vertices of others lie, in item order: their outlines, with these.
     outlines: Vec<(u32, Vec<u32>)>,
-    /// Of each item whether it is among them; empty where none is.
+    /// True for each item that is among them; empty if none is.
     has_outline: Vec<bool>,
-    /// Of each instance; empty where nothing is stitched.
+    /// Grain of each instance; empty if nothing is stitched.
     grains: Vec<Grain>,
     /// The edges, if they are known already.
     edges: Option<Edges>,
@@ -54,7 +54,7 @@ pub struct Faces {
 const NONE: [u32; 3] = [u32::MAX; 3];
 
 impl Faces {
-    /// The faces of a scene, welded as [`Weld::Auto`] says.
+    /// Creates the faces of a scene, welded as [`Weld::Auto`] says.
     ///
     /// # Errors
     /// See [`Self::welded`].
@@ -62,7 +62,7 @@ impl Faces {
         Self::welded(scene, Weld::Auto)
     }
 
-    /// The faces of a scene; O(n), and O(b log² b) for b borders.
+    /// Returns the faces of a scene; O(n), and O(b log² b) for b borders.
     ///
     /// # Errors
     /// What [`Scene::check`] finds, [`Error::Parameter`] for a length that is none, and [`Error::Limit`] for more
@@ -162,12 +162,12 @@ impl Faces {
         }
     }
 
-    /// The index of the instance that a triangle belongs to.
+    /// Returns the index of the instance that a triangle belongs to.
     pub(super) fn instance_of(&self, item: u32) -> Option<usize> {
         self.run_of(item).map(|run| run.instance)
     }
 
-    /// The edges of all triangles; each caller but the first has them found again.
+    /// Returns the edges of all triangles; each caller but the first has them found again.
     pub(in crate::visibility) fn take_edges(&mut self) -> Edges {
         self.edges.take().unwrap_or_else(|| Edges::new(self, |_| true))
     }
@@ -213,9 +213,9 @@ impl Faces {
         }
     }
 
-    /// The same with parts in place of some triangles, and of each triangle the item that it was. `parts`
-    /// are (item, vertices) in item order, `points` those of the faces and more. Parts of one polygon are
-    /// one polygon.
+    /// Returns the same with parts in place of some triangles, and of each triangle the item that it was.
+    /// `parts` are (item, vertices) in item order, `points` those of the faces and more. Parts of one
+    /// polygon are one polygon.
     pub(in crate::visibility) fn refined(
         &self,
         points: Vec<DVec3>,
@@ -249,31 +249,31 @@ impl Faces {
         (refined, origins)
     }
 
-    /// The number of triangles: one more than the largest item.
+    /// Returns the number of triangles: one more than the largest item.
     pub fn len(&self) -> usize {
         self.triangles.len()
     }
 
-    /// Whether there are no triangles.
+    /// Returns whether there are no triangles.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
 
-    /// The distinct vertices, world space. Some may belong to no triangle.
+    /// Returns the distinct vertices, world space. Some may belong to no triangle.
     pub fn points(&self) -> &[DVec3] {
         &self.points
     }
 
-    /// The vertices of a triangle, indices into [`Self::points`], counter-clockwise seen from its front
-    /// (unless its instance mirrors); `None` where two are one, or one is not finite, or for an item
-    /// that does not exist.
+    /// Returns the vertices of a triangle, indices into [`Self::points`], counter-clockwise seen from
+    /// its front (unless its instance mirrors); `None` where two are one, or one is not finite, or for
+    /// an item that does not exist.
     #[inline]
     pub fn triangle(&self, item: u32) -> Option<[u32; 3]> {
         self.triangles.get(item as usize).copied().filter(|t| *t != NONE)
     }
 
-    /// The lines of the scene, and its points as lines from a vertex to itself: indices into
-    /// [`Self::points`], in scene order.
+    /// Returns the lines of the scene, and its points as lines from a vertex to itself: indices
+    /// into [`Self::points`], in scene order.
     pub fn marks(&self) -> &[[u32; 2]] {
         &self.marks
     }
@@ -283,14 +283,14 @@ impl Faces {
         (0..).zip(&self.triangles).filter(|(_, t)| **t != NONE).map(|(item, t)| (item, *t))
     }
 
-    /// The corners of a triangle, world space; `None` as in [`Self::triangle`].
+    /// Returns the corners of a triangle, world space; `None` as in [`Self::triangle`].
     #[inline]
     pub fn corners(&self, item: u32) -> Option<[DVec3; 3]> {
         Some(self.triangle(item)?.map(|v| self.points[v as usize]))
     }
 
-    /// The same by coordinates, whichever comes first in the file and however it turns: copies of a triangle
-    /// are rounded alike.
+    /// Returns the same by coordinates, whichever comes first in the file and however it turns: copies of a
+    /// triangle are rounded alike.
     pub(in crate::visibility) fn sorted_corners(&self, item: u32) -> Option<[DVec3; 3]> {
         let mut corners = self.corners(item)?;
         corners.sort_unstable_by(by_coordinates);
@@ -302,21 +302,22 @@ impl Faces {
         &self.runs
     }
 
-    /// The run of an item; `None` where there is no such item. O(log runs).
+    /// Returns the run of an item; `None` where there is no such item. O(log runs).
     pub fn run_of(&self, item: u32) -> Option<&FaceRun> {
         let run = self.runs.get(self.runs.partition_point(|r| r.items.end <= item))?;
         run.items.contains(&item).then_some(run)
     }
 
-    /// Whether two triangles are parts of one face with more than three corners, as the file had it:
-    /// what they share is no edge. Neighbours in item order only, as fans are.
+    /// Returns whether two triangles are parts of one face with more than three corners, as the file
+    /// had it: their common side is no edge. Neighbours in item order only, as fans are.
     #[inline]
     pub fn same_polygon(&self, a: u32, b: u32) -> bool {
         self.polygons.as_ref().is_some_and(|p| p.get(a as usize) == p.get(b as usize))
     }
 }
 
-/// How precise the coordinates of an instance are whose mesh has these bounds, if the last digit is 1.
+/// Returns the precision of the coordinates of an instance whose mesh has these bounds, if the last
+/// digit is 1.
 fn grain(instance: &Instance, bounds: Option<Aabb>, how: Weld) -> Grain {
     let matrix = instance.world_from_mesh;
     let axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|a| a.truncate().length());

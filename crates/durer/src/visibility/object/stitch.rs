@@ -14,7 +14,7 @@ use super::{Edges, Faces};
 use crate::math::DVec3;
 use crate::view::near::{self, OF_EDGE, Places};
 
-/// How far the faces of one instance reach, world units.
+/// Precision of the faces of one instance, world units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grain {
     /// The tree of nodes that it belongs to: only those of one tree meet.
@@ -25,7 +25,7 @@ pub(super) struct Grain {
     pub digit: f64,
     /// Its extent.
     pub extent: f64,
-    /// How far borders may lie apart, if somebody said so.
+    /// Largest distance between borders, if the caller sets one.
     pub given: Option<f64>,
 }
 
@@ -37,7 +37,7 @@ const LOW: f64 = 4.0;
 const MOST: usize = 8;
 
 impl Grain {
-    /// How far borders may lie apart.
+    /// Returns the largest distance between borders.
     fn reach(&self) -> f64 {
         self.given.unwrap_or_else(|| near::reach(self.step, self.digit, self.extent))
     }
@@ -80,7 +80,7 @@ fn without(faces: &mut Faces, edges: Edges, items: &[u32]) -> Edges {
     edges.renewed(faces, items)
 }
 
-/// The triangles without height that lie along others: with them gone the others meet.
+/// Returns the triangles without height that lie along others: with them gone the others meet.
 fn all_low(faces: &Faces, edges: &Edges, grains: &[Grain]) -> Vec<u32> {
     let mut found = Vec::new();
     for run in faces.runs() {
@@ -109,7 +109,7 @@ fn longest_squared([a, b, c]: [DVec3; 3]) -> f64 {
     a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a))
 }
 
-/// Whether a triangle has neighbours all along, on one side or the other.
+/// Returns whether a triangle has neighbours all along, on one side or the other.
 fn is_along(faces: &Faces, edges: &Edges, [a, b, c]: [u32; 3]) -> bool {
     let mut sides = [[a, b], [b, c], [c, a]];
     let length =
@@ -136,12 +136,12 @@ struct End {
     longest: f64,
 }
 
-/// What is the same for the borders of one instance.
+/// Properties that the borders of one instance share.
 #[derive(Clone, Copy)]
 struct Kind {
     tree: u32,
     reach: f64,
-    /// Whether small ones are spared.
+    /// True if small ones are spared.
     careful: bool,
 }
 
@@ -189,7 +189,7 @@ impl Borders {
         &self.kinds[end.kind as usize]
     }
 
-    /// The vertices that become others, with these.
+    /// Returns the vertices that become others, with these.
     fn joined(&self, faces: &Faces) -> Vec<(u32, u32)> {
         let reaches: Vec<f64> =
             self.ends.iter().map(|e| self.kind(e).reach_of(e.longest)).collect();
@@ -200,7 +200,8 @@ impl Borders {
         joined.into_iter().map(|(k, i)| (self.ends[k].vertex, self.ends[i].vertex)).collect()
     }
 
-    /// The triangles at borders that are no higher than a border reaches, and lie along others.
+    /// Returns the triangles at borders that are no higher than a border reaches, and lie along
+    /// others.
     fn low(&self, faces: &Faces, edges: &Edges) -> Vec<u32> {
         let mut found = Vec::new();
         for border in &self.all {
@@ -215,7 +216,7 @@ impl Borders {
         found
     }
 
-    /// The outlines of the triangles whose borders are divided, by item.
+    /// Returns the outlines of the triangles whose borders are divided, by item.
     fn outlines(&self, faces: &Faces) -> Vec<(u32, Vec<u32>)> {
         let mut divided: Vec<(usize, Vec<u32>)> = Vec::new();
         let mut count = 0;
@@ -238,7 +239,7 @@ impl Borders {
             .collect()
     }
 
-    /// The ends of others that lie on a border, from its first end to its second.
+    /// Returns the ends of others that lie on a border, from its first end to its second.
     fn between(&self, faces: &Faces, border: &Border) -> Vec<u32> {
         let kind = &self.kinds[border.kind as usize];
         let ends = border.ends.map(|v| faces.points()[v as usize]);
@@ -257,7 +258,7 @@ impl Borders {
         found.into_iter().map(|f| f.1).collect()
     }
 
-    /// Of each divided border whether a part of it is another border, or a part of one.
+    /// Returns for each divided border whether a part of it is another border, or a part of one.
     fn met(&self, divided: &[(usize, Vec<u32>)]) -> Vec<bool> {
         let mut is_divided = vec![false; self.all.len()];
         let mut parts: Vec<([u32; 2], usize)> = Vec::new();
@@ -277,7 +278,7 @@ impl Borders {
         met
     }
 
-    /// The outline of one triangle, some of whose sides are divided.
+    /// Returns the outline of one triangle, some of whose sides are divided.
     fn outline(&self, faces: &Faces, parts: &[(usize, Vec<u32>)]) -> Option<(u32, Vec<u32>)> {
         let item = self.all[parts[0].0].item;
         let [a, b, c] = faces.triangle(item)?;

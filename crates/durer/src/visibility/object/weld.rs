@@ -15,7 +15,7 @@ const TOLERANCE: f64 = 1.0 / (1u64 << 26) as f64;
 /// and still so small that hardly any two points share one.
 const CELLS: f64 = (1u64 << 20) as f64;
 
-/// Which vertices are one.
+/// Rule that joins vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Weld {
     /// Those of one mesh that lie at one place, up to 2⁻²⁶ of the mesh's extent; and, within one
@@ -28,7 +28,7 @@ pub enum Weld {
     Auto,
     /// Those of one mesh whose coordinates are equal.
     None,
-    /// As [`Self::Auto`], but borders may lie as far apart as this, in units of the world.
+    /// Like [`Self::Auto`], but with this largest distance between borders, in units of the world.
     Within(f64),
 }
 
@@ -45,13 +45,13 @@ impl Weld {
     }
 }
 
-/// What [`weld`] finds.
+/// Result of [`weld`].
 pub(super) struct Welded {
     /// For each vertex the number of its place; places are numbered in order of first use.
     pub place: Vec<u32>,
     /// The first vertex of each place.
     pub first: Vec<u32>,
-    /// What is around the finite ones, if there are any.
+    /// Bounds of the finite ones, if there are any.
     pub bounds: Option<Aabb>,
 }
 
@@ -97,7 +97,7 @@ fn alone(count: usize) -> Welded {
     Welded { place: all.clone(), first: all, bounds: None }
 }
 
-/// The cells in which a point within tolerance may have been entered, its own first.
+/// Returns the cells in which a point within tolerance may have been entered, its own first.
 fn lookups(cell: DVec3) -> impl Iterator<Item = [u32; 3]> {
     let margin = TOLERANCE * CELLS;
     let own = cell.to_array().map(|c| c as u32);

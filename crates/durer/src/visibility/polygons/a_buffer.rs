@@ -40,8 +40,8 @@ pub fn edge_distance([a, b]: [DVec2; 2], p: DVec2) -> Option<f64> {
     (length > 0.0).then(|| value / length)
 }
 
-/// The mask of a half-plane by the area that it covers: n = round(16 · area) sub-pixels, those that lie deepest in it. The
-/// pixel reaches from (0, 0) to (1, 1); bit 4 · row + column has a sub-pixel.
+/// Returns the mask of a half-plane by the area that it covers: n = round(16 · area) sub-pixels, those that
+/// lie deepest in it. The pixel reaches from (0, 0) to (1, 1); bit 4 · row + column has a sub-pixel.
 pub fn ordered_mask(edge: [DVec2; 2], area: f64) -> u16 {
     let count = (area.clamp(0.0, 1.0) * 16.0 + 0.5) as usize;
     let center = |bit: usize| DVec2::new((bit % 4) as f64 + 0.5, (bit / 4) as f64 + 0.5) / 4.0;
@@ -51,8 +51,9 @@ pub fn ordered_mask(edge: [DVec2; 2], area: f64) -> u16 {
     order.into_iter().take(count).fold(0, |mask, bit| mask | 1 << bit)
 }
 
-/// What is seen of the first of two fragments where both cover: (z₂max − z₁min) / ((z₁max − z₁min) + (z₂max − z₂min)). 1 where it
-/// ends before the other begins, 0 the other way round, ½ for two that are flat and equally deep.
+/// Returns the visible share of the first of two fragments where both cover: (z₂max − z₁min) /
+/// ((z₁max − z₁min) + (z₂max − z₂min)). 1 if it ends before the other begins, 0 the other way
+/// round, ½ for two that are flat and equally deep.
 pub fn visible_share(first: [f64; 2], second: [f64; 2]) -> f64 {
     if first[1] <= second[0] && first != second {
         return 1.0;
@@ -62,8 +63,8 @@ pub fn visible_share(first: [f64; 2], second: [f64; 2]) -> f64 {
     if share.is_nan() { 0.5 } else { share.clamp(0.0, 1.0) }
 }
 
-/// What is seen of two fragments A and B that cut each other in the pixel, where P has the sub-pixels at which A is in front:
-/// A · (¬B + P) and B · (¬A + ¬P).
+/// Returns the visible masks of two fragments A and B that cut each other in the pixel, where P has
+/// the sub-pixels at which A is in front: A · (¬B + P) and B · (¬A + ¬P).
 ///
 /// ```
 /// use durer::visibility::polygons::a_buffer::seen_masks;
@@ -73,7 +74,7 @@ pub fn seen_masks(a: u16, b: u16, priority: u16) -> [u16; 2] {
     [a & (!b | priority), b & (!a | !priority)]
 }
 
-/// What a face leaves in a pixel.
+/// Contribution of a face to a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fragment {
     /// The sub-pixels that it covers.
@@ -84,7 +85,7 @@ pub struct Fragment {
     pub color: Vec4,
 }
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A fragment's turn, in the order of depth.
@@ -102,7 +103,7 @@ pub enum Step {
         fragments: [usize; 2],
         /// The sub-pixels in question.
         mask: u16,
-        /// What the first one gets of them.
+        /// Share of the first one in them.
         share: f64,
     },
     /// A fragment gets a weight in the pixel's colour.
@@ -114,7 +115,7 @@ pub enum Step {
     },
 }
 
-/// The weights that a list of steps leads to: of each fragment, and of the background.
+/// Returns the weights that a list of steps leads to: of each fragment, and of the background.
 pub fn replay(count: usize, steps: &[Step]) -> (Vec<f64>, f64) {
     let (mut weights, mut background) = (vec![0.0; count], 0.0);
     for step in steps {
@@ -127,8 +128,8 @@ pub fn replay(count: usize, steps: &[Step]) -> (Vec<f64>, f64) {
     (weights, background)
 }
 
-/// The weight of each fragment in the pixel, and that of the background; they add up to 1. Of fragments that overlap
-/// in depth, each pair that follows one another shares what both cover.
+/// Returns the weight of each fragment in the pixel, and that of the background; they add up to 1. Of
+/// fragments that overlap in depth, each pair that follows one another shares what both cover.
 pub fn weights(fragments: &[Fragment], t: &mut impl Tracer<Step>) -> (Vec<f64>, f64) {
     let mut order: Vec<usize> = (0..fragments.len()).collect();
     order.sort_by(|&i, &j| fragments[i].z[0].total_cmp(&fragments[j].z[0]).then(i.cmp(&j)));
@@ -164,12 +165,12 @@ pub fn weights(fragments: &[Fragment], t: &mut impl Tracer<Step>) -> (Vec<f64>, 
     (weights, background)
 }
 
-/// The sub-pixels that have anything left.
+/// Returns the sub-pixels that have anything left.
 fn mask_of(left: &[f64; 16]) -> u16 {
     (0..16).filter(|&bit| left[bit] > 0.0).fold(0, |mask, bit| mask | 1 << bit)
 }
 
-/// The pixel's colour over a background.
+/// Returns the pixel's colour over a background.
 pub fn resolve(fragments: &[Fragment], background: Vec4, t: &mut impl Tracer<Step>) -> Vec4 {
     let (weights, rest) = weights(fragments, t);
     let mixed = fragments.iter().zip(weights).map(|(f, weight)| f.color * weight as f32);

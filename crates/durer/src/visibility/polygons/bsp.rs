@@ -32,11 +32,12 @@ pub const INFO: Info = Info {
     limits: "plane polygons; at most so many pieces as the options say",
 };
 
-/// How the tree is made.
+/// Options for building the tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
-    /// So many polygons of a list are tried as its root, and the one that splits the fewest others is taken: the first
-    /// alone gives large trees, five or six give nearly the smallest. At least 1.
+    /// Number of polygons of a list that are tried as its root; the one that splits the fewest
+    /// others is taken: the first alone gives large trees, five or six give nearly the smallest. At
+    /// least 1.
     pub candidates: usize,
     /// The most pieces that the tree may have.
     pub max_pieces: usize,
@@ -51,7 +52,7 @@ impl Default for Options {
 /// On which side of a node's plane a polygon lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Side {
-    /// Where the normal points.
+    /// Side that the normal points to.
     Front,
     /// Behind it.
     Back,
@@ -61,14 +62,15 @@ pub enum Side {
     Both,
 }
 
-/// What there is to see. Pieces have numbers: first the faces, then what splitting makes.
+/// Step of the algorithm. Pieces have numbers: first the faces, then the parts that splitting
+/// makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
     /// A piece was tried as the root of a list.
     Tried {
         /// The piece.
         piece: u32,
-        /// How many others its plane would split.
+        /// Number of others that its plane would split.
         splits: usize,
     },
     /// A piece is a node of the tree.
@@ -84,14 +86,14 @@ pub enum Step {
     Sorted {
         /// The piece.
         piece: u32,
-        /// Where it lies.
+        /// Position of the vertex.
         side: Side,
     },
     /// A piece was split.
     Split {
         /// The piece.
         piece: u32,
-        /// What is in front, and what is behind.
+        /// Parts in front and behind.
         into: [u32; 2],
     },
     /// The walk comes to a node: the eye is on this side of its plane, so the other side is painted first.
@@ -108,7 +110,7 @@ pub enum Step {
         /// Its face.
         face: u32,
     },
-    /// Of the piece that is painted: a pixel.
+    /// A pixel of the piece that is painted.
     Pixel {
         /// Column and row.
         pixel: [u32; 2],
@@ -117,7 +119,7 @@ pub enum Step {
     },
 }
 
-/// The picture that a list of steps leads to.
+/// Returns the picture that a list of steps leads to.
 ///
 /// # Errors
 /// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
@@ -131,7 +133,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     Ok(items)
 }
 
-/// The index of the nearest face at each pixel's centre, of equally near ones the first.
+/// Returns the index of the nearest face at each pixel's centre, of equally near ones the first.
 ///
 /// # Errors
 /// [`Limit`](crate::Error::Limit) for too many pieces, [`Memory`](crate::Error::Memory) where the screen's budget does

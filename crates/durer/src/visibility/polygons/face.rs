@@ -10,7 +10,7 @@ use crate::trace::NoTrace;
 use crate::view::cull::newell_area;
 use crate::{Error, Result};
 
-/// How far corners may lie from the plane, in units of the polygon's extent.
+/// Largest distance of corners from the plane, in units of the polygon's extent.
 const FLATNESS: f64 = 1e-6;
 
 /// A plane polygon: x right and y down in pixels, z the distance from the eye.
@@ -23,12 +23,12 @@ pub struct Face {
     /// Through the mean of the corners; its normal by Newell's method, of unit length.
     plane: Plane,
     center: DVec3,
-    /// What z gains per pixel to the right and down; zero for a face seen edge-on.
+    /// Increase of z per pixel to the right and down; zero for a face seen edge-on.
     slope: DVec2,
 }
 
 impl Face {
-    /// The polygon with these corners, in either direction; it may be concave.
+    /// Creates the polygon with these corners, in either direction; it may be concave.
     ///
     /// # Errors
     /// [`Error::NonFinite`]; [`Error::Parameter`] for a polygon without area, and for one whose corners lie
@@ -55,33 +55,34 @@ impl Face {
         Ok(Self { corners: corners.to_vec(), plane, center, slope })
     }
 
-    /// The corners.
+    /// Returns the corners.
     pub fn corners(&self) -> &[DVec3] {
         &self.corners
     }
 
-    /// The plane, its normal of unit length on the side from which the corners run counter-clockwise.
+    /// Returns the plane, its normal of unit length on the side from which the corners run
+    /// counter-clockwise.
     pub fn plane(&self) -> &Plane {
         &self.plane
     }
 
-    /// The corners on the screen.
+    /// Returns the corners on the screen.
     pub fn outline(&self) -> Vec<DVec2> {
         self.corners.iter().map(|c| c.truncate()).collect()
     }
 
-    /// The distance of the face's plane from the eye at a point of the screen.
+    /// Returns the distance of the face's plane from the eye at a point of the screen.
     pub fn depth(&self, p: DVec2) -> f64 {
         self.center.z + self.slope.dot(p - self.center.truncate())
     }
 
-    /// The nearest and the farthest corner's z.
+    /// Returns the nearest and the farthest corner's z.
     pub fn depths(&self) -> [f64; 2] {
         let z = || self.corners.iter().map(|c| c.z);
         [z().fold(f64::INFINITY, f64::min), z().fold(f64::NEG_INFINITY, f64::max)]
     }
 
-    /// The outline as contours.
+    /// Returns the outline as contours.
     pub(super) fn contours(&self) -> Contours {
         Contours::polygon(self.outline())
     }
@@ -102,7 +103,7 @@ impl Face {
         });
     }
 
-    /// The plane's point at a pixel's centre.
+    /// Returns the plane's point at a pixel's centre.
     pub(super) fn at(&self, x: i32, y: i32) -> DVec3 {
         let p = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
         p.extend(self.depth(p))

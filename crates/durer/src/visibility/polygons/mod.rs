@@ -45,12 +45,12 @@ pub struct Screen {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// What memory is charged to, and what may stop the work.
+    /// Budget of memory, and cancellation.
     pub work: Work,
 }
 
 impl Screen {
-    /// A plane of this size.
+    /// Returns A plane of this size.
     fn plane<T: Copy>(&self, value: T) -> Result<Pixels<T>> {
         Pixels::within((&self.work, "planes of the picture"), self.width, self.height, value)
     }
@@ -70,7 +70,8 @@ crate::info::family! {
 }
 
 impl PolygonMethod {
-    /// The index of the nearest face at each pixel's centre, of equally near ones the smallest.
+    /// Returns the index of the nearest face at each pixel's centre, of equally near ones the
+    /// smallest.
     ///
     /// # Errors
     /// What the method's own function says; all take memory from the screen's budget.

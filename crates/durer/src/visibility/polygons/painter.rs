@@ -33,21 +33,21 @@ pub enum Key {
     Mean,
 }
 
-/// How faces are sorted.
+/// Options for sorting faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
     /// By what.
     pub key: Key,
 }
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A face's place in the order, from far to near.
     Sorted {
         /// Its index.
         face: u32,
-        /// What it was sorted by.
+        /// Depth that it was sorted by.
         z: f64,
     },
     /// Pixels of a row get a face's item, whatever was there.
@@ -63,7 +63,7 @@ pub enum Step {
     },
 }
 
-/// The picture that a list of steps leads to.
+/// Returns the picture that a list of steps leads to.
 ///
 /// # Errors
 /// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
@@ -77,8 +77,8 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     Ok(items)
 }
 
-/// The index of the face that is painted last at each pixel's centre; of faces with equal keys the first one is
-/// painted last.
+/// Returns the index of the face that is painted last at each pixel's centre; of faces with equal keys the
+/// first one is painted last.
 ///
 /// # Errors
 /// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.

@@ -29,7 +29,7 @@ pub const INFO: Info = Info {
     limits: "plane polygons; cuts are rounded to 2^-37 of the picture",
 };
 
-/// How regions are found.
+/// Options for finding regions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
     /// The most cuts that are made: each cuts one polygon along another.
@@ -42,40 +42,40 @@ impl Default for Options {
     }
 }
 
-/// What is seen of one face.
+/// Visible part of one face.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
     /// Its index.
     pub face: u32,
-    /// Where it is seen, in pixels.
+    /// Visible part, in pixels.
     pub shapes: Shapes,
 }
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
     /// A list's nearest polygon is taken for cutting the others.
     Nearest {
         /// Its face.
         face: u32,
-        /// How many others there are in its list.
+        /// Number of others in its list.
         others: usize,
     },
     /// Another polygon was cut along it.
     Cut {
         /// The face that is cut.
         face: u32,
-        /// What goes to the inside list.
+        /// Part that goes to the inside list.
         inside: Shapes,
-        /// What goes to the outside list.
+        /// Part that goes to the outside list.
         outside: Shapes,
     },
-    /// What is inside lies behind: it is hidden.
+    /// The inside part lies behind: it is hidden.
     Hidden {
         /// Its face.
         face: u32,
     },
-    /// What is inside lies in front, or a part of it does: it is treated in its turn.
+    /// The inside part, or some of it, lies in front: it is treated in its turn.
     InFront {
         /// Its face.
         face: u32,
@@ -84,7 +84,7 @@ pub enum Step {
     Seen(Region),
 }
 
-/// The result that a list of steps leads to.
+/// Returns the result that a list of steps leads to.
 pub fn replay(steps: &[Step]) -> Vec<Region> {
     let seen = |step: &Step| match step {
         Step::Seen(region) => Some(region.clone()),
@@ -99,7 +99,8 @@ struct List {
     base: Option<Region>,
 }
 
-/// What is seen of each face; a face may be seen in several regions. Of faces in one plane the first is seen.
+/// Returns the visible regions of each face; a face may be visible in several. Of faces in one
+/// plane the first is visible.
 ///
 /// ```
 /// use durer::math::DVec3;
@@ -151,7 +152,7 @@ pub fn regions(
     Ok(seen)
 }
 
-/// What cutting needs to know of all faces.
+/// Facts about all faces that cutting needs.
 struct Cutter<'a> {
     faces: &'a [Face],
     around: Rect,
@@ -211,7 +212,7 @@ impl<'a> Cutter<'a> {
         Ok([inside, List { polygons: outside, base }])
     }
 
-    /// The part of a polygon, within another's outline, that is in front of that one.
+    /// Returns the part of a polygon, within another's outline, that is in front of that one.
     fn in_front(&self, by: u32, face: u32, shapes: Shapes) -> Result<Shapes> {
         let [behind, own] = [by, face].map(|face| &self.faces[face as usize]);
         let ahead = |p: DVec2| behind.depth(p) - own.depth(p);
@@ -235,7 +236,7 @@ impl<'a> Cutter<'a> {
         self.overlay(&shapes, &Shapes::from_rings([half]), BooleanOp::Intersection)
     }
 
-    /// The overlay on the common grid, without what rounding leaves.
+    /// Returns the overlay on the common grid, without what rounding leaves.
     fn overlay(&self, subject: &Shapes, clip: &Shapes, op: BooleanOp) -> Result<Shapes> {
         let options = overlay::Options { grid: Some(self.grid), ..Default::default() };
         let shapes = overlay(subject, clip, op, &options, &mut NoTrace)?.shapes;

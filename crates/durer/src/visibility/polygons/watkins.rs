@@ -37,7 +37,7 @@ pub struct EdgeEntry {
     pub face: u32,
 }
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// An entry of the edge table, by first row.
@@ -64,14 +64,14 @@ pub enum Step {
         face: u32,
         /// The column.
         x: i32,
-        /// Whether the polygon is in from here on.
+        /// True if the polygon is in from here on.
         inside: bool,
     },
     /// The polygons that are in a span are compared at its ends.
     Ends {
         /// First column and the one after the last.
         columns: [i32; 2],
-        /// How many polygons are in.
+        /// Number of polygons that are in.
         polygons: usize,
         /// The nearest one at the first column and at the last.
         nearest: [u32; 2],
@@ -87,7 +87,7 @@ pub enum Step {
     },
 }
 
-/// The picture that a list of steps leads to.
+/// Returns the picture that a list of steps leads to.
 ///
 /// # Errors
 /// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
@@ -101,7 +101,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     Ok(items)
 }
 
-/// The index of the nearest face at each pixel's centre, of equally near ones the first.
+/// Returns the index of the nearest face at each pixel's centre, of equally near ones the first.
 ///
 /// # Errors
 /// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
@@ -136,7 +136,7 @@ fn polygon_entry(face: u32, own: &Face) -> Step {
     Step::Polygon { face, slope: DVec2::new(z(1.0, 0.0) - origin, z(0.0, 1.0) - origin), origin }
 }
 
-/// All edges, those of the first rows last.
+/// Returns all edges, those of the first rows last.
 fn edge_table(faces: &[Face], screen: &Screen) -> Vec<EdgeEntry> {
     let of = |(face, own): (u32, &Face)| {
         table(&own.contours(), screen.height).into_iter().map(move |edge| EdgeEntry { edge, face })
@@ -196,7 +196,7 @@ impl Row<'_> {
         }
     }
 
-    /// The nearest polygon at a column, the first of equally near ones.
+    /// Returns the nearest polygon at a column, the first of equally near ones.
     fn nearest(&self, inside: &[u32], x: i32) -> u32 {
         let depth = |face: u32| self.faces[face as usize].at(x, self.y).z;
         let nearer = |&a: &u32, &b: &u32| depth(a).total_cmp(&depth(b)).then(a.cmp(&b));

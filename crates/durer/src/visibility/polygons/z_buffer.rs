@@ -22,7 +22,7 @@ pub const INFO: Info = Info {
     limits: "one sample per pixel; plane polygons",
 };
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// All pixels are cleared: depth infinite, no face.
@@ -52,7 +52,7 @@ pub enum Step {
     },
 }
 
-/// The picture that a list of steps leads to.
+/// Returns the picture that a list of steps leads to.
 ///
 /// # Errors
 /// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
@@ -66,7 +66,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     Ok(items)
 }
 
-/// The index of the nearest face at each pixel's centre, of equally near ones the first.
+/// Returns the index of the nearest face at each pixel's centre, of equally near ones the first.
 ///
 /// # Errors
 /// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.

@@ -1,4 +1,4 @@
-//! What can be seen of a section's caps, without solving the rest of the picture.
+//! The visible parts of a section's caps, without solving the rest of the picture.
 //!
 //! All that a section leaves lies on one side of each of its planes. So nothing lies before a cap that is seen
 //! from the other side, and all that the picture shows over a cap lies before it that is seen from this
@@ -21,9 +21,9 @@ use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::surface::setup::Run;
 
-/// The visible parts of a section's caps ([`Options::cap_material`]) alone, disjoint, each connected part of an
-/// instance's a region of kind [`RegionKind::Cap`]; what several instances have in common belongs to the first. Of
-/// the options only the material and the culling count.
+/// Returns the visible parts of a section's caps ([`Options::cap_material`]) alone, disjoint, each connected
+/// part of an instance's a region of kind [`RegionKind::Cap`]; what several instances have in common belongs
+/// to the first. Of the options only the material and the culling count.
 ///
 /// The scene must be what [`crate::view::section::cut`] gives: caps with faces on both of their sides are
 /// not told from others.
@@ -78,8 +78,8 @@ pub fn draw_caps(
     Ok(Drawing { regions, ..drawing })
 }
 
-/// What is seen of the caps of each instance. Where bodies go through each other their caps do, too: what is common
-/// to several is left to the first.
+/// Returns the visible parts of each instance's caps. If bodies overlap, their caps do, too: the common part
+/// belongs to the first.
 fn by_part(caps: &[Cap], before: &Shapes) -> Result<Vec<(usize, Shapes)>> {
     let mut parts: Vec<(usize, Shapes)> = Vec::new();
     let mut taken: Vec<(Rect, Shapes)> = Vec::new();
@@ -107,7 +107,7 @@ struct Cap {
     /// At least one.
     faces: Vec<Face>,
     plane: Plane,
-    /// Whether it is seen from the side on which the model lies.
+    /// True if it is seen from the side on which the model lies.
     from_within: bool,
 }
 
@@ -121,7 +121,7 @@ impl Cap {
         Some(Self { instance: run.instance, faces, plane, from_within })
     }
 
-    /// What outlines, and other caps, leave of it.
+    /// Returns the part that outlines, and other caps, leave visible.
     fn visible<'a>(&self, before: &Shapes, caps: impl Iterator<Item = &'a Self>) -> Result<Shapes> {
         let own = outlines(self.faces.iter().flat_map(Face::sides).collect());
         if !self.from_within {
@@ -164,7 +164,7 @@ impl Bounds {
     }
 }
 
-/// Closed walks with the winding numbers of all faces whose sides these are.
+/// Returns closed walks with the winding numbers of all faces whose sides these are.
 fn outlines(sides: Vec<(Place, Place)>) -> Shapes {
     let mut sides = uncancelled(sides);
     sides.sort_unstable();
@@ -194,7 +194,7 @@ fn outlines(sides: Vec<(Place, Place)>) -> Shapes {
     walks
 }
 
-/// The sides that are not undone by others that run back.
+/// Returns the sides that are not undone by others that run back.
 fn uncancelled(sides: Vec<(Place, Place)>) -> Vec<(Place, Place)> {
     let mut sides: Vec<(Place, Place, bool)> =
         sides.into_iter().map(|(a, b)| (a.min(b), a.max(b), a < b)).collect();

@@ -8,7 +8,7 @@ use crate::math::DVec2;
 use crate::shade::color::decode_srgb8;
 use crate::target::drawing::{Line, LineClass, Region, RegionKind};
 
-/// How to hatch.
+/// Options for hatching.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Distance between lines in the darkest tone; plane units, above 0.
@@ -17,12 +17,12 @@ pub struct Options {
     pub angle: f64,
     /// Regions of at least this luminance (0 black … 1 white) stay empty.
     pub white: f64,
-    /// Whether dark regions get lines in a second direction, at right angles to the first.
+    /// True if dark regions get lines in a second direction, at right angles to the first.
     pub cross: bool,
 }
 
 impl Default for Options {
-    /// Lines at 45°, one unit apart.
+    /// Returns lines at 45°, one unit apart.
     fn default() -> Self {
         Self { spacing: 1.0, angle: std::f64::consts::FRAC_PI_4, white: 0.85, cross: true }
     }
@@ -38,7 +38,7 @@ const PARTS: [f64; 6] = [0.0, 90.0, 15.0, 105.0, -15.0, 75.0];
 /// Lines over one region, at most: beyond that it is black anyway.
 const MOST_LINES: f64 = 1e6;
 
-/// The lines that stand for the tones of regions; class [`LineClass::Hatch`].
+/// Returns the lines that stand for the tones of regions; class [`LineClass::Hatch`].
 ///
 /// Caps get the standard hatching of sections, one distance at one angle, whatever their colour; the caps of further
 /// parts ([`Region::part`]) get other angles. Cost:
@@ -60,7 +60,7 @@ pub fn hatch(regions: &[Region], options: &Options) -> Vec<Line> {
     lines
 }
 
-/// The regions by the direction of their lines: all in the first but caps of further parts.
+/// Returns the regions by the direction of their lines: all in the first but caps of further parts.
 fn by_direction(regions: &[Region]) -> [Vec<&Region>; PARTS.len()] {
     let mut parts: Vec<u32> = regions.iter().filter_map(|r| r.part).collect();
     parts.sort_unstable();
@@ -97,7 +97,7 @@ pub(crate) fn luminance(color: [u8; 4]) -> f64 {
     (0.2126 * r + 0.7152 * g + 0.0722 * b).sqrt()
 }
 
-/// The lines of one direction.
+/// Returns the lines of one direction.
 fn family(
     regions: &[&Region],
     options: &Options,
@@ -135,8 +135,8 @@ fn family(
         .collect()
 }
 
-/// Where a side meets lines of every `stride`-th number: (number, place along the line). A side owns
-/// its lower end, so corners are met once or twice, never three times.
+/// Finds the intersections of a side with the lines of every `stride`-th number: (number, place
+/// along the line). A side owns its lower end, so corners are met once or twice, never three times.
 fn crossings(a: DVec2, b: DVec2, spacing: f64, stride: i64, meets: &mut Vec<(i64, f64)>) {
     // Computed the same way from either end, so neighbours meet in the same place.
     let (low, high) = if (a.y, a.x) <= (b.y, b.x) { (a, b) } else { (b, a) };

@@ -27,7 +27,7 @@ use planar_map::faces::{Face, Frame};
 use planar_map::merge;
 use shadow::{Lamps, World};
 
-/// Which neighbours become one region.
+/// Rule that joins neighbours to one region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Merge {
     /// None: each region shows one triangle, and [`crate::target::drawing::Region::item`] tells which.
@@ -44,7 +44,7 @@ pub enum Merge {
     Part,
 }
 
-/// How far a filled shape reaches.
+/// Extent of a filled shape beyond its border.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Fill {
     /// Shapes share their borders and do not overlap: for cutters, plotters and hatching.
@@ -53,29 +53,29 @@ pub enum Fill {
     /// Shapes reach under the neighbours that are painted after them, so that viewers, which blend each
     /// shape's border by itself, show no hairline cracks.
     Trapped {
-        /// How far, plane units; half a pixel or dot of the finest output is enough. Silhouettes
-        /// against the background do not grow.
+        /// Distance that it extends, plane units; half a pixel or dot of the finest output is
+        /// enough. Silhouettes against the background do not grow.
         reach: f64,
     },
 }
 
-/// What to draw.
+/// Options for drawing regions.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
-    /// Which faces are left out.
+    /// Faces to leave out.
     pub cull: Cull,
-    /// Which neighbours become one region.
+    /// Rule that joins neighbours to one region.
     pub merge: Merge,
-    /// How far shapes reach.
+    /// Extent of shapes beyond their borders.
     pub fill: Fill,
-    /// Whether faces cast shadows: light that another face keeps off is left out, and
+    /// True if faces cast shadows: light that another face keeps off is left out, and
     /// [`crate::target::drawing::LineClass::Shadow`] lines are given.
     pub shadows: bool,
     /// The material of the caps of a section ([`crate::view::section::Section::cap_material`]).
     pub cap_material: Option<usize>,
 }
 
-/// What of a scene is visible from a view, as filled regions.
+/// Draws the visible parts of a scene as filled regions.
 ///
 /// Every face has one colour, by [`crate::shade::flat`] at its centroid. The drawing has regions, and
 /// with [`Options::shadows`] the borders of shadows as lines. For hatching see [`hatch::hatch`].

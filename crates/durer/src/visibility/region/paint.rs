@@ -1,4 +1,4 @@
-//! Which faces of the map are one region, and its colour.
+//! The faces of the map that form one region, and its colour.
 
 use super::planar_map::VisibleMap;
 use super::planar_map::merge::{self, NOTHING, Patches};
@@ -19,7 +19,7 @@ use crate::visibility::surface::setup::runs;
 /// An item under the lights that reach it.
 type Shown = (u32, u64);
 
-/// What regions have in common that are joined: what they are, what they are made of, and their colour.
+/// Properties that joined regions share: their kind, their material, and their colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     kind: RegionKind,
@@ -85,7 +85,7 @@ impl Paint {
         Self { shown, labels, keys: sorted }
     }
 
-    /// The patches as regions, in the order of painting: from far to near, roughly.
+    /// Returns the patches as regions, in the order of painting: from far to near, roughly.
     pub fn regions(&self, map: &VisibleMap, patches: &Patches, options: &Options) -> Vec<Region> {
         let depths: Vec<f64> = patches
             .list
@@ -131,7 +131,7 @@ impl Paint {
         regions
     }
 
-    /// What lies beneath the narrow patches: in their mean colour.
+    /// Adds the fill beneath the narrow patches: in their mean colour.
     fn beneath(
         &self,
         trap: &Trap<'_>,
@@ -154,7 +154,7 @@ impl Paint {
         found.pairs.chunk_by(|a, b| a.0 == b.0).map(region).collect()
     }
 
-    /// Where light ends on a face.
+    /// Returns the lines on a face at which light ends.
     pub fn shadow_lines(&self, map: &VisibleMap) -> Vec<Line> {
         let of = |half: usize| self.shown[map.map.face_of[half] as usize];
         let is_border = |edge: usize| match (of(2 * edge), of(2 * edge + 1)) {
@@ -174,7 +174,7 @@ impl Paint {
     }
 }
 
-/// The mean of colours by area, of the bytes as they are: that is what viewers blend.
+/// Returns the mean of colours by area, of the bytes as they are: that is what viewers blend.
 fn mean_color(keys: &[(Key, f64)]) -> [u8; 4] {
     let total: f64 = keys.iter().map(|(_, area)| area).sum();
     std::array::from_fn(|k| {
@@ -205,12 +205,12 @@ fn key((item, mask): Shown, color: [u8; 4], options: &Options, world: &World<'_>
     Key { kind, of: of.unwrap_or(u64::MAX), color }
 }
 
-/// Which of 16 shades a colour has, by its luma (Rec. 601, of the bytes as they are).
+/// Returns which of 16 shades a colour has, by its luma (Rec. 601, of the bytes as they are).
 fn band([r, g, b, _]: [u8; 4]) -> u64 {
     (299 * u64::from(r) + 587 * u64::from(g) + 114 * u64::from(b)) / 16_000
 }
 
-/// The flat colours of items under the lights that reach them.
+/// Returns the flat colours of items under the lights that reach them.
 pub fn colors(
     scene: &Scene,
     view: &View,
@@ -246,8 +246,8 @@ pub fn colors(
     parts.into_iter().flatten().collect()
 }
 
-/// What is as dark as a shadow on the same material, since it is turned away from the light, is one
-/// region with it.
+/// Joins regions that are as dark as a shadow on the same material, because they are turned away
+/// from the light, with it.
 fn darken(keys: &mut [Key]) {
     let shadows = keys.iter().filter(|k| k.kind == RegionKind::Shadow);
     let mut dark: Vec<(u64, [u8; 4])> = shadows.map(|k| (k.of, k.color)).collect();

@@ -48,12 +48,12 @@ impl<'a> World<'a> {
         Ok(Self { scene, runs: runs(scene)? })
     }
 
-    /// The run of an item.
+    /// Returns the run of an item.
     pub fn run(&self, item: u32) -> Option<&Run> {
         self.runs.get(self.runs.partition_point(|run| run.first_item <= item).checked_sub(1)?)
     }
 
-    /// Whether a run's mesh lies above a plane that none of it crosses.
+    /// Returns whether a run's mesh lies above a plane that none of it crosses.
     pub fn side_of_mesh(&self, run: &Run, plane: &Plane) -> bool {
         let mesh = &self.scene.meshes[run.mesh];
         let matrix = &self.scene.instances[run.instance].world_from_mesh;
@@ -65,12 +65,12 @@ impl<'a> World<'a> {
         corners.map(height).fold(0.0, farther) > 0.0
     }
 
-    /// Whether the eye is above a plane.
+    /// Returns whether the eye is above a plane.
     pub fn side_of_eye(&self, view: &View, plane: &Plane) -> bool {
         is_above(plane, eye(view))
     }
 
-    /// The plane of an item, with a normal of unit length.
+    /// Returns the plane of an item, with a normal of unit length.
     pub fn plane(&self, item: u32) -> Option<Plane> {
         let run = self.run(item)?;
         let mesh = &self.scene.meshes[run.mesh];
@@ -82,14 +82,14 @@ impl<'a> World<'a> {
     }
 }
 
-/// Where light comes from.
+/// Source of light.
 #[derive(Debug, Clone, Copy)]
 enum From {
     Direction(DVec3),
     Point(DVec3),
 }
 
-/// Where a view is seen from.
+/// Returns the point or direction that a view is seen from.
 fn eye(view: &View) -> From {
     let camera = view.camera();
     match camera.projection {
@@ -145,7 +145,7 @@ impl<'a> Lamps<'a> {
         Ok(Self { world, view: *view, eye, lamps })
     }
 
-    /// The borders of light and shadow on the faces of the eye's picture.
+    /// Returns the borders of light and shadow on the faces of the eye's picture.
     pub fn edges(&self, frame: &Frame, faces: &[Face]) -> Vec<Edge> {
         if self.lamps.is_empty() {
             return Vec::new();
@@ -164,7 +164,7 @@ impl<'a> Lamps<'a> {
         edges
     }
 
-    /// An edge of a light's picture, as it falls on the face to the left of a half-edge.
+    /// Returns an edge of a light's picture, as it falls on the face to the left of a half-edge.
     fn cast(
         &self,
         lamp: &Lamp,
@@ -203,9 +203,9 @@ impl<'a> Lamps<'a> {
         (a != b).then_some(Edge { a, b, depths, error })
     }
 
-    /// Which lights reach the side of an item that is seen at a point of the eye's picture: bit i for
-    /// light i, directional ones first. Light that falls on the other side counts as reaching it, for
-    /// shading leaves it out.
+    /// Returns the lights that reach the side of an item that is seen at a point of the eye's
+    /// picture: bit i for light i, directional ones first. Light that falls on the other side counts
+    /// as reaching it, for shading leaves it out.
     pub fn reaching(&self, frame: &Frame, item: u32, at: DVec2) -> u64 {
         if self.lamps.is_empty() {
             return LIT;
@@ -243,7 +243,7 @@ impl Lamp {
         Ok(Self { from, views, errors: all })
     }
 
-    /// Whether another face lies between the light and a point of an item.
+    /// Returns whether another face lies between the light and a point of an item.
     fn is_hidden(&self, point: DVec3, item: u32) -> bool {
         let error =
             self.errors.get(item as usize).copied().filter(|e| e.is_finite()).unwrap_or(0.0);
@@ -259,7 +259,7 @@ impl Lamp {
     }
 }
 
-/// Whether a face of another item lies before a depth at a point.
+/// Returns whether a face of another item lies before a depth at a point.
 fn is_before(picture: &VisibleMap, at: DVec2, depth: f64, item: u32) -> bool {
     let cells: &Cells = &picture.cells;
     let Some(cell) = cells.at(at) else { return false };
@@ -269,7 +269,8 @@ fn is_before(picture: &VisibleMap, at: DVec2, depth: f64, item: u32) -> bool {
         .any(|face| face.item != item && face.covers(at) && face.depth(at) + face.error < depth)
 }
 
-/// The largest error of each item's depth in a picture; infinite where it has no face there.
+/// Returns the largest error of each item's depth in a picture; infinite where it has no face
+/// there.
 fn errors(faces: &[Face], scene: &Scene) -> Vec<f64> {
     let mut errors = vec![f64::INFINITY; scene.triangle_count() as usize];
     for face in faces {
@@ -283,7 +284,7 @@ fn errors(faces: &[Face], scene: &Scene) -> Vec<f64> {
 /// Ends this close to a side of a face, in grid steps, lie on it.
 const BESIDE: f64 = 4.0;
 
-/// Whether a segment runs along a side of the face.
+/// Returns whether a segment runs along a side of the face.
 fn is_own(face: &Face, ends: [DVec2; 2]) -> bool {
     face.sides().into_iter().any(|(a, b)| {
         let (a, b) = (float(a), float(b));
@@ -292,14 +293,14 @@ fn is_own(face: &Face, ends: [DVec2; 2]) -> bool {
     })
 }
 
-/// Where a line meets a plane.
+/// Returns the intersection of a line and a plane.
 fn meet(plane: &Plane, origin: DVec3, direction: DVec3) -> Option<DVec3> {
     let t = -plane.evaluate(origin) / plane.normal.dot(direction);
     let p = origin + direction * t;
     p.is_finite().then_some(p)
 }
 
-/// How much more than the scene a light's picture shows.
+/// Size of a light's picture relative to the scene.
 const MARGIN: f64 = 1.01;
 
 /// Lights nearer to the scene's sphere than this, in radii from its centre, look all around.
@@ -308,7 +309,7 @@ const AROUND: f64 = 1.1;
 /// The nearest that a light among the faces looks, in radii of the scene.
 const NEAREST: f64 = 1e-4;
 
-/// The pictures that a light needs to see the whole sphere.
+/// Returns the pictures that a light needs to see the whole sphere.
 fn cameras(from: From, center: DVec3, radius: f64) -> Vec<Camera> {
     let camera = |eye: DVec3, forward: DVec3, projection, near, far| {
         let up = if forward.y.abs() < 0.9 * forward.length() { DVec3::Y } else { DVec3::X };
@@ -338,7 +339,7 @@ fn cameras(from: From, center: DVec3, radius: f64) -> Vec<Camera> {
     }
 }
 
-/// The lights that a mask lets through.
+/// Returns the lights that a mask lets through.
 pub fn chosen(lights: &PreparedLights, mask: u64) -> PreparedLights {
     let mut chosen = lights.clone();
     let mut bits = (0..MOST_LIGHTS).map(|i| mask >> i & 1 == 1).chain(std::iter::repeat(true));

@@ -13,11 +13,11 @@ use super::planar_map::merge::{self, NOTHING, Patch, Patches};
 use super::planar_map::planar::Planar;
 use crate::math::DVec2;
 
-/// What the shapes of a map need to know of each other.
+/// Relations of a map's shapes to each other.
 pub struct Trap<'a> {
     pub map: &'a Planar,
     pub patches: &'a Patches,
-    /// When each patch is painted.
+    /// Position of each patch in the order of painting.
     pub rank: &'a [u32],
     /// Grid steps.
     pub reach: f64,
@@ -26,7 +26,7 @@ pub struct Trap<'a> {
 /// The longest miter, as a multiple of the reach.
 const MITER: f64 = 4.0;
 
-/// What lies beneath narrow patches.
+/// Fill beneath narrow patches.
 pub struct Beneath {
     /// The narrow patches, those that hang together joined; the others as they were.
     pub patches: Patches,
@@ -53,7 +53,8 @@ pub fn joined_narrow(trap: &Trap<'_>, room: &[f64]) -> Beneath {
 }
 
 impl Trap<'_> {
-    /// How far shapes may go under each patch: not through it, where it is narrow. Grid steps.
+    /// Returns how far shapes may extend under each patch: not through it, if it is narrow. Grid
+    /// steps.
     pub fn room(&self) -> Vec<f64> {
         let of = |patch: &Patch| {
             let (area, length) = self.area_and_length(patch);
@@ -62,7 +63,7 @@ impl Trap<'_> {
         self.patches.list.iter().map(of).collect()
     }
 
-    /// Of a patch, in grid steps, and of its border.
+    /// Returns the area of a patch and the length of its border, in grid steps.
     pub fn area_and_length(&self, patch: &Patch) -> (f64, f64) {
         let (mut area, mut length) = (0.0, 0.0);
         for ring in &patch.rings {
@@ -76,7 +77,7 @@ impl Trap<'_> {
         (area, length)
     }
 
-    /// The rings of a patch, grown; grid coordinates.
+    /// Returns the rings of a patch, grown; grid coordinates.
     pub fn rings(&self, index: usize, room: &[f64]) -> Vec<Vec<DVec2>> {
         let patch = &self.patches.list[index];
         patch.rings.iter().map(|ring| self.ring(index as u32, ring, room)).collect()
@@ -125,7 +126,7 @@ impl Trap<'_> {
         }
     }
 
-    /// The patch to the left of a half-edge.
+    /// Returns the patch to the left of a half-edge.
     fn beside(&self, half: u32) -> u32 {
         self.patches.of_face[self.map.face_of[half as usize] as usize]
     }

@@ -19,22 +19,22 @@ pub struct VisibleTriangle {
     pub normals: NormalPlane,
     /// Its vertices in the mesh.
     pub corners: [u32; 3],
-    /// Of each vertex its normal, turned where the triangle is seen from behind, and 0, then its position and
-    /// 0, in rows to be blended in one go.
+    /// Normal of each vertex, turned if the triangle is seen from behind, and 0, then its position and 0, in
+    /// rows to be interpolated together.
     pub(super) rows: [Row; 3],
     /// Unit normal of the side of the face that is seen, world axes; zero of lines and of what has no area.
     pub seen_face_normal: Vec3,
-    /// Whether it is the back that is seen. All points of a plane show the same side.
+    /// True if it is the back that is seen. All points of a plane show the same side.
     pub from_behind: bool,
     /// Edge function i at (x, y), counted from the origin of the normals, is
     /// `edges[0][i] + (edges[1][i]·x + edges[2][i]·y)`; the fourth is not used.
     pub(super) edges: [[f32; 4]; 3],
 }
 
-/// What is blended of a vertex.
+/// Interpolated values of a vertex.
 pub type Row = [f32; 8];
 
-/// The run that holds an item that was drawn.
+/// Returns the run that holds an item that was drawn.
 pub fn run_of(runs: &[Run], item: u32) -> usize {
     runs.partition_point(|run| run.first_item <= item).saturating_sub(1)
 }
@@ -43,20 +43,20 @@ pub fn run_of(runs: &[Run], item: u32) -> usize {
 pub type Weights = [f32; 3];
 
 impl VisibleTriangle {
-    /// Of the vertices; world axes, relative to the eye.
+    /// Returns the positions of the vertices; world axes, relative to the eye.
     #[inline(always)]
     pub fn positions(&self) -> [Vec3; 3] {
         self.rows.map(|[_, _, _, _, x, y, z, _]| Vec3::new(x, y, z))
     }
 
-    /// Of the vertices; world axes, not of unit length; all three the face normal where the mesh has
-    /// none.
+    /// Returns the normals of the vertices; world axes, not of unit length; all three are the face
+    /// normal if the mesh has none.
     #[inline(always)]
     pub fn corner_normals(&self) -> [Vec3; 3] {
         self.rows.map(|[x, y, z, ..]| self.turned(Vec3::new(x, y, z)))
     }
 
-    /// Unit normal of the face's front, world axes.
+    /// Returns unit normal of the face's front, world axes.
     #[inline(always)]
     pub fn face_normal(&self) -> Vec3 {
         self.turned(self.seen_face_normal)
@@ -75,14 +75,14 @@ impl VisibleTriangle {
         [0, 1, 2].map(|i| constant[i] + (dx[i] * x + dy[i] * y))
     }
 
-    /// The edge functions, by constant and changes along x and y.
+    /// Returns the edge functions, by constant and changes along x and y.
     #[inline(always)]
     pub fn edges(&self) -> &[[f32; 4]; 3] {
         &self.edges
     }
 
-    /// The edge functions, and where a pixel's centre lies for them: what [`Self::weights`] and
-    /// [`Self::weights_beside`] start from.
+    /// Returns the edge functions, and where a pixel's centre lies for them: what [`Self::weights`]
+    /// and [`Self::weights_beside`] start from.
     #[inline(always)]
     pub fn edge_functions(&self, x: i32, y: i32) -> (&[[f32; 4]; 3], [f32; 2]) {
         (&self.edges, [(x - self.normals.origin[0]) as f32, (y - self.normals.origin[1]) as f32])
@@ -113,7 +113,7 @@ impl VisibleTriangle {
         (at(x + 1, y).unwrap_or_else(here), at(x, y + 1).unwrap_or_else(here))
     }
 
-    /// The interpolated tangent, mesh axes, where the mesh has tangents.
+    /// Returns the interpolated tangent, mesh axes, where the mesh has tangents.
     pub fn tangent(&self, mesh: &Mesh, w: Weights) -> Option<Vec4> {
         let [a, b, c] = match mesh.tangents.as_slice() {
             [] => return None,
@@ -123,8 +123,8 @@ impl VisibleTriangle {
         Some(tangent.truncate().extend(a.w))
     }
 
-    /// The normal at a pixel's centre, of any length: weighted without a division, for only its direction
-    /// matters.
+    /// Returns the normal at a pixel's centre, of any length: weighted without a division, for only its
+    /// direction matters.
     #[inline(always)]
     pub fn normal(&self, x: i32, y: i32) -> Vec3 {
         if self.normals.settled {
@@ -133,7 +133,7 @@ impl VisibleTriangle {
         self.normal_within(x, y)
     }
 
-    /// The normal with weights kept within the triangle.
+    /// Returns the normal with weights kept within the triangle.
     #[inline(always)]
     pub fn normal_within(&self, x: i32, y: i32) -> Vec3 {
         let (_, [x, y]) = self.edge_functions(x, y);
@@ -191,7 +191,7 @@ impl VisibleTriangle {
         [a, b, c]
     }
 
-    /// The normal of [`Self::normals_x16`] at one pixel, bit for bit, and any number.
+    /// Returns the normal of [`Self::normals_x16`] at one pixel, bit for bit, and any number.
     #[inline(always)]
     pub fn normal_x4<S: Simd>(&self, simd: S, pixel: [i32; 2]) -> f32x4<S> {
         if self.normals.settled {
@@ -205,7 +205,7 @@ impl VisibleTriangle {
         row_a + row_b + row_c
     }
 
-    /// The position of [`Self::positions_x16`] at one pixel, bit for bit, and 0.
+    /// Returns the position of [`Self::positions_x16`] at one pixel, bit for bit, and 0.
     #[inline(always)]
     pub fn position<S: Simd>(&self, simd: S, pixel: [i32; 2]) -> f32x4<S> {
         let [a, b, c] = self.edges_at_pixel(simd, pixel);
@@ -218,7 +218,7 @@ impl VisibleTriangle {
     }
 }
 
-/// A weighted sum of three vectors, in this order of operations.
+/// Returns A weighted sum of three vectors, in this order of operations.
 #[inline(always)]
 pub fn blend(values: &[Vec3; 3], w: Weights) -> Vec3 {
     let [a, b, c] = values;

@@ -1,9 +1,9 @@
-//! What is behind everything.
+//! Background of the picture.
 
 use crate::math::Vec4;
 use crate::visibility::surface::Background;
 
-/// The background's colour in each row of a picture of this height.
+/// Returns the background's colour in each row of a picture of this height.
 pub fn background_rows(background: Background, height: u32) -> impl Fn(i32) -> Vec4 + Sync {
     move |y| match background {
         Background::Color(color) => color,

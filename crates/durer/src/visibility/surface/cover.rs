@@ -1,4 +1,4 @@
-//! Which samples a triangle covers, and its depth there: exactly as the z-buffer decides.
+//! The samples that a triangle covers, and its depths there: exactly as the z-buffer decides.
 
 use crate::raster::fixed::SUBPIXELS;
 use crate::raster::span::Span;
@@ -28,23 +28,24 @@ impl SampleGrid {
         1 << self.shift
     }
 
-    /// Distance of two neighbours in 1/256 pixel.
+    /// Returns the distance of two neighbours in 1/256 pixel.
     fn step(self) -> i32 {
         SUBPIXELS >> self.shift
     }
 
-    /// Where the sample of a column or row lies, in 1/256 pixel.
+    /// Returns the position of a column's or row's sample, in 1/256 pixel.
     fn place(self, index: i32) -> i64 {
         i64::from(index) * i64::from(self.step()) + i64::from(self.step() / 2)
     }
 
-    /// The first column or row whose sample is not before a coordinate in 1/256 pixel.
+    /// Returns the first column or row whose sample is not before a coordinate in 1/256 pixel.
     pub fn first_at(self, fixed: i32) -> i32 {
         let step = self.step();
         (fixed - step / 2 + step - 1).div_euclid(step)
     }
 
-    /// Depth of a triangle's plane at a sample, kept to the range of its vertices' depths.
+    /// Returns the depth of a triangle's plane at a sample, kept to the range of its vertices'
+    /// depths.
     #[inline]
     pub fn depth(self, t: &ScreenTriangle, x: i32, y: i32) -> f32 {
         let [dx, dy] = self.from_origin(t, x, y);
@@ -65,7 +66,7 @@ impl SampleGrid {
     }
 }
 
-/// How a triangle lies to a window of samples.
+/// Relation of a triangle to a window of samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Relation {
     /// It covers no sample.
@@ -92,12 +93,12 @@ pub struct Window {
 }
 
 impl Window {
-    /// Whether no sample lies in it.
+    /// Returns whether no sample lies in it.
     pub fn is_empty(&self) -> bool {
         self.x0 >= self.x1 || self.y0 >= self.y1
     }
 
-    /// The common part.
+    /// Returns the common part.
     pub fn and(&self, o: &Self) -> Self {
         Self {
             x0: self.x0.max(o.x0),
@@ -107,12 +108,12 @@ impl Window {
         }
     }
 
-    /// Whether it lies within another.
+    /// Returns whether it lies within another.
     pub fn within(&self, o: &Self) -> bool {
         self.x0 >= o.x0 && self.y0 >= o.y0 && self.x1 <= o.x1 && self.y1 <= o.y1
     }
 
-    /// The samples in its corners.
+    /// Returns the samples in its corners.
     pub fn corners(&self) -> [[i32; 2]; 4] {
         let (x, y) = (self.x1 - 1, self.y1 - 1);
         [[self.x0, self.y0], [x, self.y0], [self.x0, y], [x, y]]
@@ -151,20 +152,20 @@ impl Cover {
         Self { edge, step_x, step_y, bounds: Window { x0, y0, x1, y1 } }
     }
 
-    /// The function of edge `i`, from vertex `i` to the next, at a sample.
+    /// Returns the function of edge `i`, from vertex `i` to the next, at a sample.
     #[inline]
     pub fn edge_at(&self, i: usize, x: i32, y: i32) -> i64 {
         self.edge[i] + self.step_x[i] * i64::from(x) + self.step_y[i] * i64::from(y)
     }
 
-    /// Whether a sample is covered.
+    /// Returns whether a sample is covered.
     #[inline]
     pub fn covers(&self, x: i32, y: i32) -> bool {
         (self.edge_at(0, x, y) | self.edge_at(1, x, y) | self.edge_at(2, x, y)) >= 0
     }
 
-    /// How the triangle lies to a window that is not empty; `Outside` is certain, and so is
-    /// `Surrounding`.
+    /// Returns the relation of the triangle to a window that is not empty; `Outside` is certain,
+    /// and so is `Surrounding`.
     pub fn relation(&self, w: &Window) -> Relation {
         if self.bounds.and(w).is_empty() {
             return Relation::Outside;

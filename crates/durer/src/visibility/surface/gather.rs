@@ -28,7 +28,7 @@ impl Gathered {
         self.0[lane % 16] = from.0[lane % 16];
     }
 
-    /// The vectors side by side.
+    /// Returns the vectors side by side.
     #[inline(always)]
     pub fn vectors<S: Simd>(&self, simd: S) -> Vec3Lane<f32x16<S>> {
         let (first, last) = self.0.as_flattened().split_at(32);
@@ -37,7 +37,8 @@ impl Gathered {
     }
 }
 
-/// Four numbers of each of sixteen, which are given one after the other in two halves, apart.
+/// Returns four numbers of each of sixteen, which are given one after the other in two halves,
+/// apart.
 #[inline(always)]
 pub fn columns<S: Simd>(simd: S, first: &[f32], last: &[f32]) -> [f32x16<S>; 4] {
     let a = f32x16::from_slice(simd, &first[..16]);
@@ -52,7 +53,7 @@ pub fn columns<S: Simd>(simd: S, first: &[f32], last: &[f32]) -> [f32x16<S>; 4] 
     [first, second, third, simd.unzip_high_f32x16(odd_ab, odd_cd)]
 }
 
-/// Four numbers of each of eight, apart.
+/// Returns four numbers of each of eight, apart.
 #[inline(always)]
 pub fn four_columns<S: Simd>(simd: S, [a, b, c, d, e, f, g, h]: [f32x4<S>; 8]) -> [f32x8<S>; 4] {
     let (ab, cd) = (simd.combine_f32x4(a, b), simd.combine_f32x4(c, d));
@@ -65,7 +66,7 @@ pub fn four_columns<S: Simd>(simd: S, [a, b, c, d, e, f, g, h]: [f32x4<S>; 8]) -
     [first, second, third, simd.unzip_high_f32x8(odd_ad, odd_eh)]
 }
 
-/// Four numbers of each of eight side by side: undoes [`four_columns`].
+/// Returns four numbers of each of eight side by side: undoes [`four_columns`].
 #[inline(always)]
 pub fn four_rows<S: Simd>(simd: S, [a, b, c, d]: [f32x8<S>; 4]) -> [[f32; 4]; 8] {
     let (ac, bd) = (simd.zip_low_f32x8(a, c), simd.zip_low_f32x8(b, d));
@@ -113,7 +114,7 @@ pub fn narrowed<S: Simd>(simd: S, v: f64x8<S>) -> f32x8<S> {
 /// 1.5 · 2⁵²: a number that it is added to is rounded to the nearest integer, ties to even ones, which the low bits are.
 pub const MAGIC: f64 = 6_755_399_441_055_744.0;
 
-/// The lower 32 bits of eight doubles.
+/// Returns the lower 32 bits of eight doubles.
 #[inline(always)]
 pub fn low_bits<S: Simd>(simd: S, v: f64x8<S>) -> i32x8<S> {
     let (a, b) = simd.split_f64x8(v);

@@ -18,15 +18,15 @@ pub struct SurfaceInput<'a> {
     pub scene: &'a Scene,
     /// The camera and the screen.
     pub view: &'a View,
-    /// Which triangles were let through.
+    /// Filter that chose the triangles.
     pub filter: Filter,
     /// Runs of items that share an instance and a material.
     pub runs: Vec<Run>,
     /// All triangles that may cover a sample.
     pub triangles: Vec<ScreenTriangle>,
-    /// What became of the scene's triangles.
+    /// Counts of the scene's triangles by their treatment.
     pub counts: Counts,
-    /// What holds the memory of the triangles, and may stop whoever works on them.
+    /// Budget for the triangles' memory, and cancellation.
     pub work: Work,
 }
 
@@ -42,7 +42,8 @@ impl<'a> SurfaceInput<'a> {
         Self::within(&Work::default(), scene, view, filter)
     }
 
-    /// As [`Self::new`], within a budget; methods that work on the triangles stop where it is stopped.
+    /// Builds it like [`Self::new`], within a budget; methods that work on the triangles stop when it
+    /// is cancelled.
     ///
     /// # Errors
     /// As [`Self::new`], and [`crate::Error::Memory`] where the budget has no room for the triangles.
@@ -70,12 +71,12 @@ impl<'a> SurfaceInput<'a> {
         Ok(Self { scene, view, filter, runs, triangles, counts, work })
     }
 
-    /// The run that a triangle of [`Self::triangles`] belongs to.
+    /// Returns the run that a triangle of [`Self::triangles`] belongs to.
     pub fn run_of(&self, item: u32) -> &Run {
         &self.runs[crate::visibility::surface::attributes::run_of(&self.runs, item)]
     }
 
-    /// The triangles of [`Self::triangles`] whose fragments come to be in one way.
+    /// Returns the triangles of [`Self::triangles`] whose fragments come to be in one way.
     pub(crate) fn having(&self, coverage: Coverage) -> TriangleSet {
         let has = |t: &ScreenTriangle| self.run_of(t.item).coverage == coverage;
         match self.runs.iter().any(|run| run.coverage == coverage) {
@@ -90,13 +91,13 @@ impl<'a> SurfaceInput<'a> {
 pub(crate) struct TriangleSet(Vec<bool>);
 
 impl TriangleSet {
-    /// Whether the triangle at a place of the input's list is one of them.
+    /// Returns whether the triangle at a place of the input's list is one of them.
     #[inline(always)]
     pub fn contains(&self, triangle: usize) -> bool {
         self.0.get(triangle).copied().unwrap_or(false)
     }
 
-    /// Whether there can be none.
+    /// Returns whether there can be none.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -17,7 +17,7 @@ use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 /// A blended surface at a sample.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Layer {
-    /// Which sample: a column of a row, or a place in a window.
+    /// Index of the sample: a column of a row, or a place in a window.
     pub place: u32,
     pub item: u32,
     pub depth: f32,
@@ -115,7 +115,7 @@ pub(crate) fn compose(
     blended.into_iter().fold(under, |under, item| over(lit, item, under, at))
 }
 
-/// The mean colour of a pixel's samples; those that show the same are lit once.
+/// Returns the mean colour of a pixel's samples; those that show the same are lit once.
 pub(crate) fn mean<T: Ord>(samples: &mut [T], mut color: impl FnMut(&T) -> Vec4) -> Vec4 {
     samples.sort_unstable();
     let share = 1.0 / samples.len() as f32;
@@ -123,12 +123,13 @@ pub(crate) fn mean<T: Ord>(samples: &mut [T], mut color: impl FnMut(&T) -> Vec4)
     parts.fold(Vec4::ZERO, |sum, same| sum + color(&same[0]) * (same.len() as f32 * share))
 }
 
-/// The linear, premultiplied colour of what is opaque at a pixel; `behind` where nothing is.
+/// Returns the linear, premultiplied colour of what is opaque at a pixel; `behind` where nothing
+/// is.
 pub(crate) fn below_color(lit: &mut Lit<'_>, item: u32, behind: Vec4, [x, y]: [i32; 2]) -> Vec4 {
     if item == NO_ITEM { behind } else { lit.color(item, x, y).truncate().extend(1.0) }
 }
 
-/// An item over what is there; linear, premultiplied.
+/// Returns an item over what is there; linear, premultiplied.
 pub(crate) fn over(lit: &mut Lit<'_>, item: u32, under: Vec4, [x, y]: [i32; 2]) -> Vec4 {
     let over = premultiply(lit.color(item, x, y));
     over + under * (1.0 - over.w)

@@ -35,7 +35,8 @@ crate::info::family! {
 }
 
 impl SurfaceMethod {
-    /// How far from pixels' centres the method looks, in 1/256 pixel: [`Filter::sample_reach`].
+    /// Returns the largest distance from pixels' centres at which the method samples, in 1/256
+    /// pixel: [`Filter::sample_reach`].
     pub fn sample_reach(self) -> i32 {
         match self {
             Self::ScanLineZ | Self::SpanningScanLine | Self::DepthSort => 0,
@@ -44,27 +45,27 @@ impl SurfaceMethod {
     }
 }
 
-/// What any of them may need to know.
+/// Options of all methods.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// Samples per pixel of the colour plane, for those methods that can take several.
     pub samples: Samples,
     /// Sub-pixels of the A-buffer's masks.
     pub mask: Mask,
-    /// Whether rays to the lights find shadows; for the ray method.
+    /// True if rays to the lights find shadows; for the ray method.
     pub shadow_rays: bool,
-    /// How often a ray may be reflected or refracted; for the ray method.
+    /// Number of times that a ray may be reflected or refracted; for the ray method.
     pub bounces: u32,
     /// `None` = by material.
     pub shading: Option<Shading>,
-    /// What is behind everything.
+    /// Background of the picture.
     pub background: Background,
     /// The SIMD level to work at; all give the same bytes.
     pub level: Level,
 }
 
 impl Default for Options {
-    /// One sample, by material, on white, the machine's best level.
+    /// Returns one sample, by material, on white, the machine's best level.
     fn default() -> Self {
         Self {
             samples: Samples::One,
@@ -79,7 +80,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The part that methods with one surface per pixel need.
+    /// Returns the part that methods with one surface per pixel need.
     fn picture(&self) -> picture::Options {
         let Self { shading, background, level, .. } = *self;
         picture::Options { shading, background, level }
@@ -97,7 +98,7 @@ impl Options {
         }
     }
 
-    /// As many samples, in rows and columns.
+    /// Returns options with as many samples, in rows and columns.
     fn warnock(&self) -> warnock::Options {
         let sub_levels = match self.samples {
             Samples::One => 0,
@@ -123,17 +124,17 @@ impl Options {
 /// A step of one of the methods.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
-    /// Of the scan-line z-buffer.
+    /// Step of the scan-line z-buffer.
     ScanLineZ(scan_line_z::Step),
-    /// Of depth sort.
+    /// Step of depth sort.
     DepthSort(depth_sort::Step),
-    /// Of Warnock's subdivision.
+    /// Step of Warnock's subdivision.
     Warnock(warnock::Step),
-    /// Of ray casting.
+    /// Step of ray casting.
     Ray(ray::Step),
-    /// Of the spanning scan line.
+    /// Step of the spanning scan line.
     SpanningScanLine(spanning_scan_line::Step),
-    /// Of the A-buffer.
+    /// Step of the A-buffer.
     ABuffer(a_buffer::Step),
 }
 

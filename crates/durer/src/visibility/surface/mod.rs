@@ -37,7 +37,7 @@ use crate::shade::color::luminance;
 /// colour's sum.
 pub(crate) const LEAST_THROUGH: f32 = 1.0 / 16_777_216.0;
 
-/// Which faces are left out by the way they face.
+/// Faces to leave out by their orientation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Cull {
     /// All faces are drawn, from both sides.
@@ -62,8 +62,8 @@ pub enum Samples {
 }
 
 impl Samples {
-    /// Where the samples lie, from the pixel's centre in 1/256 pixel, x right and y down: the
-    /// standard patterns of Direct3D 11.
+    /// Returns the positions of the samples, from the pixel's centre in 1/256 pixel, x right and y
+    /// down: the standard patterns of Direct3D 11.
     pub fn offsets(self) -> &'static [[i32; 2]] {
         const FOUR: [[i32; 2]; 4] = sixteenths([[-2, -6], [6, -2], [-6, 2], [2, 6]]);
         const SIXTEEN: [[i32; 2]; 16] = sixteenths([
@@ -91,7 +91,7 @@ impl Samples {
         }
     }
 
-    /// How far from the pixel's centre they lie at most, along x or y, in 1/256 pixel.
+    /// Returns their largest distance from the pixel's centre, along x or y, in 1/256 pixel.
     pub(crate) fn reach(self) -> i32 {
         self.offsets().iter().flatten().map(|o| o.abs()).max().unwrap_or(0)
     }
@@ -128,7 +128,7 @@ impl Default for Marks {
     }
 }
 
-/// What is behind everything; colours are linear RGBA with straight alpha.
+/// Background of the picture; colours are linear RGBA with straight alpha.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Background {
     /// One colour; alpha 0 makes it transparent.
@@ -138,8 +138,8 @@ pub enum Background {
 }
 
 impl Background {
-    /// The linear colour in which lines and points without a material are seen against it: dark on
-    /// light, light on dark. What is transparent is taken to be light.
+    /// Returns the linear colour in which lines and points without a material are seen against it:
+    /// dark on light, light on dark. What is transparent is taken to be light.
     pub fn ink(&self) -> Vec3 {
         let mean = match *self {
             Self::Color(color) => color,

@@ -15,7 +15,7 @@ pub struct DepthRow {
 }
 
 impl DepthRow {
-    /// An empty row of this many pixels.
+    /// Creates an empty row of this many pixels.
     pub fn new(width: u32) -> Self {
         Self { depth: vec![1.0; width as usize], item: vec![NO_ITEM; width as usize] }
     }
@@ -52,8 +52,8 @@ impl DepthRow {
     }
 }
 
-/// Whether a surface hides what is there: it is nearer, or equally far with a lower item. Depths
-/// from 1 on are beyond the far plane, which [`NO_ITEM`] at depth 1 stands for.
+/// Returns whether a surface hides the current one: it is nearer, or equally far with a lower item.
+/// Depths from 1 on are beyond the far plane, which [`NO_ITEM`] at depth 1 represents.
 #[inline(always)]
 pub fn is_nearer(depth: f32, item: u32, kept: f32, kept_item: u32) -> bool {
     depth < kept || (depth == kept && item < kept_item && kept_item != NO_ITEM)

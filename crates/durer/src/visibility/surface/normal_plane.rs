@@ -20,26 +20,26 @@ pub struct NormalPlane {
     pub(super) origin: [i32; 2],
     /// The item.
     pub item: u32,
-    /// Whether the rest can be used: wherever a sample of the item's may be, the normals are well on the side of the face
+    /// True if the rest can be used: wherever a sample of the item's may be, the normals are well on the side of the face
     /// that is seen, and their lengths are such that rounding changes nothing of it.
     pub settled: bool,
 }
 
 impl Default for NormalPlane {
-    /// Of no item.
+    /// Creates the plane of no item.
     fn default() -> Self {
         Self { planes: [[0.0; 4]; 3], origin: [0; 2], item: NO_ITEM, settled: false }
     }
 }
 
 impl NormalPlane {
-    /// How far a pixel's centre is from the origin.
+    /// Returns the offset of a pixel's centre from the origin.
     #[inline(always)]
     fn place(&self, [x, y]: [i32; 2]) -> [f32; 2] {
         [(x - self.origin[0]) as f32, (y - self.origin[1]) as f32]
     }
 
-    /// The normal at a pixel's centre.
+    /// Returns the normal at a pixel's centre.
     #[inline(always)]
     pub fn at(&self, pixel: [i32; 2]) -> Vec3 {
         let ([constant, dx, dy], [x, y]) = (&self.planes, self.place(pixel));

@@ -17,11 +17,11 @@ pub struct Patch {
 
 #[derive(Debug, PartialEq)]
 struct Layout {
-    /// How far to the right of the first pixel and how far below it each is.
+    /// Offset of each pixel to the right of the first and below it.
     offsets: [[f32; 16]; 2],
     /// Binary logarithm of the pixels in a row.
     shift: usize,
-    /// Of each row all but the last pixel, as bits.
+    /// All but the last pixel of each row, as bits.
     beside: u64,
 }
 
@@ -46,19 +46,19 @@ static ROW: Layout = Layout {
 };
 
 impl Patch {
-    /// Two rows of eight pixels.
+    /// Returns two rows of eight pixels.
     #[inline(always)]
     pub fn block(at: [i32; 2]) -> Self {
         Self { at, layout: &BLOCK }
     }
 
-    /// One row of sixteen pixels.
+    /// Returns one row of sixteen pixels.
     #[inline(always)]
     pub fn row(at: [i32; 2]) -> Self {
         Self { at, layout: &ROW }
     }
 
-    /// The pixel of a lane, 0 … 15.
+    /// Returns the pixel of a lane, 0 … 15.
     #[inline(always)]
     pub fn pixel(self, lane: usize) -> [i32; 2] {
         let Layout { shift, .. } = self.layout;
@@ -66,7 +66,7 @@ impl Patch {
         [self.at[0] + column as i32, self.at[1] + (lane >> shift) as i32]
     }
 
-    /// All pixels.
+    /// Returns all pixels.
     #[inline(always)]
     pub fn pixels(self) -> [[i32; 2]; 16] {
         let mut pixels = [self.at; 16];
@@ -76,14 +76,15 @@ impl Patch {
         pixels
     }
 
-    /// Columns and rows of the pixels, counted from a place that is given as that of the first pixel.
+    /// Returns columns and rows of the pixels, counted from a place that is given as that of the
+    /// first pixel.
     #[inline(always)]
     pub fn places<S: Simd>(self, simd: S, [x, y]: [f32; 2]) -> [f32x16<S>; 2] {
         let [columns, rows] = &self.layout.offsets;
         [f32x16::from_slice(simd, columns) + x, f32x16::from_slice(simd, rows) + y]
     }
 
-    /// Whether few triangles are shown.
+    /// Returns whether few triangles are shown.
     #[inline(always)]
     pub fn shows_few<S: Simd>(self, simd: S, shown: u32x16<S>) -> bool {
         let beside = simd.slide_u32x16::<1>(shown, shown);

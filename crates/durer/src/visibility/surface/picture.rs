@@ -18,12 +18,12 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, u32x16};
 use fearless_simd_macros::simd;
 
-/// What a picture with one surface per pixel is to have.
+/// Options for the planes of a picture with one surface per pixel.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// `None` = by material.
     pub shading: Option<Shading>,
-    /// What is behind everything.
+    /// Background of the picture.
     pub background: Background,
     /// The SIMD level to work at; all give the same bytes.
     pub level: Level,
@@ -51,7 +51,7 @@ pub(crate) struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    /// Of items that are found up to `reach`/256 pixels from pixels' centres.
+    /// Creates the picture of items that are found up to `reach`/256 pixels from pixels' centres.
     pub fn new(
         input: &'a SurfaceInput<'a>,
         materials: &'a PreparedMaterials<'a>,
@@ -104,7 +104,7 @@ impl<'a> Picture<'a> {
         dispatch!(self.level, simd => color_row(simd, lit, items, behind, at, out));
     }
 
-    /// What is behind everything in row `y`: linear, straight alpha.
+    /// Returns the background of row `y`: linear, straight alpha.
     pub fn behind(&self, y: i32) -> Vec4 {
         background_rows(self.background, self.height)(y)
     }
@@ -149,7 +149,7 @@ impl<'a> Picture<'a> {
         }
     }
 
-    /// Whether the framebuffer has planes that show what is at the pixels' centres.
+    /// Returns whether the framebuffer has planes that show values at the pixels' centres.
     pub fn wants_planes(&self) -> bool {
         let planes = &self.framebuffer;
         planes.depth.is_some() || planes.item.is_some() || planes.normal.is_some()

@@ -34,7 +34,7 @@ pub const INFO: Info = Info {
     limits: "one sample per pixel",
 };
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A row begins with an empty row of depths.

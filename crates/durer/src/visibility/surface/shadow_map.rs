@@ -22,7 +22,7 @@ use crate::visibility::surface::visible::with_lighting;
 use crate::work::Work;
 use crate::{Error, Result};
 
-/// How maps are made.
+/// Options for making maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
     /// Texels along the side of a map, 1 … 16,384; half as many where a light looks to six sides. Time
@@ -43,7 +43,7 @@ pub const MAX_SIDE: u32 = 16_384;
 /// Cosine of the widest half angle that one map can look at without wasting most of its texels.
 const WIDEST: f32 = 0.5;
 
-/// How much wider than the cone a spot's map is, so that points that are moved off their surface stay
+/// Width of a spot's map relative to the cone, so that points that are moved off their surface stay
 /// in it.
 const MARGIN: f64 = 1.05;
 
@@ -60,7 +60,7 @@ pub fn cast(scene: &Scene, lights: &mut PreparedLights, options: &Options) -> Re
     cast_within(&Work::default(), scene, lights, options)
 }
 
-/// As [`cast`], within a budget.
+/// Makes maps like [`cast`], within a budget.
 ///
 /// # Errors
 /// As [`cast`], and [`Error::Memory`] where the budget has no room for the maps.
@@ -136,7 +136,7 @@ fn cameras_of_point(light: &PointLight, eye: DVec3, sphere: &BoundingSphere) -> 
     cameras.into_iter().filter(|c| c.check().is_ok()).collect()
 }
 
-/// A direction across another, always the same one.
+/// Returns A direction across another, always the same one.
 fn across(axis: DVec3) -> DVec3 {
     let a = axis.abs();
     let least = if a.x <= a.y && a.x <= a.z {
@@ -171,7 +171,7 @@ fn maps(
     Ok(maps)
 }
 
-/// The depth of what throws shadows: triangles that are opaque, or masked and there.
+/// Returns the depth of what throws shadows: triangles that are opaque, or masked and there.
 fn depths(
     (work, scene): (&Work, &Scene),
     view: &View,

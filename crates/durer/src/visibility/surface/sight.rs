@@ -23,7 +23,7 @@ pub struct Sight {
 }
 
 impl Sight {
-    /// Of the pixels of a view.
+    /// Builds the pixels of a view.
     pub fn new(view: &View) -> Self {
         let camera = view.camera();
         let [right, up, back] = camera.axes();
@@ -41,7 +41,7 @@ impl Sight {
         }
     }
 
-    /// Where a pixel's centre lies, from the middle: halves, so no rounding.
+    /// Returns the position of a pixel's centre, from the middle: halves, so no rounding.
     #[inline(always)]
     fn place(&self, [x, y]: [i32; 2]) -> [f32; 2] {
         [x as f32 + 0.5 - self.middle[0], y as f32 + 0.5 - self.middle[1]]

@@ -44,7 +44,7 @@ pub const INFO: Info = Info {
     limits: "one sample per pixel",
 };
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A row begins with all triangles out.
@@ -156,7 +156,7 @@ impl EdgeList {
     }
 }
 
-/// The column and the triangle of an edge.
+/// Returns the column and the triangle of an edge.
 fn edge(key: u64) -> (i32, u32) {
     ((key >> 32) as i32, key as u32)
 }
@@ -167,7 +167,7 @@ struct Line<'a> {
     masked: Masked<'a>,
     row: DepthRow,
     y: i32,
-    /// Whether anybody looks at the depths of decided spans.
+    /// True if anybody looks at the depths of decided spans.
     wants_depth: bool,
     /// Indices of the triangles whose flag says in.
     inside: Vec<u32>,
@@ -182,7 +182,7 @@ struct Ends {
     item: u32,
     /// At the first and the last pixel.
     depth: [f32; 2],
-    /// Whether the plane's own depth holds there, not that of the nearest or farthest vertex.
+    /// True if the plane's own depth holds there, not that of the nearest or farthest vertex.
     linear: bool,
     /// More than rounding moves any depth in between, off the straight line through both.
     slack: f32,
@@ -254,7 +254,7 @@ impl Line<'_> {
         self.parts.extend(parts.iter().filter(|[x0, x1]| x0 < x1));
     }
 
-    /// A triangle's depths at both ends of a part.
+    /// Returns A triangle's depths at both ends of a part.
     fn ends(&self, triangle: u32, [x0, x1]: [i32; 2]) -> Ends {
         let t = &self.triangles[triangle as usize];
         let [ox, oy] = t.origin();
@@ -271,7 +271,7 @@ impl Line<'_> {
         Ends { triangle, item: t.item, depth, linear: within(dx0) && within(dx1), slack }
     }
 
-    /// The nearest triangle at the first pixel, and that at the last.
+    /// Returns the nearest triangle at the first pixel, and that at the last.
     fn nearest_at_ends(&self, part: [i32; 2]) -> [Ends; 2] {
         let first = self.ends(self.inside[0], part);
         let mut nearest = [first, first];
@@ -286,7 +286,8 @@ impl Line<'_> {
         nearest
     }
 
-    /// Whether a triangle surely hides all others, and is before the far plane, all along a part.
+    /// Returns whether a triangle surely hides all others, and is before the far plane, all along a
+    /// part.
     fn wins_throughout(&self, a: &Ends, part: [i32; 2]) -> bool {
         let farthest = a.depth[0].max(a.depth[1]) + a.slack;
         farthest < 1.0
@@ -302,7 +303,7 @@ impl Line<'_> {
             })
     }
 
-    /// The few columns around the one where two triangles change places.
+    /// Returns the few columns around the one where two triangles change places.
     fn crossing(&self, first: &Ends, last: &Ends, [x0, x1]: [i32; 2]) -> [i32; 2] {
         let ends = |triangle| self.ends(triangle, [x0, x1]).depth.map(f64::from);
         let (a, b) = (ends(first.triangle), ends(last.triangle));

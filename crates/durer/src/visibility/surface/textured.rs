@@ -14,7 +14,7 @@ use fearless_simd::{Simd, f32x16};
 pub struct GatheredCoords {
     /// Edge functions: constants, changes along x, changes along y, each of the three edges.
     edges: [[[f32; 16]; 3]; 3],
-    /// Where the edge functions are asked.
+    /// Points at which the edge functions are evaluated.
     at: [[f32; 16]; 2],
     /// u and v of each of the three corners.
     corners: [[[f32; 16]; 3]; 2],
@@ -40,7 +40,8 @@ impl GatheredCoords {
         }
     }
 
-    /// The coordinates and, where it is `changing`, their change to the pixels beside and below, bit for bit as one by one.
+    /// Returns the coordinates and, where it is `changing`, their change to the pixels beside and below, bit
+    /// for bit as one by one.
     #[inline(always)]
     pub fn coordinates<S: Simd>(&self, simd: S, changing: bool) -> TexCoords<f32x16<S>> {
         let [constant, dx, dy] = &self.edges;
@@ -51,7 +52,7 @@ impl GatheredCoords {
     }
 }
 
-/// What the texture coordinates of one triangle follow from.
+/// Values from which the texture coordinates of one triangle follow.
 #[derive(Clone, Copy)]
 pub struct CoordsOfOne<S: Simd> {
     edges: [Corners<S>; 3],
@@ -61,7 +62,7 @@ pub struct CoordsOfOne<S: Simd> {
 }
 
 impl<S: Simd> CoordsOfOne<S> {
-    /// Of a triangle with these coordinates at its corners.
+    /// Builds them from a triangle with these coordinates at its corners.
     #[inline(always)]
     pub fn new(simd: S, t: &VisibleTriangle, corners: [Vec2; 3]) -> Self {
         let zero = simd.splat_f32x16(0.0);
@@ -78,7 +79,8 @@ impl<S: Simd> CoordsOfOne<S> {
         Self { edges, origin: t.normals.origin, corners: [u, v] }
     }
 
-    /// The coordinates at the pixels of a patch and, where it is `changing`, their change to the pixels beside and below.
+    /// Returns the coordinates at the pixels of a patch and, where it is `changing`, their change to the
+    /// pixels beside and below.
     #[inline(always)]
     pub fn at(&self, simd: S, patch: Patch, changing: bool) -> TexCoords<f32x16<S>> {
         let ([x, y], [left, top]) = (patch.at, self.origin);
@@ -125,7 +127,7 @@ fn edges_at<S: Simd>(edges: &[Corners<S>; 3], x: f32x16<S>, y: f32x16<S>) -> Cor
     at
 }
 
-/// As [`VisibleTriangle::weights`].
+/// Returns the weights of [`VisibleTriangle::weights`].
 #[inline(always)]
 fn weights<S: Simd>(simd: S, [a, b, c]: Corners<S>) -> Corners<S> {
     let zero = simd.splat_f32x16(0.0);
@@ -135,7 +137,8 @@ fn weights<S: Simd>(simd: S, [a, b, c]: Corners<S>) -> Corners<S> {
     [a * inverse, b * inverse, c * inverse]
 }
 
-/// As [`VisibleTriangle::weights_beside`]: beyond the horizon those of the pixel itself.
+/// Returns the weights of [`VisibleTriangle::weights_beside`]: beyond the horizon those of the
+/// pixel itself.
 #[inline(always)]
 fn weights_beside<S: Simd>(simd: S, edges: Corners<S>, here: Corners<S>) -> Corners<S> {
     let [a, b, c] = edges;
@@ -148,7 +151,7 @@ fn weights_beside<S: Simd>(simd: S, edges: Corners<S>, here: Corners<S>) -> Corn
     beside
 }
 
-/// A weighted sum, in this order of operations.
+/// Returns A weighted sum, in this order of operations.
 #[inline(always)]
 fn blend<L: Lane>([a, b, c]: [L; 3], w: [L; 3]) -> L {
     a * w[0] + b * w[1] + c * w[2]

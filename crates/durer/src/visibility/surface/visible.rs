@@ -11,7 +11,7 @@ use crate::visibility::surface::lit::{Lighting, Lit};
 use crate::visibility::surface::picture::{self, Picture};
 use crate::visibility::surface::setup::Coverage;
 
-/// What is nearest at each sample of a window.
+/// Nearest surface at each sample of a window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Visible {
     window: Window,
@@ -22,32 +22,33 @@ pub struct Visible {
 }
 
 impl Visible {
-    /// Nothing, as far as the far plane.
+    /// Creates an empty window, as far as the far plane.
     pub fn new(window: Window) -> Self {
         let size = |a: i32, b: i32| (b - a).max(0) as usize;
         let count = size(window.x0, window.x1) * size(window.y0, window.y1);
         Self { window, item: vec![NO_ITEM; count], depth: vec![1.0; count] }
     }
 
-    /// The place of a sample of the window.
+    /// Returns the place of a sample of the window.
     #[inline]
     pub fn index(&self, x: i32, y: i32) -> usize {
         let w = &self.window;
         (y - w.y0) as usize * (w.x1 - w.x0) as usize + (x - w.x0) as usize
     }
 
-    /// The samples it holds.
+    /// Returns the samples it holds.
     pub fn window(&self) -> Window {
         self.window
     }
 
-    /// Column and row of a place.
+    /// Returns the column and row of a place.
     pub fn place(&self, index: usize) -> [i32; 2] {
         let width = (self.window.x1 - self.window.x0).max(1) as usize;
         [self.window.x0 + (index % width) as i32, self.window.y0 + (index / width) as i32]
     }
 
-    /// Row number, items and depths of each row of a window that begins at the left border.
+    /// Returns the row number, items and depths of each row of a window that begins at the left
+    /// border.
     pub fn rows(&self) -> impl Iterator<Item = (u32, &[u32], &[f32])> {
         let width = ((self.window.x1 - self.window.x0).max(1)) as usize;
         let rows = self.item.chunks(width).zip(self.depth.chunks(width));
@@ -65,12 +66,12 @@ impl Visible {
     }
 }
 
-/// All pixels of a view.
+/// Returns all pixels of a view.
 pub fn pixels_of(view: &crate::view::View) -> Window {
     Window { x0: 0, y0: 0, x1: view.width() as i32, y1: view.height() as i32 }
 }
 
-/// What lies in front: the smaller depth, of equal ones the lower item.
+/// Returns whether the first is in front: the smaller depth, of equal ones the lower item.
 #[inline]
 pub fn nearer(a: (f32, u32), b: (f32, u32)) -> bool {
     a.0 < b.0 || (a.0 == b.0 && a.1 < b.1)
@@ -88,13 +89,13 @@ impl<'a> Masks<'a> {
         Self { lit: Lit::new(lighting), masked: input.having(Coverage::Masked) }
     }
 
-    /// Whether a triangle may have holes.
+    /// Returns whether a triangle may have holes.
     #[inline]
     pub fn is_masked(&self, triangle: usize) -> bool {
         self.masked.contains(triangle)
     }
 
-    /// Whether a triangle is there at a pixel.
+    /// Returns whether a triangle is there at a pixel.
     #[inline]
     pub fn passes(&mut self, triangle: usize, item: u32, x: i32, y: i32) -> bool {
         !self.is_masked(triangle) || self.lit.passes_mask(item, x, y)
@@ -143,7 +144,7 @@ pub fn write_planes(
     visible.rows().for_each(|(y, items, depths)| picture.write_planes(0, y, items, depths));
 }
 
-/// The background of a row, linear and premultiplied.
+/// Returns the background of a row, linear and premultiplied.
 pub fn background_at(look: &picture::Options, height: u32, y: i32) -> Vec4 {
     premultiply(background_rows(look.background, height)(y))
 }

@@ -8,14 +8,15 @@ use durer::clip::polygon::{BooleanOp, Shapes, naive, sutherland_hodgman};
 use durer::math::{DVec2, Rect};
 use durer::trace::{NoTrace, Recorder};
 
-/// The borders of (0, 0) … (10, 10) in the lecture's order: top, right, bottom, left.
+/// Returns the borders of (0, 0) … (10, 10) in the lecture's order: top, right, bottom, left.
 fn borders() -> [HalfPlane; 4] {
     let plane = |normal, point| HalfPlane { normal, point };
     let (low, high) = (DVec2::ZERO, DVec2::splat(10.0));
     [plane(-DVec2::Y, high), plane(-DVec2::X, high), plane(DVec2::Y, low), plane(DVec2::X, low)]
 }
 
-/// The smallest of all rotations of a ring, so that rings that begin elsewhere compare equal.
+/// Returns the smallest of all rotations of a ring, so that rings that begin elsewhere compare
+/// equal.
 fn cyclic(ring: &[DVec2]) -> Vec<DVec2> {
     let key = |k: usize| -> Vec<[f64; 2]> {
         (0..ring.len()).map(|i| ring[(i + k) % ring.len()].to_array()).collect()

@@ -35,8 +35,8 @@ fn ring(center: (i32, i32), lengths: &[i32]) -> Vec<DVec2> {
     DIRECTIONS.iter().zip(lengths).map(point).collect()
 }
 
-/// A star-shaped polygon around a whole-numbered centre, with or without a star-shaped hole, on a
-/// grid so coarse that borders touch and run together all the time.
+/// Returns A star-shaped polygon around a whole-numbered centre, with or without a star-shaped
+/// hole, on a grid so coarse that borders touch and run together all the time.
 fn star() -> impl Strategy<Value = Shapes> {
     let center = (-4..=4, -4..=4);
     let lengths = prop::collection::vec(5..=8, 16);

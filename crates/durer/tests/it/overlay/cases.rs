@@ -11,7 +11,7 @@ fn data() -> PathBuf {
         .unwrap_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"))
 }
 
-/// A file of the shared data; `None`, with a note, where there is none.
+/// Returns A file of the shared data; `None`, with a note, where there is none.
 pub fn shared(path: &str) -> Option<String> {
     let root = std::env::var_os("DURER_DATA")
         .map(PathBuf::from)
@@ -90,7 +90,7 @@ fn points(line: &str) -> Vec<DVec2> {
     numbers.chunks_exact(2).map(|p| DVec2::new(p[0], p[1])).collect()
 }
 
-/// All files of a shared folder with this ending, at any depth, sorted.
+/// Returns all files of a shared folder with this ending, at any depth, sorted.
 pub fn shared_files(folder: &str, ending: &str) -> Vec<String> {
     fn collect(dir: &std::path::Path, ending: &str, found: &mut Vec<PathBuf>) {
         for entry in std::fs::read_dir(dir).into_iter().flatten().flatten() {
@@ -113,7 +113,8 @@ pub fn shared_files(folder: &str, ending: &str) -> Vec<String> {
     found.into_iter().map(relative).collect()
 }
 
-/// The polygons of a GeoJSON geometry, feature or collection; the closing point is left out.
+/// Returns the polygons of a GeoJSON geometry, feature or collection; the closing point is left
+/// out.
 pub fn geojson(value: &serde_json::Value) -> Shapes {
     let mut shapes = Shapes::new();
     add_geojson(value, &mut shapes);
@@ -149,7 +150,7 @@ fn opened(mut points: Vec<DVec2>) -> Vec<DVec2> {
     points
 }
 
-/// The polygons of a geometry in WKT or hexadecimal WKB; `None` where it holds anything but
+/// Returns the polygons of a geometry in WKT or hexadecimal WKB; `None` where it holds anything but
 /// polygons.
 pub fn well_known(text: &str) -> Option<Shapes> {
     let text = text.trim();

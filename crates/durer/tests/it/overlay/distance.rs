@@ -1,5 +1,5 @@
-//! How far the border of a region lies from the border of an exact one, both ways: Hausdorff's distance
-//! of the borders, by brute force.
+//! The distance between the border of a region and that of an exact one, both ways: Hausdorff's
+//! distance of the borders, by brute force.
 
 use durer::clip::polygon::overlay::Options;
 use durer::clip::polygon::{BooleanOp, Shapes};
@@ -14,7 +14,7 @@ pub fn edges(shapes: &Shapes) -> Vec<Edge> {
     shapes.rings().flat_map(pairs).collect()
 }
 
-/// The winding number around a point that is on no edge; exact.
+/// Returns the winding number around a point that is on no edge; exact.
 fn winding(edges: &[Edge], p: DVec2) -> i32 {
     let turn = |&(a, b): &Edge| match (a.y <= p.y, b.y <= p.y, orient2d(a, b, p)) {
         (true, false, Orientation::CounterClockwise) => 1,
@@ -31,9 +31,9 @@ fn distance((a, b): Edge, p: DVec2) -> f64 {
     (a + d * t).distance(p)
 }
 
-/// The pieces of the inputs' edges between crossings on whose two sides the region differs, told by
-/// points `off` beside their middles; so a border of the exact region passes within `off` of each
-/// middle.
+/// Returns the pieces of the inputs' edges between crossings on whose two sides the region differs,
+/// told by points `off` beside their middles; so a border of the exact region passes within `off`
+/// of each middle.
 fn border(a: &Shapes, b: &Shapes, op: BooleanOp, options: &Options, off: f64) -> Vec<Edge> {
     let (ours, theirs) = (edges(a), edges(b));
     let all: Vec<Edge> = ours.iter().chain(&theirs).copied().filter(|(p, q)| p != q).collect();
@@ -70,7 +70,7 @@ fn border(a: &Shapes, b: &Shapes, op: BooleanOp, options: &Options, off: f64) ->
     border
 }
 
-/// The largest distance from the result's border to the exact one, and the other way round.
+/// Returns the largest distance from the result's border to the exact one, and the other way round.
 pub fn both_ways(
     [a, b]: [&Shapes; 2],
     op: BooleanOp,

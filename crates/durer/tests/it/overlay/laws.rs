@@ -16,8 +16,8 @@ fn valid(out: &Output) -> Result<(), TestCaseError> {
     validity::check(&out.shapes, out.cell).map_err(TestCaseError::fail)
 }
 
-/// How far snapping may change an area: every edge sweeps at most its length times a cell's
-/// diagonal, and an edge of the input is at most as long as the extent's diagonal.
+/// Returns a bound on the change of an area by snapping: every edge sweeps at most its length times
+/// a cell's diagonal, and an edge of the input is at most as long as the extent's diagonal.
 fn bound(a: &Shapes, b: &Shapes, cell: f64) -> f64 {
     let length = |s: &Shapes| -> f64 {
         let around =
@@ -52,7 +52,7 @@ fn moved(shapes: &Shapes, f: impl Fn(DVec2) -> DVec2) -> Shapes {
     shapes
 }
 
-/// A star of long spikes: every second point far out, the others close in.
+/// Returns A star of long spikes: every second point far out, the others close in.
 fn star(n: usize, turn: f64, x: f64) -> Shapes {
     let point = |i: usize| {
         let t = (i as f64 + turn) / n as f64;

@@ -19,8 +19,9 @@ const OFFSET: f64 = 64.0;
 /// The step of numbers from 64 to 128.
 const STEP: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// Valid polygons of whole coordinates: what the overlay makes of random rings on its coarsest grid,
-/// without the vertices that lie on straight borders, so that other rings touch edges too.
+/// Returns valid polygons of whole coordinates: what the overlay makes of random rings on its
+/// coarsest grid, without the vertices that lie on straight borders, so that other rings touch edges
+/// too.
 fn polygons(grid: i32) -> impl Strategy<Value = Shapes> {
     (soup(4, 8, grid), any::<bool>()).prop_map(|(rings, reversed)| {
         let options = Options { grid: Some(1.0), ..Options::default() };
@@ -54,7 +55,7 @@ fn window(x: (i32, i32), y: (i32, i32)) -> Shapes {
     Shapes::from_rings([[at(x.0, y.0), at(right, y.0), at(right, top), at(x.0, top)]])
 }
 
-/// Whether a result is valid and the region that the overlay finds.
+/// Checks that a result is valid and the region that the overlay finds.
 fn agrees(
     clipper: PolygonClipper,
     [a, b]: [&Shapes; 2],

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::whole::soup;
 
-/// Whether a point that is on no ring's border lies within a ring.
+/// Returns whether a point that is on no ring's border lies within a ring.
 fn encloses<P: Vertex>(ring: &[P], p: P) -> bool {
     let mut inside = false;
     for (i, &a) in ring.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Whether shapes are valid in the sense of OGC Simple Features, decided exactly and by its own
-//! means: every pair of edges is looked at.
+//! The validity of shapes in the sense of OGC Simple Features, decided exactly and by its own
+//! means: every pair of edges is compared.
 //!
 //! Coordinates are those of a grid of `cell`, so that they become whole numbers.
 
@@ -34,7 +34,7 @@ fn twice_area(ring: &[P]) -> i128 {
     (1..ring.len().saturating_sub(1)).map(|i| cross(ring[0], ring[i], ring[i + 1])).sum()
 }
 
-/// Whether the boxes around two rings have no point in common.
+/// Returns whether the boxes around two rings have no point in common.
 fn apart(a: &[P], b: &[P]) -> bool {
     let range = |ring: &[P], f: fn(&P) -> i128| {
         let (low, high) = (ring.iter().map(f).min(), ring.iter().map(f).max());
@@ -46,7 +46,7 @@ fn apart(a: &[P], b: &[P]) -> bool {
     })
 }
 
-/// Where two rings touch; an error where they cross or share more than points.
+/// Returns the points at which two rings touch; an error if they cross or share more than points.
 fn touches(a: &[P], b: &[P], same: bool) -> Result<Vec<P>, String> {
     let mut found = Vec::new();
     if !same && apart(a, b) {
@@ -90,7 +90,7 @@ fn touches(a: &[P], b: &[P], same: bool) -> Result<Vec<P>, String> {
     Ok(found)
 }
 
-/// Whether `inner` lies within `outer`, where they touch at most in points.
+/// Returns whether `inner` lies within `outer`, where they touch at most in points.
 fn within(inner: &[P], outer: &[P]) -> bool {
     if apart(inner, outer) {
         return false;

@@ -10,7 +10,7 @@ use crate::clip::touch::{are_one, is_on, is_within, reach};
 use crate::math::{DVec2, Rect};
 use std::ops::Range;
 
-/// What is cut, with the vertices that the mask puts on its edges.
+/// Polygons to cut, with the vertices that the mask adds to their edges.
 #[derive(Debug)]
 pub(super) struct Subject<'a> {
     input: &'a Shapes,
@@ -24,7 +24,7 @@ impl<'a> Subject<'a> {
         Self { input, divided: None }
     }
 
-    /// As it was given.
+    /// Returns the polygons as given.
     pub fn input(&self) -> &Shapes {
         self.input
     }
@@ -34,7 +34,7 @@ impl<'a> Subject<'a> {
         self.divided.as_ref().map_or(self.input, |(shapes, _)| shapes)
     }
 
-    /// Where a point comes from.
+    /// Returns the source of a point.
     pub fn source(&self, index: usize) -> Source {
         let divided = self.divided.as_ref();
         divided
@@ -42,7 +42,7 @@ impl<'a> Subject<'a> {
             .unwrap_or(Source::Vertex(index))
     }
 
-    /// The edge of the input that the edge from a point belongs to, by its points' indices.
+    /// Returns the edge of the input that the edge from a point belongs to, by its points' indices.
     pub fn edge(&self, index: usize) -> [usize; 2] {
         match self.source(index) {
             Source::Cut { from, to, .. } => [from, to],
@@ -52,11 +52,11 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// What is cut with: the mask near the subject.
+/// Mask near the subject.
 #[derive(Debug, Default)]
 pub(super) struct Mask {
     pub near: Near,
-    /// What each point is of the subject.
+    /// Source of each point in the subject.
     pub sources: Vec<Source>,
 }
 
@@ -66,7 +66,7 @@ impl Mask {
         Self { near, sources }
     }
 
-    /// Whether one of its polygons is smaller than a cell of the grid.
+    /// Returns whether one of its polygons is smaller than a cell of the grid.
     pub fn loses(&self, cell: f64) -> bool {
         let size = |ring: &[DVec2]| Rect::around(ring.iter().copied()).map(|r| r.size());
         let sizes = self.near.shapes.polygons().filter_map(|polygon| size(polygon.outer()));
@@ -74,7 +74,7 @@ impl Mask {
     }
 }
 
-/// Where vertices come near to the other side.
+/// Vertices that come near to the other side.
 #[derive(Debug, Default)]
 struct Touches {
     /// Edges of the mask by their first points, and the subject's vertex that lies on each.
@@ -105,7 +105,7 @@ impl Edge {
     }
 }
 
-/// The box around some edges, and what is near them.
+/// Returns the box around some edges, and what is near them.
 fn around(edges: &[Edge]) -> Option<Rect> {
     Rect::around(edges.iter().flat_map(|edge| edge.ends))
 }
@@ -265,7 +265,8 @@ fn divide_subject<'a>(input: &'a Shapes, mask: &Mask, touches: &Touches) -> Subj
     Subject { input, divided }
 }
 
-/// The shapes with points on edges, each with the first point of its edge, and where each point comes from.
+/// Returns the shapes with points on edges, each with the first point of its edge, and where each point
+/// comes from.
 pub(super) fn with_points(
     input: &Shapes,
     mut inserted: Vec<(usize, DVec2)>,

@@ -12,7 +12,7 @@ use crate::math::DVec2;
 pub struct Matched {
     /// The same polygons, ring by ring.
     pub shapes: Shapes,
-    /// Where each point comes from: a vertex, or a place on an edge.
+    /// Source of each point: a vertex, or a place on an edge.
     pub sources: Vec<Source>,
 }
 
@@ -59,7 +59,8 @@ pub fn matched(features: &[Shapes]) -> Vec<Option<Matched>> {
     features.iter().zip(inserted).map(|(shapes, points)| divided(shapes, points)).collect()
 }
 
-/// The shapes with points on their edges; `None` where there are none, or the shapes would not be valid any more.
+/// Returns the shapes with points on their edges; `None` where there are none, or the shapes would not be
+/// valid any more.
 fn divided(input: &Shapes, inserted: Vec<(usize, DVec2)>) -> Option<Matched> {
     if inserted.is_empty() {
         return None;

@@ -25,37 +25,37 @@ use crate::math::Rect;
 use crate::trace::NoTrace;
 use conform::{Mask, Subject};
 
-/// How to cut.
+/// Options for the clipping method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
-    /// Which points the subject encloses.
+    /// Fill rule of the subject.
     pub rule: FillRule,
-    /// Whether the subject's own vertices are looked for on its edges too. Of polygons that are not valid some
+    /// True if the subject's own vertices are looked for on its edges too. Of polygons that are not valid some
     /// lie there but for rounding, and would leave slivers.
     pub mend: bool,
-    /// Whether vertices of the mask stay also where it runs along an edge of the subject on both sides of them: where the mask
-    /// is what is cut, and the subject what it is cut with.
+    /// True if vertices of the mask stay also where it runs along an edge of the subject on both sides of them: where the
+    /// mask is what is cut, and the subject what it is cut with.
     pub keep: bool,
 }
 
-/// What is left of polygons.
+/// Polygons that the mask leaves.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cut {
     /// Valid polygons, in the order of [`overlay::Output`].
     pub shapes: Shapes,
-    /// Where each point comes from: of the subject. Points of the mask are [`Source::Corner`] where they do
-    /// not lie on the subject's border.
+    /// Source of each point in the subject. Points of the mask are [`Source::Corner`] if they do not lie on
+    /// the subject's border.
     pub sources: Vec<Source>,
-    /// How many points stay on the grid, because rings would cross at the exact places.
+    /// Number of points that stay on the grid, because rings would cross at the exact places.
     pub snapped: usize,
-    /// Whether the subject has come out as it was, but for the order of its rings and their first points.
+    /// True if the subject has come out as it was, but for the order of its rings and their first points.
     pub whole: bool,
-    /// Whether a polygon of the mask is smaller than a cell of the grid, so that it may be gone.
+    /// True if a polygon of the mask is smaller than a cell of the grid, so that it may be gone.
     pub lost: bool,
 }
 
-/// The subject's part inside the mask (intersection) or outside of it (difference). The mask is valid
-/// polygons.
+/// Returns the subject's part inside the mask (intersection) or outside of it (difference). The mask
+/// is valid polygons.
 ///
 /// ```
 /// use durer::clip::polygon::{BooleanOp, Shapes, coverage, rectangle::Prepared};
@@ -95,7 +95,7 @@ pub fn join(first: &Shapes, second: &Shapes, op: BooleanOp, options: &Options) -
     solve(&first, &mask, op, options)
 }
 
-/// The grid that [`cut`] and [`join`] decide on: the finest that the overlay takes.
+/// Returns the grid that [`cut`] and [`join`] decide on: the finest that the overlay takes.
 ///
 /// A power of two that leaves 2³⁹ to 2⁴⁰ cells across, and 53 bits for a coordinate; `None` where there is
 /// no extent.

@@ -16,7 +16,7 @@ struct Point {
     /// On the grid.
     snapped: DVec2,
     source: Source,
-    /// Whether it stays there.
+    /// True if it stays there.
     stays: bool,
 }
 
@@ -81,9 +81,9 @@ impl Placer<'_> {
         Source::on_edge(at, (from, points[from]), (to, points[to]))
     }
 
-    /// Of each point whether it is needed: one that coincides with the next of its ring is not, nor is a
-    /// vertex of the mask on an edge of the subject along which the mask's border runs on both sides, where
-    /// no neighbour is left to share it with.
+    /// Returns for each point whether it is needed. Points that coincide with the next of their ring are
+    /// not, nor vertices of the mask on an edge of the subject along which the mask's border runs on both
+    /// sides, where no neighbour remains to share them with.
     fn kept(&self, output: &Output, points: &[Point]) -> Vec<bool> {
         let mut kept = vec![true; points.len()];
         for ring in 0..output.shapes.ring_count() {
@@ -120,11 +120,12 @@ impl Placer<'_> {
     }
 }
 
-/// So often points around faults are put back on the grid before all are.
+/// Number of rounds in which only points around faults are put back on the grid; after them all
+/// are.
 const ROUNDS: usize = 8;
 
-/// The polygons with the points that are kept; those at which rings would cross stay on the grid, where
-/// they do not.
+/// Returns the polygons with the points that are kept; those at which rings would cross stay on the
+/// grid, where they do not.
 fn settled(output: &Shapes, points: &mut [Point], kept: &[bool]) -> Shapes {
     let names: Vec<usize> = (0..points.len()).filter(|&k| kept[k]).collect();
     for _ in 0..ROUNDS {
@@ -159,7 +160,7 @@ fn built(output: &Shapes, points: &[Point], kept: &[bool]) -> Shapes {
     shapes
 }
 
-/// Whether the result has the subject's points, edges and rings and no others.
+/// Returns whether the result has the subject's points, edges and rings and no others.
 fn is_whole(input: &Shapes, shapes: &Shapes, sources: &[Source]) -> bool {
     let counts =
         |shapes: &Shapes| (shapes.points().len(), shapes.ring_count(), shapes.polygon_count());
@@ -167,7 +168,7 @@ fn is_whole(input: &Shapes, shapes: &Shapes, sources: &[Source]) -> bool {
     all_vertices && counts(input) == counts(shapes) && edges(input) == edges(shapes)
 }
 
-/// All edges in an order of their own, without direction.
+/// Returns all edges in an order of their own, without direction.
 fn edges(shapes: &Shapes) -> Vec<[DVec2; 2]> {
     let order = |p: &DVec2, q: &DVec2| p.order(*q);
     let of_ring = |ring: &[DVec2]| -> Vec<[DVec2; 2]> {

@@ -13,7 +13,7 @@ use super::{Source, parallel};
 
 pub(super) const NONE: u32 = u32::MAX;
 
-/// How often subject and clip wind around a point, or by how much that changes across an edge.
+/// Winding numbers of subject and clip around a point, or their change across an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Winding {
     pub subject: i32,
@@ -46,24 +46,24 @@ pub struct Edge {
 pub struct Half(pub u32);
 
 impl Half {
-    /// The edge in the direction from `low` to `high`.
+    /// Returns the edge in the direction from `low` to `high`.
     pub fn forward(edge: usize) -> Self {
         Self((edge as u32) << 1)
     }
 
-    /// Its edge.
+    /// Returns its edge.
     #[inline(always)]
     pub fn edge(self) -> usize {
         (self.0 >> 1) as usize
     }
 
-    /// Whether it runs from `high` to `low`.
+    /// Returns whether it runs from `high` to `low`.
     #[inline(always)]
     pub fn is_back(self) -> bool {
         self.0 & 1 == 1
     }
 
-    /// The same edge in the other direction.
+    /// Returns the same edge in the other direction.
     #[inline(always)]
     pub fn reversed(self) -> Self {
         Self(self.0 ^ 1)
@@ -78,19 +78,20 @@ impl Half {
 pub struct Arrangement<'a, C> {
     pub nodes: &'a [Point<C>],
     pub edges: Vec<Edge>,
-    /// Of each edge the winding on the right; of an edge without inner nodes that is below, or to
-    /// the right of a vertical one. Empty before it is found.
+    /// Winding on the right of each edge; for an edge without inner nodes that is below, or to the
+    /// right of a vertical one. Empty before it is found.
     pub right: Vec<Winding>,
     pub(super) patches: Vec<Patch>,
     inner: Vec<u32>,
-    /// Where the inner nodes of each edge start and end; empty where no edge has any.
+    /// Range of each edge's inner nodes; empty if no edge has any.
     inner_of: Vec<[u32; 2]>,
-    /// Of an inner node its index in `inner`, of the others `NONE`; empty where there are none.
+    /// Index in `inner` of each inner node, `NONE` for the others; empty if there are no inner
+    /// nodes.
     place: Vec<u32>,
     /// The edge of an inner node is that of the last start that is not above its place.
     inner_starts: Vec<(u32, u32)>,
-    /// What leaves node n is `around[starts[n]..starts[n + 1]]`, counter-clockwise from straight
-    /// down.
+    /// Starts of lists: the half-edges that leave node n are `around[starts[n]..starts[n + 1]]`,
+    /// counter-clockwise from straight down.
     starts: Vec<u32>,
     around: Vec<Half>,
 }
@@ -161,34 +162,34 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         graph
     }
 
-    /// What leaves a node, counter-clockwise from straight down: first what goes to the right or
-    /// straight up, then what goes to the left or straight down.
+    /// Returns the half-edges that leave a node, counter-clockwise from straight down: first those
+    /// to the right or straight up, then those to the left or straight down.
     #[inline(always)]
     pub fn around(&self, node: u32) -> &[Half] {
         &self.around[self.range(node)]
     }
 
-    /// The indices, for [`Self::half`], of what leaves a node.
+    /// Returns the indices, for [`Self::half`], of what leaves a node.
     #[inline(always)]
     pub(super) fn range(&self, node: u32) -> std::ops::Range<usize> {
         self.starts[node as usize] as usize..self.starts[node as usize + 1] as usize
     }
 
-    /// The nodes within an edge, from low to high.
+    /// Returns the nodes within an edge, from low to high.
     #[inline(always)]
     pub fn inner(&self, edge: usize) -> &[u32] {
         let [start, end] = self.inner_of.get(edge).copied().unwrap_or_default();
         &self.inner[start as usize..end as usize]
     }
 
-    /// The node a half-edge comes from.
+    /// Returns the node a half-edge comes from.
     #[inline(always)]
     pub fn start(&self, half: Half) -> u32 {
         let edge = &self.edges[half.edge()];
         if half.is_back() { edge.high } else { edge.low }
     }
 
-    /// The node or inner node a half-edge comes to first.
+    /// Returns the node or inner node a half-edge comes to first.
     #[inline(always)]
     fn toward(&self, half: Half) -> u32 {
         let (edge, inner) = (&self.edges[half.edge()], self.inner(half.edge()));
@@ -199,35 +200,35 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         }
     }
 
-    /// The winding on the left of an edge.
+    /// Returns the winding on the left of an edge.
     #[inline(always)]
     pub fn left(&self, edge: usize) -> Winding {
         self.right[edge].plus(self.edges[edge].step)
     }
 
-    /// The winding on the left of a half-edge.
+    /// Returns the winding on the left of a half-edge.
     #[inline(always)]
     pub fn left_of(&self, half: Half) -> Winding {
         if half.is_back() { self.right[half.edge()] } else { self.left(half.edge()) }
     }
 
-    /// Where the nodes of each patch end.
+    /// Returns the end of each patch's nodes.
     pub(super) fn node_ends(&self) -> Vec<u32> {
         self.patches.iter().map(|patch| patch.nodes.end as u32).collect()
     }
 
-    /// Where the edges of each patch end.
+    /// Returns the end of each patch's edges.
     pub(super) fn edge_ends(&self) -> Vec<u32> {
         self.patches.iter().map(|patch| patch.edges.end as u32).collect()
     }
 
-    /// The patch of a node.
+    /// Returns the patch of a node.
     pub(super) fn patch_of(&self, node: u32) -> usize {
         self.patches.partition_point(|patch| patch.nodes.end <= node as usize)
     }
 
-    /// The half-edge that goes from a node straight on to another one; `None` where those edges
-    /// have cancelled.
+    /// Returns the half-edge that goes from a node straight on to another one; `None` where those
+    /// edges have cancelled.
     pub fn between(&self, from: u32, to: u32) -> Option<Half> {
         if let Some(place) = self.place_of(from) {
             let forward = Half::forward(self.edge_at(place));
@@ -244,13 +245,13 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         self.place.get(node as usize).copied().filter(|&place| place != NONE)
     }
 
-    /// The edge that has this place in `inner`.
+    /// Returns the edge that has this place in `inner`.
     fn edge_at(&self, place: u32) -> usize {
         let next = self.inner_starts.partition_point(|&(start, _)| start <= place);
         self.inner_starts[next - 1].1 as usize
     }
 
-    /// The node that follows an inner node of an edge.
+    /// Returns the node that follows an inner node of an edge.
     fn beside(&self, place: u32, forward: Half) -> u32 {
         let [_, end] = self.inner_of[forward.edge()];
         let high = self.edges[forward.edge()].high;
@@ -417,7 +418,7 @@ struct Ray<C> {
     half: Half,
     toward: u32,
     point: Point<C>,
-    /// Whether it goes to the left or straight down.
+    /// True if it goes to the left or straight down.
     left: bool,
 }
 

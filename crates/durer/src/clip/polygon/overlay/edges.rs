@@ -8,15 +8,15 @@ use super::lattice::Coord;
 use super::noding::Noding;
 use super::{Source, parallel};
 
-/// How many segments one task handles: large enough to hide the cost of a task.
+/// Number of segments in one task: large enough to hide the cost of a task.
 const TASK: usize = if cfg!(test) { 8 } else { 1 << 14 };
 
 /// Segments that form rings.
 #[derive(Debug, Clone, Copy)]
 pub struct Rings<'a> {
-    /// Where each ring ends among the segments.
+    /// End of each ring among the segments.
     pub ends: &'a [u32],
-    /// Of each segment.
+    /// Source of each segment.
     pub sources: &'a [Source],
 }
 
@@ -24,11 +24,11 @@ pub struct Rings<'a> {
 #[derive(Debug)]
 pub struct Edges {
     pub list: Vec<Edge>,
-    /// Where those of each patch end.
+    /// End of each patch's edges.
     pub ends: Vec<u32>,
     /// The nodes within edges.
     pub inner: Vec<u32>,
-    /// Where those of each edge start and end; empty where no edge has any.
+    /// Range of each edge's inner nodes; empty if no edge has any.
     pub inner_of: Vec<[u32; 2]>,
     /// For each patch the edges of other ones whose high node lies in it.
     pub arrivals: Vec<Vec<u32>>,
@@ -38,13 +38,13 @@ pub struct Edges {
 struct Batch<'a, C> {
     noding: &'a Noding<C>,
     edges: Vec<Edge>,
-    /// Which patches edges lie in, each time up to which edge: the next one is likely to lie where
-    /// the last one does.
+    /// Runs of edges in the same patch, each with its last edge: the next edge is likely to lie
+    /// where the last one does.
     runs: Vec<(u32, u32)>,
     /// The patch of the last edge, and its nodes.
     patch: (usize, Range<usize>),
     inner: Vec<u32>,
-    /// Which edges have inner nodes, and where those start and end.
+    /// Edges that have inner nodes, with the ranges of those.
     inner_of: Vec<(u32, [u32; 2])>,
 }
 
@@ -62,20 +62,21 @@ impl Piece {
     }
 }
 
-/// What a part of a ring leaves to be joined with other parts.
+/// Parts of a ring's ends that are joined with other parts.
 #[derive(Debug)]
 struct Loose {
     ring: usize,
     /// The first node that is not only passed, if there is one.
     first: Option<u32>,
-    /// What comes before it.
+    /// Edges before it.
     head: Vec<u32>,
     /// The last such node and what comes after it.
     tail: Vec<u32>,
 }
 
 impl Edges {
-    /// The edges of rings: what one ring passes and nothing else touches lies within an edge.
+    /// Returns the edges of rings: what one ring passes and nothing else touches lies within an
+    /// edge.
     #[inline(never)]
     pub fn of_rings<C: Coord>(noding: &Noding<C>, rings: Rings) -> Self {
         let count = rings.sources.len();
@@ -96,7 +97,7 @@ impl Edges {
         Self::merge(noding, batches)
     }
 
-    /// The straight edges of segments.
+    /// Returns the straight edges of segments.
     pub fn of_straight<C: Coord>(
         noding: &Noding<C>,
         step: impl Fn(usize) -> Winding + Sync + Send,
@@ -150,7 +151,7 @@ impl Edges {
     }
 }
 
-/// Where the inner nodes of each edge start and end.
+/// Merges the ranges of each edge's inner nodes.
 fn merge_inner<C: Coord>(
     batches: &[Batch<C>],
     pieces: &[Vec<Piece>],
@@ -181,7 +182,7 @@ fn place<T>(mut list: &mut [T], pieces: &[Piece], fill: impl Fn(&Piece, &mut [T]
     }
 }
 
-/// The edges of a patch whose high node lies in another one, with the name of that one.
+/// Returns the edges of a patch whose high node lies in another one, with the name of that one.
 fn leaving(edges: &[Edge], first: usize, patch_ends: &[u32], patch: usize) -> Vec<(usize, u32)> {
     let nodes = parallel::range(patch_ends, patch);
     let far = (first as u32..).zip(edges).filter(|(_, e)| !nodes.contains(&(e.high as usize)));
@@ -195,7 +196,7 @@ impl<'a, C: Coord> Batch<'a, C> {
         Self { noding, edges, runs, patch: (0, 0..0), inner, inner_of }
     }
 
-    /// The edges of some segments; gives what belongs to edges that go on in other parts.
+    /// Returns the edges of some segments; gives what belongs to edges that go on in other parts.
     fn rings(&mut self, rings: Rings, range: Range<usize>) -> Vec<Loose> {
         let mut loose = Vec::new();
         let mut path = Vec::new();
@@ -275,7 +276,7 @@ impl<'a, C: Coord> Batch<'a, C> {
         self.edge(path[from], &path[from + 1..], &path[..first], path[first], across);
     }
 
-    /// The edges between the nodes of a part of a ring.
+    /// Returns the edges between the nodes of a part of a ring.
     fn open(
         &mut self,
         ring: usize,

@@ -34,7 +34,7 @@ const FEW_JUMPS: usize = 64;
 /// Segments that start in one band of rows, and that one task handles: their data fit the cache.
 const PER_BAND: usize = if cfg!(test) { 16 } else { 1 << 15 };
 
-/// How many segments one task handles: large enough to hide the cost of a task.
+/// Number of segments in one task: large enough to hide the cost of a task.
 const TASK: usize = if cfg!(test) { 8 } else { 1 << 14 };
 
 /// The sides of a cell are at least 2³ pixels, so that the margin of a pixel stays a margin.
@@ -48,7 +48,7 @@ pub struct Block {
 }
 
 impl Block {
-    /// The block around all segments; `None` where there is none.
+    /// Returns the block around all segments; `None` where there is none.
     pub fn around<C: Coord>(segments: &[Segment<C>]) -> Option<Self> {
         let blocks = parallel::map(segments.chunks(TASK).collect(), |some| {
             let start = (some[0].a.x, some[0].b.x, some[0].a.y, some[0].a.y);
@@ -64,13 +64,13 @@ impl Block {
         Some(Self { min: (l.i64(), b.i64()), max: (r.i64(), t.i64()) })
     }
 
-    /// Whether the pixel lies in the block.
+    /// Returns whether the pixel lies in the block.
     #[inline(always)]
     pub fn contains<C: Coord>(&self, p: Point<C>) -> bool {
         self.holds(p.x.i64(), p.y.i64())
     }
 
-    /// Its width and height in pixels.
+    /// Returns its width and height in pixels.
     fn size(&self) -> (f64, f64) {
         ((self.max.0 - self.min.0 + 1) as f64, (self.max.1 - self.min.1 + 1) as f64)
     }
@@ -81,7 +81,7 @@ impl Block {
     }
 }
 
-/// How segments lie in the block around them.
+/// Statistics of the segments in the block around them.
 #[derive(Debug, Clone, Copy)]
 pub struct Spread {
     /// The share of squares of a rough grid in which a segment starts: small for curves.
@@ -91,7 +91,7 @@ pub struct Spread {
 }
 
 impl<C: Coord> Segment<C> {
-    /// Its width and its height, neither more than these.
+    /// Returns its width and its height, neither more than these.
     fn length(&self, width: f64, height: f64) -> f64 {
         let (low, high) = self.y_range();
         (self.b.x.f64() - self.a.x.f64()).min(width) + (high.f64() - low.f64()).min(height)
@@ -118,7 +118,7 @@ impl Node {
     const FIRST_SPLIT: u32 = 1 << 31;
 }
 
-/// How a block is divided into squares.
+/// Division of a block into squares.
 #[derive(Debug, Clone, Copy)]
 struct Frame {
     block: Block,
@@ -132,7 +132,7 @@ struct Frame {
 pub struct Grid {
     frame: Frame,
     bands: Vec<Band>,
-    /// Which band each row of the first division belongs to.
+    /// Band of each row of the first division.
     band_of_row: Vec<u32>,
 }
 
@@ -168,7 +168,7 @@ impl Frame {
         (columns * rows > 1).then_some(Self { block, shift, columns, rows })
     }
 
-    /// The block as one square.
+    /// Returns the block as one square.
     fn whole(block: Block) -> Self {
         Self { block, shift: 62, columns: 1, rows: 1 }
     }
@@ -183,7 +183,7 @@ impl Frame {
         ((y.clamp(self.block.min.1, self.block.max.1) - self.block.min.1) >> self.shift) as usize
     }
 
-    /// The first and the last row that hold squares the segment comes within a pixel of.
+    /// Returns the first and the last row that hold squares the segment comes within a pixel of.
     #[inline(always)]
     fn rows_of<C: Coord>(&self, s: &Segment<C>) -> (usize, usize) {
         let (low, high) = s.y_range();
@@ -234,7 +234,7 @@ impl Frame {
         }
     }
 
-    /// The square of a pixel of the block.
+    /// Returns the square of a pixel of the block.
     fn index(&self, x: i64, y: i64) -> usize {
         let (c, r) = ((x - self.block.min.0) >> self.shift, (y - self.block.min.1) >> self.shift);
         r as usize * self.columns + c as usize
@@ -248,8 +248,8 @@ impl Frame {
         Block { min, max }
     }
 
-    /// The segments of every square of some rows, one after the other, and where each square's
-    /// list starts.
+    /// Returns the segments of every square of some rows, one after the other, and where each
+    /// square's list starts.
     #[inline(never)]
     fn distribute<'a, C: Coord>(
         &self,
@@ -296,8 +296,8 @@ impl Log2Floor for f64 {
     }
 }
 
-/// The order in which segments that start close together have close indices, so that all that
-/// follows finds its data in the cache, `None` where they are in such an order.
+/// Returns the order in which segments that start close together have close indices, so that all
+/// that follows finds its data in the cache, `None` where they are in such an order.
 #[inline(never)]
 pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> Option<Vec<u32>> {
     let (width, height) = block.size();
@@ -308,8 +308,8 @@ pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> Option<
     order_by_squares(segments.len(), size, square, FEW_JUMPS)
 }
 
-/// The order of things by the squares of a grid, column by column along each row; `None` where at
-/// most one in `few_jumps` is not in or beside the square of the one before.
+/// Returns the order of things by the squares of a grid, column by column along each row; `None`
+/// where at most one in `few_jumps` is not in or beside the square of the one before.
 pub fn order_by_squares(
     count: usize,
     [columns, rows]: [usize; 2],
@@ -341,7 +341,7 @@ pub fn order_by_squares(
 }
 
 impl Spread {
-    /// How segments lie in the block around them.
+    /// Statistics of the segments in the block around them.
     #[inline(never)]
     pub fn of<C: Coord>(segments: &[Segment<C>], block: Block) -> Self {
         let (width, height) = block.size();
@@ -402,13 +402,13 @@ impl Grid {
         Self { frame, bands, band_of_row }
     }
 
-    /// All leaves, band by band; they cover the block without overlap.
+    /// Returns all leaves, band by band; they cover the block without overlap.
     pub fn bands(&self) -> &[Band] {
         &self.bands
     }
 
-    /// The smallest block around a pixel, and the segments that come within a pixel of it; `None`
-    /// outside the grid.
+    /// Returns the smallest block around a pixel, and the segments that come within a pixel of it;
+    /// `None` outside the grid.
     pub fn locate(&self, x: i64, y: i64) -> Option<(Block, &[u32])> {
         let mut frame = &self.frame;
         if !frame.block.holds(x, y) {
@@ -436,7 +436,7 @@ impl Grid {
     }
 }
 
-/// Where the rows of each band end: about as many segments start in one as in another.
+/// Returns the last row of each band: about as many segments start in one as in another.
 fn bands<C: Coord>(frame: &Frame, segments: &[Segment<C>]) -> Vec<u32> {
     let most = segments.len().div_ceil(PER_BAND).min(frame.rows);
     if most == 1 {
@@ -527,12 +527,12 @@ impl Band {
         }
     }
 
-    /// The leaves of these rows that hold segments.
+    /// Returns the leaves of these rows that hold segments.
     pub fn leaves(&self) -> &[Leaf] {
         &self.leaves
     }
 
-    /// The segments that come within a pixel of a leaf, in the order of their indices.
+    /// Returns the segments that come within a pixel of a leaf, in the order of their indices.
     pub fn items(&self, leaf: &Leaf) -> &[u32] {
         &self.items[leaf.start as usize..leaf.end as usize]
     }

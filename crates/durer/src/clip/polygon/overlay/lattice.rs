@@ -23,19 +23,19 @@ pub trait Coord: Copy + Ord + Debug + Send + Sync + Default + 'static {
         + Neg<Output = Self::Wide>;
     /// Holds both coordinates of a point.
     type Key: Ord;
-    /// A word that orders points by x, then y.
+    /// Returns A word that orders points by x, then y.
     fn key(x: Self, y: Self) -> Self::Key;
     /// Coordinates lie in `−LIMIT … LIMIT`.
     const LIMIT: i64;
     /// Widens.
     fn wide(self) -> Self::Wide;
-    /// The coordinate of a whole number within ± LIMIT.
+    /// Returns the coordinate of a whole number within ± LIMIT.
     fn from_i64(value: i64) -> Self;
     /// Widens.
     fn i64(self) -> i64;
     /// Widens a product.
     fn i128(wide: Self::Wide) -> i128;
-    /// A product as a float, rounded.
+    /// Returns A product as a float, rounded.
     fn approximate(wide: Self::Wide) -> f64;
     /// Exact as long as the coordinate keeps within LIMIT.
     fn f64(self) -> f64 {
@@ -138,15 +138,15 @@ impl<C: Coord> Point<C> {
     }
 }
 
-/// Twice the signed area of the triangle a, b, c; exact.
+/// Returns twice the signed area of the triangle a, b, c; exact.
 #[inline(always)]
 pub fn cross<C: Coord>(a: Point<C>, b: Point<C>, c: Point<C>) -> C::Wide {
     (b.x.wide() - a.x.wide()) * (c.y.wide() - a.y.wide())
         - (b.y.wide() - a.y.wide()) * (c.x.wide() - a.x.wide())
 }
 
-/// The largest whole number that is not above `x`; without the call that [`f64::floor`] is on
-/// processors of the oldest kind.
+/// Returns the largest whole number that is not above `x`; without the call that [`f64::floor`] is
+/// on processors of the oldest kind.
 #[inline(always)]
 pub fn whole(x: f64) -> i64 {
     let truncated = x as i64;
@@ -163,14 +163,14 @@ pub struct Segment<C> {
 }
 
 impl<C: Coord> Segment<C> {
-    /// The smaller and the larger y of its ends.
+    /// Returns the smaller and the larger y of its ends.
     #[inline(always)]
     pub fn y_range(&self) -> (C, C) {
         if self.a.y <= self.b.y { (self.a.y, self.b.y) } else { (self.b.y, self.a.y) }
     }
 
-    /// Where the pixel around `p` lies: `Less` where it is entirely below the segment's line,
-    /// `Greater` where it is entirely above, `Equal` where the line passes through it.
+    /// Compares the pixel around `p` with the segment's line: `Less` if it is entirely below the
+    /// line, `Greater` if it is entirely above, `Equal` if the line passes through it.
     ///
     /// The line |cross| ≤ (|dx| + |dy|)/2 reaches the square; where it is equal it only touches a
     /// corner, and of the corners only the lower left one belongs to the pixel.
@@ -190,7 +190,7 @@ impl<C: Coord> Segment<C> {
         }
     }
 
-    /// Whether the segment passes through the pixel around `p`; exact.
+    /// Returns whether the segment passes through the pixel around `p`; exact.
     #[inline(always)]
     pub fn hits_pixel(&self, p: Point<C>) -> bool {
         let (low, high) = self.y_range();
@@ -198,8 +198,8 @@ impl<C: Coord> Segment<C> {
         in_box && self.side_of_pixel(p) == Ordering::Equal
     }
 
-    /// The pixel in which two segments cross, each in the other's interior; `None` where they
-    /// touch, overlap or keep apart. Exact, and the same whichever comes first.
+    /// Returns the pixel in which two segments cross, each in the other's interior; `None` where
+    /// they touch, overlap or keep apart. Exact, and the same whichever comes first.
     #[inline(always)]
     pub fn crossing(&self, other: &Self) -> Option<Point<C>> {
         let zero = C::Wide::default();
@@ -214,7 +214,7 @@ impl<C: Coord> Segment<C> {
         Some(self.point_at(left, left - right))
     }
 
-    /// The pixel of the point a + (b − a)·num/den, for 0 < num/den < 1.
+    /// Returns the pixel of the point a + (b − a)·num/den, for 0 < num/den < 1.
     #[inline]
     fn point_at(&self, num: C::Wide, den: C::Wide) -> Point<C> {
         let t = C::approximate(num) / C::approximate(den);
@@ -245,7 +245,7 @@ impl<C: Coord> Segment<C> {
         Height { near, doubt }
     }
 
-    /// Both heights as fractions over twice the segment's width, multiplied out.
+    /// Returns both heights as fractions over twice the segment's width, multiplied out.
     #[cold]
     pub fn compare_exactly(&self, other: &Self, doubled: i64) -> Ordering {
         // Heights relative to one point, so that 2 · 2⁴¹ · 2⁴¹ · 2 · 2⁴¹ stays below 2¹²⁷.
@@ -269,7 +269,7 @@ pub struct Height {
 }
 
 impl Height {
-    /// The order of the true heights, where rounding leaves no doubt of it.
+    /// Returns the order of the true heights, where rounding leaves no doubt of it.
     #[inline(always)]
     pub fn compare(self, other: Self) -> Option<Ordering> {
         if (self.near - other.near).abs() > self.doubt + other.doubt {
@@ -288,15 +288,16 @@ pub trait GridPoint: Sized {
 
 /// The map between points of one kind and the grid.
 pub trait GridMap<P>: Copy + Sync + Sized {
-    /// The grid for points between two corners, with cells of the given size or of the kind's own.
+    /// Returns the grid for points between two corners, with cells of the given size or of the
+    /// kind's own.
     fn between(low: P, high: P, cell: Option<f64>) -> Result<Self>;
-    /// Whether all coordinates fit the width.
+    /// Returns whether all coordinates fit the width.
     fn fits<C: Coord>(&self) -> bool;
-    /// The grid point whose pixel holds `p`.
+    /// Returns the grid point whose pixel holds `p`.
     fn snap<C: Coord>(&self, p: P) -> Point<C>;
-    /// The grid point in the caller's coordinates.
+    /// Returns the grid point in the caller's coordinates.
     fn unsnap<C: Coord>(&self, p: Point<C>) -> P;
-    /// The size of a cell in the caller's units.
+    /// Returns the size of a cell in the caller's units.
     fn cell(&self) -> f64;
     /// Roughly where a point lies, in the caller's units; never exchanges two points on an axis.
     fn place(&self, p: P) -> DVec2;
@@ -322,8 +323,8 @@ const DEFAULT_REACH: f64 = (1u64 << 29) as f64;
 const FARTHEST: f64 = 1e300;
 
 impl Lattice {
-    /// The grid for points in `bounds`, with cells of the given size, or the smallest power of two
-    /// that leaves at most 2³⁰ cells across.
+    /// Creates the grid for points in `bounds`, with cells of the given size, or the smallest power
+    /// of two that leaves at most 2³⁰ cells across.
     fn new(bounds: Rect, cell: Option<f64>) -> Result<Self> {
         let farthest = bounds.min().abs().max(bounds.max().abs()).max_element();
         if farthest > FARTHEST {
@@ -385,7 +386,7 @@ impl GridMap<DVec2> for Lattice {
     }
 }
 
-/// The smallest power of two that is not below `x`; 2⁻¹⁰⁰⁰ for anything smaller.
+/// Returns the smallest power of two that is not below `x`; 2⁻¹⁰⁰⁰ for anything smaller.
 fn power_of_two(x: f64) -> f64 {
     let smallest = f64::from_bits(23 << 52);
     if x <= smallest {

@@ -59,33 +59,33 @@ pub const INFO: Info = Info {
     limits: "at most 2^41 grid cells across, 2^29 points in subject and clip",
 };
 
-/// How to overlay.
+/// Options for an overlay.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
-    /// Which points the subject encloses.
+    /// Fill rule of the subject.
     pub subject_rule: FillRule,
-    /// Which points the clip encloses.
+    /// Fill rule of the clip.
     pub clip_rule: FillRule,
     /// The size of a grid cell, in units of the coordinates. `None` takes the smallest power of two
     /// that leaves at most 2³⁰ cells across the input. Sizes that leave up to 2⁴¹ cells across are
     /// possible, at about twice the time. Powers of two are best: other sizes make grid points that
     /// have to be rounded to f64. Whole numbers are their own grid: 1 or `None`.
     pub grid: Option<f64>,
-    /// Whether [`Output::origins`] is wanted.
+    /// True if [`Output::origins`] is wanted.
     pub origins: bool,
-    /// Whether vertices of the input are left out where the border of the result goes straight on. Else
+    /// True if vertices of the input are left out where the border of the result goes straight on. Else
     /// only what noding added is: neighbours that share a border, and heights along one, need them.
     pub drop_collinear: bool,
 }
 
 impl Options {
-    /// The same fill rule for both.
+    /// Creates the same fill rule for both.
     pub fn with_rule(rule: FillRule) -> Self {
         Self { subject_rule: rule, clip_rule: rule, ..Self::default() }
     }
 }
 
-/// What happens, step by step; coordinates are the caller's.
+/// Step of the overlay; coordinates are the caller's.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step<P = DVec2> {
     /// The grid was chosen.
@@ -102,14 +102,14 @@ pub enum Step<P = DVec2> {
     Sweep {
         /// The node.
         at: P,
-        /// How many edges the sweep line cuts just after it.
+        /// Number of edges that the sweep line cuts just after it.
         active: usize,
     },
     /// A ring of the result.
     Ring {
         /// Its points.
         points: Vec<P>,
-        /// Whether it is a hole of the last ring that was none.
+        /// True if it is a hole of the last ring that was none.
         hole: bool,
     },
 }
@@ -149,7 +149,7 @@ pub struct EdgeId {
     pub to: usize,
 }
 
-/// Where a vertex of the result comes from.
+/// Origin of a vertex of the result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Origin {
     /// A point of the input.
@@ -181,7 +181,7 @@ pub struct Output<P = DVec2> {
 }
 
 impl<P: Vertex> Output<P> {
-    /// Which ring lies in which: islands in the holes that hold them.
+    /// Builds the tree of rings: islands in the holes that contain them.
     ///
     /// ```
     /// use durer::clip::polygon::{BooleanOp, Shapes, overlay::overlay};
@@ -203,9 +203,9 @@ impl<P: Vertex> Output<P> {
         NestingTree::of(&self.shapes)
     }
 
-    /// Values at the result's points, from values at the input's points: copied at vertices, and at
-    /// crossings interpolated along both edges and joined by `join` (subject's edge first where
-    /// the edges are of both).
+    /// Returns values at the result's points, from values at the input's points: copied at
+    /// vertices, and at crossings interpolated along both edges and joined by `join` (subject's
+    /// edge first where the edges are of both).
     pub fn attributes<V: Clone>(
         &self,
         at: impl Fn(Operand, usize) -> V,
@@ -277,7 +277,7 @@ pub fn overlay<P: Vertex>(
     solve(subject, clip, op, options, Winder::Parts, t)
 }
 
-/// How winding numbers are found.
+/// Method for finding winding numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Winder {
     /// By connected parts of the graph.
@@ -308,13 +308,14 @@ pub(super) fn solve<P: Vertex>(
     if lattice.fits::<i32>() { Ok(job.run::<i32>(t)) } else { Ok(job.run::<i64>(t)) }
 }
 
-/// So that an edge's index and two flags fit 32 bits, and twice an edge's index too.
+/// Limit on points, so that an edge's index and two flags fit 32 bits, and twice an edge's index
+/// too.
 const MOST_POINTS: usize = 1 << 29;
 
 /// The smallest and the largest coordinates.
 type Corners<P> = [P; 2];
 
-/// The boxes around subject and clip.
+/// Returns the boxes around subject and clip.
 fn check<P: Vertex>(subject: &Shapes<P>, clip: &Shapes<P>) -> Result<[Option<Corners<P>>; 2]> {
     let count = subject.points().len() + clip.points().len();
     if count > MOST_POINTS {
@@ -324,9 +325,10 @@ fn check<P: Vertex>(subject: &Shapes<P>, clip: &Shapes<P>) -> Result<[Option<Cor
     Ok([corners(subject.points(), 0)?, corners(clip.points(), subject.points().len())?])
 }
 
-/// The box around points; `before` is how many points come before them in the caller's count.
+/// Returns the box around points; `before` is how many points come before them in the caller's
+/// count.
 fn corners<P: Vertex>(points: &[P], before: usize) -> Result<Option<Corners<P>>> {
-    /// How many points one task handles.
+    /// Number of points in one task.
     const TASK: usize = if cfg!(test) { 8 } else { 1 << 16 };
     let tasks = parallel::ranges(points.len(), TASK);
     let boxes = parallel::map(tasks, |range| {
@@ -394,12 +396,12 @@ struct Job<'a, P: Vertex> {
     winder: Winder,
     /// The boxes around subject and clip.
     bounds: [Option<Rect>; 2],
-    /// Whether somebody wants to know what made each node.
+    /// True if somebody wants to know what made each node.
     causes: bool,
 }
 
 impl<P: Vertex> Job<'_, P> {
-    /// The order of the stages.
+    /// Returns the order of the stages.
     fn run<C: Coord>(&self, t: &mut impl Tracer<Step<P>>) -> Output<P> {
         let inputs = [(self.subject, Operand::Subject), (self.clip, Operand::Clip)];
         let corners = self.bounds.iter().flatten().flat_map(|r| [r.min(), r.max()]);
@@ -438,8 +440,9 @@ impl<P: Vertex> Job<'_, P> {
         self.output(&rings, &noding, &segments, &sources, t)
     }
 
-    /// Whether a ring can reach the result, told by bounding boxes alone: outside its box a ring
-    /// encloses nothing, and an intersection lies in both boxes, a difference in the subject's.
+    /// Returns whether a ring can affect the result, by bounding boxes alone: outside its box a
+    /// ring encloses nothing, and an intersection lies in both boxes, a difference in the
+    /// subject's.
     fn matters(&self, operand: Operand, ring: &[P]) -> bool {
         let other = match (self.op, operand) {
             (BooleanOp::Intersection, Operand::Subject) => self.bounds[1],
@@ -484,7 +487,7 @@ impl<P: Vertex> Job<'_, P> {
 
     #[inline(never)]
     fn shapes<C: Coord>(&self, rings: &Rings, noding: &Noding<C>) -> Shapes<P> {
-        /// How many rings one task handles.
+        /// Number of rings in one task.
         const TASK: usize = if cfg!(test) { 2 } else { 1 << 12 };
         let mut end = 0;
         let ring_ends = rings.order.iter().map(|&ring| {
@@ -551,7 +554,7 @@ impl<P: Vertex> Job<'_, P> {
     }
 }
 
-/// How far along `s` it crosses `other`, from 0 at its left end to 1.
+/// Returns the parameter on `s` at which it crosses `other`, from 0 at its left end to 1.
 fn parameter<C: Coord>(s: &Segment<C>, other: &Segment<C>) -> f64 {
     let left = C::approximate(lattice::cross(other.a, other.b, s.a));
     let right = C::approximate(lattice::cross(other.a, other.b, s.b));

@@ -11,15 +11,15 @@ use super::strips::Strips;
 /// Leaves with more segments than this are divided into strips, smaller ones compare all pairs.
 const CROWD: usize = 96;
 
-/// How many pixels of a crowded leaf one task looks for.
+/// Number of pixels of a crowded leaf that one task searches for.
 const SEARCHES: usize = if cfg!(test) { 8 } else { 1 << 11 };
 
-/// What made a pixel hot, in one word; of several causes the smallest counts, so that an end comes
+/// Cause of a hot pixel, in one word; of several causes the smallest counts, so that an end comes
 /// before a crossing, and small indices first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct CauseWord(u64);
 
-/// What made a pixel hot.
+/// Cause of a hot pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
     /// The first (even) or second (odd) end of segment index / 2.
@@ -45,17 +45,17 @@ impl CauseWord {
         self.0 += (!self.0 >> 63) << 32;
     }
 
-    /// Whether a segment ends there.
+    /// Returns whether a segment ends there.
     fn is_end(self) -> bool {
         self.0 & Self::CROSSING == 0
     }
 
-    /// Whether two segments were counted, at an end.
+    /// Returns whether two segments were counted, at an end.
     fn is_end_of_two(self) -> bool {
         self.0 >> 32 == 2
     }
 
-    /// The cause itself.
+    /// Returns the cause itself.
     pub fn get(self) -> Cause {
         if self.is_end() {
             Cause::End(self.0 as u32)
@@ -72,11 +72,11 @@ pub struct Noding<C> {
     pub nodes: Vec<Point<C>>,
     /// Leaves are worked on in patches; where the nodes of each patch end.
     pub patch_ends: Vec<u32>,
-    /// Of each node whether it is a ring's point that nothing but its two edges touches.
+    /// True for each node that is a ring's point which only its two edges touch.
     pub passed: Vec<bool>,
-    /// Of each node whether an end of a segment lies there.
+    /// True for each node at which a segment ends.
     pub ends: Vec<bool>,
-    /// What made each hot, by patch; empty where nobody wants to know.
+    /// Cause of each hot pixel, by patch; empty if not requested.
     causes: Vec<Vec<CauseWord>>,
     /// The nodes of segment i, in its direction, are `hits[starts[i]..starts[i + 1]]`.
     pub starts: Vec<u32>,
@@ -85,23 +85,24 @@ pub struct Noding<C> {
 }
 
 impl<C> Noding<C> {
-    /// The nodes that a segment passes, from its first to its second end.
+    /// Returns the nodes that a segment passes, from its first to its second end.
     pub fn chain(&self, segment: usize) -> &[u32] {
         &self.hits[self.starts[segment] as usize..self.starts[segment + 1] as usize]
     }
 
-    /// How many edges some segments are cut into, or fewer where some are but points.
+    /// Returns the number of edges that some segments are cut into, or fewer if some are only
+    /// points.
     pub fn edges_of(&self, segments: &Range<usize>) -> usize {
         let hits = self.starts[segments.end] - self.starts[segments.start];
         (hits as usize).saturating_sub(segments.len())
     }
 
-    /// What made the nodes hot.
+    /// Returns the causes of the nodes.
     pub fn causes(&self) -> impl Iterator<Item = &CauseWord> {
         self.causes.iter().flatten()
     }
 
-    /// What made a node hot.
+    /// Returns the cause of a node.
     pub fn cause(&self, node: u32) -> Cause {
         let patch = self.patch_ends.partition_point(|&end| end <= node);
         let first = parallel::range(&self.patch_ends, patch).start;
@@ -109,7 +110,7 @@ impl<C> Noding<C> {
     }
 }
 
-/// What some leaves contribute, with nodes counted from zero.
+/// Contribution of some leaves, with nodes counted from zero.
 #[derive(Debug)]
 struct Part<C> {
     nodes: Vec<Point<C>>,
@@ -131,11 +132,11 @@ struct Workbench<C> {
     near: Vec<u32>,
     pixels: Vec<(Point<C>, CauseWord)>,
     strips: Strips<C>,
-    /// Whether to keep what made each node.
+    /// True to keep what made each node.
     causes: bool,
 }
 
-/// Which ends of a segment have to be made nodes.
+/// Ends of a segment that have to become nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ends {
     /// The first: the second is the first of the next edge of its ring.
@@ -164,7 +165,7 @@ pub fn node<C: Coord>(
     Noding { nodes, patch_ends, passed, ends, causes, starts, hits }
 }
 
-/// How many segment entries one task handles: large enough to hide the cost of a task.
+/// Number of segment entries in one task: large enough to hide the cost of a task.
 const TASK: usize = if cfg!(test) { 32 } else { 1 << 15 };
 
 fn tasks(grid: &Grid) -> Vec<(&Band, &[Leaf])> {

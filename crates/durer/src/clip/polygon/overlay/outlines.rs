@@ -9,13 +9,13 @@ use super::{Operand, Source};
 use crate::clip::polygon::{Shapes, Vertex};
 use crate::math::{DVec2, Rect};
 
-/// How many points one task handles: large enough to hide the cost of a task.
+/// Number of points in one task: large enough to hide the cost of a task.
 const TASK: usize = if cfg!(test) { 8 } else { 1 << 14 };
 
 /// Rings per square of the rough grid that their order is taken from.
 const PER_SQUARE: f64 = 4.0;
 
-/// Where at most one ring in so many starts away from the one before, rings stay in their order.
+/// Rings stay in their order if at most one in this number starts away from the one before.
 const FEW_JUMPS: usize = 8;
 
 /// A ring of the input.
@@ -36,13 +36,13 @@ impl Outline {
 #[derive(Debug)]
 pub struct Outlines {
     rings: Vec<Outline>,
-    /// Where the edges of each ring end among all edges.
+    /// End of each ring's edges among all edges.
     pub ends: Vec<u32>,
 }
 
 impl Outlines {
-    /// The rings that `matters` accepts, those that start close together one after the other, so
-    /// that all that follows finds its data in the cache.
+    /// Creates the rings that `matters` accepts, those that start close together one after the
+    /// other, so that all that follows finds its data in the cache.
     pub fn new<P: Vertex>(
         inputs: [(&Shapes<P>, Operand); 2],
         lattice: &P::Lattice,
@@ -70,7 +70,8 @@ impl Outlines {
         Self { rings, ends }
     }
 
-    /// One segment for each point, that to the next point of its ring, which may be the same one.
+    /// Returns one segment for each point, that to the next point of its ring, which may be the
+    /// same one.
     #[inline(never)]
     pub fn segments<P: Vertex, C: Coord>(
         &self,
@@ -124,7 +125,8 @@ impl Outlines {
     }
 }
 
-/// The order of points by the squares of a rough grid; `None` where they are in such an order.
+/// Returns the order of points by the squares of a rough grid; `None` where they are in such an
+/// order.
 fn order(points: &[DVec2], bounds: Rect) -> Option<Vec<u32>> {
     let size = bounds.max() - bounds.min();
     let squares = points.len() as f64 / PER_SQUARE;

@@ -19,7 +19,7 @@ pub fn ranges(count: usize, size: usize) -> Vec<Range<usize>> {
     (0..count).step_by(size).map(|start| start..(start + size).min(count)).collect()
 }
 
-/// A list in as many pieces of neighbours as give each thread some, one for one thread.
+/// Returns A list in as many pieces of neighbours as give each thread some, one for one thread.
 pub fn groups<T>(mut list: Vec<T>) -> Vec<Vec<T>> {
     let threads = if list.is_empty() { 1 } else { threads() };
     let pieces = if threads == 1 { 1 } else { threads * PIECES };
@@ -36,7 +36,7 @@ pub fn groups<T>(mut list: Vec<T>) -> Vec<Vec<T>> {
 /// Pieces of work for each thread, so that none waits long for the others.
 const PIECES: usize = 8;
 
-/// A list cut at `ends`, which grow up to its length.
+/// Returns A list cut at `ends`, which grow up to its length.
 pub fn cut<'a, T>(mut list: &'a mut [T], ends: &[u32]) -> Vec<&'a mut [T]> {
     let mut start = 0;
     let mut pieces = Vec::with_capacity(ends.len());
@@ -48,7 +48,7 @@ pub fn cut<'a, T>(mut list: &'a mut [T], ends: &[u32]) -> Vec<&'a mut [T]> {
     pieces
 }
 
-/// Where each of some lists ends if they follow one another.
+/// Returns the end of each list if the lists follow one another.
 pub fn ends(lengths: impl Iterator<Item = usize>) -> Vec<u32> {
     let mut end = 0;
     lengths
@@ -59,7 +59,7 @@ pub fn ends(lengths: impl Iterator<Item = usize>) -> Vec<u32> {
         .collect()
 }
 
-/// The range that ends at `ends[index]`.
+/// Returns the range that ends at `ends[index]`.
 pub fn range(ends: &[u32], index: usize) -> Range<usize> {
     let start = index.checked_sub(1).map_or(0, |before| ends[before]);
     start as usize..ends[index] as usize
@@ -69,8 +69,8 @@ pub fn range(ends: &[u32], index: usize) -> Range<usize> {
 #[cfg(feature = "parallel")]
 const FILLS: usize = if cfg!(test) { 8 } else { 1 << 16 };
 
-/// So many times a value: memory that is written for the first time costs the kernel a fault for each
-/// page, so threads share that too.
+/// Returns a vector of copies of a value: memory that is written for the first time costs the kernel
+/// a fault for each page, so threads share that too.
 pub fn filled<T: Copy + Send + Sync>(value: T, count: usize) -> Vec<T> {
     #[cfg(feature = "parallel")]
     if count > FILLS && threads() > 1 {
@@ -80,7 +80,7 @@ pub fn filled<T: Copy + Send + Sync>(value: T, count: usize) -> Vec<T> {
     vec![value; count]
 }
 
-/// All lists, one after the other.
+/// Returns all lists, one after the other.
 pub fn concat<T: Copy + Default + Send + Sync>(lists: &[&[T]]) -> Vec<T> {
     if threads() == 1 {
         return lists.concat();

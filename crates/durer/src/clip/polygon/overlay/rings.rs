@@ -7,7 +7,7 @@ use super::lattice::{Coord, Point, cross};
 use super::parallel;
 use super::search::Search;
 
-/// Which way an edge bounds the result, whose inside is on its left.
+/// Direction in which an edge bounds the result, whose inside is on its left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Course {
     No,
@@ -21,14 +21,14 @@ pub struct Rings {
     /// Ring after ring, each starting with its smallest node.
     pub nodes: Vec<u32>,
     pub ring_ends: Vec<u32>,
-    /// Which rings, in their order: of each polygon the outer ring, then its holes.
+    /// Order of rings: of each polygon the outer ring, then its holes.
     pub order: Vec<u32>,
-    /// Where each polygon ends in `order`.
+    /// End of each polygon in `order`.
     pub polygon_ends: Vec<u32>,
 }
 
 impl Rings {
-    /// The nodes of a ring.
+    /// Returns the nodes of a ring.
     pub fn ring(&self, index: u32) -> &[u32] {
         let index = index as usize;
         let start = if index == 0 { 0 } else { self.ring_ends[index - 1] };
@@ -50,9 +50,9 @@ struct Walk {
 struct Linker<'b, C> {
     graph: Arrangement<'b, C>,
     courses: Vec<Course>,
-    /// Of each node whether it stays on a straight border too; empty where none does.
+    /// True for each node that stays on a straight border too; empty if none does.
     kept: &'b [bool],
-    /// What follows an edge on the result's border, as the word of a half-edge.
+    /// Successor of each edge on the result's border, as the word of a half-edge.
     next: Vec<u32>,
     /// The walk that an edge belongs to.
     walk_of: Vec<u32>,
@@ -148,7 +148,7 @@ impl<C: Coord> Linker<'_, C> {
         }
     }
 
-    /// Whether the border runs against a half-edge that leaves a node.
+    /// Returns whether the border runs against a half-edge that leaves a node.
     fn arrives(&self, half: Half) -> bool {
         let arriving = if half.is_back() { Course::Up } else { Course::Down };
         self.courses[half.edge()] == arriving
@@ -241,19 +241,21 @@ impl<C: Coord> Linker<'_, C> {
         }
     }
 
-    /// Whether a node stays where the border goes straight on.
+    /// Returns whether a node stays where the border goes straight on.
     fn stays(&self, node: u32) -> bool {
         self.kept.get(node as usize).is_some_and(|&kept| kept) || self.touched(node)
     }
 
-    /// Whether more than one ring passes the node: then it stays, so that the touch is a vertex.
+    /// Returns whether more than one ring passes the node: then it stays, so that the touch is a
+    /// vertex.
     fn touched(&self, node: u32) -> bool {
         let on = |half: &&Half| self.courses[half.edge()] != Course::No;
         self.graph.around(node).iter().filter(on).count() > 2
     }
 
-    /// The outer ring of each ring's polygon. Every walk without an outer ring is a hole of the piece
-    /// of the edge below its first node. Such walks that start further left are done before.
+    /// Returns the outer ring of each ring's polygon. Every walk without an outer ring is a hole of
+    /// the piece of the edge below its first node. Such walks that start further left are done
+    /// before.
     #[inline(never)]
     fn owners(&self, search: &Search<C>) -> Vec<u32> {
         let nodes = self.graph.nodes;
@@ -335,7 +337,7 @@ impl<C: Coord> Linker<'_, C> {
 /// Rings per column: few enough to be sorted in the cache.
 const PER_COLUMN: usize = if cfg!(test) { 2 } else { 64 };
 
-/// How many rings one task sorts.
+/// Number of rings that one task sorts.
 const SORTS: usize = if cfg!(test) { 4 } else { 1 << 14 };
 
 /// Sorts rings by their first points and, where those are alike, by `compare`: first into columns
@@ -377,13 +379,13 @@ fn sort_by_columns<C: Coord>(
     *rings = sorted;
 }
 
-/// How many searches one task does.
+/// Number of searches in one task.
 const SEARCHES: usize = if cfg!(test) { 2 } else { 64 };
 
 /// Marks an edge whose walk does not stay within the patch.
 const LEFT: u32 = NONE - 1;
 
-/// What was found in some patches: rings, their ends, and walks.
+/// Rings, their ends, and walks found in some patches.
 #[derive(Debug, Default)]
 struct Found {
     nodes: Vec<u32>,
@@ -391,9 +393,9 @@ struct Found {
     walks: Vec<Walk>,
     /// The name of the first walk.
     first_walk: u32,
-    /// Where walks started that do not stay within their patch.
+    /// Starts of walks that leave their patch.
     left: Vec<u32>,
-    /// Of a patch's nodes that are on the path, one more than their place on it.
+    /// One more than the place on the path of each node of a patch; 0 for nodes that are not on it.
     position: Vec<u32>,
 }
 
@@ -401,7 +403,7 @@ struct Found {
 struct Trace<'a, 'b, C> {
     linker: &'a Linker<'b, C>,
     patch: &'a Patch,
-    /// Of the patch's edges.
+    /// Walk of each of the patch's edges.
     walk_of: &'a mut [u32],
     found: Found,
 }

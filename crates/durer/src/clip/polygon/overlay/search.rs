@@ -24,8 +24,8 @@ struct Piece<C> {
 }
 
 impl<C: Coord> Search<'_, C> {
-    /// Of the edges that pass just left of a node, strictly below it, and that `take` accepts, the
-    /// highest one, in the direction in which it passes to the right.
+    /// Returns the highest of the edges that pass just left of a node, strictly below it, and that
+    /// `take` accepts, in the direction in which it passes to the right.
     pub fn below(
         &self,
         graph: &Arrangement<C>,
@@ -72,7 +72,7 @@ impl<C: Coord> Search<'_, C> {
         }
     }
 
-    /// The ends of the piece of a segment that passes just left of x.
+    /// Returns the ends of the piece of a segment that passes just left of x.
     fn piece_before(&self, graph: &Arrangement<C>, segment: usize, x: C) -> Option<(u32, u32)> {
         let chain = self.noding.chain(segment);
         let k = chain.partition_point(|&n| graph.nodes[n as usize].x < x);
@@ -81,7 +81,7 @@ impl<C: Coord> Search<'_, C> {
 }
 
 impl<C: Coord> Piece<C> {
-    /// Whether it is above another one, where both pass one x and neither is vertical.
+    /// Returns whether it is above another one, where both pass one x and neither is vertical.
     fn is_above(&self, other: &Self) -> bool {
         let zero = C::Wide::default();
         let ((a, b), (c, d)) = ((self.a, self.b), (other.a, other.b));

@@ -18,16 +18,16 @@ use super::parallel;
 /// Strips with no more segments than this are not halved.
 const FEW: usize = 12;
 
-/// Of more segments in one column, those that lie on each other are compared as one.
+/// Number of segments in one column from which those that lie on each other are compared as one.
 const MANY: usize = 4 * FEW;
 
 /// About how many segments are in a group, if stairs keep them apart.
 const GROUP: usize = if cfg!(test) { 4 } else { 24 };
 
-/// How many segments one task looks for on a staircase.
+/// Number of segments that one task searches for on a staircase.
 const CLIMBS: usize = if cfg!(test) { 8 } else { 1 << 11 };
 
-/// Of how many segments, at most, the ends tell where a strip is halved.
+/// Largest number of segments whose ends decide where a strip is halved.
 const SAMPLES: usize = 64;
 
 /// Pairs that cross, and where.
@@ -44,9 +44,9 @@ pub struct Strips<C> {
     found: Found<C>,
     /// Segments of the strips that are being worked on, those of a part behind the whole's.
     open: Vec<u32>,
-    /// Of the open segments of a strip the lowest and the highest place on its staircase.
+    /// Lowest and highest place on its staircase of each open segment in a strip.
     places: Vec<(u32, u32)>,
-    /// Of each place on a staircase its group.
+    /// Group of each place on a staircase.
     group_of: Vec<u32>,
     /// Segments that span the strip that is being worked on, and those of them that are stairs.
     spanning: Vec<Stair>,
@@ -61,7 +61,7 @@ struct Strip {
     groups: (u32, u32),
 }
 
-/// What is not on a staircase, between two of its stairs.
+/// Segments between two stairs of a staircase that are not on it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Group<C> {
     /// Places on the staircase below this belong to the group or to those before: above so many
@@ -283,8 +283,8 @@ impl<C: Coord> Strips<C> {
         found.iter().for_each(|found| self.found.extend_from_slice(found));
     }
 
-    /// The median column of the ends within the strip, of many segments those of some, or the
-    /// strip's middle.
+    /// Returns the median column of the ends within the strip, of many segments those of some, or
+    /// the strip's middle.
     fn middle(&mut self, segments: &[Segment<C>], (left, right): (i64, i64), start: usize) -> i64 {
         let list = &self.open[start..];
         self.ends.clear();
@@ -337,15 +337,15 @@ impl<'a, C: Coord> Bounds<'a, C> {
         Stair { index, heights: self.borders.map(|border| s.height_at(border)) }
     }
 
-    /// Whether two segments that span the strip, of which the first is not higher in the west, cross
-    /// in it. What they do on the eastern border belongs to it: both come that far, and in the next
-    /// strip neither would be above the other.
+    /// Returns whether two segments that span the strip, of which the first is not higher in the
+    /// west, cross in it. What they do on the eastern border belongs to it: both come that far, and
+    /// in the next strip neither would be above the other.
     fn crosses(&self, s: &Stair, t: &Stair) -> bool {
         let order = self.compare(EAST, s, t);
         order.is_gt() || (order.is_eq() && self.compare(WEST, s, t).is_lt())
     }
 
-    /// The order of two segments at a border that both span.
+    /// Returns the order of two segments at a border that both span.
     #[inline]
     fn compare(&self, border: usize, s: &Stair, t: &Stair) -> Ordering {
         s.heights[border].compare(t.heights[border]).unwrap_or_else(|| {
@@ -360,7 +360,7 @@ impl<'a, C: Coord> Bounds<'a, C> {
 struct Climber<'a, C> {
     bounds: &'a Bounds<'a, C>,
     stairs: &'a [Stair],
-    /// How many stairs were below the start and the end of the last segment.
+    /// Numbers of stairs below the start and the end of the last segment.
     below: (usize, usize),
 }
 
@@ -408,7 +408,7 @@ impl<C: Coord> Climber<'_, C> {
     }
 }
 
-/// What [`slice::partition_point`] gives; O(log d) where that is d items from `guess`.
+/// Returns the result of [`slice::partition_point`]; O(log d) if that is d items from `guess`.
 fn partition_near<T>(list: &[T], guess: usize, mut before: impl FnMut(&T) -> bool) -> usize {
     let (mut low, mut high) = (0, list.len());
     let mut probe = guess.min(high.saturating_sub(1));

@@ -15,7 +15,8 @@ fn run(a: &Shapes, b: &Shapes, op: BooleanOp, rule: FillRule) -> Output {
     overlay(a, b, op, &Options::with_rule(rule), &mut NoTrace).expect("finite")
 }
 
-/// Small rings all over a large grid, or long ones across it, some of them with repeated points.
+/// Returns small rings all over a large grid, or long ones across it, some of them with repeated
+/// points.
 fn soup(grid: i32) -> impl Strategy<Value = Shapes> {
     let point = (0..grid, 0..grid).prop_map(|(x, y)| DVec2::new(f64::from(x), f64::from(y)));
     let ring = (point, prop::collection::vec((-3..4, -3..4, 1..9), 2..40), any::<bool>());

@@ -15,11 +15,11 @@ struct Part<C> {
     outside: Winding,
     /// The part that it belongs to; itself until they are joined.
     parent: u32,
-    /// What is added to its windings to make them relative to its parent's.
+    /// Offset that makes its windings relative to its parent's.
     offset: Winding,
 }
 
-/// What the walk through a patch finds.
+/// Result of the walk through a patch.
 struct Walked<C> {
     parts: Vec<Part<C>>,
     /// Edges that come from other patches, the part that each meets here, and the winding to its
@@ -63,7 +63,7 @@ impl<C: Coord> Arrangement<'_, C> {
         self.raise(&parts, &around, &part_ends, &mut part_of);
     }
 
-    /// The windings relative to each joined part.
+    /// Returns the windings relative to each joined part.
     fn surround(
         &self,
         search: &Search<C>,
@@ -175,11 +175,11 @@ impl<C: Coord> Arrangement<'_, C> {
     }
 }
 
-/// How many searches one task does.
+/// Number of searches in one task.
 const SEARCHES: usize = if cfg!(test) { 2 } else { 64 };
 
-/// The part that a part belongs to, and what makes its windings relative to that one's. Halves the
-/// way there.
+/// Returns the part that a part belongs to, and what makes its windings relative to that one's.
+/// Halves the way there.
 fn find<C: Copy>(parts: &mut [Part<C>], mut part: u32) -> (u32, Winding) {
     let mut offset = Winding::default();
     while parts[part as usize].parent != part {
@@ -212,9 +212,10 @@ fn unite<C: Copy>(parts: &mut [Part<C>], first: u32, second: u32, raise: Winding
 struct Walk<'a, 'b, C> {
     graph: &'a Arrangement<'b, C>,
     patch: &'a Patch,
-    /// Of the patch's nodes.
+    /// Part of each of the patch's nodes.
     part_of: &'a mut [u32],
-    /// Of the patch's edges, relative to the part of the end that comes first.
+    /// Winding on the right of each of the patch's edges, relative to the part of the end that
+    /// comes first.
     right: &'a mut [Winding],
     walked: Walked<C>,
 }
@@ -259,8 +260,8 @@ impl<C: Coord> Walk<'_, '_, C> {
         }
     }
 
-    /// The part of a neighbour that was there before, and the winding straight below the node
-    /// relative to that part.
+    /// Returns the part of a neighbour that was there before, and the winding straight below the
+    /// node relative to that part.
     #[inline(always)]
     fn known(&self, node: u32, around: &[Half]) -> Option<(u32, Winding)> {
         let mut winding = Winding::default();
@@ -285,7 +286,7 @@ impl<C: Coord> Walk<'_, '_, C> {
         (parent, outside)
     }
 
-    /// Whether the walk was at this node of the patch before it came to the other one.
+    /// Returns whether the walk was at this node of the patch before it came to the other one.
     #[inline(always)]
     fn is_before(&self, node: u32, other: u32) -> bool {
         node < other && node as usize >= self.patch.nodes.start
@@ -331,7 +332,7 @@ impl<C: Coord> Walk<'_, '_, C> {
     }
 }
 
-/// What is found where a half-edge is passed.
+/// Result of passing a half-edge.
 struct Step {
     /// The winding on the right of its edge.
     right: Winding,

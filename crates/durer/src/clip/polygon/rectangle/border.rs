@@ -4,13 +4,14 @@ use crate::clip::exact::{Exact, on_border};
 use crate::math::{DVec2, Rect};
 use std::cmp::Ordering;
 
-/// The corner with which each side of the window begins, counter-clockwise: bottom, right, top, left.
+/// Returns the corner with which each side of the window begins, counter-clockwise: bottom, right,
+/// top, left.
 pub(super) fn corners(window: &Rect) -> [DVec2; 4] {
     let (min, max) = (window.min(), window.max());
     [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)]
 }
 
-/// The end of the visible part of an edge, where it is cut, correctly rounded.
+/// Returns the end of the visible part of an edge, where it is cut, correctly rounded.
 #[inline]
 pub(super) fn exact_cut(window: &Rect, point: DVec2, [a, b]: [DVec2; 2]) -> DVec2 {
     if point == a || point == b {
@@ -30,20 +31,20 @@ pub(super) fn exact_cut(window: &Rect, point: DVec2, [a, b]: [DVec2; 2]) -> DVec
     cut(0).or_else(|| cut(1)).unwrap_or(point)
 }
 
-/// Where a chain touches the border, with what is needed to order it exactly.
+/// Point at which a chain touches the border, with the data that order it exactly.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BorderPoint {
     pub(super) point: DVec2,
     /// The side it counts for; a corner counts for the side that begins there.
     pub(super) side: usize,
-    /// Whether rounding, or its own place, has moved it to the corner from the side before.
+    /// True if rounding, or its own place, has moved it to the corner from the side before.
     from_side_before: bool,
     /// The edge that touches the border here, from outside or the border to the inside.
     edge: [DVec2; 2],
 }
 
 impl BorderPoint {
-    /// A point of the border at which `edge` goes to the inside.
+    /// Creates A point of the border at which `edge` goes to the inside.
     pub(super) fn new(window: &Rect, point: DVec2, edge: [DVec2; 2]) -> Self {
         let (min, max) = (window.min(), window.max());
         let side = if point.y == min.y && point.x < max.x {
@@ -67,8 +68,9 @@ impl BorderPoint {
         Self { point, side, from_side_before, edge }
     }
 
-    /// The order in which a walk around the border, counter-clockwise from the lower left corner,
-    /// meets the points; of edges that meet in one point, the one turned furthest back comes first.
+    /// Returns the order in which a walk around the border, counter-clockwise from the lower left
+    /// corner, meets the points; of edges that meet in one point, the one turned furthest back
+    /// comes first.
     pub(super) fn order(&self, other: &Self) -> Ordering {
         let by_side = self.side.cmp(&other.side);
         by_side.then_with(|| self.order_on_side(other))
@@ -100,8 +102,8 @@ impl BorderPoint {
         walked.then_with(|| self.turned_back(other))
     }
 
-    /// The coordinate on `axis` of the exact point where the edge crosses the side: numerator and
-    /// positive denominator.
+    /// Returns the coordinate on `axis` of the exact point where the edge crosses the side:
+    /// numerator and positive denominator.
     fn crossing(&self, axis: usize) -> (Exact, Exact) {
         let e = Exact::from;
         let across = 1 - axis;
@@ -119,7 +121,7 @@ impl BorderPoint {
         (near + far, length)
     }
 
-    /// Edges from one point of the border, the one nearest to the way back first.
+    /// Returns edges from one point of the border, the one nearest to the way back first.
     fn turned_back(&self, other: &Self) -> Ordering {
         let e = Exact::from;
         let direction = |b: &Self| {

@@ -13,16 +13,16 @@ use crate::math::{DVec2, Rect};
 pub struct ClippedLines {
     /// All points, piece after piece.
     pub points: Vec<DVec2>,
-    /// Where each piece ends in `points`.
+    /// End of each piece in `points`.
     pub ends: Vec<usize>,
-    /// Of which polyline of the input each piece is a part.
+    /// Index of the input polyline that each piece is a part of.
     pub lines: Vec<usize>,
     /// The source of each point; empty unless asked for.
     pub sources: Vec<Source>,
 }
 
 impl ClippedLines {
-    /// The pieces, each with the index of its polyline.
+    /// Returns the pieces, each with the index of its polyline.
     pub fn pieces(&self) -> impl Iterator<Item = (usize, &[DVec2])> {
         let starts = std::iter::once(0).chain(self.ends.iter().copied());
         let ranges = starts.zip(self.ends.iter().copied());
@@ -47,7 +47,8 @@ impl ClippedLines {
     }
 }
 
-/// The parts of polylines in the closed rectangle; `ends[i]` is where polyline i ends in `points`.
+/// Returns the parts of polylines in the closed rectangle; `ends[i]` is where polyline i ends in
+/// `points`.
 ///
 /// A polyline is cut where it leaves the window and nowhere else, not where it crosses itself; parts
 /// along the border are kept; parts that are single points are dropped. With `sources`, the source of
@@ -87,7 +88,8 @@ pub fn clip_lines(
     Ok(out)
 }
 
-/// How many points from the first on are as wanted; eight are asked at a time, without a branch.
+/// Returns the number of leading points that satisfy a condition; eight are tested at a time,
+/// without a branch.
 #[inline(always)]
 fn run(points: &[DVec2], wanted: impl Fn(DVec2) -> bool) -> usize {
     let (eights, _) = points.as_chunks::<8>();
@@ -97,13 +99,13 @@ fn run(points: &[DVec2], wanted: impl Fn(DVec2) -> bool) -> usize {
     first + rest.iter().position(|p| !wanted(*p)).unwrap_or(rest.len())
 }
 
-/// How many points from the first on lie in the window.
+/// Returns the number of leading points that lie in the window.
 fn run_inside(window: &Rect, points: &[DVec2]) -> usize {
     let (min, max) = (window.min(), window.max());
     run(points, |p| (p.x >= min.x) & (p.x <= max.x) & (p.y >= min.y) & (p.y <= max.y))
 }
 
-/// How many points from the first on lie beyond one and the same of some borders.
+/// Returns the number of leading points that lie beyond the same one of some borders.
 fn run_beyond(window: &Rect, borders: Outcode, points: &[DVec2]) -> usize {
     let (min, max) = (window.min(), window.max());
     if borders.contains(Outcode::LEFT) {

@@ -51,7 +51,7 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
-/// What the algorithm did; the vertices are reported as they go to the output.
+/// Step of the algorithm; vertices are reported as they are added to the output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A polygon's bounding box lies in the window: it is copied.
@@ -66,14 +66,14 @@ pub enum Step {
     },
     /// A part of a ring inside the window was found, between two points of the border.
     Chain {
-        /// Where it enters.
+        /// Point at which it enters.
         entry: DVec2,
-        /// Where it leaves.
+        /// Point at which it leaves.
         exit: DVec2,
     },
     /// A vertex of the ring being put out.
     Vertex {
-        /// Where it lies.
+        /// Position of the vertex.
         point: DVec2,
     },
     /// The ring is complete.
@@ -82,7 +82,7 @@ pub enum Step {
     PolygonDone,
 }
 
-/// The result that a list of steps leads to.
+/// Returns the result that a list of steps leads to.
 pub fn replay(input: &Shapes, steps: &[Step]) -> Shapes {
     let (mut output, mut ring) = (Shapes::new(), Vec::new());
     for step in steps {
@@ -102,7 +102,7 @@ pub fn replay(input: &Shapes, steps: &[Step]) -> Shapes {
     output
 }
 
-/// The part of all polygons in the window; regions only, so parts without area are dropped.
+/// Returns the part of all polygons in the window; regions only, so parts without area are dropped.
 ///
 /// ```
 /// use durer::clip::polygon::{Shapes, rectangle};
@@ -130,8 +130,8 @@ pub fn clip(
     run::<NoSources>(window, shapes, t).map(|(clipped, _)| clipped)
 }
 
-/// The same, with the source of every output vertex, from which attributes are interpolated by
-/// [`crate::clip::attribute::interpolate`].
+/// Returns the same, with the source of every output vertex, from which attributes are interpolated
+/// by [`crate::clip::attribute::interpolate`].
 ///
 /// # Errors
 /// As [`clip`].
@@ -170,7 +170,7 @@ fn run<P: Provenance>(
     Ok(clipper.finish())
 }
 
-/// How a bounding box lies to the window.
+/// Relation of a bounding box to the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Extent {
     Inside,

@@ -9,13 +9,13 @@ use crate::math::{DVec2, Rect};
 #[derive(Debug, Default)]
 pub(crate) struct Near {
     pub shapes: Shapes,
-    /// Of the edge from each point the edge of the whole that it is a part of. Edges along the border of
-    /// what is near are their own.
+    /// Edge of the whole that the edge from each point is a part of. Edges along the border of the near
+    /// part are their own.
     pub lines: Vec<[DVec2; 2]>,
 }
 
 impl Near {
-    /// All polygons.
+    /// Returns all polygons.
     pub fn all(shapes: Shapes) -> Self {
         let of_ring = |ring: &'_ [DVec2]| -> Vec<[DVec2; 2]> {
             ring.iter().zip(ring.iter().cycle().skip(1)).map(|(&a, &b)| [a, b]).collect()
@@ -24,7 +24,8 @@ impl Near {
         Self { shapes, lines }
     }
 
-    /// The part around a box, and a little more on every side, so that nothing else reaches far.
+    /// Returns the part around a box, and a little more on every side, so that nothing else reaches
+    /// far.
     pub fn around(whole: &Prepared, bounds: &Rect) -> Self {
         let farthest = bounds.max().abs().max(bounds.min().abs()).max_element();
         // A window needs a size, also around a line along an axis.
@@ -59,7 +60,7 @@ impl Near {
     }
 }
 
-/// The edge that was cut at one or both of its ends, if both are of one edge.
+/// Returns the edge that was cut at one or both of its ends, if both are of one edge.
 fn common_edge(ends: [Source; 2]) -> Option<[usize; 2]> {
     match ends {
         [Source::Cut { from, to, .. }, Source::Vertex(v)]

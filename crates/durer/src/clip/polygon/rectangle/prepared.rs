@@ -83,27 +83,28 @@ impl Prepared {
         Ok(Self { shapes, polygons, rings, order, tree })
     }
 
-    /// The polygons.
+    /// Returns the polygons.
     pub fn shapes(&self) -> &Shapes {
         &self.shapes
     }
 
-    /// The smallest rectangle around them; `None` where there is no point.
+    /// Returns the smallest rectangle around them; `None` where there is no point.
     pub fn bounds(&self) -> Option<Rect> {
         self.tree.around()
     }
 
-    /// The part of all polygons in the window: bit for bit what [`super::clip`] gives.
+    /// Returns the part of all polygons in the window: bit for bit what [`super::clip`] gives.
     pub fn clip(&self, window: &Rect) -> Shapes {
         self.run::<NoSources>(window).0
     }
 
-    /// The same, with the source of every point.
+    /// Returns the same, with the source of every point.
     pub fn clip_with_sources(&self, window: &Rect) -> (Shapes, Vec<Source>) {
         self.run(window)
     }
 
-    /// Whether an edge comes near a rectangle: the boxes around both have a point in common.
+    /// Returns whether an edge comes near a rectangle: the boxes around both have a point in
+    /// common.
     pub fn has_edges_near(&self, window: &Rect) -> bool {
         self.rings_near(window).into_iter().any(|number| {
             let ring = self.directed(number);
@@ -142,13 +143,14 @@ impl Prepared {
         clipper.finish()
     }
 
-    /// Whether a point lies in the closed polygons, by the even-odd rule over all rings; exact.
+    /// Returns whether a point lies in the closed polygons, by the even-odd rule over all rings;
+    /// exact.
     pub fn contains(&self, p: DVec2) -> bool {
         let place = self.place(p);
         place.odd || place.on_border
     }
 
-    /// Whether a point lies on a ring; exact.
+    /// Returns whether a point lies on a ring; exact.
     pub fn has_on_border(&self, p: DVec2) -> bool {
         self.place(p).on_border
     }
@@ -169,7 +171,7 @@ impl Prepared {
         Directed::new(&self.shapes, number, self.rings[number].turns_left != outer)
     }
 
-    /// The rings whose boxes have a point in common with a rectangle.
+    /// Returns the rings whose boxes have a point in common with a rectangle.
     fn rings_near(&self, window: &Rect) -> Vec<usize> {
         let mut found = Vec::new();
         let near = |around: Rect| around.overlaps(window);
@@ -210,15 +212,15 @@ impl Prepared {
     }
 }
 
-/// Where a point lies of rings.
+/// Location of a point relative to rings.
 #[derive(Default)]
 struct Place {
-    /// Whether a ray to the right crosses the ring an odd number of times.
+    /// True if a ray to the right crosses the ring an odd number of times.
     odd: bool,
     on_border: bool,
 }
 
-/// Whether a point lies on a closed segment; exact.
+/// Returns whether a point lies on a closed segment; exact.
 fn is_on(a: DVec2, b: DVec2, p: DVec2) -> bool {
     let (low, high) = (a.min(b), a.max(b));
     p.cmpge(low).all() && p.cmple(high).all() && exact::side(a, b, p) == Ordering::Equal
@@ -297,7 +299,7 @@ mod tests {
         DVec2::new(x.into(), y.into())
     }
 
-    /// Rings that may be anything, each a polygon or a hole of the one before.
+    /// Returns rings that may be anything, each a polygon or a hole of the one before.
     fn rings() -> impl Strategy<Value = Shapes> {
         let ring = prop::collection::vec((-6i32..=6, -6i32..=6), 0..14);
         prop::collection::vec((ring, any::<bool>()), 0..9).prop_map(|rings| {
@@ -313,14 +315,14 @@ mod tests {
         })
     }
 
-    /// The same region as valid polygons.
+    /// Returns the same region as valid polygons.
     fn valid(shapes: &Shapes) -> Shapes {
         let options = overlay::Options::with_rule(FillRule::EvenOdd);
         let op = crate::clip::polygon::BooleanOp::Union;
         overlay::overlay(shapes, &Shapes::new(), op, &options, &mut NoTrace).unwrap().shapes
     }
 
-    /// Rings that start elsewhere and run either way.
+    /// Returns rings that start elsewhere and run either way.
     fn turned(shapes: &Shapes, by: usize, flip: bool) -> Shapes {
         let mut out = Shapes::new();
         for polygon in shapes.polygons() {

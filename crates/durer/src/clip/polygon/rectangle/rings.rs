@@ -30,7 +30,7 @@ pub(super) struct Clipper<P> {
     chains: Vec<Chain>,
     /// Rings that lie strictly inside or touch the border in one point from within.
     islands: Vec<Range<usize>>,
-    /// Whether an odd number of rings goes round the whole window.
+    /// True if an odd number of rings goes round the whole window.
     surrounded: bool,
 }
 
@@ -43,18 +43,20 @@ pub(super) struct Directed<'a> {
     backwards: bool,
 }
 
-/// What is known of rings before their edges are looked at.
+/// Knowledge about rings before their edges are examined.
 pub(super) trait Guide {
-    /// Whether a ring runs counter-clockwise.
+    /// Returns whether a ring runs counter-clockwise.
     fn turns_left(&self, number: usize, ring: &Ring) -> bool;
-    /// Where a walk once around from `start` may meet the open window, as ranges of edges in their order.
+    /// Finds the ranges of edges, in their order, in which a walk once around from `start` may meet the
+    /// open window.
     fn stretches(
         &self,
         window: &Rect,
         ring: &Directed<'_>,
         start: usize,
     ) -> impl Iterator<Item = Range<usize>>;
-    /// Whether a point lies in a ring by the even-odd rule; exact but for points on the ring.
+    /// Returns whether a point lies in a ring by the even-odd rule; exact but for points on the
+    /// ring.
     fn holds(&self, ring: &Directed<'_>, p: DVec2) -> bool;
 }
 
@@ -91,7 +93,7 @@ impl<'a> Directed<'a> {
         self.ring.len()
     }
 
-    /// The index in the ring of the k-th point, counted around and around.
+    /// Returns the index in the ring of the k-th point, counted around and around.
     #[inline]
     fn index(&self, k: usize) -> usize {
         let n = self.ring.len();
@@ -164,14 +166,15 @@ impl<P: Provenance> Clipper<P> {
         self.assemble(t);
     }
 
-    /// Whether a point lies in the open window.
+    /// Returns whether a point lies in the open window.
     #[inline]
     fn strictly_inside(&self, p: DVec2) -> bool {
         let (min, max) = (self.window.min(), self.window.max());
         p.x > min.x && p.x < max.x && p.y > min.y && p.y < max.y
     }
 
-    /// Whether both points lie beyond or on the same border: no part between is strictly inside.
+    /// Returns whether both points lie beyond or on the same border: no part between is strictly
+    /// inside.
     #[inline]
     fn apart(&self, a: DVec2, b: DVec2) -> bool {
         let (min, max) = (self.window.min(), self.window.max());
@@ -278,7 +281,8 @@ impl<P: Provenance> Clipper<P> {
         self.push(point, || Source::on_edge(point, (from, a), (to, b)));
     }
 
-    /// The window's middle: inside of those rings that have no edge in the window and are around it.
+    /// Returns the window's middle: inside of those rings that have no edge in the window and are
+    /// around it.
     fn middle(&self) -> DVec2 {
         let (min, max) = (self.window.min(), self.window.max());
         min + (max - min) * 0.5
@@ -327,7 +331,7 @@ impl<P: Provenance> Clipper<P> {
         self.sources.push_range(&self.point_sources, ring);
     }
 
-    /// The window as a ring, where no edge crosses it and it is inside the polygon.
+    /// Returns the window as a ring, where no edge crosses it and it is inside the polygon.
     fn whole_window(&mut self) -> Vec<Range<usize>> {
         if !self.surrounded {
             return Vec::new();
@@ -437,13 +441,13 @@ fn followers(ends: &[ChainEnd], chains: usize) -> Vec<usize> {
     next
 }
 
-/// Whether a point lies in a ring by the even-odd rule; exact but for points on the ring.
+/// Returns whether a point lies in a ring by the even-odd rule; exact but for points on the ring.
 pub(super) fn contains(ring: &Ring, p: DVec2) -> bool {
     let previous = ring.iter().cycle().skip(ring.len().saturating_sub(1));
     previous.zip(ring).filter(|(a, b)| crosses(**a, **b, p)).count() % 2 == 1
 }
 
-/// Whether an edge crosses the ray from a point to the right.
+/// Returns whether an edge crosses the ray from a point to the right.
 #[inline]
 pub(super) fn crosses(a: DVec2, b: DVec2, p: DVec2) -> bool {
     let upwards = a.y <= p.y;

@@ -19,14 +19,15 @@ pub(in crate::clip::polygon) struct Node {
 }
 
 impl Node {
-    /// Whether it is not divided further.
+    /// Returns whether it is not divided further.
     pub(in crate::clip::polygon) fn is_last(&self) -> bool {
         self.items.len() <= Tree::RUN
     }
 }
 
 impl Tree {
-    /// So many things are not divided further: to look at them costs about as much as at two boxes.
+    /// Number of items that are not divided further: examining them costs about as much as
+    /// examining two boxes.
     pub(in crate::clip::polygon) const RUN: usize = if cfg!(test) { 2 } else { 16 };
 
     /// Over things numbered from 0, with what gives the box around some of them.
@@ -58,7 +59,7 @@ impl Tree {
         Some(self.nodes[index].around)
     }
 
-    /// The box around everything; `None` where there is nothing.
+    /// Returns the box around everything; `None` where there is nothing.
     pub(in crate::clip::polygon) fn around(&self) -> Option<Rect> {
         self.nodes.first().map(|node| node.around)
     }

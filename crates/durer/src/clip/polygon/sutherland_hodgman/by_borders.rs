@@ -9,7 +9,7 @@ use crate::clip::line::HalfSpace;
 use crate::trace::Tracer;
 use std::cmp::Ordering;
 
-/// Where the two ends of an edge lie of a border.
+/// Rule for an edge, by the sides of a border on which its two ends lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Rule {
     /// Both inside: the end is emitted.
@@ -32,7 +32,7 @@ impl Rule {
         }
     }
 
-    /// The rule's name as it is written on the blackboard.
+    /// Returns the rule's name as it is written on the blackboard.
     pub const fn name(self) -> &'static str {
         match self {
             Self::InIn => "in→in",
@@ -43,20 +43,21 @@ impl Rule {
     }
 }
 
-/// What the algorithm did.
+/// Step of the algorithm.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step<V> {
     /// An edge was looked at.
     Edge {
         /// The border's index.
         border: usize,
-        /// Where the edge begins.
+        /// Start of the edge.
         from: V,
-        /// Where it ends.
+        /// End of the visible part.
         to: V,
-        /// Where its ends lie.
+        /// Rule that applies to the edge.
         rule: Rule,
-        /// What is emitted: the cut, and the end. There is no cut where an end lies on the border itself.
+        /// Emitted vertices: the cut, and the end. There is no cut if an end lies on the border
+        /// itself.
         emitted: [Option<V>; 2],
     },
     /// A border is done: this is what is left.
@@ -68,7 +69,7 @@ pub enum Step<V> {
     },
 }
 
-/// The result that a list of steps leads to.
+/// Returns the result that a list of steps leads to.
 pub fn replay<V: Clone>(ring: &[V], steps: &[Step<V>]) -> Vec<V> {
     let lists = steps.iter().filter_map(|step| match step {
         Step::List { vertices, .. } => Some(vertices),
@@ -77,7 +78,8 @@ pub fn replay<V: Clone>(ring: &[V], steps: &[Step<V>]) -> Vec<V> {
     lists.last().cloned().unwrap_or_else(|| ring.to_vec())
 }
 
-/// The part of a ring on the inner side of all borders, one border after the other, as one ring.
+/// Returns the part of a ring on the inner side of all borders, one border after the other, as one
+/// ring.
 ///
 /// ```
 /// use durer::clip::line::HalfPlane;
@@ -108,7 +110,7 @@ pub fn clip<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
     Ok(vertices)
 }
 
-/// What one border leaves of a list.
+/// Clips a list to one border.
 fn past<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
     index: usize,
     border: &H,

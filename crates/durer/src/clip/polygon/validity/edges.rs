@@ -18,14 +18,14 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// A fault between it and another one.
+    /// Returns A fault between it and another one.
     pub fn flaw(&self, other: &Self, fault: Fault, at: DVec2) -> Flaw {
         let rings = [self.ring.min(other.ring), self.ring.max(other.ring)];
         Flaw { fault, at: at + 0.0, rings }
     }
 }
 
-/// All edges, in the order of their left ends.
+/// Returns all edges, in the order of their left ends.
 pub fn edges_of(shapes: &Shapes) -> Vec<Edge> {
     let mut edges = Vec::with_capacity(shapes.points().len());
     for (ring, points) in shapes.rings().enumerate() {
@@ -61,7 +61,8 @@ pub fn each_pair(
     })
 }
 
-/// The edges in horizontal slabs of equal height, each edge in all that it touches, in their order.
+/// Returns the edges in horizontal slabs of equal height, each edge in all that it touches, in
+/// their order.
 fn slabs(edges: &[Edge]) -> Vec<Vec<&Edge>> {
     let low = edges.iter().fold(f64::INFINITY, |y, e| y.min(e.a.y));
     let high = edges.iter().fold(f64::NEG_INFINITY, |y, e| y.max(e.a.y));
@@ -79,7 +80,7 @@ fn slabs(edges: &[Edge]) -> Vec<Vec<&Edge>> {
     slabs
 }
 
-/// What two edges have in common.
+/// Intersection of two edges.
 pub enum Meeting {
     Apart,
     /// One point within both.
@@ -116,7 +117,7 @@ pub fn meeting(p: &Edge, q: &Edge) -> Meeting {
     }
 }
 
-/// What edges on one line have in common: nothing, an end, or more.
+/// Returns the intersection of edges on one line: nothing, an end, or more.
 fn on_one_line(p: &Edge, q: &Edge) -> Meeting {
     let axis = usize::from((p.b.y - p.a.y).abs() > (p.b.x - p.a.x).abs());
     let sorted = |e: &Edge| if e.a[axis] <= e.b[axis] { (e.a, e.b) } else { (e.b, e.a) };
@@ -132,7 +133,7 @@ fn on_one_line(p: &Edge, q: &Edge) -> Meeting {
     }
 }
 
-/// The point nearest to where two edges cross, as far as f64 goes.
+/// Returns the point nearest to where two edges cross, as far as f64 goes.
 pub fn crossing(p: &Edge, q: &Edge) -> DVec2 {
     let (along, other) = (p.b * 0.5 - p.a * 0.5, q.b * 0.5 - q.a * 0.5);
     let t = (q.a * 0.5 - p.a * 0.5).perp_dot(other) / along.perp_dot(other);

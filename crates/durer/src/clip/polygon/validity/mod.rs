@@ -1,4 +1,4 @@
-//! Whether polygons are valid, exactly; and if not, what is wrong and where.
+//! The check that polygons are valid, exactly, with the kind and place of each fault.
 //!
 //! Valid is what the OGC's Simple Features (ISO 19125-1, 2004, 6.1.11) call so, whichever way rings run: rings that
 //! neither cross nor touch themselves, that touch one another in single points only, holes within their outer ring and
@@ -36,21 +36,21 @@ pub const INFO: Info = Info {
     limits: "some thousand comparisons per edge",
 };
 
-/// So many pairs of edges are looked at per edge, at most.
+/// Limit on the pairs of edges compared per edge.
 pub(super) const PAIRS_PER_EDGE: usize = 4096;
 
-/// What two edges may have in common, beside consecutive ones their common vertex.
+/// Intersections that two edges may have, beside the common vertex of consecutive ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Touching {
-    /// Nothing.
+    /// An unknown system.
     No,
     /// A vertex of both.
     AtVertices,
-    /// Where they are of different rings, a point that is a vertex of one of them: what the OGC allows.
+    /// Edges of different rings may meet in a point that is a vertex of one of them, as the OGC allows.
     AtPoints,
 }
 
-/// What is wrong with polygons.
+/// Fault of polygons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Fault {
     /// A ring has less than three different points.
@@ -104,7 +104,7 @@ impl Fault {
 /// A fault and its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flaw {
-    /// What is wrong.
+    /// Kind of the mismatch.
     pub fault: Fault,
     /// A point of it: of crossings the nearest to it, of rings a vertex.
     pub at: DVec2,
@@ -182,7 +182,7 @@ fn sort(flaws: &mut Vec<Flaw>) {
     flaws.dedup_by(|a, b| a == b);
 }
 
-/// The shapes without points that come twice in a row, and the rings that are none then.
+/// Returns the shapes without points that come twice in a row, and the rings that are none then.
 fn without_repeats(shapes: &Shapes) -> (Shapes, Vec<Flaw>) {
     let (mut kept, mut few) = (Shapes::new(), Vec::new());
     for polygon in shapes.polygons() {
@@ -259,7 +259,7 @@ fn each_fault(shapes: &Shapes, touching: Touching, mut tell: impl FnMut(&[usize]
     all && (touching == Touching::No || each_passage(shapes, tell))
 }
 
-/// Whether two edges may touch in a point.
+/// Returns whether two edges may touch in a point.
 fn may_touch(p: &Edge, q: &Edge, at: DVec2, size: usize, touching: Touching) -> bool {
     match touching {
         Touching::No => are_neighbours(p, q, size),
@@ -268,7 +268,7 @@ fn may_touch(p: &Edge, q: &Edge, at: DVec2, size: usize, touching: Touching) -> 
     }
 }
 
-/// Whether one edge of a ring of `size` edges follows the other.
+/// Returns whether one edge of a ring of `size` edges follows the other.
 fn are_neighbours(p: &Edge, q: &Edge, size: usize) -> bool {
     p.ring == q.ring && ((p.index + 1) % size == q.index || (q.index + 1) % size == p.index)
 }

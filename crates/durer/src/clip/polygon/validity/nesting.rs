@@ -1,4 +1,4 @@
-//! Which ring lies in which, of rings whose edges are apart.
+//! The nesting of rings whose edges are apart.
 
 use super::{Fault, Flaw};
 use crate::clip::polygon::Shapes;
@@ -6,8 +6,8 @@ use crate::clip::polygon::rectangle::Prepared;
 use crate::math::{DVec2, Rect};
 use std::cell::OnceCell;
 
-/// Whether holes lie in their outer rings, not in one another, and polygons not in one another;
-/// the edges are apart.
+/// Returns whether holes lie in their outer rings, not in one another, and polygons not in one
+/// another; the edges are apart.
 pub fn nests(shapes: &Shapes) -> bool {
     let mut nests = true;
     each_misplaced(shapes, |_| {
@@ -78,8 +78,8 @@ impl Ring<'_> {
         Flaw { fault, at, rings: [self.index.min(other), self.index.max(other)] }
     }
 
-    /// Whether it lies in another, which it may touch: told by a vertex, or else the middle of an edge,
-    /// that is not on its border.
+    /// Returns whether it lies in another, which it may touch, by a vertex, or else the middle of an
+    /// edge, that is not on its border.
     fn lies_in(&self, outer: &Self) -> bool {
         let prepare = || Prepared::new(Shapes::from_rings([outer.points])).ok();
         let Some(outer) = outer.prepared.get_or_init(prepare) else { return false };

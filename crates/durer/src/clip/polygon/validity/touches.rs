@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A ring at one of its vertices, or at a point of an edge: where it is, comes from, and goes to.
 pub type Way = [DVec2; 3];
 
-/// The ways of a ring through its vertices.
+/// Returns the ways of a ring through its vertices.
 pub fn ways(ring: &[DVec2]) -> impl Iterator<Item = Way> + '_ {
     let last = ring.len().saturating_sub(1);
     let before = move |i: usize| if i == 0 { last } else { i - 1 };
@@ -17,7 +17,7 @@ pub fn ways(ring: &[DVec2]) -> impl Iterator<Item = Way> + '_ {
     (0..ring.len()).map(move |i| [ring[i], ring[before(i)], ring[after(i)]])
 }
 
-/// Whether two ways through one point only touch there, and do not pass through each other.
+/// Returns whether two ways through one point only touch there, and do not pass through each other.
 pub fn ways_touch([at, from, to]: Way, [_, a, b]: Way) -> bool {
     let left = |x: DVec2| in_sector(at, to, x, from);
     left(a) == left(b)
@@ -26,14 +26,14 @@ pub fn ways_touch([at, from, to]: Way, [_, a, b]: Way) -> bool {
 /// A ring along an edge, or at a vertex, by the bits of the coordinates of a [`Way`].
 type RingWay = (usize, [[u64; 2]; 3]);
 
-/// Where different rings touch.
+/// Points at which different rings touch.
 #[derive(Default)]
 pub struct Touches {
     /// For each place, by the bits of its coordinates, the ways through it, by ring.
     places: BTreeMap<[u64; 2], BTreeSet<RingWay>>,
 }
 
-/// The bits of a point; zeros of either sign are one place.
+/// Returns the bits of a point; zeros of either sign are one place.
 fn bits(p: DVec2) -> [u64; 2] {
     (p + 0.0).to_array().map(f64::to_bits)
 }
@@ -53,7 +53,7 @@ impl Touches {
         }
     }
 
-    /// The rings that pass through another one where they touch.
+    /// Returns the rings that pass through another one where they touch.
     pub fn passages(&self, shapes: &Shapes) -> Vec<Flaw> {
         let mut at_vertices: BTreeMap<[u64; 2], Vec<(usize, Way)>> = BTreeMap::new();
         for ring in 0..shapes.ring_count() {
@@ -80,7 +80,8 @@ impl Touches {
         flaws
     }
 
-    /// The places where rings of one polygon close a chain of touching rings, which divides its inside.
+    /// Returns the places where rings of one polygon close a chain of touching rings, which divides its
+    /// inside.
     pub fn divisions(&self, shapes: &Shapes) -> Vec<Flaw> {
         let mut polygon_of = vec![0; shapes.ring_count()];
         for (polygon, rings) in shapes.polygons().enumerate() {
@@ -103,7 +104,7 @@ impl Touches {
     }
 }
 
-/// Which rings hang together (disjoint sets).
+/// Sets of rings that are connected by touching (disjoint sets).
 struct Chains(Vec<usize>);
 
 impl Chains {

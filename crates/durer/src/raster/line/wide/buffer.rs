@@ -28,7 +28,7 @@ pub const INFO: Info = Info {
     limits: "arcs are polygons within a tolerance",
 };
 
-/// How far a buffer reaches, and how its corners and ends look.
+/// Options for the distance of a buffer, and for its corners and ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// The distance, in units of the coordinates. Below 0 polygons shrink, and lines and points vanish.
@@ -39,7 +39,8 @@ pub struct Options {
     pub cap: Cap,
     /// The longest miter over twice the distance, at least 1.
     pub miter_limit: f64,
-    /// How far the polygons that stand for arcs may lie from them, above 0; `None`: a thousandth of the distance.
+    /// Largest distance of polygons from the arcs that they approximate, above 0; `None`: a thousandth of the
+    /// distance.
     pub tolerance: Option<f64>,
 }
 
@@ -115,7 +116,7 @@ pub fn of_lines<'a>(
     joined(&Shapes::new(), FillRule::EvenOdd, BooleanOp::Union, &path, options)
 }
 
-/// What is left of `shapes` with or without a stroke along a path.
+/// Joins `shapes` and a stroke along a path, or subtracts the stroke.
 fn joined(
     shapes: &Shapes,
     rule: FillRule,
@@ -134,7 +135,7 @@ fn joined(
     Ok(overlay(shapes, &outline, op, &rules, &mut NoTrace)?.shapes)
 }
 
-/// The contours as polygons of one ring each.
+/// Returns the contours as polygons of one ring each.
 fn rings(contours: &Contours) -> Shapes {
     Shapes::from_rings(contours.iter().map(|(ring, _)| ring))
 }

@@ -18,7 +18,7 @@ pub(super) struct Piece {
     pub length: f64,
 }
 
-/// Where two pieces meet, or a contour ends.
+/// Point where two pieces meet, or a contour ends.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertex {
     pub at: DVec2,
@@ -32,7 +32,7 @@ pub(super) struct Contour {
     pub vertices: Vec<Vertex>,
     pub pieces: Vec<Piece>,
     pub closed: bool,
-    /// Whether anything was drawn, though perhaps without length.
+    /// True if anything was drawn, though perhaps without length.
     pub drawn: bool,
 }
 
@@ -144,7 +144,7 @@ pub(super) fn each(
     stroke(&mut contour);
 }
 
-/// The directions of a curve at its ends; `None` for a line.
+/// Returns the directions of a curve at its ends; `None` for a line.
 fn directions(a: DVec2, element: &PathElement, near: f64) -> [Option<DVec2>; 2] {
     let points = match *element {
         PathElement::QuadTo(b, c) => [a, b, b, c],

@@ -23,7 +23,7 @@ const SHORTEST: f64 = 1e-9;
 /// short to be seen, long enough to have a direction.
 const DOT: f64 = 1e-4;
 
-/// Whether a path has so many dashes and gaps that it is drawn solid.
+/// Returns whether a path has too many dashes and gaps and is drawn solid.
 pub(super) fn are_too_many(path: impl Iterator<Item = PathElement>, stroke: &Stroke) -> bool {
     period(stroke) > 0.0
         && count(control_length(&path.map(to_kurbo).collect()), stroke) >= MAX_DASHES
@@ -33,12 +33,12 @@ fn period(stroke: &Stroke) -> f64 {
     stroke.dashes.iter().sum()
 }
 
-/// The dashes and gaps on a length.
+/// Returns the dashes and gaps on a length.
 fn count(length: f64, stroke: &Stroke) -> f64 {
     length / period(stroke) * stroke.dashes.len() as f64
 }
 
-/// Whether all dashes are dots, whose corners are round whatever the join.
+/// Returns whether all dashes are dots, whose corners are round whatever the join.
 pub(super) fn only_dots(stroke: &Stroke) -> bool {
     stroke.cap != Cap::Butt && repeated(&stroke.dashes).step_by(2).all(|d| d == 0.0)
 }
@@ -49,7 +49,8 @@ fn repeated(dashes: &[f64]) -> impl Iterator<Item = f64> {
     dashes.iter().copied().cycle().take(times * dashes.len())
 }
 
-/// The dashes of a path of finite points; `None` where it stays solid: without dashes, or with too many.
+/// Returns the dashes of a path of finite points; `None` where it stays solid: without dashes, or with
+/// too many.
 pub(super) fn dashed(
     path: impl Iterator<Item = PathElement>,
     stroke: &Stroke,
@@ -93,7 +94,7 @@ pub(super) fn dashed(
     Some(out)
 }
 
-/// The curves as chains of chords.
+/// Returns the curves as chains of chords.
 fn chords(path: &BezPath, length: f64, tolerance: f64) -> BezPath {
     let tolerance = tolerance.max(length * 1e-7);
     let (mut out, mut points) = (BezPath::new(), Vec::new());
@@ -123,7 +124,8 @@ fn with_ends(
     })
 }
 
-/// The lengths of the lines through all control points, which are not less than those of the curves.
+/// Returns the lengths of the lines through all control points, which are not less than those of the
+/// curves.
 fn control_length(path: &BezPath) -> f64 {
     with_ends(path.iter())
         .map(|(start, element, end)| match element {
@@ -133,7 +135,7 @@ fn control_length(path: &BezPath) -> f64 {
         .sum()
 }
 
-/// The same of one element that begins at a point; of what only moves or closes it is 0.
+/// Returns the same of one element that begins at a point; of what only moves or closes it is 0.
 fn chain_length(mut at: Point, element: PathEl) -> f64 {
     let chain = match element {
         PathEl::LineTo(p) => [p, p, p],
@@ -157,8 +159,9 @@ fn lengthen_dots(dashes: &mut [f64], length: f64) {
     }
 }
 
-/// The path with contours that stay in one point made a line as long as a dot, along x, as SVG wants it; what only
-/// moves makes no dot. Without a width there are no dots: kurbo would begin the next dash at the origin.
+/// Returns the path with contours that stay in one point made a line as long as a dot, along x, as SVG wants
+/// it; what only moves makes no dot. Without a width there are no dots: kurbo would begin the next dash at
+/// the origin.
 fn with_dots(path: &BezPath, width: Option<f64>) -> BezPath {
     let mut out = BezPath::new();
     let starts = |e: &PathEl| matches!(e, PathEl::MoveTo(_));

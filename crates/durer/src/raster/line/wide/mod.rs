@@ -35,7 +35,7 @@ pub const INFO: Info = Info {
     limits: "the outline crosses itself: fill it by the non-zero rule",
 };
 
-/// How a stroke ends where its path does.
+/// Shape of a stroke's ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Cap {
     /// At the end point, straight.
@@ -47,7 +47,7 @@ pub enum Cap {
     Square,
 }
 
-/// How two pieces of a stroke meet.
+/// Shape of a stroke where two pieces meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Join {
     /// With a sharp corner, cut off where it would be longer than the miter limit.
@@ -72,7 +72,7 @@ pub struct Stroke {
     pub miter_limit: f64,
     /// Lengths of dashes and gaps in turn; empty for a solid line.
     pub dashes: Vec<f64>,
-    /// How far into the dashes the line starts.
+    /// Distance into the dashes at which the line starts.
     pub dash_offset: f64,
 }
 
@@ -98,14 +98,14 @@ pub enum Step {
     Point {
         /// The vertex of the flattened path that it belongs to.
         vertex: DVec2,
-        /// Where it lies.
+        /// Position of the vertex.
         point: DVec2,
-        /// What it is part of.
+        /// Part of the stroke that it belongs to.
         part: Part,
     },
 }
 
-/// What a point of an outline is part of.
+/// Part of a stroke that a point of its outline belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Part {
     /// The end of a piece's offset line, or where two of them meet.
@@ -118,9 +118,9 @@ pub enum Part {
     Cap,
 }
 
-/// The outline of a stroke, to be filled by the non-zero rule; its distance from the exact outline is
-/// at most `tolerance`. Elements with points that are not finite are left out; coordinates and widths
-/// beyond ±10¹⁵ count as that.
+/// Returns the outline of a stroke, to be filled by the non-zero rule; its distance from the exact
+/// outline is at most `tolerance`. Elements with points that are not finite are left out; coordinates
+/// and widths beyond ±10¹⁵ count as that.
 ///
 /// ```
 /// use durer::curve::Path;
@@ -167,7 +167,7 @@ pub fn outline(
     Ok(out)
 }
 
-/// Whether a path has more than 100,000 dashes and gaps: then [`outline`] leaves it solid.
+/// Returns whether a path has more than 100,000 dashes and gaps: then [`outline`] leaves it solid.
 ///
 /// ```
 /// use durer::curve::Path;
@@ -192,12 +192,13 @@ fn trace(outline: &Contours, t: &mut impl Tracer<Step>) {
     }
 }
 
-/// A point moved to where products of its coordinates stay finite.
+/// Returns A point moved to where products of its coordinates stay finite.
 fn near(p: DVec2) -> DVec2 {
     p.clamp(DVec2::splat(-FARTHEST), DVec2::splat(FARTHEST))
 }
 
-/// The elements of a path whose points are finite, moved near, every contour with its start.
+/// Returns the elements of a path whose points are finite, moved near, every contour with its
+/// start.
 fn elements(path: &Path) -> impl Iterator<Item = PathElement> {
     use PathElement::{Close, CubicTo, LineTo, MoveTo, QuadTo};
     let (mut start, mut open) = (None, false);
@@ -234,7 +235,7 @@ fn elements(path: &Path) -> impl Iterator<Item = PathElement> {
         .flatten()
 }
 
-/// Whether a style makes sense.
+/// Checks that a style makes sense.
 ///
 /// # Errors
 /// Those of [`outline`].
@@ -252,7 +253,8 @@ pub(crate) fn check(stroke: &Stroke) -> Result<()> {
     Ok(())
 }
 
-/// The ends of a single straight line without dashes, which needs no offsets of curves; square caps lengthen it.
+/// Returns the ends of a single straight line without dashes, which needs no offsets of curves; square caps
+/// lengthen it.
 pub(crate) fn straight(path: &Path, stroke: &Stroke) -> Option<(DVec2, DVec2)> {
     let &[PathElement::MoveTo(a), PathElement::LineTo(b)] = path.elements() else { return None };
     let near = |p: DVec2| p.abs().max_element() <= FARTHEST;

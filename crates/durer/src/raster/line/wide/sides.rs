@@ -16,7 +16,7 @@ use crate::trace::Tracer;
 /// A full turn gets no more points than this: with widths of millions of pixels the tolerance gives way.
 const MAX_ARC: f64 = 8192.0;
 
-/// What draws contours.
+/// Tool that draws contours.
 pub(super) struct Pen<'a, T> {
     half: f64,
     cap: Cap,
@@ -131,7 +131,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         self.cap(end.at, arrive, arrive != last.along);
     }
 
-    /// The offset to the left of a direction.
+    /// Returns the offset to the left of a direction.
     fn left(&self, along: DVec2) -> DVec2 {
         along.perp() * self.half
     }
@@ -155,7 +155,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         }
     }
 
-    /// Whether a turn is so small that its joins look all the same.
+    /// Returns whether a turn is so small that its joins look all the same.
     fn is_smooth(&self, before: DVec2, after: DVec2) -> bool {
         2.0 <= (1.0 + before.dot(after)) * self.secant
     }
@@ -190,7 +190,8 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         wedge(self);
     }
 
-    /// Where the offset lines on the inner side meet, seen from the vertex, if both pieces are long enough.
+    /// Returns the intersection of the offset lines on the inner side, relative to the vertex, if both
+    /// pieces are long enough.
     fn meeting(&self, before: &Piece, after: &Piece) -> Option<DVec2> {
         let (from, to) = (before.along, after.along);
         let turn = 1.0 + from.dot(to);

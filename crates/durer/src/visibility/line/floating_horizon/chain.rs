@@ -45,7 +45,7 @@ fn continues(before: &Piece, piece: &Piece) -> bool {
     alike && (piece.segment as f64 + piece.range[0] - end).abs() <= JOIN
 }
 
-/// The ends of the segment of a piece.
+/// Returns the ends of the segment of a piece.
 pub fn ends(
     field: &HeightField,
     family: Family,
@@ -69,8 +69,8 @@ fn point(field: &HeightField, piece: &Piece, t: f64) -> DVec3 {
     }
 }
 
-/// The parts of a chain of points of the world that lie behind the near plane, on the plane of the
-/// picture; neighbours that fall together are one.
+/// Returns the parts of a chain of points of the world that lie behind the near plane, on the plane
+/// of the picture; neighbours that fall together are one.
 pub fn projected(points: &[DVec3], plane: &PicturePlane) -> Vec<Vec<DVec2>> {
     let mut chains: Vec<Vec<DVec2>> = Vec::new();
     let mut open = false;

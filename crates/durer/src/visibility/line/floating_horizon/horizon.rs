@@ -1,4 +1,5 @@
-//! What the surface covers so far, as exact piecewise linear bands over the columns of the picture.
+//! The part of the picture that the surface covers so far, as exact piecewise linear bands over the
+//! columns.
 
 use super::strip::{Band, Segment, Strip, push, unite};
 use crate::math::DVec2;
@@ -28,7 +29,7 @@ pub struct Horizon {
 }
 
 impl Horizon {
-    /// Nothing covered yet, in a picture with these opposite corners.
+    /// Creates an empty horizon for a picture with these opposite corners.
     pub fn new(min: DVec2, max: DVec2, buckets: usize) -> Self {
         let size = max - min;
         let buckets = if size.x > 0.0 { buckets.max(1) } else { 1 };
@@ -48,7 +49,7 @@ impl Horizon {
         (((x - self.left) / self.width) as usize).min(self.buckets.len() - 1)
     }
 
-    /// Where a bucket ends; infinite for the last.
+    /// Returns the end of a bucket; infinite for the last.
     fn end_of(&self, bucket: usize) -> f64 {
         if bucket + 1 >= self.buckets.len() {
             return f64::INFINITY;
@@ -168,7 +169,7 @@ impl Horizon {
         }
     }
 
-    /// The columns of `from … to` over which the line lies in the band.
+    /// Returns the columns of `from … to` over which the line lies in the band.
     fn inside(&self, line: &Segment, band: &Band, from: f64, to: f64) -> Option<[f64; 2]> {
         let (mut u, mut v) = (from, to);
         let (y0, y1) = (line.at(from), line.at(to));

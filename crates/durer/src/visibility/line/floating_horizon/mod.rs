@@ -47,7 +47,7 @@ pub const INFO: Info = Info {
     limits: "surfaces y = f(x, z) over a grid",
 };
 
-/// Which lines of a surface are meant.
+/// Family of lines of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Family {
     /// Lines along x, on each of which z is constant.
@@ -56,7 +56,7 @@ pub enum Family {
     AlongZ,
 }
 
-/// Which lines are drawn, and what is told about them.
+/// Options for the lines to draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
     /// Draw each so-manieth row of the grid, and the last; 0 draws none. Cost does not follow it: the
@@ -64,12 +64,12 @@ pub struct Options {
     pub every_row: usize,
     /// Draw each so-manieth column of the grid, and the last; 0 draws none.
     pub every_column: usize,
-    /// Whether hidden pieces are told, too.
+    /// True to report hidden pieces, too.
     pub hidden: bool,
 }
 
 impl Default for Options {
-    /// All lines, visible pieces only.
+    /// Returns all lines, visible pieces only.
     fn default() -> Self {
         Self { every_row: 1, every_column: 1, hidden: false }
     }
@@ -84,15 +84,15 @@ pub struct Piece {
     pub line: usize,
     /// The point of that line before the piece, from 0.
     pub segment: usize,
-    /// Where it begins and ends, 0 … 1 from that point to the next.
+    /// Start and end, 0 … 1 from that point to the next.
     pub range: [f64; 2],
-    /// Whether it is seen.
+    /// True if it is seen.
     pub visible: bool,
-    /// Whether the surface in front of it shows its lower side to the eye.
+    /// True if the surface in front of it shows its lower side to the eye.
     pub underside: bool,
 }
 
-/// What the algorithm does: the pieces are the result, the triangles move the horizon.
+/// Step of the algorithm: the pieces are the result, the triangles move the horizon.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A piece of a line was found to be visible or hidden.
@@ -108,16 +108,16 @@ pub struct Curve {
     pub family: Family,
     /// The row or column along which it runs.
     pub line: usize,
-    /// Whether it is seen.
+    /// True if it is seen.
     pub visible: bool,
-    /// Whether the surface in front of it shows its lower side to the eye.
+    /// True if the surface in front of it shows its lower side to the eye.
     pub underside: bool,
     /// At least two points, in the field's coordinates, in ascending x or z.
     pub points: Vec<DVec3>,
 }
 
-/// The visible (and hidden) parts of the lines of a surface, in the field's own coordinates: rows first,
-/// then columns, each from its start to its end.
+/// Returns the visible (and hidden) parts of the lines of a surface, in the field's own coordinates:
+/// rows first, then columns, each from its start to its end.
 ///
 /// A line that lies exactly on another in the picture counts as hidden by it.
 ///
@@ -134,8 +134,8 @@ pub fn curves(
     Ok(chain::curves(field, pieces))
 }
 
-/// The columns and the rows of a field's cells, each nearest first: in the order of rows, and of columns
-/// in each row, no cell is hidden by one that comes later.
+/// Returns the columns and the rows of a field's cells, each nearest first: in the order of rows, and of
+/// columns in each row, no cell is hidden by one that comes later.
 pub fn front_to_back(field: &HeightField, camera: &Camera) -> [Vec<usize>; 2] {
     let middle = field.bounds().map_or(DVec3::ZERO, |b| b.center());
     let sight = sight::Sight::new(camera, middle);

@@ -42,9 +42,9 @@ pub struct Picture {
     /// Only the quarter ahead belongs to it, and only what is farther ahead than this.
     quarter: Option<f64>,
     quantum: f64,
-    /// Where each point of the field is seen; only where `whole` says so.
+    /// Projection of each point of the field; only if `whole` says so.
     points: Vec<DVec2>,
-    /// Whether a point is there, between the levels, and lies in the quarter.
+    /// True for each point that exists, between the levels, and lies in the quarter.
     whole: Vec<bool>,
     /// Opposite corners around all points.
     min: DVec2,
@@ -54,16 +54,17 @@ pub struct Picture {
 /// A part of a segment that lies in a picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Part {
-    /// Where it begins and ends, 0 … 1 along the segment.
+    /// Start and end, 0 … 1 along the segment.
     pub range: [f64; 2],
     /// Its ends in the picture.
     pub ends: [DVec2; 2],
-    /// How far ahead they are; 1 in a parallel view.
+    /// Distance ahead of the eye at both; 1 in a parallel view.
     depths: [f64; 2],
 }
 
 impl Part {
-    /// Where on the segment the point lies that is seen at `s`, 0 … 1 between the ends.
+    /// Returns the parameter on the segment of the point that is seen at `s`, 0 … 1 between the
+    /// ends.
     pub fn along(&self, s: f64) -> f64 {
         let [near, far] = self.depths;
         let t = s * near / (far + s * (near - far));
@@ -72,7 +73,7 @@ impl Part {
 }
 
 impl Sight {
-    /// How a camera sees a surface whose middle is `middle`.
+    /// Creates the view of a camera onto a surface whose middle is `middle`.
     pub fn new(camera: &Camera, middle: DVec3) -> Self {
         match camera.projection {
             Projection::Orthographic { .. } => {
@@ -82,8 +83,8 @@ impl Sight {
         }
     }
 
-    /// The upright pictures that hold all of the surface; none where it is seen straight along the
-    /// plumb line, and nothing hides anything.
+    /// Returns the upright pictures that hold all of the surface; none where it is seen straight
+    /// along the plumb line, and nothing hides anything.
     pub fn pictures(self, field: &HeightField, middle: DVec3) -> Vec<Picture> {
         let points = Points { field, middle };
         let pictures = match self {
@@ -191,8 +192,8 @@ impl Picture {
         picture
     }
 
-    /// What is cut at the borders of a quarter lies within the borders, and between the extremes of
-    /// what can be seen at the closest distance.
+    /// Grows the extent to a quarter: points cut at the borders of a quarter lie within the
+    /// borders, and between the extremes of the visible part at the closest distance.
     fn grow_to_quarter(&mut self, points: &Points) {
         let (Some(closest), Sight::From(eye)) = (self.quarter, self.sight) else { return };
         let Some([low, high]) = points.field.range() else { return };
@@ -235,7 +236,7 @@ impl Picture {
         }
     }
 
-    /// How far a place lies inside each border of the quarter.
+    /// Returns the distance of a place inside each border of the quarter.
     fn insides(&self, p: &Place) -> [f64; 3] {
         match self.quarter {
             Some(closest) => [p.ahead - closest, p.ahead - p.aside, p.ahead + p.aside],
@@ -258,8 +259,8 @@ impl Picture {
         [self.min, self.max]
     }
 
-    /// The part of the segment between two points of the field (by number and place relative to the
-    /// middle) that lies in the picture, of that which lies between the levels.
+    /// Returns the part of the segment between two points of the field (by number and place
+    /// relative to the middle) that lies in the picture, of that which lies between the levels.
     pub fn part(&self, numbers: [usize; 2], ends: [DVec3; 2], between: [f64; 2]) -> Option<Part> {
         let places = ends.map(|p| self.place(p));
         if let [true, true] = numbers.map(|n| self.whole[n]) {

@@ -10,12 +10,12 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// The piece between two points with different abscissas.
+    /// Creates the piece between two points with different abscissas.
     pub fn new(p: DVec2, q: DVec2) -> Self {
         if p.x < q.x { Self { a: p, b: q } } else { Self { a: q, b: p } }
     }
 
-    /// The ordinate at a column; exact at both ends.
+    /// Returns the ordinate at a column; exact at both ends.
     pub fn at(&self, x: f64) -> f64 {
         if x <= self.a.x {
             self.a.y
@@ -27,7 +27,7 @@ impl Segment {
     }
 }
 
-/// What is covered between a lower and an upper horizon.
+/// Covered area between a lower and an upper horizon.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     pub lower: Segment,
@@ -53,14 +53,14 @@ impl Strip {
         std::iter::once(&self.band).chain(&self.more)
     }
 
-    /// The same over other columns.
+    /// Returns the same over other columns.
     pub fn over(&self, from: f64, to: f64) -> Self {
         Self { from, to, band: self.band, more: self.more.clone() }
     }
 }
 
 impl Band {
-    /// Whether all of the other band lies in this one.
+    /// Returns whether all of the other band lies in this one.
     pub fn holds(&self, other: &Self, from: f64, to: f64) -> bool {
         [from, to]
             .into_iter()
@@ -121,7 +121,7 @@ pub fn unite(
     }
 }
 
-/// The union over columns in which no two borders cross.
+/// Returns the union over columns in which no two borders cross.
 fn united(strip: &Strip, band: &Band, from: f64, to: f64, touch: f64) -> Strip {
     let x = from + (to - from) * 0.5;
     let mut sum = *band;

@@ -16,7 +16,7 @@ const SIDES: [(Family, [usize; 2]); 4] = [
     (Family::AlongZ, [1, 3]),
 ];
 
-/// All pieces of all lines that are wanted, in the order in which they are found.
+/// Returns all pieces of all lines that are wanted, in the order in which they are found.
 pub fn pieces(
     field: &HeightField,
     camera: &Camera,
@@ -42,7 +42,7 @@ pub fn pieces(
     all
 }
 
-/// Whether a line is drawn.
+/// Returns whether a line is drawn.
 fn wanted(field: &HeightField, options: &Options, family: Family, line: usize) -> bool {
     let (every, count) = match family {
         Family::AlongX => (options.every_row, field.rows()),
@@ -60,7 +60,7 @@ struct Place {
 }
 
 impl Place {
-    /// The side that begins at a point.
+    /// Returns the side that begins at a point.
     fn from_point(family: Family, column: usize, row: usize) -> Self {
         match family {
             Family::AlongX => Self { family, line: row, segment: column },
@@ -68,7 +68,7 @@ impl Place {
         }
     }
 
-    /// The column and the row of its first point.
+    /// Returns the column and the row of its first point.
     fn point(self) -> [usize; 2] {
         match self.family {
             Family::AlongX => [self.segment, self.line],
@@ -76,7 +76,7 @@ impl Place {
         }
     }
 
-    /// The numbers of its points.
+    /// Returns the numbers of its points.
     fn numbers(self, columns: usize) -> [usize; 2] {
         let [column, row] = self.point();
         let first = row * columns + column;
@@ -86,7 +86,7 @@ impl Place {
         }
     }
 
-    /// A part of it.
+    /// Returns A part of it.
     fn piece(self, range: [f64; 2], visible: bool, underside: bool) -> Piece {
         let Self { family, line, segment } = self;
         Piece { family, line, segment, range, visible, underside }
@@ -168,7 +168,7 @@ fn at_the_foot(
     });
 }
 
-/// What sorted ranges leave of 0 … 1.
+/// Returns the parts of 0 … 1 outside sorted ranges.
 fn gaps(ranges: &[[f64; 2]]) -> Vec<[f64; 2]> {
     /// Shorter parts of a segment are rounding.
     const SHORTEST: f64 = 1e-9;
@@ -193,7 +193,8 @@ struct Walk<'a> {
     options: &'a Options,
     pieces: &'a mut Vec<Piece>,
     horizon: Horizon,
-    /// Which segments are done, by the number of their first point: bit 0 along x, bit 1 along z.
+    /// Bits of the segments that are done, by the number of their first point: bit 0 along x, bit 1
+    /// along z.
     done: Vec<u8>,
     hidden: Vec<[f64; 2]>,
     polygon: Vec<DVec2>,
@@ -242,7 +243,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The number of a cell's corner, and its place relative to the middle.
+    /// Returns the number of a cell's corner, and its place relative to the middle.
     fn corner(&self, column: usize, row: usize, k: usize) -> (usize, DVec3) {
         let (column, row) = (column + (k & 1), row + (k >> 1));
         // Only asked for where it is there.
@@ -298,8 +299,8 @@ impl<'a> Walk<'a> {
         self.polygon = polygon;
     }
 
-    /// Where a cell is missing, its sides that belong to no other cell are drawn, but for those that would hang from the
-    /// surface by one end.
+    /// Draws the sides of a missing cell that belong to no other cell, except for those that would be attached to the
+    /// surface by one end only.
     fn hole(&mut self, column: usize, row: usize, t: &mut impl Tracer<Step>) {
         let cell = |c: Option<usize>, r: Option<usize>| self.field.cell(c?, r?);
         let (c, r) = (Some(column), Some(row));
@@ -318,7 +319,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Whether a point is a corner of a cell that is there.
+    /// Returns whether a point is a corner of a cell that is there.
     fn holds(&self, column: usize, row: usize) -> bool {
         let cell =
             |c: usize, r: usize| self.field.cell(column.checked_sub(c)?, row.checked_sub(r)?);
@@ -359,13 +360,13 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The two corners that both triangles have.
+/// Returns the two corners that both triangles have.
 fn shared(first: [usize; 3], second: [usize; 3]) -> [usize; 2] {
     let mut both = first.into_iter().filter(|k| second.contains(k));
     [both.next().unwrap_or(0), both.next().unwrap_or(0)]
 }
 
-/// Twice the area, positive where the corners run counter-clockwise (y up).
+/// Returns twice the area, positive where the corners run counter-clockwise (y up).
 fn double_area(polygon: &[DVec2]) -> f64 {
     let Some((&origin, rest)) = polygon.split_first() else { return 0.0 };
     rest.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum()

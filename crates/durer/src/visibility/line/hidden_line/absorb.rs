@@ -83,7 +83,7 @@ impl<'a> Chain<'a> {
         true
     }
 
-    /// The shortest sliver, the first of those that are equally short.
+    /// Returns the shortest sliver, the first of those that are equally short.
     fn next(&mut self) -> Option<usize> {
         while let Some(Reverse((bits, i))) = self.slivers.pop() {
             if self.is_left[i] && length(&self.spans[i]).to_bits() == bits {

@@ -10,7 +10,7 @@ use std::ops::Range;
 /// Side by side at most so many cells.
 const MOST_ACROSS: f64 = 4096.0;
 
-/// Of smaller ones, of which few are kept.
+/// Limit on smaller cells, of which few are kept.
 const MOST_SMALL_ACROSS: f64 = 65_536.0;
 
 /// Cells are made smaller where lines run through less than one in so many, and their lists have more entries than this on
@@ -179,7 +179,7 @@ enum Kept {
 }
 
 impl Lists {
-    /// As many cells as there are faces, for the lines.
+    /// Creates as many cells as there are faces, for the lines.
     pub fn new(faces: usize, lines: impl Iterator<Item = [Vertex; 2]> + Clone) -> Self {
         Self::all(Cells::new(bounds(lines.clone()), faces), lines)
     }
@@ -216,7 +216,7 @@ impl Lists {
         Self::all(cells, lines)
     }
 
-    /// Whether there is but one cell.
+    /// Returns whether there is but one cell.
     pub fn is_one(&self) -> bool {
         self.cells.count() == 1
     }
@@ -239,7 +239,7 @@ impl Lists {
         Self { cells, kept: Kept::Some { rows, columns } }
     }
 
-    /// How many lists there are.
+    /// Returns the number of lists.
     pub fn count(&self) -> usize {
         match &self.kept {
             Kept::All(marked) => marked.len(),
@@ -247,7 +247,7 @@ impl Lists {
         }
     }
 
-    /// Whether lines run through the cell of a list.
+    /// Returns whether lines run through the cell of a list.
     pub fn is_marked(&self, list: usize) -> bool {
         match &self.kept {
             Kept::All(marked) => marked[list],
@@ -281,7 +281,7 @@ impl Lists {
     }
 }
 
-/// The smallest and the largest coordinates.
+/// Returns the smallest and the largest coordinates.
 fn bounds(lines: impl Iterator<Item = [Vertex; 2]>) -> [GridPoint; 2] {
     let mut points = lines.flatten().map(|v| v.at);
     let first = points.next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Which part of a line one face hides, and what all of them leave.
+//! The part of a line that one face hides, and the parts that all of them leave.
 //!
 //! In the plane of the picture a line is cut at the three borders of the face as Cyrus and Beck do,
 //! with exact signs; along the line the difference of depths is linear, so the face's plane is one
@@ -14,20 +14,21 @@ use super::occluders::Occluder;
 pub struct Cover {
     /// The face's item.
     pub item: u32,
-    /// Where it begins, 0 … 1 along the line.
+    /// Start, 0 … 1 along the line.
     pub from: f64,
-    /// Where it ends.
+    /// End of the visible part.
     pub to: f64,
-    /// Whether the left side of the line is hidden, seen along it, y up.
+    /// True if the left side of the line is hidden, seen along it, y up.
     pub left: bool,
-    /// Whether its right side is.
+    /// True if its right side is.
     pub right: bool,
-    /// How many surfaces it counts for: 1, or −1 for a face that lies folded over an outline, where another of the
-    /// same surface counts once too often.
+    /// Number of surfaces that it counts for: 1, or −1 for a face that lies folded over an outline, where another
+    /// of the same surface counts once too often.
     pub weight: i8,
 }
 
-/// What of the line p → q lies behind the face; depths closer than `touching` are one.
+/// Returns the part of the line p → q that lies behind the face; depths closer than `touching` are
+/// equal.
 pub(super) fn cover([p, q]: &[Vertex; 2], face: &Occluder, touching: f64) -> Option<Cover> {
     let [a, b, c] = face.corners;
     let nearest = a.depth.min(b.depth).min(c.depth);
@@ -78,7 +79,7 @@ pub(super) fn cover([p, q]: &[Vertex; 2], face: &Occluder, touching: f64) -> Opt
     (from < to).then_some(Cover { item, from, to, left, right, weight })
 }
 
-/// Depth per step on the face: how far snapping may have moved its plane.
+/// Returns the depth per step on the face: how far snapping may have moved its plane.
 fn slope(face: &Occluder, area: f64) -> f64 {
     let [a, b, c] = face.corners;
     let ([bx, by], [cx, cy]) = (b.at.minus(a.at), c.at.minus(a.at));

@@ -1,8 +1,8 @@
-//! What a line has met on its way: faces, so that one that lies in many cells is looked at once (the mailbox of John
-//! Amanatides and Andrew Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987), and how much of the line
-//! they hide, so that the way ends where nothing is left to hide.
+//! The faces that a line has met on its way, so that one that lies in many cells is tested once (the mailbox of John
+//! Amanatides and Andrew Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987), and the length of the
+//! line that they hide, so that the way ends once all of it is hidden.
 
-/// So many faces are remembered at most; of more some are looked at again, which changes nothing.
+/// Limit on the faces that are remembered; of more some are tested again, which changes nothing.
 const MOST_SLOTS: usize = 1 << 14;
 
 /// Faces that a line has met, and the parts of it that are hidden for certain.
@@ -12,7 +12,7 @@ pub(super) struct Met {
     slots: Vec<[u32; 2]>,
     /// Parts of the line, apart and in order.
     hidden: Vec<[f64; 2]>,
-    /// How often something was hidden since the line began.
+    /// Number of times that something was hidden since the line began.
     times: u32,
 }
 
@@ -48,17 +48,18 @@ impl Met {
         self.hidden.splice(first..end, [joined]);
     }
 
-    /// How often something was hidden since the line began.
+    /// Returns the number of times that something was hidden since the line began.
     pub fn times(&self) -> u32 {
         self.times
     }
 
-    /// Whether nothing is hidden yet.
+    /// Returns whether nothing is hidden yet.
     pub fn hides_nothing(&self) -> bool {
         self.times == 0
     }
 
-    /// Whether all from one place of the line to another is hidden, as far as the line goes.
+    /// Returns whether all from one place of the line to another is hidden, as far as the line
+    /// goes.
     pub fn hides(&self, [from, to]: [f64; 2]) -> bool {
         let (from, to) = (from.max(0.0), to.min(1.0));
         let first = self.hidden.partition_point(|part| part[1] < from);

@@ -66,10 +66,10 @@ pub const INFO: Info = Info {
     limits: "all faces are opaque; what lies within 2^-23 of the model's extent of a face touches it",
 };
 
-/// What is drawn, and how.
+/// Options for the lines of a drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// Which classes of lines.
+    /// Classes of lines to draw.
     pub classes: ClassSet,
     /// Edges whose faces are turned against each other by more than this are creases; radians, 0 … π.
     pub crease: f64,
@@ -77,26 +77,28 @@ pub struct Options {
     /// straight on; radians. `crease` or more, as by default, ends it where it is no crease any more. Lower
     /// angles suit sculpted surfaces; on coarse meshes of round ones they show facets.
     pub crease_end: f64,
-    /// Whether what is beside an edge may decide against `crease`: edges from 3° on between flat faces that bend
-    /// no further are creases, too, and few edges of up to 60° that begin and end within round faces are none.
+    /// True if the surroundings of an edge may decide against `crease`: edges from 3° on between
+    /// flat faces that bend no further are creases, too, and a few edges of up to 60° that begin
+    /// and end within round faces are none.
     pub neighbours: bool,
-    /// Where penetrating faces are looked for, if [`LineClass::Intersection`] is among the classes.
+    /// Penetrating faces to look for, if [`LineClass::Intersection`] is among the classes.
     pub intersections: Intersections,
     /// The material of a section's caps ([`crate::view::section::Section::cap_material`]): where they
     /// end is [`LineClass::Section`].
     pub cap_material: Option<usize>,
-    /// Whether silhouettes are those of the smooth surfaces that meshes stand for, where their normals
-    /// are at a right angle to the sight, and not the edges between faces. The mesh is divided along
-    /// them, with its new vertices on the smooth surface, and all lines are those of the divided mesh.
+    /// Objects whose silhouettes are those of the smooth surfaces that meshes approximate, where
+    /// normals are at a right angle to the sight, and not the edges between faces. The mesh is divided
+    /// along them, with its new vertices on the smooth surface, and all lines are those of the divided
+    /// mesh.
     pub smooth: Smooth,
-    /// Whether hidden lines are given too. Without them the work ends where a line is known to be
+    /// True if hidden lines are given too. Without them the work ends where a line is known to be
     /// hidden, and the drawing has visible lines only.
     pub hidden: bool,
-    /// How far a line may lie from where it is, as a part of the drawing's larger side: polylines are
-    /// simplified within it, those shorter are left out, and lines much closer than it to another
-    /// along their whole length are drawn once. A triangle lower than that, as a part of the model's extent,
-    /// between two that go on in each other makes no line, however rounding has turned it. 0 gives all that
-    /// the grid has.
+    /// Largest distance that a line may be moved, as a part of the drawing's larger side: polylines are
+    /// simplified within it, those shorter are left out, and lines much closer than it to another along
+    /// their whole length are drawn once. A triangle lower than that, as a part of the model's extent,
+    /// between two that continue each other makes no line, however rounding has turned it. 0 gives
+    /// everything that the grid resolves.
     pub tolerance: f64,
     /// Silhouettes of round parts and creases that end in the open are cut back to the next junction,
     /// or left out, where that takes at most this part of the drawing's larger side, or four times as
@@ -108,9 +110,9 @@ pub struct Options {
     /// along are left out: their strokes would run into each other, as where a view is nearly along an axis. 0
     /// keeps all but those that lie on visible ones.
     pub beneath: f64,
-    /// Which vertices are one, so that faces find their neighbours.
+    /// Rule that joins vertices, so that faces find their neighbours.
     pub weld: Weld,
-    /// What it may cost, and whether it goes on.
+    /// Budget of the work, and its cancellation.
     pub work: Work,
 }
 
@@ -118,8 +120,8 @@ pub struct Options {
 const PER_TRIANGLE: u64 = 96;
 
 impl Default for Options {
-    /// A technical drawing: creases from 40°, visible and hidden lines, 0.05 pixels in a picture of
-    /// 1000.
+    /// Creates A technical drawing: creases from 40°, visible and hidden lines, 0.05 pixels in a
+    /// picture of 1000.
     fn default() -> Self {
         Self {
             classes: ClassSet::default(),
@@ -164,27 +166,27 @@ impl Options {
     }
 }
 
-/// What the algorithm did.
+/// Step of the algorithm.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
     /// The grid was laid.
     Page(Page),
     /// One line was held against the faces that overlap it.
     Line {
-        /// What it shows.
+        /// Style of the drawing.
         class: LineClass,
-        /// Whether it is a silhouette across a part of the surface that is not sharp there.
+        /// True if it is a silhouette across a part of the surface that is not sharp there.
         smooth: bool,
         /// Its ends in the plane of the picture.
         ends: [DVec2; 2],
-        /// What hides it, by item.
+        /// Parts that hide it, by item.
         covers: Vec<Cover>,
         /// From where to where along it the surface hides its own outline, 0 … 1; nowhere if the same.
         fold: [f64; 2],
     },
 }
 
-/// The lines that a list of steps leads to.
+/// Returns the lines that a list of steps leads to.
 pub fn replay(steps: &[Step], options: &Options) -> Vec<Line> {
     let Some(Step::Page(page)) = steps.first() else { return Vec::new() };
     let (mut all, mut spans, mut lines) = (Vec::new(), Vec::new(), Vec::new());
@@ -268,7 +270,7 @@ pub fn draw(
     Ok(Drawing { window, lines, edges: count, ..Drawing::default() })
 }
 
-/// What is known of faces and edges besides what they look like.
+/// Knowledge about faces and edges besides their looks.
 #[derive(Clone, Copy)]
 struct Known<'a> {
     whole: Whole<'a>,
@@ -276,7 +278,7 @@ struct Known<'a> {
     steps: Option<&'a Steps>,
 }
 
-/// What can be seen, or is hidden, of all lines.
+/// Finds the visible and the hidden pieces of all lines.
 fn pieces(
     faces: &Faces,
     edges: Edges,
@@ -305,7 +307,7 @@ struct Lines<'a> {
     whole: Whole<'a>,
     projected: &'a Projected,
     edges: Vec<EdgeLine>,
-    /// Where faces penetrate each other, and the lines and points of the model.
+    /// Intersections of faces, and the lines and points of the model.
     loose: Vec<FeatureLine>,
 }
 
@@ -350,13 +352,13 @@ impl<'a> Lines<'a> {
         Self { faces, whole, projected, edges: of_edges, loose }
     }
 
-    /// How many there are, with those that are points in the picture.
+    /// Returns the number of lines, including those that are points in the picture.
     fn len(&self) -> usize {
         self.edges.len() + self.loose.len()
     }
 
-    /// A smooth outline: where along it the surface hides it, and what does not. Which side of an open surface is
-    /// its front is arbitrary, so there nothing is known where it bends the other way.
+    /// Returns A smooth outline: where along it the surface hides it, and what does not. Which side of an
+    /// open surface is its front is arbitrary, so there nothing is known where it bends the other way.
     fn smooth(&self, of: &EdgeLine, line: FeatureLine, turned: bool) -> FeatureLine {
         let mut ends = of.ends;
         if turned {
@@ -378,7 +380,7 @@ impl<'a> Lines<'a> {
         FeatureLine { smooth: true, fold, reach, ..line }
     }
 
-    /// Those of a range that have an extent in the picture.
+    /// Returns those of a range that have an extent in the picture.
     fn some(&self, range: Range<usize>) -> impl Iterator<Item = FeatureLine> + Clone {
         let split = self.edges.len();
         let edges = &self.edges[range.start.min(split)..range.end.min(split)];
@@ -399,7 +401,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// The pieces of all lines.
+/// Returns the pieces of all lines.
 fn hide(
     lines: &Lines<'_>,
     occluders: &Occluders<'_>,
@@ -446,7 +448,7 @@ fn hide(
     pieces
 }
 
-/// All parts in one list of just their size.
+/// Returns all parts in one list of just their size.
 fn joined<T>(parts: Vec<Vec<T>>) -> Vec<T> {
     let mut all = Vec::with_capacity(parts.iter().map(Vec::len).sum());
     parts.into_iter().for_each(|part| all.extend(part));
@@ -467,7 +469,7 @@ struct FeatureLine {
     smooth: bool,
     /// See [`Step::Line`].
     fold: [f64; 2],
-    /// How far in front of it a face of its own body may lie that does not hide it, in steps.
+    /// Largest distance in front of it of a face of its own body that does not hide it, in steps.
     reach: f64,
     /// Its vertices, where it is a sharp outline of smooth faces: those around these lie folded over each other, and
     /// none hides it.
@@ -497,14 +499,14 @@ impl FeatureLine {
     }
 }
 
-/// Lines among the edges of the mesh.
+/// Returns lines among the edges of the mesh.
 fn edge_lines(rules: &Rules<'_>) -> Vec<EdgeLine> {
     let count = rules.faces.points().len() as u32;
     let jobs: Vec<_> = (0..count).step_by(1 << 15).map(|v| v..(v + (1 << 15)).min(count)).collect();
     joined(parallel::map(jobs, |vertices| rules.lines(vertices)))
 }
 
-/// Lines where faces penetrate each other.
+/// Returns lines where faces penetrate each other.
 fn meeting_lines(
     faces: &Faces,
     bodies: &Bodies,
@@ -517,7 +519,8 @@ fn meeting_lines(
     intersections(faces, bodies, which).into_iter().filter_map(line).collect()
 }
 
-/// What hides a line, by face. `enough` ends the search in places where the line is known to be hidden.
+/// Returns the parts of a line that faces hide, by face. `enough` ends the search in places where the
+/// line is known to be hidden.
 fn covers_of(
     line: &FeatureLine,
     occluders: &Occluders<'_>,

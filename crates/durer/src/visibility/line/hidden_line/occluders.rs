@@ -10,14 +10,14 @@ use super::cells::Lists;
 use super::met::Met;
 use crate::visibility::object::{Bodies, Faces};
 
-/// So many entries there are at most for each face: where large faces lie above one another all over the page, the
-/// cells are larger.
+/// Limit on the entries for each face: if large faces lie above one another all over the page, the cells are
+/// larger.
 const MOST_PER_FACE: usize = 256;
 
 /// A face in a cell's list.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Entry {
-    /// Not above the smallest depth of the face.
+    /// Lower bound of the face's depth.
     nearest: f32,
     /// The item, or [`Occluders::cut_base`] + the index of a cut face.
     id: u32,
@@ -44,9 +44,9 @@ pub(super) struct Occluders<'a> {
     cut_base: u32,
     /// The body of each item, where that is asked for.
     bodies: Vec<u32>,
-    /// Of each item whether it stands for a smooth surface; empty where none does.
+    /// True for each item that approximates a smooth surface; empty if none does.
     smooth: Vec<bool>,
-    /// Of each item whether it lies folded over an outline; empty where none does.
+    /// True for each item that lies folded over an outline; empty if none does.
     folded: Vec<bool>,
 }
 
@@ -109,7 +109,7 @@ impl<'a> Occluders<'a> {
         found
     }
 
-    /// Where the list of each cell ends, and of all together; `None` where it takes more entries than `most`.
+    /// Returns the end of each cell's list, and of all together; `None` if it takes more entries than `most`.
     fn ends(&self, ids: impl Iterator<Item = u32>, most: usize) -> Option<(Vec<u32>, u32)> {
         let mut ends = vec![0u32; self.lists.count() + 1];
         let mut left = if self.lists.is_one() { u32::MAX as usize } else { most };
@@ -139,7 +139,7 @@ impl<'a> Occluders<'a> {
         });
     }
 
-    /// The face of a list's entry; `None` where it is seen edge-on.
+    /// Returns the face of a list's entry; `None` where it is seen edge-on.
     fn get(&self, id: u32) -> Option<Occluder> {
         let (item, corners) = if id < self.cut_base {
             (id, self.projected.corners(self.faces.triangle(id)?)?)
@@ -165,30 +165,30 @@ impl<'a> Occluders<'a> {
         Some(Occluder { item, corners, weight })
     }
 
-    /// Whether two faces are of one body; of none where that was not asked for.
+    /// Returns whether two faces are of one body; of none where that was not asked for.
     pub fn same_body(&self, a: u32, b: u32) -> bool {
         let of = |item: u32| self.bodies.get(item as usize).filter(|b| **b != u32::MAX);
         of(a).is_some() && of(a) == of(b)
     }
 
-    /// Whether a face stands for a smooth surface and has one of two vertices.
+    /// Returns whether a face approximates a smooth surface and has one of two vertices.
     pub fn is_beside(&self, item: u32, vertices: [u32; 2]) -> bool {
         let touches = |t: [u32; 3]| t.iter().any(|v| vertices.contains(v));
         self.smooth.get(item as usize) == Some(&true)
             && self.faces.triangle(item).is_some_and(touches)
     }
 
-    /// Whether what lies behind a face is hidden whatever else lies there.
+    /// Returns whether everything behind a face is hidden, whatever else lies there.
     pub fn hides_for_certain(&self, cover: &Cover) -> bool {
         cover.left && cover.right && self.folded.is_empty()
     }
 
-    /// How many faces there are.
+    /// Returns the number of faces.
     pub fn count(&self) -> usize {
         self.cut_base as usize + self.projected.cuts.len()
     }
 
-    /// The grid.
+    /// Returns the grid.
     pub fn page(&self) -> &Page {
         &self.projected.page
     }
@@ -231,13 +231,13 @@ impl<'a> Occluders<'a> {
     }
 }
 
-/// Of each of so many items what `is` says, if that is true of any.
+/// Returns the value of `is` for each item, or nothing if it is false for all.
 fn where_any(count: u32, is: impl Fn(u32) -> bool) -> Vec<bool> {
     if (0..count).any(&is) { (0..count).map(is).collect() } else { Vec::new() }
 }
 
-/// Which faces hide what is behind them. Of a closed body seen from outside those that show their
-/// front do, for whatever lies behind a back lies behind a front too; of others all.
+/// Returns which faces hide what is behind them. Of a closed body seen from outside those that show
+/// their front do, for whatever lies behind a back lies behind a front too; of others all.
 fn hiding(faces: &Faces, bodies: &Bodies, facing: &Facing, projected: &Projected) -> Vec<bool> {
     let mut front_only: Vec<bool> = bodies.all().iter().map(|b| b.closed).collect();
     if projected.any_cut() {

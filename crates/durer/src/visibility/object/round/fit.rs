@@ -7,7 +7,7 @@ use crate::math::{DVec2, DVec3};
 pub(super) struct Surface {
     /// A point of the axis.
     pub point: DVec3,
-    /// Of unit length.
+    /// Axis of unit length.
     pub axis: DVec3,
     pub radius: f64,
 }
@@ -19,12 +19,12 @@ impl Surface {
         d - self.axis * d.dot(self.axis)
     }
 
-    /// How far a point lies off the surface.
+    /// Returns the distance of a point from the surface.
     pub fn error(&self, p: DVec3) -> f64 {
         (self.spoke(p).length() - self.radius).abs()
     }
 
-    /// Two directions at right angles to the axis and each other.
+    /// Returns two directions at right angles to the axis and each other.
     pub fn across(&self) -> [DVec3; 2] {
         across(self.axis)
     }
@@ -38,7 +38,7 @@ fn across(axis: DVec3) -> [DVec3; 2] {
 /// Sums over a growing surface, from which its cylinder follows.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sums {
-    /// Of products of the normals' coordinates, by area: xx, yy, zz, xy, xz, yz.
+    /// Sums of products of the normals' coordinates, by area: xx, yy, zz, xy, xz, yz.
     normals: [f64; 6],
     area: f64,
     points: Vec<DVec3>,
@@ -56,19 +56,20 @@ impl Sums {
         self.normals.iter_mut().zip(products).for_each(|(sum, p)| *sum += p * area);
     }
 
-    /// The area added so far.
+    /// Returns the area added so far.
     pub fn area(&self) -> f64 {
         self.area
     }
 
-    /// The corners added so far.
+    /// Returns the corners added so far.
     pub fn points(&self) -> &[DVec3] {
         &self.points
     }
 
-    /// The cylinder: its axis is what the normals are most at right angles to, its circle the best
-    /// one in the algebraic sense (I. Kåsa, *A circle fitting procedure and its error analysis*, IEEE
-    /// Transactions on Instrumentation and Measurement, 1976). `None` where the points are in line.
+    /// Returns the cylinder: its axis is what the normals are most at right angles to, its circle the
+    /// best one in the algebraic sense (I. Kåsa, *A circle fitting procedure and its error analysis*,
+    /// IEEE Transactions on Instrumentation and Measurement, 1976). `None` where the points are in
+    /// line.
     pub fn fit(&self) -> Option<Surface> {
         let axis = smallest_direction(self.normals)?;
         let [u, v] = across(axis);
@@ -86,13 +87,13 @@ impl Sums {
     }
 }
 
-/// So many corners tell the axis better than the normals do.
+/// Number of corners from which they determine the axis better than the normals do.
 const MANY: usize = 18;
 /// Steps of refinement: each doubles the number of right digits.
 const STEPS: usize = 3;
 
-/// One step of Gauss and Newton to the cylinder that is nearest to points: the axis tilts and moves, the radius
-/// changes. `None` where the points do not tell it.
+/// Returns one step of Gauss and Newton to the cylinder that is nearest to points: the axis tilts and moves,
+/// the radius changes. `None` where the points do not tell it.
 fn nearer(surface: &Surface, points: &[DVec3]) -> Option<Surface> {
     let [u, v] = surface.across();
     let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
@@ -147,7 +148,8 @@ fn solved(mut m: [[f64; 6]; 5]) -> Option<[f64; 5]> {
     Some(x)
 }
 
-/// The circle through points around the origin: the least squares of x² + y² − 2ax − 2by − c.
+/// Returns the circle through points around the origin: the least squares of x² + y² − 2ax − 2by −
+/// c.
 fn circle(points: impl Iterator<Item = DVec2> + Clone) -> Option<(DVec2, f64)> {
     let largest = points.clone().map(DVec2::length_squared).fold(0.0, f64::max);
     if !(largest > 0.0 && largest.is_finite()) {
@@ -173,8 +175,8 @@ fn circle(points: impl Iterator<Item = DVec2> + Clone) -> Option<(DVec2, f64)> {
     radius.is_finite().then(|| (center * unit, radius * unit))
 }
 
-/// The eigenvector of the smallest eigenvalue of a symmetric matrix, by rotations (C. G. J. Jacobi,
-/// *Über ein leichtes Verfahren …*, 1846); `None` where it is 0 or not finite.
+/// Returns the eigenvector of the smallest eigenvalue of a symmetric matrix, by rotations (C. G. J.
+/// Jacobi, *Über ein leichtes Verfahren …*, 1846); `None` where it is 0 or not finite.
 fn smallest_direction([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Option<DVec3> {
     /// Off-diagonal entries shrink quadratically: six rounds reach the last bit.
     const ROUNDS: usize = 8;

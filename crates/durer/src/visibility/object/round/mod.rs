@@ -18,15 +18,15 @@ use std::f64::consts::TAU;
 /// A round part of the surface of a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cylinder {
-    /// Where it begins and ends, points of its axis, world space.
+    /// Start and end, points of its axis, world space.
     pub ends: [DVec3; 2],
     /// In units of the world.
     pub radius: f64,
-    /// How much of the full circle it covers, radians; [`TAU`] for all of it.
+    /// Angle of the circle that it covers, in radians; [`TAU`] for all of it.
     pub angle: f64,
     /// From the axis to the middle of what it covers, of unit length; anywhere for a full circle.
     pub facing: DVec3,
-    /// Whether it is a hole: the surface looks towards the axis.
+    /// True if it is a hole: the surface looks towards the axis.
     pub hollow: bool,
     /// Index into [`crate::scene::Scene::instances`].
     pub instance: usize,
@@ -37,12 +37,12 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// The direction of the axis, from its first end to the other, of unit length.
+    /// Returns the direction of the axis, from its first end to the other, of unit length.
     pub fn axis(&self) -> DVec3 {
         (self.ends[1] - self.ends[0]).normalize_or_zero()
     }
 
-    /// Whether nothing of the circle is missing.
+    /// Returns whether nothing of the circle is missing.
     pub fn is_full(&self) -> bool {
         self.angle >= TAU
     }
@@ -55,13 +55,14 @@ const SMALLEST_TURN: f64 = 0.2;
 /// The largest slope of a triangle against the axis: triangles between rims that are divided differently
 /// are tilted a little.
 const TILT: f64 = 0.25;
-/// How far corners may lie off, as a part of the height of the arc over a facet.
+/// Largest distance of corners, as a part of the height of the arc over a facet.
 const OF_SAGITTA: f64 = 0.25;
-/// How far they may always lie off: as a part of the radius, and of the model's extent (single precision).
+/// Distance of corners that is always allowed: as a part of the radius, and of the model's extent (single
+/// precision).
 const OF_RADIUS: f64 = 2e-4;
 const OF_EXTENT: f64 = 1.0 / (1u64 << 21) as f64;
-/// How far they lie off in the end at most: part cylinders as a part of the height of the arc, full ones as a part of
-/// the model's extent (five digits in a file).
+/// Largest distance in the end: for part cylinders as a part of the height of the arc, for full ones as a part of the
+/// model's extent (five digits in a file).
 const STRICT: f64 = 0.05;
 const DIGITS: f64 = 1e-5;
 /// Part cylinders cover at least this angle, and have this many facets.
@@ -71,7 +72,7 @@ const LEAST_FACETS: usize = 4;
 const WHOLE: f64 = 0.8;
 /// A triangle that has been in vain in so many regions is in none.
 const TRIES: u8 = 8;
-/// So many triangles give a first cylinder where two neighbours do not.
+/// Number of triangles that give a first cylinder if two neighbours do not.
 const PATCH: usize = 14;
 /// Edges whose direction has at most so much, or at least so much, of the axis run across, or along.
 const ACROSS: f64 = 0.25;
@@ -93,7 +94,7 @@ pub fn cylinders(faces: &Faces) -> Vec<Cylinder> {
     joined(found, extent)
 }
 
-/// The unit normals of all triangles, out of their bodies.
+/// Returns the unit normals of all triangles, out of their bodies.
 fn normals(faces: &Faces, bodies: &Bodies, extent: f64) -> Vec<DVec3> {
     let of = |item: u32| {
         let [a, b, c] = faces.corners(item)?;
@@ -112,13 +113,13 @@ struct Finder<'a> {
     faces: &'a Faces,
     /// Unit normals; 0 for triangles that are too thin to have one.
     normals: Vec<DVec3>,
-    /// Of all faces.
+    /// Extent of all faces.
     extent: f64,
-    /// How often a triangle has been in vain in a region; [`TAKEN`] where it has a place.
+    /// Number of vain tries of each triangle in a region; [`TAKEN`] if it belongs to one.
     tries: Vec<u8>,
     /// The number of the last region that a triangle was in.
     region_of: Vec<u32>,
-    /// How many regions there were.
+    /// Number of regions.
     regions: u32,
 }
 
@@ -129,7 +130,7 @@ struct Region {
     items: Vec<u32>,
     sums: Sums,
     surface: Surface,
-    /// How far corners may lie off.
+    /// Largest distance of corners.
     tolerance: f64,
     hollow: bool,
     /// The turn between its first two facets, as the sine.
@@ -153,7 +154,7 @@ impl Finder<'_> {
         found
     }
 
-    /// What grows out of some triangles, if it is a cylinder.
+    /// Grows a region from some triangles and returns it, if it is a cylinder.
     fn tried(&mut self, edges: &Edges, items: Vec<u32>, turn: f64) -> Option<Cylinder> {
         let Some(region) = self.seed(&items, turn) else {
             // Two neighbours may be so by chance; many that are no cylinder stand for what is around them.
@@ -176,8 +177,8 @@ impl Finder<'_> {
         }
     }
 
-    /// The triangles around two that turn little against them; `None` where they are no more. Where triangles are
-    /// tilted, two normals do not tell the axis.
+    /// Returns the triangles around two that turn little against them; `None` where they are no more. Where
+    /// triangles are tilted, two normals do not tell the axis.
     fn patch(&self, edges: &Edges, pair: [u32; 2]) -> Option<Vec<u32>> {
         let normal = self.normal(pair[0])?;
         let mut items = pair.to_vec();
@@ -195,7 +196,7 @@ impl Finder<'_> {
         (items.len() > 3).then_some(items)
     }
 
-    /// The triangles that share an edge with one, and no more than two with it.
+    /// Returns the triangles that share an edge with one, and no more than two with it.
     fn neighbours(&self, edges: &Edges, item: u32) -> Vec<u32> {
         let mut found = Vec::with_capacity(3);
         let Some(t) = self.faces.triangle(item) else { return found };
@@ -207,7 +208,8 @@ impl Finder<'_> {
         found
     }
 
-    /// The unit normal of a triangle, out of its body; `None` where it is too thin to have one.
+    /// Returns the unit normal of a triangle, out of its body; `None` where it is too thin to have
+    /// one.
     fn normal(&self, item: u32) -> Option<DVec3> {
         self.normals.get(item as usize).copied().filter(|n| *n != DVec3::ZERO)
     }
@@ -216,7 +218,7 @@ impl Finder<'_> {
         self.tries.get(item as usize).is_some_and(|t| *t < TRIES)
     }
 
-    /// The sine of the angle between two neighbours that may be facets of a cylinder.
+    /// Returns the sine of the angle between two neighbours that may be facets of a cylinder.
     fn turn(&self, a: u32, b: u32) -> Option<f64> {
         if !self.is_free(a) || !self.is_free(b) {
             return None;
@@ -227,7 +229,7 @@ impl Finder<'_> {
         (n.dot(m) > 0.0 && turn >= least && turn <= most).then_some(turn)
     }
 
-    /// A region to begin with.
+    /// Returns A region to begin with.
     fn seed(&self, items: &[u32], turn: f64) -> Option<Region> {
         let mut sums = Sums::default();
         for item in items {
@@ -244,7 +246,7 @@ impl Finder<'_> {
         all.then_some(region)
     }
 
-    /// A region with all that belongs to it.
+    /// Returns A region with all that belongs to it.
     fn grown(&mut self, edges: &Edges, mut region: Region) -> Region {
         self.regions += 1;
         region.items.iter().for_each(|item| self.region_of[*item as usize] = self.regions);
@@ -269,7 +271,7 @@ impl Finder<'_> {
         region
     }
 
-    /// Whether a triangle goes on as the region does, of which a neighbour is a part.
+    /// Returns whether a triangle goes on as the region does, of which a neighbour is a part.
     fn belongs(&self, region: &Region, neighbour: u32, item: u32) -> bool {
         let Some(corners) = self.faces.corners(item).filter(|_| self.is_free(item)) else {
             return false;
@@ -287,7 +289,7 @@ impl Finder<'_> {
             && self.normal(neighbour).is_none_or(|n| n.dot(normal) >= turn)
     }
 
-    /// What a region is, if it is a cylinder.
+    /// Returns the cylinder of a region, if it is one.
     fn cylinder(&self, edges: &Edges, region: &Region) -> Option<Cylinder> {
         let surface = &region.surface;
         let (low, high) = region.extent();
@@ -318,7 +320,7 @@ impl Finder<'_> {
         })
     }
 
-    /// Whether the surface goes on smoothly beyond most of the rims, in facets about as long as the
+    /// Returns whether the surface goes on smoothly beyond most of the rims, in facets about as long as the
     /// region, or beyond a border that runs neither along nor across: then it is a part of something that is round
     /// in two directions.
     fn goes_on(&self, edges: &Edges, region: &Region, length: f64) -> bool {
@@ -348,13 +350,13 @@ impl Finder<'_> {
         smooth > 0.5 * rims || ragged > 0.15 * all
     }
 
-    /// Whether two neighbours turn no more than facets of a round part do.
+    /// Returns whether two neighbours turn no more than facets of a round part do.
     fn is_smooth(&self, a: u32, b: u32) -> bool {
         let both = self.normal(a).zip(self.normal(b));
         both.is_some_and(|(n, m)| n.dot(m) > libm::cos(LARGEST_TURN.to_radians()))
     }
 
-    /// The height of a triangle over the line through two points.
+    /// Returns the height of a triangle over the line through two points.
     fn height(&self, item: u32, p: DVec3, q: DVec3) -> f64 {
         let way = (q - p).normalize_or_zero();
         let corners = self.faces.corners(item).unwrap_or_default();
@@ -370,8 +372,8 @@ impl Region {
         self.tolerance = (sagitta * OF_SAGITTA).max(always);
     }
 
-    /// How far corners may lie off in the end: patches of other surfaces are near a cylinder, too, the more so the
-    /// less of a circle they are.
+    /// Returns the largest distance of corners in the end: patches of other surfaces are near a cylinder, too, the
+    /// more so the less of a circle they are.
     fn strict(&self, extent: f64, full: bool) -> f64 {
         let sagitta = self.surface.radius * self.turn * self.turn / 8.0;
         let (part, digits) = if full { (OF_SAGITTA, DIGITS) } else { (STRICT, DIGITS * 0.2) };
@@ -385,14 +387,14 @@ impl Region {
         }
     }
 
-    /// Where it begins and ends along its axis.
+    /// Returns the start and end along its axis.
     fn extent(&self) -> (f64, f64) {
         let along = |p: &DVec3| (*p - self.surface.point).dot(self.surface.axis);
         let both = |(low, high): (f64, f64), h: f64| (low.min(h), high.max(h));
         self.sums.points().iter().map(along).fold((f64::INFINITY, f64::NEG_INFINITY), both)
     }
 
-    /// The distinct directions of its corners as seen from the axis, radians, in order.
+    /// Returns the distinct directions of its corners as seen from the axis, radians, in order.
     fn directions(&self) -> Vec<f64> {
         let [u, v] = self.surface.across();
         let angle = |p: &DVec3| {
@@ -406,7 +408,8 @@ impl Region {
     }
 }
 
-/// The middle of the part of a circle that lies between directions, in order, that are neighbours, and its angle.
+/// Returns the middle of the part of a circle that lies between directions, in order, that are neighbours,
+/// and its angle.
 fn covered(directions: &[f64]) -> (f64, f64) {
     let (Some(first), Some(last)) = (directions.first(), directions.last()) else {
         return (0.0, 0.0);
@@ -443,7 +446,7 @@ fn joined(found: Vec<Cylinder>, extent: f64) -> Vec<Cylinder> {
     whole
 }
 
-/// Whether two cylinders have one axis and side, and lie beside each other along it.
+/// Returns whether two cylinders have one axis and side, and lie beside each other along it.
 fn are_one(a: &Cylinder, b: &Cylinder, extent: f64) -> bool {
     let axis = a.axis();
     let surface = Surface { point: a.ends[0], axis, radius: a.radius };

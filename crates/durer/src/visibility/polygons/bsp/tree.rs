@@ -11,7 +11,7 @@ use crate::{Error, Result};
 /// So near to a plane, in units of the largest coordinate, a corner lies in it: corners that splitting made are rounded.
 const IN_PLANE: f64 = 1e-10;
 
-/// What splitting has left of a face.
+/// Part of a face after splitting.
 #[derive(Debug, Clone)]
 struct Piece {
     face: u32,
@@ -66,7 +66,7 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// The tree of polygons.
+    /// Creates the tree of polygons.
     ///
     /// # Errors
     /// [`Error::Limit`] for more pieces than the options allow.
@@ -92,7 +92,7 @@ impl Tree {
         Ok(tree)
     }
 
-    /// The first of the candidates whose plane splits the fewest others.
+    /// Returns the first of the candidates whose plane splits the fewest others.
     fn root(
         &self,
         faces: &[Face],
@@ -177,7 +177,7 @@ impl Tree {
         }
     }
 
-    /// The parts of a piece in front of a plane and behind it.
+    /// Returns the parts of a piece in front of a plane and behind it.
     fn split(&mut self, plane: &Plane, piece: u32, options: &Options) -> Result<[u32; 2]> {
         let limit = options.max_pieces as u64;
         if self.pieces.len() as u64 + 2 > limit {
@@ -195,22 +195,23 @@ impl Tree {
         Ok([first, first + 1])
     }
 
-    /// The face that a piece is of.
+    /// Returns the face that a piece is of.
     pub fn face(&self, piece: u32) -> u32 {
         self.pieces[piece as usize].face
     }
 
-    /// The corners of a piece; where it was concave, they may be joined by edges to and fro along a cut.
+    /// Returns the corners of a piece; where it was concave, they may be joined by edges to and fro
+    /// along a cut.
     pub fn corners(&self, piece: u32) -> &[DVec3] {
         &self.pieces[piece as usize].corners
     }
 
-    /// The number of nodes.
+    /// Returns the number of nodes.
     pub fn node_count(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Whether a point of a piece's face belongs to the piece.
+    /// Returns whether a point of a piece's face belongs to the piece.
     pub fn holds(&self, piece: u32, point: DVec3) -> bool {
         let mut next = self.pieces[piece as usize].cut;
         while let Some(cut) = next.and_then(|cut| self.cuts.get(cut as usize)) {
@@ -222,8 +223,8 @@ impl Tree {
         true
     }
 
-    /// The pieces from back to front as an eye sees them: each may be painted over those before it. Of what lies in
-    /// one plane the faces that come first are painted last.
+    /// Returns the pieces from back to front as an eye sees them: each may be painted over those before it.
+    /// Of what lies in one plane the faces that come first are painted last.
     pub fn back_to_front(&self, eye: Eye, t: &mut impl Tracer<Step>) -> Vec<u32> {
         let mut order = Vec::new();
         // A node that is to be walked through, or whose own pieces are next.
@@ -250,7 +251,7 @@ impl Tree {
     }
 }
 
-/// The corners of what lies on one side of a plane, by Sutherland and Hodgman.
+/// Returns the corners of what lies on one side of a plane, by Sutherland and Hodgman.
 fn part(plane: &Plane, sign: f64, corners: &[DVec3]) -> Vec<DVec3> {
     let mut part = Vec::with_capacity(corners.len() + 1);
     let next = corners.iter().cycle().skip(1);

@@ -102,7 +102,7 @@ impl Cells {
         self.starts = starts;
     }
 
-    /// The nearest and the farthest depth that a face has over a cell, its error taken off.
+    /// Returns the nearest and the farthest depth that a face has over a cell, its error taken off.
     fn depths(&self, face: &Face, column: usize, row: usize) -> (f64, f64) {
         let (min, size) = (self.corner(column, row), (1u64 << self.shift) as f64);
         let slope = face.plane.slope * size;
@@ -116,7 +116,7 @@ impl Cells {
         float(self.min) + DVec2::new((column << self.shift) as f64, (row << self.shift) as f64)
     }
 
-    /// How much of a closed cell lies under a face; exact.
+    /// Returns how much of a closed cell lies under a face; exact.
     fn over(&self, face: &Face, column: usize, row: usize) -> Over {
         let size = 1i64 << self.shift;
         let x = i64::from(self.min.x) + ((column as i64) << self.shift);
@@ -134,7 +134,7 @@ impl Cells {
         if all { Over::All } else { Over::Part }
     }
 
-    /// The cell of a grid point.
+    /// Returns the cell of a grid point.
     pub fn cell(&self, p: Place) -> Cell {
         let index = |v: i32, min: i32, count: usize| {
             let offset = (i64::from(v) - i64::from(min)).max(0) >> self.shift;
@@ -143,17 +143,17 @@ impl Cells {
         (index(p.x, self.min.x, self.columns), index(p.y, self.min.y, self.rows))
     }
 
-    /// All cells' numbers.
+    /// Returns all cells' numbers.
     pub fn count(&self) -> usize {
         self.covers.len()
     }
 
-    /// The faces over a cell, front to back.
+    /// Returns the faces over a cell, front to back.
     pub fn items(&self, cell: usize) -> &[u32] {
         &self.items[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
-    /// The depth behind which all is hidden in a cell.
+    /// Returns the depth behind which all is hidden in a cell.
     pub fn cover(&self, cell: usize) -> f64 {
         self.covers[cell]
     }
@@ -193,7 +193,8 @@ impl Cells {
         }
     }
 
-    /// The face that is seen at a point: the nearest, of equally near ones that of the lowest item.
+    /// Returns the face that is seen at a point: the nearest, of equally near ones that of the
+    /// lowest item.
     pub fn nearest(&self, faces: &[Face], p: DVec2) -> Option<u32> {
         let cell = self.at(p)?;
         let mut best: Option<(f64, f64, u32)> = None;
@@ -224,7 +225,7 @@ impl Cells {
         best.map(|(_, _, i)| i)
     }
 
-    /// The number of the cell that holds a point.
+    /// Returns the number of the cell that holds a point.
     pub fn at(&self, p: DVec2) -> Option<usize> {
         if self.covers.is_empty() {
             return None;

@@ -13,11 +13,11 @@ pub struct Edge {
     pub a: Place,
     pub b: Place,
     pub depths: [f64; 2],
-    /// How far its depth can be wrong.
+    /// Largest error of its depth.
     pub error: f64,
 }
 
-/// The sides of all faces over some cell, each once.
+/// Returns the sides of all faces over some cell, each once.
 pub fn sides(faces: &[Face], cells: &Cells) -> Vec<Edge> {
     let mut seen = vec![false; faces.len()];
     for cell in 0..cells.count() {
@@ -63,7 +63,7 @@ fn unite(edges: &mut Vec<Edge>) {
 /// Cells that one task looks at.
 const TASK: usize = 1 << 12;
 
-/// Where faces penetrate each other: a segment for each pair whose depths change their order.
+/// Finds the intersections of faces: a segment for each pair whose depths change their order.
 pub fn intersections(faces: &[Face], cells: &Cells) -> Vec<Edge> {
     let starts: Vec<usize> = (0..cells.count()).step_by(TASK).collect();
     let found = parallel::map(starts, |start| {
@@ -99,7 +99,7 @@ fn in_cell(faces: &[Face], cells: &Cells, cell: usize, pairs: &mut Vec<(u32, u32
     }
 }
 
-/// Whether neither face lies on one side of the other, and their pictures overlap.
+/// Returns whether neither face lies on one side of the other, and their pictures overlap.
 fn may_penetrate(f: &Face, g: &Face) -> bool {
     let ((f0, f1), (g0, g1)) = (f.bounds(), g.bounds());
     let apart = (f1.x <= g0.x) | (g1.x <= f0.x) | (f1.y <= g0.y) | (g1.y <= f0.y);
@@ -109,14 +109,14 @@ fn may_penetrate(f: &Face, g: &Face) -> bool {
     straddles(f, g) && straddles(g, f) && !separated(f, g) && !separated(g, f)
 }
 
-/// Corners that two faces have in common.
+/// Returns corners that two faces have in common.
 fn shared(f: &Face, g: &Face) -> usize {
     let has =
         |&(p, d): &(Place, f64)| g.corners.iter().zip(g.depths).any(|(&q, e)| p == q && d == e);
     f.corners.into_iter().zip(f.depths).filter(|v| has(v)).count()
 }
 
-/// Whether some corner of `f` lies before the plane of `g`, and some behind it.
+/// Returns whether some corner of `f` lies before the plane of `g`, and some behind it.
 fn straddles(f: &Face, g: &Face) -> bool {
     let tolerance = f.error + g.error;
     let over = |k: usize| f.depths[k] - g.plane.depth(float(f.corners[k]));
@@ -124,12 +124,12 @@ fn straddles(f: &Face, g: &Face) -> bool {
     d.iter().any(|&d| d > tolerance) && d.iter().any(|&d| d < -tolerance)
 }
 
-/// Whether a side of `f` keeps `g` outside; exact.
+/// Returns whether a side of `f` keeps `g` outside; exact.
 fn separated(f: &Face, g: &Face) -> bool {
     f.sides().iter().any(|&(a, b)| g.corners.iter().all(|&p| cross(a, b, p) <= 0))
 }
 
-/// The segment over which two faces have the same depth.
+/// Returns the segment over which two faces have the same depth.
 fn segment(f: &Face, g: &Face) -> Option<Edge> {
     // The difference of the depths is linear; its zero line is cut by the six sides.
     let origin = float(f.corners[0]);
@@ -165,12 +165,12 @@ fn segment(f: &Face, g: &Face) -> Option<Edge> {
     (a != b).then_some(Edge { a, b, depths, error: f.error + g.error })
 }
 
-/// How far visible pieces reach under what hides the rest, in grid steps from the side that they pass. A
-/// division too much does no harm, for both its sides show the same face; one that ends, its corners being
-/// rounded, before it meets the next would join what is apart.
+/// Length of visible pieces under the face that hides the rest, in grid steps from the side that they
+/// pass. A division too much does no harm, for both its sides show the same face; one that ends, its
+/// corners being rounded, before it meets the next would join separate faces.
 const OVERSHOOT: f64 = 3.0;
 
-/// Nothing reaches further than this along a side that it hardly leaves.
+/// Limit on the length along a side that is hardly left.
 const FARTHEST: f64 = 65_536.0;
 
 /// For the same reason, what is to be hidden lies behind by this many times what depths can be wrong.
@@ -192,7 +192,7 @@ struct Hidden {
     before_to: f64,
 }
 
-/// The pieces of the edges that no face hides, as segments of the grid.
+/// Returns the pieces of the edges that no face hides, as segments of the grid.
 pub fn visible(edges: &[Edge], faces: &[Face], cells: &Cells) -> Vec<(Place, Place)> {
     let pieces = parallel::map(edges.chunks(EDGES).collect(), |edges| {
         let mut pieces = Vec::with_capacity(edges.len());
@@ -206,7 +206,7 @@ pub fn visible(edges: &[Edge], faces: &[Face], cells: &Cells) -> Vec<(Place, Pla
     pieces.into_iter().flatten().collect()
 }
 
-/// Where faces lie before an edge, as parts of its length.
+/// Finds the parts of an edge, as parts of its length, that lie behind faces.
 fn hidden_parts(edge: &Edge, faces: &[Face], cells: &Cells, hidden: &mut Vec<Hidden>) {
     hidden.clear();
     let (a, b) = (float(edge.a), float(edge.b));
@@ -243,7 +243,8 @@ fn hidden_parts(edge: &Edge, faces: &[Face], cells: &Cells, hidden: &mut Vec<Hid
     });
 }
 
-/// The part of an edge strictly inside a face, in the picture; which sides it crosses is exact.
+/// Returns the part of an edge strictly inside a face, in the picture; which sides it crosses is
+/// exact.
 #[inline]
 fn inside(edge: &Edge, face: &Face) -> Option<Hidden> {
     let mut part = Hidden { from: 0.0, to: 1.0, after_from: 0.0, before_to: 0.0 };
@@ -289,7 +290,7 @@ fn behind(edge: &Edge, face: &Face, a: DVec2, b: DVec2, part: &mut Hidden) -> bo
     true
 }
 
-/// What is left of an edge.
+/// Returns the visible parts of an edge.
 fn visible_parts(edge: &Edge, hidden: &mut [Hidden], pieces: &mut Vec<(Place, Place)>) {
     if hidden.is_empty() {
         pieces.push((edge.a, edge.b));

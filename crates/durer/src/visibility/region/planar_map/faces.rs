@@ -27,7 +27,7 @@ pub struct Frame {
     half: DVec2,
     /// Plane units of a grid step.
     pub unit: f64,
-    /// Whether lines of sight meet in the eye.
+    /// Returns whether lines of sight meet in the eye.
     perspective: bool,
     /// The camera.
     eye: DVec3,
@@ -60,17 +60,17 @@ impl Frame {
         }
     }
 
-    /// A grid point in plane units.
+    /// Returns A grid point in plane units.
     pub fn plane(&self, p: Place) -> DVec2 {
         DVec2::new(p.x.f64(), p.y.f64()) * self.unit
     }
 
-    /// The corners of the picture, on the grid.
+    /// Returns the corners of the picture, on the grid.
     pub fn half(&self) -> DVec2 {
         self.half
     }
 
-    /// The grid coordinates and depth of a point in clip space, w > 0.
+    /// Returns the grid coordinates and depth of a point in clip space, w > 0.
     pub fn project(&self, p: DVec4) -> (DVec2, f64) {
         let ndc = p.truncate() / p.w;
         // What grows evenly along a line of the picture: z, or the inverse of the distance.
@@ -89,7 +89,7 @@ impl Frame {
         Some((DVec2::new(c.x, c.y) / c.w * self.half, depth))
     }
 
-    /// The line of sight through a point of the grid: a point of it, and its direction.
+    /// Returns the line of sight through a point of the grid: a point of it, and its direction.
     pub fn sight(&self, at: DVec2) -> (DVec3, DVec3) {
         let [right, up, back] = self.axes;
         let p = at * (self.half_height / self.half.y);
@@ -110,7 +110,7 @@ pub struct DepthPlane {
 }
 
 impl DepthPlane {
-    /// The plane through three grid points that are not on one line.
+    /// Returns the plane through three grid points that are not on one line.
     fn through(p: [Place; 3], d: [f64; 3]) -> Self {
         let [a, b, c] = p.map(float);
         let (u, v, area) = (b - a, c - a, cross(p[0], p[1], p[2]) as f64);
@@ -125,7 +125,7 @@ impl DepthPlane {
     }
 }
 
-/// A grid point in floating point; exact.
+/// Returns A grid point in floating point; exact.
 #[inline(always)]
 pub fn float(p: Place) -> DVec2 {
     DVec2::new(f64::from(p.x), f64::from(p.y))
@@ -144,7 +144,7 @@ pub struct Face {
     /// The nearest and the farthest corner's depth.
     pub near: f64,
     pub far: f64,
-    /// How far depths over this face can be wrong: its corners are up to a grid step off.
+    /// Largest error of depths over this face: its corners are up to a grid step off.
     pub error: f64,
     pub item: u32,
 }
@@ -167,18 +167,18 @@ impl Face {
         plane.slope.is_finite().then_some(Self { corners, plane, depths, near, far, error, item })
     }
 
-    /// Twice its area in squared grid steps; exact.
+    /// Returns twice its area in squared grid steps; exact.
     pub fn doubled_area(&self) -> i64 {
         cross(self.corners[0], self.corners[1], self.corners[2])
     }
 
-    /// Depth over a point of the grid, within that of the corners.
+    /// Returns the depth over a point of the grid, within that of the corners.
     #[inline(always)]
     pub fn depth(&self, p: DVec2) -> f64 {
         self.plane.depth(p).clamp(self.near, self.far)
     }
 
-    /// The smallest and the largest x and y of its corners.
+    /// Returns the smallest and the largest x and y of its corners.
     #[inline(always)]
     pub fn bounds(&self) -> (Place, Place) {
         let [a, b, c] = self.corners;
@@ -187,7 +187,7 @@ impl Face {
         (min, max)
     }
 
-    /// Whether a point lies in the triangle or on its border.
+    /// Returns whether a point lies in the triangle or on its border.
     #[inline(always)]
     pub fn covers(&self, p: DVec2) -> bool {
         let [a, b, c] = self.corners.map(float);
@@ -195,7 +195,7 @@ impl Face {
         left(a, b) && left(b, c) && left(c, a)
     }
 
-    /// Its sides, counter-clockwise.
+    /// Returns its sides, counter-clockwise.
     #[inline(always)]
     pub fn sides(&self) -> [(Place, Place); 3] {
         let [a, b, c] = self.corners;
@@ -203,7 +203,7 @@ impl Face {
     }
 }
 
-/// All faces that reach into the picture, cut at its border.
+/// Returns all faces that reach into the picture, cut at its border.
 pub fn project(scene: &Scene, view: &View, frame: &Frame, cull: Cull) -> crate::Result<Vec<Face>> {
     let mut faces = Vec::with_capacity(scene.triangle_count().min(1 << 24) as usize);
     let mut projector = Projector::new(scene, view, frame, cull);
@@ -213,7 +213,7 @@ pub fn project(scene: &Scene, view: &View, frame: &Frame, cull: Cull) -> crate::
     Ok(faces)
 }
 
-/// The runs of triangles, in item order.
+/// Returns the runs of triangles, in item order.
 pub fn surfaces(scene: &Scene) -> crate::Result<Vec<Run>> {
     Ok(runs(scene)?.into_iter().filter(|run| is_surface(&scene.meshes[run.mesh])).collect())
 }
@@ -316,7 +316,7 @@ fn snap((at, depth): (DVec2, f64)) -> (Place, f64) {
     (nearest(at), depth)
 }
 
-/// The grid point nearest to a point of the picture.
+/// Returns the grid point nearest to a point of the picture.
 pub fn nearest(at: DVec2) -> Place {
     let at = at.clamp(DVec2::splat(-REACH), DVec2::splat(REACH));
     Place::new((at.x + 0.5).floor() as i64, (at.y + 0.5).floor() as i64)

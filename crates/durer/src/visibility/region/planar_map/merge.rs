@@ -26,7 +26,7 @@ pub struct Patches {
     pub of_face: Vec<u32>,
 }
 
-/// The patches of a map, given the label of each of its faces.
+/// Returns the patches of a map, given the label of each of its faces.
 pub fn patches(map: &Planar, labels: &[u32]) -> Patches {
     let label = |half: usize| labels[map.face_of[half] as usize];
     let keep = |edge: usize| label(2 * edge) != label(2 * edge + 1);
@@ -80,8 +80,8 @@ fn join(map: &Planar, keep: impl Fn(usize) -> bool) -> Vec<u32> {
     (0..map.face_count as u32).map(|i| root(&mut parent, i)).collect()
 }
 
-/// Which vertices stay: where the kept edges make a corner, or more than two of them meet. A vertex
-/// that is left out by one ring is left out by its neighbour too.
+/// Returns which vertices stay: those at which the kept edges make a corner, or more than two of
+/// them meet. A vertex that is left out by one ring is left out by its neighbour too.
 fn corners(map: &Planar, keep: impl Fn(usize) -> bool) -> Vec<bool> {
     let mut corners = vec![true; map.points.len()];
     chains(map, keep, |chain| {
@@ -132,7 +132,8 @@ fn chains(map: &Planar, keep: impl Fn(usize) -> bool, mut f: impl FnMut(&[u32]))
     }
 }
 
-/// The chains of kept edges as lines: their vertices, and whether the last is joined to the first.
+/// Returns the chains of kept edges as lines: their vertices, and whether the last is joined to the
+/// first.
 pub fn lines(map: &Planar, keep: impl Fn(usize) -> bool) -> Vec<(Vec<u32>, bool)> {
     let mut lines = Vec::new();
     chains(map, keep, |chain| {

@@ -55,14 +55,14 @@ pub const INFO: Info = Info {
     limits: "every face is opaque; corners are snapped to 2^-30 of the picture",
 };
 
-/// How to solve.
+/// Options for the solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Options {
-    /// Which faces are left out.
+    /// Faces to leave out.
     pub cull: Cull,
 }
 
-/// What happens, step by step; plane units.
+/// Step of the solver; plane units.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
     /// Faces are in the picture, and their sides and intersections are to divide it.
@@ -169,7 +169,7 @@ pub fn solve(
     Ok(map)
 }
 
-/// The order of the stages; `more` gives further edges that divide the picture.
+/// Returns the order of the stages; `more` gives further edges that divide the picture.
 pub(super) fn divide(
     scene: &Scene,
     view: &View,
@@ -205,7 +205,7 @@ pub(super) fn divide(
 /// Faces of the map that one task looks at.
 const TASK: usize = 1 << 13;
 
-/// What is seen in each face of the map.
+/// Finds the visible item in each face of the map.
 fn look(map: &Planar, faces: &[Face], cells: &Cells) -> Vec<Option<(DVec2, u32)>> {
     let (starts, list) = map.borders();
     let tasks: Vec<usize> = (0..map.face_count).step_by(TASK).collect();
@@ -222,15 +222,15 @@ fn look(map: &Planar, faces: &[Face], cells: &Cells) -> Vec<Option<(DVec2, u32)>
 }
 
 impl VisibleMap {
-    /// Vertices, edges, faces (with the one around everything) and connected parts of the planar map:
-    /// V − E + F = 1 + C.
+    /// Returns vertices, edges, faces (with the one around everything) and connected parts of the
+    /// planar map: V − E + F = 1 + C.
     pub fn counts(&self) -> [usize; 4] {
         let map = &self.map;
         let used = (0..map.points.len() as u32).filter(|&v| !map.around(v).is_empty()).count();
         [used, map.edges.len(), map.face_count, map.part_count]
     }
 
-    /// What is visible, where neighbours whose items have one key are one region.
+    /// Returns the visible regions; neighbours whose items have one key are one region.
     ///
     /// Regions are in the order of their first edges in the map: from left to right, roughly. Slivers that
     /// vanish with the vertices left out of straight lines, less than a grid step wide, are not among them.
@@ -252,26 +252,26 @@ impl VisibleMap {
         VisibleRegion { item, rings: self.rings(patch) }
     }
 
-    /// The item that is seen to the left of a half-edge.
+    /// Returns the item that is seen to the left of a half-edge.
     pub(super) fn item_beside(&self, half: u32) -> Option<u32> {
         let (_, face) = self.shown[self.map.face_of[half as usize] as usize]?;
         Some(self.faces[face as usize].item)
     }
 
-    /// The rings of a patch in plane units.
+    /// Returns the rings of a patch in plane units.
     pub(super) fn rings(&self, patch: &Patch) -> Vec<Vec<DVec2>> {
         let point = |&half: &u32| self.point(self.map.start(half));
         patch.rings.iter().map(|ring| ring.iter().map(point).collect()).collect()
     }
 
-    /// A vertex of the map in plane units.
+    /// Returns A vertex of the map in plane units.
     pub(super) fn point(&self, vertex: u32) -> DVec2 {
         self.frame.plane(self.map.points[vertex as usize])
     }
 }
 
 impl VisibleRegion {
-    /// Area in squared plane units.
+    /// Returns the area in squared plane units.
     pub fn area(&self) -> f64 {
         self.rings.iter().map(|ring| crate::clip::polygon::signed_area(ring)).sum()
     }

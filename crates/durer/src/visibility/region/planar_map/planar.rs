@@ -61,13 +61,13 @@ impl Planar {
         Self { points: graph.nodes.to_vec(), edges, around, starts, ..Self::default() }
     }
 
-    /// The vertex that a half-edge starts at.
+    /// Returns the vertex that a half-edge starts at.
     #[inline(always)]
     pub fn start(&self, half: u32) -> u32 {
         self.edges[half as usize / 2][half as usize & 1]
     }
 
-    /// The half-edges that leave a vertex, counter-clockwise.
+    /// Returns the half-edges that leave a vertex, counter-clockwise.
     #[inline(always)]
     pub fn around(&self, vertex: u32) -> &[u32] {
         let (from, to) = (self.starts[vertex as usize], self.starts[vertex as usize + 1]);
@@ -92,8 +92,8 @@ impl Planar {
         next
     }
 
-    /// Twice the signed area of the ring through the starts of half-edges, as of a closed walk, in squared
-    /// grid steps; exact.
+    /// Returns twice the signed area of the ring through the starts of half-edges, as of a closed walk, in
+    /// squared grid steps; exact.
     pub fn doubled_area(&self, walk: impl Iterator<Item = u32>) -> i128 {
         let mut starts = walk.map(|half| self.points[self.start(half) as usize]);
         let Some(origin) = starts.next() else { return 0 };
@@ -152,7 +152,8 @@ impl Planar {
         (starts, list)
     }
 
-    /// A point inside a face with this border, away from it where the face is not all narrow.
+    /// Returns A point inside a face with this border, away from it where the face is not all
+    /// narrow.
     pub fn inner_point(&self, border: &[u32]) -> Option<DVec2> {
         let ends = |half: u32| {
             [self.start(half), self.start(half ^ 1)].map(|v| float(self.points[v as usize]))
@@ -187,7 +188,7 @@ impl Planar {
     }
 }
 
-/// How far along a ray from `p` a segment is met.
+/// Returns the distance along a ray from `p` at which it meets a segment.
 fn hit(p: DVec2, direction: DVec2, [a, b]: [DVec2; 2]) -> Option<f64> {
     let (u, v) = (a - p, b - p);
     let (s, t) = (direction.perp_dot(u), direction.perp_dot(v));
@@ -198,7 +199,7 @@ fn hit(p: DVec2, direction: DVec2, [a, b]: [DVec2; 2]) -> Option<f64> {
     (along > 0.0).then_some(along)
 }
 
-/// The half-edges of a closed walk from one of them.
+/// Returns the half-edges of a closed walk from one of them.
 pub fn walk(next: &[u32], first: u32) -> impl Iterator<Item = u32> + '_ {
     let mut half = Some(first);
     std::iter::from_fn(move || {
@@ -209,7 +210,8 @@ pub fn walk(next: &[u32], first: u32) -> impl Iterator<Item = u32> + '_ {
     })
 }
 
-/// The closed walks of a permutation: for each half-edge its walk, and the first half-edge of each.
+/// Returns the closed walks of a permutation: for each half-edge its walk, and the first half-edge
+/// of each.
 pub fn cycles(next: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let mut cycle_of = vec![NONE; next.len()];
     let mut firsts = Vec::new();

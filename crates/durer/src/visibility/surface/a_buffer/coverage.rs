@@ -10,7 +10,7 @@ use fearless_simd::{Simd, f32x4, f32x8};
 /// Pixels that are looked at together.
 pub const EIGHT: usize = 8;
 
-/// How far right of the first each of eight pixels is.
+/// Offset of each of eight pixels to the right of the first.
 pub const COLUMNS: [f32; EIGHT] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// A part of an edge that lies nowhere.
@@ -19,7 +19,7 @@ const NOWHERE: f32 = -2.0;
 /// Numbers of the three edges; the fourth lane has no edge.
 type Lanes = [f32; 4];
 
-/// What a triangle covers of the pixels of a part of a row.
+/// Coverage of the pixels of a part of a row by a triangle.
 #[derive(Debug, Clone, Copy)]
 pub struct Areas {
     /// The edges' parts in these pixels, from left to right.
@@ -29,7 +29,7 @@ pub struct Areas {
     per_pixel: Lanes,
     /// The height of upright edges, else 0.
     upright: Lanes,
-    /// What lies left of the first pixel, if any edge does; it covers all pixels.
+    /// Area left of the first pixel, if any edge crosses there; it covers all pixels.
     outside: Option<Lanes>,
 }
 
@@ -61,8 +61,9 @@ impl Areas {
         }
     }
 
-    /// How the edges change the area in eight pixels from column x on: from each on, and from the pixel
-    /// after each on. `is_first` says that the first pixel of the row's part is the first of them.
+    /// Returns the changes of the area by the edges in eight pixels from column x on: from each on, and
+    /// from the pixel after each on. `is_first` says that the first pixel of the row's part is the
+    /// first of them.
     #[inline(always)]
     pub fn changes<S: Simd>(&self, simd: S, x: i32, is_first: bool) -> [[f32; EIGHT]; 2] {
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
@@ -119,7 +120,7 @@ mod tests {
         found
     }
 
-    /// The area right of the slanted edge and left of the upright one.
+    /// Returns the area right of the slanted edge and left of the upright one.
     fn expected(x: i32) -> f32 {
         let right_of = |x: f32| {
             let t = ((x - LEFT[0]) / (RIGHT[0] - LEFT[0])).clamp(0.0, 1.0);

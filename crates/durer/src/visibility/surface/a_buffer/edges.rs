@@ -14,7 +14,7 @@ type Lanes<T> = [T; 4];
 /// Edge functions have slopes per grid step; masks want them per pixel.
 const PER_GRID_STEP: f32 = 1.0 / SUBPIXELS as f32;
 
-/// What takes a division to find of a face's edges.
+/// Values of a face's edges that need a division.
 #[derive(Debug, Clone, Copy)]
 pub struct Slopes {
     /// Grid steps to the right per step down; 0 where the edge is horizontal.
@@ -23,7 +23,7 @@ pub struct Slopes {
 }
 
 impl Slopes {
-    /// Of no edges.
+    /// Values of no edges.
     pub const NONE: Self = Self { right_per_down: [0.0; 4], directions: [Direction::NONE; 3] };
 
     #[inline(always)]
@@ -40,7 +40,7 @@ impl Slopes {
         Self { right_per_down: right_per_down.into(), directions }
     }
 
-    /// What divides the function of each direction, and turns it.
+    /// Returns the divisor of each direction's function, with its sign.
     #[inline(always)]
     fn scale<S: Simd>(&self, simd: S) -> f32x4<S> {
         let [p, q, r] = &self.directions;
@@ -53,8 +53,8 @@ impl Slopes {
 pub struct Edges<S: Simd> {
     from: [f64x4<S>; 2],
     to: [f64x4<S>; 2],
-    /// Whether it goes up. Both triangles at an edge count from its upper end, so that they get the
-    /// same numbers.
+    /// True for edges that go up. Both triangles at an edge count from its upper end, so that they
+    /// get the same numbers.
     up: mask64x4<S>,
 }
 
@@ -82,14 +82,15 @@ impl<S: Simd> Edges<S> {
         [self.up.select(x0, x1), self.up.select(y0, y1)]
     }
 
-    /// What the edge functions gain per grid step to the right and downwards; positive is inside.
+    /// Returns the increase of the edge functions per grid step to the right and downwards;
+    /// positive is inside.
     #[inline(always)]
     fn gain(&self) -> [f64x4<S>; 2] {
         let ([x0, y0], [x1, y1]) = (self.from, self.to);
         [y0 - y1, x1 - x0]
     }
 
-    /// The parts of the edges in row `y`.
+    /// Returns the parts of the edges in row `y`.
     #[inline(always)]
     pub fn row(&self, simd: S, slopes: &Slopes, y: i32) -> RowEdges<S> {
         let ([x, top], [_, bottom]) = (self.upper(), self.lower());
@@ -111,7 +112,7 @@ impl<S: Simd> Edges<S> {
         RowEdges { left, right, height }
     }
 
-    /// The edge functions along a row of pixels.
+    /// Returns the edge functions along a row of pixels.
     #[inline(always)]
     pub fn functions(&self, simd: S, x: i32, y: i32) -> Functions<S> {
         let center = |i: i32| {
@@ -133,7 +134,7 @@ pub struct Functions<S: Simd> {
     gain: [f64x4<S>; 2],
 }
 
-/// How far right of the first each of eight pixels is.
+/// Offset of each of eight pixels to the right of the first.
 const COLUMNS_F64: [f64; EIGHT] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 impl<S: Simd> Functions<S> {
@@ -149,8 +150,8 @@ impl<S: Simd> Functions<S> {
         at
     }
 
-    /// The sub-pixel that lies deepest within a triangle too small for its mask, whose functions at the
-    /// pixel's centre are these.
+    /// Returns the sub-pixel that lies deepest within a triangle too small for its mask, whose
+    /// functions at the pixel's centre are these.
     #[inline(always)]
     pub fn nearest(&self, simd: S, slopes: &Slopes, table: &MaskTable, at: Lanes<f32>) -> u64 {
         let scale = slopes.scale(simd).abs();
@@ -183,7 +184,8 @@ impl<S: Simd> Functions<S> {
 }
 
 impl Slopes {
-    /// The sub-pixels inside all three edges in eight pixels, whose functions at the centres are these.
+    /// Returns the sub-pixels inside all three edges in eight pixels, whose functions at the centres
+    /// are these.
     #[inline(always)]
     pub fn masks<S: Simd>(&self, simd: S, table: &MaskTable, [p, q, r]: [f32x8<S>; 3]) -> Common {
         let [a, b, c] = &self.directions;
@@ -203,7 +205,7 @@ pub struct RowEdges<S: Simd> {
 }
 
 impl<S: Simd> RowEdges<S> {
-    /// The columns among x0 … x1 − 1 that the triangle may touch, as first and end.
+    /// Returns the columns among x0 … x1 − 1 that the triangle may touch, as first and end.
     #[inline(always)]
     pub fn columns(&self, simd: S, [x0, x1]: [i32; 2]) -> [i32; 2] {
         let (lo, hi) = (simd.reduce_min_f32x4(self.left), simd.reduce_max_f32x4(self.right));

@@ -14,7 +14,7 @@ pub struct Faces<'a> {
     input: &'a SurfaceInput<'a>,
     /// The triangles by first row.
     waiting: Vec<Active>,
-    /// Where each row's begin; one more than there are rows.
+    /// Start of each row's list; one more than there are rows.
     starts: Vec<u32>,
     active: Vec<Active>,
     /// The active ones of the row before, while the next row's are put together.
@@ -24,7 +24,7 @@ pub struct Faces<'a> {
     /// The active ones and what was computed of those that were looked at, by place; some places are free.
     places: Vec<(ScreenTriangle, Face)>,
     free: Vec<u32>,
-    /// Whether some items come in several pieces.
+    /// True if some items come in several pieces.
     pub in_pieces: bool,
     /// The run of the latest item that was asked for: its first item, how many it has, and how it covers.
     run: (u32, u32, Coverage),
@@ -39,7 +39,7 @@ pub struct Active {
     pub columns: [i32; 2],
     last_row: i32,
     triangle: u32,
-    /// Where it is kept while it is active.
+    /// Place where it is kept while it is active.
     place: u32,
 }
 
@@ -120,18 +120,18 @@ impl<'a> Faces<'a> {
         active.extend(new);
     }
 
-    /// How many triangles touch the row.
+    /// Returns the number of triangles that touch the row.
     pub fn count(&self) -> usize {
         self.active.len()
     }
 
-    /// One of them; they are counted front to back by their smallest depths.
+    /// Returns one of them; they are counted front to back by their smallest depths.
     #[inline(always)]
     pub fn active(&self, number: usize) -> &Active {
         &self.active[number]
     }
 
-    /// What is known of one of them.
+    /// Returns one of the triangles and its face.
     #[inline(always)]
     pub fn get<S: Simd>(&mut self, simd: S, number: usize) -> &(ScreenTriangle, Face) {
         let active = &self.active[number];
@@ -157,7 +157,7 @@ impl Active {
     }
 }
 
-/// The first and the last pixel in one direction that a triangle touches.
+/// Returns the first and the last pixel in one direction that a triangle touches.
 fn touched([a, b, c]: &[i32; 3]) -> [i32; 2] {
     let (low, high) = (*a.min(b).min(c), *a.max(b).max(c));
     [low >> SUBPIXEL_BITS, (high - 1) >> SUBPIXEL_BITS]

@@ -11,7 +11,7 @@ use fearless_simd::{Simd, f32x8};
 /// No further fragment.
 const END: u32 = u32::MAX;
 
-/// What a triangle leaves in one pixel.
+/// Contribution of a triangle to one pixel.
 #[derive(Debug, Clone, Copy)]
 pub struct Fragment {
     /// Its item.
@@ -28,7 +28,7 @@ pub struct Fragment {
     /// Depths within the pixel.
     pub z_min: f32,
     pub z_max: f32,
-    /// Whether it lets something behind it be seen.
+    /// True if it lets something behind it be seen.
     pub blended: bool,
 }
 
@@ -45,7 +45,7 @@ pub struct Face {
 }
 
 impl Face {
-    /// Of no triangle.
+    /// Fragment of no triangle.
     pub const NONE: Self = Self {
         triangle: u32::MAX,
         coverage: Coverage::Opaque,
@@ -70,9 +70,9 @@ pub struct Pool<'a> {
     nexts: Vec<u32>,
     /// The latest fragment of each pixel.
     heads: Vec<u32>,
-    /// Of each pixel, and of seven more, the depth behind which nothing can be seen.
+    /// Depth behind which nothing is visible, of each pixel, and of seven more.
     hidden_from: Vec<f32>,
-    /// What fragments cover of each pixel that has any.
+    /// Coverage of the fragments of each pixel that has any.
     covers: Vec<Cover>,
     max_fragments: usize,
 }
@@ -100,8 +100,9 @@ impl<'a> Pool<'a> {
         self.hidden_from[part].fill(f32::INFINITY);
     }
 
-    /// A depth behind which nothing of a pixel can be seen: opaque fragments before it cover all of
-    /// the pixel. It depends on the order in which fragments came; infinite where there is none.
+    /// Returns A depth behind which nothing of a pixel can be seen: opaque fragments before it
+    /// cover all of the pixel. It depends on the order in which fragments came; infinite where
+    /// there is none.
     #[inline(always)]
     pub fn hidden_from(&self, x: i32) -> f32 {
         self.hidden_from[x as usize]
@@ -116,8 +117,8 @@ impl<'a> Pool<'a> {
         seen.to_bitmask() & ((1 << count) - 1)
     }
 
-    /// Whether a triangle leaves nothing in a part of the row, as far as that can be said without
-    /// looking at its edges.
+    /// Returns whether a triangle leaves nothing in a part of the row, as far as that can be said
+    /// without looking at its edges.
     #[inline(always)]
     pub fn rejects<S: Simd>(&self, simd: S, active: &Active, part: [i32; 2]) -> bool {
         let [x0, x1] = [active.columns[0].max(part[0]), active.columns[1].min(part[1])];
@@ -127,7 +128,7 @@ impl<'a> Pool<'a> {
         x0 >= x1 || self.seen(simd, x0, x1 - x0, f32x8::splat(simd, active.depth)) == 0
     }
 
-    /// The fragment of a pixel that has no other.
+    /// Returns the fragment of a pixel that has no other.
     #[inline(always)]
     pub fn only(&self, x: i32) -> Option<&Fragment> {
         let number = self.heads[x as usize];
@@ -135,7 +136,7 @@ impl<'a> Pool<'a> {
         (next == END).then(|| self.fragment(number))
     }
 
-    /// The first of pixels x0 … x1 − 1 that has fragments, or x1.
+    /// Returns the first of pixels x0 … x1 − 1 that has fragments, or x1.
     #[inline(always)]
     pub fn next_filled(&self, [x0, x1]: [i32; 2]) -> i32 {
         let part = &self.heads[x0 as usize..x1 as usize];
@@ -147,7 +148,7 @@ impl<'a> Pool<'a> {
         x0 + (EIGHT * eights + rest) as i32
     }
 
-    /// The numbers of a pixel's fragments, latest first.
+    /// Returns the numbers of a pixel's fragments, latest first.
     #[inline(always)]
     pub fn latest_first(&self, x: i32) -> impl Iterator<Item = u32> {
         let mut at = self.heads[x as usize];
@@ -157,7 +158,7 @@ impl<'a> Pool<'a> {
         })
     }
 
-    /// A fragment by its number.
+    /// Returns A fragment by its number.
     #[inline(always)]
     pub fn fragment(&self, number: u32) -> &Fragment {
         &self.fragments[number as usize]
@@ -271,7 +272,8 @@ impl<'a> Pool<'a> {
         true
     }
 
-    /// Whether all of a face is hidden in pixels x0 … x1 − 1 of row y, of which there is one.
+    /// Returns whether all of a face is hidden in pixels x0 … x1 − 1 of row y, of which there is
+    /// one.
     fn hides(&self, t: &ScreenTriangle, face: &Face, [x0, x1]: [i32; 2], y: i32) -> bool {
         let [ox, oy] = t.origin();
         let at = |x: i32| plane_depth(t, (x - ox) as f32, (y - oy) as f32);
@@ -315,12 +317,12 @@ impl Depths<'_> {
     }
 }
 
-/// What opaque fragments cover of a pixel that do not cover all of it.
+/// Coverage of a pixel by opaque fragments that do not cover all of it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Cover {
     /// The largest depth of the fragments in `mask`.
     farthest: f32,
-    /// What has been covered since the last time that all was.
+    /// Covered part since the last time that all was covered.
     mask: u64,
 }
 
@@ -352,7 +354,7 @@ impl Fragment {
     }
 }
 
-/// The depth of a triangle's plane, also outside the triangle.
+/// Returns the depth of a triangle's plane, also outside the triangle.
 #[inline(always)]
 pub fn plane_depth(t: &ScreenTriangle, dx: f32, dy: f32) -> f32 {
     t.depth + (t.depth_dx * dx + t.depth_dy * dy)

@@ -59,7 +59,7 @@ const LAST_DISTANCE: f32 = (DISTANCES - 1) as f32;
 /// A linear function on a pixel, divided by |a| + |b|: the direction's part.
 #[derive(Debug, Clone, Copy)]
 pub struct Direction {
-    /// Where the direction's masks begin in the table.
+    /// Start of the direction's masks in the table.
     start: u32,
     /// ±1 / (|a| + |b|), below 0 where the table has the opposite direction, so that masks are turned
     /// over; 0 for a function without slope.
@@ -67,10 +67,11 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// Of a function without slope.
+    /// Direction of a function without slope.
     pub const NONE: Self = Self { start: 0, scale: 0.0 };
 
-    /// The direction of a function that grows by `a` per pixel to the right and `b` downwards.
+    /// Creates the direction of a function that grows by `a` per pixel to the right and `b`
+    /// downwards.
     #[inline(always)]
     pub fn new(a: f32, b: f32) -> Self {
         let length = a.abs() + b.abs();
@@ -98,7 +99,7 @@ pub struct Common {
 }
 
 impl Common {
-    /// The sub-pixels of a pixel that all three have in common.
+    /// Returns the sub-pixels of a pixel that all three have in common.
     #[inline(always)]
     pub fn get(&self, table: &MaskTable, pixel: usize) -> u64 {
         let [p, q, r] = &self.places;
@@ -124,14 +125,14 @@ impl MaskTable {
         Self { side, centers, centers_x8, masks: Masks::new(masks, side) }
     }
 
-    /// The mask with all bits.
+    /// Returns the mask with all bits.
     #[inline(always)]
     pub fn full(&self) -> u64 {
         u64::MAX >> (64 - self.side * self.side)
     }
 
-    /// The sub-pixels where a function of this direction is positive whose value at the pixel's
-    /// centre is `center`, not divided.
+    /// Returns the sub-pixels where a function of this direction is positive whose value at the
+    /// pixel's centre is `center`, not divided.
     #[inline(always)]
     pub fn half_plane(&self, direction: &Direction, center: f32) -> u64 {
         let e = center * direction.scale;
@@ -139,8 +140,8 @@ impl MaskTable {
         self.mask(direction, step as i32)
     }
 
-    /// The sub-pixels where three functions are positive, in eight pixels, at whose centres they have
-    /// these values, not divided, times `scale`.
+    /// Returns the sub-pixels where three functions are positive, in eight pixels, at whose centres
+    /// they have these values, not divided, times `scale`.
     #[inline(always)]
     pub fn common<S: Simd>(
         &self,
@@ -161,25 +162,25 @@ impl MaskTable {
         Common { places, turned }
     }
 
-    /// A mask of a direction.
+    /// Returns A mask of a direction.
     #[inline(always)]
     fn mask(&self, direction: &Direction, distance: i32) -> u64 {
         self.masks.get(direction.start as usize + distance as usize) ^ self.turned(direction)
     }
 
-    /// The bits to be turned over in a direction's masks.
+    /// Returns the bits to be turned over in a direction's masks.
     #[inline(always)]
     fn turned(&self, direction: &Direction) -> u64 {
         if direction.scale < 0.0 { self.full() } else { 0 }
     }
 
-    /// The centres of the sub-pixels, from the pixel's, eight at a time: x and y.
+    /// Returns the centres of the sub-pixels, from the pixel's, eight at a time: x and y.
     #[inline(always)]
     pub fn centers_x8(&self) -> &[[[f32; 8]; 2]] {
         &self.centers_x8
     }
 
-    /// The centres of the sub-pixels, from the pixel's, bit by bit.
+    /// Returns the centres of the sub-pixels, from the pixel's, bit by bit.
     #[inline(always)]
     pub fn centers(&self) -> &[[f32; 2]] {
         &self.centers
@@ -203,7 +204,7 @@ fn masks_of_direction(side: u32, a: f32, b: f32, masks: &mut [u64]) {
     }
 }
 
-/// The area of a pixel where a·u + b·v + e is positive; |a| + |b| = 1, e from −½ to ½.
+/// Returns the area of a pixel where a·u + b·v + e is positive; |a| + |b| = 1, e from −½ to ½.
 fn area(a: f32, b: f32, e: f32) -> f32 {
     // The sum of two even distributions of widths |a| and |b|: a trapezoid over a length of 1.
     let (short, long) = (a.abs().min(b.abs()), a.abs().max(b.abs()));

@@ -79,17 +79,17 @@ impl Mask {
     }
 }
 
-/// What the picture is to have.
+/// Options for the planes of the picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// How fine the masks are.
+    /// Resolution of the masks.
     pub mask: Mask,
     /// Fragments kept at a time. Bounds memory to 44 bytes times this; a row with more is made in
     /// parts, so a low limit costs time and changes no pixel.
     pub max_fragments: usize,
     /// `None` = by material.
     pub shading: Option<Shading>,
-    /// What is behind everything.
+    /// Background of the picture.
     pub background: Background,
     /// The SIMD level to work at; all give the same bytes.
     pub level: Level,
@@ -103,7 +103,7 @@ impl Default for Options {
     }
 }
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A part of a row begins; where it was begun before, it is begun anew with fewer columns.
@@ -184,7 +184,7 @@ pub fn render(
     }
 }
 
-/// What is at the centres of the pixels, for the planes besides colour.
+/// Values at the centres of the pixels, for the planes besides colour.
 struct Centers<'a> {
     masked: Masked<'a>,
     list: ActiveList<'a>,
@@ -192,7 +192,7 @@ struct Centers<'a> {
 }
 
 impl<'a> Centers<'a> {
-    /// Nothing, where the picture has no such planes.
+    /// Creates the values, or nothing if the picture has no such planes.
     fn new(input: &'a SurfaceInput<'a>, picture: &Picture<'_>) -> Option<Self> {
         let (width, height) = (input.view.width(), input.view.height());
         picture.wants_planes().then(|| Self {
@@ -326,7 +326,7 @@ impl Rows<'_> {
     }
 }
 
-/// A point of an item at a pixel of a row, whose sums are numbered by columns.
+/// Returns A point of an item at a pixel of a row, whose sums are numbered by columns.
 fn point_at(item: u32, at: [i32; 2], weight: f32) -> ShadingPoint {
     ShadingPoint { item, at, pixel: at[0] as u32, weight }
 }
@@ -349,7 +349,8 @@ fn part_of_row<S: Simd, T: Tracer<Step>>(
     done
 }
 
-/// The colour of a pixel with blended fragments, premultiplied, without the background's share.
+/// Returns the colour of a pixel with blended fragments, premultiplied, without the background's
+/// share.
 fn blended(
     pixel: &mut Pixel,
     place: &Place<'_>,

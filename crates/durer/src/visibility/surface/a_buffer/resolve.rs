@@ -6,7 +6,7 @@ use crate::visibility::surface::LEAST_THROUGH;
 use crate::visibility::surface::setup::ScreenTriangle;
 use std::cmp::Ordering;
 
-/// What the fragments of one pixel share in its colour.
+/// Shares of one pixel's fragments in its colour.
 #[derive(Debug, Default)]
 pub struct Pixel {
     /// Front to back by the nearest depth; one per item.
@@ -17,11 +17,11 @@ pub struct Pixel {
     order: Vec<u64>,
     /// The sub-pixels at which each is seen.
     visible: Vec<u64>,
-    /// What the background shares.
+    /// Share of the background.
     pub background: f32,
 }
 
-/// Where the pixel is, and what its fragments come from.
+/// Position of the pixel, and the faces of its fragments.
 #[derive(Clone, Copy)]
 pub struct Place<'a> {
     pub triangles: &'a [ScreenTriangle],
@@ -81,7 +81,7 @@ impl Pixel {
         }
     }
 
-    /// Whether something can be seen through.
+    /// Returns whether something can be seen through.
     #[inline(always)]
     pub fn is_blended(&self) -> bool {
         self.fragments.iter().any(|f| f.blended)
@@ -120,7 +120,7 @@ impl Pixel {
         self.background = left;
     }
 
-    /// The sub-pixels at which a fragment is seen; `twice` are those that several cover.
+    /// Returns the sub-pixels at which a fragment is seen; `twice` are those that several cover.
     #[inline(always)]
     fn seen_of(&self, i: usize, twice: u64, place: &Place<'_>) -> u64 {
         let f = &self.fragments[i];
@@ -143,8 +143,8 @@ impl Pixel {
         visible
     }
 
-    /// Where the masks leave no background, it gets no more than the areas leave; what small
-    /// fragments lost to neighbours goes to all that is seen.
+    /// Limits the background's share to that of the areas if the masks leave none; the loss of
+    /// small fragments to their neighbours goes to everything visible.
     #[inline(always)]
     fn give_to_all(&mut self, left: f32) -> f32 {
         let areas: f32 = self.fragments.iter().map(|f| f.area).sum();
@@ -157,8 +157,8 @@ impl Pixel {
         left
     }
 
-    /// Where the masks leave no background, what the areas leave belongs to fragments that go on
-    /// behind others.
+    /// Gives the rest of the areas to fragments that continue behind others, if the masks leave no
+    /// background.
     #[inline(always)]
     fn give_to_half_hidden(&mut self, mut left: f32) -> f32 {
         for ((f, share), &visible) in self.fragments.iter().zip(&mut self.shares).zip(&self.visible)
@@ -172,7 +172,7 @@ impl Pixel {
         left
     }
 
-    /// Whether the fragments come one behind the other in the same order at all sub-pixels.
+    /// Returns whether the fragments come one behind the other in the same order at all sub-pixels.
     pub fn is_in_order(&self) -> bool {
         self.fragments.iter().enumerate().all(|(i, f)| {
             let near = self.fragments[i + 1..].iter().take_while(|behind| behind.z_min <= f.z_max);
@@ -278,7 +278,7 @@ fn order(a: &Fragment, b: &Fragment) -> Ordering {
     depths.then(a.area.total_cmp(&b.area)).then(a.mask.cmp(&b.mask)).then(a.item.cmp(&b.item))
 }
 
-/// The depth of a fragment at a sub-pixel.
+/// Returns the depth of a fragment at a sub-pixel.
 fn depth_at(f: &Fragment, [u, v]: [f32; 2], place: &Place<'_>) -> f32 {
     let t = &place.triangles[f.triangle as usize];
     let [ox, oy] = t.origin();
@@ -299,7 +299,7 @@ fn merge(kept: &mut Fragment, piece: &Fragment) -> bool {
     true
 }
 
-/// The priority mask of two fragments: the sub-pixels at which `a` lies in front of `b`.
+/// Returns the priority mask of two fragments: the sub-pixels at which `a` lies in front of `b`.
 ///
 /// Where their depths overlap, the difference of the planes is itself a linear function on the pixel,
 /// and its mask is looked up like an edge's.

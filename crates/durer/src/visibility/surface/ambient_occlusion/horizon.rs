@@ -34,7 +34,7 @@ const JITTER: [f32; 16] = [
     0.03, 0.53, 0.28, 0.78, 0.16, 0.66, 0.41, 0.91, 0.09, 0.59, 0.34, 0.84, 0.22, 0.72, 0.47, 0.97,
 ];
 
-/// How far and in which directions is looked.
+/// Directions and distances of samples.
 pub struct Surroundings {
     radius: f32,
     per_radius_squared: f32,
@@ -59,7 +59,7 @@ impl Surroundings {
         }
     }
 
-    /// Where pixels of a turn look that look as far as `reach` pixels.
+    /// Returns the samples of the pixels of a turn, up to a distance of `reach` pixels.
     fn looks(&self, turn: usize, reach: f32) -> Looks {
         let slice = |i: usize| {
             let along = self.directions[i * PATTERN * PATTERN + turn];
@@ -125,12 +125,12 @@ struct Points<S: Simd> {
     y: i32,
     place: Vec3x16<S>,
     normal: Vec3x16<S>,
-    /// Where anything is shown.
+    /// True for pixels that show anything.
     shown: mask32x16<S>,
 }
 
 impl<S: Simd> Points<S> {
-    /// Those from the column `x` on; `None` where they show nothing.
+    /// Returns those from the column `x` on; `None` where they show nothing.
     #[inline(always)]
     fn get(simd: S, planes: &Planes, x: i32, y: i32) -> Option<Self> {
         let at = planes.place(x, y);
@@ -146,7 +146,7 @@ impl<S: Simd> Points<S> {
     }
 }
 
-/// The places that sixteen pixels show, relative to the eye; NaN where nothing is.
+/// Returns the places that sixteen pixels show, relative to the eye; NaN where nothing is.
 #[inline(always)]
 fn place_of<S: Simd>(simd: S, planes: &Planes, x: i32, y: i32) -> Vec3x16<S> {
     let at = planes.place(x, y);
@@ -184,7 +184,7 @@ pub fn light_of_row<S: Simd>(
     }
 }
 
-/// The part of the light that gets to sixteen pixels: those that look equally far together.
+/// Returns the part of the light that gets to sixteen pixels: those that look equally far together.
 #[inline(always)]
 fn light<S: Simd>(
     simd: S,
@@ -224,7 +224,7 @@ fn light<S: Simd>(
     light
 }
 
-/// The light above the horizons of all slices, summed.
+/// Returns the light above the horizons of all slices, summed.
 #[inline(always)]
 fn light_above<S: Simd>(
     simd: S,
@@ -263,7 +263,7 @@ fn light_above<S: Simd>(
     sum
 }
 
-/// The cosine of the highest horizon to one side.
+/// Returns the cosine of the highest horizon to one side.
 #[inline(always)]
 fn highest<S: Simd>(
     simd: S,
@@ -293,7 +293,7 @@ fn highest<S: Simd>(
     highest.max(splat(-1.0)).min(splat(1.0))
 }
 
-/// The light between the direction to the eye and the horizon of one side.
+/// Returns the light between the direction to the eye and the horizon of one side.
 #[inline(always)]
 fn arc<S: Simd>(simd: S, side: f32, cos_h: f32x16<S>, [cos_n, sin_n]: [f32x16<S>; 2]) -> f32x16<S> {
     let one = f32x16::splat(simd, 1.0);
@@ -324,7 +324,7 @@ pub fn mean_of_row<S: Simd>(
     }
 }
 
-/// The mean of what is on the same surface as each of sixteen pixels; 1 where nothing is.
+/// Returns the mean of what is on the same surface as each of sixteen pixels; 1 where nothing is.
 #[inline(always)]
 fn mean<S: Simd>(
     simd: S,
@@ -355,25 +355,26 @@ fn mean<S: Simd>(
     weights.simd_gt(splat(0.0)).select(sum / weights, splat(1.0))
 }
 
-/// The nearest whole number; half goes away from zero.
+/// Returns the nearest whole number; half goes away from zero.
 fn nearest(v: f32) -> i32 {
     // Without SSE 4.1 rounding is a call.
     (v + 0.5_f32.copysign(v)) as i32
 }
 
-/// The next number below with two bits after its first, so that neighbours look equally far.
+/// Returns the next number below with two bits after its first, so that neighbours look equally
+/// far.
 fn rounded_down(reach: f32) -> f32 {
     f32::from_bits(reach.to_bits() & 0xffe0_0000)
 }
 
-/// One of the directions in half a turn, in order.
+/// Returns one of the directions in half a turn, in order.
 fn direction(part: usize) -> Vec2 {
     let angle = PI * part as f32 / (SLICES * PATTERN * PATTERN) as f32;
     Vec2::new(libm::cosf(angle), libm::sinf(angle))
 }
 
-/// The angle in 0…π of a cosine in −1…1, to 7 · 10⁻⁵: M. Abramowitz, I. Stegun, *Handbook of Mathematical
-/// Functions*, 1964, formula 4.4.45.
+/// Returns the angle in 0…π of a cosine in −1…1, to 7 · 10⁻⁵: M. Abramowitz, I. Stegun, *Handbook of
+/// Mathematical Functions*, 1964, formula 4.4.45.
 #[inline(always)]
 fn arc_cos<S: Simd>(simd: S, x: f32x16<S>) -> f32x16<S> {
     let zero = f32x16::splat(simd, 0.0);

@@ -40,13 +40,13 @@ pub const INFO: Info = Info {
 /// its depth.
 const OPEN: f32 = 0.98;
 
-/// How occlusion is found and shown.
+/// Options for finding and showing occlusion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// How far away things may be that take light away, world units, above 0. A tenth to a fifth of the
-    /// model's size shows how its parts lie to each other.
+    /// Largest distance of things that take light away, world units, above 0. A tenth to a fifth of the
+    /// model's size shows how its parts lie relative to each other.
     pub radius: f64,
-    /// How much of the light is taken away at full occlusion, 0…1.
+    /// Share of the light that full occlusion takes away, 0…1.
     pub strength: f32,
 }
 

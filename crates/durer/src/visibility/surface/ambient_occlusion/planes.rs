@@ -1,4 +1,4 @@
-//! What a picture shows, as planes that hold each fourth pixel of a row side by side.
+//! The planes of a picture that hold each fourth pixel of a row side by side.
 
 use super::horizon::{FARTHEST, LANES, PATTERN};
 use crate::math::{DMat4, DVec4, Vec3};
@@ -7,7 +7,7 @@ use crate::scene::Projection;
 use crate::target::Pixels;
 use crate::view::View;
 
-/// How many columns that take turns are kept apart, as a shift.
+/// Number of alternating columns that are kept apart, as a shift.
 const PHASES_SHIFT: u32 = PATTERN.trailing_zeros();
 
 /// Numbers before and after those of a row, so that looks beyond the picture find that nothing is there.
@@ -72,13 +72,13 @@ impl Planes {
         self.row_len() * self.height as usize
     }
 
-    /// The place of a pixel in its row.
+    /// Returns the place of a pixel in its row.
     fn in_row(&self, x: usize) -> usize {
         x % PATTERN * self.stride + MARGIN + x / PATTERN
     }
 
-    /// The place of the pixel at the column `x`, which may lie up to [`FARTHEST`] + 1 beside the picture, of a row that there is,
-    /// and from which on every fourth pixel to the right lies.
+    /// Returns the place of the pixel at the column `x`, which may lie up to [`FARTHEST`] + 1 beside the
+    /// picture, of a row that there is, and from which on every fourth pixel to the right lies.
     #[inline(always)]
     pub fn place(&self, x: i32, y: i32) -> usize {
         let phase = x as usize % PATTERN;
@@ -87,7 +87,7 @@ impl Planes {
     }
 }
 
-/// How a pixel and its depth become a place, in the directions of the screen.
+/// Mapping from a pixel and its depth to a position, in the directions of the screen.
 pub struct Lens {
     /// To the right, down the screen, and back to the eye; world axes.
     axes: [Vec3; 3],
@@ -97,7 +97,7 @@ pub struct Lens {
     /// The other two coordinates of the pixel 0 before they are scaled, and what each further pixel adds.
     pub first: [f32; 2],
     pub step: [f32; 2],
-    /// What they are multiplied by: a constant, and how much more for each unit back to the eye.
+    /// Factor: a constant, and the increase for each unit back to the eye.
     pub scale: [f32; 2],
 }
 
@@ -124,7 +124,8 @@ impl Lens {
         }
     }
 
-    /// The coordinate back to the eye and the unit normal of what a pixel shows, where both are finite.
+    /// Returns the coordinate back to the eye and the unit normal of what a pixel shows, where both are
+    /// finite.
     fn point(&self, [x, y]: [u32; 2], depth: f32, normal: Vec3) -> Option<(f32, Vec3)> {
         let [slope, constant, slope_below, below] = self.back;
         let depth = f64::from(depth);

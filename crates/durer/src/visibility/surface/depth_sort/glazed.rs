@@ -10,7 +10,7 @@ use crate::visibility::surface::lit::{Lighting, Lit};
 use crate::visibility::surface::picture;
 use crate::visibility::surface::visible::{Visible, pixels_of, write};
 
-/// What is opaque so far, and the sum of what was blended over it since.
+/// Opaque colour so far, and the sum of everything blended over it since.
 pub struct Glazed<'a> {
     input: &'a SurfaceInput<'a>,
     blended: TriangleSet,

@@ -53,7 +53,7 @@ pub const INFO: Info = Info {
     limits: "one sample per pixel",
 };
 
-/// What the picture is to have.
+/// Options for the planes of the picture.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Options {
     /// Shading and background.
@@ -78,7 +78,7 @@ pub enum Test {
 }
 
 impl Test {
-    /// The test's number as it is taught; the last one is none of the paper's.
+    /// Returns the test's number as it is taught; the last one is none of the paper's.
     pub const fn number(self) -> &'static str {
         match self {
             Self::Depths => "1",
@@ -91,7 +91,7 @@ impl Test {
     }
 }
 
-/// What there is to see. Polygons have numbers: first the triangles of the input, then pieces.
+/// Step of the algorithm. Polygons have numbers: first the triangles of the input, then pieces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A polygon is the farthest that is left (or the one whose turn it is), or was moved before it: is
@@ -116,7 +116,7 @@ pub enum Step {
     },
     /// A polygon is cut in two.
     Split {
-        /// Which.
+        /// Number of the polygon.
         polygon: u32,
         /// By what.
         cut: Cut,
@@ -125,7 +125,7 @@ pub enum Step {
     },
     /// A polygon is painted next.
     Place {
-        /// Which.
+        /// Number of the polygon.
         polygon: u32,
     },
 }
@@ -137,12 +137,12 @@ pub struct ScreenPolygon {
     pub triangle: u32,
     /// Its item.
     pub item: u32,
-    /// Which part of the triangle it is, where that was split.
+    /// Part of the triangle that it is, if the triangle was split.
     pub part: Option<Part>,
 }
 
 impl ScreenPolygon {
-    /// The corners, in pixels, x right and y down; convex, in one sense or the other.
+    /// Returns the corners, in pixels, x right and y down; convex, in one sense or the other.
     pub fn outline(&self, input: &SurfaceInput<'_>) -> Vec<DVec2> {
         match &self.part {
             Some(part) => part.outline.clone(),
@@ -163,7 +163,7 @@ impl ScreenPolygon {
     }
 }
 
-/// The vertices of a triangle in pixels.
+/// Returns the vertices of a triangle in pixels.
 fn corners(t: &ScreenTriangle) -> [DVec2; 3] {
     [0, 1, 2].map(|i| DVec2::new(unsnap(t.x[i]), unsnap(t.y[i])))
 }
@@ -193,8 +193,8 @@ pub fn order_after(
     order_within(input, previous, COMPARISONS.saturating_add(more), t)
 }
 
-/// So many comparisons are made at most, some seconds' worth, and so many more for each triangle. Models of surfaces
-/// take some hundred per triangle.
+/// Limit on the comparisons, some seconds' worth, and as many more for each triangle. Models of surfaces take some
+/// hundred per triangle.
 const COMPARISONS: u64 = 1 << 26;
 const COMPARISONS_PER_TRIANGLE: u64 = 4096;
 
@@ -236,8 +236,8 @@ fn order_within(
     Ok(polygons)
 }
 
-/// Of each triangle of an input how early it stood in an order, the greater the earlier; those that
-/// stood in none come first, by depth.
+/// Returns the rank of each triangle of an input in an order, greater for earlier ones; those that
+/// are in no order come first, by depth.
 fn turns(input: &SurfaceInput<'_>, previous: &[u32]) -> Vec<u32> {
     let mut places: Vec<(u32, u32)> = previous.iter().copied().zip(0..).collect();
     // Where an item was in pieces, its first one counts.
@@ -308,7 +308,7 @@ const LOOKS_PER_COMPARISON: u64 = 16;
 struct Sorter<'a> {
     pieces: Pieces<'a>,
     tiles: Tiles,
-    /// Of each triangle when it is to be looked at, the greater the earlier.
+    /// Rank of each triangle, greater for those to compare earlier.
     turns: Vec<u32>,
     /// By turn, of one turn farthest first.
     queue: BinaryHeap<(u32, Key)>,
@@ -319,14 +319,14 @@ struct Sorter<'a> {
     /// The round in which a polygon was last tested.
     seen: Vec<u32>,
     round: u32,
-    /// How often a tile's list was looked into; a comparison is so many looks.
+    /// Number of lookups in a tile's list; a comparison counts as several.
     looks: u64,
     /// The polygon in question, below it those that wait for it.
     stack: Vec<u32>,
 }
 
 impl Sorter<'_> {
-    /// The polygon in question.
+    /// Returns the polygon in question.
     fn next(&mut self) -> Option<u32> {
         while self.stack.is_empty() {
             let next = self.queue.pop()?.1.polygon;
@@ -368,7 +368,7 @@ impl Sorter<'_> {
         true
     }
 
-    /// A polygon that P must not be painted before.
+    /// Returns A polygon that P must not be painted before.
     fn obstacle(&mut self, p: u32, t: &mut impl Tracer<Step>) -> Option<(u32, Verdict)> {
         self.round += 1;
         self.seen[p as usize] = self.round;
@@ -445,7 +445,7 @@ mod tests {
     use crate::visibility::surface::Cull;
     use crate::visibility::surface::setup::Filter;
 
-    /// Triangles around the origin, turned against each other: each penetrates all others.
+    /// Returns triangles around the origin, turned against each other: each penetrates all others.
     fn penetrating(count: u32) -> Scene {
         let corner = |i: u32, k: u32| {
             let [a, b] = [f64::from(i * 7 + k * 40), f64::from(i * 3 + k * 50)].map(|v| v * 0.7);

@@ -11,7 +11,7 @@ use crate::visibility::surface::visible::nearer;
 /// A line that cuts a polygon in two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Cut {
-    /// Where the polygon meets the plane of another; its inner side is nearer.
+    /// Intersection of the polygon with the plane of another; its inner side is nearer.
     Plane {
         /// The other polygon.
         of: u32,
@@ -30,7 +30,7 @@ pub enum Cut {
 }
 
 impl Cut {
-    /// The cuts that may separate a polygon from another.
+    /// Returns the cuts that may separate a polygon from another.
     pub(super) fn along(of: u32) -> [Self; 4] {
         let edge = |edge| Self::Edge { of, edge };
         [Self::Plane { of }, edge(0), edge(1), edge(2)]
@@ -68,7 +68,7 @@ pub struct Piece {
 pub struct Pieces<'a> {
     pub triangles: &'a [ScreenTriangle],
     pub covers: Vec<Cover>,
-    /// How far the depths at pixels may lie off the triangles' planes.
+    /// Largest distance of depths at pixels from the triangles' planes.
     pub slack: Vec<f64>,
     list: Vec<Piece>,
 }
@@ -118,14 +118,14 @@ impl<'a> Pieces<'a> {
         Key { depth, item: self.triangle(polygon).item, polygon }
     }
 
-    /// A polygon for the result.
+    /// Returns A polygon for the result.
     pub fn polygon(&mut self, polygon: u32) -> ScreenPolygon {
         let item = self.triangle(polygon).item;
         let piece = &mut self.list[polygon as usize];
         ScreenPolygon { triangle: piece.triangle, item, part: piece.part.take() }
     }
 
-    /// The pixels of a polygon within a window, row by row.
+    /// Returns the pixels of a polygon within a window, row by row.
     pub fn spans(&self, polygon: u32, w: &Window) -> Vec<Span> {
         let mut spans = Vec::new();
         let piece = self.get(polygon);
@@ -142,7 +142,7 @@ impl<'a> Pieces<'a> {
         spans
     }
 
-    /// Depth and item of a polygon's triangle at a pixel.
+    /// Returns the depth and item of a polygon's triangle at a pixel.
     pub fn at(&self, polygon: u32, x: i32, y: i32) -> (f32, u32) {
         let t = self.triangle(polygon);
         (SampleGrid::PIXELS.depth(t, x, y), t.item)
@@ -182,7 +182,7 @@ impl<'a> Pieces<'a> {
         self.len() - 1
     }
 
-    /// The pixels on the inner and the outer side of a cut.
+    /// Returns the pixels on the inner and the outer side of a cut.
     fn share_out(&self, polygon: u32, spans: &[Span], cut: Cut) -> [Vec<Span>; 2] {
         let mut sides = [Vec::new(), Vec::new()];
         for s in spans {
@@ -220,7 +220,7 @@ impl<'a> Pieces<'a> {
         [half(&outline, &values, 1.0), half(&outline, &values, -1.0)]
     }
 
-    /// A linear function of the screen, positive on the inner side of a cut.
+    /// Returns A linear function of the screen, positive on the inner side of a cut.
     fn inward(&self, polygon: u32, cut: Cut, p: DVec2) -> f64 {
         match cut {
             Cut::Plane { of } => {
@@ -237,15 +237,15 @@ impl<'a> Pieces<'a> {
     }
 }
 
-/// The depth of a triangle's plane at a point of the screen, in pixels.
+/// Returns the depth of a triangle's plane at a point of the screen, in pixels.
 pub fn on_plane(t: &ScreenTriangle, p: DVec2) -> f64 {
     let [ox, oy] = t.origin().map(|o| f64::from(o) + 0.5);
     let (dx, dy) = (f64::from(t.depth_dx), f64::from(t.depth_dy));
     f64::from(t.depth) + (dx * (p.x - ox) + dy * (p.y - oy))
 }
 
-/// How far depths at pixels may lie off the plane: by rounding, and because they are kept to the
-/// range of the vertices' depths, which the snapped vertices may leave.
+/// Returns the largest distance of depths at pixels from the plane: by rounding, and because they
+/// are kept to the range of the vertices' depths, which the snapped vertices may leave.
 fn slack(t: &ScreenTriangle) -> f64 {
     let depths = corners(t).map(|p| on_plane(t, p));
     let (min, max) = (f64::from(t.depth_min), f64::from(t.depth_max));
@@ -269,7 +269,7 @@ fn box_of(spans: &[Span]) -> Option<Window> {
     Some(Window { x0, y0: first.y, x1, y1: last.y + 1 })
 }
 
-/// The part of a convex outline where `sign · values` is positive.
+/// Returns the part of a convex outline where `sign · values` is positive.
 fn half(outline: &[DVec2], values: &[f64], sign: f64) -> Vec<DVec2> {
     let mut kept = Vec::new();
     for (i, (&b, &vb)) in outline.iter().zip(values).enumerate() {

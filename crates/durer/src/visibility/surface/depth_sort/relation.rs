@@ -5,7 +5,7 @@ use super::{Test, corners};
 use crate::visibility::surface::setup::ScreenTriangle;
 use crate::visibility::surface::visible::nearer;
 
-/// What the tests say of P, which is to be painted before Q.
+/// Result of the tests on P, which is to be painted before Q.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// It may be, by this test.
@@ -76,7 +76,7 @@ impl Pieces<'_> {
     }
 }
 
-/// Whether all over `area` the plane of `back` is behind that of `front`, beyond doubt.
+/// Returns whether all over `area` the plane of `back` is behind that of `front`, beyond doubt.
 fn lies_behind(
     area: &ScreenTriangle,
     back: &ScreenTriangle,
@@ -86,8 +86,8 @@ fn lies_behind(
     corners(area).into_iter().all(|v| on_plane(back, v) - on_plane(front, v) > slack)
 }
 
-/// Whether an edge of `a` has all of `b` on its outer side; exact. Triangles that only touch cover
-/// no pixel in common.
+/// Returns whether an edge of `a` has all of `b` on its outer side; exact. Triangles that only
+/// touch cover no pixel in common.
 fn separated(a: &ScreenTriangle, b: &ScreenTriangle) -> bool {
     (0..3).any(|i| {
         let j = (i + 1) % 3;

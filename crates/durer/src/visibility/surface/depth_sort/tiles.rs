@@ -30,7 +30,7 @@ impl Tiles {
         tiles
     }
 
-    /// The tiles that a window of pixels of the screen has a part in.
+    /// Returns the tiles that a window of pixels of the screen has a part in.
     pub fn of(&self, w: &Window) -> impl Iterator<Item = usize> + use<> {
         let columns = self.columns;
         let end = |v: i32| (v + TILE - 1) / TILE;
@@ -45,7 +45,7 @@ impl Tiles {
         *first += left.iter().take_while(|key| done[key.polygon as usize]).count();
     }
 
-    /// The polygon at a place of a tile's list, which may be done.
+    /// Returns the polygon at a place of a tile's list, which may be done.
     pub fn get(&self, tile: usize, place: usize) -> Option<u32> {
         self.lists[tile].get(self.first[tile] + place).map(|key| key.polygon)
     }

@@ -34,18 +34,18 @@ struct Waiting {
     to: Destination,
 }
 
-/// What becomes of colours.
+/// Destination of colours.
 enum Destination {
     /// They are those of pixels.
     Pixels {
         /// The items that they show; [`NO_ITEM`] where they show none.
         shown: [u32; 16],
-        /// Where the two halves go.
+        /// Places of the two halves.
         places: [usize; 2],
     },
     /// They are parts of those of pixels, whose other parts wait before and behind.
     Share {
-        /// How much they weigh.
+        /// Weights of the colours.
         weight: [f32; 16],
         /// After the last part: where the two halves go.
         places: Option<[usize; 2]>,
@@ -129,7 +129,7 @@ impl Batch {
         true
     }
 
-    /// The normals of an item, if it may wait with the others.
+    /// Returns the normals of an item, if it may wait with the others.
     #[inline(always)]
     fn plane_of<'l>(&mut self, lit: &'l mut Lit<'_>, item: u32) -> Option<&'l NormalPlane> {
         if item == NO_ITEM {

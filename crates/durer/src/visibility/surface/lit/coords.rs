@@ -8,7 +8,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x16};
 
 impl<'a> Lit<'a> {
-    /// The texture coordinates at the pixels of a set, all of one run.
+    /// Returns the texture coordinates at the pixels of a set, all of one run.
     #[inline(always)]
     pub(super) fn coords_by_pixel<S: Simd>(
         &mut self,
@@ -28,8 +28,8 @@ impl<'a> Lit<'a> {
         gathered.coordinates(simd, changing)
     }
 
-    /// The same: at all sixteen pixels of each triangle, of which those that show it are taken. Pixels not in
-    /// the set have coordinates near to the others'.
+    /// Returns the same: at all sixteen pixels of each triangle, of which those that show it are taken.
+    /// Pixels not in the set have coordinates near to the others'.
     #[inline(always)]
     pub(super) fn coords_by_triangle<S: Simd>(
         &mut self,

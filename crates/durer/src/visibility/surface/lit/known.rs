@@ -14,7 +14,7 @@ pub struct KnownNormals {
     any: bool,
     /// Whose normal each sample has here; [`NO_ITEM`] where there is none.
     items: Vec<u32>,
-    /// Where pixels have several samples: which of the normals each has.
+    /// Index of each sample's normal, for pixels of several samples.
     places: Vec<u32>,
     /// The normals, and a number that means nothing: by pixel where pixels have one sample.
     normals: Vec<[f32; 4]>,
@@ -22,7 +22,7 @@ pub struct KnownNormals {
     samples: usize,
 }
 
-/// Which of sixteen pixels' normals are known, and the normals.
+/// Mask of the pixels among sixteen whose normals are known, and the normals.
 pub type Known<S> = (mask32x16<S>, Vec3Lane<f32x16<S>>);
 
 impl KnownNormals {
@@ -78,7 +78,7 @@ impl KnownNormals {
         }
     }
 
-    /// Whether there are any.
+    /// Returns whether there are any.
     pub fn any(&self) -> bool {
         self.any
     }
@@ -99,13 +99,14 @@ impl KnownNormals {
         shown.simd_eq(u32x16::from_slice(simd, &self.items[sample..sample + 16]))
     }
 
-    /// Of eight pixels in a row those whose normals of the items that they show are known.
+    /// Returns the pixels among eight in a row for which the normals of their items are known.
     #[inline(always)]
     pub fn of_eight<S: Simd>(&self, simd: S, pixel: usize, shown: u32x8<S>) -> mask32x8<S> {
         shown.simd_eq(u32x8::from_slice(simd, &self.items[pixel..pixel + 8]))
     }
 
-    /// Of twice eight pixels that all or in part show items those whose normals are known; and the normals.
+    /// Returns the pixels, among twice eight that show items in all or part of their samples, whose normals
+    /// are known; and the normals.
     #[inline(always)]
     pub fn of_patch<S: Simd>(
         &self,

@@ -1,4 +1,4 @@
-//! What is the same for all points that are lit: for a picture, and for the items of a run.
+//! The data that all lit points share: of a picture, and of the items of a run.
 
 use super::TEX_COORD_SETS;
 use crate::math::{DMat3, Vec2, Vec3};
@@ -9,7 +9,7 @@ use crate::view::View;
 use crate::visibility::surface::setup::Run;
 use crate::visibility::surface::triangles::Part;
 
-/// What all threads share.
+/// Data that all threads share.
 #[derive(Clone, Copy)]
 pub struct Lighting<'a> {
     pub scene: &'a Scene,
@@ -18,14 +18,14 @@ pub struct Lighting<'a> {
     pub materials: &'a PreparedMaterials<'a>,
     pub lights: &'a PreparedLights,
     pub shading: Option<Shading>,
-    /// How far from pixels' centres items may be found that are then lit there, in 1/256 pixel.
+    /// Largest distance from pixels' centres of items that are then lit there, in 1/256 pixel.
     pub reach: i32,
     /// The SIMD level to work at; all give the same bytes.
     pub level: Level,
 }
 
 impl<'a> Lighting<'a> {
-    /// Of tests: by the formula of each material.
+    /// Lights by the formula of each material, for tests.
     #[cfg(test)]
     pub fn by_material(
         (scene, view, runs): (&'a Scene, &'a View, &'a [Run]),
@@ -36,14 +36,14 @@ impl<'a> Lighting<'a> {
         Self { scene, view, runs, materials, lights, shading: None, reach, level }
     }
 
-    /// What lighting several pixels of plain materials asks of their triangles.
+    /// Returns the data of their triangles that lighting several pixels of plain materials needs.
     pub fn part(&self) -> Part {
         // Lights ask where points lie, or shadows which way their faces look.
         let more = !self.lights.shadows.is_empty() || !self.lights.points.is_empty();
         if more { Part::All } else { Part::Normals }
     }
 
-    /// Whether of triangles of a run nothing but normals is asked for, where these are settled.
+    /// Returns whether only normals are needed from triangles of a run, if these are settled.
     pub fn asks_for_normals(&self, run: usize) -> bool {
         self.part() == Part::Normals && self.run_info(run).plain
     }
@@ -84,14 +84,14 @@ impl<'a> Lighting<'a> {
         }
     }
 
-    /// A direction of a run's mesh along world axes.
+    /// Returns A direction of a run's mesh along world axes.
     pub fn world_axes(&self, run: usize, direction: Vec3) -> Vec3 {
         let world_from_mesh = self.scene.instances[self.runs[run].instance].world_from_mesh;
         DMat3::from_mat4(world_from_mesh).as_mat3() * direction
     }
 }
 
-/// What is the same for all items of a run.
+/// Properties that all items of a run share.
 #[derive(Clone, Copy)]
 pub struct RunInfo<'a> {
     pub run: usize,
@@ -100,16 +100,16 @@ pub struct RunInfo<'a> {
     pub mesh: &'a Mesh,
     pub material: &'a PreparedMaterial<'a>,
     pub shading: Shading,
-    /// Whether sixteen pixels can be shaded at a time.
+    /// True if sixteen pixels can be shaded at a time.
     pub plain: bool,
-    /// Whether several pixels can be lit at a time, after their textures were looked up one by one.
+    /// True if several pixels can be lit at a time, after their textures were looked up one by one.
     pub together: bool,
     /// By what sixteen pixels can also be looked up at a time.
     pub looked_up: Option<LookedUp<'a>>,
 }
 
 impl RunInfo<'_> {
-    /// Whether an item is of the run.
+    /// Returns whether an item is of the run.
     #[inline(always)]
     pub fn has(&self, item: u32) -> bool {
         item.wrapping_sub(self.first_item) < self.count
@@ -119,8 +119,8 @@ impl RunInfo<'_> {
 /// The one set of texture coordinates that a run's material uses.
 #[derive(Clone, Copy)]
 pub struct LookedUp<'a> {
-    /// Of the mesh's vertices.
+    /// Coordinates of the mesh's vertices.
     pub coords: &'a [Vec2],
-    /// Whether it matters how they change over the screen.
+    /// True if it matters how they change over the screen.
     pub changing: bool,
 }

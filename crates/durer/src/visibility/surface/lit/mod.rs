@@ -48,7 +48,7 @@ pub enum Seen {
 pub struct Lit<'a> {
     shared: Lighting<'a>,
     triangles: Triangles<'a>,
-    /// What lighting several pixels of plain materials asks of their triangles.
+    /// Returns the data of their triangles that lighting several pixels of plain materials needs.
     part: Part,
     /// The run of the latest item.
     latest: Option<RunInfo<'a>>,
@@ -79,7 +79,7 @@ impl<'a> Lit<'a> {
         Self { shared, triangles, part, latest: None, parallel_view, sight, reflected: None }
     }
 
-    /// The run of an item, and what it is made of.
+    /// Returns the run of an item, and what it is made of.
     #[inline(always)]
     fn run_info(&mut self, item: u32) -> RunInfo<'a> {
         match self.latest {
@@ -117,7 +117,7 @@ impl<'a> Lit<'a> {
         self.triangles.make_ready();
     }
 
-    /// Linear RGBA, straight alpha, of a point of an item under given lights.
+    /// Returns linear RGBA, straight alpha, of a point of an item under given lights.
     pub fn color_under(&mut self, item: u32, seen: Seen, lights: &PreparedLights) -> Vec4 {
         self.with_surface_seen(item, seen, |surface, material, _, shading| {
             // Light on corners or faces would not know what lights reach the point.
@@ -129,8 +129,8 @@ impl<'a> Lit<'a> {
         })
     }
 
-    /// Linear RGBA, straight alpha, of a whole face under given lights: flat shading, where the
-    /// material is not unlit.
+    /// Returns linear RGBA, straight alpha, of a whole face under given lights: flat shading, where
+    /// the material is not unlit.
     pub fn face_color(&mut self, item: u32, lights: &PreparedLights) -> Vec4 {
         let parallel = self.parallel_view;
         let weights = [1.0 / 3.0; 3];
@@ -147,30 +147,30 @@ impl<'a> Lit<'a> {
         })
     }
 
-    /// The alpha of a point of an item.
+    /// Returns the alpha of a point of an item.
     pub fn alpha(&mut self, item: u32, seen: Seen) -> f32 {
         self.with_surface_seen(item, seen, |surface, material, _, _| material.alpha(surface))
     }
 
-    /// The triangle of an item.
+    /// Returns the triangle of an item.
     pub fn triangle(&mut self, item: u32) -> &VisibleTriangle {
         let run = self.run_info(item).run;
         self.triangles.get(item, run)
     }
 
-    /// Linear RGBA, straight alpha, of an item at a pixel's centre.
+    /// Returns linear RGBA, straight alpha, of an item at a pixel's centre.
     pub fn color(&mut self, item: u32, x: i32, y: i32) -> Vec4 {
         self.with_surface(item, x, y, |surface, material, lights, shading| {
             shade_seen(surface, material, lights, shading)
         })
     }
 
-    /// Whether a masked surface is there at a pixel's centre.
+    /// Returns whether a masked surface is there at a pixel's centre.
     pub fn passes_mask(&mut self, item: u32, x: i32, y: i32) -> bool {
         self.with_surface(item, x, y, |surface, material, _, _| material.alpha(surface) > 0.0)
     }
 
-    /// Unit normal of an item at a pixel's centre, world axes, turned to the eye.
+    /// Returns unit normal of an item at a pixel's centre, world axes, turned to the eye.
     pub fn normal(&mut self, item: u32, x: i32, y: i32) -> Vec3 {
         let (view, run) = (self.sight.towards_eye([x, y]), self.run_info(item).run);
         let t = self.triangles.get(item, run);
@@ -243,7 +243,7 @@ impl<'a> Lit<'a> {
         use_it(&surface, material, self.shared.lights, shading)
     }
 
-    /// The light on the corners of a triangle, for shadings that interpolate it.
+    /// Returns the light on the corners of a triangle, for shadings that interpolate it.
     fn reflected(
         &mut self,
         item: u32,

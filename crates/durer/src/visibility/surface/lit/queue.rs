@@ -8,7 +8,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4};
 use fearless_simd_macros::simd;
 
-/// As many points wait as are lit together.
+/// Number of points that wait, and are lit together.
 const LANES: usize = 16;
 
 /// A point of an item, seen at the centre of a pixel.
@@ -20,7 +20,7 @@ pub struct ShadingPoint {
     pub at: [i32; 2],
     /// The number of the pixel whose sum the colour is added to.
     pub pixel: u32,
-    /// How much the colour weighs there.
+    /// Weight of the colour there.
     pub weight: f32,
 }
 
@@ -35,7 +35,7 @@ pub struct PointQueue {
     first_item: u32,
     items: [u32; LANES],
     at: [[i32; 2]; LANES],
-    /// Where each colour goes, and how much it weighs there.
+    /// Destination of each colour, and its weight there.
     shares: [(u32, f32); LANES],
     /// The points whose normals are in `normals`, as bits.
     known: u64,

@@ -1,4 +1,4 @@
-//! What items have of the samples of sixteen pixels.
+//! The shares of items in the samples of sixteen pixels.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x16};
@@ -10,21 +10,21 @@ pub const MOST_SAMPLES: usize = 16;
 pub struct Shares<'s, S: Simd> {
     /// By sample, four at a time.
     samples: &'s [[u32x16<S>; 4]],
-    /// Of each four samples the pixels whose item has not yet come, sixteen bits each.
+    /// Pixels of each four samples whose item has not yet come, sixteen bits each.
     left: [u64; MOST_SAMPLES / 4],
-    /// What one sample weighs.
+    /// Weight of one sample.
     share: f32x16<S>,
 }
 
 impl<'s, S: Simd> Shares<'s, S> {
-    /// Of pixels with these samples, four or a multiple.
+    /// Creates the shares of pixels with these samples, four or a multiple.
     #[inline(always)]
     pub fn new(simd: S, samples: &'s [u32x16<S>]) -> Self {
         let share = f32x16::splat(simd, 1.0 / samples.len() as f32);
         Self { samples: samples.as_chunks().0, left: [u64::MAX; MOST_SAMPLES / 4], share }
     }
 
-    /// The next item, which may be none, and how much it weighs in each pixel.
+    /// Returns the next item, which may be none, and how much it weighs in each pixel.
     #[inline(always)]
     pub fn next(&mut self, simd: S) -> Option<(u32, f32x16<S>)> {
         let (four, left) = self.samples.iter().zip(&self.left).find(|(_, left)| **left != 0)?;

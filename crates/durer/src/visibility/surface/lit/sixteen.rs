@@ -21,7 +21,7 @@ pub fn opaque<S: Simd>(simd: S, [r, g, b, _]: &[[f32; 16]; 4]) -> [f32x16<S>; 3]
     [r, g, f32x16::from_slice(simd, b)]
 }
 
-/// One vector where a mask is set, the other elsewhere.
+/// Returns one vector where a mask is set, the other elsewhere.
 #[inline(always)]
 fn chosen<S: Simd>(
     mask: mask32x16<S>,
@@ -124,7 +124,7 @@ impl<'a> Lit<'a> {
         [color.x.into(), color.y.into(), color.z.into(), alpha.into()]
     }
 
-    /// The same of a run that is lit together after its textures were looked up one by one.
+    /// Returns the same of a run that is lit together after its textures were looked up one by one.
     #[inline(always)]
     fn sampled_x16<S: Simd>(
         &mut self,
@@ -152,14 +152,14 @@ impl<'a> Lit<'a> {
         colors
     }
 
-    /// What the textures say of an item at a pixel's centre.
+    /// Returns the values of an item's textures at a pixel's centre.
     fn sample(&mut self, item: u32, x: i32, y: i32) -> Sample<'a> {
         self.with_surface(item, x, y, |surface, material, _, shading| {
             material.sample(surface, shading)
         })
     }
 
-    /// The normals of an item, where they are settled and nobody asks for more.
+    /// Returns the normals of an item, where they are settled and nobody asks for more.
     #[inline(always)]
     pub(super) fn settled_plane(&mut self, item: u32, run: usize) -> Option<&NormalPlane> {
         match self.part {
@@ -168,19 +168,19 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// Whether lights ask where points lie.
+    /// Returns whether lights ask where points lie.
     #[inline(always)]
     pub(super) fn with_positions(&self) -> bool {
         self.with_shadows() || !self.shared.lights.points.is_empty()
     }
 
-    /// Whether shadows ask where points lie and which way their faces look.
+    /// Returns whether shadows ask where points lie and which way their faces look.
     #[inline(always)]
     fn with_shadows(&self) -> bool {
         !self.shared.lights.shadows.is_empty()
     }
 
-    /// The points that the pixels of a set show, all of one run.
+    /// Returns the points that the pixels of a set show, all of one run.
     #[inline(always)]
     pub(super) fn points<S: Simd>(
         &mut self,
@@ -228,7 +228,8 @@ impl<'a> Lit<'a> {
         points
     }
 
-    /// The points, each gathered from its triangle; of some, as bits, the normals may be known, which are settled then.
+    /// Returns the points, each gathered from its triangle; of some, as bits, the normals may be known, which
+    /// are settled then.
     #[inline(always)]
     pub(super) fn points_by_pixel<S: Simd>(
         &mut self,
@@ -275,7 +276,7 @@ impl<'a> Lit<'a> {
         Points { position, view, normal, faces }
     }
 
-    /// The points: of each triangle at all pixels, of which those that show it are taken.
+    /// Returns the points: of each triangle at all pixels, of which those that show it are taken.
     #[inline(always)]
     fn points_by_triangle<S: Simd>(
         &mut self,
@@ -323,7 +324,8 @@ impl<'a> Lit<'a> {
         Points { position, view, normal, faces }
     }
 
-    /// The unit normals of the sides of faces that the pixels of a set show, and other vectors elsewhere.
+    /// Returns the unit normals of the sides of faces that the pixels of a set show, and other vectors
+    /// elsewhere.
     #[inline(always)]
     fn face_normals<S: Simd>(
         &mut self,

@@ -16,7 +16,7 @@ use crate::visibility::surface::setup::runs;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, u32x16};
 
-/// Where the eye is.
+/// Options for the camera.
 const EYE: DVec3 = DVec3::new(0.3, 0.2, 4.0);
 
 /// Triangles of a run.
@@ -40,8 +40,8 @@ impl Numbers {
     }
 }
 
-/// Two runs of triangles that look all ways; every fourth is nearly or wholly edge-on, some have normals that are
-/// not on their front's side, or none.
+/// Returns two runs of triangles that look all ways; every fourth is nearly or wholly edge-on, some have
+/// normals that are not on their front's side, or none.
 fn scene() -> Scene {
     let mut numbers = Numbers(7);
     let mesh = |numbers: &mut Numbers| {
@@ -106,14 +106,15 @@ fn bits(colors: &[[f32; 16]; 4], items: &[u32; 16]) -> Bits {
     shown.map(|i| [0, 1, 2].map(|k| colors[k][i].to_bits())).collect()
 }
 
-/// Whether an item may be lit at a pixel: normals of settled triangles are only good where the triangle is.
+/// Returns whether an item may be lit at a pixel: normals of settled triangles are only good where the
+/// triangle is.
 fn may_be_lit(lit: &mut Lit<'_>, item: u32, [x, y]: [i32; 2]) -> bool {
     let t = lit.triangle(item);
     let ([constant, dx, dy], [x, y]) = t.edge_functions(x, y);
     !t.normals.settled || (0..3).all(|i| dx[i] * x + dy[i] * y + constant[i] >= -0.1)
 }
 
-/// The pixel in the middle of an item.
+/// Returns the pixel in the middle of an item.
 fn middle(lit: &mut Lit<'_>, item: u32) -> [i32; 2] {
     let [a, b, c] = lit.triangle(item).positions();
     let view = lit.shared.view;
@@ -122,14 +123,14 @@ fn middle(lit: &mut Lit<'_>, item: u32) -> [i32; 2] {
     [at.x / at.w, at.y / at.w].map(|v| v as i32)
 }
 
-/// An item at all pixels of a patch.
+/// Returns an item at all pixels of a patch.
 fn of_one<S: Simd>(simd: S, lit: &mut Lit<'_>, item: u32, patch: Patch) -> [[f32; 16]; 4] {
     let mut colors = [[0.0; 16]; 4];
     Lit::colors_x16(simd, lit, u32x16::splat(simd, item), patch, &mut colors);
     colors
 }
 
-/// What pixels show whose samples show several items, as the sum of these by their weights; gives for how many patches
+/// Lights pixels whose samples show several items, as the sum of these by their weights; returns for how many patches
 /// that was found.
 fn light_samples<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usize {
     let (mut batch, mut found) = (Batch::default(), 0);

@@ -30,7 +30,7 @@ impl Box3 {
     }
 }
 
-/// How likely a ray meets a box of this extent, up to a factor.
+/// Probability that a ray meets a box of this extent, up to a factor.
 pub type Likelihood = fn(Vec3) -> f32;
 
 /// For rays of all directions: the surface.
@@ -181,7 +181,7 @@ fn split(boxes: &[Box3], part: &mut [u32], depth: u32, likelihood: Likelihood) -
     Some(left)
 }
 
-/// The bin before which to cut, by the cost of both sides.
+/// Returns the bin before which to cut, by the cost of both sides.
 fn best_cut(
     boxes: &[Box3],
     part: &[u32],

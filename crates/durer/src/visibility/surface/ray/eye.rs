@@ -1,4 +1,4 @@
-//! What rays from the eye see: something opaque, and what blends before it.
+//! The visible surfaces along rays from the eye: an opaque one, and blended ones before it.
 
 use super::primary::ScreenHit;
 use super::{Caster, RayKind, Step};
@@ -11,7 +11,7 @@ pub struct Eye<'a> {
     caster: &'a Caster<'a>,
     masks: Masks<'a>,
     stack: Vec<(u32, f32)>,
-    /// What blends on the way of the latest ray, far ones first.
+    /// Blended surfaces along the latest ray, far ones first.
     layers: Vec<Layer>,
 }
 
@@ -54,14 +54,14 @@ impl<'a> Eye<'a> {
         opaque
     }
 
-    /// Depth and item of what the latest ray, which found `opaque`, meets first.
+    /// Returns the depth and item of what the latest ray, which found `opaque`, meets first.
     pub fn nearest(&self, opaque: Option<ScreenHit>) -> Option<(f32, u32)> {
         let blended = self.layers.last().map(|l| (l.depth, l.item));
         blended.or(opaque.map(|o| (o.depth, o.item)))
     }
 
-    /// All that the latest ray, which found `opaque`, sees: first what is opaque, [`NO_ITEM`] where
-    /// nothing is, then what blends, far ones first.
+    /// Returns all that the latest ray, which found `opaque`, sees: first what is opaque,
+    /// [`NO_ITEM`] where nothing is, then what blends, far ones first.
     pub fn items(&self, opaque: Option<ScreenHit>) -> Vec<u32> {
         let opaque = opaque.map_or(NO_ITEM, |o| o.item);
         std::iter::once(opaque).chain(self.layers.iter().map(|l| l.item)).collect()

@@ -47,16 +47,16 @@ pub const INFO: Info = Info {
     limits: "lines and points are seen, but have no shadow and no mirror image",
 };
 
-/// What the picture is to have.
+/// Options for the planes of the picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// Shading and background.
     pub look: picture::Options,
-    /// Whether surfaces keep light from others.
+    /// Method that keeps light from surfaces in shadow.
     pub shadows: bool,
-    /// Whether rays are followed that mirrors reflect and transparent surfaces refract.
+    /// True if rays are followed that mirrors reflect and transparent surfaces refract.
     pub reflections: bool,
-    /// How often a ray may be reflected or refracted.
+    /// Number of times that a ray may be reflected or refracted.
     pub depth: u32,
     /// Refractive index of blended materials; 1 lets rays pass straight.
     pub refractive_index: f32,
@@ -78,7 +78,7 @@ impl Default for Options {
     }
 }
 
-/// Why a ray is cast.
+/// Purpose of a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RayKind {
     /// From the eye through a pixel's centre.
@@ -93,7 +93,7 @@ pub enum RayKind {
     Refraction,
 }
 
-/// What there is to see.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Step {
     /// The hierarchies are built; rays follow, pixel by pixel.
@@ -104,9 +104,9 @@ pub enum Step {
         x: i32,
         /// Row of its pixel.
         y: i32,
-        /// Why.
+        /// Reason of the failure.
         kind: RayKind,
-        /// How many reflections and refractions lie before it.
+        /// Number of reflections and refractions before it.
         generation: u32,
         /// The item that it hits first; for a shadow ray one that is in the way.
         hit: Option<u32>,
@@ -169,8 +169,8 @@ impl<'a> PrimaryRays<'a> {
         Self { input, rays: ScreenRays::new(&input.triangles, input.view) }
     }
 
-    /// What the rays through the pixels' centres hit first: column and row, window depth and item, row
-    /// by row; pixels that show nothing are left out. Cost: about O(log n) per pixel.
+    /// Returns the first hits of the rays through the pixels' centres: column and row, window depth
+    /// and item, row by row; pixels that show nothing are left out. Cost: about O(log n) per pixel.
     pub fn hits(&self) -> Vec<([i32; 2], (f32, u32))> {
         let Self { input, rays } = self;
         let options = Options::default();
@@ -206,13 +206,13 @@ struct Caster<'a> {
     options: &'a Options,
     rays: &'a ScreenRays<'a>,
     world: Option<WorldTriangles>,
-    /// What rays from the eye go through.
+    /// Surfaces that rays from the eye pass through.
     blended: Option<TriangleSet>,
     listens: bool,
 }
 
 impl Caster<'_> {
-    /// Whether one ray a pixel says all.
+    /// Returns whether one ray a pixel says all.
     fn is_plain(&self) -> bool {
         self.world.is_none() && self.blended.is_none() && self.options.samples == Samples::One
     }
@@ -260,7 +260,7 @@ impl Caster<'_> {
         band
     }
 
-    /// The mean of a pixel's samples, each with all that its ray sees.
+    /// Returns the mean of a pixel's samples, each with all that its ray sees.
     fn color(
         &self,
         whitted: &mut Whitted<'_>,

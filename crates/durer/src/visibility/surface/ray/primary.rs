@@ -33,8 +33,8 @@ impl<'a> ScreenRays<'a> {
         Self { triangles, bvh: Bvh::new(&boxes, face) }
     }
 
-    /// The nearest triangle at a point `offset` (1/256 pixel) from a pixel's centre of those that `hides`
-    /// says hide what is behind them; it is asked of hits before the nearest so far.
+    /// Returns the nearest triangle at a point `offset` (1/256 pixel) from a pixel's centre of those that
+    /// `hides` says hide what is behind them; it is asked of hits before the nearest so far.
     #[inline]
     pub fn cast(
         &self,
@@ -70,8 +70,8 @@ impl<'a> ScreenRays<'a> {
     }
 }
 
-/// The box of a triangle in 1/256 pixel and depth; coordinates far off the screen are brought near,
-/// so that `f32` holds them exactly.
+/// Returns the box of a triangle in 1/256 pixel and depth; coordinates far off the screen are
+/// brought near, so that `f32` holds them exactly.
 fn box_of(t: &ScreenTriangle, view: &View) -> Box3 {
     let range = |v: &[i32; 3], pixels: u32| {
         let end = (pixels as i32 + 1).saturating_mul(SUBPIXELS);
@@ -82,7 +82,7 @@ fn box_of(t: &ScreenTriangle, view: &View) -> Box3 {
     Box3 { min: Vec3::new(x0, y0, t.depth_min), max: Vec3::new(x1, y1, t.depth_max) }
 }
 
-/// Whether a triangle covers a point in 1/256 pixel, by the top-left rule.
+/// Returns whether a triangle covers a point in 1/256 pixel, by the top-left rule.
 #[inline]
 fn covers(t: &ScreenTriangle, [sx, sy]: [i32; 2]) -> bool {
     (0..3).all(|i| {

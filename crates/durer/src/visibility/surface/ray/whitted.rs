@@ -54,17 +54,17 @@ struct Point {
     /// Unit normals, turned to the viewer.
     normal: Vec3,
     face_normal: Vec3,
-    /// Whether the face's front is seen.
+    /// True if the face's front is seen.
     front: bool,
 }
 
-/// How a ray came to its point.
+/// Path of a ray to its point.
 #[derive(Clone, Copy)]
 struct Path {
     generation: u32,
-    /// How much of the pixel it makes up.
+    /// Share in the pixel's colour.
     weight: f32,
-    /// What is seen where nothing is hit; linear, premultiplied.
+    /// Colour if nothing is hit; linear, premultiplied.
     behind: Vec4,
 }
 
@@ -85,8 +85,9 @@ impl<'a> Whitted<'a> {
         }
     }
 
-    /// Linear premultiplied colour at a pixel's centre of what a ray from the eye sees: an item, or
-    /// [`crate::target::NO_ITEM`], and what was seen through without secondary rays, far ones first.
+    /// Returns linear premultiplied colour at a pixel's centre of what a ray from the eye sees: an
+    /// item, or [`crate::target::NO_ITEM`], and what was seen through without secondary rays, far
+    /// ones first.
     pub fn at_pixel(
         &mut self,
         stack: &[u32],
@@ -125,7 +126,7 @@ impl<'a> Whitted<'a> {
         Point { item, seen, position, view, normal, face_normal, front }
     }
 
-    /// Linear premultiplied colour of a point, with what is seen in and through it.
+    /// Returns linear premultiplied colour of a point, with what is seen in and through it.
     fn light(&mut self, world: &WorldTriangles, p: &Point, path: Path, hear: Hear<'_>) -> Vec4 {
         if self.options.shadows {
             self.find_reaching(world, p, path.generation, hear);
@@ -155,7 +156,7 @@ impl<'a> Whitted<'a> {
         color
     }
 
-    /// What a secondary ray sees.
+    /// Returns the colour along a secondary ray.
     fn follow(
         &mut self,
         world: &WorldTriangles,
@@ -183,8 +184,8 @@ impl<'a> Whitted<'a> {
         self.light(world, &point, path, hear)
     }
 
-    /// What a ray sees behind the last bounce: all that it goes through, straight on, up to the first
-    /// opaque surface.
+    /// Returns the colour of a ray after the last bounce: everything that it passes through, straight
+    /// on, up to the first opaque surface.
     fn straight_on(
         &mut self,
         world: &WorldTriangles,
@@ -213,7 +214,7 @@ impl<'a> Whitted<'a> {
         color + path.behind * left
     }
 
-    /// The nearest thing that a ray hits; for shadows, of what is not blended.
+    /// Returns the nearest thing that a ray hits; for shadows, of what is not blended.
     fn cast(&mut self, world: &WorldTriangles, ray: &Ray, shadow: bool) -> Option<WorldHit> {
         let Self { lit, stack, shared, .. } = self;
         world.nearest(ray, stack, |hit| {
@@ -276,7 +277,7 @@ impl<'a> Whitted<'a> {
         run.material.map_or(&self.default_material, |m| &self.shared.scene.materials[m])
     }
 
-    /// How much of the mirror image a point shows; textures have no say.
+    /// Returns the share of the mirror image in a point's colour; textures do not change it.
     fn mirrored_share(&self, p: &Point) -> Vec3 {
         let m = self.material(p.item);
         let (straight, roughness) = match m.model {
@@ -295,7 +296,7 @@ impl<'a> Whitted<'a> {
         (straight + (Vec3::ONE - straight) * grazing) * (smooth * smooth)
     }
 
-    /// Where a ray goes on through a surface; mirrored where it cannot leave.
+    /// Returns the direction of a ray behind a surface; mirrored if it cannot leave.
     fn refracted(&self, p: &Point) -> Vec3 {
         let index = self.options.refractive_index;
         let index = if index.is_finite() && index > 0.0 { index } else { 1.0 };
@@ -311,14 +312,14 @@ impl<'a> Whitted<'a> {
         (p.normal * (eta * cos - k.sqrt()) - p.view * eta).normalize_or(-p.view)
     }
 
-    /// What mirrors show where they show nothing of the scene: its surroundings, or the background where
-    /// these are but sky and ground; linear, premultiplied.
+    /// Returns the colour in mirrors that reflect nothing of the scene: its surroundings, or the
+    /// background if these are only sky and ground; linear, premultiplied.
     fn surroundings(&self, direction: Vec3) -> Vec4 {
         let mirrored = self.shared.lights.mirrored(direction);
         mirrored.map_or_else(|| self.sky(direction), |color| color.extend(1.0))
     }
 
-    /// The background in a direction; linear, premultiplied.
+    /// Returns the background in a direction; linear, premultiplied.
     fn sky(&self, direction: Vec3) -> Vec4 {
         premultiply(match self.options.look.background {
             Background::Color(color) => color,
@@ -334,7 +335,7 @@ fn reflected(view: Vec3, normal: Vec3) -> Vec3 {
     (normal * (2.0 * normal.dot(view)) - view).normalize_or(normal)
 }
 
-/// A ray that leaves a surface.
+/// Returns A ray that leaves a surface.
 fn leaving(p: &Point, direction: Vec3, to: f32) -> Ray {
     let from = p.position.abs().max_element() * CLEARANCE;
     Ray { origin: p.position, direction, from, to, leaves: p.item }

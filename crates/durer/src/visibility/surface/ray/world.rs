@@ -37,7 +37,7 @@ pub struct WorldTriangles {
 }
 
 impl WorldTriangles {
-    /// All triangles of the input's scene; lines and points have no place in the world.
+    /// Creates all triangles of the input's scene; lines and points have no place in the world.
     pub fn new(input: &SurfaceInput<'_>) -> Self {
         let (mut corners, mut items) = (Vec::new(), Vec::new());
         for run in &input.runs {
@@ -64,7 +64,7 @@ impl WorldTriangles {
         Self { corners, items, bvh: Bvh::new(&boxes, surface) }
     }
 
-    /// The nearest hit that `accept` lets count; of equally near ones the lower item.
+    /// Returns the nearest hit that `accept` lets count; of equally near ones the lower item.
     pub fn nearest(
         &self,
         ray: &Ray,
@@ -92,8 +92,8 @@ impl WorldTriangles {
     }
 }
 
-/// Where a ray enters a box, if it does. The far end is moved out by more than rounding can move it
-/// in (T. Ize, *Robust BVH Ray Traversal*, JCGT 2013).
+/// Returns the parameter at which a ray enters a box, if it does. The far end is moved out by more
+/// than rounding can move it in (T. Ize, *Robust BVH Ray Traversal*, JCGT 2013).
 #[inline]
 fn enter(b: &Box3, ray: &Ray, inverse: Vec3) -> Option<f32> {
     let (mut near, mut far) = (0.0f32, ray.to);
@@ -127,7 +127,7 @@ impl Sheared {
         Self { origin: ray.origin, axes: [x, y, z], shear }
     }
 
-    /// Distance and barycentric coordinates of the hit of a triangle, from either side.
+    /// Returns the distance and barycentric coordinates of the hit of a triangle, from either side.
     #[inline]
     fn hit(&self, corners: &[Vec3; 3]) -> Option<(f32, Weights)> {
         let [kx, ky, kz] = self.axes;
@@ -147,7 +147,7 @@ impl Sheared {
     }
 }
 
-/// The edge function of two sheared points; in f64 the products are exact, so its sign is.
+/// Returns the edge function of two sheared points; in f64 the products are exact, so its sign is.
 #[inline]
 fn cross(a: (f32, f32, f32), b: (f32, f32, f32)) -> f64 {
     f64::from(b.0) * f64::from(a.1) - f64::from(b.1) * f64::from(a.0)

@@ -11,7 +11,7 @@ use fearless_simd::{Simd, f32x4, f32x8, f64x8, i32x8, mask32x8, u32x4, u32x8};
 /// Triangles that are set up at a time.
 pub const EIGHT: usize = 8;
 
-/// What triangles are measured against.
+/// Limits that triangles are tested against.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules {
     pub filter: Filter,
@@ -19,7 +19,7 @@ pub struct Rules {
     pub size: [u32; 2],
     /// The sign that the area of those has that are seen from behind.
     pub behind: Behind,
-    /// Whether these are left out.
+    /// True if these are left out.
     pub cull_back: bool,
     /// The samples, as offsets from pixels' centres, at which small ones are sampled at once; none where they are not.
     pub sampled: &'static [[i32; 2]],
@@ -30,8 +30,8 @@ pub struct Rules {
 pub struct Eight {
     /// Those with a vertex that is not finite.
     pub non_finite: u64,
-    /// Of the finite ones, those that reach beyond the near plane or the guard band, so that they must be
-    /// cut first; there is nothing of them here.
+    /// Finite triangles that extend beyond the near plane or the guard band, so that they must be cut
+    /// first; they are left out here.
     pub uncut: u64,
     /// Those of the others that may be seen.
     pub seen: u64,
@@ -88,14 +88,14 @@ impl<S: Simd> Corner<S> {
     }
 }
 
-/// What snapping took away from the corners of eight triangles, in grid steps.
+/// Distance that snapping moved the corners of eight triangles, in grid steps.
 struct Rest<S: Simd> {
     x: [f64x8<S>; 3],
     y: [f64x8<S>; 3],
 }
 
 impl<S: Simd> Rest<S> {
-    /// Where `swapped` is set, the second and the third corner change places.
+    /// Builds the corners; if `swapped` is set, the second and the third one change places.
     #[inline(always)]
     fn new(simd: S, [a, b, c]: [&[&ScreenVertex; EIGHT]; 3], swapped: mask32x8<S>) -> Self {
         let [ax, ay, ..] = four_columns(simd, a, 4);
@@ -108,7 +108,7 @@ impl<S: Simd> Rest<S> {
     }
 }
 
-/// Four numbers of eight vertices, from the given one on, apart.
+/// Returns four numbers of eight vertices, from the given one on, apart.
 #[inline(always)]
 fn four_columns<S: Simd>(simd: S, of: &[&ScreenVertex; EIGHT], from: usize) -> [f32x8<S>; 4] {
     let mut rows = [f32x4::splat(simd, 0.0); EIGHT];
@@ -209,14 +209,14 @@ fn store<S: Simd>(from: &[f32x8<S>; EIGHT], to: &mut [[u32; EIGHT]; EIGHT]) {
     }
 }
 
-/// The numbers that have any of some bits set, as bits.
+/// Returns the numbers that have any of some bits set, as bits.
 #[inline(always)]
 fn with_bits<S: Simd>(simd: S, codes: u32x8<S>, bits: u32) -> u64 {
     (codes & bits).simd_ne(u32x8::splat(simd, 0)).to_bitmask()
 }
 
-/// The planes of depth through three vertices: the value at the centre of the pixel that holds the
-/// first, and the change per pixel.
+/// Returns the planes of depth through three vertices: the value at the centre of the pixel that
+/// holds the first, and the change per pixel.
 #[inline(always)]
 fn depth_planes<S: Simd>(
     simd: S,

@@ -69,20 +69,20 @@ impl std::ops::AddAssign for Counts {
     }
 }
 
-/// Which triangles [`Assembler`] lets through, and how large it makes lines and points.
+/// Filter of [`Assembler`] for triangles, and the size of lines and points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Filter {
-    /// Which faces seen from behind are left out.
+    /// Treatment of faces seen from behind.
     pub cull: Cull,
-    /// How far samples lie from the pixel's centre, in 1/256 pixel: triangles that cannot reach a
-    /// sample are left out.
+    /// Largest distance of samples from the pixel's centre, in 1/256 pixel: triangles that cannot
+    /// reach a sample are left out.
     pub sample_reach: i32,
     /// The size of lines and points.
     pub marks: Marks,
 }
 
 impl Filter {
-    /// A filter with lines and points of the usual size.
+    /// Creates A filter with lines and points of the usual size.
     pub const fn new(cull: Cull, sample_reach: i32) -> Self {
         Self { cull, sample_reach, marks: Marks::USUAL }
     }
@@ -128,22 +128,23 @@ pub struct Assembler<'a> {
     filter: Filter,
     level: Level,
     vertices: Vec<ScreenVertex>,
-    /// What happened so far.
+    /// Counts so far.
     pub counts: Counts,
 }
 
 impl<'a> Assembler<'a> {
-    /// An assembler for the scene, which has passed [`Scene::check`].
+    /// Creates an assembler for the scene, which has passed [`Scene::check`].
     pub fn new(scene: &'a Scene, view: &'a View, filter: Filter, level: Level) -> Self {
         Self { scene, view, filter, level, vertices: Vec::new(), counts: Counts::default() }
     }
 
-    /// The same with memory for vertices that was used before, and is given back by [`Self::into_memory`].
+    /// Creates the same with memory for vertices that was used before, and is given back by
+    /// [`Self::into_memory`].
     pub(crate) fn with_memory(self, vertices: Vec<ScreenVertex>) -> Self {
         Self { vertices, ..self }
     }
 
-    /// The memory for vertices.
+    /// Returns the memory for vertices.
     pub(crate) fn into_memory(self) -> Vec<ScreenVertex> {
         self.vertices
     }
@@ -273,7 +274,7 @@ impl<'a> Assembler<'a> {
         self.counts.culled += 1 - drawn;
     }
 
-    /// What is without sides has no transform here.
+    /// Returns the rules; marks without sides have no transform here.
     fn rules(&self, transform: Option<&Transform>, sampled: &'static [[i32; 2]]) -> Rules {
         let size = [self.view.width(), self.view.height()];
         let behind = transform.map_or(Behind::Positive, Transform::behind);
@@ -312,7 +313,8 @@ impl<'a> Assembler<'a> {
     }
 }
 
-/// The least and the largest of some numbers; where there are none, the least is the larger one.
+/// Returns the least and the largest of some numbers; where there are none, the least is the larger
+/// one.
 #[simd]
 fn least_and_largest<S: Simd>(simd: S, numbers: &[u32]) -> (u32, u32) {
     let (mut low, mut high) = (u32x16::splat(simd, u32::MAX), u32x16::splat(simd, 0));

@@ -14,12 +14,12 @@ pub(super) struct Part<'p> {
     /// The item of the first.
     pub first_item: u32,
     pub vertices: &'p [ScreenVertex],
-    /// Where triangles share vertices: the index of the first of `vertices` in the mesh, and the corners.
+    /// Shared vertices of triangles: the index of the first of `vertices` in the mesh, and the corners.
     pub shared: Option<(u32, &'p [[u32; 3]])>,
 }
 
 impl Part<'_> {
-    /// Where the vertices of the i-th triangle are.
+    /// Returns the positions of the i-th triangle's vertices.
     #[inline(always)]
     pub(super) fn corners(&self, i: usize) -> [usize; 3] {
         match self.shared {
@@ -28,8 +28,8 @@ impl Part<'_> {
         }
     }
 
-    /// The vertices of eight triangles from the i-th on, by corner. Where there are fewer than eight left, the last stands
-    /// for those missing.
+    /// Returns the vertices of eight triangles from the i-th on, by corner. Where there are fewer than eight
+    /// left, the last stands for those missing.
     #[inline(always)]
     pub(super) fn eight(&self, i: usize) -> [[&ScreenVertex; EIGHT]; 3] {
         let mut vertices = [[&self.vertices[0]; EIGHT]; 3];
@@ -54,7 +54,7 @@ impl Part<'_> {
         vertices
     }
 
-    /// The item of the i-th triangle, and its vertices in the mesh.
+    /// Returns the item of the i-th triangle, and its vertices in the mesh.
     #[inline(always)]
     pub(super) fn primitive(&self, i: usize) -> (u32, [u32; 3]) {
         let corners = match self.shared {

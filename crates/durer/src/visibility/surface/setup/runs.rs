@@ -3,7 +3,7 @@
 use crate::scene::{AlphaMode, Scene, Topology};
 use std::ops::Range;
 
-/// How the fragments of a surface come to be.
+/// Source of a surface's fragments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Coverage {
     /// Every fragment hides what is behind it.
@@ -27,14 +27,14 @@ pub struct Run {
     pub material: Option<usize>,
     /// Item index of the first primitive.
     pub first_item: u32,
-    /// What the material's alpha means.
+    /// Meaning of the material's alpha.
     pub coverage: Coverage,
-    /// Whether the material is meant to be seen from its front only.
+    /// True if the material is meant to be seen from its front only.
     pub single_sided: bool,
 }
 
-/// The runs of a scene in item order: triangles first, in scene order, then lines and points, so
-/// that the item of a triangle does not depend on them.
+/// Returns the runs of a scene in item order: triangles first, in scene order, then lines and
+/// points, so that the item of a triangle does not depend on them.
 ///
 /// # Errors
 /// [`crate::Error::Limit`] where there are more than 2³² − 2 primitives.

@@ -19,7 +19,7 @@ const MOST_SAMPLES: usize = 4;
 /// Pixels in such a box, row by row.
 pub const PIXELS: usize = (SIDE * SIDE) as usize;
 
-/// What the small ones of eight triangles cover, by pixel of their boxes.
+/// Coverage of the small ones among eight triangles, by pixel of their boxes.
 #[derive(Default)]
 pub struct Sampled {
     /// Those that cover any sample on the screen, as bits.
@@ -46,7 +46,7 @@ pub struct Span<S: Simd> {
 }
 
 impl<S: Simd> Span<S> {
-    /// Of three coordinates, where samples are up to `reach` from pixels' centres.
+    /// Builds the range of three coordinates, for samples up to `reach` from pixels' centres.
     #[inline(always)]
     pub fn new(v: [i32x8<S>; 3], reach: i32) -> Self {
         let (low, high) = (v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2]));
@@ -55,7 +55,7 @@ impl<S: Simd> Span<S> {
         Self { first, end: (high + (HALF_PIXEL + reach)) >> SUBPIXEL_BITS }
     }
 
-    /// Whether there are none on a screen of so many, as bits.
+    /// Returns which boxes miss a screen of this size, as bits.
     #[inline(always)]
     pub fn misses(&self, simd: S, pixels: u32) -> u64 {
         let pixels = i32::try_from(pixels).unwrap_or(i32::MAX);
@@ -72,7 +72,7 @@ impl<S: Simd> Span<S> {
     }
 }
 
-/// Column and row of a pixel of a box, counted from its first.
+/// Returns the column and row of a pixel of a box, counted from its first.
 #[inline(always)]
 pub fn place_in_box(pixel: usize) -> [i32; 2] {
     [pixel as i32 % SIDE, pixel as i32 / SIDE]
@@ -120,7 +120,8 @@ struct Edge<S: Simd> {
     dy: i32x8<S>,
 }
 
-/// Which pixels of their boxes triangles cover at a sample that lies so far from pixels' centres, as bits.
+/// Returns the pixels of their boxes that triangles cover at a sample at this offset from pixels'
+/// centres, as bits.
 #[inline(always)]
 fn covered_at<S: Simd>(simd: S, edges: &[Edge<S>; 3], [right, down]: [i32; 2]) -> i32x8<S> {
     let mut outside = [i32x8::splat(simd, 0); PIXELS];
@@ -143,7 +144,7 @@ fn covered_at<S: Simd>(simd: S, edges: &[Edge<S>; 3], [right, down]: [i32; 2]) -
     covered
 }
 
-/// Which pixels of boxes lie on the screen, as bits; others may be set too.
+/// Returns the pixels of boxes that lie on the screen, as bits; others may be set too.
 #[inline(always)]
 fn on_screen<S: Simd>(simd: S, [x, y]: [i32x8<S>; 2], size: [u32; 2]) -> i32x8<S> {
     let [width, height] = size.map(|v| i32::try_from(v).unwrap_or(i32::MAX));

@@ -29,20 +29,21 @@ pub struct ScreenTriangle {
 }
 
 impl ScreenTriangle {
-    /// The pixel that holds vertex 0; depths are counted from its centre.
+    /// Returns the pixel that holds vertex 0; depths are counted from its centre.
     #[inline]
     pub fn origin(&self) -> [i32; 2] {
         [self.x[0] >> SUBPIXEL_BITS, self.y[0] >> SUBPIXEL_BITS]
     }
 
-    /// The corners alone, for the rasterizers of triangles.
+    /// Returns the corners alone, for the rasterizers of triangles.
     #[inline]
     pub fn snapped(&self) -> SnappedTriangle {
         let ([x0, x1, x2], [y0, y1, y2]) = (self.x, self.y);
         SnappedTriangle::within_guard_band([[x0, y0], [x1, y1], [x2, y2]])
     }
 
-    /// The depth at a point of the screen, `dx, dy` pixels from the centre of [`Self::origin`].
+    /// Returns the depth at a point of the screen, `dx, dy` pixels from the centre of
+    /// [`Self::origin`].
     ///
     /// Everyone who compares depths computes them by this formula, in this order of operations.
     #[inline]
@@ -51,8 +52,8 @@ impl ScreenTriangle {
         depth.max(self.depth_min).min(self.depth_max)
     }
 
-    /// First and last column and row of pixels whose centres lie in the bounding box; `None` where
-    /// there are none.
+    /// Returns the first and last column and row of pixels whose centres lie in the bounding box;
+    /// `None` where there are none.
     #[inline]
     pub fn pixel_bounds(&self, margin: i32) -> Option<[i32; 4]> {
         let min = |v: &[i32; 3]| first_center(v[0].min(v[1]).min(v[2]) - margin);

@@ -24,7 +24,7 @@ pub mod code {
     pub const NON_FINITE: u32 = 128;
 }
 
-/// Where the code is in a [`ScreenVertex`].
+/// Index of the code in a [`ScreenVertex`].
 const CODE: usize = 2;
 
 /// A vertex after division and snapping, as a row of numbers, so that eight of them are soon columns: x and y on
@@ -42,7 +42,7 @@ impl ScreenVertex {
     }
 }
 
-/// Which sign of the area on the screen, y down, means: seen from behind.
+/// Sign of the area on the screen, y down, that means: seen from behind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Behind {
     Positive,
@@ -56,9 +56,9 @@ pub struct Transform {
     pub screen_from_mesh: DMat4,
     pub width: f64,
     pub height: f64,
-    /// Whether the matrix turns fronts into backs.
+    /// True if the matrix turns fronts into backs.
     pub mirrored: bool,
-    /// Whether faces seen from behind are left out.
+    /// True if faces seen from behind are left out.
     pub cull_back: bool,
 }
 
@@ -73,7 +73,7 @@ impl Transform {
         volume::Options { borders: Borders::NearOnly { guard_band }, ..Default::default() }
     }
 
-    /// The sign that the area of faces seen from behind has.
+    /// Returns the sign that the area of faces seen from behind has.
     pub fn behind(&self) -> Behind {
         // Fronts are counter-clockwise with y up, so their area is negative with y down.
         if self.mirrored { Behind::Negative } else { Behind::Positive }

@@ -22,7 +22,7 @@ use prepare::{normal_planes, prepare, prepare_normals};
 pub use prepare::NormalPlanes;
 pub use read::Read;
 
-/// What all triangles of a run share.
+/// Transform that all triangles of a run share.
 #[derive(Debug, Clone, Copy)]
 struct RunTransform {
     run: usize,
@@ -46,24 +46,24 @@ pub struct Triangles<'a> {
     /// By how much edge functions may change from one pixel to the next for a triangle to be settled.
     most_change: f32,
     transform: Option<RunTransform>,
-    /// As many as of `normals`.
+    /// Prepared triangles; as many as `normals`.
     kept: Box<[VisibleTriangle]>,
     /// A power of two.
     normals: Box<[NormalPlane]>,
     wanted: Wanted,
-    /// Whether all of the latest were settled.
+    /// True if all of the latest were settled.
     settled: bool,
 }
 
-/// How many triangles are kept for pictures made tile by tile: about 200 kB, as many as a tile of a fine mesh
-/// shows.
+/// Number of triangles that are kept for pictures made tile by tile: about 200 kB, as many as a tile of a
+/// fine mesh shows.
 pub const OF_TILES: usize = 1 << 10;
 
-/// How many are kept for pictures made row by row, about 800 kB: a row shows more than a tile, and most of them
-/// again in the next.
+/// Number that is kept for pictures made row by row, about 800 kB: a row shows more than a tile, and most of
+/// them again in the next.
 pub const OF_ROWS: usize = 1 << 12;
 
-/// What of an item is to be made ready.
+/// Part of an item to prepare.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Part {
     /// A [`NormalPlane`]; the rest only where one of several is not settled.
@@ -79,7 +79,7 @@ struct Wanted {
     items: [u32; 8],
     /// Their vertices in the mesh.
     corners: [[u32; 3]; 8],
-    /// What is there: read when they are wanted, for it has to be waited for.
+    /// Sources of the values: read when they are needed, for reading has to wait for memory.
     read: Read,
     count: usize,
     run: usize,
@@ -118,7 +118,7 @@ impl<'a> Triangles<'a> {
         }
     }
 
-    /// The triangle of an item that the rasterizer has drawn.
+    /// Returns the triangle of an item that the rasterizer has drawn.
     #[inline(always)]
     pub fn get(&mut self, item: u32, run: usize) -> &VisibleTriangle {
         if !self.has(item, Part::All) {
@@ -128,7 +128,7 @@ impl<'a> Triangles<'a> {
         &self.kept[place(item, &self.kept)]
     }
 
-    /// Its normals.
+    /// Returns its normals.
     #[inline(always)]
     pub fn normals(&mut self, item: u32, run: usize) -> &NormalPlane {
         if !self.has(item, Part::Normals) {
@@ -138,7 +138,7 @@ impl<'a> Triangles<'a> {
         &self.normals[place(item, &self.normals)]
     }
 
-    /// Whether a part of an item is kept or wanted.
+    /// Returns whether a part of an item is kept or wanted.
     #[inline(always)]
     pub fn has(&self, item: u32, part: Part) -> bool {
         match part {
@@ -167,7 +167,7 @@ impl<'a> Triangles<'a> {
         }
     }
 
-    /// The vertices of an item in its mesh; of a line its ends and the first again.
+    /// Returns the vertices of an item in its mesh; of a line its ends and the first again.
     fn corners(&self, item: u32, run: usize) -> [u32; 3] {
         let run = &self.runs[run];
         let mesh = &self.scene.meshes[run.mesh];
@@ -233,7 +233,7 @@ pub struct RunNormals<'a> {
 }
 
 impl<'a> RunNormals<'a> {
-    /// Of a run; samples are up to `reach`/256 pixels from pixels' centres.
+    /// Prepares a run; samples are up to `reach`/256 pixels from pixels' centres.
     pub fn new(scene: &'a Scene, view: &View, runs: &[Run], (index, reach): (usize, i32)) -> Self {
         let (run, most_change) = (&runs[index], most_change(reach));
         let transform = RunTransform::new(index, run, scene, view, most_change);
@@ -246,7 +246,7 @@ impl<'a> RunNormals<'a> {
         to.set(lane, self.mesh, corners);
     }
 
-    /// Of eight triangles.
+    /// Returns the planes of eight triangles.
     #[inline(always)]
     pub fn planes<S: Simd>(&self, simd: S, read: &Read) -> NormalPlanes<S> {
         normal_planes(simd, &self.transform, self.mesh, read)

@@ -27,7 +27,7 @@ pub(super) fn prepare_normals<S: Simd>(
     normals.settled == 0xff
 }
 
-/// The normals of eight primitives of a mesh.
+/// Returns the normals of eight primitives of a mesh.
 #[inline(always)]
 pub(super) fn normal_planes<S: Simd>(
     simd: S,
@@ -90,7 +90,7 @@ pub(super) fn prepare<S: Simd>(
     }
 }
 
-/// The mesh's normals at the corners, world axes, on the side of the front.
+/// Returns the mesh's normals at the corners, world axes, on the side of the front.
 #[inline(always)]
 fn fronts<S: Simd>(simd: S, t: &RunTransform, mesh: &Mesh, read: &Read) -> Option<AtCorners<S>> {
     if mesh.normals.is_empty() {
@@ -142,7 +142,7 @@ pub struct NormalPlanes<S: Simd> {
     pub origins: [i32x8<S>; 2],
     /// Constants and changes along x and y.
     pub planes: [[f32x8<S>; 3]; 3],
-    /// Which are [settled](NormalPlane::settled).
+    /// Lanes that are [settled](NormalPlane::settled).
     pub settled: mask32x8<S>,
 }
 
@@ -151,7 +151,7 @@ struct Normals<S: Simd> {
     origins: [[i32; 8]; 2],
     /// Constants and changes along x, by primitive; changes along y.
     rows: [[f32x8<S>; 8]; 2],
-    /// Which are [settled](NormalPlane::settled), as bits.
+    /// Triangles that are [settled](NormalPlane::settled), as bits.
     settled: u64,
 }
 
@@ -236,7 +236,7 @@ impl<'n, S: Simd> OnScreen<'n, S> {
         Self { origins, edges, sides, front, normals, settled }
     }
 
-    /// The normals as planes.
+    /// Returns the normals as planes.
     #[inline(always)]
     fn normal_planes(&self, simd: S) -> NormalPlanes<S> {
         let none = simd.splat_f32x8(0.0);
@@ -271,7 +271,7 @@ impl<S: Simd> NormalPlanes<S> {
 }
 
 impl<S: Simd> Normals<S> {
-    /// Of one primitive, to its place.
+    /// Stores the values of one primitive at its place.
     #[inline(always)]
     fn store(&self, simd: S, lane: usize, item: u32, to: &mut NormalPlane) {
         let [first, second] = &self.rows;
@@ -290,8 +290,8 @@ const MOST_RANGE: f32 = 1e5;
 /// Between these are the squared lengths of a settled triangle's normals.
 const LENGTHS2: [f32; 2] = [1e-20, 1e20];
 
-/// Whether points beside a triangle that samples of its pixels may be away from have weights of at least
-/// −[`LEAST_WEIGHT`](super::LEAST_WEIGHT), with a sum of at least nine tenths.
+/// Returns for which triangles points beside them, at which samples of their pixels may lie, have
+/// weights of at least −[`LEAST_WEIGHT`](super::LEAST_WEIGHT), with a sum of at least nine tenths.
 #[inline(always)]
 fn gentle<S: Simd>(simd: S, t: &RunTransform, [_, dx, dy]: &[Vectors<S>; 3]) -> mask32x8<S> {
     let most = simd.splat_f32x8(t.most_change);
@@ -304,8 +304,8 @@ fn gentle<S: Simd>(simd: S, t: &RunTransform, [_, dx, dy]: &[Vectors<S>; 3]) -> 
     gentle & simd.simd_le_f32x8(sum_change, most * 0.2)
 }
 
-/// Whether normals at the corners have lengths, and are all on the side of a unit normal, by more than seven tenths of the
-/// longest: then sums with weights of [`gentle`] triangles are on its side too, by three tenths.
+/// Returns for which triangles normals at the corners have lengths, and are all on the side of a unit normal, by more than
+/// seven tenths of the longest: then sums with weights of [`gentle`] triangles are on its side too, by three tenths.
 #[inline(always)]
 fn agreeing<S: Simd>(simd: S, front: Vectors<S>, &[a, b, c]: &[Vectors<S>; 3]) -> mask32x8<S> {
     let longest = dot(a, a).max(dot(b, b)).max(dot(c, c));
@@ -322,7 +322,8 @@ fn agreeing<S: Simd>(simd: S, front: Vectors<S>, &[a, b, c]: &[Vectors<S>; 3]) -
     agreeing
 }
 
-/// Unit normals of the faces' fronts in single precision, world axes; zero where there is none.
+/// Returns unit normals of the faces' fronts in single precision, world axes; zero where there is
+/// none.
 #[inline(always)]
 fn front<S: Simd>(simd: S, t: &RunTransform, at: &[Corners<S>; 3]) -> Vectors<S> {
     let [x, y, z] = across(at);
@@ -336,7 +337,7 @@ fn front<S: Simd>(simd: S, t: &RunTransform, at: &[Corners<S>; 3]) -> Vectors<S>
     [x * inverse, y * inverse, z * inverse]
 }
 
-/// The vector product of two sides.
+/// Returns the vector product of two sides.
 #[inline(always)]
 fn across<S: Simd>([[ax, ay, az], [bx, by, bz], [cx, cy, cz]]: &[Corners<S>; 3]) -> Corners<S> {
     let (ux, uy, uz) = (*bx - *ax, *by - *ay, *bz - *az);
@@ -344,7 +345,7 @@ fn across<S: Simd>([[ax, ay, az], [bx, by, bz], [cx, cy, cz]]: &[Corners<S>; 3])
     [uy * vz - vy * uz, uz * vx - vz * ux, ux * vy - vx * uy]
 }
 
-/// Unit normals of the faces' fronts, world axes; zero where there is none.
+/// Returns unit normals of the faces' fronts, world axes; zero where there is none.
 #[inline(always)]
 fn face_normals<S: Simd>(simd: S, eye: &[Corners<S>; 3], handedness: f64) -> Vectors<S> {
     let [x, y, z] = across(eye);
@@ -357,7 +358,7 @@ fn dot<S: Simd>([ax, ay, az]: [f32x8<S>; 3], [bx, by, bz]: [f32x8<S>; 3]) -> f32
     ax * bx + ay * by + az * bz
 }
 
-/// One over the length, of which the square is given; 0 where there is no direction.
+/// Returns one over the length, of which the square is given; 0 where there is no direction.
 #[inline(always)]
 fn inverse_length<S: Simd>(simd: S, length2: f64x8<S>) -> f64x8<S> {
     let zero = simd.splat_f64x8(0.0);
@@ -367,7 +368,7 @@ fn inverse_length<S: Simd>(simd: S, length2: f64x8<S>) -> f64x8<S> {
     simd.select_f64x8(finite & positive, inverse, zero)
 }
 
-/// A third corner beside each line, so that coordinates along it can be found.
+/// Returns A third corner beside each line, so that coordinates along it can be found.
 #[inline(always)]
 fn beside_the_line<S: Simd>(
     simd: S,
@@ -380,7 +381,7 @@ fn beside_the_line<S: Simd>(
     (x[0] - along_y * inverse * w[0], y[0] + along_x * inverse * w[0])
 }
 
-/// The pixel that holds a coordinate.
+/// Returns the pixel that holds a coordinate.
 #[inline(always)]
 fn pixel<S: Simd>(simd: S, v: f64x8<S>) -> f64x8<S> {
     let (zero, most) = (simd.splat_f64x8(0.0), simd.splat_f64x8(1e6));

@@ -1,17 +1,17 @@
-//! What eight primitives are made ready from, read from their mesh and laid side by side.
+//! The inputs for preparing eight primitives, read from their mesh and laid side by side.
 
 use crate::scene::Mesh;
 use crate::visibility::surface::gather::{four_columns, widened};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4, f32x8, f64x8};
 
-/// Of eight vectors, by axis.
+/// Eight vectors, by axis.
 pub type Vectors<S> = [f32x8<S>; 3];
 
 /// Numbers of three corners of eight triangles, by corner.
 pub type Corners<S> = [f64x8<S>; 3];
 
-/// What eight triangles have at their corners, by corner.
+/// Values of eight triangles at their corners, by corner.
 pub type AtCorners<S> = [Vectors<S>; 3];
 
 /// Positions and normals at the corners of eight primitives, as they are read from a mesh: before they are needed, for they
@@ -54,7 +54,7 @@ pub fn at_corners<S: Simd>(simd: S, read: &[[[f32; 4]; 8]; 3]) -> AtCorners<S> {
     at
 }
 
-/// The positions.
+/// Returns the positions.
 #[inline(always)]
 pub fn all_widened<S: Simd>(simd: S, read: &Read) -> [Corners<S>; 3] {
     let mut all = [[simd.splat_f64x8(0.0); 3]; 3];

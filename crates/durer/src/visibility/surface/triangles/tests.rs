@@ -1,4 +1,4 @@
-//! What is promised of settled triangles.
+//! The promises about settled triangles.
 
 use super::*;
 use crate::math::DVec3;
@@ -22,7 +22,8 @@ impl Numbers {
 
 const COUNT: u32 = 2_000;
 
-/// Triangles of all sizes, some of them needles, with normals more or less like their faces'.
+/// Returns triangles of all sizes, some of them needles, with normals more or less like their
+/// faces'.
 fn scene() -> Scene {
     let (mut numbers, mut mesh) = (Numbers(3), Mesh::default());
     for _ in 0..COUNT {
@@ -42,7 +43,7 @@ fn scene() -> Scene {
     Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
 }
 
-/// Where the corners of a triangle are on the screen, where all are before the eye.
+/// Returns the corners of a triangle on the screen, if all are before the eye.
 fn on_screen(scene: &Scene, view: &View, item: u32) -> Option<[[f64; 2]; 3]> {
     let mut at = [[0.0; 2]; 3];
     for (i, to) in at.iter_mut().enumerate() {

@@ -1,10 +1,11 @@
-//! Which of two triangles is in front all over a window: certain for every sample, as computed.
+//! The comparison of two triangles' depths all over a window: certain for every sample, as
+//! computed.
 
 use crate::visibility::surface::cover::{SampleGrid, Window};
 use crate::visibility::surface::setup::ScreenTriangle;
 
-/// The largest depth over a window's samples; exact, for rounding is monotonic, so that depths
-/// increase or decrease along rows and columns and are extreme at corners.
+/// Returns the largest depth over a window's samples; exact, for rounding is monotonic, so that
+/// depths increase or decrease along rows and columns and are extreme at corners.
 pub fn farthest(t: &ScreenTriangle, grid: SampleGrid, window: &Window) -> f32 {
     window.corners().into_iter().fold(0.0, |far: f32, [x, y]| far.max(grid.depth(t, x, y)))
 }
@@ -14,7 +15,7 @@ fn nearest(t: &ScreenTriangle, grid: SampleGrid, window: &Window) -> f32 {
     corners.fold(f32::INFINITY, |near, [x, y]| near.min(grid.depth(t, x, y)))
 }
 
-/// The depth of the triangle's plane and how much rounding may move it.
+/// Returns the depth of the triangle's plane and how much rounding may move it.
 fn on_plane(t: &ScreenTriangle, grid: SampleGrid, [x, y]: [i32; 2]) -> (f64, f64) {
     let [dx, dy] = grid.from_origin(t, x, y).map(f64::from);
     let (ax, ay) = (f64::from(t.depth_dx) * dx, f64::from(t.depth_dy) * dy);
@@ -24,7 +25,7 @@ fn on_plane(t: &ScreenTriangle, grid: SampleGrid, [x, y]: [i32; 2]) -> (f64, f64
     (depth + (ax + ay), slack)
 }
 
-/// Whether `front` wins against `behind` at every sample of a window that it surrounds.
+/// Returns whether `front` wins against `behind` at every sample of a window that it surrounds.
 pub fn hides(
     front: &ScreenTriangle,
     behind: &ScreenTriangle,

@@ -39,7 +39,7 @@ impl Glass {
         self.layers.truncate(kept);
     }
 
-    /// The layers of a place, far ones first, after they were sorted.
+    /// Returns the layers of a place, far ones first, after they were sorted.
     fn at(&self, place: usize) -> &[Layer] {
         let first = self.layers.partition_point(|l| (l.place as usize) < place);
         let rest = &self.layers[first..];
@@ -80,7 +80,7 @@ pub fn render(
     }
 }
 
-/// Columns, first row and row after the last, of a window of samples.
+/// Returns columns, first row and row after the last, of a window of samples.
 fn in_pixels(visible: &Visible, grid: SampleGrid) -> [i32; 3] {
     let Window { x1, y0, y1, .. } = visible.window();
     [x1, y0, y1].map(|v| v / grid.per_pixel())
@@ -149,7 +149,7 @@ fn write_colors(visible: &Visible, glass: &Glass, picture: &mut Picture<'_>) {
     }
 }
 
-/// The mean of a pixel's samples.
+/// Returns the mean of a pixel's samples.
 fn of_samples(
     visible: &Visible,
     glass: &Glass,

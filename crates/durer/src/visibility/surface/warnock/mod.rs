@@ -45,7 +45,7 @@ pub const INFO: Info = Info {
     limits: "where surfaces blend, each sample is decided",
 };
 
-/// Where a window is divided.
+/// Place at which a window is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Division {
     /// In the middle of both sides.
@@ -55,19 +55,20 @@ pub enum Division {
     Vertices,
 }
 
-/// What the picture is to have.
+/// Options for the planes of the picture.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Options {
     /// Shading and background.
     pub look: picture::Options,
-    /// Where windows are divided.
+    /// Places at which windows are divided.
     pub division: Division,
-    /// How often a pixel is divided, 0 … 4; colour is the mean of its 4^`sub_levels` samples. Time
-    /// grows about twofold with each level, for only windows along edges are divided so far.
+    /// Number of times that a pixel is divided, 0 … 4; colour is the mean of its 4^`sub_levels`
+    /// samples. Time grows about twofold with each level, for only windows along edges are divided
+    /// so far.
     pub sub_levels: u32,
 }
 
-/// What there is to see. Windows count in samples of the pass's grid.
+/// Step of the algorithm. Windows count in samples of the pass's grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Step {
     /// A pass over a part of the screen begins: pixels, or samples below them.
@@ -81,7 +82,7 @@ pub enum Step {
     Look {
         /// The window.
         window: Window,
-        /// How many triangles concern it.
+        /// Number of triangles that concern it.
         triangles: usize,
     },
     /// Rule 1: all triangles are outside.
@@ -175,7 +176,7 @@ fn anti_aliased(
     }
 }
 
-/// The mean of a pixel's samples.
+/// Returns the mean of a pixel's samples.
 fn pixel_mean(
     visible: &Visible,
     lit: &mut Lit<'_>,
@@ -191,7 +192,7 @@ fn pixel_mean(
     mean(&mut items, |&item| below_color(lit, item, behind, [x, y]))
 }
 
-/// What is visible at the samples of a window.
+/// Finds the visible surfaces at the samples of a window.
 pub(crate) fn solve(
     input: &SurfaceInput<'_>,
     lighting: Lighting<'_>,
@@ -224,9 +225,9 @@ struct Solver<'a> {
     covers: Vec<Cover>,
     grid: SampleGrid,
     masks: Masks<'a>,
-    /// What is opaque.
+    /// Opaque surfaces.
     visible: Visible,
-    /// What is blended and before it, where something blends.
+    /// Blended surfaces and those before them, if anything blends.
     glass: Option<Glass>,
 }
 
@@ -431,7 +432,7 @@ impl<'a> Solver<'a> {
 /// Triangles whose vertices are looked at to divide a window; more would take longer than it saves.
 const VERTEX_CANDIDATES: usize = 16;
 
-/// The parts of a window that are not empty.
+/// Returns the parts of a window that are not empty.
 fn parts(w: &Window, x: i32, y: i32) -> impl Iterator<Item = Window> {
     let Window { x0, y0, x1, y1 } = *w;
     let columns = [(x, x1), (x0, x)];

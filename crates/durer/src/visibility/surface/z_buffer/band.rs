@@ -14,7 +14,8 @@ pub struct Band<'a> {
 }
 
 impl Band<'_> {
-    /// The rows of the colour plane from a column on, as far as a tile's pixels across and down.
+    /// Returns the rows of the colour plane from a column on, as far as a tile's pixels across and
+    /// down.
     pub fn rows_of(
         &mut self,
         column: i32,

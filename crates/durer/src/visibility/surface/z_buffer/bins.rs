@@ -1,5 +1,5 @@
-//! Which triangles touch which tiles: lists per job, joined in the order of the jobs. Fragments of small triangles have no
-//! order, and stay with the thread that made them.
+//! The lists of the triangles that touch each tile: lists per job, joined in the order of the jobs. Fragments of small
+//! triangles have no order, and stay with the thread that made them.
 
 use super::micropolygon::{Fragments, MOST_TILES, Micropolygons};
 use super::tile::TILE;
@@ -19,7 +19,7 @@ use std::ops::Range;
 /// stay in the second-level cache: those at the borders of jobs are transformed twice.
 const JOB_TRIANGLES: [u32; 2] = [8192, 32768];
 
-/// So many jobs at least share the work evenly, where they are not too small.
+/// Number of jobs that share the work evenly, unless they are too small.
 const JOBS: u32 = 32;
 
 /// Pieces of runs that one thread sets up at a time; all of one coverage.
@@ -57,28 +57,29 @@ pub fn jobs(runs: &[Run]) -> Vec<Job> {
 
 /// The triangles of one job and the tiles that they touch.
 pub struct Bins {
-    /// What the job's triangles do with their fragments.
+    /// Treatment of the fragments of the job's triangles.
     pub coverage: Coverage,
-    /// What happened on the way.
+    /// Report on the work.
     pub counts: Counts,
     triangles: Vec<ScreenTriangle>,
-    /// Of each tile which triangles touch it, in item order.
+    /// Triangles that touch each tile, in item order.
     touching: ByTile,
 }
 
-/// What is needed to make [`Bins`], and is used again; and what small triangles have left, of all jobs that were done with it.
+/// Buffers for making [`Bins`], which are used again; and the fragments of small triangles, of all jobs that were done with
+/// them.
 #[derive(Default)]
 pub struct Scratch {
     /// Tile and triangle.
     touched: Vec<(u32, u32)>,
     vertices: Vec<ScreenVertex>,
-    /// Of triangles that are not among those in the bins.
+    /// Fragments of triangles that are not among those in the bins.
     pub fragments: Fragments,
-    /// What the fragments take of the budget.
+    /// Charge of the fragments to the budget.
     charge: Option<Charge>,
 }
 
-/// What triangles and fragments are called in errors about memory.
+/// Name of triangles and fragments in errors about memory.
 pub const STAGE: &str = "triangles on the screen";
 
 impl Scratch {
@@ -91,7 +92,7 @@ impl Scratch {
         charge.grow_to(self.fragments.bytes())
     }
 
-    /// The charge, for as long as the fragments stay.
+    /// Returns the charge, for as long as the fragments stay.
     pub fn take_charge(&mut self) -> Charge {
         self.charge.take().unwrap_or_default()
     }
@@ -144,14 +145,14 @@ impl Bins {
         Self { coverage, counts, triangles, touching }
     }
 
-    /// What they take, bytes.
+    /// Returns their size in bytes.
     pub fn bytes(&self) -> u64 {
         let ByTile { starts, entries } = &self.touching;
         let triangles = self.triangles.capacity() * size_of::<ScreenTriangle>();
         (triangles + starts.capacity() * 8 + entries.capacity() * 4) as u64
     }
 
-    /// The triangles that touch a tile, in item order.
+    /// Returns the triangles that touch a tile, in item order.
     pub fn of_tile(&self, tile: u32) -> impl Iterator<Item = &ScreenTriangle> + '_ {
         self.touching.of(tile).iter().map(|&e| &self.triangles[e as usize])
     }
@@ -167,7 +168,7 @@ struct Sorter<'s> {
     /// The samples at which small triangles are sampled at once.
     early: &'static [[i32; 2]],
     micropolygons: Micropolygons<'s>,
-    /// Of the run whose triangles come, where they are asked for.
+    /// Normals of the run whose triangles come, if they are needed.
     normals: Option<RunNormals<'s>>,
 }
 
@@ -200,7 +201,7 @@ impl Sink for Sorter<'_> {
     }
 }
 
-/// Whether there is anything in each tile of the screen.
+/// Returns whether there is anything in each tile of the screen.
 pub fn occupied(bins: &[Bins], fragments: &[Fragments], view: &View) -> Vec<bool> {
     let tiles = 0..TileGrid::new(view.width(), view.height()).count();
     let has_fragments = |tile: u32| !fragments.iter().all(|of_thread| of_thread.nothing_in(tile));
@@ -219,7 +220,7 @@ pub struct ByTile {
 }
 
 impl ByTile {
-    /// Those of a tile.
+    /// Returns those of a tile.
     pub fn of(&self, tile: u32) -> &[u32] {
         match self.starts.binary_search_by_key(&tile, |s| s.0) {
             Ok(i) => {
@@ -263,7 +264,7 @@ pub struct TileGrid {
 }
 
 impl TileGrid {
-    /// The tiles that cover a screen of this many pixels.
+    /// Creates the tiles that cover a screen of this many pixels.
     pub fn new(width: u32, height: u32) -> Self {
         let tiles = |pixels: u32| pixels.div_ceil(TILE as u32) as i32;
         Self { columns: tiles(width), rows: tiles(height) }
@@ -291,7 +292,7 @@ impl TileGrid {
     }
 }
 
-/// First and last tile that three coordinates, and `reach` around them, touch.
+/// Returns the first and last tile that three coordinates, and `reach` around them, touch.
 #[inline(always)]
 fn tile_range(v: &[i32; 3], reach: i32, count: i32) -> (i32, i32) {
     const SHIFT: u32 = SUBPIXEL_BITS + TILE.trailing_zeros();
@@ -299,7 +300,7 @@ fn tile_range(v: &[i32; 3], reach: i32, count: i32) -> (i32, i32) {
     ((lo >> SHIFT).max(0), (hi >> SHIFT).min(count - 1))
 }
 
-/// Whether a tile lies wholly outside one edge of a triangle.
+/// Returns whether a tile lies wholly outside one edge of a triangle.
 fn beyond_an_edge(t: &ScreenTriangle, x: i32, y: i32) -> bool {
     let size = i64::from(TILE) << SUBPIXEL_BITS;
     let (left, top) = (i64::from(x) * size, i64::from(y) * size);

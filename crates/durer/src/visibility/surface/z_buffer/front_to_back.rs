@@ -29,7 +29,7 @@ pub struct FrontToBack<'a> {
 }
 
 impl<'a> FrontToBack<'a> {
-    /// The triangles in parts, near ones first: one part where they are few.
+    /// Returns the triangles in parts, near ones first: one part where they are few.
     pub fn parts(
         &mut self,
         bins: &'a [Bins],
@@ -54,7 +54,7 @@ impl<'a> FrontToBack<'a> {
         })
     }
 
-    /// The blended triangles of a tile by the depth of their nearest vertex.
+    /// Returns the blended triangles of a tile by the depth of their nearest vertex.
     pub fn nearest_first(&mut self, bins: &'a [Bins], tile: u32) -> &[&'a ScreenTriangle] {
         self.given.clear();
         for bins in bins.iter().filter(|b| b.coverage == Coverage::Blended) {

@@ -54,27 +54,27 @@ pub const INFO: Info = Info {
     limits: "one surface per sample; edges as fine as the samples",
 };
 
-/// What the picture is to have.
+/// Options for the planes of the picture.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Samples per pixel of the colour plane.
     pub samples: Samples,
-    /// Which faces are left out.
+    /// Faces to leave out.
     pub cull: Cull,
     /// The size of lines and points.
     pub marks: Marks,
     /// `None` = by material.
     pub shading: Option<Shading>,
-    /// What is behind everything.
+    /// Background of the picture.
     pub background: Background,
     /// The SIMD level to work at; all give the same bytes.
     pub level: Level,
-    /// What it may cost, and whether it goes on.
+    /// Budget of the work, and its cancellation.
     pub work: Work,
 }
 
 impl Default for Options {
-    /// Four samples on white, nothing culled, the machine's best level.
+    /// Returns four samples on white, nothing culled, the machine's best level.
     fn default() -> Self {
         Self {
             samples: Samples::Four,
@@ -91,7 +91,7 @@ impl Default for Options {
 /// Seconds of the two halves of the work, and what became of the triangles.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Report {
-    /// What became of the triangles.
+    /// Counts of the triangles by their treatment.
     pub counts: Counts,
     /// Vertices, clipping, set-up, binning.
     pub geometry_seconds: f64,
@@ -177,15 +177,15 @@ fn early_samples(samples: Samples, with_planes: bool) -> &'static [[i32; 2]] {
     }
 }
 
-/// What all tiles share.
+/// Data that all tiles share.
 struct Frame<'a> {
     view: &'a View,
     options: &'a Options,
     lighting: Lighting<'a>,
     bins: &'a [Bins],
-    /// What small triangles have left, in no order.
+    /// Fragments of small triangles, in no order.
     fragments: &'a [Fragments],
-    /// Whether there is anything in each tile.
+    /// True if there is anything in each tile.
     occupied: Vec<bool>,
     /// Items from here on are lines and points, which the item plane does not show.
     triangle_count: u32,

@@ -14,8 +14,9 @@ use planes::{Edges, LaneDepths, top_left};
 
 /// Is asked for the fragments that pass the depth test; a fragment is written only if it passes.
 pub trait FragmentTest {
-    /// Which of consecutive samples pass, of those whose bits are all set in `write`: from the first sample of the
-    /// tile-local pixel `at` on, of a plane whose pixels have 2^`shift` samples from the number `first` on.
+    /// Returns which of consecutive samples pass, among those whose bits are all set in `write`: from the first
+    /// sample of the tile-local pixel `at` on, of a plane whose pixels have 2^`shift` samples from the number
+    /// `first` on.
     fn pass<S: Simd>(
         &mut self,
         simd: S,

@@ -19,7 +19,7 @@ use fearless_simd_macros::simd;
 /// Rows of a tile, and one more: rows are taken in pairs.
 const ROWS: usize = TILE as usize + 1;
 
-/// What is behind each row of a tile, linear and encoded, apart: pairs of them would be copied piece by piece.
+/// Background of each row of a tile, linear and encoded, apart: pairs of them would be copied piece by piece.
 struct Behind {
     linear: [Vec4; ROWS],
     encoded: [u32; ROWS],
@@ -63,7 +63,7 @@ impl FragmentTest for MaskTest<'_, '_> {
     }
 }
 
-/// Where a tile lies in the picture, and what is behind everything.
+/// Position of a tile in the picture, and the background.
 pub struct Area<'b> {
     /// The upper left pixel.
     pub tile: [i32; 2],
@@ -215,8 +215,8 @@ fn expect_column<S: Simd>(
     lit.make_ready();
 }
 
-/// Which of sixteen items beside each other are shown neither by the one before nor above nor beside that: most that are
-/// shown there have been asked for.
+/// Returns which of sixteen items beside each other are shown neither by the one before nor above nor beside that: most
+/// that are shown there have been requested.
 #[inline(always)]
 fn first_shown<S: Simd>(simd: S, shown: u32x16<S>, above: u32x16<S>) -> mask32x16<S> {
     let none = u32x16::splat(simd, NO_ITEM);
@@ -227,8 +227,8 @@ fn first_shown<S: Simd>(simd: S, shown: u32x16<S>, above: u32x16<S>) -> mask32x1
     new & shown.simd_ne(above_left) & shown.simd_ne(above_right)
 }
 
-/// Of eight pixels in a row the item that they show at all samples, [`NO_ITEM`] where there is none;
-/// and a number that is 0 only where all samples show the same.
+/// Returns the item that each of eight pixels in a row shows at all samples, [`NO_ITEM`] if there is
+/// none; and a number that is 0 only where all samples show the same.
 #[inline(always)]
 fn whole_pixels<S: Simd>(simd: S, planes: &[SamplePlane], index: usize) -> (u32x8<S>, [u32; 8]) {
     let [first, mut differs] = planes[0].eight(simd, index);
@@ -241,8 +241,8 @@ fn whole_pixels<S: Simd>(simd: S, planes: &[SamplePlane], index: usize) -> (u32x
     (same.select(first, u32x8::splat(simd, NO_ITEM)), differs.into())
 }
 
-/// Of sixteen pixels, eight in each of two rows, the item at each sample; how many samples there are, none
-/// where pixels have but one.
+/// Returns the items at the samples of sixteen pixels, eight in each of two rows; and the number of
+/// samples, none if pixels have only one.
 #[inline(always)]
 fn samples_of_block<S: Simd>(
     simd: S,
@@ -289,7 +289,7 @@ struct Row<'r> {
     at: [i32; 2],
     /// For each a number that is 0 only where all its samples show the same.
     differs: &'r [u32],
-    /// What is behind them, linear and premultiplied.
+    /// Colour behind them, linear and premultiplied.
     behind: Vec4,
 }
 
@@ -341,7 +341,7 @@ fn add_shares<S: Simd, const N: usize>(
     }
 }
 
-/// The items at all samples of a pixel, and how many samples there are.
+/// Returns the items at all samples of a pixel, and how many samples there are.
 #[inline(always)]
 fn sample_items(planes: &[SamplePlane], pixel: usize) -> ([u32; MOST_SAMPLES], usize) {
     let (mut items, mut count) = ([NO_ITEM; MOST_SAMPLES], 0);

@@ -1,4 +1,4 @@
-//! Which items of a scene are seen, where the scene comes in pieces and is never held as a whole.
+//! Survey of the visible items of a scene that comes in pieces and is never held as a whole.
 //!
 //! Depth and item of the nearest triangle are kept for all samples of the picture, so that memory follows the picture and
 //! not the scene. What is seen then is a scene by itself, of which the ordinary renderer makes the same picture: opaque
@@ -29,18 +29,18 @@ pub const MOST_ITEMS: u64 = i32::MAX as u64;
 /// Triangles that are set up together.
 const JOB: usize = 8192;
 
-/// What a survey is to look at.
+/// Options of a survey.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Samples per pixel of the colour plane.
     pub samples: Samples,
-    /// Whether pixels' centres are looked at, too, for the planes of depth, item and normal.
+    /// True to include pixels' centres, for the planes of depth, item and normal.
     pub centers: bool,
-    /// Which triangles are left out, and the size of points and lines.
+    /// Triangles to leave out, and the size of points and lines.
     pub filter: Filter,
     /// The SIMD level to work at.
     pub level: Level,
-    /// What it may cost, and whether it goes on.
+    /// Budget of the work, and its cancellation.
     pub work: Work,
 }
 
@@ -52,18 +52,18 @@ pub struct Survey {
     /// Items of the pieces so far.
     count: u32,
     counts: Counts,
-    /// What the samples take of the budget.
+    /// Charge of the samples to the budget.
     charge: Charge,
 }
 
-/// What a survey finds.
+/// Result of a survey.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seen {
     /// The items that are seen at some sample, ascending; they count through all pieces.
     pub items: Vec<u32>,
-    /// What became of the triangles.
+    /// Counts of the triangles by their treatment.
     pub counts: Counts,
-    /// What the list takes of the budget.
+    /// Charge of the list to the budget.
     _charge: Charge,
 }
 
@@ -106,7 +106,7 @@ impl Sink for Taken<'_> {
 }
 
 impl Survey {
-    /// A survey of nothing so far.
+    /// Creates A survey of nothing so far.
     ///
     /// # Errors
     /// [`Error::Memory`] where the budget has no room for the samples.

@@ -28,20 +28,20 @@ pub const MOST_LANES: usize = 16;
 /// Bits of 1.0, the cleared depth.
 const FAR: i32 = 0x3f80_0000;
 
-/// Where a sample lies, from the pixel's centre, in 1/256 pixel.
+/// Position of a sample, from the pixel's centre, in 1/256 pixel.
 pub type SampleOffset = [i32; 2];
 
 /// One or four samples per pixel: the depth bits and the item of the nearest triangle of each,
 /// samples of a pixel side by side, pixels row by row.
 pub struct SamplePlane {
-    /// Of which of all samples of a pixel the first is here.
+    /// Number of the first sample here among all samples of a pixel.
     pub first: usize,
     /// Binary logarithm of the number of samples per pixel.
     pub shift: u32,
     /// The least and the largest offset of a sample, x and y.
     pub reach: [[i32; 2]; 2],
-    /// Where as many consecutive samples lie as any machine tests at a time, from the first one's pixel's
-    /// centre, in 1/256 pixel.
+    /// Positions of as many consecutive samples as any machine tests at a time, from the first one's
+    /// pixel's centre, in 1/256 pixel.
     pub lanes: [[i32; MOST_LANES]; 2],
     /// The same in pixels.
     pub lanes_in_pixels: [[f32; MOST_LANES]; 2],
@@ -96,12 +96,13 @@ impl SamplePlane {
         find_farthest(simd, &self.depth, self.shift, &mut self.farthest);
     }
 
-    /// Bits of a depth beyond which nothing is seen in the whole tile.
+    /// Returns bits of a depth beyond which nothing is seen in the whole tile.
     pub fn farthest_of_all(&self) -> i32 {
         self.farthest.iter().copied().fold(0, i32::max)
     }
 
-    /// Whether nothing that is at least as far as `depth` (bits) can be seen in a box of pixels.
+    /// Returns whether nothing that is at least as far as `depth` (bits) can be seen in a box of
+    /// pixels.
     #[inline(always)]
     pub fn hides(&self, [x0, y0, x1, y1]: [i32; 4], depth: i32) -> bool {
         const COLUMNS: i32 = TILE / BLOCK;
@@ -111,25 +112,25 @@ impl SamplePlane {
         })
     }
 
-    /// The items at the samples of a pixel.
+    /// Returns the items at the samples of a pixel.
     #[inline(always)]
     pub fn items(&self, pixel: usize) -> &[u32] {
         &self.item[pixel << self.shift..(pixel + 1) << self.shift]
     }
 
-    /// The items at the samples of eight pixels in a row.
+    /// Returns the items at the samples of eight pixels in a row.
     #[inline(always)]
     pub fn items_of_eight(&self, pixel: usize) -> &[u32] {
         &self.item[pixel << self.shift..(pixel + 8) << self.shift]
     }
 
-    /// The depth at the first sample of a pixel.
+    /// Returns the depth at the first sample of a pixel.
     pub fn depth(&self, pixel: usize) -> f32 {
         f32::from_bits(self.depth[pixel << self.shift] as u32)
     }
 
-    /// The item at the first sample of each of eight pixels in a row, and a number for each that is
-    /// 0 only where all samples of the pixel show it.
+    /// Returns the item at the first sample of each of eight pixels in a row, and a number for each
+    /// that is 0 only where all samples of the pixel show it.
     #[inline(always)]
     pub fn eight<S: Simd>(&self, simd: S, pixel: usize) -> [u32x8<S>; 2] {
         if self.shift == 0 {
@@ -157,7 +158,7 @@ pub fn block_of<S: Simd>(simd: S, items: &[u32], pixel: usize, samples: &mut [u3
     }
 }
 
-/// The items at the samples of eight pixels in a row, four each, by sample.
+/// Returns the items at the samples of eight pixels in a row, four each, by sample.
 #[inline(always)]
 fn four_of_eight<S: Simd>(simd: S, items: &[u32], pixel: usize) -> [u32x8<S>; 4] {
     let items = &items[4 * pixel..4 * pixel + 32];

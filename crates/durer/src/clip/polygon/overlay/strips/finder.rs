@@ -11,21 +11,21 @@ use super::{Group, Strip, Strips, partition_near};
 struct Pixel<C> {
     at: Point<C>,
     name: u32,
-    /// Whether it went into two groups, so that what hits it may be found twice.
+    /// True if it went into two groups, so that what hits it may be found twice.
     twice: bool,
 }
 
-/// What looks for pixels works with.
+/// Buffers of the search for pixels.
 struct Finder<'a, C, F> {
     strips: &'a Strips<C>,
     segments: &'a [Segment<C>],
     /// Pixels of the strips that are being worked on, those of a part behind the whole's.
     open: Vec<Pixel<C>>,
-    /// Of the pixels of a strip the first and the last group.
+    /// First and last group of each pixel in a strip.
     groups: Vec<(u32, u32)>,
-    /// Where the open pixels of each group start, those of a part behind the whole's.
+    /// Starts of each group's open pixels, those of a part behind the whole's.
     starts: Vec<usize>,
-    /// What may have been found twice.
+    /// Pairs that may have been found twice.
     twice: Vec<(u32, u32)>,
     found: F,
 }

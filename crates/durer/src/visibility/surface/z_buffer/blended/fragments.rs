@@ -24,7 +24,7 @@ struct Fragment {
     samples: u32,
 }
 
-/// So many fragments are collected before those that nothing can come before are lit.
+/// Number of fragments that are collected before those that nothing can precede are lit.
 const MANY: usize = if cfg!(test) { 64 } else { 4 * TILE_PIXELS };
 
 /// After so many triangles it is asked whether anything comes through.
@@ -125,7 +125,7 @@ impl Fragments {
 /// Fragments are collected where something comes through.
 struct Open<'a> {
     fragments: &'a mut Fragments,
-    /// As [`Layers::closed`].
+    /// Same as [`Layers::closed`].
     closed: &'a [u32],
 }
 

@@ -1,4 +1,4 @@
-//! What is lit of the blended surfaces of a tile, block by block.
+//! The lit layers of a tile's blended surfaces, block by block.
 
 use super::super::tile::{TILE, TILE_PIXELS};
 use super::{BLOCKS, LANES, block_at, place_of};
@@ -12,22 +12,22 @@ use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
 /// No layer.
 const NONE: u32 = u32::MAX;
 
-/// What is lit of the blended surfaces of a tile.
+/// Lit layers of a tile's blended surfaces.
 pub struct Layers {
     /// Each is that of a block; 0 at pixels where nothing is.
     all: Vec<Colors>,
-    /// Of each layer the next nearer one of its block: apart, so that what lies far apart need not be waited for
-    /// one after the other.
+    /// Next nearer layer of each layer's block, in a list of its own, so that distant ones need not be waited
+    /// for one after the other.
     nearer: Vec<u32>,
     /// The samples that each layer covers of each pixel, as bits; not kept where pixels have but one.
     covered: Vec<[u32; LANES]>,
-    /// Of each block the farthest layer that is lit, and the pixels that have some, as bits.
+    /// Farthest lit layer of each block, and the pixels that have some, as bits.
     pub farthest: Vec<(u32, u16)>,
-    /// How much comes through what is lit: sample after sample the pixels, by place.
+    /// Transmittance of the lit layers: sample after sample the pixels, by place.
     through: Vec<f32>,
     /// All bits are set where next to nothing comes through, and beyond the picture; by place.
     pub closed: Vec<u32>,
-    /// How many of those are in the picture.
+    /// Number of those that are in the picture.
     closed_count: usize,
     /// Samples of a pixel.
     pub count: usize,
@@ -58,7 +58,7 @@ impl Layers {
         self.all.clear();
     }
 
-    /// Whether anything is lit.
+    /// Returns whether anything is lit.
     pub fn any(&self) -> bool {
         !self.all.is_empty()
     }
@@ -86,7 +86,7 @@ impl Layers {
         self.tile = tile;
     }
 
-    /// Whether nothing comes through at any pixel of a tile of this size.
+    /// Returns whether nothing comes through at any pixel of a tile of this size.
     pub fn hide_all(&self, size: [i32; 2]) -> bool {
         self.closed_count >= (size[0] * size[1]) as usize
     }
@@ -114,7 +114,7 @@ impl Layers {
         self.add(simd, block, (there, covered), [r, g, b, f32x16::from_slice(simd, &colors[3])]);
     }
 
-    /// The upper left pixel of a block in the picture.
+    /// Returns the upper left pixel of a block in the picture.
     pub fn place(&self, block: usize) -> [i32; 2] {
         let [x, y] = block_at(block);
         [self.tile[0] + x, self.tile[1] + y]

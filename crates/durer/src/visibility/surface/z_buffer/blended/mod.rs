@@ -39,13 +39,13 @@ const BLOCKS_ACROSS: usize = TILE as usize / 8;
 /// A sheet with more blocks is likely to be covered by the next large triangle.
 const MANY_BLOCKS: usize = BLOCKS / 2;
 
-/// The upper left pixel of a block, tile-local.
+/// Returns the upper left pixel of a block, tile-local.
 #[inline(always)]
 fn block_at(block: usize) -> [i32; 2] {
     [(block % BLOCKS_ACROSS * 8) as i32, (block / BLOCKS_ACROSS * 2) as i32]
 }
 
-/// The place of a tile-local pixel: its block times 16 and its lane.
+/// Returns the place of a tile-local pixel: its block times 16 and its lane.
 #[inline(always)]
 fn place_of(x: i32, y: i32) -> usize {
     let block = y / 2 * (TILE / 8) + x / 8;
@@ -74,7 +74,7 @@ impl Blended {
         self.layers.clear();
     }
 
-    /// Whether anything is lit.
+    /// Returns whether anything is lit.
     pub fn any(&self) -> bool {
         self.layers.any()
     }
@@ -168,7 +168,7 @@ fn light_sheet<S: Simd>(
     Ok(taken)
 }
 
-/// Whether the box of a triangle takes more than a quarter of a tile.
+/// Returns whether the box of a triangle takes more than a quarter of a tile.
 fn is_large(t: &ScreenTriangle, [tile, size]: [[i32; 2]; 2]) -> bool {
     let reach = HALF_PIXEL;
     t.pixel_bounds(reach).is_some_and(|[x0, y0, x1, y1]| {

@@ -20,12 +20,12 @@ pub struct Sheet {
     /// The blocks with an item, and for each whether it is among them.
     begun: Vec<u32>,
     is_begun: Vec<bool>,
-    /// Whether a triangle came to what another covers.
+    /// True if a triangle came to what another covers.
     pub covers_another: bool,
 }
 
 impl Sheet {
-    /// Nothing yet, with so many samples per pixel.
+    /// Creates an empty sheet with this number of samples per pixel.
     pub fn new(count: usize) -> Self {
         Self {
             items: vec![NO_ITEM; count * TILE_PIXELS],
@@ -52,7 +52,7 @@ impl Sheet {
         }
     }
 
-    /// The blocks with an item.
+    /// Returns the blocks with an item.
     pub fn begun(&self) -> &[u32] {
         &self.begun
     }
@@ -69,7 +69,7 @@ impl Sheet {
     }
 }
 
-/// The first sample of each plane and the logarithm of how many it has.
+/// Returns the first sample of each plane and the logarithm of how many it has.
 fn planes(count: usize) -> impl Iterator<Item = (usize, u32)> {
     let shift = if count.is_multiple_of(4) { 2 } else { 0 };
     (0..count).step_by(1 << shift).map(move |first| (first, shift))

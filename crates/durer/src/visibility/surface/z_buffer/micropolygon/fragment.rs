@@ -1,4 +1,5 @@
-//! What small triangles leave: depths at the samples of a pixel that they cover, mostly with a normal.
+//! The fragments of small triangles: depths at the samples of a pixel that they cover, mostly with
+//! a normal.
 
 use super::tiles::{PIXEL_BITS, Tiles};
 use crate::visibility::surface::lit::KnownNormals;
@@ -34,7 +35,7 @@ impl Seen {
     }
 }
 
-/// What can be drawn into a tile.
+/// Fragment that can be drawn into a tile.
 trait Draw {
     /// Tests and writes depths, and in `known` the normal where it is seen. The block's items have these upper bits.
     fn draw<S: Simd>(
@@ -171,10 +172,10 @@ impl Draw for Fragment<4> {
     }
 }
 
-/// What small triangles leave at pixels of so many samples.
+/// Fragments of small triangles in pixels of this number of samples.
 #[derive(Default)]
 pub struct Store<const N: usize> {
-    /// Where normals were made.
+    /// Fragments with normals.
     pub with_normals: Tiles<Fragment<N>>,
     /// The others.
     pub samples: Tiles<Sample<N>>,
@@ -195,12 +196,12 @@ impl<const N: usize> Store<N> {
     }
 }
 
-/// What small triangles leave.
+/// Fragments of small triangles.
 #[derive(Default)]
 pub struct Fragments {
-    /// Where pixels have one sample.
+    /// Fragments in pixels of one sample.
     pub one: Store<1>,
-    /// Where they have four.
+    /// Fragments in pixels of four samples.
     pub four: Store<4>,
 }
 

@@ -34,11 +34,11 @@ pub const MOST_TILES: u32 = 1 << (32 - PIXEL_BITS);
 struct Queue {
     count: usize,
     items: [u32; EIGHT],
-    /// What their normals are found from, where they are asked for.
+    /// Source of their normals, if they are needed.
     read: Read,
-    /// As in [`Sampled`].
+    /// First pixels, as in [`Sampled`].
     first: [[i32; EIGHT]; 2],
-    /// Which pixels of its box each covers at any sample, as bits, and which at each sample.
+    /// Pixels of its box that each covers at any sample, as bits, and those at each sample.
     touched: [u32; EIGHT],
     covered: [[u32; 4]; EIGHT],
     origin: [[i32; EIGHT]; 2],
@@ -114,7 +114,7 @@ impl Queue {
         }
     }
 
-    /// What the normals of eight triangles and their depths are found by.
+    /// Returns the linear functions for the normals of eight triangles and their depths.
     #[inline(always)]
     fn lines<S: Simd>(&self, simd: S, normals: Option<&RunNormals<'_>>) -> Lines {
         let [first_x, first_y] = &self.first;
@@ -153,7 +153,7 @@ impl Queue {
 
 /// By what the normals of eight triangles and their depths are found, row by row; the fourth number of each is the depth's.
 struct Lines {
-    /// Where the boxes begin, counted from where the planes' constants are.
+    /// Start of the boxes, counted from where the planes' constants are.
     from: [[[f32; 4]; EIGHT]; 2],
     /// Constants, changes along x and along y.
     planes: [[[f32; 4]; EIGHT]; 3],
@@ -164,7 +164,8 @@ struct Lines {
 }
 
 impl Lines {
-    /// The normal and the depth of a triangle at a pixel of its box: bit for bit as they are found elsewhere.
+    /// Returns the normal and the depth of a triangle at a pixel of its box: bit for bit as they are found
+    /// elsewhere.
     #[inline(always)]
     fn at<S: Simd>(&self, simd: S, lane: usize, pixel: usize) -> [f32; 4] {
         let [column, row] = place_in_box(pixel);
@@ -182,8 +183,8 @@ impl Lines {
         found.bitcast::<f32x4<S>>().into()
     }
 
-    /// The bits of the depths at the four samples of a pixel, which lie as given from its centre: bit for bit as they are
-    /// found where triangles are rasterized.
+    /// Returns the bits of the depths at the four samples of a pixel, which lie as given from its centre: bit
+    /// for bit as they are found where triangles are rasterized.
     #[inline(always)]
     fn depths<S: Simd>(
         &self,
@@ -209,7 +210,7 @@ struct Screen {
     columns: i32,
     /// One or four.
     samples: usize,
-    /// Where four samples lie from pixels' centres, in pixels; nothing where there is one.
+    /// Positions of four samples from pixels' centres, in pixels; nothing for one sample.
     lanes: [[f32; 4]; 2],
 }
 

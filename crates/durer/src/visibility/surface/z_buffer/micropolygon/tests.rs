@@ -18,10 +18,11 @@ use crate::visibility::surface::{Cull, Samples};
 
 const COUNT: usize = 6_000;
 
-/// Of two tiles and a piece of a third across, and as many down.
+/// Size of two tiles and a piece of a third across, and as many down.
 const SIZE: [i32; 2] = [150, 140];
 
-/// Triangles of up to some three pixels across, some of them larger, of all slopes, with normals.
+/// Returns triangles of up to some three pixels across, some of them larger, of all slopes, with
+/// normals.
 fn scene() -> Scene {
     let mut seed = 11_u32;
     let mut random = || {
@@ -65,7 +66,7 @@ fn nearest(
     samples.map(|sample| (planes[0].item[sample], planes[0].depth[sample])).collect()
 }
 
-/// What was found of fragments with normals.
+/// Fragments with normals that were found.
 #[derive(Default)]
 struct Found {
     known: usize,

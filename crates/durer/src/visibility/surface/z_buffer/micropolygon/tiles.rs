@@ -13,9 +13,9 @@ pub struct Tiles<T> {
     room: usize,
 }
 
-/// What is in one tile.
+/// Blocks of one tile.
 struct Blocks<T> {
-    /// Where the next comes to; full or without room when there is none.
+    /// Position of the next item; full or without room when there is none.
     open: Vec<T>,
     /// The upper bits of items there.
     upper: u32,

@@ -1,4 +1,4 @@
-//! What is linear over a triangle: its edge functions and its depth.
+//! The linear functions over a triangle: its edge functions and its depth.
 
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS};
 use crate::simd::lanes;
@@ -43,9 +43,9 @@ pub fn top_left(dx: i32, dy: i32) -> bool {
 
 /// The depth of a triangle at samples side by side.
 pub struct LaneDepths<S: Simd> {
-    /// What x adds to the depth.
+    /// Increase of the depth with x.
     from_x: S::f32s,
-    /// Where the samples lie in their row.
+    /// Positions of the samples in their row.
     lanes_y: S::f32s,
     /// From row 0 of the tile to the row that depths are counted from.
     rows: i32,
@@ -62,7 +62,7 @@ impl<S: Simd> LaneDepths<S> {
         Self { from_x: from_x * t.depth_dx, lanes_y, rows: tile_y - origin[1] }
     }
 
-    /// The bits of the depths in a row of the tile.
+    /// Returns the bits of the depths in a row of the tile.
     #[inline(always)]
     pub fn at(&self, simd: S, t: &ScreenTriangle, y: i32) -> S::i32s {
         let from_y = (self.lanes_y + (y + self.rows) as f32) * t.depth_dy;
