@@ -8,7 +8,7 @@ use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, vatti};
 use durer::math::{DVec2, Rect};
 use durer::trace::NoTrace;
 
-/// Returns A number: on a tiny grid, where everything touches, of usual size, or any there is.
+/// Returns a number: on a tiny grid, where everything touches, of usual size, or any there is.
 fn number(u: &mut Unstructured<'_>, kind: u8) -> Result<f64> {
     Ok(match kind {
         0 => f64::from(u.int_in_range(-4i8..=4)?),

@@ -117,7 +117,7 @@ fn draw(bytes: &[u8]) {
     canvas.render(&mut Pixels::new(24, 17, [0; 4])).expect("the same size");
 }
 
-/// Returns A document that is well-formed.
+/// Returns a document that is well-formed.
 fn text(bytes: &[u8]) -> Result<String> {
     let mut u = Unstructured::new(bytes);
     let mut text = "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='15'>".to_owned();

@@ -112,7 +112,7 @@ pub fn gltf(bytes: &[u8]) {
     }
 }
 
-/// Returns A document whose numbers come from the input, so that most of it is well formed.
+/// Returns a document whose numbers come from the input, so that most of it is well formed.
 fn document(bytes: &[u8]) -> Result<(String, &[u8])> {
     let mut u = Unstructured::new(bytes);
     let mut small = |most: u32| u.int_in_range(0..=most);
@@ -143,7 +143,7 @@ fn document(bytes: &[u8]) -> Result<(String, &[u8])> {
     Ok((json, u.take_rest()))
 }
 
-/// Returns A GLB of a JSON text and a buffer.
+/// Returns a GLB of a JSON text and a buffer.
 pub fn glb(json: &str, buffer: &[u8]) -> Vec<u8> {
     let json = format!("{json}{}", " ".repeat(json.len().wrapping_neg() % 4));
     let word = |v: usize| (v as u32).to_le_bytes();
@@ -202,7 +202,7 @@ fn meshopt_document<'a>(u: &mut Unstructured<'a>) -> Result<(String, &'a [u8])> 
     Ok((json, data))
 }
 
-/// Returns A text of the format's words, with numbers and bytes between.
+/// Returns a text of the format's words, with numbers and bytes between.
 fn text(bytes: &[u8], words: &[&str]) -> Result<Vec<u8>> {
     let mut u = Unstructured::new(bytes);
     let mut text = Vec::new();

@@ -13,7 +13,7 @@ use durer_formats::height_map::{HeightMapOptions, read};
 /// Points of a surface that is drawn at most, so that one run stays short.
 const POINTS: usize = 2048;
 
-/// Returns A camera that looks at a box of any size, from above the front or from a side that `turn`
+/// Returns a camera that looks at a box of any size, from above the front or from a side that `turn`
 /// chooses.
 fn camera(field: &HeightField, turn: u8) -> Option<Camera> {
     let bounds = field.bounds()?;

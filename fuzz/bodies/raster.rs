@@ -14,7 +14,7 @@ use durer::target::Pixels;
 use durer::trace::NoTrace;
 use std::sync::Arc;
 
-/// Returns A number: on a tiny grid, where everything touches, around a small target, far away, or any
+/// Returns a number: on a tiny grid, where everything touches, around a small target, far away, or any
 /// there is.
 fn number(u: &mut Unstructured<'_>, kind: u8) -> Result<f64> {
     Ok(match kind {

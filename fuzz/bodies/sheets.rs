@@ -78,7 +78,7 @@ fn annotations(bytes: &mut Bytes<'_>) -> Annotations {
     }
 }
 
-/// Returns A scene, perhaps cut and pulled apart.
+/// Returns a scene, perhaps cut and pulled apart.
 fn model(bytes: &mut Bytes<'_>) -> Scene {
     let mut scene = scene(bytes);
     if bytes.next().is_multiple_of(2) {

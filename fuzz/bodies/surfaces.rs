@@ -48,7 +48,7 @@ impl Bytes<'_> {
     }
 }
 
-/// Returns A texture of any size, wrap mode and transparency, with a mip chain or without.
+/// Returns a texture of any size, wrap mode and transparency, with a mip chain or without.
 fn texture(number: usize) -> (Image, Sampler) {
     let (width, height) = (1 + number as u32 * 5 % 37, 1 + number as u32 * 7 % 53);
     let data = (0..width * height).map(|i| {

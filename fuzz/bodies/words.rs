@@ -2,7 +2,7 @@
 
 use arbitrary::{Result, Unstructured};
 
-/// Returns A text of words of a format, with numbers, and with bytes between where the input says
+/// Returns a text of words of a format, with numbers, and with bytes between where the input says
 /// so.
 pub fn text(bytes: &[u8], words: &[&str]) -> Result<Vec<u8>> {
     let mut u = Unstructured::new(bytes);

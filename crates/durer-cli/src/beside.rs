@@ -22,7 +22,7 @@ pub struct Beside {
 }
 
 impl Beside {
-    /// Returns A file that shall replace `place`, or be there first; a link stays a link.
+    /// Returns a file that shall replace `place`, or be there first; a link stays a link.
     pub fn create(place: &Path) -> io::Result<Self> {
         let place = fs::canonicalize(place).unwrap_or_else(|_| place.to_owned());
         if fs::metadata(&place).is_ok_and(|m| m.permissions().readonly()) {

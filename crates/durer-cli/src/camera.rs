@@ -152,7 +152,7 @@ fn keep_order(args: &ViewArgs, camera: &mut Camera) {
     }
 }
 
-/// Returns A camera of the file, turned around the middle of the model.
+/// Returns a camera of the file, turned around the middle of the model.
 fn of_file(name: &str, scene: &mut impl Sights, shot: &Shot) -> Result<Camera, Failure> {
     let found = scene.cameras().iter().find(|c| c.name == name).ok_or_else(|| {
         let names: Vec<&str> = scene.cameras().iter().map(|c| c.name.as_str()).collect();
@@ -170,7 +170,7 @@ fn of_file(name: &str, scene: &mut impl Sights, shot: &Shot) -> Result<Camera, F
     Ok(turned(camera, pivot, scene.up_axis(), shot))
 }
 
-/// Returns A camera in a given place, turned around its target.
+/// Returns a camera in a given place, turned around its target.
 fn at(
     eye: DVec3,
     args: &ViewArgs,
@@ -213,7 +213,7 @@ fn turned(camera: Camera, pivot: DVec3, up_axis: UpAxis, shot: &Shot) -> Camera 
     Camera { eye, target, up: turn * camera.up, ..camera }
 }
 
-/// Returns A camera that sees the whole model; the same distance for all frames of a turntable.
+/// Returns a camera that sees the whole model; the same distance for all frames of a turntable.
 fn fitted(args: &ViewArgs, scene: &mut impl Sights, shot: &Shot) -> Result<Camera, Failure> {
     let (azimuth, elevation) = match (shot.view, args.azimuth, args.elevation) {
         (Some(view), ..) => view.angles(),

@@ -7,14 +7,14 @@ use durer::shade::color::LINEAR_FROM_SRGB;
 /// Colours of `--background gradient`: a bright sky over a light grey.
 const GRADIENT: (&str, &str) = ("#9fb7d4", "#f2f4f7");
 
-/// Returns A linear RGBA colour from what [`bytes`] takes.
+/// Returns a linear RGBA colour from what [`bytes`] takes.
 pub fn color(text: &str) -> Result<Vec4, String> {
     let [r, g, b, a] = bytes(text)?;
     let linear = |channel: u8| LINEAR_FROM_SRGB[usize::from(channel)];
     Ok(Vec4::new(linear(r), linear(g), linear(b), f32::from(a) / 255.0))
 }
 
-/// Returns A colour of CSS as sRGB bytes with straight alpha: a name of CSS 4, `#rgb`, `#rrggbb` (both also
+/// Returns a colour of CSS as sRGB bytes with straight alpha: a name of CSS 4, `#rgb`, `#rrggbb` (both also
 /// with alpha), `rgb()`, `rgba()`, `hsl()` or `hsla()`.
 pub fn bytes(text: &str) -> Result<[u8; 4], String> {
     durer_formats::css::color(text).ok_or_else(|| {
@@ -23,7 +23,7 @@ pub fn bytes(text: &str) -> Result<[u8; 4], String> {
     })
 }
 
-/// Returns A colour, `gradient`, or `TOP,BOTTOM`.
+/// Returns a colour, `gradient`, or `TOP,BOTTOM`.
 pub fn background(text: &str) -> Result<Background, String> {
     match split(text) {
         _ if text == "gradient" => Ok(Background::Gradient(color(GRADIENT.0)?, color(GRADIENT.1)?)),

@@ -45,12 +45,12 @@ impl Failure {
         }
     }
 
-    /// Creates A failure of a file: its name, then what is wrong with it.
+    /// Creates a failure of a file: its name, then what is wrong with it.
     pub fn of_file(file: &Path, what: impl fmt::Display) -> Self {
         Self::Data(format!("{}: {what}", shown_path(file)))
     }
 
-    /// Creates A failed write to standard output.
+    /// Creates a failed write to standard output.
     pub fn of_stdout(error: &std::io::Error) -> Self {
         match error.kind() {
             std::io::ErrorKind::BrokenPipe => Self::ClosedPipe,

@@ -59,7 +59,7 @@ impl<'a> Film<'a> {
     }
 }
 
-/// Returns A file beside the place, or what is special there itself.
+/// Returns a file beside the place, or what is special there itself.
 fn open(path: &Path) -> io::Result<(File, Option<Beside>)> {
     if output::is_special(path) {
         return Ok((OpenOptions::new().write(true).open(path)?, None));

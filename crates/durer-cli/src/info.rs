@@ -254,7 +254,7 @@ fn add_areas(scene: &Scene, sum: &mut f64) {
     }
 }
 
-/// Returns A name of the file, not too long.
+/// Returns a name of the file, not too long.
 fn short(name: impl AsRef<str>) -> String {
     cut(name.as_ref()).into_owned()
 }
@@ -351,7 +351,7 @@ fn light(kind: &LightKind) -> &'static str {
 }
 
 impl Info {
-    /// Returns A line for each fact; facts that are nothing are left out.
+    /// Returns a line for each fact; facts that are nothing are left out.
     fn text(&self) -> String {
         let mut lines = vec![
             ("format", self.format.clone()),

@@ -31,7 +31,7 @@ pub fn given_name(path: &Path) -> String {
 /// The squares of larger coordinates are beyond what numbers of double precision hold.
 const FARTHEST: f64 = 1e150;
 
-/// Returns A failure with the file's name, where it comes of a model that lies too far off for any
+/// Returns a failure with the file's name, where it comes of a model that lies too far off for any
 /// view.
 pub fn blamed(name: &str, scene: &durer::scene::Scene, failure: Failure) -> Failure {
     let farthest = || scene.bounds().map(|b| b.min.abs().max(b.max.abs()).max_element());

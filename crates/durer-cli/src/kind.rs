@@ -131,7 +131,7 @@ impl Wanted {
         Self { kind, told: told.is_some(), suffixes: PICTURES }
     }
 
-    /// Creates A picture whose pixels are numbers that must not change.
+    /// Creates a picture whose pixels are numbers that must not change.
     pub fn plane() -> Self {
         Self { kind: Kind::PNG, told: false, suffixes: PLANES }
     }

@@ -23,7 +23,7 @@ pub fn held() -> Option<u64> {
     kilobytes(&fs::read_to_string("/proc/self/status").ok()?, "RssAnon:")
 }
 
-/// Returns A number of kilobytes, in bytes, behind a name at the start of a line.
+/// Returns a number of kilobytes, in bytes, behind a name at the start of a line.
 fn kilobytes(text: &str, name: &str) -> Option<u64> {
     let rest = text.lines().find_map(|line| line.strip_prefix(name))?;
     rest.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)

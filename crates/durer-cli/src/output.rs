@@ -153,7 +153,7 @@ pub fn file_or_stream(option: &str, path: &Path) -> Result<Target, Failure> {
     in_its_folder(path)
 }
 
-/// Returns A file in a folder that is there.
+/// Returns a file in a folder that is there.
 fn in_its_folder(path: &Path) -> Result<Target, Failure> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match fs::metadata(folder) {

@@ -60,7 +60,7 @@ fn numbers(_: &Metadata) -> Option<Place> {
     None
 }
 
-/// Returns A path without links and `..`, as far as its folder is there.
+/// Returns a path without links and `..`, as far as its folder is there.
 fn full(path: &Path) -> PathBuf {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::canonicalize(path)

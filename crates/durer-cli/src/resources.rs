@@ -36,7 +36,7 @@ impl Folder {
         Ok(Self::at(model.parent().unwrap_or(Path::new("/")).to_owned()))
     }
 
-    /// Returns A folder without a model in it, where paths start.
+    /// Returns a folder without a model in it, where paths start.
     pub fn itself(folder: &Path) -> io::Result<Self> {
         Ok(Self::at(directory(folder)?))
     }
@@ -109,7 +109,7 @@ impl Folder {
         Some(at)
     }
 
-    /// Returns A name of the folder that differs from `name` only in upper and lower case.
+    /// Returns a name of the folder that differs from `name` only in upper and lower case.
     fn name(&self, folder: &Path, name: &OsStr) -> Option<OsString> {
         let folder = fs::canonicalize(folder).ok().filter(|folder| self.allows(folder))?;
         let mut known = self.names.lock().unwrap_or_else(PoisonError::into_inner);
@@ -118,7 +118,7 @@ impl Folder {
     }
 }
 
-/// Returns A folder's true place.
+/// Returns a folder's true place.
 fn directory(folder: &Path) -> io::Result<PathBuf> {
     let full = fs::canonicalize(folder)?;
     if full.is_dir() { Ok(full) } else { Err(io::Error::other("it is not a folder")) }

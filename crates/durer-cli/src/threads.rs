@@ -33,7 +33,7 @@ pub fn start(args: &RunningArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns A thread that waits for its part.
+/// Returns a thread that waits for its part.
 fn waiting(take: &Arc<Mutex<Receiver<rayon::ThreadBuilder>>>) -> io::Result<()> {
     let take = Arc::clone(take);
     let work = move || {

@@ -64,19 +64,19 @@ pub fn picture_format() -> impl TypedValueParser<Value = PictureFormat> {
         .map(|name| PictureFormat::of_suffix(&name).unwrap_or_default())
 }
 
-/// Returns A format's name; of some a suffix is as usual.
+/// Returns a format's name; of some a suffix is as usual.
 fn named(name: &'static str) -> PossibleValue {
     let value = PossibleValue::new(name);
     if name == PictureFormat::Jpeg.name() { value.alias("jpg") } else { value }
 }
 
-/// Returns A size on the screen in pixels: above 0, and no larger than a picture.
+/// Returns a size on the screen in pixels: above 0, and no larger than a picture.
 pub fn pixels(text: &str) -> Result<f64, String> {
     let size = positive(text)?;
     if size <= 16_384.0 { Ok(size) } else { Err("at most 16384 pixels".to_owned()) }
 }
 
-/// Returns A finite number.
+/// Returns a finite number.
 pub fn number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(n) if n.is_finite() => Ok(n),
@@ -85,12 +85,12 @@ pub fn number(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Returns A finite number above zero.
+/// Returns a finite number above zero.
 pub fn positive(text: &str) -> Result<f64, String> {
     number(text).and_then(|n| if n > 0.0 { Ok(n) } else { Err("it must be above 0".to_owned()) })
 }
 
-/// Returns A finite number, zero or above.
+/// Returns a finite number, zero or above.
 pub fn not_negative(text: &str) -> Result<f64, String> {
     number(text)
         .and_then(|n| if n >= 0.0 { Ok(n) } else { Err("it must not be below 0".to_owned()) })
@@ -116,13 +116,13 @@ fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     numbers.try_into().ok()
 }
 
-/// Returns A point of the picture.
+/// Returns a point of the picture.
 pub fn point(text: &str) -> Result<DVec2, String> {
     let wrong = || "a point is X,Y in pixels, e.g. 512.5,300.5".to_owned();
     numbers(text).map(DVec2::from_array).ok_or_else(wrong)
 }
 
-/// Returns A rectangle of the picture, by two opposite corners.
+/// Returns a rectangle of the picture, by two opposite corners.
 pub fn rect(text: &str) -> Result<Rect, String> {
     let rect = numbers(text)
         .and_then(|[x0, y0, x1, y1]| Rect::around([DVec2::new(x0, y0), DVec2::new(x1, y1)]));
@@ -131,7 +131,7 @@ pub fn rect(text: &str) -> Result<Rect, String> {
     rect.filter(has_area).ok_or_else(wrong)
 }
 
-/// Returns A count of at least 1.
+/// Returns a count of at least 1.
 pub fn count(text: &str) -> Result<u64, String> {
     match text.replace('_', "").parse() {
         Ok(n) if n > 0 => Ok(n),
@@ -139,7 +139,7 @@ pub fn count(text: &str) -> Result<u64, String> {
     }
 }
 
-/// Returns A SIMD level of this machine by its name, or `auto` for its best.
+/// Returns a SIMD level of this machine by its name, or `auto` for its best.
 pub fn simd_level(text: &str) -> Result<Level, String> {
     let missing = || match (text, cfg!(feature = "scalar")) {
         ("scalar", false) => {
@@ -153,7 +153,7 @@ pub fn simd_level(text: &str) -> Result<Level, String> {
     simd::by_name(text).ok_or_else(missing)
 }
 
-/// Returns A number of bytes, with `k`, `M` or `G` for powers of 1024.
+/// Returns a number of bytes, with `k`, `M` or `G` for powers of 1024.
 pub fn bytes(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let factor = match text[digits.len()..].trim_end_matches("iB").trim_end_matches('B') {

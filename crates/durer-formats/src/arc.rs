@@ -65,7 +65,7 @@ impl Arc {
         Some(arc)
     }
 
-    /// Returns A vector of the space where the ellipse is a unit circle, in that of the path.
+    /// Returns a vector of the space where the ellipse is a unit circle, in that of the path.
     pub fn seen(&self, v: DVec2) -> DVec2 {
         let ((sin, cos), v) = (self.turned, v * self.radii);
         DVec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)

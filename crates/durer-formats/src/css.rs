@@ -16,7 +16,7 @@ use std::str::FromStr;
 /// that it does.
 const REBECCA_PURPLE: (&str, &str) = ("rebeccapurple", "#663399");
 
-/// Returns A colour of CSS as sRGB bytes with straight alpha: a name of CSS 4 or `transparent` in letters of
+/// Returns a colour of CSS as sRGB bytes with straight alpha: a name of CSS 4 or `transparent` in letters of
 /// any case, `#rgb`, `#rrggbb` (both also with alpha), `rgb()`, `hsl()`, `hwb()`, `lab()`, `lch()`,
 /// `oklab()`, `oklch()`, `color()`, `color-mix()` or `light-dark()`, of which the light one is taken; `None`
 /// for other text. What lies outside of sRGB is cut off.
@@ -45,7 +45,7 @@ pub(crate) fn color_within(text: &str, current: Option<Color>) -> Option<Color> 
     }
 }
 
-/// Returns A colour that is a name or a number with `#`.
+/// Returns a colour that is a name or a number with `#`.
 fn simple(text: &str) -> Option<[u8; 4]> {
     let text = text.to_ascii_lowercase();
     let words = if text == REBECCA_PURPLE.0 { REBECCA_PURPLE.1 } else { &text };

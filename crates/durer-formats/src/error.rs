@@ -99,17 +99,17 @@ fn unsupported(place: &Place, what: &str, hint: &str) -> String {
 }
 
 impl Error {
-    /// Creates A decode error at a line and column, both counted from 1 (column 0: unknown).
+    /// Creates a decode error at a line and column, both counted from 1 (column 0: unknown).
     pub fn line(line: u64, column: u64, message: impl Into<String>) -> Self {
         Self::Decode { place: Place::Line(line, column), message: message.into() }
     }
 
-    /// Creates A decode error at a byte offset.
+    /// Creates a decode error at a byte offset.
     pub fn byte(offset: u64, message: impl Into<String>) -> Self {
         Self::Decode { place: Place::Byte(offset), message: message.into() }
     }
 
-    /// Creates A decode error at a path inside a structured file.
+    /// Creates a decode error at a path inside a structured file.
     pub fn path(path: impl Into<String>, message: impl Into<String>) -> Self {
         Self::Decode { place: Place::Path(path.into()), message: message.into() }
     }
@@ -131,7 +131,7 @@ impl Error {
         }
     }
 
-    /// Creates A decode error of the file as a whole.
+    /// Creates a decode error of the file as a whole.
     pub fn whole(message: impl Into<String>) -> Self {
         Self::Decode { place: Place::Whole, message: message.into() }
     }

@@ -169,7 +169,7 @@ mod tests {
     use super::*;
     use durer::scene::{Instance, Mesh};
 
-    /// Returns A scene of two points, with the radius 1 around the origin.
+    /// Returns a scene of two points, with the radius 1 around the origin.
     fn scene() -> Scene {
         let positions = vec![Vec3::X, Vec3::NEG_X];
         let mesh = Mesh { positions, ..Mesh::default() };

@@ -95,7 +95,7 @@ pub(crate) fn markup(error: &Markup) -> String {
 
 const LESS_IN_VALUE: &str = "an attribute's value holds `<`, which is written `&lt;`";
 
-/// Returns A byte as a message shows it.
+/// Returns a byte as a message shows it.
 fn byte(byte: u8) -> String {
     if byte.is_ascii_graphic() { char::from(byte).to_string() } else { format!("\\x{byte:02x}") }
 }
@@ -191,7 +191,7 @@ fn types(text: &str) -> String {
     }
 }
 
-/// Returns A value that serde calls `string "x"`, ``integer `5` `` or the like.
+/// Returns a value that serde calls `string "x"`, ``integer `5` `` or the like.
 fn value(found: &str) -> String {
     for (theirs, ours) in
         [("string ", "the text "), ("integer ", "the number "), ("floating point ", "the number ")]
@@ -203,7 +203,7 @@ fn value(found: &str) -> String {
     kind(found).to_owned()
 }
 
-/// Returns A type of Rust, or of serde, in words of JSON.
+/// Returns a type of Rust, or of serde, in words of JSON.
 fn kind(name: &str) -> &str {
     match name {
         "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number from 0 on",

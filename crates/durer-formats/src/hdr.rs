@@ -99,7 +99,7 @@ fn no_size(line: &[u8]) -> Error {
     Error::whole(format!("`{}` is no size such as `-Y 512 +X 1024`", quote(line)))
 }
 
-/// Returns A colour from three mantissas and their common exponent.
+/// Returns a colour from three mantissas and their common exponent.
 fn decoded([r, g, b, exponent]: [u8; 4], exposure: f32) -> [f32; 3] {
     if exponent == 0 {
         return [0.0; 3];
@@ -131,7 +131,7 @@ impl<'a> Source<'a> {
         Ok([self.next()?, self.next()?, self.next()?, self.next()?])
     }
 
-    /// Returns A line of the header, without its end.
+    /// Returns a line of the header, without its end.
     fn line(&mut self) -> Result<&'a [u8]> {
         let rest = self.bytes.get(self.at..).unwrap_or_default();
         let length = rest.iter().position(|byte| *byte == b'\n');

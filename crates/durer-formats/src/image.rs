@@ -89,7 +89,7 @@ fn place(name: &str) -> Place {
     if name.is_empty() { Place::Whole } else { Place::Path(format!("image `{}`", shown(name))) }
 }
 
-/// Returns A decode error that names the picture.
+/// Returns a decode error that names the picture.
 fn broken(name: &str, message: impl std::fmt::Display) -> Error {
     Error::whole(format!("image `{}`: {message}", shown(name)))
 }

@@ -47,7 +47,7 @@ pub(crate) fn quote(bytes: &[u8]) -> String {
     if text.chars().count() <= 60 { text } else { text.chars().take(60).chain(['…']).collect() }
 }
 
-/// Returns A name in a text: UTF-8, or where it is none, Windows-1252, in which older programs
+/// Returns a name in a text: UTF-8, or where it is none, Windows-1252, in which older programs
 /// wrote.
 pub(crate) fn name(bytes: &[u8]) -> Cow<'_, str> {
     match std::str::from_utf8(bytes) {

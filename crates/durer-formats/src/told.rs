@@ -136,7 +136,7 @@ fn with_short_numbers(text: &str) -> Cow<'_, str> {
     Cow::Owned(told)
 }
 
-/// Returns A number of few digits; those of single precision are enough to find it.
+/// Returns a number of few digits; those of single precision are enough to find it.
 fn short(number: f64) -> String {
     let text = format!("{number:.8e}");
     let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));

@@ -40,7 +40,7 @@ fn strip_data_scheme(uri: &str) -> Option<&str> {
     scheme.eq_ignore_ascii_case("data:").then_some(rest)
 }
 
-/// Returns A percent-decoded path with `/` as separator, as [`Resources::find`] takes it. A `%`
+/// Returns a percent-decoded path with `/` as separator, as [`Resources::find`] takes it. A `%`
 /// without two hexadecimal digits stands for itself, as programs that do not encode write it.
 pub(crate) fn path(uri: &str) -> std::result::Result<String, &'static str> {
     let bytes = percent_decode(uri).unwrap_or_else(|| uri.as_bytes().to_vec());

@@ -94,7 +94,7 @@ impl Error {
         matches!(self, Memory { .. } | OutOfMemory { .. } | TimedOut { .. } | Cancelled)
     }
 
-    /// Creates A [`Error::Parameter`] from any displayable value.
+    /// Creates a [`Error::Parameter`] from any displayable value.
     pub fn parameter(
         name: &'static str,
         value: impl std::fmt::Display,

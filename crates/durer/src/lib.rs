@@ -170,6 +170,10 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Repository;
+
 pub mod error;
 pub mod info;
 pub mod math;

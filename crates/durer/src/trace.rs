@@ -43,7 +43,7 @@ pub struct Recorder<S> {
 }
 
 impl<S> Recorder<S> {
-    /// Creates A recorder that keeps the first `cap` steps.
+    /// Creates a recorder that keeps the first `cap` steps.
     pub fn with_cap(cap: usize) -> Self {
         Self { steps: Vec::new(), cap, dropped: 0 }
     }

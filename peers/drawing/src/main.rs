@@ -88,7 +88,7 @@ fn main() {
     }
 }
 
-/// Returns A bare SVG, to look at.
+/// Returns a bare SVG, to look at.
 fn svg(drawing: &Drawing) -> String {
     let Some(b) = drawing.bounds() else { return String::new() };
     let size = b.size().max_element().max(f64::MIN_POSITIVE);

@@ -25,7 +25,7 @@ fn all() -> Vec<Box<dyn Fn() -> Scene>> {
     ]
 }
 
-/// Returns A canvas, kept from picture to picture as vello_cpu's context is.
+/// Returns a canvas, kept from picture to picture as vello_cpu's context is.
 fn canvas(scene: &Scene, overlap: Overlap, anti_alias: bool) -> Canvas {
     let options = Options { overlap, anti_alias, ..Options::default() };
     Canvas::new(scene.size, scene.size, options).unwrap()
@@ -97,7 +97,7 @@ struct Vello {
 }
 
 impl Vello {
-    /// Creates A square target, one thread.
+    /// Creates a square target, one thread.
     fn new(side: u32) -> Self {
         let settings = vello_cpu::RenderSettings { num_threads: 0, ..Default::default() };
         let side = side as u16;

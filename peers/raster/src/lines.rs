@@ -184,7 +184,7 @@ pub fn hairlines() {
     println!("mean difference from vello_cpu {:.3}/255", far as f64 / own.len() as f64);
 }
 
-/// Returns A maze by a random spanning tree (depth first): corridors and walls one pixel wide.
+/// Returns a maze by a random spanning tree (depth first): corridors and walls one pixel wide.
 fn maze(side: u32, r: &mut Random) -> Vec<u8> {
     let n = ((side - 1) / 2) as usize;
     let side = side as usize;

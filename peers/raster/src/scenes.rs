@@ -51,7 +51,7 @@ pub fn small_polygons() -> Scene {
     Scene { name: "10k polygons 1024".into(), size: 1024, shapes: shapes.collect() }
 }
 
-/// Returns A jittered grid of 64 × 64 cells, two triangles each.
+/// Returns a jittered grid of 64 × 64 cells, two triangles each.
 pub fn mesh() -> Scene {
     let mut r = Random(2);
     let (n, side) = (64, 512.0);

@@ -51,7 +51,7 @@ impl Drop for Ended {
 pub struct TempFolder(PathBuf);
 
 impl TempFolder {
-    /// Creates A new folder among the temporary files.
+    /// Creates a new folder among the temporary files.
     pub fn new() -> Result<Self> {
         let folder = std::env::temp_dir().join(format!("durer-peers-{}", std::process::id()));
         std::fs::create_dir_all(&folder)?;

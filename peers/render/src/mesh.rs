@@ -27,7 +27,7 @@ pub fn sphere(name: &str) -> Result<Mesh> {
     Ok(displaced(around, down))
 }
 
-/// Returns A displaced sphere with so many meridians and parallels.
+/// Returns a displaced sphere with so many meridians and parallels.
 pub fn displaced(around: u32, down: u32) -> Mesh {
     let points: Vec<[f64; 3]> =
         (0..=down).flat_map(|i| (0..around).map(move |j| point(i, j, around, down))).collect();

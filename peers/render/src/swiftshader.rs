@@ -68,7 +68,7 @@ impl SwiftShader {
         })
     }
 
-    /// Returns A device with its threads: SwiftShader reads its settings in the current folder.
+    /// Returns a device with its threads: SwiftShader reads its settings in the current folder.
     fn open(&self) -> Result<Gpu> {
         let before = std::env::current_dir()?;
         let library = self.library.canonicalize()?;

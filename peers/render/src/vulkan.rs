@@ -111,7 +111,7 @@ impl Gpu {
         Ok((buffer, memory))
     }
 
-    /// Returns A buffer that holds these words.
+    /// Returns a buffer that holds these words.
     pub fn buffer(&mut self, words: &[u32], usage: vk::BufferUsageFlags) -> Result<vk::Buffer> {
         let (buffer, memory) = self.buffer_of(size_of_val(words), usage)?;
         let flags = vk::MemoryMapFlags::empty();
@@ -355,7 +355,7 @@ impl Gpu {
     }
 }
 
-/// Returns A device with one queue and rendering without render passes.
+/// Returns a device with one queue and rendering without render passes.
 fn device(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Result<ash::Device> {
     let queues =
         [vk::DeviceQueueCreateInfo::default().queue_family_index(0).queue_priorities(&[1.0])];

@@ -151,7 +151,7 @@ fn profile_of(middle: Middle) -> Vec<(f64, f64)> {
     }
 }
 
-/// Returns A fillet of 2.5 at the foot, a round of 1 at the top, a bore of 3.
+/// Returns a fillet of 2.5 at the foot, a round of 1 at the top, a bore of 3.
 fn boss() -> Vec<(f64, f64)> {
     const STEPS: usize = 8;
     let (radius, foot, round, top, bore) = (6.0, 2.5, 1.0, 16.0, 3.0);

@@ -69,7 +69,7 @@ impl Glb {
         Geometry { positions, normals, tex_coords, indices: self.accessors.len() - 1 }
     }
 
-    /// Returns A mesh of one part; gives its number.
+    /// Returns a mesh of one part; gives its number.
     pub fn mesh(&mut self, geometry: Geometry, material: usize) -> usize {
         let Geometry { positions, normals, tex_coords, indices } = geometry;
         self.meshes.push(json!({"primitives": [{
@@ -79,7 +79,7 @@ impl Glb {
         self.meshes.len() - 1
     }
 
-    /// Returns A PNG; gives the number of its texture.
+    /// Returns a PNG; gives the number of its texture.
     pub fn texture(&mut self, png: &[u8]) -> usize {
         let view = self.view(png);
         self.images.push(json!({"bufferView": view, "mimeType": "image/png"}));

@@ -25,7 +25,7 @@ impl Solid {
     }
 }
 
-/// Returns A box around the origin, each side with the whole texture.
+/// Returns a box around the origin, each side with the whole texture.
 pub fn cuboid(half: DVec3) -> Solid {
     let mut solid = Solid::default();
     for axis in 0..3 {
@@ -45,7 +45,7 @@ pub fn cuboid(half: DVec3) -> Solid {
     solid
 }
 
-/// Returns A ball of radius 1 around the origin.
+/// Returns a ball of radius 1 around the origin.
 pub fn ball(slices: u32, stacks: u32) -> Solid {
     let mut solid = Solid::default();
     for i in 0..=stacks {

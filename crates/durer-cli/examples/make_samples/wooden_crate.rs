@@ -88,7 +88,7 @@ fn smooth(x: f64, y: f64, seed: u32) -> f64 {
     row(0) * (1.0 - t) + row(1) * t
 }
 
-/// Returns A number between 0 and 1 that looks like chance.
+/// Returns a number between 0 and 1 that looks like chance.
 fn noise(x: i64, y: i64, seed: u32) -> f64 {
     let mut h = (x as u64)
         .wrapping_mul(0x9e37_79b9_7f4a_7c15)

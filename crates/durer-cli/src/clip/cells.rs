@@ -212,7 +212,7 @@ impl Job<'_> {
     }
 }
 
-/// Returns A feature's fields, and then those of its cell.
+/// Returns a feature's fields, and then those of its cell.
 fn with_fields(mut fields: Vec<Member>, of_cell: &[Member]) -> Vec<Member> {
     for field in of_cell {
         let mut name = field.key();

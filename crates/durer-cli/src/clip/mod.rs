@@ -361,7 +361,7 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Returns A writer that knows what stands before the features.
+    /// Returns a writer that knows what stands before the features.
     fn writer(&self) -> Result<Writer<Sink>, Failure> {
         layer::writer(&self.args.output, self.to, &self.members(), self.system())
     }

@@ -45,7 +45,7 @@ impl Window {
     }
 }
 
-/// Returns A window, or one across the meridian where the left border is the larger one, as in RFC
+/// Returns a window, or one across the meridian where the left border is the larger one, as in RFC
 /// 7946.
 pub fn region(text: &str) -> Result<Window, String> {
     let [xl, yb, xr, yt] = corners(text)?;
@@ -59,7 +59,7 @@ pub fn region(text: &str) -> Result<Window, String> {
     Ok(Window::Across([rect(xl - 360.0, xr)?, rect(xl, xr + 360.0)?]))
 }
 
-/// Returns A rectangle.
+/// Returns a rectangle.
 pub fn window(text: &str) -> Result<Rect, String> {
     let [xl, yb, xr, yt] = corners(text)?;
     if xl >= xr || yb >= yt {

@@ -27,7 +27,7 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// Returns A failure at its place.
+    /// Returns a failure at its place.
     pub fn wrong(&self, file: &Path, what: &str) -> Failure {
         wrong(file, self.line, what)
     }
@@ -159,7 +159,7 @@ fn values(arg: &Arg, value: &DeValue) -> Result<Vec<String>, String> {
     }
 }
 
-/// Returns A string or a number.
+/// Returns a string or a number.
 fn word(value: &DeValue) -> Result<String, String> {
     match value {
         DeValue::String(text) => Ok(text.clone().into_owned()),
@@ -192,7 +192,7 @@ fn is_path(arg: &Arg) -> bool {
     matches!(arg.get_value_hint(), AnyPath | DirPath | ExecutablePath | FilePath)
 }
 
-/// Returns A path of the file as seen from where the command runs.
+/// Returns a path of the file as seen from where the command runs.
 fn beside(folder: &Path, path: &str) -> String {
     if path == crate::places::STREAM {
         path.to_owned()

@@ -77,7 +77,7 @@ pub struct Shot {
 }
 
 impl Shot {
-    /// Creates A view of a kind.
+    /// Creates a view of a kind.
     pub fn new(kind: Option<ViewKind>, camera: Camera) -> Self {
         Self { kind, camera }
     }
@@ -163,7 +163,7 @@ pub fn add_details(
     Ok(())
 }
 
-/// Returns A detail of the view that it names, or that shows most within its circle; `None` where that is
+/// Returns a detail of the view that it names, or that shows most within its circle; `None` where that is
 /// nothing.
 fn detail(spec: &DetailSpec, shown: &[Shown]) -> Result<Option<Shown>, Failure> {
     let mut best: Option<(f64, Shown)> = None;

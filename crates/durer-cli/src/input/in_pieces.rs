@@ -31,7 +31,7 @@ pub struct InPieces {
 }
 
 impl InPieces {
-    /// Returns A failure of the file.
+    /// Returns a failure of the file.
     pub fn failure(&self, e: &durer_formats::Error) -> Failure {
         Failure::Data(format!("{}: {e}", self.name))
     }

@@ -177,7 +177,7 @@ fn fields(schema: &Schema) -> Vec<FieldInfo> {
 const LONG: usize = 40;
 
 impl LayerInfo {
-    /// Returns A line for each fact; facts that are nothing are left out.
+    /// Returns a line for each fact; facts that are nothing are left out.
     pub fn text(&self) -> String {
         let title = match &self.name {
             Some(name) => format!("{}, layer {name}", self.layer),
@@ -220,7 +220,7 @@ impl LayerInfo {
     }
 }
 
-/// Returns A value as one short line.
+/// Returns a value as one short line.
 fn short(value: &serde_json::Value) -> String {
     let text = value.to_string();
     let plain: String = text.chars().filter(|c| !c.is_control()).collect();

@@ -78,7 +78,7 @@ pub fn open(
     Ok((named.unwrap_or(format), reader.map_err(|e| fail(words(&e)))?))
 }
 
-/// Returns A reader of bytes of a file, which finds what is beside it.
+/// Returns a reader of bytes of a file, which finds what is beside it.
 pub fn reader<R: std::io::Read>(
     path: &Path,
     format: GeoFormat,

@@ -39,7 +39,7 @@ pub fn named_format(
     Ok(format)
 }
 
-/// Returns A writer of features with what comes before them.
+/// Returns a writer of features with what comes before them.
 pub fn writer(
     output: &Path,
     to: GeoFormat,
@@ -57,7 +57,7 @@ pub fn writer(
     Ok(writer)
 }
 
-/// Returns A place for one file.
+/// Returns a place for one file.
 fn place(output: &Path, to: GeoFormat) -> Result<Sink, Failure> {
     if !is_stream(output) {
         return Sink::file(output);

@@ -31,7 +31,7 @@ impl Sink {
         Self { out, name: PathBuf::from("standard output") }
     }
 
-    /// Returns A file, replaced by [`Sink::commit`]; a device or pipe is written to directly.
+    /// Returns a file, replaced by [`Sink::commit`]; a device or pipe is written to directly.
     pub fn file(path: &Path) -> Result<Self, Failure> {
         let out = if is_special(path) {
             let file = OpenOptions::new().write(true).open(path);

@@ -12,7 +12,7 @@ pub struct Watched {
 }
 
 impl Watched {
-    /// Creates A source of a file that is held whole, or is not.
+    /// Creates a source of a file that is held whole, or is not.
     pub fn new(source: Box<dyn BufRead>, work: &Work, holds: bool) -> Self {
         Self { source, work: work.part(), holds }
     }

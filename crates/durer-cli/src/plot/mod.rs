@@ -49,7 +49,7 @@ pub enum Format {
     Picture(PictureFormat),
 }
 
-/// Returns A format by its name or a file's suffix.
+/// Returns a format by its name or a file's suffix.
 pub fn format(text: &str) -> Result<Format, String> {
     let picture = PictureFormat::of_suffix(text).map(Format::Picture);
     picture
@@ -102,7 +102,7 @@ pub fn names(text: &str) -> Result<[String; 3], String> {
     names.try_into().map_err(|_| "three names joined by commas are needed, e.g. x,y,z".to_owned())
 }
 
-/// Returns A page; `fit` has no meaning for a plot, which fits the page.
+/// Returns a page; `fit` has no meaning for a plot, which fits the page.
 pub fn page(text: &str) -> Result<Page, String> {
     match text.parse() {
         Ok(Page::Fit) => Err("a plot fits its page; name a size such as A4 or 180x135".to_owned()),
@@ -275,7 +275,7 @@ impl Surface {
     }
 }
 
-/// Returns A field without what is beyond `--y-range`.
+/// Returns a field without what is beyond `--y-range`.
 fn within(field: HeightField, args: &PlotArgs) -> Result<HeightField, Failure> {
     let Some([low, high]) = args.surface.y_range else { return Ok(field) };
     let field = field.within([low, high]).map_err(|e| Failure::Usage(format!("--y-range: {e}")))?;

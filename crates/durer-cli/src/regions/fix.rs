@@ -50,7 +50,7 @@ pub fn run(args: &FixArgs) -> Result<(), Failure> {
     job.each(|feature, geometry| made(args, feature, geometry), note)
 }
 
-/// Returns A feature's geometry made valid, `None` where nothing of it is left; and whether it was
+/// Returns a feature's geometry made valid, `None` where nothing of it is left; and whether it was
 /// not.
 fn made(
     args: &FixArgs,

@@ -49,7 +49,7 @@ pub struct SimplifyArgs {
     pub files: FilesArgs,
 }
 
-/// Returns A share in percent.
+/// Returns a share in percent.
 fn share(text: &str) -> Result<f64, String> {
     let percent = values::not_negative(text.strip_suffix('%').unwrap_or(text))?;
     if percent > 100.0 {

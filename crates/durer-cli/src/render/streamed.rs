@@ -243,7 +243,7 @@ impl Sights for Streamed<'_> {
         Ok(fit::depth_range_of(camera, ends.ends()))
     }
 
-    /// Returns A still one.
+    /// Returns a still one.
     fn fitted(
         &mut self,
         direction: &ViewDirection,

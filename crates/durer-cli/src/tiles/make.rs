@@ -147,7 +147,7 @@ impl<'a> Maker<'a> {
         serde_json::Value::Object(object).to_string()
     }
 
-    /// Returns A shape in degrees, rings as GeoJSON wants them: outer ones counter-clockwise.
+    /// Returns a shape in degrees, rings as GeoJSON wants them: outer ones counter-clockwise.
     fn geometry(&self, tile: Tile, shape: &Shape) -> Geometry {
         let side = 1.0 / f64::from(1u32 << tile.zoom);
         let corner = DVec2::new(tile.x.into(), tile.y.into());

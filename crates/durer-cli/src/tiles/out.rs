@@ -61,7 +61,7 @@ pub fn format(args: &TilesArgs) -> Result<(TileFormat, PathBuf), Failure> {
 }
 
 impl Out {
-    /// Returns A place for tiles; nothing is in it yet.
+    /// Returns a place for tiles; nothing is in it yet.
     pub fn new(format: TileFormat, path: PathBuf) -> Result<Self, Failure> {
         let file = |path: &Path| {
             if path.is_dir() || is_special(path) {

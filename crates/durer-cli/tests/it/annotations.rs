@@ -3,7 +3,7 @@
 use crate::harness::Folder;
 use std::fs;
 
-/// Returns A nut, a bolt and a ring.
+/// Returns a nut, a bolt and a ring.
 fn parts() -> String {
     let mut text = String::new();
     let mut count = 0;

@@ -7,7 +7,7 @@ use std::io::Write as _;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-/// Returns A binary STL file of triangles that stand side by side.
+/// Returns a binary STL file of triangles that stand side by side.
 fn stl(count: u32) -> Vec<u8> {
     let mut file = vec![b' '; 80];
     file.extend(count.to_le_bytes());
@@ -30,7 +30,7 @@ fn obj(count: u32) -> String {
     text
 }
 
-/// Returns A drawing of many curves with wide strokes.
+/// Returns a drawing of many curves with wide strokes.
 fn svg(curves: u32) -> String {
     let mut text =
         String::from(r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100">"#);
@@ -63,7 +63,7 @@ fn what_needs_more_is_refused_with_its_stage_and_the_option() {
         ("render many.stl -o o.png --size 64x64 --shadows map", "1M", "meshes of the model"),
         ("render many.obj -o o.png --size 64x64", "4M", "meshes of the model"),
         ("render many.obj -o o.png --size 64x64", "500k", "bytes of the file"),
-        ("render many.stl -o o.png --size 64x --aa 4", "3500k", "triangles on the screen"),
+        ("render many.stl -o o.png --size 64x --aa 16", "3500k", "triangles on the screen"),
         ("render many.stl -o o.png --size 64x64 --algorithm ray", "5M", "triangles on the screen"),
         ("render many.stl -o o.svg", "6M", "faces for hidden lines"),
         ("render many.stl -o o.svg --style regions", "6M", "faces of the drawing"),

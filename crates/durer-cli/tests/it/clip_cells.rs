@@ -3,7 +3,7 @@
 use crate::harness::Folder;
 use serde_json::{Value, json};
 
-/// Returns A polygon of many points, a neighbour of few, a line and two points.
+/// Returns a polygon of many points, a neighbour of few, a line and two points.
 fn layer() -> String {
     let jagged: Vec<String> = (0..80)
         .map(|i| format!("[{},{}]", -f64::from(i % 3) * 0.3, 9.9 - 0.123 * f64::from(i)))

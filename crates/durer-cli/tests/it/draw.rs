@@ -408,7 +408,7 @@ fn wrong_use_and_bad_data_are_told() {
     assert!(!folder.path("a.png").exists());
 }
 
-/// Returns A feature that is a point.
+/// Returns a feature that is a point.
 fn point([x, y]: [u32; 2], properties: &str) -> String {
     let geometry = format!(r#"{{"type":"Point","coordinates":[{x},{y}]}}"#);
     format!(r#"{{"type":"Feature","properties":{properties},"geometry":{geometry}}}"#)

@@ -28,7 +28,7 @@ const GOLDEN: &[(&str, &str, &str)] = &[
     ("crate", "crate.glb", "--style regions+lines --merge material --azimuth -25 --elevation 20"),
 ];
 
-/// Returns A folder with the cube and the samples' models.
+/// Returns a folder with the cube and the samples' models.
 fn folder() -> Folder {
     let folder = Folder::with_models();
     for name in ["bracket.stl", "teapot.obj", "crate.glb"] {
@@ -408,7 +408,7 @@ fn outlines_are_smooth_and_bodies_searched_where_that_is_asked_for() {
     assert_eq!(outlines("--stubs 0"), outlines("--stubs 0 --smooth=off"));
 }
 
-/// Returns A box as text in STL; each corner of a facet is moved by what `moved` says of its
+/// Returns a box as text in STL; each corner of a facet is moved by what `moved` says of its
 /// number.
 fn box_of_facets(moved: impl Fn(usize) -> f64) -> String {
     let sides =
@@ -482,7 +482,7 @@ fn polygons_that_are_not_flat_have_their_outline_between_their_triangles() {
     assert_eq!((silhouettes(0), silhouettes(60)), (0, 1));
 }
 
-/// Returns A plate with a round hole, of so many sides each.
+/// Returns a plate with a round hole, of so many sides each.
 fn plate(sides: u32) -> String {
     let ring = |radius: f64, z: f64| {
         let angle = move |i: u32| f64::from(i) * std::f64::consts::TAU / f64::from(sides);

@@ -2,7 +2,7 @@
 
 use crate::harness::{Folder, Picture};
 
-/// Returns A white 8 × 8 picture with a black cross, white in its middle, one field of it with a
+/// Returns a white 8 × 8 picture with a black cross, white in its middle, one field of it with a
 /// pixel that is a little darker.
 fn folder() -> Folder {
     let folder = Folder::new();
@@ -63,7 +63,7 @@ fn wholly_transparent_pixels_are_one_colour() {
     assert_eq!(pixels(&folder, "--at 4,0 --color red --tolerance 9"), [5]);
 }
 
-/// Returns A PNG of one row.
+/// Returns a PNG of one row.
 fn row(
     color: png::ColorType,
     depth: png::BitDepth,

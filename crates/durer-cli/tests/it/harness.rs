@@ -28,7 +28,7 @@ impl Folder {
         Self { path }
     }
 
-    /// Creates A folder with `cube.obj` and `broken.obj`.
+    /// Creates a folder with `cube.obj` and `broken.obj`.
     pub fn with_models() -> Self {
         let folder = Self::new();
         folder.write("cube.obj", CUBE);

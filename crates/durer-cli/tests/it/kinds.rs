@@ -28,7 +28,7 @@ fn models() -> Vec<String> {
     models
 }
 
-/// Returns A folder with the models and what they refer to.
+/// Returns a folder with the models and what they refer to.
 fn folder() -> Folder {
     let folder = Folder::new();
     for entry in fs::read_dir(tests().join("kinds")).unwrap() {

@@ -4,7 +4,7 @@
 use crate::harness::Folder;
 use std::io::Write;
 
-/// Returns A triangle as glTF, with parts of the text replaced.
+/// Returns a triangle as glTF, with parts of the text replaced.
 fn gltf(replace: &[(&str, &str)]) -> String {
     let text = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
@@ -16,7 +16,7 @@ fn gltf(replace: &[(&str, &str)]) -> String {
 
 const NODES: &str = r#""nodes":[{"mesh":0}]"#;
 
-/// Returns A node tree as deep as it is long.
+/// Returns a node tree as deep as it is long.
 fn chain(nodes: usize) -> String {
     let inner: String = (1..nodes).map(|i| format!("{{\"children\":[{i}]}},")).collect();
     gltf(&[(NODES, &format!(r#""nodes":[{inner}{{"mesh":0}}]"#))])
@@ -113,7 +113,9 @@ fn text_that_is_nested_without_end_is_refused() {
          <text>&j;</text></svg>"
     );
     folder.write("laugh.svg", laugh);
-    folder.run("draw laugh.svg -o a.png").fails(1, "entity reference loop");
+    folder
+        .run("draw laugh.svg -o a.png")
+        .fails(1, "entities refer to each other in a circle, or too often");
 }
 
 #[test]

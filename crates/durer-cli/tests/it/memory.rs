@@ -96,7 +96,7 @@ fn a_run_takes_less_than_eight_times_its_file() {
     }
 }
 
-/// Returns A binary glTF file of many vertices and one triangle.
+/// Returns a binary glTF file of many vertices and one triangle.
 fn glb(vertices: u32) -> Vec<u8> {
     let (points, bytes) = (12 * vertices, 12 * vertices + 12);
     let mut json = format!(

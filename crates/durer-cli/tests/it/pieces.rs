@@ -28,7 +28,7 @@ fn triangles() -> Vec<[[f32; 3]; 3]> {
     all
 }
 
-/// Returns A binary STL file; of facets by their numbers these have colours.
+/// Returns a binary STL file; of facets by their numbers these have colours.
 fn stl(is_colored: impl Fn(usize) -> bool) -> Vec<u8> {
     let all = triangles();
     let mut file = vec![b' '; 80];

@@ -57,7 +57,7 @@ const COUNTRIES: &str = r#"{"type":"Feature","properties":{"name":"A"},"geometry
 "coordinates":[[[0,40],[50,40],[50,50],[0,50],[0,40]]]}}"#;
 const MASK: &str = r#"{"type":"Polygon","coordinates":[[[10,30],[20,30],[15,60],[10,30]]]}"#;
 
-/// Returns A folder with a copy of the samples, and map data.
+/// Returns a folder with a copy of the samples, and map data.
 fn folder_with_samples() -> Folder {
     let folder = Folder::new();
     fs::create_dir(folder.path("samples")).unwrap();

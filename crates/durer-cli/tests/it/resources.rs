@@ -4,7 +4,7 @@ use crate::harness::{CUBE, Ended, Folder};
 use std::fs;
 use std::process::Stdio;
 
-/// Returns A triangle whose positions are in another file.
+/// Returns a triangle whose positions are in another file.
 fn gltf(uri: &str) -> String {
     format!(
         r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
@@ -19,7 +19,7 @@ fn positions() -> Vec<u8> {
     [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
-/// Returns A folder with `model/` and a file beside it that must not be read.
+/// Returns a folder with `model/` and a file beside it that must not be read.
 fn folder() -> Folder {
     let folder = Folder::new();
     fs::create_dir_all(folder.path("model/sub")).unwrap();
@@ -70,7 +70,7 @@ fn links_do_not_lead_out_of_the_folder() {
     folder.must("info model/m.gltf");
 }
 
-/// Returns A triangle whose picture is elsewhere.
+/// Returns a triangle whose picture is elsewhere.
 fn pictured(uri: &str) -> String {
     gltf("ok.bin").replacen(
         '{',

@@ -76,7 +76,7 @@ fn written(how: &str) -> Vec<(String, Vec<u8>)> {
     names.map(|name| (name.clone(), folder.read(&name))).collect()
 }
 
-/// Returns A folder with all samples.
+/// Returns a folder with all samples.
 fn samples() -> Folder {
     let folder = Folder::new();
     let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples");
@@ -88,7 +88,7 @@ fn samples() -> Folder {
     folder
 }
 
-/// Returns A command that writes a file; pictures of models are small.
+/// Returns a command that writes a file; pictures of models are small.
 fn with_output(command: &str, out: &str) -> String {
     let painted = [".png", ".jpg", ".webp", ".gif"].iter().any(|suffix| out.ends_with(suffix));
     let pixels = command.starts_with("render") && painted;

@@ -3,7 +3,7 @@
 
 use crate::harness::Folder;
 
-/// Returns A triangle that is seen from its front along −z, in glTF.
+/// Returns a triangle that is seen from its front along −z, in glTF.
 fn triangle(material: &str, mode: u32) -> String {
     format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],

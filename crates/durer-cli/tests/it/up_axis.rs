@@ -5,7 +5,7 @@ use durer::math::DVec3;
 use durer::scene::UpAxis;
 use std::fmt::Write;
 
-/// Returns A cube with an arrow upwards, a small box on its right and a smaller one before it.
+/// Returns a cube with an arrow upwards, a small box on its right and a smaller one before it.
 fn model(axis: UpAxis) -> String {
     let mut text = String::new();
     let mut count = 0;

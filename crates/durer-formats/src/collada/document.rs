@@ -232,7 +232,7 @@ impl<'a> Document<'a> {
     }
 }
 
-/// Returns A number, also one with a decimal comma, as some writers set it where their users live.
+/// Returns a number, also one with a decimal comma, as some writers set it where their users live.
 pub(super) fn float(word: &str) -> Option<f64> {
     let whole = |text: &str| {
         let (value, length) = number::float(text.as_bytes())?;

@@ -45,7 +45,7 @@ pub(super) fn add(
     model.scene.lights = eye::lights(&lamps, unit, &model.scene);
 }
 
-/// Returns A number of an element's child.
+/// Returns a number of an element's child.
 fn number(document: &Document<'_>, element: usize, name: &str) -> Option<f64> {
     document.vector::<1>(document.find(element, &[name])?).map(|[v]| v)
 }
@@ -138,7 +138,7 @@ pub(super) fn lamp(
     position.is_finite().then_some(Lamp { kind: of_kind, color, falloff })
 }
 
-/// Returns A colour times an intensity, which is above 1 where a component is.
+/// Returns a colour times an intensity, which is above 1 where a component is.
 fn light_color(rgb: [f64; 3], linear: bool) -> Vec3 {
     let intensity = rgb.into_iter().fold(1.0, f64::max);
     let rgb = rgb.map(|v| (v.max(0.0) / intensity) as f32);

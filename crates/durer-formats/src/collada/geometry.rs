@@ -153,7 +153,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Returns A source, read once.
+    /// Returns a source, read once.
     fn source(&mut self, element: usize) -> Result<Option<Rc<Source>>> {
         if let Some(known) = self.sources.get(&element) {
             return Ok(known.clone());

@@ -196,7 +196,7 @@ impl<'d, 'a> Materials<'d, 'a> {
         }
     }
 
-    /// Returns A colour, a picture, or a parameter that is a colour.
+    /// Returns a colour, a picture, or a parameter that is a colour.
     fn value(&self, profile: usize, shader: usize, name: &str) -> Option<Value> {
         let document = self.document;
         let element = document.find(shader, &[name])?;
@@ -218,7 +218,7 @@ impl<'d, 'a> Materials<'d, 'a> {
         }
     }
 
-    /// Returns A colour with alpha as linear light.
+    /// Returns a colour with alpha as linear light.
     fn linear_color(&self, element: usize) -> Vec4 {
         let floats = self.document.floats(element);
         let mut floats = floats.map(|v| v.filter(|v| v.is_finite()).unwrap_or(0.0));
@@ -239,7 +239,7 @@ impl<'d, 'a> Materials<'d, 'a> {
         })
     }
 
-    /// Returns A parameter of the profile, by its name there.
+    /// Returns a parameter of the profile, by its name there.
     fn parameter(&self, profile: usize, sid: &str) -> Option<usize> {
         let document = self.document;
         let mut all = document.inside(profile).filter(|&n| document.name(n) == "newparam");

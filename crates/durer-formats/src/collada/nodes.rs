@@ -155,7 +155,7 @@ impl<'d, 'a> Nodes<'d, 'a> {
         }
     }
 
-    /// Returns A node's matrix to its parent: its transforms in their order.
+    /// Returns a node's matrix to its parent: its transforms in their order.
     fn local(&mut self, node: usize) -> DMat4 {
         let document = self.document;
         let mut matrix = DMat4::IDENTITY;
@@ -299,12 +299,12 @@ impl<'d, 'a> Nodes<'d, 'a> {
     }
 }
 
-/// Returns A matrix that is written row by row.
+/// Returns a matrix that is written row by row.
 fn rows(m: &[f64; 16]) -> DMat4 {
     DMat4::from_cols_array(m).transpose()
 }
 
-/// Returns A transform element's matrix: `None` for other elements, `Some(None)` for broken
+/// Returns a transform element's matrix: `None` for other elements, `Some(None)` for broken
 /// numbers.
 fn transform(document: &Document<'_>, element: usize) -> Option<Option<DMat4>> {
     let vector = |v: [f64; 3]| DVec3::from(v);
@@ -321,7 +321,7 @@ fn transform(document: &Document<'_>, element: usize) -> Option<Option<DMat4>> {
     })
 }
 
-/// Returns A turn by degrees about an axis; about none, nothing.
+/// Returns a turn by degrees about an axis; about none, nothing.
 fn turn(axis: DVec3, degrees: f64) -> DMat4 {
     let Some(a) = axis.try_normalize() else { return DMat4::IDENTITY };
     let angle = degrees.to_radians();
@@ -340,7 +340,7 @@ fn look_at(v: &[f64; 9]) -> DMat4 {
     DMat4::from_cols(right.extend(0.0), up.extend(0.0), back.extend(0.0), eye.extend(1.0))
 }
 
-/// Returns A shear by degrees from one axis towards another (RenderMan's Skew).
+/// Returns a shear by degrees from one axis towards another (RenderMan's Skew).
 fn skew(v: &[f64; 7]) -> DMat4 {
     let angle = v[0].to_radians();
     let along = DVec3::new(v[4], v[5], v[6]).normalize_or_zero();

@@ -14,7 +14,7 @@ pub(super) fn parse(text: &str, current: Option<Color>) -> Option<Color> {
     of_pieces(trimmed(&tokens(text)), current, 0)
 }
 
-/// Returns A colour that is all of the tokens.
+/// Returns a colour that is all of the tokens.
 fn of_pieces(pieces: &[Piece<'_>], current: Option<Color>, depth: u32) -> Option<Color> {
     let (first, rest) = pieces.split_first()?;
     let function = match &first.token {
@@ -43,7 +43,7 @@ fn named(name: &str, current: Option<Color>) -> Option<Color> {
     if name.eq_ignore_ascii_case("currentcolor") { current } else { plain(name) }
 }
 
-/// Returns A name, or a number with `#`.
+/// Returns a name, or a number with `#`.
 fn plain(text: &str) -> Option<Color> {
     super::simple(text).map(Color::of_bytes)
 }
@@ -113,7 +113,7 @@ pub(crate) fn words<'a, 'b>(pieces: &'b [Piece<'a>]) -> Vec<&'b [Piece<'a>]> {
     split_at(pieces, &Token::Blank).into_iter().filter(|part| !part.is_empty()).collect()
 }
 
-/// Returns A number, a percentage of `all`, or `none`, which counts as 0.
+/// Returns a number, a percentage of `all`, or `none`, which counts as 0.
 fn number(part: &[Piece<'_>], all: f64) -> Option<f64> {
     if let [piece] = part
         && piece.token.is_word("none")
@@ -172,7 +172,7 @@ fn mixed(inside: &[Piece<'_>], current: Option<Color>, depth: u32) -> Option<Col
     Some(color)
 }
 
-/// Returns A colour with its share in percent, before or after it.
+/// Returns a colour with its share in percent, before or after it.
 fn with_share(
     part: &[Piece<'_>],
     current: Option<Color>,

@@ -215,7 +215,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// Returns A name, and what it begins.
+    /// Returns a name, and what it begins.
     fn word(&mut self) -> Token<'a> {
         let name = self.name();
         if self.peek(0) != Some('(') {

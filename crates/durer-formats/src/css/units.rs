@@ -167,7 +167,7 @@ impl Sum<'_, '_> {
         found
     }
 
-    /// Returns A number, a length, an angle, a percentage, a sum in parentheses or a function.
+    /// Returns a number, a length, an angle, a percentage, a sum in parentheses or a function.
     fn term(&mut self) -> Option<Value> {
         let token = self.pieces.get(self.at)?.token.clone();
         self.at += 1;

@@ -110,12 +110,12 @@ impl Tags {
         self.tag(code, &format!("{value:X}"))
     }
 
-    /// Returns A real number; micrometres are the last digits.
+    /// Returns a real number; micrometres are the last digits.
     pub fn real(&mut self, code: u16, value: f64) -> &mut Self {
         self.precise(code, value, 6)
     }
 
-    /// Returns A real number with so many digits after the point.
+    /// Returns a real number with so many digits after the point.
     pub fn precise(&mut self, code: u16, value: f64, digits: usize) -> &mut Self {
         let mut text = String::new();
         push(&mut text, value, digits);
@@ -474,7 +474,7 @@ fn hatch(tags: &mut Tags, rings: &[Vec<(DVec2, f64)>]) {
     tags.int(75, 0).int(76, 1).int(98, 0);
 }
 
-/// Returns A name of a table's entry: the format forbids a few characters.
+/// Returns a name of a table's entry: the format forbids a few characters.
 pub(super) fn symbol(name: &str) -> String {
     string(name).replace(['<', '>', '/', '\\', '"', ':', ';', '?', '*', '|', ',', '=', '`'], "_")
 }

@@ -33,7 +33,7 @@ pub(super) fn bulge(tags: &mut Tags, bulge: f64) {
     tags.precise(42, bulge, DIGITS);
 }
 
-/// Returns A curve as points, each with the bulge of the arc that begins there; the first one is not
+/// Returns a curve as points, each with the bulge of the arc that begins there; the first one is not
 /// repeated.
 pub(super) fn vertices(curve: &Curve) -> Vec<(DVec2, f64)> {
     let arcs = pieces::arcs(curve, ARCS);
@@ -46,7 +46,7 @@ pub(super) fn vertices(curve: &Curve) -> Vec<(DVec2, f64)> {
     points
 }
 
-/// Returns A curve seen in a mirror: y counts up from the sheet's lower side.
+/// Returns a curve seen in a mirror: y counts up from the sheet's lower side.
 pub(super) fn turned_up(curve: &Curve, height: f64) -> Curve {
     let place = |p: DVec2| DVec2::new(p.x, height - p.y);
     let way = |v: DVec2| DVec2::new(v.x, -v.y);

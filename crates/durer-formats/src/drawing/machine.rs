@@ -135,7 +135,7 @@ fn way(chain: Chain) -> Option<Way> {
     }
 }
 
-/// Returns A sheet by pens of one width and colour, in the order of the sheet's pens; the outlines of areas
+/// Returns a sheet by pens of one width and colour, in the order of the sheet's pens; the outlines of areas
 /// come last. Dashes and texts become strokes, as machines differ in theirs, and without `arcs` curves do.
 pub fn passes(sheet: &Sheet, pens: Option<usize>, arcs: bool) -> Vec<Pass> {
     let mut found: Vec<Pass> = Vec::new();
@@ -171,7 +171,7 @@ pub fn passes(sheet: &Sheet, pens: Option<usize>, arcs: bool) -> Vec<Pass> {
     found
 }
 
-/// Returns A mark and the marks that it is made of.
+/// Returns a mark and the marks that it is made of.
 fn with_parts(mark: &Mark) -> impl Iterator<Item = &Mark> {
     let parts = match mark {
         Mark::Dimension(dimension) => &dimension.marks[..],
@@ -196,7 +196,7 @@ fn fold(passes: &mut Vec<Pass>, most: usize) {
     }
 }
 
-/// Returns A mark as what pens draw.
+/// Returns a mark as what pens draw.
 fn chains_of(mark: &Mark, sheet: &Sheet, arcs: bool) -> Vec<Chain> {
     let height = sheet.size.y;
     let stroke = |points: &[DVec2], closed: bool| {

@@ -155,7 +155,7 @@ fn dash_array(pen: Option<&Pen>, length: f64, closed: bool) -> String {
     }
 }
 
-/// Returns A colour attribute, and the opacity where it is not opaque.
+/// Returns a colour attribute, and the opacity where it is not opaque.
 fn paint(name: &str, [r, g, b, a]: [u8; 4]) -> String {
     let color = match [r, g, b].map(|c| (c >> 4, c & 15)) {
         [(r, s), (g, t), (b, u)] if r == s && g == t && b == u => format!("#{r:x}{g:x}{b:x}"),
@@ -243,7 +243,7 @@ fn escaped(text: &str) -> String {
     out
 }
 
-/// Returns A name as an identifier of XML.
+/// Returns a name as an identifier of XML.
 fn identifier(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
     let name: String = name.chars().map(plain).collect();

@@ -200,7 +200,7 @@ mod tests {
     const DOUBLE: RecordDataType = RecordDataType::Double { min: None, max: None };
     const BYTE: RecordDataType = RecordDataType::Integer { min: 0, max: 255 };
 
-    /// Returns A file of one scan, a quarter turn about z and 100 along x from its place.
+    /// Returns a file of one scan, a quarter turn about z and 100 along x from its place.
     fn file(prototype: Vec<Record>, points: &[Vec<RecordValue>]) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());
         let mut writer = E57Writer::new(&mut bytes, "a").expect("new");

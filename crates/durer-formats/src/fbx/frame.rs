@@ -57,14 +57,14 @@ fn axes(axes: &CoordinateAxes) -> Option<(UpAxis, DMat3)> {
     })
 }
 
-/// Returns A property that is a vector of finite numbers; `None` where it is not there, `Some(None)`
+/// Returns a property that is a vector of finite numbers; `None` where it is not there, `Some(None)`
 /// where they are not finite.
 fn vector(props: &Props, name: &str) -> Option<Option<DVec3>> {
     let v = props.find_prop(name)?.value_vec4;
     Some(Some(DVec3::new(v.x, v.y, v.z)).filter(|v| v.is_finite()))
 }
 
-/// Returns A turn by degrees about the axes, the first letter's first.
+/// Returns a turn by degrees about the axes, the first letter's first.
 fn turn(degrees: DVec3, order: RotationOrder) -> DMat3 {
     if degrees == DVec3::ZERO {
         return DMat3::IDENTITY;

@@ -285,7 +285,7 @@ impl<'s> Materials<'s> {
         Some(self.place(model, texture, image, sets))
     }
 
-    /// Returns A texture of the scene: equal ones are shared.
+    /// Returns a texture of the scene: equal ones are shared.
     fn place(
         &mut self,
         model: &mut Model,

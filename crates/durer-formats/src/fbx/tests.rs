@@ -33,7 +33,7 @@ const SHAPE: &str = r#"Geometry: 1, "Geometry::shape", "Mesh" {
 }
 "#;
 
-/// Returns A file of objects besides the shape, and what is joined to what.
+/// Returns a file of objects besides the shape, and what is joined to what.
 fn file(settings: &str, objects: &str, joined: &[(u32, u32, &str)]) -> String {
     let join = |(from, to, property): &(u32, u32, &str)| match *property {
         "" => format!("C: \"OO\",{from},{to}\n"),
@@ -49,7 +49,7 @@ fn file(settings: &str, objects: &str, joined: &[(u32, u32, &str)]) -> String {
     .replace("CREATOR", "")
 }
 
-/// Returns A node of a kind with properties.
+/// Returns a node of a kind with properties.
 fn node(id: u32, kind: &str, properties: &str) -> String {
     format!(
         "Model: {id}, \"Model::node{id}\", \"{kind}\" {{ Version: 232\nProperties70: {{ {properties} }} }}\n"
@@ -320,7 +320,7 @@ fn axes_and_units_become_the_worlds() {
     near(placed(&x_up, "", p), DVec3::new(-2.0, 1.0, 3.0));
 }
 
-/// Returns A picture of one pixel, as BMP.
+/// Returns a picture of one pixel, as BMP.
 fn pixel([r, g, b]: [u8; 3]) -> Vec<u8> {
     let mut bytes = b"BM".to_vec();
     for word in [58u32, 0, 54, 40, 1, 1, 1 | 24 << 16, 0, 4, 0, 0, 0, 0] {

@@ -286,7 +286,7 @@ fn no_place(keys: &[String]) -> Error {
     )
 }
 
-/// Returns A finite number; a decimal comma is taken for a point.
+/// Returns a finite number; a decimal comma is taken for a point.
 fn number(value: &[u8]) -> Option<f64> {
     let value = value.trim_ascii();
     let dotted: Vec<u8> = value.iter().map(|&b| if b == b',' { b'.' } else { b }).collect();
@@ -343,7 +343,7 @@ pub fn write(out: &mut impl Write, features: &[Feature]) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns A value of JSON as a table has it: texts without quotes, nothing for null.
+/// Returns a value of JSON as a table has it: texts without quotes, nothing for null.
 fn plain(value: &str) -> String {
     match serde_json::from_str(value) {
         Ok(serde_json::Value::String(text)) => text,

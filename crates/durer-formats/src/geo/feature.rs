@@ -33,7 +33,7 @@ pub struct Feature {
 }
 
 impl Feature {
-    /// Creates A feature that is nothing but a geometry.
+    /// Creates a feature that is nothing but a geometry.
     pub fn of_geometry(geometry: Geometry) -> Self {
         Self { geometry: Some(geometry), ..Self::default() }
     }

@@ -4,7 +4,7 @@ use super::Member;
 use super::geojson::Text;
 
 impl Member {
-    /// Creates A member from a name and a value in JSON.
+    /// Creates a member from a name and a value in JSON.
     pub fn new(key: &str, value: impl Into<String>) -> Self {
         Self { name: quoted(key), value: value.into() }
     }
@@ -20,7 +20,7 @@ impl Member {
     }
 }
 
-/// Returns A string in JSON.
+/// Returns a string in JSON.
 pub fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }

@@ -65,7 +65,7 @@ enum Source<R> {
 }
 
 impl<R: Read> Reader<R> {
-    /// Creates A reader of a format.
+    /// Creates a reader of a format.
     ///
     /// # Errors
     /// [`Error::Io`] where the source cannot be read, [`Error::Limit`] where a format that is held
@@ -74,7 +74,7 @@ impl<R: Read> Reader<R> {
         Self::with(format, source, &Beside::NOTHING)
     }
 
-    /// Creates A reader of a format that may have further files beside it, or layers.
+    /// Creates a reader of a format that may have further files beside it, or layers.
     ///
     /// # Errors
     /// As [`Self::new`]; and those of [`Self::next_feature`] where a format is read before its first feature is given.
@@ -270,7 +270,7 @@ fn text(source: impl Read) -> Result<Vec<u8>> {
     Ok(crate::text::utf8(&whole(source)?).into_owned())
 }
 
-/// Returns A document of XML as text.
+/// Returns a document of XML as text.
 fn markup(source: impl Read) -> Result<String> {
     let text = crate::xml::utf8(&whole(source)?).into_owned();
     Ok(String::from_utf8(text)

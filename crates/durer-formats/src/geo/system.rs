@@ -15,12 +15,12 @@ impl System {
     /// Longitude and latitude in degrees on WGS 84, as GeoJSON, KML and GPX have them always.
     pub const LONLAT: Self = Self { code: Some(4326), wkt: None };
 
-    /// Creates A system by its number.
+    /// Creates a system by its number.
     pub fn of_code(code: i32) -> Self {
         Self { code: Some(code), wkt: None }
     }
 
-    /// Creates A system by its definition, of which the number is looked for.
+    /// Creates a system by its definition, of which the number is looked for.
     pub fn of_wkt(wkt: &str) -> Self {
         let wkt = wkt.trim();
         let given = (!wkt.is_empty()).then(|| wkt.to_owned());

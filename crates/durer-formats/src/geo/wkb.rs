@@ -161,7 +161,7 @@ impl<'a> Reader<'a> {
         Ok(Header { kind, dimensions, srid, big })
     }
 
-    /// Returns A count of things of at least `least` bytes each; refused where the data cannot hold
+    /// Returns a count of things of at least `least` bytes each; refused where the data cannot hold
     /// them.
     fn count(&mut self, big: bool, least: usize) -> Result<usize> {
         let at = self.at;
@@ -274,7 +274,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Returns A point; all numbers NaN say that there is none.
+    /// Returns a point; all numbers NaN say that there is none.
     fn point(&mut self, header: &Header) -> Result<Points> {
         let mut points = Points::new(header.dimensions);
         let at = self.at;
@@ -322,7 +322,7 @@ impl<'a> Reader<'a> {
         Ok(points)
     }
 
-    /// Returns A line, an arc or a chain of both, as a line.
+    /// Returns a line, an arc or a chain of both, as a line.
     fn curve(&mut self, header: &Header, depth: usize) -> Result<Points> {
         if depth > MAX_DEPTH {
             return Err(self.error_at(self.at, "geometries are nested too deep"));
@@ -345,7 +345,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns A polygon whose rings are curves.
+    /// Returns a polygon whose rings are curves.
     fn surface(&mut self, header: &Header, depth: usize) -> Result<Vec<Points>> {
         let place = Place::Byte(self.at as u64);
         self.warnings.curves.add(|| place.clone());

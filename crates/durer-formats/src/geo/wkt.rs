@@ -144,7 +144,7 @@ impl<'a> Reader<'a> {
         String::from_utf8_lossy(&rest[..length]).to_ascii_uppercase()
     }
 
-    /// Returns A word if it is one of these; else nothing is taken.
+    /// Returns a word if it is one of these; else nothing is taken.
     fn keyword(&mut self, words: &[&str]) -> Option<String> {
         let before = self.at;
         let word = self.word();
@@ -317,7 +317,7 @@ impl<'a> Reader<'a> {
         Some(kind)
     }
 
-    /// Returns A line, with its name or without, an arc, or a chain of both, as a line.
+    /// Returns a line, with its name or without, an arc, or a chain of both, as a line.
     fn curve(&mut self, dimensions: &mut Option<Dimensions>, depth: usize) -> Result<Points> {
         if depth > MAX_DEPTH {
             return Err(self.error("geometries are nested too deep"));
@@ -363,7 +363,7 @@ impl<'a> Reader<'a> {
         Ok(rings)
     }
 
-    /// Returns A part of a group of surfaces: a polygon, with its name or without, or one of
+    /// Returns a part of a group of surfaces: a polygon, with its name or without, or one of
     /// curves.
     fn patch(&mut self, dimensions: &mut Option<Dimensions>, depth: usize) -> Result<Vec<Points>> {
         let kind = self.name(&[2, 9], dimensions);

@@ -43,7 +43,7 @@ pub struct Finished<W> {
 }
 
 impl<W: Write + Seek> Writer<W> {
-    /// Creates A writer of a format to a target that is empty and can be gone back in, so that a GeoPackage
+    /// Creates a writer of a format to a target that is empty and can be gone back in, so that a GeoPackage
     /// is written as its features come. Nothing is written yet.
     pub fn seekable(format: GeoFormat, out: W) -> Self {
         let rewrite: Rewrite<W> = |out, bytes| {
@@ -56,7 +56,7 @@ impl<W: Write + Seek> Writer<W> {
 }
 
 impl<W: Write> Writer<W> {
-    /// Creates A writer of a format. Nothing is written yet.
+    /// Creates a writer of a format. Nothing is written yet.
     pub fn new(format: GeoFormat, out: W) -> Self {
         let (members, held, line, system, package) = Default::default();
         let (layer, rewrite) = ("layer".to_owned(), None);

@@ -220,7 +220,7 @@ fn length(view: &BufferView) -> Whole {
     view.byte_length.unwrap_or_default()
 }
 
-/// Returns A buffer, where it has bytes, and what is to be told about its file.
+/// Returns a buffer, where it has bytes, and what is to be told about its file.
 fn load_buffer<'a>(
     root: &'a Root,
     index: usize,

@@ -113,7 +113,7 @@ impl<'a> Bytes<'a> {
 mod tests {
     use super::*;
 
-    /// Returns A file whose byte i is i modulo 251.
+    /// Returns a file whose byte i is i modulo 251.
     fn file(length: usize) -> Vec<u8> {
         (0..length).map(|i| (i % 251) as u8).collect()
     }

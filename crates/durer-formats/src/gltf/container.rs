@@ -137,7 +137,7 @@ mod tests {
         Ok(Slices { json: slice(json), bin })
     }
 
-    /// Returns A binary file of chunks, with a right header.
+    /// Returns a binary file of chunks, with a right header.
     fn file(chunks: &[(u32, &[u8])]) -> Vec<u8> {
         let mut body = Vec::new();
         for (kind, data) in chunks {

@@ -202,7 +202,7 @@ fn material(
     material
 }
 
-/// Returns A texture as a material names it.
+/// Returns a texture as a material names it.
 pub fn texture(info: Option<&TextureInfo>) -> Option<TextureRef> {
     let info = info?;
     let transform = info.extensions.transform.as_ref();

@@ -274,7 +274,7 @@ impl Builder<'_> {
         Ok(made)
     }
 
-    /// Returns A scene mesh of a primitive, morphed and skinned, and whether it was skinned.
+    /// Returns a scene mesh of a primitive, morphed and skinned, and whether it was skinned.
     fn posed(
         &self,
         mesh: usize,

@@ -111,7 +111,7 @@ fn walk(root: &Root, roots: impl DoubleEndedIterator<Item = usize>) -> impl Iter
     })
 }
 
-/// Returns A node's matrix to its parent.
+/// Returns a node's matrix to its parent.
 fn local_matrix(node: &Node, pose: &Override) -> DMat4 {
     if let (Some(matrix), false) = (&node.matrix, pose.moves()) {
         return DMat4::from_cols_array(matrix);

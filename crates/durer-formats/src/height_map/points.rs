@@ -52,7 +52,7 @@ fn lattice(points: &[[f64; 3]], options: &HeightMapOptions) -> Result<Option<Gri
     Ok(Some(spread(&x, &y, heights)))
 }
 
-/// Returns A grid on rising coordinates, the farthest row first, evenly spaced; heights between them are
+/// Returns a grid on rising coordinates, the farthest row first, evenly spaced; heights between them are
 /// interpolated where they were not even.
 fn spread(x: &[f64], y: &[f64], heights: Vec<f64>) -> Grid {
     let (columns, rows) = (x.len(), y.len());

@@ -124,7 +124,7 @@ fn cells(line: &[u8], separator: Option<u8>) -> impl Iterator<Item = (u64, &[u8]
 const X: [&str; 7] = ["x", "lon", "lng", "long", "longitude", "east", "easting"];
 const Y: [&str; 6] = ["y", "lat", "latitude", "north", "northing", "lati"];
 
-/// Returns A name without quotes, in lower case.
+/// Returns a name without quotes, in lower case.
 fn name(cell: &[u8]) -> String {
     String::from_utf8_lossy(cell).trim_matches(['"', ' ', '\'']).to_ascii_lowercase()
 }
@@ -144,7 +144,7 @@ fn heading_of(line: &[u8], separator: Option<u8>) -> Heading {
     }
 }
 
-/// Returns A height; NaN for what stands for a missing one.
+/// Returns a height; NaN for what stands for a missing one.
 fn height(cell: &[u8]) -> Option<f64> {
     let cell = cell.strip_prefix(b"\"").and_then(|c| c.strip_suffix(b"\"")).unwrap_or(cell);
     let none = ["", "na", "n/a", "null", "none", "-", "--"];

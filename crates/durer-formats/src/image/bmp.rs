@@ -124,7 +124,7 @@ fn header(bytes: &[u8], name: &str) -> Result<Header> {
 }
 
 impl Header {
-    /// Returns A colour of the palette; black for those that it has not.
+    /// Returns a colour of the palette; black for those that it has not.
     fn color(&self, index: usize) -> [u8; 4] {
         self.palette.get(index).copied().unwrap_or([0, 0, 0, 255])
     }
@@ -199,7 +199,7 @@ fn runs(header: &Header, data: &[u8]) -> Option<Vec<[u8; 4]>> {
     Some(pixels)
 }
 
-/// Returns A value of `most` levels spread over a byte.
+/// Returns a value of `most` levels spread over a byte.
 fn widen(value: u32, most: u32) -> u8 {
     (u64::from(value) * 255 + u64::from(most) / 2).checked_div(u64::from(most)).unwrap_or(0) as u8
 }
@@ -218,7 +218,7 @@ mod tests {
     use super::*;
     use crate::image::decode;
 
-    /// Returns A file with a header of 40 bytes; `between` are masks or a palette.
+    /// Returns a file with a header of 40 bytes; `between` are masks or a palette.
     fn file(size: [i32; 2], bits: u16, packing: u32, between: &[u8], data: &[u8]) -> Vec<u8> {
         let start = 54 + between.len() as u32;
         let mut bytes = b"BM\0\0\0\0\0\0\0\0".to_vec();

@@ -64,7 +64,7 @@ mod tests {
     use super::*;
     use crate::image::decode;
 
-    /// Returns A baseline JPEG of one 8 × 8 block per component, all samples of a component alike:
+    /// Returns a baseline JPEG of one 8 × 8 block per component, all samples of a component alike:
     /// its two Huffman tables know differences of 0, 7 and 8 bits, and the end of a block.
     fn jpeg_block(samples: &[u8]) -> Vec<u8> {
         let count = samples.len() as u8;

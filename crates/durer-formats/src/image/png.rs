@@ -143,7 +143,7 @@ mod tests {
     use crate::Error;
     use crate::image::decode;
 
-    /// Returns A PNG of one row.
+    /// Returns a PNG of one row.
     fn png_row(width: u32, color: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Vec<u8> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, width, 1);

@@ -122,7 +122,7 @@ mod tests {
     use super::*;
     use crate::image::decode;
 
-    /// Returns A file of two by two pixels.
+    /// Returns a file of two by two pixels.
     fn file(image_type: u8, bits: u8, descriptor: u8, map: &[u8], data: &[u8]) -> Vec<u8> {
         let mut bytes = vec![1, u8::from(!map.is_empty()), image_type];
         bytes.extend([

@@ -2,7 +2,7 @@ use super::*;
 use crate::{Limits, NoResources};
 use durer::scene::{Mesh, Topology, UpAxis};
 
-/// Returns A header of version 1.2, or 1.4 for formats from 6 on; points of format 0 to 10 follow
+/// Returns a header of version 1.2, or 1.4 for formats from 6 on; points of format 0 to 10 follow
 /// `records`.
 fn header(format: u8, length: usize, count: u32, records: &[u8], number: u32) -> Vec<u8> {
     let new = format & 0x3f >= 6;
@@ -29,7 +29,7 @@ fn header(format: u8, length: usize, count: u32, records: &[u8], number: u32) ->
     bytes
 }
 
-/// Returns A point of a format.
+/// Returns a point of a format.
 fn point(format: u8, place: [i32; 3], intensity: u16, color: [u16; 3]) -> Vec<u8> {
     let (length, at) = FORMATS[usize::from(format)];
     let mut bytes = vec![0; length];

@@ -177,7 +177,7 @@ fn whole(model: &mut Model, images: &mut Images<'_>, map: &Map) -> Option<Textur
     Some(texture(model, map, image))
 }
 
-/// Returns A texture of the scene: equal ones are shared.
+/// Returns a texture of the scene: equal ones are shared.
 fn texture(model: &mut Model, map: &Map, image: usize) -> TextureRef {
     let wrap = if map.clamp { Wrap::ClampToEdge } else { Wrap::Repeat };
     let texture =

@@ -114,7 +114,7 @@ fn is_normal_map(image: &Image) -> bool {
     middle.contains(&red) && middle.contains(&green) && blue >= 160 && blue > red.max(green) + 30
 }
 
-/// Returns A pixel as one grey value: Rec. 709 luma of its stored values.
+/// Returns a pixel as one grey value: Rec. 709 luma of its stored values.
 pub(crate) fn grey([r, g, b, _]: [u8; 4]) -> u8 {
     ((u32::from(r) * 54 + u32::from(g) * 183 + u32::from(b) * 19) >> 8) as u8
 }

@@ -33,7 +33,7 @@ fn on_white(pixels: &Pixels<[u8; 4]>) -> Cow<'_, Pixels<[u8; 4]>> {
     Cow::Owned(opaque)
 }
 
-/// Returns A channel over white, rounded.
+/// Returns a channel over white, rounded.
 fn over_white(channel: u8, alpha: u8) -> u8 {
     let (c, a) = (u32::from(channel), u32::from(alpha));
     ((c * a + 255 * (255 - a) + 127) / 255) as u8

@@ -90,7 +90,7 @@ impl Values for Ascii<'_> {
         2 * element.properties.len() as u64
     }
 
-    /// Returns A digit and a blank.
+    /// Returns a digit and a blank.
     fn least_value(&self, _kind: Type) -> u64 {
         2
     }

@@ -280,7 +280,7 @@ impl<R: Read + Seek> Pieces<R> {
         Ok(())
     }
 
-    /// Returns A scene of some vertices and what is drawn with them.
+    /// Returns a scene of some vertices and what is drawn with them.
     fn scene(&mut self, mut mesh: Mesh) -> Result<Scene> {
         if self.faces.is_none() {
             mesh.topology = Topology::Points;

@@ -43,7 +43,7 @@ impl Plane {
         points.iter().any(|p| (*p - self.origin).dot(self.normal).abs() > limit)
     }
 
-    /// Returns A point along the normal, on the plane of two axes that the polygon is seen best in.
+    /// Returns a point along the normal, on the plane of two axes that the polygon is seen best in.
     /// What lies in the plane already keeps its coordinates, so that no rounding bends straight
     /// lines.
     pub fn flat(&self, p: DVec3) -> DVec2 {

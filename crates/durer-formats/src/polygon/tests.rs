@@ -2,7 +2,7 @@ use super::*;
 use durer::math::Vec3;
 use durer::scene::Part;
 
-/// Returns A mesh of one polygon, as a fan, moved into space by `place`.
+/// Returns a mesh of one polygon, as a fan, moved into space by `place`.
 fn fan(outline: &[[f64; 2]], place: impl Fn([f64; 2]) -> Vec3) -> Mesh {
     let n = outline.len() as u32;
     let indices = (2..n).flat_map(|i| [0, i - 1, i]).collect();

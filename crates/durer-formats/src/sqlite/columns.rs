@@ -134,7 +134,7 @@ fn column(part: &[Token]) -> Option<Column> {
     Some(Column { is_number: is_key && kind == "INTEGER", name, kind, default, is_stored })
 }
 
-/// Returns A value in JSON; `None` where it is an expression or null.
+/// Returns a value in JSON; `None` where it is an expression or null.
 fn literal(tokens: &[Token]) -> Option<String> {
     let (sign, tokens) = match tokens {
         [Token::Sign('-'), rest @ ..] => ("-", rest),

@@ -85,7 +85,7 @@ impl Database {
         self.bytes.len().div_ceil(self.page) as u64
     }
 
-    /// Returns A page, and what it is called in messages.
+    /// Returns a page, and what it is called in messages.
     fn page(&self, number: u32) -> Result<&[u8]> {
         let start = (number as usize).checked_sub(1).and_then(|i| i.checked_mul(self.page));
         let found = start.and_then(|start| self.bytes.get(start..start.checked_add(self.page)?));
@@ -294,7 +294,7 @@ impl<'a> Node<'a> {
         self.page.get(usize::from(at[0]) << 8 | usize::from(at[1])..)
     }
 
-    /// Returns A page below; after those of the cells there is one more.
+    /// Returns a page below; after those of the cells there is one more.
     fn child(&self, index: usize) -> Option<u32> {
         match index.cmp(&self.count) {
             _ if self.is_leaf => None,
@@ -332,7 +332,7 @@ fn word(bytes: &[u8], at: usize) -> Option<u32> {
     Some(u32::from_be_bytes(*bytes.get(at..)?.first_chunk()?))
 }
 
-/// Returns A number of up to nine bytes, and what follows it.
+/// Returns a number of up to nine bytes, and what follows it.
 fn varint(bytes: &[u8]) -> Option<(u64, &[u8])> {
     let mut value = 0;
     for (i, &byte) in bytes.iter().enumerate().take(9) {

@@ -34,7 +34,7 @@ pub struct Database {
 }
 
 impl Database {
-    /// Creates A database without a table; what is taken first stands in for the first page.
+    /// Creates a database without a table; what is taken first stands in for the first page.
     pub fn new() -> Self {
         Self { out: vec![0; PAGE], pages: 1, schema: Vec::new() }
     }
@@ -198,7 +198,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Creates A table without a row.
+    /// Creates a table without a row.
     pub fn new() -> Self {
         Self { leaf: Page::new(TABLE_LEAF, 0), last: 0, leaves: Vec::new() }
     }
@@ -297,7 +297,7 @@ pub fn index(to: &mut Database, records: &[Vec<u8>]) -> Result<u32> {
     Ok(level.first().map_or(0, |(page, _)| *page))
 }
 
-/// Returns A row as it is stored: the kinds of its values, then the values.
+/// Returns a row as it is stored: the kinds of its values, then the values.
 pub fn record(values: &[Value<'_>]) -> Vec<u8> {
     let (mut kinds, mut bodies) = (Vec::new(), Vec::new());
     for value in values {

@@ -169,7 +169,7 @@ mod tests {
         read(bytes, &NoResources, &ReadOptions::default()).expect_err("broken").to_string()
     }
 
-    /// Returns A binary file: header text, count field, and per triangle nine numbers and the
+    /// Returns a binary file: header text, count field, and per triangle nine numbers and the
     /// attributes.
     fn binary(header: &[u8], count: u32, triangles: &[([f32; 9], u16)]) -> Vec<u8> {
         let mut bytes = header.to_vec();

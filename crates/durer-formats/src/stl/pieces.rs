@@ -43,7 +43,7 @@ struct Looked {
 }
 
 impl<R: Read + Seek> Pieces<R> {
-    /// Creates A file that begins with `head`, for which [`super::is_whole_binary`] holds, in pieces of about
+    /// Creates a file that begins with `head`, for which [`super::is_whole_binary`] holds, in pieces of about
     /// so many triangles.
     ///
     /// # Errors
@@ -113,7 +113,7 @@ impl<R: Read + Seek> Pieces<R> {
         Ok(found)
     }
 
-    /// Returns A scene of the piece that was made.
+    /// Returns a scene of the piece that was made.
     fn scene(&mut self) -> Scene {
         let colored = self.looked.is_some_and(|looked| looked.colored);
         let mut mesh = Mesh { positions: std::mem::take(&mut self.positions), ..Mesh::default() };

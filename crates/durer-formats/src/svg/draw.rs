@@ -212,7 +212,7 @@ impl<'a> Painter<'a> {
         }
     }
 
-    /// Returns A pattern's tile, painted at the size at which it will be seen.
+    /// Returns a pattern's tile, painted at the size at which it will be seen.
     fn pattern(&mut self, pattern: &Arc<usvg::Pattern>, map: DAffine2) -> Option<Paint> {
         let tile = paint::Tile::new(pattern, map)?;
         let key = TileKey::new(pattern, &tile);

@@ -170,7 +170,7 @@ fn replaced(font: &usvg::Font, face: &fontdb::FaceInfo) -> Option<String> {
     Some(format!("font {wanted} is missing; {found} is used in its place"))
 }
 
-/// Returns A family with what is not usual in its style.
+/// Returns a family with what is not usual in its style.
 fn described(family: &str, weight: u16, slanted: bool, stretch: fontdb::Stretch) -> String {
     let weight = match weight {
         300..500 => String::new(),

@@ -40,7 +40,7 @@ impl Letters {
         !self.are_apart && self.case == Case::AsWritten
     }
 
-    /// Returns A text as it is to be set; `beside` says whether there are others before it and
+    /// Returns a text as it is to be set; `beside` says whether there are others before it and
     /// after it.
     pub fn set(self, text: &str, beside: [bool; 2]) -> Cow<'_, str> {
         let cased = match self.case {
@@ -72,7 +72,7 @@ const NON_JOINER: char = '\u{200c}';
 /// Share of the space between letters for each of a letter and its successor.
 pub(super) const SHARE: f64 = 0.5;
 
-/// Returns A text with what keeps letters from being joined after each of them, where another one follows, so
+/// Returns a text with what keeps letters from being joined after each of them, where another one follows, so
 /// that all gaps are alike. Blanks at the ends of the line and several together stay so: they vanish.
 fn kept_apart(text: &str, [has_before, has_after]: [bool; 2]) -> String {
     let mut out = String::with_capacity(2 * text.len());

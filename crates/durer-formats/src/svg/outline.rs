@@ -50,7 +50,7 @@ impl Bounds {
     }
 }
 
-/// Returns A length that an element says.
+/// Returns a length that an element says.
 fn length<'a>(
     all: &impl Attributes<'a>,
     node: Node<'a, '_>,

@@ -117,7 +117,7 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    /// Creates A tile with as many pixels as it will cover where those are whole ones, else with up to eight
+    /// Creates a tile with as many pixels as it will cover where those are whole ones, else with up to eight
     /// times as many a side, which are then averaged; `None` where it covers nothing.
     pub fn new(pattern: &usvg::Pattern, pixel_from_path: DAffine2) -> Option<Self> {
         let path_from_pattern = affine(pattern.transform());

@@ -138,7 +138,7 @@ fn bytes(
     Ok(bytes)
 }
 
-/// Returns A data URI as [`uri::load`] reads it: without blanks in base64, without a fragment, and each `%`
+/// Returns a data URI as [`uri::load`] reads it: without blanks in base64, without a fragment, and each `%`
 /// that encodes nothing encoded.
 fn plain_data(href: &str) -> String {
     let href = href.split('#').next().unwrap_or_default();
@@ -164,7 +164,7 @@ fn plain_data(href: &str) -> String {
     plain + rest
 }
 
-/// Returns A picture upright, as a PNG: usvg measures only some kinds of files, and these as they are
+/// Returns a picture upright, as a PNG: usvg measures only some kinds of files, and these as they are
 /// stored.
 fn as_png(bytes: &[u8], limits: &Limits, told: &Told) -> Result<Vec<u8>> {
     let image = crate::image::decode(bytes, "", limits)?;
@@ -176,7 +176,7 @@ fn as_png(bytes: &[u8], limits: &Limits, told: &Told) -> Result<Vec<u8>> {
     Ok(out)
 }
 
-/// Returns A drawing that is a picture of the drawing, looked at with the same care before usvg goes
+/// Returns a drawing that is a picture of the drawing, looked at with the same care before usvg goes
 /// into it.
 fn within(
     bytes: &[u8],

@@ -162,7 +162,7 @@ impl Within<'_> {
         Some((words(before), place))
     }
 
-    /// Returns A radius: a length or a percentage of `whole`, or a word for the distance to a side.
+    /// Returns a radius: a length or a percentage of `whole`, or a word for the distance to a side.
     fn radius(&self, part: Option<&[Piece<'_>]>, whole: f64, [near, far]: [f64; 2]) -> Option<f64> {
         let Some(part) = part else { return Some(near) };
         match part {
@@ -209,7 +209,7 @@ impl Within<'_> {
         Some(Area { data, is_even_odd })
     }
 
-    /// Returns A rectangle, perhaps with round corners: by distances from the sides, by its sides, or by its
+    /// Returns a rectangle, perhaps with round corners: by distances from the sides, by its sides, or by its
     /// corner and size.
     fn inset(&self, name: &str, inside: &[Piece<'_>]) -> Option<String> {
         let round = inside.iter().position(|piece| piece.token.is_word("round"));
@@ -283,7 +283,7 @@ fn four(given: &[f64]) -> Option<[f64; 4]> {
     })
 }
 
-/// Returns A rectangle with such corners, from the upper left one on, clockwise.
+/// Returns a rectangle with such corners, from the upper left one on, clockwise.
 fn rectangle(low: DVec2, high: DVec2, radii: &[DVec2; 4]) -> String {
     let [a, b, c, d] = *radii;
     let arc = |r: DVec2, x: f64, y: f64| format!("A{} {} 0 0 1 {x} {y}", r.x, r.y);

@@ -137,7 +137,7 @@ pub(super) fn origin(text: &str, units: &Units, corner: [f64; 2], size: [f64; 2]
     Some(DVec2::new(along(0)?, along(1)?))
 }
 
-/// Returns A map as an attribute.
+/// Returns a map as an attribute.
 pub(super) fn attribute(map: &DAffine2) -> String {
     let (m, t) = (map.matrix2, map.translation);
     format!("matrix({} {} {} {} {} {})", m.x_axis.x, m.x_axis.y, m.y_axis.x, m.y_axis.y, t.x, t.y)

@@ -147,7 +147,7 @@ impl Kind {
         }
     }
 
-    /// Returns A value as usvg understands it, where it can be used; `name` is that of the property, and
+    /// Returns a value as usvg understands it, where it can be used; `name` is that of the property, and
     /// `around` what relative values are relative to.
     pub fn words<'v>(self, name: &str, value: &'v str, around: &Around) -> Option<Cow<'v, str>> {
         if self == Self::Path {
@@ -314,7 +314,7 @@ fn path(value: &str) -> Option<Cow<'_, str>> {
     Some(Cow::Owned(arcs::as_curves(data).unwrap_or_else(|| data.to_string())))
 }
 
-/// Returns A colour as usvg reads it.
+/// Returns a colour as usvg reads it.
 fn color(value: &str, around: &Around) -> Option<Cow<'static, str>> {
     let [r, g, b, a] = css::color_within(value, around.color)?.bytes();
     Some(Cow::Owned(match a {
@@ -323,7 +323,7 @@ fn color(value: &str, around: &Around) -> Option<Cow<'static, str>> {
     }))
 }
 
-/// Returns A paint: what it refers to stays, colours and those in place of what is missing are put as usvg
+/// Returns a paint: what it refers to stays, colours and those in place of what is missing are put as usvg
 /// reads them.
 fn paint<'v>(value: &'v str, around: &Around) -> Option<Cow<'v, str>> {
     if !value.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("url(")) {

@@ -82,7 +82,7 @@ impl Metadata {
         metadata
     }
 
-    /// Returns A document of [TileJSON 3.0](https://github.com/mapbox/tilejson-spec/tree/master/3.0.0) for
+    /// Returns a document of [TileJSON 3.0](https://github.com/mapbox/tilejson-spec/tree/master/3.0.0) for
     /// tiles at an address with `{z}`, `{x}` and `{y}`.
     pub fn tile_json(&self, address: &str) -> Value {
         let ([x, y], (first, last)) = (self.center(), self.zooms);

@@ -20,7 +20,7 @@ pub struct MbTiles<W> {
 }
 
 impl<W: Write + Seek> MbTiles<W> {
-    /// Creates A file without a tile; the target must be empty.
+    /// Creates a file without a tile; the target must be empty.
     ///
     /// # Errors
     /// [`crate::Error::Io`].

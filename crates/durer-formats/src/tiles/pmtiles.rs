@@ -47,7 +47,7 @@ struct Entry {
 }
 
 impl<W: Write + Seek> PmTiles<W> {
-    /// Creates A file without a tile.
+    /// Creates a file without a tile.
     ///
     /// # Errors
     /// [`Error::Io`].
@@ -159,7 +159,7 @@ fn directories(entries: &[Entry]) -> (Vec<u8>, Vec<u8>) {
     }
 }
 
-/// Returns A directory, column by column.
+/// Returns a directory, column by column.
 fn directory(entries: &[Entry]) -> Vec<u8> {
     let mut bytes = Vec::new();
     varint(&mut bytes, entries.len() as u64);

@@ -16,7 +16,7 @@ const SOURCES: &str = r##"<source id="p"><float_array id="pa" count="24">0 0 0 3
     <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>"##;
 const VERTEX: &str = r##"<input semantic="VERTEX" source="#v" offset="0"/>"##;
 
-/// Returns A document of one geometry of these primitives, shown by a node of this content.
+/// Returns a document of one geometry of these primitives, shown by a node of this content.
 fn document(primitives: &str, libraries: &str, node: &str) -> String {
     format!(
         r##"<?xml version="1.0"?><COLLADA version="1.4.1"><asset><up_axis>Z_UP</up_axis></asset>{libraries}
@@ -157,7 +157,7 @@ fn units_and_axes() {
     );
 }
 
-/// Returns A material `m` of this shader, in a document that shows it.
+/// Returns a material `m` of this shader, in a document that shows it.
 fn shaded(shader: &str, parameters: &str) -> String {
     let libraries = format!(
         r##"<library_images><image id="i"><init_from>./a%20b.png</init_from></image></library_images>

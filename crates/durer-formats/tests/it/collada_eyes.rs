@@ -4,7 +4,7 @@ use durer::math::{DVec3, Vec3};
 use durer::scene::{LightKind, Projection};
 use durer_formats::{Model, NoResources, ReadOptions, read_model};
 
-/// Returns A document in centimetres of a triangle and a node that holds a camera or a light, of the
+/// Returns a document in centimetres of a triangle and a node that holds a camera or a light, of the
 /// element `held` with this content.
 fn read(held: &str, content: &str, tool: &str) -> Model {
     let text = format!(

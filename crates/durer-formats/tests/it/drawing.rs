@@ -21,7 +21,7 @@ fn line(class: LineClass, invisibility: u32, points: Vec<DVec2>, closed: bool) -
     Line { class, invisibility, points, closed }
 }
 
-/// Returns A plate of 2w × 2h with a hole, an edge, and hidden lines behind one and two surfaces.
+/// Returns a plate of 2w × 2h with a hole, an edge, and hidden lines behind one and two surfaces.
 fn plate(w: f64, h: f64) -> Drawing {
     let hole: Vec<DVec2> = rectangle(5.0, 5.0).into_iter().rev().collect();
     let bend = [(-w, 0.0), (0.0, 0.0), (0.0, h)].map(|(x, y)| DVec2::new(x, y)).to_vec();
@@ -245,7 +245,7 @@ fn every_format_gives_the_same_bytes_again_and_takes_an_empty_sheet() {
     }
 }
 
-/// Returns A parallel view of the origin from a side of a model whose z axis is up.
+/// Returns a parallel view of the origin from a side of a model whose z axis is up.
 fn camera(side: NamedView) -> Camera {
     let direction = side.direction(UpAxis::Z);
     Camera {

@@ -15,7 +15,7 @@ fn stroke(list: &[(f64, f64)], closed: bool, pen: usize) -> Mark {
     Mark::Stroke { points: points(list), closed, pen }
 }
 
-/// Returns A sheet of 100 × 80 with three pens, of which the dashed one is as wide and dark as the
+/// Returns a sheet of 100 × 80 with three pens, of which the dashed one is as wide and dark as the
 /// first.
 fn sheet() -> Sheet {
     let pen = |width, color, dashes| Pen { width, color, dashes };
@@ -213,7 +213,7 @@ fn hpgl_has_a_pen_for_each_width_and_colour_and_takes_it_once() {
     assert_eq!(pens, ["SP1;PW.5,1;", "SP2;PW.25,2;", "SP0;"]);
 }
 
-/// Returns A circle, an arc that turns by nearly all of one, an ellipse, and a line that goes on in a cubic
+/// Returns a circle, an arc that turns by nearly all of one, an ellipse, and a line that goes on in a cubic
 /// curve; y down.
 fn curves() -> Vec<Curve> {
     let p = DVec2::new;

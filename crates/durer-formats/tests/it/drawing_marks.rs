@@ -20,7 +20,7 @@ fn text(words: &str, anchor: Anchor) -> Mark {
     Mark::Text { at: DVec2::new(50.0, 40.0), text: words.to_owned(), height: 5.0, anchor, pen: 0 }
 }
 
-/// Returns A sheet of 100 × 80 with a black, a dashed and a half transparent red pen.
+/// Returns a sheet of 100 × 80 with a black, a dashed and a half transparent red pen.
 fn sheet(marks: Vec<Mark>) -> Sheet {
     let pen = |width, color, dashes| Pen { width, color, dashes };
     Sheet {
@@ -190,7 +190,7 @@ fn pdf_changes_its_state_only_where_it_must() {
     assert!(String::from_utf8_lossy(&pdf).contains("/UserUnit 2"));
 }
 
-/// Returns A circle, an open chain of a line, an arc and a cubic curve, and a whole ellipse.
+/// Returns a circle, an open chain of a line, an arc and a cubic curve, and a whole ellipse.
 fn curves() -> Vec<Mark> {
     let at = DVec2::new;
     let arc = |center, axis, ratio, start, turn| Arc { center, axis, ratio, start, turn };
@@ -285,7 +285,7 @@ fn hpgl_draws_curves_as_chords() {
     }
 }
 
-/// Returns A dimension of 30 mm, upright, with an arrow.
+/// Returns a dimension of 30 mm, upright, with an arrow.
 fn dimension() -> Mark {
     let (a, b) = (DVec2::new(20.0, 60.0), DVec2::new(20.0, 30.0));
     let along = DVec2::new(0.0, -1.0);

@@ -110,7 +110,7 @@ fn fields_and_the_coordinate_system_go_there_and_back() {
     assert_eq!(again[1].geometry, None);
 }
 
-/// Returns A table with one text of six bytes.
+/// Returns a table with one text of six bytes.
 fn table(driver: u8, text: &[u8; 6]) -> Vec<u8> {
     let mut bytes = vec![3, 95, 7, 26, 1, 0, 0, 0, 65, 0, 7, 0];
     bytes.resize(32, 0);

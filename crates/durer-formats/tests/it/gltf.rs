@@ -18,13 +18,13 @@ macro_rules! bytes {
     }};
 }
 
-/// Returns A data URI in percent notation.
+/// Returns a data URI in percent notation.
 pub fn uri(bytes: &[u8]) -> String {
     let digits: String = bytes.iter().map(|b| format!("%{b:02x}")).collect();
     format!("data:,{digits}")
 }
 
-/// Returns A file of one buffer, with a view over all of it, and the members given.
+/// Returns a file of one buffer, with a view over all of it, and the members given.
 pub fn file(buffer: &[u8], members: &str) -> String {
     let (uri, length) = (uri(buffer), buffer.len());
     format!(
@@ -44,7 +44,7 @@ pub fn triangle_bytes() -> Vec<u8> {
     TRIANGLE.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
-/// Returns A file of one triangle as mesh 0, with the members given.
+/// Returns a file of one triangle as mesh 0, with the members given.
 pub fn triangle(members: &str) -> String {
     let mesh = r#"{"name": "t", "primitives": [{"attributes": {"POSITION": 0}}]}"#;
     let members = format!(r#""accessors": [{ACCESSOR}], "meshes": [{mesh}], {members}"#);
@@ -63,7 +63,7 @@ pub fn error(text: &str) -> String {
     read(text).unwrap_err().to_string()
 }
 
-/// Returns A binary file of a JSON text and a binary chunk.
+/// Returns a binary file of a JSON text and a binary chunk.
 pub fn binary(json: &str, bin: &[u8]) -> Vec<u8> {
     let json = format!("{json}{}", " ".repeat(json.len().wrapping_neg() % 4));
     let length = (12 + 8 + json.len() + 8 + bin.len()) as u32;
@@ -498,7 +498,7 @@ fn cameras_and_lights_stand_in_the_world() {
     assert_eq!(model.warnings.len(), 3, "{:?}", model.warnings);
 }
 
-/// Returns A triangle with a morph target that lifts it by one, a skin of two joints, and an
+/// Returns a triangle with a morph target that lifts it by one, a skin of two joints, and an
 /// animation that turns the weight up and moves joint 1.
 fn posed(pose: Option<Pose>, members: &str) -> Result<Model> {
     let data = bytes![
@@ -639,7 +639,7 @@ const DRACO: [&str; 2] = [
      00ff000000",
 ];
 
-/// Returns A file whose triangle is a Draco bitstream.
+/// Returns a file whose triangle is a Draco bitstream.
 #[cfg(feature = "draco")]
 fn draco(bytes: &[u8], normalized: bool) -> String {
     file(

@@ -6,7 +6,7 @@ use durer::scene::{AlphaMode, Image, Material, Scene, ShadingModel};
 use durer::target::Pixels;
 use durer_formats::{Error, Limits, Model, NoResources, ReadOptions, gltf, png};
 
-/// Returns A triangle and a node that has it at three places: by floats, by normalized bytes and
+/// Returns a triangle and a node that has it at three places: by floats, by normalized bytes and
 /// floats.
 fn instanced(attributes: &str, node: &str) -> String {
     let mut data = triangle_bytes();
@@ -133,7 +133,7 @@ fn variants_choose_materials() {
     assert!(error.ends_with("there is no variant `warm`: hot, cold, variant2"), "{error}");
 }
 
-/// Returns A PNG of some texels in a row as a data URI, in percent notation.
+/// Returns a PNG of some texels in a row as a data URI, in percent notation.
 fn picture(texels: &[[u8; 4]]) -> String {
     let image = Pixels::from_data(texels.len() as u32, 1, texels.to_vec()).unwrap();
     let mut bytes = Vec::new();
@@ -141,7 +141,7 @@ fn picture(texels: &[[u8; 4]]) -> String {
     crate::gltf::uri(&bytes)
 }
 
-/// Returns A triangle with materials and the pictures that they use: texture i shows picture i.
+/// Returns a triangle with materials and the pictures that they use: texture i shows picture i.
 fn painted(materials: &str, pictures: &[&[[u8; 4]]]) -> Model {
     let images: Vec<String> =
         pictures.iter().map(|p| format!(r#"{{"uri": "{}"}}"#, picture(p))).collect();

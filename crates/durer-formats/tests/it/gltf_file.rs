@@ -33,7 +33,7 @@ fn glb(json: &str, buffer: &[u8]) -> Vec<u8> {
     [b"glTF\x02\0\0\0", &word(12 + chunks.len())[..], &chunks].concat()
 }
 
-/// Returns A file of points with colours, whose indices are of `index_bytes` bytes.
+/// Returns a file of points with colours, whose indices are of `index_bytes` bytes.
 fn points(index_bytes: u32) -> Vec<u8> {
     let vertices = VERTICES * STRIDE;
     let indices = match index_bytes {

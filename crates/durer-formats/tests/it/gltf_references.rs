@@ -3,7 +3,7 @@
 use crate::gltf::{ACCESSOR, read, triangle_bytes, uri};
 use durer_formats::{Found, Model, ReadOptions, Resources, gltf};
 
-/// Returns A mesh of primitives over two buffers: accessor 0 is in the file, accessor 1 in `far.bin`,
+/// Returns a mesh of primitives over two buffers: accessor 0 is in the file, accessor 1 in `far.bin`,
 /// accessor 2 is an index list that leads out of any triangle.
 fn two_buffers(primitives: &str, more: &str) -> String {
     format!(

@@ -260,7 +260,7 @@ fn what_is_not_drawn_is_told() {
     }
 }
 
-/// Returns A file of splats with one row each.
+/// Returns a file of splats with one row each.
 fn splats(rows: &[&str]) -> Vec<u8> {
     let names = "x y z nx ny nz f_dc_0 f_dc_1 f_dc_2 f_rest_0 opacity scale_0 scale_1 scale_2 rot_0 \
                  rot_1 rot_2 rot_3";

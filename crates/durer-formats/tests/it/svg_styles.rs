@@ -5,7 +5,7 @@ use durer::raster::paint::{Canvas, Options};
 use durer::target::Pixels;
 use durer_formats::svg::{Drawing, Fonts, ReadOptions};
 
-/// Returns A drawing of 40 × 40 with its warnings, those while reading and those while drawing.
+/// Returns a drawing of 40 × 40 with its warnings, those while reading and those while drawing.
 fn draw_with(bytes: &[u8], fonts: &Fonts) -> (Pixels<[u8; 4]>, Vec<String>) {
     let options = ReadOptions { fonts, ..ReadOptions::default() };
     let drawing = Drawing::read(bytes, &options).unwrap();
@@ -26,7 +26,7 @@ fn draw(body: &str) -> (Pixels<[u8; 4]>, Vec<String>) {
     draw_with(document(body).as_bytes(), &Fonts::new())
 }
 
-/// Returns A picture that is drawn without a word.
+/// Returns a picture that is drawn without a word.
 fn painted(body: &str) -> Pixels<[u8; 4]> {
     let (picture, told) = draw(body);
     assert_eq!(told, Vec::<String>::new(), "{body}");

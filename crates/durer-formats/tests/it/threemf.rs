@@ -114,7 +114,7 @@ fn half_transparent_triangles_are_blended() {
     assert!(properties.contains("1 triangles name properties"), "{properties}");
 }
 
-/// Returns A PNG of 2 × 2 pixels.
+/// Returns a PNG of 2 × 2 pixels.
 fn png() -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 2, 2);

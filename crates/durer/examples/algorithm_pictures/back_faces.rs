@@ -12,7 +12,7 @@ const AROUND: u32 = 28;
 
 const ACROSS: u32 = 12;
 
-/// Returns A torus, its faces counter-clockwise seen from outside.
+/// Returns a torus, its faces counter-clockwise seen from outside.
 fn faces() -> Vec<Vec<DVec3>> {
     let turn = |i: u32, n: u32| f64::from(i % n) / f64::from(n) * std::f64::consts::TAU;
     let point = |i: u32, j: u32| {

@@ -7,7 +7,7 @@ use durer::trace::Recorder;
 use durer::visibility::surface::method::{Options, SurfaceMethod, render_with};
 use durer::visibility::surface::{Cull, input::SurfaceInput, setup::Filter};
 
-/// Returns A bumpy surface of 2 n² triangles that faces the eye.
+/// Returns a bumpy surface of 2 n² triangles that faces the eye.
 pub fn terrain(n: u32) -> Scene {
     let height = |x: f64, y: f64| 0.3 * libm::sin(7.0 * x) * libm::cos(6.0 * y + x);
     let at = |i: u32| f64::from(i) / f64::from(n) * 2.0 - 1.0;

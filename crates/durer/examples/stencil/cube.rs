@@ -8,7 +8,7 @@ pub fn quad(corners: [DVec3; 4]) -> Command {
     Command::Draw(Primitive::Polygon, corners.map(Vertex::from).into())
 }
 
-/// Returns A cube from −1 to 1, its faces counter-clockwise from outside, coloured by their light.
+/// Returns a cube from −1 to 1, its faces counter-clockwise from outside, coloured by their light.
 pub fn colored(color: impl Fn(f32) -> Vec4) -> Vec<Command> {
     let faces = DVec3::AXES.into_iter().enumerate().flat_map(|(k, axis)| [(k, axis), (k, -axis)]);
     faces

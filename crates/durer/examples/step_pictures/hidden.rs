@@ -62,7 +62,7 @@ fn invisibility() -> durer::Result<String> {
     Ok(svg(&panels, 4))
 }
 
-/// Returns A piece of a grid line, as seen.
+/// Returns a piece of a grid line, as seen.
 fn seen(piece: &Piece, field: &HeightField, plane: &PicturePlane) -> Option<[DVec2; 2]> {
     let at = |i: usize| match piece.family {
         Family::AlongX => field.point(i, piece.line),

@@ -65,7 +65,7 @@ fn lines() -> durer::Result<String> {
     Ok(svg(&panels, 4))
 }
 
-/// Returns A polygon with a notch, in pixels.
+/// Returns a polygon with a notch, in pixels.
 fn notched() -> Vec<DVec2> {
     let points =
         [(1.2, 1.4), (6.1, 4.3), (11.3, 0.6), (14.6, 7.2), (9.0, 9.5), (6.4, 7.1), (3.1, 9.2)];

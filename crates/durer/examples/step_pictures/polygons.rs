@@ -22,7 +22,7 @@ fn ring(points: &[(f64, f64)]) -> Vec<DVec2> {
     points.iter().map(|&p| p.into()).collect()
 }
 
-/// Returns A letter C that a window cuts in two.
+/// Returns a letter C that a window cuts in two.
 fn letter() -> Vec<DVec2> {
     ring(&[
         (1.0, 0.0),

@@ -169,7 +169,7 @@ fn short(x: f64) -> String {
     format!("{}", tenths + 0.0)
 }
 
-/// Returns A colour between two, for t = 0 … 1.
+/// Returns a colour between two, for t = 0 … 1.
 pub fn shade(from: [u8; 3], to: [u8; 3], t: f64) -> String {
     let mix =
         |i: usize| (f64::from(from[i]) + (f64::from(to[i]) - f64::from(from[i])) * t).round() as u8;

@@ -189,12 +189,12 @@ pub(super) fn arc_mark(center: DVec2, radius: f64, start: f64, turn: f64, pen: u
     Mark::Curve { curve: Curve { start: first, pieces: vec![Piece::Arc(arc, last)], closed }, pen }
 }
 
-/// Returns A dimension as a mark.
+/// Returns a dimension as a mark.
 pub(super) fn mark(dimension: Dimension) -> Mark {
     Mark::Dimension(Box::new(dimension))
 }
 
-/// Returns A text to be laid horizontally.
+/// Returns a text to be laid horizontally.
 pub(super) fn text_mark(at: DVec2, text: String, height: f64, pen: usize) -> Mark {
     Mark::Text { at, text, height, anchor: Anchor::Middle, pen }
 }

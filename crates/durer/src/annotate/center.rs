@@ -116,7 +116,7 @@ fn center_marks(circles: &[Circle]) -> (Vec<[DVec2; 2]>, Vec<Circle>) {
     (lines, rings)
 }
 
-/// Returns A line across a circle, and a little beyond it.
+/// Returns a line across a circle, and a little beyond it.
 fn tick(circle: &Circle, way: DVec2) -> [DVec2; 2] {
     let reach = way * (circle.radius + BEYOND);
     [circle.center - reach, circle.center + reach]

@@ -36,12 +36,12 @@ pub(super) fn reading(along: DVec2) -> DVec2 {
     if backwards { -along } else { along }
 }
 
-/// Returns A quarter before the way that a text runs.
+/// Returns a quarter before the way that a text runs.
 fn above(along: DVec2) -> DVec2 {
     DVec2::new(along.y, -along.x)
 }
 
-/// Returns A filled arrow head; `body` is the way from its tip into it.
+/// Returns a filled arrow head; `body` is the way from its tip into it.
 fn arrow(tip: DVec2, body: DVec2, style: &Style) -> Mark {
     let (back, side) = (tip + body * style.arrow, body.perp() * (style.arrow / 6.0));
     Mark::Fill { rings: vec![vec![tip, back + side, back - side]], color: style.color }
@@ -52,7 +52,7 @@ fn stroke(points: Vec<DVec2>, pen: usize) -> Mark {
 }
 
 impl Board<'_> {
-    /// Returns A dimension line with its extension lines, arrows and text. What is too short for arrows has
+    /// Returns a dimension line with its extension lines, arrows and text. What is too short for arrows has
     /// them outside, and the text beside them where it is too long.
     pub fn linear(&mut self, l: &Linear, said: &Said) -> Draft {
         let (style, thin, letters) = (self.style, self.thin(), self.letters());
@@ -98,7 +98,7 @@ impl Board<'_> {
         )
     }
 
-    /// Returns A leader from a point: it goes to an elbow and on below its text. `measure` is what is
+    /// Returns a leader from a point: it goes to an elbow and on below its text. `measure` is what is
     /// measured, or nothing for a note.
     pub fn leader(
         &mut self,

@@ -60,7 +60,7 @@ pub(super) fn linear(
     false
 }
 
-/// Returns A point of a dimension line at a distance from a view, or, for one that stands obliquely, from
+/// Returns a point of a dimension line at a distance from a view, or, for one that stands obliquely, from
 /// its ends.
 fn lane_at(bounds: Rect, ends: [DVec2; 2], along: DVec2, side: Side, distance: f64) -> DVec2 {
     let (min, max) = (bounds.min(), bounds.max());

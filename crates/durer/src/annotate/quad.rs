@@ -26,7 +26,7 @@ impl Quad {
         Self(corners)
     }
 
-    /// Creates A segment, so much wide to each side.
+    /// Creates a segment, so much wide to each side.
     pub fn of_segment(a: DVec2, b: DVec2, half: f64) -> Self {
         let side = (b - a).normalize_or_zero().perp() * half;
         Self([a - side, b - side, b + side, a + side])

@@ -32,7 +32,7 @@ pub(super) enum Sight {
 }
 
 impl<'a> Seen<'a> {
-    /// Creates A view of a drawing; `None` in perspective, or without a camera. Hidden lines count where they
+    /// Creates a view of a drawing; `None` in perspective, or without a camera. Hidden lines count where they
     /// are drawn.
     pub fn new(placed: &'a PlacedView, drawing: &Drawing, hidden: bool) -> Option<Self> {
         let camera = placed.camera.as_ref()?;
@@ -62,7 +62,7 @@ impl<'a> Seen<'a> {
         self.placed.factor
     }
 
-    /// Returns A point of the world on the sheet.
+    /// Returns a point of the world on the sheet.
     pub fn point(&self, p: DVec3) -> DVec2 {
         self.placed.sheet_from_model(p).unwrap_or(DVec2::NAN)
     }
@@ -74,7 +74,7 @@ impl<'a> Seen<'a> {
         (to - from).dot(DVec2::new(way.x, -way.y))
     }
 
-    /// Returns A direction of the world on the sheet, where it is not of unit length any more.
+    /// Returns a direction of the world on the sheet, where it is not of unit length any more.
     pub fn way(&self, direction: DVec3) -> DVec2 {
         DVec2::new(direction.dot(self.axes[0]), -direction.dot(self.axes[1]))
     }

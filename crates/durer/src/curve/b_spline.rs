@@ -35,7 +35,7 @@ pub struct BSpline<P> {
 }
 
 impl<P: Point> BSpline<P> {
-    /// Creates A curve from its parts.
+    /// Creates a curve from its parts.
     ///
     /// # Errors
     /// [`Error::Parameter`] where a guarantee would not hold.
@@ -66,7 +66,7 @@ impl<P: Point> BSpline<P> {
         Ok(Self { degree, control, knots })
     }
 
-    /// Creates A curve with equally spaced knots, the ends repeated so that it starts and ends in its
+    /// Creates a curve with equally spaced knots, the ends repeated so that it starts and ends in its
     /// first and last control point; the parameter runs from 0 to 1.
     ///
     /// # Errors
@@ -175,7 +175,7 @@ pub struct Nurbs {
 }
 
 impl Nurbs {
-    /// Creates A curve from control points, weights and knots.
+    /// Creates a curve from control points, weights and knots.
     ///
     /// # Errors
     /// [`Error::Parameter`] for weights that are not positive and finite, or as [`BSpline::new`].

@@ -27,7 +27,7 @@ pub struct Path {
 const QUARTER_CIRCLE: f64 = 0.552_284_749_830_793_4;
 
 impl Path {
-    /// Creates A path without elements.
+    /// Creates a path without elements.
     pub fn new() -> Self {
         Self::default()
     }
@@ -53,17 +53,17 @@ impl Path {
         self.push(PathElement::MoveTo(DVec2::new(x, y)))
     }
 
-    /// Returns A straight line to (x, y).
+    /// Returns a straight line to (x, y).
     pub fn line_to(&mut self, x: f64, y: f64) -> &mut Self {
         self.push(PathElement::LineTo(DVec2::new(x, y)))
     }
 
-    /// Returns A quadratic curve with control point (cx, cy) to (x, y).
+    /// Returns a quadratic curve with control point (cx, cy) to (x, y).
     pub fn quad_to(&mut self, cx: f64, cy: f64, x: f64, y: f64) -> &mut Self {
         self.push(PathElement::QuadTo(DVec2::new(cx, cy), DVec2::new(x, y)))
     }
 
-    /// Returns A cubic curve to the third point.
+    /// Returns a cubic curve to the third point.
     pub fn cubic_to(&mut self, a: DVec2, b: DVec2, end: DVec2) -> &mut Self {
         self.push(PathElement::CubicTo(a, b, end))
     }
@@ -79,7 +79,7 @@ impl Path {
         self
     }
 
-    /// Creates A closed polygon.
+    /// Creates a closed polygon.
     pub fn polygon(points: impl IntoIterator<Item = DVec2>) -> Self {
         let mut path = Self::polyline(points);
         if !path.is_empty() {
@@ -97,14 +97,14 @@ impl Path {
         path
     }
 
-    /// Creates A rectangle, from its upper left corner to the right first.
+    /// Creates a rectangle, from its upper left corner to the right first.
     pub fn rectangle(x: f64, y: f64, width: f64, height: f64) -> Self {
         let (right, bottom) = (x + width, y + height);
         let corners = [(x, y), (right, y), (right, bottom), (x, bottom)];
         Self::polygon(corners.map(|(x, y)| DVec2::new(x, y)))
     }
 
-    /// Creates A circle as four cubic curves; radial error below 0.03 % of the radius.
+    /// Creates a circle as four cubic curves; radial error below 0.03 % of the radius.
     pub fn circle(center: DVec2, radius: f64) -> Self {
         Self::ellipse(center, DVec2::splat(radius))
     }
@@ -123,7 +123,7 @@ impl Path {
         path
     }
 
-    /// Returns A circular arc from angle `start` over `sweep` radians (positive turns x towards y), as
+    /// Returns a circular arc from angle `start` over `sweep` radians (positive turns x towards y), as
     /// cubic curves of at most a quarter turn each. Appends a line to its start where a contour is open.
     pub fn arc(&mut self, center: DVec2, radius: f64, start: f64, sweep: f64) -> &mut Self {
         let turns = sweep.clamp(-std::f64::consts::TAU, std::f64::consts::TAU);

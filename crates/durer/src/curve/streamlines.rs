@@ -154,7 +154,7 @@ impl<F: Field> Tracing<'_, F> {
         (points, false)
     }
 
-    /// Returns A step by the midpoint rule, and the heading there.
+    /// Returns a step by the midpoint rule, and the heading there.
     fn next(&self, at: DVec2, heading: DVec2) -> Option<(DVec2, DVec2)> {
         let along = |p: DVec2| {
             let direction = self.field.direction(p)?;

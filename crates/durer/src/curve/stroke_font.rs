@@ -133,7 +133,7 @@ fn accented(character: char) -> Option<Glyph> {
     }
 }
 
-/// Returns A letter with an accent as its two parts.
+/// Returns a letter with an accent as its two parts.
 fn decomposed(character: char) -> Option<(char, char)> {
     let row = ACCENTED.iter().find(|(_, _, all)| all.contains(character))?;
     let index = row.2.chars().position(|c| c == character)?;

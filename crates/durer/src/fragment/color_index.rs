@@ -41,7 +41,7 @@ impl Default for Palette {
 }
 
 impl Palette {
-    /// Creates A palette of sRGB colours with straight alpha; indices beyond them are opaque black.
+    /// Creates a palette of sRGB colours with straight alpha; indices beyond them are opaque black.
     ///
     /// # Errors
     /// [`Error::Parameter`] for more than 256 colours.

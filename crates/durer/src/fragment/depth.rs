@@ -24,7 +24,7 @@ impl DepthRange {
         ndc * ((far - near) * 0.5) + (near + far) * 0.5
     }
 
-    /// Returns A window depth held to what the range can give. NaN becomes the nearer end.
+    /// Returns a window depth held to what the range can give. NaN becomes the nearer end.
     pub fn clamp(&self, depth: f32) -> f32 {
         let (near, far) = self.held();
         let (low, high) = (near.min(far) as f32, near.max(far) as f32);

@@ -58,7 +58,7 @@ impl Dither {
         [channel(color.x), channel(color.y), channel(color.z), encode_unorm8(color.w)]
     }
 
-    /// Returns A colour index with a fraction: the whole number above or below it, which is higher
+    /// Returns a colour index with a fraction: the whole number above or below it, which is higher
     /// where the fraction is above the threshold (OpenGL 2.1, 4.1.9). Of the result the lowest eight
     /// bits count.
     pub fn index(&self, index: f32, x: u32, y: u32) -> u8 {

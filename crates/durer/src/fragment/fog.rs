@@ -67,7 +67,7 @@ impl Fog {
         if left.is_nan() { 1.0 } else { left.clamp(0.0, 1.0) }
     }
 
-    /// Returns A colour at a distance, mixed with the air's; alpha stays.
+    /// Returns a colour at a distance, mixed with the air's; alpha stays.
     pub fn apply(&self, color: Vec4, air: Vec4, z: f32) -> Vec4 {
         let left = self.left(z);
         (color * left + air * (1.0 - left)).truncate().extend(color.w)

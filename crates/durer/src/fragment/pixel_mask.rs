@@ -22,7 +22,7 @@ pub struct PixelMask {
 const MAX_PIXELS: u64 = 1 << 32;
 
 impl PixelMask {
-    /// Creates A mask of this size without any pixel.
+    /// Creates a mask of this size without any pixel.
     ///
     /// # Errors
     /// [`Error::Limit`] above 2³² pixels.

@@ -81,7 +81,7 @@ fn bend(line: &[DVec2], start: f64, length: f64, size: f64) -> f64 {
     turns.fold(0.0, f64::max)
 }
 
-/// Returns A label from left to right.
+/// Returns a label from left to right.
 fn upright(line: &[DVec2], start: f64, length: f64, whole: f64) -> Option<Run> {
     let (from, to) = (place_along(line, start)?.0, place_along(line, start + length)?.0);
     if from.x <= to.x {

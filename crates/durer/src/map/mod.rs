@@ -21,7 +21,7 @@
 //! let mut map = Map::new(canvas, &Window::new(-5.0, 15.0, -5.0, 15.0)?, &viewport)?;
 //! let counts = map.layer(&style, [&land])?;
 //! assert_eq!(counts.polygons, 1);
-//! let mut picture = Pixels::new(64, 64, [255; 4])?;
+//! let mut picture = Pixels::new(64, 64, [255; 4]);
 //! map.into_canvas().render(&mut picture)?;
 //! assert_eq!(picture.get(32, 32), Some([200, 180, 120, 255]));
 //! # Ok::<(), durer::Error>(())

@@ -336,7 +336,7 @@ impl RowCurve<'_> {
         Some(Curve { start: self.point(from + shift), pieces, closed: false })
     }
 
-    /// Returns A part of a piece.
+    /// Returns a part of a piece.
     fn cut(&self, piece: &Piece, is_whole: bool, [start, end]: [DVec2; 2]) -> Option<Piece> {
         match piece {
             _ if is_whole => Some(*piece),

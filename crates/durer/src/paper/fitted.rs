@@ -68,7 +68,7 @@ struct Shared {
     near: f64,
 }
 
-/// Returns A point by its bits; zeros are one.
+/// Returns a point by its bits; zeros are one.
 pub(super) fn key(p: DVec2) -> [u64; 2] {
     [p.x + 0.0, p.y + 0.0].map(f64::to_bits)
 }

@@ -107,7 +107,7 @@ pub fn standard_scale(largest: f64) -> f64 {
     steps.take_while(|s| *s <= largest).last().unwrap_or(largest)
 }
 
-/// Returns A scale in the words of drawings: `1:10`, `2:1`, `1:3.27`.
+/// Returns a scale in the words of drawings: `1:10`, `2:1`, `1:3.27`.
 pub fn scale_text(scale: f64) -> String {
     let short = |n: f64| {
         let digits = if n >= 100.0 { 0 } else { 2 };

@@ -38,7 +38,7 @@ impl PlacedView {
         Self { name: name.to_owned(), camera, origin, factor, bounds, breaks }
     }
 
-    /// Returns A point of the drawing's plane, as it is drawn, on the sheet, millimetres.
+    /// Returns a point of the drawing's plane, as it is drawn, on the sheet, millimetres.
     pub fn sheet_from_plane(&self, p: DVec2) -> DVec2 {
         onto_paper(p, self.origin, self.factor)
     }
@@ -50,7 +50,7 @@ impl PlacedView {
         self.breaks.seen_at(DVec2::new(off.x, -off.y))
     }
 
-    /// Returns A point of the model on the sheet, millimetres; `None` where it lies before the near
+    /// Returns a point of the model on the sheet, millimetres; `None` where it lies before the near
     /// plane of a perspective view, or the camera is not known.
     pub fn sheet_from_model(&self, p: DVec3) -> Option<DVec2> {
         let camera = self.camera.as_ref()?;

@@ -184,7 +184,7 @@ impl Seen {
         pieces
     }
 
-    /// Returns A straight piece, cut where it becomes part of the contour or ceases to be.
+    /// Returns a straight piece, cut where it becomes part of the contour or ceases to be.
     fn divide(&self, a: DVec2, b: DVec2) -> Vec<Known<bool>> {
         let count = ((a.distance(b) / self.size * LOOKS).ceil()).clamp(1.0, LOOKS * 4.0) as usize;
         let outer = |t: f64| self.is_outer(a.lerp(b, t), b - a);

@@ -152,7 +152,7 @@ impl Steps {
         (((depth - self.near) / self.size) as u8).min(NEARNESS_STEPS - 1)
     }
 
-    /// Returns A line in parts that are in one step each.
+    /// Returns a line in parts that are in one step each.
     fn divide(&self, line: &Line, depths: &[f64]) -> Vec<(Line, Option<u8>)> {
         let depth = depths.iter().chain(depths.first()).copied();
         let points: Vec<(DVec2, f64)> = around(line).zip(depth).collect();
@@ -162,7 +162,7 @@ impl Steps {
         parts.into_iter().map(|(step, part)| (part, Some(step))).collect()
     }
 
-    /// Returns A straight piece, cut where it comes from one step to the next.
+    /// Returns a straight piece, cut where it comes from one step to the next.
     fn pieces(&self, from: (DVec2, f64), to: (DVec2, f64)) -> Vec<Known<u8>> {
         let (a, b) = (self.of(from.1), self.of(to.1));
         let border = |step: u8| self.near + f64::from(step) * self.size;

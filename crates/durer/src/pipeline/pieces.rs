@@ -96,7 +96,7 @@ pub fn render_seen(
 /// is given.
 ///
 /// # Errors
-/// Those of `again`, and as [`survey`].
+/// Those of `again`, and as [`survey()`].
 pub fn status_of_pieces<E: From<Error>>(
     options: &RenderOptions,
     mut again: impl FnMut(&mut dyn FnMut(&Scene) -> Result<()>) -> Result<(), E>,

@@ -128,7 +128,7 @@ fn varies_in_rows(picture: &Framebuffer) -> bool {
     picture.color.data().chunks(width).any(|row| row.iter().any(|pixel| *pixel != row[0]))
 }
 
-/// Returns A colour that is well apart from the background's.
+/// Returns a colour that is well apart from the background's.
 fn other_color(background: Background) -> Vec4 {
     let ink = background.ink();
     Vec4::new(ink.x, 0.5, 1.0 - ink.z, 1.0)

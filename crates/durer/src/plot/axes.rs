@@ -204,7 +204,7 @@ fn reach(out: DVec2, width: f64) -> f64 {
     (width * out.x.abs()).max(out.y.abs())
 }
 
-/// Returns A text that begins at a point and goes in a direction.
+/// Returns a text that begins at a point and goes in a direction.
 fn label(at: DVec2, out: DVec2, text: String, letter: f64, height: f64) -> Label {
     let anchor = match out.x {
         x if x < -0.35 => Anchor::End,

@@ -199,7 +199,7 @@ fn stretch(field: &HeightField, options: &Options) -> f64 {
     if by > 0.0 && by.is_finite() { by } else { 1.0 }
 }
 
-/// Returns A field with its heights and depths as they are seen.
+/// Returns a field with its heights and depths as they are seen.
 fn as_seen(field: &HeightField, options: &Options) -> Result<HeightField> {
     let by = stretch(field, options);
     let seen = field.map(|y| y * options.exaggeration);

@@ -70,7 +70,7 @@ fn power(exponent: i32) -> f64 {
     libm::pow(10.0, f64::from(exponent))
 }
 
-/// Returns A number with as many digits as it needs, seven at most.
+/// Returns a number with as many digits as it needs, seven at most.
 pub fn short(value: f64) -> String {
     if value != 0.0 && !(1e-4..1e7).contains(&value.abs()) {
         return text(value, 7);
@@ -79,7 +79,7 @@ pub fn short(value: f64) -> String {
     long.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Returns A number with so many decimals, or with an exponent where that would be long.
+/// Returns a number with so many decimals, or with an exponent where that would be long.
 fn text(value: f64, decimals: usize) -> String {
     let value = value + 0.0;
     if value == 0.0 && decimals > 6 {

@@ -29,7 +29,7 @@ fn weight(density: &Pixels<f32>, x: u32, y: u32) -> f64 {
     if value.is_finite() { value.max(0.0) } else { 0.0 }
 }
 
-/// Returns A dot each time that the density along Hilbert's curve adds up to one.
+/// Returns a dot each time that the density along Hilbert's curve adds up to one.
 fn along_hilbert(density: &Pixels<f32>) -> Vec<DVec2> {
     let (width, height) = (density.width(), density.height());
     let total: f64 = (0..height).flat_map(|y| (0..width).map(move |x| weight(density, x, y))).sum();

@@ -146,7 +146,7 @@ impl HeightField {
         self.heights.get(row * self.columns + column).copied().filter(|h| !h.is_nan())
     }
 
-    /// Returns A point of the surface; `None` where its height is missing.
+    /// Returns a point of the surface; `None` where its height is missing.
     pub fn point(&self, column: usize, row: usize) -> Option<DVec3> {
         self.height(column, row).map(|y| DVec3::new(self.x(column), y, self.z(row)))
     }
@@ -303,7 +303,7 @@ impl HeightField {
         Mesh { positions, indices: Some(indices), faces, ..Mesh::default() }
     }
 
-    /// Returns A scene of the surface alone, in its place.
+    /// Returns a scene of the surface alone, in its place.
     pub fn to_scene(&self) -> Scene {
         let origin = self.bounds().map_or(DVec3::ZERO, |b| b.center());
         let world_from_mesh = DMat4::from_translation(origin);

@@ -102,7 +102,7 @@ pub struct Material {
 }
 
 impl Default for Material {
-    /// Creates A light grey, slightly shiny plastic: what a file without materials is shown in.
+    /// Creates a light grey, slightly shiny plastic: what a file without materials is shown in.
     fn default() -> Self {
         Self {
             name: String::new(),

@@ -166,7 +166,7 @@ impl Scene {
         bounds
     }
 
-    /// Returns A sphere around all finite vertices in world space, centred on the box's centre:
+    /// Returns a sphere around all finite vertices in world space, centred on the box's centre:
     /// tighter than the box's own sphere, and found in one more pass.
     pub fn bounding_sphere(&self) -> Option<BoundingSphere> {
         let center: DVec3 = self.bounds()?.center();

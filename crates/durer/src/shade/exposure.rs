@@ -171,7 +171,7 @@ mod tests {
         }
     }
 
-    /// Returns A square floor, from −half to half, in `cells` × `cells` squares.
+    /// Returns a square floor, from −half to half, in `cells` × `cells` squares.
     fn floor(half: f32, cells: u32) -> Scene {
         let at = |i: u32| (i as f32 / cells as f32 * 2.0 - 1.0) * half;
         let side = cells + 1;

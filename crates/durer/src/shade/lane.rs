@@ -39,7 +39,7 @@ pub trait Lane:
     fn floor(self) -> Self;
     /// Calls `f` without making it part of the caller: for what is long and seldom asked for.
     fn apart<R>(self, f: impl FnOnce() -> R) -> R;
-    /// Creates A function of one number per value, lane by lane: for what has no formula, such as
+    /// Creates a function of one number per value, lane by lane: for what has no formula, such as
     /// looking up.
     fn lanewise<const N: usize>(values: [Self; N], f: impl Fn([f32; N]) -> f32) -> Self;
     /// Returns the same of three numbers, by a function that is not made part of the caller.

@@ -49,7 +49,7 @@ struct Sheen {
     more: f32,
 }
 
-/// Returns A number of a file, held; `default` for what is none.
+/// Returns a number of a file, held; `default` for what is none.
 fn held(value: f32, most: f32, default: f32) -> f32 {
     if value.is_nan() { default } else { value.clamp(0.0, most) }
 }
@@ -190,7 +190,7 @@ fn dielectric(m: &Material) -> Dielectric {
 }
 
 impl Coat {
-    /// Returns A coat over what leaves the surface.
+    /// Returns a coat over what leaves the surface.
     #[inline(always)]
     fn over<L: Lane>(
         self,

@@ -311,7 +311,7 @@ impl<'a> PreparedMaterial<'a> {
         }
     }
 
-    /// Returns A point with what the textures say of it, to be lit with others; its geometric normal must
+    /// Returns a point with what the textures say of it, to be lit with others; its geometric normal must
     /// be on the viewer's side, as for [`shade_seen`].
     pub fn sample(&self, surface: &Surface<'_>, shading: Shading) -> Sample<'_> {
         self.sample_with(surface, face_seen, self.base(surface), shading)

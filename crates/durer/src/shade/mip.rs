@@ -99,7 +99,7 @@ fn weights(source: u32, destination: u32, i: u32) -> [f32; 3] {
     }
 }
 
-/// Returns A level of `size` from the one before: box filter over each texel's own area.
+/// Returns a level of `size` from the one before: box filter over each texel's own area.
 fn halve(from: Level<'_>, size: (u32, u32), usage: Usage) -> Vec<[u8; 4]> {
     let mut texels = Vec::with_capacity(size.0 as usize * size.1 as usize);
     for y in 0..size.1 {

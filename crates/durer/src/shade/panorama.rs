@@ -123,7 +123,7 @@ impl Texels {
         self.colors[y * self.width + x]
     }
 
-    /// Creates A picture of at most `widest` × `widest` / 2 texels, each the mean of what it
+    /// Creates a picture of at most `widest` × `widest` / 2 texels, each the mean of what it
     /// covers.
     fn shrunk(
         [width, height]: [usize; 2],
@@ -237,7 +237,7 @@ fn harmonics(source: &Texels) -> [Vec3; 9] {
 mod tests {
     use super::*;
 
-    /// Returns A panorama of a function of the direction.
+    /// Returns a panorama of a function of the direction.
     fn panorama(light: impl Fn(Vec3) -> Vec3) -> Panorama {
         let size = Texels { width: 64, height: 32, colors: Vec::new() };
         let places = (0..32).flat_map(|y| (0..64).map(move |x| (x, y)));

@@ -49,7 +49,7 @@ pub struct ShadowMap {
 }
 
 impl ShadowMap {
-    /// Creates A map from its depths: window depths, 1 where nothing is.
+    /// Creates a map from its depths: window depths, 1 where nothing is.
     ///
     /// `map_from_position` takes points relative to the lights' origin to homogeneous screen space of the
     /// map, as [`crate::view::View::screen_from_world`] does; `texel` is the size of a texel in world
@@ -169,7 +169,7 @@ mod tests {
     use super::*;
     use crate::math::DVec3;
 
-    /// Returns A light above the plane z = 0 that looks down −z; texels of one unit, depth 0 at z =
+    /// Returns a light above the plane z = 0 that looks down −z; texels of one unit, depth 0 at z =
     /// 10.
     fn map(depths: Vec<f32>) -> ShadowMap {
         let matrix = DMat4::from_cols_array_2d(&[
@@ -190,6 +190,12 @@ mod tests {
         assert_eq!((at(2.5, 1.0), at(2.5, 6.0)), (Some(0.0), Some(1.0)));
         assert_eq!((at(0.5, 1.0), at(1.25, 1.0)), (Some(1.0), Some(0.25)));
         assert_eq!((at(-0.1, 1.0), at(3.0, 1.0)), (None, None));
+    }
+
+    #[test]
+    fn equal_depths_are_lit() {
+        let map = map(vec![0.5; 4]);
+        assert_eq!((map.filtered(0.0, 0.0, 0.5), map.filtered(0.0, 0.0, 0.6)), (1.0, 0.0));
     }
 
     #[test]

@@ -69,7 +69,7 @@ impl<L: Lane> Texel<L> {
     }
 }
 
-/// Returns A weighted sum of two coordinates.
+/// Returns a weighted sum of two coordinates.
 #[inline(always)]
 fn sum<S: Simd>([a, b]: [f32x16<S>; 2], [of_a, of_b]: [f32; 2]) -> f32x16<S> {
     a * of_a + b * of_b
@@ -109,7 +109,7 @@ impl<'a> Chains<'a> {
         Self { scene, made: Vec::new() }
     }
 
-    /// Returns A slot for a texture; none where it refers to nothing.
+    /// Returns a slot for a texture; none where it refers to nothing.
     pub fn slot(&mut self, reference: Option<TextureRef>, usage: Usage) -> Option<Slot<'a>> {
         let reference = reference?;
         let texture = self.scene.textures.get(reference.texture)?;

@@ -42,7 +42,7 @@ pub struct Surface<'a> {
 }
 
 impl Default for Surface<'_> {
-    /// Creates A white point that faces the eye, without textures.
+    /// Creates a white point that faces the eye, without textures.
     fn default() -> Self {
         Self {
             position: Vec3::ZERO,

@@ -175,7 +175,7 @@ fn floor(x: f32) -> f32 {
     if whole > x { whole - 1.0 } else { whole }
 }
 
-/// Returns A coordinate brought to 0…1 (both ends possible) by the wrap mode; not finite = 0.
+/// Returns a coordinate brought to 0…1 (both ends possible) by the wrap mode; not finite = 0.
 #[inline(always)]
 fn wrapped(u: f32, wrap: Wrap) -> f32 {
     if !u.is_finite() {

@@ -27,13 +27,13 @@ pub struct Pixels<T> {
 }
 
 impl<T: Copy> Pixels<T> {
-    /// Creates A plane filled with one value. Zero-size planes are allowed and empty.
+    /// Creates a plane filled with one value. Zero-size planes are allowed and empty.
     pub fn new(width: u32, height: u32, value: T) -> Self {
         let data = vec![value; width as usize * height as usize];
         Self { width, height, data, charge: Charge::default() }
     }
 
-    /// Creates A plane filled with one value, which takes its memory from a budget and gives it back when it
+    /// Creates a plane filled with one value, which takes its memory from a budget and gives it back when it
     /// is dropped.
     ///
     /// # Errors
@@ -50,7 +50,7 @@ impl<T: Copy> Pixels<T> {
         Ok(Self { charge, ..Self::new(width, height, value) })
     }
 
-    /// Creates A plane from rows laid one after the other.
+    /// Creates a plane from rows laid one after the other.
     ///
     /// # Errors
     /// [`Error::Parameter`] unless `data.len() == width · height`.
@@ -151,7 +151,7 @@ pub struct Framebuffer {
 const PLANES: &str = "planes of the picture";
 
 impl Framebuffer {
-    /// Creates A framebuffer with a colour plane only, transparent black.
+    /// Creates a framebuffer with a colour plane only, transparent black.
     pub fn new(width: u32, height: u32) -> Self {
         Self {
             origin: Origin::TopLeft,
@@ -164,7 +164,7 @@ impl Framebuffer {
         }
     }
 
-    /// Creates A framebuffer as [`Self::new`] makes it, within a budget.
+    /// Creates a framebuffer as [`Self::new`] makes it, within a budget.
     ///
     /// # Errors
     /// As [`Pixels::within`].

@@ -79,7 +79,7 @@ fn common_name(names: &[&str], number: usize) -> String {
     }
 }
 
-/// Returns A name without the number at its end, and what divides the two.
+/// Returns a name without the number at its end, and what divides the two.
 pub(super) fn number_off(name: &str) -> &str {
     let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
     name.trim_end_matches(['.', '_', '-', ' ', ':', '#'])

@@ -46,13 +46,13 @@ impl Containment {
     }
 }
 
-/// Returns A box of the plane against a window; exact, as nothing is computed.
+/// Returns a box of the plane against a window; exact, as nothing is computed.
 pub fn rect_in_window(window: &Rect, thing: &Rect) -> Containment {
     let inside = window.contains(thing.min()) && window.contains(thing.max());
     Containment::of(!window.overlaps(thing), inside)
 }
 
-/// Returns A disk of the plane against a window.
+/// Returns a disk of the plane against a window.
 pub fn disk_in_window(window: &Rect, center: DVec2, radius: f64) -> Containment {
     let nearest = center.clamp(window.min(), window.max());
     let distance2 = (center - nearest).length_squared();
@@ -94,13 +94,13 @@ impl ConvexVolume {
         &self.planes
     }
 
-    /// Returns A box against the region; two corners a plane are looked at, whatever its size.
+    /// Returns a box against the region; two corners a plane are looked at, whatever its size.
     pub fn contains_box(&self, b: &Aabb) -> Containment {
         let (center, half) = (b.min * 0.5 + b.max * 0.5, b.max * 0.5 - b.min * 0.5);
         self.contains(center, |normal| normal.abs().dot(half))
     }
 
-    /// Returns A sphere against the region.
+    /// Returns a sphere against the region.
     pub fn contains_sphere(&self, s: &BoundingSphere) -> Containment {
         self.contains(s.center, |normal| normal.length() * s.radius)
     }

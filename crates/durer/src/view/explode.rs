@@ -199,7 +199,7 @@ fn add_traces(scene: &mut Scene, traces: &[[DVec3; 2]]) {
 mod tests {
     use super::*;
 
-    /// Returns A scene of boxes, each as the corners of its diagonal, as two triangles between
+    /// Returns a scene of boxes, each as the corners of its diagonal, as two triangles between
     /// them.
     fn boxes(corners: &[[[f32; 3]; 2]]) -> Scene {
         let mesh = |[a, b]: &[[f32; 3]; 2]| Mesh {

@@ -30,7 +30,7 @@ pub struct Layout {
 pub const MAX_CELLS: usize = 4096;
 
 impl Layout {
-    /// Creates A grid of `columns` × `rows` cells with their names, row by row.
+    /// Creates a grid of `columns` × `rows` cells with their names, row by row.
     ///
     /// # Errors
     /// [`Error::Parameter`] where a name is empty, there are none, or there are more than cells or so

@@ -223,7 +223,7 @@ impl<const N: usize> OutermostOfPieces<N> {
     }
 }
 
-/// Returns A box in world space around placed positions of an extent; not finite where one of them
+/// Returns a box in world space around placed positions of an extent; not finite where one of them
 /// is not.
 fn around([min, max]: [Vec3; 2], place: &DMat4) -> Aabb {
     let (min, max) = (min.as_dvec3(), max.as_dvec3());

@@ -272,7 +272,7 @@ fn endless(old: &View, new: &View) -> DMat4 {
     new.screen_from_world() * direction
 }
 
-/// Returns A point of the old screen on the new one; `None` behind the eye.
+/// Returns a point of the old screen on the new one; `None` behind the eye.
 fn moved(new_from_old: &DMat4, p: DVec3) -> Option<DVec3> {
     let q: DVec4 = *new_from_old * p.extend(1.0);
     let place = q.truncate() / q.w;

@@ -117,7 +117,7 @@ fn edges_are_closer_to_the_truth_than_by_as_many_samples() {
     }
 }
 
-/// Returns A camera that sees all of a model.
+/// Returns a camera that sees all of a model.
 fn around(scene: &Scene) -> Camera {
     let points = scene.instances.iter().flat_map(|i| {
         let place = |p: &Vec3| i.world_from_mesh.transform_point3(p.as_dvec3());
@@ -179,7 +179,7 @@ fn blended_surfaces_are_composed_as_if_sorted() {
     }
 }
 
-/// Returns A scene with opaque and blended faces in each other.
+/// Returns a scene with opaque and blended faces in each other.
 fn glass() -> Scene {
     let mut scene = spheres();
     scene.materials[1] = flat(Vec4::new(0.9, 0.4, 0.2, 0.4));
@@ -251,7 +251,7 @@ fn faces_that_meet_leave_no_gap() {
     assert_eq!(black, 256);
 }
 
-/// Returns A view of the plane z = 0, a pixel for each unit, x to the right from the left border
+/// Returns a view of the plane z = 0, a pixel for each unit, x to the right from the left border
 /// and y down from the upper one; z = 0 lies in the far plane.
 fn upright() -> View {
     let camera = Camera {

@@ -18,7 +18,7 @@ use durer::visibility::object::Faces;
 const TOP: DVec3 = DVec3::Z;
 const FRONT: DVec3 = DVec3::NEG_Y;
 
-/// Returns A plate of 80 × 40 × 6 with two pegs of ⌀10 and one of ⌀6 on it.
+/// Returns a plate of 80 × 40 × 6 with two pegs of ⌀10 and one of ⌀6 on it.
 fn plate() -> Scene {
     let mut triangles: Vec<Triangle> = cuboid([0.0; 3], [80.0, 40.0, 6.0]);
     for (x, radius) in [(15.0, 5.0), (65.0, 5.0), (40.0, 3.0)] {

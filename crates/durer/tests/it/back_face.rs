@@ -126,7 +126,7 @@ fn a_closed_body_looks_the_same_without_its_back() {
     }
 }
 
-/// Returns A sphere whose first and last column and whose poles are the same points to the last bit:
+/// Returns a sphere whose first and last column and whose poles are the same points to the last bit:
 /// nothing shows through the seam.
 fn closed_sphere(rings: u32) -> Mesh {
     let mut mesh = sphere(rings, None);

@@ -179,7 +179,7 @@ fn a_vertex_on_the_border_comes_out_once() {
     assert_eq!(out, [ring[0], ring[2], ring[3], ring[4], ring[5]]);
 }
 
-/// Returns A row of columns of whole heights, seen from one of four sides: simple, with many edges
+/// Returns a row of columns of whole heights, seen from one of four sides: simple, with many edges
 /// in common with others of its kind.
 fn skyline(heights: &[u32], side: usize) -> Shapes {
     let mut ring = vec![p(0.0, 0.0)];

@@ -324,3 +324,15 @@ fn a_corner_on_the_border_comes_out_once() {
         assert_eq!(clipped.len(), 3, "{clipped:?}");
     }
 }
+
+/// Checks that the null vector, which is no point, is never an end of a visible segment.
+#[test]
+fn segments_that_end_in_the_null_vector_are_left_out() {
+    let inside = vertex(DVec4::new(0.0, 0.0, 0.0, 1.0));
+    for borders in [Borders::All, Borders::NearOnly { guard_band: 2.0 }] {
+        for ends in [[vertex(DVec4::ZERO), inside], [inside, vertex(DVec4::ZERO)]] {
+            let options = Options { borders, ..Options::default() };
+            assert!(clip_segment(ends, &options, &mut NoTrace).is_none(), "{borders:?}");
+        }
+    }
+}

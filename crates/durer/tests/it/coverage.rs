@@ -31,7 +31,7 @@ struct Layer {
 }
 
 impl Layer {
-    /// Creates A square that is parted again and again by chords from edge to edge; what lies beyond an
+    /// Creates a square that is parted again and again by chords from edge to edge; what lies beyond an
     /// edge gets the vertex where a chord ends.
     fn new(random: &mut Random, parts: usize) -> Self {
         let points = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(DVec2::from).to_vec();
@@ -62,7 +62,7 @@ impl Layer {
         layer
     }
 
-    /// Returns A new vertex on an edge, in both cells that have it.
+    /// Returns a new vertex on an edge, in both cells that have it.
     fn divide(&mut self, u: usize, v: usize, t: f64) -> usize {
         let new = self.points.len();
         self.points.push(self.points[u] + (self.points[v] - self.points[u]) * t);
@@ -103,7 +103,7 @@ impl Layer {
     }
 }
 
-/// Returns A star around a place in the layer; some of its corners are vertices of that.
+/// Returns a star around a place in the layer; some of its corners are vertices of that.
 fn star(random: &mut Random, layer: &Layer, size: f64, corners: usize) -> Shapes {
     let low = layer.points[0];
     let center = low + DVec2::new(random.unit(), random.unit()) * size;

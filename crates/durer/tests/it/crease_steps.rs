@@ -16,7 +16,7 @@ fn creases(triangles: &[Triangle], crease: f64, neighbours: bool) -> f64 {
     drawing.length(|line| line.class == LineClass::Crease)
 }
 
-/// Returns A body along x whose section at each place is a polygon; ends are closed by fans.
+/// Returns a body along x whose section at each place is a polygon; ends are closed by fans.
 fn along(rings: &[Vec<DVec3>]) -> Vec<Triangle> {
     let count = rings[0].len();
     let mut triangles = Vec::new();
@@ -35,7 +35,7 @@ fn along(rings: &[Vec<DVec3>]) -> Vec<Triangle> {
     triangles
 }
 
-/// Returns A bar from x = −3 to 3 with a roof that rises by `rise` to its ridge at y = 0.
+/// Returns a bar from x = −3 to 3 with a roof that rises by `rise` to its ridge at y = 0.
 fn roof(rise: f64) -> Vec<Triangle> {
     let section = [[-2.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0 + rise], [-2.0, 1.0]];
     let ring = |x: f64| section.iter().map(|[y, z]| DVec3::new(x, *y, *z)).collect::<Vec<_>>();
@@ -62,7 +62,7 @@ fn facets_of_round_parts_are_no_creases() {
     }
 }
 
-/// Returns A barrel of nine sides: in the middle they turn by 40°, nearer to the ends by 37°.
+/// Returns a barrel of nine sides: in the middle they turn by 40°, nearer to the ends by 37°.
 fn barrel(sides: usize) -> Vec<Triangle> {
     let ring = |(x, radius): (f64, f64)| {
         let angle = |i: usize| i as f64 / sides as f64 * std::f64::consts::TAU;

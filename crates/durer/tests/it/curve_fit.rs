@@ -17,7 +17,7 @@ fn round(points: &[DVec2], closed: bool) -> Curve {
     fitted(points, closed, &[], true).curve
 }
 
-/// Returns A regular polygon.
+/// Returns a regular polygon.
 fn polygon(sides: u32, radius: f64) -> Vec<DVec2> {
     let angle = |i: u32| f64::from(i) * TAU / f64::from(sides) + 0.3;
     (0..sides).map(|i| DVec2::new(50.0, 40.0) + unit(angle(i)) * radius).collect()
@@ -84,7 +84,7 @@ fn circles_seen_at_an_angle_are_ellipses() {
     assert_eq!((half.start, end), (points[0], points[24]));
 }
 
-/// Returns A slot: two half circles of so many chords, and lines.
+/// Returns a slot: two half circles of so many chords, and lines.
 fn slot(chords: u32) -> Vec<DVec2> {
     let half = |x: f64, from: f64| {
         let angle = move |i: u32| from + f64::from(i) * PI / f64::from(chords);

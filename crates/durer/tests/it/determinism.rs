@@ -34,7 +34,7 @@ fn what_a_framebuffer_held_before_is_of_no_matter() {
     }
 }
 
-/// Returns A sphere with faces smaller than a pixel.
+/// Returns a sphere with faces smaller than a pixel.
 fn fine() -> Scene {
     let meshes = vec![scenes::sphere(200, None)];
     Scene { meshes, instances: vec![scenes::instance(0)], ..Scene::default() }

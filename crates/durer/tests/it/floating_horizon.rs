@@ -20,7 +20,7 @@ fn ripples(columns: usize, rows: usize) -> HeightField {
     .expect("field")
 }
 
-/// Returns A camera that sees a field of this extent from an azimuth and an elevation in degrees.
+/// Returns a camera that sees a field of this extent from an azimuth and an elevation in degrees.
 fn camera(azimuth: f64, elevation: f64, perspective: bool) -> Camera {
     let (sa, ca) = libm::sincos(azimuth.to_radians());
     let (se, ce) = libm::sincos(elevation.to_radians());

@@ -37,7 +37,7 @@ fn where_materials_meet_there_is_a_line() {
     assert!((length(&found, LineClass::Border) - 12.0).abs() < 1e-5, "{:?}", found.lines);
 }
 
-/// Returns A roof along x whose ridge turns by these angles, in degrees, one after the other.
+/// Returns a roof along x whose ridge turns by these angles, in degrees, one after the other.
 fn ridge(angles: &[f64]) -> Vec<Triangle> {
     let eaves = |i: usize, y: f64| {
         let slope = (angles[i.min(angles.len() - 1)] / 2.0).to_radians().tan();

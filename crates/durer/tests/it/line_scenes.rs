@@ -16,7 +16,7 @@ pub fn cuboid(min: [f64; 3], max: [f64; 3]) -> Vec<Triangle> {
     quads.iter().flat_map(|&[a, b, c, d]| [[p(a), p(b), p(c)], [p(a), p(c), p(d)]]).collect()
 }
 
-/// Returns A flat rectangle with one side along x, seen from above, tilted by its corners' heights.
+/// Returns a flat rectangle with one side along x, seen from above, tilted by its corners' heights.
 pub fn quad(corners: [[f64; 3]; 4]) -> Vec<Triangle> {
     let [a, b, c, d] = corners.map(DVec3::from);
     vec![[a, b, c], [a, c, d]]
@@ -42,7 +42,7 @@ pub fn cylinder(center: [f64; 2], radius: f64, heights: [f64; 2], n: usize) -> V
         .collect()
 }
 
-/// Returns A scene of one mesh without shared vertices.
+/// Returns a scene of one mesh without shared vertices.
 pub fn soup(triangles: &[Triangle]) -> Scene {
     placed(triangles, DMat4::IDENTITY)
 }
@@ -55,7 +55,7 @@ pub fn placed(triangles: &[Triangle], world_from_mesh: DMat4) -> Scene {
     Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
 }
 
-/// Returns A view of `height` world units from a direction, z up.
+/// Returns a view of `height` world units from a direction, z up.
 pub fn view(target: DVec3, to_eye: DVec3, height: f64, perspective: bool) -> View {
     let to_eye = to_eye.normalize();
     let up = if to_eye.z.abs() > 0.999 { DVec3::Y } else { DVec3::Z };
@@ -106,7 +106,7 @@ pub fn city(side: usize) -> Vec<Triangle> {
     triangles
 }
 
-/// Returns A ring around z of radii 2 and 0.8.
+/// Returns a ring around z of radii 2 and 0.8.
 pub fn torus(around: usize, across: usize) -> Vec<Triangle> {
     let at = |i: usize, k: usize| {
         let turn = |n: usize, of: usize| (n % of) as f64 / of as f64 * std::f64::consts::TAU;

@@ -31,7 +31,7 @@ fn scene(meshes: Vec<Mesh>) -> Scene {
     Scene { meshes, instances, ..Scene::default() }
 }
 
-/// Returns A square from −0.5 to 0.5 in front of a line from −1 to 1 and of two points, one beside
+/// Returns a square from −0.5 to 0.5 in front of a line from −1 to 1 and of two points, one beside
 /// it.
 fn hidden_in_part() -> Scene {
     let square = [[-0.5, -0.5, 1.0], [0.5, -0.5, 1.0], [0.5, 0.5, 1.0], [-0.5, 0.5, 1.0]];

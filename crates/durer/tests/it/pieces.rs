@@ -41,7 +41,7 @@ fn corners(scene: &Scene) -> usize {
     if scene.meshes[0].topology == Topology::Points { 1 } else { 3 }
 }
 
-/// Returns A scene of some primitives of one without indices.
+/// Returns a scene of some primitives of one without indices.
 fn only(scene: &Scene, numbers: impl Iterator<Item = usize>) -> Scene {
     let (mesh, corners) = (&scene.meshes[0], corners(scene));
     let vertices: Vec<usize> = numbers.flat_map(|i| corners * i..corners * (i + 1)).collect();
@@ -158,9 +158,9 @@ fn what_needs_the_whole_is_refused() {
         change(&mut options);
         check_pieces(&options, false).is_ok()
     };
-    assert!(with(&|o| o.lighting = Lighting::Given(vec![light.clone()])));
+    assert!(with(&|o| o.lighting = Lighting::Given(vec![light])));
     assert!(!with(&|o| {
-        o.lighting = Lighting::Given(vec![light.clone()]);
+        o.lighting = Lighting::Given(vec![light]);
         o.exposure = Some(Exposure::Auto);
     }));
     assert!(!with(&|o| o.shadows = Shadows::Map));

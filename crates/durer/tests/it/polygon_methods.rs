@@ -13,7 +13,7 @@ fn screen() -> Screen {
     Screen { width: 32, height: 32, ..Screen::default() }
 }
 
-/// Returns A star-shaped polygon with corners on a fine grid, in a plane with a random slope.
+/// Returns a star-shaped polygon with corners on a fine grid, in a plane with a random slope.
 fn star(random: &mut Random, corners: usize) -> Face {
     let grid = |v: f64| (v * 64.0).round() / 64.0 + 1.0 / 256.0;
     let (center, slope) = (random.point(4.0, 28.0), random.point(-0.4, 0.4));
@@ -33,7 +33,7 @@ fn scene(random: &mut Random, count: usize) -> Vec<Face> {
     (0..count).map(|k| star(random, 3 + k % 4)).collect()
 }
 
-/// Returns A beam from p to q, z from first to last.
+/// Returns a beam from p to q, z from first to last.
 fn beam(p: (f64, f64), q: (f64, f64), [first, last]: [f64; 2]) -> Face {
     let (p, q) = (DVec2::from(p), DVec2::from(q));
     let side = (q - p).perp().normalize() * 2.0;

@@ -292,7 +292,7 @@ fn steps_smaller_than_pixels_may_be_taken_either_way_from_anywhere() {
     }
 }
 
-/// Returns A star with its spikes in a circle, from one of its points on.
+/// Returns a star with its spikes in a circle, from one of its points on.
 fn star(center: DVec2, radius: f64, start: usize) -> Vec<DVec2> {
     let point = |i: usize| {
         let angle = 0.3 + (i + start) as f64 * 2.0 / 5.0 * std::f64::consts::TAU;

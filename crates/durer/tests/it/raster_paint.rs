@@ -34,7 +34,7 @@ fn gradient(shape: Shape, spread: Spread) -> Paint {
     Paint::Gradient(Arc::new(Gradient { shape, stops, spread, transform: DAffine2::IDENTITY }))
 }
 
-/// Returns A bit of everything.
+/// Returns a bit of everything.
 fn card(options: Options) -> Canvas {
     let mut c = Canvas::new(300, 200, options).unwrap();
     let shape = Shape::Linear { start: DVec2::ZERO, end: DVec2::new(100.0, 50.0) };
@@ -55,7 +55,7 @@ fn card(options: Options) -> Canvas {
     c
 }
 
-/// Returns A ring of so many vertices, some of them beyond the picture.
+/// Returns a ring of so many vertices, some of them beyond the picture.
 fn jagged(count: u32) -> Contours {
     Contours::polygon((0..count).map(|i| {
         let angle = f64::from(i) / f64::from(count) * std::f64::consts::TAU;
@@ -183,7 +183,7 @@ fn a_group_is_one_layer() {
     assert_eq!(rendered(&c, 20, WHITE).get(1, 1), Some([1, 2, 3, 255]));
 }
 
-/// Returns A square of one colour on another one, blended as a group.
+/// Returns a square of one colour on another one, blended as a group.
 fn blended(blend: Blend, layer: Paint, below: [u8; 4], options: Options) -> [u8; 4] {
     let mut canvas = Canvas::new(4, 4, options).unwrap();
     canvas.push_group();

@@ -124,7 +124,7 @@ fn text_of_strange_sizes_is_finite() {
     }
 }
 
-/// Returns A path whose every edge crosses hundreds of others.
+/// Returns a path whose every edge crosses hundreds of others.
 fn tangle() -> Vec<DVec2> {
     let mut random = Random(11);
     let mut at = DVec2::splat(128.0);

@@ -10,7 +10,7 @@ use durer::target::Pixels;
 use durer::trace::NoTrace;
 use std::sync::Arc;
 
-/// Returns A square of 40×40 pixels in one paint, on nothing.
+/// Returns a square of 40×40 pixels in one paint, on nothing.
 fn square(paint: &Paint, options: Options) -> Pixels<[u8; 4]> {
     let mut canvas = Canvas::new(40, 40, options).expect("canvas");
     canvas.fill(&Path::rectangle(0.0, 0.0, 40.0, 40.0), FillRule::NonZero, paint, 1.0);
@@ -93,7 +93,7 @@ fn clear_pixels_of_an_image_lend_no_colour() {
     assert!(alphas.windows(2).all(|w| w[0] >= w[1]) && alphas[20].abs_diff(124) < 4, "{alphas:?}");
 }
 
-/// Returns A picture of 40 × 40 with an image of one row, of this many pixels per pixel of the
+/// Returns a picture of 40 × 40 with an image of one row, of this many pixels per pixel of the
 /// image.
 fn enlarged(row: &[u8], by: f64, filter: Filter) -> Vec<u8> {
     let data = row.iter().map(|v| [*v, *v, *v, 255]).collect();

@@ -185,7 +185,7 @@ fn lit(method: TriangleRasterizer, triangles: &[Corners], side: i32) -> Vec<u8> 
     counts
 }
 
-/// Returns A grid of cells whose inner corners are moved by up to a quarter cell, each cell cut in
+/// Returns a grid of cells whose inner corners are moved by up to a quarter cell, each cell cut in
 /// two.
 fn jittered_grid(cells: usize, side: i32, random: &[(i32, i32, bool)]) -> Vec<Corners> {
     let n = cells + 1;

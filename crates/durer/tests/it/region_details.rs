@@ -94,7 +94,7 @@ fn trapped_shapes_do_not_shoot_out_of_sharp_corners() {
     assert!(farthest > 2.0 * reach && farthest < 4.0 * reach + 1e-6, "{farthest}: {beneath:?}");
 }
 
-/// Returns A box, and above it a sheet from behind the eye to a little beyond the near plane: what of the
+/// Returns a box, and above it a sheet from behind the eye to a little beyond the near plane: what of the
 /// sheet lies between the eye and that plane would cover the box.
 fn under_a_sheet(sheet: bool) -> (Scene, View) {
     let mut triangles = cuboid([5.0, -0.5, -2.5], [6.0, 0.5, -1.25]);

@@ -12,7 +12,7 @@ fn of_scene(scene: &Scene) -> Vec<Cylinder> {
     cylinders(&Faces::new(scene).expect("faces"))
 }
 
-/// Returns A tube between two radii, upright, its sides from one angle to another.
+/// Returns a tube between two radii, upright, its sides from one angle to another.
 fn tube(center: [f64; 2], radii: [f64; 2], heights: [f64; 2], n: usize) -> Vec<Triangle> {
     let at = |i: usize, r: f64, z: f64| {
         let (sin, cos) = ((i % n) as f64 / n as f64 * TAU).sin_cos();
@@ -30,7 +30,7 @@ fn tube(center: [f64; 2], radii: [f64; 2], heights: [f64; 2], n: usize) -> Vec<T
     (0..n).flat_map(side).collect()
 }
 
-/// Returns A ball with rings of latitude.
+/// Returns a ball with rings of latitude.
 fn ball(around: usize, rings: usize) -> Vec<Triangle> {
     let at = |i: usize, k: usize| {
         let (s, c) = ((i % around) as f64 / around as f64 * TAU).sin_cos();

@@ -43,7 +43,7 @@ pub fn soup(triangles: usize, seed: u64) -> Scene {
     Scene { meshes: vec![mesh], instances: vec![instance(0)], ..Scene::default() }
 }
 
-/// Returns A sphere of quads with normals and texture coordinates.
+/// Returns a sphere of quads with normals and texture coordinates.
 pub fn sphere(rings: u32, material: Option<usize>) -> Mesh {
     let mut mesh = Mesh { tex_coords: vec![Vec::new()], ..Mesh::default() };
     let columns = 2 * rings;
@@ -127,7 +127,7 @@ pub fn materials() -> Scene {
     Scene { meshes, instances, materials, textures, images: vec![checkers()], ..Scene::default() }
 }
 
-/// Returns A chrome, a gold, a coated, a woven, a tinted and a glass sphere.
+/// Returns a chrome, a gold, a coated, a woven, a tinted and a glass sphere.
 pub fn lobes() -> Scene {
     let plain = Material {
         model: ShadingModel::MetallicRoughness,
@@ -169,7 +169,7 @@ pub fn lobes() -> Scene {
     }
 }
 
-/// Returns A panorama: blue above, brown below, and a bright window on the left.
+/// Returns a panorama: blue above, brown below, and a bright window on the left.
 pub fn panorama() -> Panorama {
     let color = |x: u32, y: u32| match (x, y) {
         (6..10, 5..9) => [9.0, 8.0, 7.0],
@@ -185,7 +185,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
     vec![("soup", soup(400, 1)), ("materials", materials())]
 }
 
-/// Returns A camera that sees a scene of about two units' extent, and some of it behind the eye.
+/// Returns a camera that sees a scene of about two units' extent, and some of it behind the eye.
 pub fn options(_scene: &Scene, width: u32, height: u32) -> RenderOptions {
     let camera = Camera {
         eye: DVec3::new(1.2, 1.0, 4.0),

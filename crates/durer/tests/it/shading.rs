@@ -30,7 +30,7 @@ fn matte(base_color: Vec4) -> Material {
     Material { base_color, specular: Vec3::ZERO, ..Material::default() }
 }
 
-/// Returns A scene of one material, whose textures index one 2 × 1 image per entry.
+/// Returns a scene of one material, whose textures index one 2 × 1 image per entry.
 fn scene(material: Material, images: &[[[u8; 4]; 2]]) -> Scene {
     let image = |data: &[[u8; 4]; 2]| Image {
         name: String::new(),

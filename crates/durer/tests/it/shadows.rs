@@ -8,7 +8,7 @@ use durer::scene::{
 };
 use durer::target::Framebuffer;
 
-/// Returns A floor, a sphere above it, and a tilted plate.
+/// Returns a floor, a sphere above it, and a tilted plate.
 fn scene() -> Scene {
     let quad = |[a, b, c, d]: [Vec3; 4]| vec![a, b, c, a, c, d];
     let floor = quad([

@@ -16,7 +16,7 @@ fn smooth(triangles: &[Triangle], view: &View) -> Drawing {
     draw(&soup(triangles), view, &options, &mut NoTrace).expect("drawing")
 }
 
-/// Returns A ball of radius 1 of `n` by 2 `n` quadrilaterals.
+/// Returns a ball of radius 1 of `n` by 2 `n` quadrilaterals.
 fn ball(n: usize) -> Vec<Triangle> {
     let at = |i: usize, k: usize| {
         let angle = |j: usize, of: usize| (j % of) as f64 / of as f64 * std::f64::consts::TAU;
@@ -125,7 +125,7 @@ fn outlines_of_a_torus_are_as_long_as_they_are_exactly() {
     }
 }
 
-/// Returns A ball with slivers: over some edges stand triangles on a third point of the sphere.
+/// Returns a ball with slivers: over some edges stand triangles on a third point of the sphere.
 fn ball_with_slivers(n: usize) -> Vec<Triangle> {
     let halves = |(i, [a, b, c]): (usize, Triangle)| {
         let over = ((a + b) / 2.0).normalize();
@@ -154,7 +154,7 @@ fn slivers_of_a_ball_make_no_lines() {
     }
 }
 
-/// Returns A bar along y with these corners in x and z, counter-clockwise seen from −y.
+/// Returns a bar along y with these corners in x and z, counter-clockwise seen from −y.
 fn bar(corners: &[[f64; 2]]) -> Vec<Triangle> {
     let at = |i: usize, y: f64| {
         let [x, z] = corners[i % corners.len()];
@@ -232,7 +232,7 @@ fn cone_side(cos: f64) -> f64 {
     (x2 + (height - y).powi(2)).sqrt()
 }
 
-/// Returns A body of revolution of `n` facets around z with this profile of radii and heights, from the
+/// Returns a body of revolution of `n` facets around z with this profile of radii and heights, from the
 /// bottom up, without lids.
 fn turned(profile: &[[f64; 2]], n: usize) -> Vec<Triangle> {
     let at = |k: usize, [r, z]: [f64; 2]| {

@@ -78,7 +78,7 @@ fn occlusion_darkens_and_leaves_no_planes_that_are_not_asked_for() {
     assert!(render(&corner(), &none).expect("none").0.color == before.color);
 }
 
-/// Returns A sphere of radius 1 whose lowest point is at the height −1.
+/// Returns a sphere of radius 1 whose lowest point is at the height −1.
 fn ball(up_axis: UpAxis) -> Scene {
     Scene {
         meshes: vec![sphere(12, Some(0))],

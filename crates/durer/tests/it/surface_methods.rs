@@ -58,7 +58,7 @@ fn assert_all_agree(p: &Prepared<'_>, what: &str) -> Framebuffer {
     expected
 }
 
-/// Returns A view of 64 columns and some rows of a scene in pixels and depths.
+/// Returns a view of 64 columns and some rows of a scene in pixels and depths.
 fn upright(scene: &Scene, rows: std::ops::Range<u32>) -> Prepared<'_> {
     let mut p = Prepared::new(scene, 64, rows.len() as u32);
     let middle = f64::from(rows.start + rows.end) / 2.0;
@@ -74,7 +74,7 @@ fn upright(scene: &Scene, rows: std::ops::Range<u32>) -> Prepared<'_> {
     p
 }
 
-/// Returns A triangle given by pixels and depths.
+/// Returns a triangle given by pixels and depths.
 fn at(corners: [(f32, f32, f32); 3]) -> [Vec3; 3] {
     corners.map(|(x, y, depth)| Vec3::new(x, -y, 8.0 - 16.0 * depth))
 }

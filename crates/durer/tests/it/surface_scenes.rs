@@ -21,7 +21,7 @@ fn quad([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-/// Returns A beam between two points, as a strip of two triangles that faces the viewer.
+/// Returns a beam between two points, as a strip of two triangles that faces the viewer.
 fn beam(a: Vec3, b: Vec3, width: f32) -> [[Vec3; 3]; 2] {
     let side = (b - a).cross(Vec3::Z).normalize() * width;
     quad([a - side, b - side, b + side, a + side])

@@ -7,7 +7,7 @@ use durer::trace::NoTrace;
 use durer::visibility::line::hidden_line::{Options, draw};
 use durer::visibility::line::{ClassSet, Smooth};
 
-/// Returns A bar along z from 0 to 5 over a slot: two half circles of radius 1 and `n` facets, 4 apart,
+/// Returns a bar along z from 0 to 5 over a slot: two half circles of radius 1 and `n` facets, 4 apart,
 /// with lids.
 fn slot(n: usize) -> Vec<Triangle> {
     let corner = |k: usize| {

@@ -6,7 +6,7 @@ use durer::pipeline::{DrawOptions, Lighting, ToneMarks, tone_marks};
 use durer::scene::{Camera, Light, LightKind, Projection, Scene};
 use durer::target::drawing::{Line, LineClass};
 
-/// Returns A camera that looks along −z at a square of side 4 around the origin.
+/// Returns a camera that looks along −z at a square of side 4 around the origin.
 fn camera() -> Camera {
     let projection = Projection::Orthographic { height: 4.0 };
     Camera {
@@ -19,7 +19,7 @@ fn camera() -> Camera {
     }
 }
 
-/// Returns A tube of radius 1 around the y axis, from −1.5 to 1.5, of `n` flat sides.
+/// Returns a tube of radius 1 around the y axis, from −1.5 to 1.5, of `n` flat sides.
 fn tube(n: usize) -> Scene {
     let at = |i: usize, y: f64| {
         let angle = i as f64 / n as f64 * std::f64::consts::TAU;

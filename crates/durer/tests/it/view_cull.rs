@@ -135,7 +135,7 @@ fn faces_are_seen_from_their_side() {
     assert_eq!(face_along(DVec3::ZERO, DVec3::Z), Face::Edge);
 }
 
-/// Returns A cube of side 2 around `center`, its vertices not shared, as in STL.
+/// Returns a cube of side 2 around `center`, its vertices not shared, as in STL.
 fn cube(center: Vec3) -> Mesh {
     let mut positions = Vec::new();
     for axis in 0..3 {

@@ -20,7 +20,7 @@ fn sectioned(mesh: Mesh, planes: &[Plane]) -> Section {
     cut(&scene(mesh), planes, &Options::default()).expect("cut")
 }
 
-/// Returns A box with corners at ± size; its faces look out, or in.
+/// Returns a box with corners at ± size; its faces look out, or in.
 fn cuboid(size: f32, inwards: bool) -> Mesh {
     let positions = (0..8).map(|i| {
         let sign = |bit: u32| if i >> bit & 1 == 1 { size } else { -size };

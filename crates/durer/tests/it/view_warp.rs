@@ -10,7 +10,7 @@ use durer::view::warp::{HOLE, Options, Source, Step, Warped, warp};
 
 const SIDE: u32 = 120;
 
-/// Returns A sphere before a wall, each in one colour.
+/// Returns a sphere before a wall, each in one colour.
 fn scene() -> Scene {
     let color = |r, g, b| Material {
         model: ShadingModel::Unlit,
@@ -113,7 +113,7 @@ fn a_second_picture_fills_holes() {
     assert_eq!(magenta as u64, both.holes);
 }
 
-/// Returns A red square in front of nothing, in a picture whose pixels at its outline are `mixed`.
+/// Returns a red square in front of nothing, in a picture whose pixels at its outline are `mixed`.
 fn square(mixed: [u8; 4]) -> (Pixels<[u8; 4]>, Pixels<f32>) {
     let (mut color, mut depth) = (Pixels::new(SIDE, SIDE, [255; 4]), Pixels::new(SIDE, SIDE, 1.0));
     for (x, y) in (40..80).flat_map(|y| (40..80).map(move |x| (x, y))) {

@@ -45,7 +45,7 @@ fn ties() -> Scene {
     mesh_scene(positions)
 }
 
-/// Returns A scene of the random kind that this number stands for.
+/// Returns a scene of the random kind that this number stands for.
 fn random_scene(seed: u64) -> Scene {
     match seed % 10 {
         8 => cyclic(),
@@ -54,7 +54,7 @@ fn random_scene(seed: u64) -> Scene {
     }
 }
 
-/// Returns A camera somewhere around the scene, sometimes amid it, and a size from 1 × 1 to 256².
+/// Returns a camera somewhere around the scene, sometimes amid it, and a size from 1 × 1 to 256².
 fn random_view(seed: u64) -> View {
     let mut numbers = scenes::Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
     for _ in 0..3 {
@@ -77,7 +77,7 @@ fn random_view(seed: u64) -> View {
     View::new(camera, width, height).expect("view")
 }
 
-/// Returns A view in which parts of the scene are behind the eye.
+/// Returns a view in which parts of the scene are behind the eye.
 fn amid(width: u32, height: u32) -> View {
     let camera = scenes::options(&Scene::default(), 1, 1).camera;
     View::new(camera, width, height).expect("view")
@@ -239,7 +239,7 @@ fn the_order_of_triangles_changes_nothing() {
     }
 }
 
-/// Returns A scene with something in two instances, so that runs change within rows.
+/// Returns a scene with something in two instances, so that runs change within rows.
 fn two_instances() -> Scene {
     let mut scene = scenes::soup(170, 4);
     let world_from_mesh = DMat4::from_rotation_y(0.7);

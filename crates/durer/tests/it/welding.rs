@@ -28,7 +28,7 @@ fn assert_like(name: &str, found: &Drawing, expected: &Drawing) {
     }
 }
 
-/// Returns A cuboid with noise in all corners of all triangles.
+/// Returns a cuboid with noise in all corners of all triangles.
 fn noisy(amount: f64) -> Vec<Triangle> {
     let mut random = Random(5);
     let mut number = || (random.next() - 0.5) * 2.0 * amount;

@@ -25,7 +25,7 @@ fn point(x: f64, y: f64) -> (i32, i32) {
     ((x * EXTENT).round() as i32, (y * EXTENT).round() as i32)
 }
 
-/// Returns A ring like a coast: a circle whose radius is fractal noise, by midpoint displacement.
+/// Returns a ring like a coast: a circle whose radius is fractal noise, by midpoint displacement.
 pub fn coast(n: usize, seed: u64, x: f64) -> Rings {
     let mut random = Random(seed);
     let mut radius = vec![0.6; 8];
@@ -51,7 +51,7 @@ pub fn coast(n: usize, seed: u64, x: f64) -> Rings {
     vec![ring]
 }
 
-/// Returns A star of n points: every second one far out, the others close in, at random.
+/// Returns a star of n points: every second one far out, the others close in, at random.
 pub fn star(n: usize, seed: u64, x: f64, turn: f64) -> Rings {
     let mut random = Random(seed);
     let ring = (0..n)

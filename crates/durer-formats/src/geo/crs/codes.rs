@@ -146,7 +146,7 @@ const UTM: [(i32, i32, i32, bool, i32, &str); 8] = [
     (31960, 17, 25, true, 4674, "SIRGAS_2000_UTM_Zone_"),
 ];
 
-/// Returns A system of the list: its name in definitions, and what it is.
+/// Returns a system of the list: its name in definitions, and what it is.
 fn entry(code: i32) -> Option<(String, &'static Datum, Kind)> {
     if let Some(datum) = datum::of_code(code) {
         return Some((format!("GCS_{}", datum.name), datum, Kind::Geographic));
@@ -260,7 +260,7 @@ const ALIASES: [(i32, i32); 7] = [
     (54035, 8857),
 ];
 
-/// Returns A system by its number.
+/// Returns a system by its number.
 pub fn crs(code: i32) -> Option<Crs> {
     let code = ALIASES.iter().find(|(alias, _)| *alias == code).map_or(code, |(_, own)| *own);
     let (_, datum, kind) = entry(code)?;

@@ -25,7 +25,7 @@ impl Ellipsoid {
         Self { a, e2: f * (2.0 - f) }
     }
 
-    /// Creates A sphere of the same longer axis.
+    /// Creates a sphere of the same longer axis.
     pub fn sphere(self) -> Self {
         Self { e2: 0.0, ..self }
     }

@@ -51,13 +51,13 @@ enum Kind {
 }
 
 impl Crs {
-    /// Creates A system by its number in the EPSG's list, or in Esri's; `None` for one that is not
+    /// Creates a system by its number in the EPSG's list, or in Esri's; `None` for one that is not
     /// known.
     pub fn of_code(code: i32) -> Option<Self> {
         codes::crs(code)
     }
 
-    /// Returns A system as it is said on a command line: `EPSG:4326`, `4326`, `CRS84`, `robinson`, or a
+    /// Returns a system as it is said on a command line: `EPSG:4326`, `4326`, `CRS84`, `robinson`, or a
     /// definition as well-known text.
     ///
     /// # Errors
@@ -165,7 +165,7 @@ impl Transform {
         self.is_shifted().then_some((worst.name, from.accuracy + to.accuracy))
     }
 
-    /// Returns A place in the other system; `None` where it has none there.
+    /// Returns a place in the other system; `None` where it has none there.
     pub fn apply(&self, p: DVec2) -> Option<DVec2> {
         if self.is_identity() {
             return Some(p);
@@ -178,7 +178,7 @@ impl Transform {
         self.to.place(place).filter(|p| p.is_finite())
     }
 
-    /// Returns A geometry with all its positions in the other system; heights and measures stay. `None` where
+    /// Returns a geometry with all its positions in the other system; heights and measures stay. `None` where
     /// a position has no place there.
     pub fn geometry(&self, geometry: &Geometry) -> Option<Geometry> {
         let all =

@@ -141,7 +141,7 @@ pub fn around(angle: f64) -> f64 {
     if turned < 0.0 { turned + PI } else { turned - PI }
 }
 
-/// Returns A value within ±`most`, or a little beyond by rounding.
+/// Returns a value within ±`most`, or a little beyond by rounding.
 fn beside_pole(q: f64, most: f64) -> Option<f64> {
     (q.abs() <= most * (1.0 + SLACK)).then(|| q.clamp(-most, most))
 }

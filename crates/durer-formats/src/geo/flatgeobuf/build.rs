@@ -34,7 +34,7 @@ pub struct Builder {
 pub struct Later(usize);
 
 impl Builder {
-    /// Returns A buffer, and the offset to its root.
+    /// Returns a buffer, and the offset to its root.
     pub fn new() -> (Self, Later) {
         (Self { out: vec![0; 8] }, Later(4))
     }
@@ -125,7 +125,7 @@ impl Builder {
         numbers.for_each(|n| self.out.extend(n.to_le_bytes()));
     }
 
-    /// Returns A vector of tables that are written next.
+    /// Returns a vector of tables that are written next.
     pub fn tables(&mut self, later: Later, count: usize) -> Vec<Later> {
         self.count(later, count, 4);
         let start = self.out.len();

@@ -192,7 +192,7 @@ fn fields(
         .collect())
 }
 
-/// Returns A value in JSON, nothing where it is binary, and what follows it.
+/// Returns a value in JSON, nothing where it is binary, and what follows it.
 fn value(kind: u8, bytes: &[u8]) -> Option<(Option<String>, &[u8])> {
     macro_rules! number {
         ($type:ty) => {{

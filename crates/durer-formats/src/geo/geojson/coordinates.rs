@@ -22,7 +22,7 @@ enum Run {
 }
 
 impl Geometries {
-    /// Returns A geometry by its type; `None` where there is no such type.
+    /// Returns a geometry by its type; `None` where there is no such type.
     pub fn geometry(
         &mut self,
         kind: &str,
@@ -77,7 +77,7 @@ impl Geometries {
         Ok(Some(geometry))
     }
 
-    /// Returns A geometry object.
+    /// Returns a geometry object.
     pub fn object(&mut self, text: Text<'_>, depth: usize) -> Result<Geometry> {
         if depth > MAX_DEPTH {
             return Err(text.error("geometries are nested too deep"));

@@ -19,7 +19,7 @@ pub struct Text<'a> {
 pub type RawMember<'a> = (Text<'a>, Text<'a>);
 
 impl<'a> Text<'a> {
-    /// Creates A piece that is one value.
+    /// Creates a piece that is one value.
     pub fn new(bytes: &'a [u8], start: (u64, u64)) -> Self {
         Self { bytes, from: 0, to: bytes.len(), start }
     }
@@ -66,7 +66,7 @@ impl<'a> Text<'a> {
         self.error_at(self.from, message)
     }
 
-    /// Returns A walk through the value.
+    /// Returns a walk through the value.
     pub fn cursor(self) -> Cursor<'a> {
         Cursor { text: self, at: self.from }
     }

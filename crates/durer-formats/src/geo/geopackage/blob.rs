@@ -34,7 +34,7 @@ pub fn read(bytes: &[u8], warnings: &mut Warnings, place: &Place) -> Result<Opti
     feature.map(|feature| feature.and_then(|feature| feature.geometry))
 }
 
-/// Returns A geometry with its header, with an envelope of x and y but for points.
+/// Returns a geometry with its header, with an envelope of x and y but for points.
 pub fn write(geometry: &Geometry, system: i32) -> Vec<u8> {
     let bounds = geometry.bounds();
     let envelope = bounds.filter(|_| !matches!(geometry, Geometry::Point(_)));

@@ -211,7 +211,7 @@ impl Row<'_> {
         })
     }
 
-    /// Returns A value in JSON; nothing for what is binary.
+    /// Returns a value in JSON; nothing for what is binary.
     fn value(
         &mut self,
         column: &Column,

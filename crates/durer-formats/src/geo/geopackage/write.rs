@@ -52,7 +52,7 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Creates A file without a feature.
+    /// Creates a file without a feature.
     pub fn new() -> Self {
         Self {
             database: NewDatabase::new(),
@@ -263,12 +263,12 @@ fn type_name(kind: FieldKind) -> &'static str {
     }
 }
 
-/// Returns A name in SQL.
+/// Returns a name in SQL.
 fn quote(name: &str) -> String {
     format!("\"{}\"", name.replace('"', "\"\""))
 }
 
-/// Returns A name that a table may have: at most 200 bytes, none that belongs to the format.
+/// Returns a name that a table may have: at most 200 bytes, none that belongs to the format.
 fn layer_name(name: &str) -> String {
     let mut own = String::new();
     for c in name.chars().filter(|c| !c.is_control()) {

@@ -17,7 +17,7 @@ pub fn of_text(text: &str) -> Option<i32> {
     (to_text(days) == text).then(|| i32::try_from(days).ok()).flatten()
 }
 
-/// Returns A day as text.
+/// Returns a day as text.
 pub fn to_text(days: i64) -> String {
     let days = days.saturating_add(719_468);
     let (era, of_era) = (days.div_euclid(ERA), days.rem_euclid(ERA));
@@ -30,7 +30,7 @@ pub fn to_text(days: i64) -> String {
     format!("{year:04}-{month:02}-{day:02}")
 }
 
-/// Returns A time as text, of so many parts in a second; with the day, in UTC, or without.
+/// Returns a time as text, of so many parts in a second; with the day, in UTC, or without.
 pub fn time(count: i64, parts: i64, has_day: bool, is_utc: bool) -> String {
     let (seconds, rest) = (count.div_euclid(parts), count.rem_euclid(parts));
     let (days, second) = (seconds.div_euclid(86_400), seconds.rem_euclid(86_400));

@@ -29,7 +29,7 @@ pub fn system(told: Option<&Value>, warnings: &mut Warnings) -> System {
     System { code, wkt: None }
 }
 
-/// Returns A system; `None` for one that is not known.
+/// Returns a system; `None` for one that is not known.
 pub fn of_system(system: &System) -> Option<Value> {
     Crs::of_system(system).ok().map(|crs| of_crs(&crs))
 }

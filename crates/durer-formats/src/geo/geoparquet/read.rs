@@ -117,7 +117,7 @@ impl Reader {
     }
 }
 
-/// Returns A geometry as well-known binary.
+/// Returns a geometry as well-known binary.
 fn shape(bytes: &ByteArray, place: &Place, warnings: &mut Warnings) -> Result<Geometry> {
     let mut reader = wkb::Reader::new(bytes.data());
     let feature = reader.next_feature();

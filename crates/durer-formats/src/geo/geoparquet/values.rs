@@ -42,7 +42,7 @@ impl Meaning {
     }
 }
 
-/// Returns A value in JSON; `None` for what is binary.
+/// Returns a value in JSON; `None` for what is binary.
 pub fn json(field: &Field, meaning: Meaning) -> Option<String> {
     Some(match (field, meaning) {
         (Field::Null, _) => "null".to_owned(),
@@ -105,7 +105,7 @@ fn is_json(text: &str) -> bool {
     serde_json::from_str::<serde::de::IgnoredAny>(text).is_ok()
 }
 
-/// Returns A number of up to 38 digits, all of them kept.
+/// Returns a number of up to 38 digits, all of them kept.
 fn decimal(value: &Decimal) -> String {
     let (bytes, scale) = (value.data(), usize::try_from(value.scale()).unwrap_or(0));
     let sign = if bytes.first().is_some_and(|b| b & 0x80 != 0) { -1 } else { 0 };

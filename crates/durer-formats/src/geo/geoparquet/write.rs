@@ -77,7 +77,7 @@ fn columns(features: &[Feature]) -> Vec<Column> {
     columns
 }
 
-/// Returns A name that no field has.
+/// Returns a name that no field has.
 fn free(name: &str, columns: &[Column]) -> String {
     let mut names = std::iter::once(name.to_owned()).chain((1..).map(|i| format!("{name}_{i}")));
     names.find(|name| !columns.iter().any(|(key, _)| key == name)).unwrap_or_default()

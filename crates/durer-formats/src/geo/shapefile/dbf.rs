@@ -84,7 +84,7 @@ impl Table {
         object(&self.columns.iter().map(member).collect::<Vec<_>>())
     }
 
-    /// Returns A value in JSON.
+    /// Returns a value in JSON.
     fn value(
         &self,
         column: &Column,
@@ -183,7 +183,7 @@ fn double(value: f64) -> Option<String> {
     String::from_utf8(text).ok()
 }
 
-/// Returns A decimal number in JSON: with its digits where they are such, but for zeros at their end after
+/// Returns a decimal number in JSON: with its digits where they are such, but for zeros at their end after
 /// the first.
 fn decimal(value: &[u8]) -> Option<String> {
     let value: Vec<u8> = value.iter().copied().filter(|b| !matches!(b, b' ' | 0)).collect();
@@ -205,7 +205,7 @@ fn day(value: &[u8]) -> Option<String> {
     whole.then(|| format!("\"{}-{}-{}\"", &digits[..4], &digits[4..6], &digits[6..]))
 }
 
-/// Returns A Julian day and milliseconds as a moment of JSON; by Fliegel and Van Flandern, 1968.
+/// Returns a Julian day and milliseconds as a moment of JSON; by Fliegel and Van Flandern, 1968.
 fn moment(day: [u8; 4], milliseconds: [u8; 4]) -> Option<String> {
     let (julian, time) = (i64::from(i32::from_le_bytes(day)), i32::from_le_bytes(milliseconds));
     if !(1_721_426..5_373_485).contains(&julian) || !(0..86_400_000).contains(&time) {

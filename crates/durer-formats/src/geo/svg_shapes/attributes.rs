@@ -46,7 +46,7 @@ pub fn reference(element: &BytesStart<'_>) -> Result<Option<String>, String> {
     Ok(attribute(element, "href")?.or(attribute(element, "xlink:href")?))
 }
 
-/// Returns A length in pixels.
+/// Returns a length in pixels.
 pub fn length(element: &BytesStart<'_>, name: &str) -> Result<Option<f64>, String> {
     let text = attribute(element, name)?.unwrap_or_default();
     let mut scanner = Scanner::new(&text);
@@ -186,7 +186,7 @@ impl<'a> Scanner<'a> {
         Some(char::from(*first))
     }
 
-    /// Returns A number, or `None` at the end.
+    /// Returns a number, or `None` at the end.
     pub fn number(&mut self) -> Result<Option<f64>, String> {
         if self.at_end() {
             return Ok(None);
@@ -203,7 +203,7 @@ impl<'a> Scanner<'a> {
         self.number()?.ok_or_else(|| "a number is missing at the end".to_owned())
     }
 
-    /// Returns A flag of an arc, which needs nothing to part it from what follows.
+    /// Returns a flag of an arc, which needs nothing to part it from what follows.
     pub fn flag(&mut self) -> Result<bool, String> {
         self.skip();
         match self.rest {

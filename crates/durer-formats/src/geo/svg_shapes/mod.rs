@@ -274,7 +274,7 @@ impl Walk {
         Ok(())
     }
 
-    /// Returns A tag: what it draws.
+    /// Returns a tag: what it draws.
     fn element(
         &mut self,
         text: &[u8],

@@ -127,7 +127,7 @@ impl Maker {
         made
     }
 
-    /// Returns A ring without a junction, which other rings may have from another position on.
+    /// Returns a ring without a junction, which other rings may have from another position on.
     fn loose(&mut self, run: Run) -> i64 {
         let least = run.iter().enumerate().min_by_key(|(_, number)| **number).map_or(0, |(i, _)| i);
         let mut key = run.clone();

@@ -50,7 +50,7 @@ pub fn apply(bytes: &mut [u8], stride: usize, filter: &str) -> Result<(), Refusa
     Ok(())
 }
 
-/// Returns A unit vector from the octahedron: x, y, and the value of 1.0; the fourth passes
+/// Returns a unit vector from the octahedron: x, y, and the value of 1.0; the fourth passes
 /// through.
 fn octahedral<T: Copy>([x, y, one, _]: [f32; 4], max: f32, fourth: T, to: fn(f32) -> T) -> [T; 4] {
     let (mut x, mut y) = (x / one, y / one);
@@ -63,7 +63,7 @@ fn octahedral<T: Copy>([x, y, one, _]: [f32; 4], max: f32, fourth: T, to: fn(f32
     [to((x * scale).round()), to((y * scale).round()), to((z * scale).round()), fourth]
 }
 
-/// Returns A unit quaternion from its three smaller components and the place of the largest.
+/// Returns a unit quaternion from its three smaller components and the place of the largest.
 fn quaternion(v: [i16; 4]) -> [i16; 4] {
     let scale = FRAC_1_SQRT_2 / f32::from(v[3] | 3);
     let [x, y, z] = [v[0], v[1], v[2]].map(|c| f32::from(c) * scale);

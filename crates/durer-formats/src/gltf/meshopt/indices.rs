@@ -84,7 +84,7 @@ impl Triangles<'_> {
         Ok(self.last)
     }
 
-    /// Returns A triangle on an edge of the queue (high four bits), with a third vertex (low four).
+    /// Returns a triangle on an edge of the queue (high four bits), with a third vertex (low four).
     fn on_edge(&mut self, code: u8) -> Result<[u32; 3], Refusal> {
         let (a, b) = self.edges.get(code >> 4)?;
         let third = code & 15;
@@ -105,7 +105,7 @@ impl Triangles<'_> {
         Ok([a, b, c])
     }
 
-    /// Returns A triangle of three vertices, each fresh (0), from the queue (1 … 14) or written out
+    /// Returns a triangle of three vertices, each fresh (0), from the queue (1 … 14) or written out
     /// (15).
     fn of_vertices(&mut self, first: u8, pair: u8) -> Result<[u32; 3], Refusal> {
         let kinds = [first, pair >> 4, pair & 15];

@@ -196,7 +196,7 @@ fn key(selector: &Selector) -> Option<&Simple> {
         .or_else(|| of(|s| matches!(s, Simple::Type(_))))
 }
 
-/// Returns A rule of which shorthands are divided and values that cannot be used are taken out and
+/// Returns a rule of which shorthands are divided and values that cannot be used are taken out and
 /// told.
 fn usable(rule: Rule, start: usize, is_sheet: bool, told: &mut Vec<Told>) -> Rule {
     let mut declarations = Vec::new();

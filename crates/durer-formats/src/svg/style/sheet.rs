@@ -130,7 +130,7 @@ impl Reader<'_, '_> {
         self.sheet.rules.push(Rule { selectors, declarations });
     }
 
-    /// Returns A rule that begins with `@`; gives where it is over.
+    /// Returns a rule that begins with `@`; gives where it is over.
     fn at_rule(&mut self, name: &str, at: usize, end: usize, depth: u32) -> usize {
         let open = self.find(at + 1, end, &[Token::Open('{'), Token::Other(';')]);
         let is_block = self.pieces.get(open).is_some_and(|piece| piece.token == Token::Open('{'));

@@ -33,7 +33,7 @@ struct Set {
 }
 
 impl Variables {
-    /// Returns A set of what an element says itself, within the one around it. Values are as said.
+    /// Returns a set of what an element says itself, within the one around it. Values are as said.
     pub fn add(&mut self, around: Option<usize>, said: BTreeMap<String, String>) -> usize {
         let mut values = BTreeMap::new();
         for name in said.keys() {
@@ -74,7 +74,7 @@ impl Variables {
         None
     }
 
-    /// Returns A value with what its `var()` stand for; `None` where one stands for nothing, or for
+    /// Returns a value with what its `var()` stand for; `None` where one stands for nothing, or for
     /// too much.
     pub fn replaced(&mut self, value: &str, set: Option<usize>) -> Option<String> {
         if !has_variables(value) {

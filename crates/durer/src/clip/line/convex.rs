@@ -255,7 +255,7 @@ fn exact_crossing<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N
     })
 }
 
-/// Returns A corner that rounding cannot tell from the cut: in the tip of a needle no other number is
+/// Returns a corner that rounding cannot tell from the cut: in the tip of a needle no other number is
 /// inside.
 fn nearest_corner<const N: usize, H: HalfSpace<N>>(
     space: &H,

@@ -185,7 +185,7 @@ struct Gap {
     visible: Fine,
 }
 
-/// Returns A gap for each end, found by halving while both ends are outside; `None` where nothing is
+/// Returns a gap for each end, found by halving while both ends are outside; `None` where nothing is
 /// visible.
 fn gaps(
     window: &PixelWindow,

@@ -151,7 +151,7 @@ fn sorted([i, j]: [usize; 2]) -> [usize; 2] {
     [i.min(j), i.max(j)]
 }
 
-/// Returns A point as a key; zeros of either sign are one.
+/// Returns a point as a key; zeros of either sign are one.
 fn key(p: DVec2) -> [u64; 2] {
     (p + 0.0).to_array().map(f64::to_bits)
 }

@@ -86,7 +86,7 @@ impl<P> Shapes<P> {
         start.unwrap_or(0)..end
     }
 
-    /// Returns A ring by its index over all polygons; empty where there is none.
+    /// Returns a ring by its index over all polygons; empty where there is none.
     pub fn ring(&self, index: usize) -> &[P] {
         self.points.get(self.ring_range(index)).unwrap_or_default()
     }

@@ -103,7 +103,7 @@ pub struct Stage<H, V> {
 }
 
 impl<H, V> Stage<H, V> {
-    /// Creates A stage that has seen nothing.
+    /// Creates a stage that has seen nothing.
     pub fn new(border: H) -> Self {
         Self { border, first: None, previous: None }
     }

@@ -84,7 +84,7 @@ impl Index {
         }
     }
 
-    /// Returns A point that is left in a closed triangle, beside its corners.
+    /// Returns a point that is left in a closed triangle, beside its corners.
     pub fn in_triangle(&mut self, points: &[DVec2], corners: [u32; 3]) -> Option<u32> {
         let triangle = Triangle::new(corners.map(|i| points[i as usize]));
         let mut open = std::mem::take(&mut self.open);

@@ -103,7 +103,7 @@ fn merged(points: &[DVec2]) -> (Vec<DVec2>, Vec<u32>) {
     (places, place_of)
 }
 
-/// Returns A whole number that is in the order of finite numbers; zeros of either sign are one.
+/// Returns a whole number that is in the order of finite numbers; zeros of either sign are one.
 fn ordered(value: f64) -> u64 {
     let bits = (value + 0.0).to_bits();
     if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }

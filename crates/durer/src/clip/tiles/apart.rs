@@ -376,7 +376,7 @@ mod tests {
         assert_eq!(polygons(&Shapes::new(), FillRule::EvenOdd), Some(Shapes::new()));
     }
 
-    /// Returns A set of rings in an order that does not depend on where they begin.
+    /// Returns a set of rings in an order that does not depend on where they begin.
     fn sorted(shapes: &Shapes<I64Vec2>) -> Vec<Vec<Vec<I64Vec2>>> {
         let of_ring = |ring: &[I64Vec2]| {
             let first = (0..ring.len()).min_by_key(|&i| (ring[i].x, ring[i].y)).unwrap_or(0);

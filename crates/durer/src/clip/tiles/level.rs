@@ -88,7 +88,7 @@ impl<'a> Level<'a> {
         (self.tiny() + 1.0) / self.cells
     }
 
-    /// Returns A tile, in cells.
+    /// Returns a tile, in cells.
     fn square(&self, tile: Tile) -> Option<Rect> {
         let side = self.cells / f64::from(1u32 << tile.zoom);
         let corner = DVec2::new(tile.x.into(), tile.y.into()) * side;
@@ -134,7 +134,7 @@ impl Part<'_> {
         &self.level.pyramid.features[self.feature]
     }
 
-    /// Returns A box around the whole feature, in cells.
+    /// Returns a box around the whole feature, in cells.
     fn around(&self) -> Rect {
         let Ready { bounds, .. } = self.ready();
         let (margin, shift) = (DVec2::splat(self.level.margin()), DVec2::new(self.shift, 0.0));

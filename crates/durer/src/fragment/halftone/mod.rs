@@ -8,7 +8,7 @@ pub mod error_diffusion;
 
 use crate::target::Pixels;
 
-/// Returns A value as it counts: from 0 to 1.
+/// Returns a value as it counts: from 0 to 1.
 fn light(value: f32) -> f32 {
     if value > 0.0 { value.min(1.0) } else { 0.0 }
 }

@@ -174,7 +174,7 @@ impl<'a> Side<'a> {
         Ok((!rings.is_empty()).then(|| Region { rings, ..region.clone() }))
     }
 
-    /// Returns A ring around all of the drawing on the side that stays.
+    /// Returns a ring around all of the drawing on the side that stays.
     fn half_plane(&self, bounds: &Rect) -> Vec<DVec2> {
         let reach = bounds.min().abs().max(bounds.max().abs()).length() * 2.0 + self.at.abs();
         let bends = self.knots.iter().map(|(v, off)| (*v, *off));

@@ -243,7 +243,7 @@ impl<'a> Layout<'a> {
     }
 }
 
-/// Returns A scale, and standard ones below it.
+/// Returns a scale, and standard ones below it.
 fn smaller(scale: f64) -> impl Iterator<Item = f64> {
     std::iter::successors(Some(scale), |s| Some(standard_scale(*s * 0.99))).take(SMALLER)
 }

@@ -128,7 +128,7 @@ pub fn put(annotator: &mut Annotator, views: &[SheetView], placed: &[PlacedView]
 /// Half the side of the square that a letter takes up, with space around it, millimetres.
 const LETTER_ROOM: f64 = LETTER * 0.7;
 
-/// Returns A place beside a circle for its letter: of eight around it the first that fewest lines go
+/// Returns a place beside a circle for its letter: of eight around it the first that fewest lines go
 /// through.
 fn letter_place(drawing: &Drawing, view: &PlacedView, center: DVec2, radius: f64) -> DVec2 {
     let places = [1, 3, 7, 5, 0, 4, 2, 6].map(|eighth: u32| {

@@ -39,7 +39,7 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// Creates A list of blocks that are at most so wide together; of one, unless that is higher than
+    /// Creates a list of blocks that are at most so wide together; of one, unless that is higher than
     /// [`HIGH`] rows.
     pub fn within_width(rows: &[PartsListRow], width: f64) -> Self {
         let own = width_of(rows);
@@ -48,7 +48,7 @@ impl Shape {
         Self { rows: high, blocks: rows.len().div_ceil(high.max(1)), width: own }
     }
 
-    /// Creates A list of blocks that are at most so high, as few as can be.
+    /// Creates a list of blocks that are at most so high, as few as can be.
     pub fn within_height(rows: &[PartsListRow], height: f64) -> Self {
         let high = ((height / ROW).floor() - 1.0).max(1.0) as usize;
         let high = high.min(rows.len());

@@ -194,7 +194,7 @@ impl Sides {
         Bent { directions: [strong, self.normal.cross(strong)], weight, lead }
     }
 
-    /// Returns A tensor of directions as it is seen, with a trace of 1.
+    /// Returns a tensor of directions as it is seen, with a trace of 1.
     fn on_screen(&self, tensor: &Tensor) -> OnScreen {
         let [a, b] = self.dual;
         let seen = [tensor.form(a, a), tensor.form(a, b), tensor.form(b, b)];

@@ -216,7 +216,7 @@ const ALONG: Tones = Tones { closest: 0.25, doubled: 0.25, none: 1.0 };
 const ACROSS: Tones = Tones { closest: 0.15, doubled: 0.17, none: 0.5 };
 
 impl Frame {
-    /// Returns A line in the plane, without points that it does not need.
+    /// Returns a line in the plane, without points that it does not need.
     fn line(&self, line: Streamline) -> Option<Line> {
         let options = douglas_peucker::Options { tolerance: TOLERANCE };
         let kept = douglas_peucker::simplify(&line.points, &options, &mut NoTrace).ok()?;
@@ -232,7 +232,7 @@ impl Frame {
     }
 }
 
-/// Returns A dot for each share of tone that it covers.
+/// Returns a dot for each share of tone that it covers.
 fn dots(seen: &Seen, frame: &Frame) -> Vec<Line> {
     let area = std::f64::consts::FRAC_PI_4 * frame.size * frame.size;
     let mut density = Pixels::new(seen.width, seen.height, 0.0);

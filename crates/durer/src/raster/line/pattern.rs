@@ -47,7 +47,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Creates A thin solid line.
+    /// Creates a thin solid line.
     fn default() -> Self {
         Self { pen: Pen::Replicated(1), pattern: u16::MAX, repeat: 1, offset: 0 }
     }

@@ -75,7 +75,7 @@ pub struct SnappedTriangle([[i32; 2]; 3]);
 const GUARD_BAND_FIXED: i32 = (fixed::GUARD_BAND as i32) << SUBPIXEL_BITS;
 
 impl SnappedTriangle {
-    /// Creates A triangle from grid coordinates, [x, y] in 1/256 pixel, y down.
+    /// Creates a triangle from grid coordinates, [x, y] in 1/256 pixel, y down.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a coordinate beyond the guard band.
@@ -86,7 +86,7 @@ impl SnappedTriangle {
         }
     }
 
-    /// Creates A triangle from screen coordinates in pixels, snapped to the nearest grid points.
+    /// Creates a triangle from screen coordinates in pixels, snapped to the nearest grid points.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a coordinate that is NaN or beyond the guard band.
@@ -98,7 +98,7 @@ impl SnappedTriangle {
         }
     }
 
-    /// Creates A triangle whose coordinates are known to lie within the guard band.
+    /// Creates a triangle whose coordinates are known to lie within the guard band.
     #[inline]
     pub(crate) fn within_guard_band(vertices: [[i32; 2]; 3]) -> Self {
         debug_assert!(Self::new(vertices).is_ok());

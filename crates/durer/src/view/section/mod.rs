@@ -147,7 +147,7 @@ impl Section {
     }
 }
 
-/// Returns A plane of the world in the coordinates of a mesh.
+/// Returns a plane of the world in the coordinates of a mesh.
 fn in_mesh(plane: &Plane, world_from_mesh: &DMat4) -> Plane {
     let row = world_from_mesh.transpose() * plane.normal.extend(plane.distance);
     Plane { normal: row.truncate(), distance: row.w }

@@ -132,7 +132,7 @@ pub(super) fn materials(faces: &Faces) -> Option<Vec<u32>> {
     })
 }
 
-/// Returns A material among [`materials`].
+/// Returns a material among [`materials`].
 pub(super) fn material_number(material: Option<usize>) -> u32 {
     material.map_or(0, |m| m as u32 + 1)
 }

@@ -41,7 +41,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// Creates A picture of so many columns, with gaps at the ends filled.
+    /// Creates a picture of so many columns, with gaps at the ends filled.
     pub fn columns(columns: usize) -> Self {
         Self { columns, fill_ends: true, work: Work::default() }
     }

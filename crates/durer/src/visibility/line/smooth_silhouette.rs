@@ -310,7 +310,7 @@ fn flat([p, q]: [DVec3; 2], t: f64) -> DVec3 {
     p + (q - p) * t
 }
 
-/// Returns A point of the cubic over an edge that is at a right angle to the normals at its ends.
+/// Returns a point of the cubic over an edge that is at a right angle to the normals at its ends.
 fn curve_over([p, q]: [DVec3; 2], [n, m]: [DVec3; 2], t: f64) -> DVec3 {
     let along = q - p;
     let b = (p * 2.0 + q - n * along.dot(n)) / 3.0;

@@ -272,7 +272,7 @@ pub(super) struct Around {
 }
 
 impl Around {
-    /// Creates A triangle around one of its corners.
+    /// Creates a triangle around one of its corners.
     fn of(faces: &Faces, directions: &Directions<'_>, item: u32, k: usize) -> Option<Self> {
         let (t, places) = (faces.triangle(item)?, faces.corners(item)?);
         let [p, q, r] = [0, 1, 2].map(|i| places[(k + i) % 3]);

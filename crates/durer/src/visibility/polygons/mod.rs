@@ -50,7 +50,7 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// Returns A plane of this size.
+    /// Returns a plane of this size.
     fn plane<T: Copy>(&self, value: T) -> Result<Pixels<T>> {
         Pixels::within((&self.work, "planes of the picture"), self.width, self.height, value)
     }

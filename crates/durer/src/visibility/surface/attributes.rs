@@ -218,7 +218,7 @@ impl VisibleTriangle {
     }
 }
 
-/// Returns A weighted sum of three vectors, in this order of operations.
+/// Returns a weighted sum of three vectors, in this order of operations.
 #[inline(always)]
 pub fn blend(values: &[Vec3; 3], w: Weights) -> Vec3 {
     let [a, b, c] = values;

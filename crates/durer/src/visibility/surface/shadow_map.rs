@@ -136,7 +136,7 @@ fn cameras_of_point(light: &PointLight, eye: DVec3, sphere: &BoundingSphere) -> 
     cameras.into_iter().filter(|c| c.check().is_ok()).collect()
 }
 
-/// Returns A direction across another, always the same one.
+/// Returns a direction across another, always the same one.
 fn across(axis: DVec3) -> DVec3 {
     let a = axis.abs();
     let least = if a.x <= a.y && a.x <= a.z {

@@ -254,7 +254,7 @@ impl Line<'_> {
         self.parts.extend(parts.iter().filter(|[x0, x1]| x0 < x1));
     }
 
-    /// Returns A triangle's depths at both ends of a part.
+    /// Returns a triangle's depths at both ends of a part.
     fn ends(&self, triangle: u32, [x0, x1]: [i32; 2]) -> Ends {
         let t = &self.triangles[triangle as usize];
         let [ox, oy] = t.origin();

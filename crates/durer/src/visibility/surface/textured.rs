@@ -151,7 +151,7 @@ fn weights_beside<S: Simd>(simd: S, edges: Corners<S>, here: Corners<S>) -> Corn
     beside
 }
 
-/// Returns A weighted sum, in this order of operations.
+/// Returns a weighted sum, in this order of operations.
 #[inline(always)]
 fn blend<L: Lane>([a, b, c]: [L; 3], w: [L; 3]) -> L {
     a * w[0] + b * w[1] + c * w[2]

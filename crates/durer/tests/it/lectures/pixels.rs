@@ -76,7 +76,7 @@ fn a_clipped_line_lights_the_pixels_of_the_whole_one() {
     assert!(whole.len() > 10);
 }
 
-/// Returns A triangle whose corners are centres of pixels.
+/// Returns a triangle whose corners are centres of pixels.
 fn triangle() -> Contours {
     Contours::polygon([(2.5, 1.5), (10.5, 4.5), (4.5, 6.5)].map(DVec2::from))
 }

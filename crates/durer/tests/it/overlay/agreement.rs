@@ -35,7 +35,7 @@ fn ring(center: (i32, i32), lengths: &[i32]) -> Vec<DVec2> {
     DIRECTIONS.iter().zip(lengths).map(point).collect()
 }
 
-/// Returns A star-shaped polygon around a whole-numbered centre, with or without a star-shaped
+/// Returns a star-shaped polygon around a whole-numbered centre, with or without a star-shaped
 /// hole, on a grid so coarse that borders touch and run together all the time.
 fn star() -> impl Strategy<Value = Shapes> {
     let center = (-4..=4, -4..=4);

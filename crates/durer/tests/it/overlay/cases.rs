@@ -11,7 +11,7 @@ fn data() -> PathBuf {
         .unwrap_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"))
 }
 
-/// Returns A file of the shared data; `None`, with a note, where there is none.
+/// Returns a file of the shared data; `None`, with a note, where there is none.
 pub fn shared(path: &str) -> Option<String> {
     let root = std::env::var_os("DURER_DATA")
         .map(PathBuf::from)

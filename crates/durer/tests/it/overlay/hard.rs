@@ -132,7 +132,7 @@ fn reversed_windows_and_nan_end_at_once() {
     }
 }
 
-/// Returns A ring of n vertices that goes in and out between two radii, with whole-numbered noise.
+/// Returns a ring of n vertices that goes in and out between two radii, with whole-numbered noise.
 fn coast(n: usize, seed: u64, center: DVec2) -> Shapes {
     let mut state = seed;
     let mut noise = || {

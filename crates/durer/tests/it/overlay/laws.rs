@@ -52,7 +52,7 @@ fn moved(shapes: &Shapes, f: impl Fn(DVec2) -> DVec2) -> Shapes {
     shapes
 }
 
-/// Returns A star of long spikes: every second point far out, the others close in.
+/// Returns a star of long spikes: every second point far out, the others close in.
 fn star(n: usize, turn: f64, x: f64) -> Shapes {
     let point = |i: usize| {
         let t = (i as f64 + turn) / n as f64;

@@ -23,7 +23,7 @@ pub trait Coord: Copy + Ord + Debug + Send + Sync + Default + 'static {
         + Neg<Output = Self::Wide>;
     /// Holds both coordinates of a point.
     type Key: Ord;
-    /// Returns A word that orders points by x, then y.
+    /// Returns a word that orders points by x, then y.
     fn key(x: Self, y: Self) -> Self::Key;
     /// Coordinates lie in `−LIMIT … LIMIT`.
     const LIMIT: i64;
@@ -35,7 +35,7 @@ pub trait Coord: Copy + Ord + Debug + Send + Sync + Default + 'static {
     fn i64(self) -> i64;
     /// Widens a product.
     fn i128(wide: Self::Wide) -> i128;
-    /// Returns A product as a float, rounded.
+    /// Returns a product as a float, rounded.
     fn approximate(wide: Self::Wide) -> f64;
     /// Exact as long as the coordinate keeps within LIMIT.
     fn f64(self) -> f64 {

@@ -19,7 +19,7 @@ pub fn ranges(count: usize, size: usize) -> Vec<Range<usize>> {
     (0..count).step_by(size).map(|start| start..(start + size).min(count)).collect()
 }
 
-/// Returns A list in as many pieces of neighbours as give each thread some, one for one thread.
+/// Returns a list in as many pieces of neighbours as give each thread some, one for one thread.
 pub fn groups<T>(mut list: Vec<T>) -> Vec<Vec<T>> {
     let threads = if list.is_empty() { 1 } else { threads() };
     let pieces = if threads == 1 { 1 } else { threads * PIECES };
@@ -36,7 +36,7 @@ pub fn groups<T>(mut list: Vec<T>) -> Vec<Vec<T>> {
 /// Pieces of work for each thread, so that none waits long for the others.
 const PIECES: usize = 8;
 
-/// Returns A list cut at `ends`, which grow up to its length.
+/// Returns a list cut at `ends`, which grow up to its length.
 pub fn cut<'a, T>(mut list: &'a mut [T], ends: &[u32]) -> Vec<&'a mut [T]> {
     let mut start = 0;
     let mut pieces = Vec::with_capacity(ends.len());

@@ -44,7 +44,7 @@ pub(super) struct BorderPoint {
 }
 
 impl BorderPoint {
-    /// Creates A point of the border at which `edge` goes to the inside.
+    /// Creates a point of the border at which `edge` goes to the inside.
     pub(super) fn new(window: &Rect, point: DVec2, edge: [DVec2; 2]) -> Self {
         let (min, max) = (window.min(), window.max());
         let side = if point.y == min.y && point.x < max.x {

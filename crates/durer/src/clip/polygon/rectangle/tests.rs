@@ -106,7 +106,7 @@ fn a_point_that_is_not_finite_is_named() {
     assert_eq!(error, Error::NonFinite { what: "point", index: 1 });
 }
 
-/// Returns A star-shaped ring around a centre: simple whatever the radii are.
+/// Returns a star-shaped ring around a centre: simple whatever the radii are.
 fn star(center: DVec2, radii: &[f64]) -> Vec<DVec2> {
     let n = radii.len() as f64;
     let at = |(i, r): (usize, &f64)| {
@@ -116,7 +116,7 @@ fn star(center: DVec2, radii: &[f64]) -> Vec<DVec2> {
     radii.iter().enumerate().map(at).collect()
 }
 
-/// Returns A star with a scaled copy of itself as a hole.
+/// Returns a star with a scaled copy of itself as a hole.
 fn star_with_hole() -> impl Strategy<Value = Shapes> {
     let radii = prop::collection::vec(0.2..4.0f64, 3..24);
     (radii, -2.0..2.0f64, -2.0..2.0f64, 0.1..0.9f64).prop_map(|(radii, x, y, scale)| {
@@ -129,7 +129,7 @@ fn star_with_hole() -> impl Strategy<Value = Shapes> {
     })
 }
 
-/// Returns A simple ring on a small grid: the outline of random columns of cells that stand on one
+/// Returns a simple ring on a small grid: the outline of random columns of cells that stand on one
 /// line.
 fn skyline() -> impl Strategy<Value = Shapes> {
     prop::collection::vec(1i32..5, 1..8).prop_map(|heights| {

@@ -18,7 +18,7 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// Returns A fault between it and another one.
+    /// Returns a fault between it and another one.
     pub fn flaw(&self, other: &Self, fault: Fault, at: DVec2) -> Flaw {
         let rings = [self.ring.min(other.ring), self.ring.max(other.ring)];
         Flaw { fault, at: at + 0.0, rings }

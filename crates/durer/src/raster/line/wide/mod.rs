@@ -192,7 +192,7 @@ fn trace(outline: &Contours, t: &mut impl Tracer<Step>) {
     }
 }
 
-/// Returns A point moved to where products of its coordinates stay finite.
+/// Returns a point moved to where products of its coordinates stay finite.
 fn near(p: DVec2) -> DVec2 {
     p.clamp(DVec2::splat(-FARTHEST), DVec2::splat(FARTHEST))
 }

@@ -86,7 +86,7 @@ impl Place {
         }
     }
 
-    /// Returns A part of it.
+    /// Returns a part of it.
     fn piece(self, range: [f64; 2], visible: bool, underside: bool) -> Piece {
         let Self { family, line, segment } = self;
         Piece { family, line, segment, range, visible, underside }

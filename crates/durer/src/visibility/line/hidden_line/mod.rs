@@ -120,7 +120,7 @@ pub struct Options {
 const PER_TRIANGLE: u64 = 96;
 
 impl Default for Options {
-    /// Creates A technical drawing: creases from 40°, visible and hidden lines, 0.05 pixels in a
+    /// Creates a technical drawing: creases from 40°, visible and hidden lines, 0.05 pixels in a
     /// picture of 1000.
     fn default() -> Self {
         Self {
@@ -357,7 +357,7 @@ impl<'a> Lines<'a> {
         self.edges.len() + self.loose.len()
     }
 
-    /// Returns A smooth outline: where along it the surface hides it, and what does not. Which side of an
+    /// Returns a smooth outline: where along it the surface hides it, and what does not. Which side of an
     /// open surface is its front is arbitrary, so there nothing is known where it bends the other way.
     fn smooth(&self, of: &EdgeLine, line: FeatureLine, turned: bool) -> FeatureLine {
         let mut ends = of.ends;

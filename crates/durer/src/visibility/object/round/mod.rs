@@ -229,7 +229,7 @@ impl Finder<'_> {
         (n.dot(m) > 0.0 && turn >= least && turn <= most).then_some(turn)
     }
 
-    /// Returns A region to begin with.
+    /// Returns a region to begin with.
     fn seed(&self, items: &[u32], turn: f64) -> Option<Region> {
         let mut sums = Sums::default();
         for item in items {
@@ -246,7 +246,7 @@ impl Finder<'_> {
         all.then_some(region)
     }
 
-    /// Returns A region with all that belongs to it.
+    /// Returns a region with all that belongs to it.
     fn grown(&mut self, edges: &Edges, mut region: Region) -> Region {
         self.regions += 1;
         region.items.iter().for_each(|item| self.region_of[*item as usize] = self.regions);

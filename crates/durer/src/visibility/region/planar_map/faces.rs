@@ -60,7 +60,7 @@ impl Frame {
         }
     }
 
-    /// Returns A grid point in plane units.
+    /// Returns a grid point in plane units.
     pub fn plane(&self, p: Place) -> DVec2 {
         DVec2::new(p.x.f64(), p.y.f64()) * self.unit
     }
@@ -125,7 +125,7 @@ impl DepthPlane {
     }
 }
 
-/// Returns A grid point in floating point; exact.
+/// Returns a grid point in floating point; exact.
 #[inline(always)]
 pub fn float(p: Place) -> DVec2 {
     DVec2::new(f64::from(p.x), f64::from(p.y))

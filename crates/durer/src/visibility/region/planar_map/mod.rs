@@ -264,7 +264,7 @@ impl VisibleMap {
         patch.rings.iter().map(|ring| ring.iter().map(point).collect()).collect()
     }
 
-    /// Returns A vertex of the map in plane units.
+    /// Returns a vertex of the map in plane units.
     pub(super) fn point(&self, vertex: u32) -> DVec2 {
         self.frame.plane(self.map.points[vertex as usize])
     }

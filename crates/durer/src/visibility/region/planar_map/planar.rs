@@ -152,7 +152,7 @@ impl Planar {
         (starts, list)
     }
 
-    /// Returns A point inside a face with this border, away from it where the face is not all
+    /// Returns a point inside a face with this border, away from it where the face is not all
     /// narrow.
     pub fn inner_point(&self, border: &[u32]) -> Option<DVec2> {
         let ends = |half: u32| {

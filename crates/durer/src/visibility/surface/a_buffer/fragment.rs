@@ -100,7 +100,7 @@ impl<'a> Pool<'a> {
         self.hidden_from[part].fill(f32::INFINITY);
     }
 
-    /// Returns A depth behind which nothing of a pixel can be seen: opaque fragments before it
+    /// Returns a depth behind which nothing of a pixel can be seen: opaque fragments before it
     /// cover all of the pixel. It depends on the order in which fragments came; infinite where
     /// there is none.
     #[inline(always)]
@@ -158,7 +158,7 @@ impl<'a> Pool<'a> {
         })
     }
 
-    /// Returns A fragment by its number.
+    /// Returns a fragment by its number.
     #[inline(always)]
     pub fn fragment(&self, number: u32) -> &Fragment {
         &self.fragments[number as usize]

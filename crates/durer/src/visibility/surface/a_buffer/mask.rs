@@ -162,7 +162,7 @@ impl MaskTable {
         Common { places, turned }
     }
 
-    /// Returns A mask of a direction.
+    /// Returns a mask of a direction.
     #[inline(always)]
     fn mask(&self, direction: &Direction, distance: i32) -> u64 {
         self.masks.get(direction.start as usize + distance as usize) ^ self.turned(direction)

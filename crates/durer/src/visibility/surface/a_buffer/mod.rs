@@ -326,7 +326,7 @@ impl Rows<'_> {
     }
 }
 
-/// Returns A point of an item at a pixel of a row, whose sums are numbered by columns.
+/// Returns a point of an item at a pixel of a row, whose sums are numbered by columns.
 fn point_at(item: u32, at: [i32; 2], weight: f32) -> ShadingPoint {
     ShadingPoint { item, at, pixel: at[0] as u32, weight }
 }

@@ -368,7 +368,7 @@ impl Sorter<'_> {
         true
     }
 
-    /// Returns A polygon that P must not be painted before.
+    /// Returns a polygon that P must not be painted before.
     fn obstacle(&mut self, p: u32, t: &mut impl Tracer<Step>) -> Option<(u32, Verdict)> {
         self.round += 1;
         self.seen[p as usize] = self.round;

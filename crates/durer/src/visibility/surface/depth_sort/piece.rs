@@ -118,7 +118,7 @@ impl<'a> Pieces<'a> {
         Key { depth, item: self.triangle(polygon).item, polygon }
     }
 
-    /// Returns A polygon for the result.
+    /// Returns a polygon for the result.
     pub fn polygon(&mut self, polygon: u32) -> ScreenPolygon {
         let item = self.triangle(polygon).item;
         let piece = &mut self.list[polygon as usize];
@@ -220,7 +220,7 @@ impl<'a> Pieces<'a> {
         [half(&outline, &values, 1.0), half(&outline, &values, -1.0)]
     }
 
-    /// Returns A linear function of the screen, positive on the inner side of a cut.
+    /// Returns a linear function of the screen, positive on the inner side of a cut.
     fn inward(&self, polygon: u32, cut: Cut, p: DVec2) -> f64 {
         match cut {
             Cut::Plane { of } => {

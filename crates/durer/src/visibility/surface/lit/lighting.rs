@@ -84,7 +84,7 @@ impl<'a> Lighting<'a> {
         }
     }
 
-    /// Returns A direction of a run's mesh along world axes.
+    /// Returns a direction of a run's mesh along world axes.
     pub fn world_axes(&self, run: usize, direction: Vec3) -> Vec3 {
         let world_from_mesh = self.scene.instances[self.runs[run].instance].world_from_mesh;
         DMat3::from_mat4(world_from_mesh).as_mat3() * direction

@@ -335,7 +335,7 @@ fn reflected(view: Vec3, normal: Vec3) -> Vec3 {
     (normal * (2.0 * normal.dot(view)) - view).normalize_or(normal)
 }
 
-/// Returns A ray that leaves a surface.
+/// Returns a ray that leaves a surface.
 fn leaving(p: &Point, direction: Vec3, to: f32) -> Ray {
     let from = p.position.abs().max_element() * CLEARANCE;
     Ray { origin: p.position, direction, from, to, leaves: p.item }

@@ -82,7 +82,7 @@ pub struct Filter {
 }
 
 impl Filter {
-    /// Creates A filter with lines and points of the usual size.
+    /// Creates a filter with lines and points of the usual size.
     pub const fn new(cull: Cull, sample_reach: i32) -> Self {
         Self { cull, sample_reach, marks: Marks::USUAL }
     }

@@ -368,7 +368,7 @@ fn inverse_length<S: Simd>(simd: S, length2: f64x8<S>) -> f64x8<S> {
     simd.select_f64x8(finite & positive, inverse, zero)
 }
 
-/// Returns A third corner beside each line, so that coordinates along it can be found.
+/// Returns a third corner beside each line, so that coordinates along it can be found.
 #[inline(always)]
 fn beside_the_line<S: Simd>(
     simd: S,

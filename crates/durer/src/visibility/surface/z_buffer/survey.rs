@@ -106,7 +106,7 @@ impl Sink for Taken<'_> {
 }
 
 impl Survey {
-    /// Creates A survey of nothing so far.
+    /// Creates a survey of nothing so far.
     ///
     /// # Errors
     /// [`Error::Memory`] where the budget has no room for the samples.
