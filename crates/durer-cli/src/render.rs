@@ -1,6 +1,8 @@
 //! `durer render`.
 
 mod args;
+mod cells;
+mod check;
 mod streamed;
 
 pub use args::{EXAMPLES, RenderArgs};
@@ -8,14 +10,13 @@ pub use args::{EXAMPLES, RenderArgs};
 use crate::camera::{self, Shot};
 use crate::compare;
 use crate::drawing::{self, Annotated, Subject};
-use crate::environment;
 use crate::explode;
 use crate::failure::Failure;
 use crate::film::{self, Film, Sink};
 use crate::input;
 use crate::kind::Wanted;
 use crate::messages::Messages;
-use crate::options::{Samples, Shadows};
+use crate::options::Samples;
 use crate::output::{self, Name, Target};
 use crate::report::noticed::Noticed;
 use crate::report::{Failed, Growing, ModelReport, PictureReport};
@@ -23,12 +24,13 @@ use crate::section;
 use crate::staging;
 use crate::values::{Algorithm, Size};
 use crate::watch;
+use cells::{Cell, assemble, shots};
+use check::{algorithm, asks_for_rays, check, check_size, wanted};
 use durer::math::{DVec2, Vec4};
 use durer::pipeline::{self, Lighting, Marks, Mask, RenderOptions, SurfaceMethod};
 use durer::scene::{AlphaMode, Camera, Material, Scene};
 use durer::target::Framebuffer;
 use durer::view::components::components;
-use durer::view::layout::Layout;
 use durer::view::objects::divided;
 use durer_formats::{Model, png};
 use std::path::{Path, PathBuf};
@@ -92,111 +94,6 @@ fn sized(args: &RenderArgs, natural: DVec2) -> RenderArgs {
     let mut args = args.clone();
     args.picture.size = args.picture.sides.of_shape(natural);
     args
-}
-
-/// Checks options that the parser cannot check, before anything is read.
-fn check(args: &RenderArgs) -> Result<(), Failure> {
-    input::check_streams(&args.models)?;
-    camera::check(&args.view)?;
-    section::check(&args.section, args.drawing.sheet.is_some())?;
-    drawing::check(args, wanted(args).kind)?;
-    args.picture.encoding.check(wanted(args).kind)?;
-    check_size(args)?;
-    environment::read(&args.look, &args.running.work)?;
-    check_algorithm(args)?;
-    shots(args, None).map(|_| ())
-}
-
-/// Checks that the picture is not too large.
-fn check_size(args: &RenderArgs) -> Result<(), Failure> {
-    let Size { width, height } = args.picture.size;
-    let (kind, side) = (wanted(args).kind, width.max(height));
-    if side > kind.max_side() {
-        let (most, suffix) = (kind.max_side(), kind.suffix());
-        let message =
-            format!("--size {width}x{height}: a .{suffix} has room for {most} pixels along a side");
-        return Err(Failure::Usage(message));
-    }
-    let (pixels, limit) = (u64::from(width) * u64::from(height), args.picture.max_pixels);
-    if pixels > limit {
-        let message = format!(
-            "--size {width}x{height}: {pixels} pixels are above the limit of {limit}; \
-             --max-pixels raises it"
-        );
-        return Err(Failure::Usage(message));
-    }
-    Ok(())
-}
-
-/// Checks that the chosen algorithm supports the other options.
-fn check_algorithm(args: &RenderArgs) -> Result<(), Failure> {
-    let usage = |text: String| Err(Failure::Usage(text));
-    let rays = asks_for_rays(args);
-    match args.picture.algorithm {
-        Some(Algorithm::Surfaces(SurfaceMethod::Ray)) | None => {}
-        Some(_) if rays == Some("--bounces") => {
-            return usage("--bounces: only the algorithm ray follows reflected rays".to_owned());
-        }
-        Some(_) if rays.is_some() => {
-            let message = "--shadows rays: only the algorithm ray casts them; --shadows map goes \
-                           with all";
-            return usage(message.to_owned());
-        }
-        Some(_) => {}
-    }
-    match args.picture.algorithm {
-        None if args.picture.aa == Samples::SixtyFour && rays.is_some() => {
-            usage("--aa 64: rays take up to 16 samples".to_owned())
-        }
-        Some(Algorithm::Surfaces(method))
-            if args.picture.aa == Samples::SixtyFour && method != SurfaceMethod::ABuffer =>
-        {
-            usage(format!("--aa 64: the A-buffer does that, {method} takes up to 16 samples"))
-        }
-        Some(Algorithm::All) if args.picture.viewports.is_some() => {
-            usage("--algorithm all: one sheet at a time, so not with --viewports".to_owned())
-        }
-        Some(Algorithm::All) if args.stage.has_edges() => {
-            usage("--edges: they go with one algorithm, not with --algorithm all".to_owned())
-        }
-        Some(Algorithm::Wireframe) if args.stage.has_occlusion() => usage(
-            "--ambient-occlusion: a wireframe shows no surfaces that could be darkened".to_owned(),
-        ),
-        Some(Algorithm::All | Algorithm::Wireframe) if has_planes(args) => usage(
-            "--item, --depth, --normal: they go with one algorithm that finds surfaces".to_owned(),
-        ),
-        _ => Ok(()),
-    }
-}
-
-fn has_planes(args: &RenderArgs) -> bool {
-    let planes = &args.planes;
-    planes.item.is_some() || planes.depth.is_some() || planes.normal.is_some()
-}
-
-/// Returns the option that only rays can fulfil.
-fn asks_for_rays(args: &RenderArgs) -> Option<&'static str> {
-    if args.look.bounces > 0 {
-        Some("--bounces")
-    } else {
-        matches!(args.look.shadows, Shadows::Rays).then_some("--shadows")
-    }
-}
-
-/// Returns how surfaces are found: as asked for, or as fits the other options.
-fn algorithm(args: &RenderArgs) -> Algorithm {
-    args.picture.algorithm.unwrap_or_else(|| {
-        Algorithm::Surfaces(match args.picture.aa {
-            _ if asks_for_rays(args).is_some() => SurfaceMethod::Ray,
-            Samples::SixtyFour => SurfaceMethod::ABuffer,
-            _ => SurfaceMethod::ZBuffer,
-        })
-    })
-}
-
-/// Returns the output format: that of --format, or that of the output's name.
-fn wanted(args: &RenderArgs) -> Wanted {
-    Wanted::any(&args.output, args.format)
 }
 
 /// A model and what is to be made of it.
@@ -445,34 +342,6 @@ fn with_file(name: &str, failure: Failure) -> Failure {
     }
 }
 
-/// A part of the picture and what is seen in it.
-struct Cell {
-    x: u32,
-    y: u32,
-    shot: Shot,
-}
-
-/// Returns the cells of a picture: one, or one for each viewport.
-fn shots(args: &RenderArgs, frame: Option<u32>) -> Result<Vec<Cell>, Failure> {
-    let size = args.picture.size;
-    let Some(layout) = &args.picture.viewports else {
-        return Ok(vec![Cell { x: 0, y: 0, shot: Shot::of(&args.picture, frame) }]);
-    };
-    viewports(layout, size).map_err(|e| Failure::Usage(format!("--viewports: {e}")))
-}
-
-fn viewports(layout: &Layout, size: Size) -> Result<Vec<Cell>, String> {
-    let viewports = layout.viewports(size.width, size.height).map_err(|e| e.to_string())?;
-    let cell = |(name, viewport): (&str, durer::view::window::Viewport)| {
-        let view = name.parse().map_err(|e: durer::Error| e.to_string())?;
-        let pixels = viewport.pixels();
-        let size = Size { width: pixels.width(), height: pixels.height() };
-        let (x, y) = (pixels.x0().unsigned_abs(), pixels.y0().unsigned_abs());
-        Ok(Cell { x, y, shot: Shot { view: Some(view), size, turn: None } })
-    };
-    viewports.into_iter().map(cell).collect()
-}
-
 /// Renders one picture and writes its files; tells why nothing of the model is seen, where that is so.
 fn render_picture(
     args: &RenderArgs,
@@ -608,36 +477,6 @@ fn picture_options(
         max_pixels: args.picture.max_pixels,
         work: args.running.work.clone(),
         ..RenderOptions::new(camera)
-    }
-}
-
-/// Puts the viewports into one picture.
-fn assemble(mut cells: Vec<(Cell, Framebuffer)>, args: &RenderArgs) -> durer::Result<Framebuffer> {
-    if let [(_, whole)] = &mut cells[..] {
-        return Ok(std::mem::replace(whole, Framebuffer::new(0, 0)));
-    }
-    let (Size { width, height }, work) = (args.picture.size, &args.running.work);
-    let mut all = Framebuffer::within(work, width, height)?;
-    let any = |has: fn(&Framebuffer) -> bool| cells.iter().any(|(_, part)| has(part));
-    let (depth, item) = (any(|p| p.depth.is_some()), any(|p| p.item.is_some()));
-    all.add_planes(work, depth, item, any(|p| p.normal.is_some()))?;
-    for (Cell { x, y, .. }, part) in &cells {
-        all.color.paste(&part.color, *x, *y);
-        paste(&mut all.depth, &part.depth, *x, *y);
-        paste(&mut all.item, &part.item, *x, *y);
-        paste(&mut all.normal, &part.normal, *x, *y);
-    }
-    Ok(all)
-}
-
-fn paste<T: Copy>(
-    all: &mut Option<durer::target::Pixels<T>>,
-    part: &Option<durer::target::Pixels<T>>,
-    x: u32,
-    y: u32,
-) {
-    if let (Some(all), Some(part)) = (all, part) {
-        all.paste(part, x, y);
     }
 }
 

@@ -210,7 +210,7 @@ pub struct Report {
 /// rayon pool where the feature `parallel` is on.
 ///
 /// # Errors
-/// What [`RenderOptions::check`] and [`Scene::check`] find.
+/// The errors of [`RenderOptions::check`] and [`Scene::check`].
 pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Report)> {
     let mut framebuffer = Framebuffer::new(0, 0);
     let report = render_into(scene, options, &mut framebuffer)?;

@@ -189,7 +189,7 @@ impl Work {
     /// Returns whether the work shall go on: one load where it shall. For long loops, by the row, tile or thousand steps.
     ///
     /// # Errors
-    /// What [`Self::stop`] was given.
+    /// Reason given to [`Self::stop`].
     #[inline]
     pub fn check(&self) -> Result<()> {
         match &self.0 {

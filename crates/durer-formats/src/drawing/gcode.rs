@@ -24,7 +24,7 @@ const FLAT: f64 = 0.003;
 /// are drawn as outlines, last.
 ///
 /// # Errors
-/// What [`MachineOptions::check`] finds; [`crate::Error::Io`] where writing fails.
+/// The errors of [`MachineOptions::check`]; [`crate::Error::Io`] where writing fails.
 pub fn write(out: &mut impl Write, sheet: &Sheet, machine: &MachineOptions) -> Result<()> {
     machine.check()?;
     let passes = passes(sheet, machine.pens, machine.arcs);

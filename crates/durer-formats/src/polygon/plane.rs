@@ -44,7 +44,7 @@ impl Plane {
     }
 
     /// Returns a point along the normal, on the plane of two axes that the polygon is seen best in.
-    /// What lies in the plane already keeps its coordinates, so that no rounding bends straight
+    /// Points that lie in the plane already keep their coordinates, so that no rounding bends straight
     /// lines.
     pub fn flat(&self, p: DVec3) -> DVec2 {
         let height = (p - self.origin).dot(self.normal);

@@ -109,7 +109,7 @@ pub const EYE: Outcode = Outcode(64);
 /// Clips a convex polygon of world-space points with attributes and takes it to normalized device
 /// coordinates; winding is kept. Returns at least three vertices, or none.
 ///
-/// What [`ClipPlace::PerPixel`] gives is yet to be clipped, by whoever asks for its pixels.
+/// The result of [`ClipPlace::PerPixel`] has yet to be clipped, when its pixels are drawn.
 ///
 /// ```
 /// use durer::clip::outcode::DepthRange;

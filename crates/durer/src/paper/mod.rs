@@ -235,7 +235,7 @@ pub struct LaidOut {
 /// ```
 ///
 /// # Errors
-/// What [`Options::check`] finds; [`Error::Parameter`] for a scale at which the page is too small.
+/// The errors of [`Options::check`]; [`Error::Parameter`] for a scale at which the page is too small.
 pub fn lay_out(drawing: &Drawing, title: &str, options: &Options) -> Result<LaidOut> {
     options.check()?;
     let frame = frame_of(drawing, options.frame);

@@ -27,7 +27,7 @@ const CRUMB: f64 = 4.0;
 /// Makes the visible silhouettes and borders with nothing behind them lines of [`LineClass::Contour`].
 ///
 /// # Errors
-/// What [`Camera::check`] finds.
+/// The errors of [`Camera::check`].
 pub fn contoured(drawing: Drawing, scene: &Scene, camera: &Camera) -> Result<Drawing> {
     let Some(size) = drawing.bounds().map(|b| b.size().max_element()) else { return Ok(drawing) };
     let plane = PicturePlane::of_camera(camera, 1.0)?;

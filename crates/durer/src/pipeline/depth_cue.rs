@@ -28,7 +28,7 @@ const FLAT: f64 = 1e-3;
 /// of all, and divides lines where that changes. Hatching, hidden lines and flat drawings stay as they are.
 ///
 /// # Errors
-/// What [`Camera::check`] finds.
+/// The errors of [`Camera::check`].
 pub fn depth_cued(drawing: Drawing, scene: &Scene, camera: &Camera) -> Result<Drawing> {
     let Some(size) = drawing.bounds().map(|b| b.size().max_element()) else { return Ok(drawing) };
     let vertices = Vertices::new(scene, camera, size * ONE_PLACE)?;

@@ -128,7 +128,7 @@ const REACH: f64 = 5e-4;
 /// The same input gives the same bytes on every CPU and number of threads.
 ///
 /// # Errors
-/// What [`Camera::check`], [`Scene::check`] and the solvers' options find.
+/// The errors of [`Camera::check`], [`Scene::check`] and the solvers' options.
 pub fn draw(scene: &Scene, options: &DrawOptions) -> Result<Drawing> {
     if !(1e-3..=1e3).contains(&options.aspect) {
         return Err(Error::parameter("aspect", options.aspect, "between 1/1000 and 1000"));

@@ -21,7 +21,7 @@ const INSTEAD: &str = "all of the scene has to be held";
 /// own.
 ///
 /// # Errors
-/// What [`RenderOptions::check`] finds, and [`Error::Unsupported`] for what needs the whole scene at once.
+/// The errors of [`RenderOptions::check`], and [`Error::Unsupported`] for what needs the whole scene at once.
 pub fn check_pieces(options: &RenderOptions, have_normals: bool) -> Result<()> {
     options.check()?;
     let smooth = matches!(options.shading, Some(Shading::Gouraud | Shading::Phong));
@@ -52,7 +52,7 @@ pub fn check_pieces(options: &RenderOptions, have_normals: bool) -> Result<()> {
 /// Begins to look for what is seen in a picture.
 ///
 /// # Errors
-/// What [`RenderOptions::check`] finds; [`Error::Memory`] where the budget has no room for the samples.
+/// The errors of [`RenderOptions::check`]; [`Error::Memory`] where the budget has no room for the samples.
 pub fn survey(options: &RenderOptions) -> Result<Survey> {
     options.check()?;
     let view = View::new(options.camera, options.width, options.height)?;

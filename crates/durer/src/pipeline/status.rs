@@ -107,7 +107,7 @@ pub fn status(scene: &Scene, options: &RenderOptions, picture: &Framebuffer) -> 
 /// Cost: O(1), or a pass over all vertices for an empty drawing.
 ///
 /// # Errors
-/// What [`Camera::check`] finds.
+/// The errors of [`Camera::check`].
 pub fn drawing_status(
     scene: &Scene,
     camera: &Camera,

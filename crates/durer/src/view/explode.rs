@@ -53,7 +53,7 @@ const BESIDE: f64 = 1e-6;
 /// own, the last.
 ///
 /// # Errors
-/// What [`Scene::check`] finds; [`Error::Parameter`] for a gap that is not above 0, and for a scene of more than
+/// The errors of [`Scene::check`]; [`Error::Parameter`] for a gap that is not above 0, and for a scene of more than
 /// 4,000 instances, or of fewer than two.
 pub fn explode(scene: &Scene, way: Way, gap: Option<f64>) -> Result<Scene> {
     scene.check()?;

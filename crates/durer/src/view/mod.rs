@@ -40,7 +40,7 @@ impl View {
     /// Creates the view of a camera on a screen of `width × height` square pixels.
     ///
     /// # Errors
-    /// What [`Camera::check`] finds, and [`Error::Parameter`] for a size of zero.
+    /// The errors of [`Camera::check`], and [`Error::Parameter`] for a size of zero.
     pub fn new(camera: Camera, width: u32, height: u32) -> Result<Self> {
         camera.check()?;
         if width == 0 || height == 0 {

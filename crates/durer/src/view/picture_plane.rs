@@ -51,7 +51,7 @@ impl PicturePlane {
     /// window and its sides only.
     ///
     /// # Errors
-    /// What [`Camera::check`] finds.
+    /// The errors of [`Camera::check`].
     pub fn of_camera(camera: &Camera, aspect: f64) -> Result<Self> {
         camera.check()?;
         Ok(Self::seen_by(camera, aspect))

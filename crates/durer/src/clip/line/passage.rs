@@ -184,7 +184,7 @@ pub enum Relation {
 }
 
 impl Relation {
-    /// That of the segment in the other direction where `swapped`.
+    /// Returns the relation of the segment in the other direction if `swapped`.
     fn reversed_if(self, swapped: bool) -> Self {
         match self {
             Self::Entering if swapped => Self::Leaving,

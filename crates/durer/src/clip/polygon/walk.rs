@@ -15,9 +15,9 @@ pub struct Options {}
 /// One of the two cyclic lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Operand {
-    /// That of what is clipped.
+    /// List of the subject.
     Subject,
-    /// That of the window.
+    /// List of the window.
     Clip,
 }
 

@@ -235,7 +235,7 @@ impl Canvas {
     /// Strokes a path: its outline is made in the path's space, so that a transform shapes the pen too.
     ///
     /// # Errors
-    /// What [`wide::outline`] finds wrong with the style.
+    /// The errors of [`wide::outline`] for a wrong style.
     pub fn stroke(
         &mut self,
         path: &Path,

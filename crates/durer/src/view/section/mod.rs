@@ -84,7 +84,7 @@ pub struct Section {
 /// ```
 ///
 /// # Errors
-/// What [`Scene::check`] finds; [`Error::Parameter`] for a plane without a direction.
+/// The errors of [`Scene::check`]; [`Error::Parameter`] for a plane without a direction.
 pub fn cut(scene: &Scene, planes: &[Plane], options: &Options) -> Result<Section> {
     scene.check()?;
     let mut section = Section {

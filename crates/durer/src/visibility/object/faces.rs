@@ -65,7 +65,7 @@ impl Faces {
     /// Returns the faces of a scene; O(n), and O(b log² b) for b borders.
     ///
     /// # Errors
-    /// What [`Scene::check`] finds, [`Error::Parameter`] for a length that is none, and [`Error::Limit`] for more
+    /// The errors of [`Scene::check`], [`Error::Parameter`] for a length that is none, and [`Error::Limit`] for more
     /// than 2³¹ − 1 triangles or vertices.
     pub fn welded(scene: &Scene, how: Weld) -> Result<Self> {
         scene.check()?;

@@ -81,7 +81,7 @@ pub struct Options {
 /// with [`Options::shadows`] the borders of shadows as lines. For hatching see [`hatch::hatch`].
 ///
 /// # Errors
-/// What [`Scene::check`] finds, and [`crate::Error::Limit`] for too many triangles.
+/// The errors of [`Scene::check`], and [`crate::Error::Limit`] for too many triangles.
 pub fn draw(
     scene: &Scene,
     view: &View,

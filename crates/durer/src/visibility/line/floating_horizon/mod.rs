@@ -122,7 +122,7 @@ pub struct Curve {
 /// A line that lies exactly on another in the picture counts as hidden by it.
 ///
 /// # Errors
-/// What [`Camera::check`] finds.
+/// The errors of [`Camera::check`].
 pub fn curves(
     field: &HeightField,
     camera: &Camera,
@@ -169,7 +169,7 @@ pub fn front_to_back(field: &HeightField, camera: &Camera) -> [Vec<usize>; 2] {
 /// ```
 ///
 /// # Errors
-/// What [`Camera::check`] finds; [`Error::NonFinite`] where the projection overflows.
+/// The errors of [`Camera::check`]; [`Error::NonFinite`] where the projection overflows.
 pub fn draw(
     field: &HeightField,
     camera: &Camera,

@@ -157,7 +157,7 @@ pub struct VisibleMap {
 /// ```
 ///
 /// # Errors
-/// What [`Scene::check`] finds, and [`crate::Error::Limit`] for too many triangles.
+/// The errors of [`Scene::check`], and [`crate::Error::Limit`] for too many triangles.
 pub fn solve(
     scene: &Scene,
     view: &View,
