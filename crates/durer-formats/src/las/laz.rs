@@ -3,10 +3,14 @@
 //! Source: M. Isenburg, *LASzip: lossless compression of LiDAR data*, Photogrammetric Engineering and
 //! Remote Sensing 79 (2), 2013.
 
+mod pointwise;
+mod times;
+
 use super::{Header, take};
 use crate::foreign;
 use crate::{Error, Place, Result};
-use laz::{LasZipDecompressor, LazItemType, LazVlr};
+use laz::{DecompressionSelection, LasZipDecompressor, LazItemType, LazVlr};
+use pointwise::Pointwise;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -31,11 +35,12 @@ pub(super) fn points(bytes: &[u8], header: &Header, mut each: impl FnMut(&[u8]))
         let vlr = LazVlr::from_buffer(record).map_err(|e| broken(foreign::laz(&e)))?;
         check(bytes, header, &vlr)?;
         let source = Guard::new(bytes, header.data, &vlr);
+        let compressor = take(record, 0).map(u16::from_le_bytes).unwrap_or_default();
         let mut points =
-            LasZipDecompressor::new(source, vlr).map_err(|e| broken(foreign::laz(&e)))?;
-        points.get_mut().begin();
+            Points::new(source, vlr, compressor).map_err(|e| broken(foreign::laz(&e)))?;
+        points.source().begin();
         let mut point = vec![0; header.length];
-        while read < header.count && points.decompress_one(&mut point).is_ok() {
+        while read < header.count && points.next(&mut point).is_ok() {
             each(&point);
             read += 1;
         }
@@ -45,6 +50,45 @@ pub(super) fn points(bytes: &[u8], header: &Header, mut each: impl FnMut(&[u8]))
         Ok(Err(why)) => Err(why),
         _ => Ok(read),
     }
+}
+
+/// A decompressor: points one by one, or in layers.
+enum Points<'a> {
+    Pointwise(Pointwise<'a, Guard<'a>>),
+    Layered(LasZipDecompressor<'a, Guard<'a>>),
+}
+
+impl<'a> Points<'a> {
+    fn new(source: Guard<'a>, vlr: LazVlr, compressor: u16) -> laz::Result<Self> {
+        if source.layout.is_some() {
+            LasZipDecompressor::selective(source, vlr, selection()).map(Self::Layered)
+        } else {
+            Pointwise::new(source, vlr, compressor).map(Self::Pointwise)
+        }
+    }
+
+    fn source(&mut self) -> &mut Guard<'a> {
+        match self {
+            Self::Pointwise(points) => points.source(),
+            Self::Layered(points) => points.get_mut(),
+        }
+    }
+
+    fn next(&mut self, point: &mut [u8]) -> io::Result<()> {
+        match self {
+            Self::Pointwise(points) => points.next(point),
+            Self::Layered(points) => points.decompress_one(point),
+        }
+    }
+}
+
+/// Returns the layers that points are made of. That of GPS times, whose decompression recurses as deep as a file says, is
+/// not among them.
+fn selection() -> DecompressionSelection {
+    DecompressionSelection::xy_returns_channel()
+        .decompress_z()
+        .decompress_intensity()
+        .decompress_rgb()
 }
 
 /// Returns the data of the variable length record that a program marked so.
@@ -149,7 +193,7 @@ impl<'a> Guard<'a> {
 
     /// Returns the item after these bytes; `None` if layers are longer than the file.
     fn after(&self, next: Next, read: &[u8]) -> Option<Next> {
-        let (point, layers) = self.layout?;
+        let (_, layers) = self.layout?;
         let left = self.bytes.len() - self.at;
         let next = match next {
             Next::Point(more) => Next::Point(more.checked_sub(read.len())?),
@@ -160,12 +204,17 @@ impl<'a> Guard<'a> {
             }
             Next::Layers(more) => Next::Layers(more.checked_sub(read.len())?),
         };
-        Some(match next {
-            Next::Point(0) => Next::Count,
-            Next::Sizes(0, 0) | Next::Layers(0) => Next::Point(point),
-            Next::Sizes(0, sum) => Next::Layers(sum),
-            other => other,
-        })
+        match next {
+            Next::Point(0) => Some(Next::Count),
+            Next::Sizes(0, sum) | Next::Layers(sum) => self.after_layers(sum),
+            other => Some(other),
+        }
+    }
+
+    /// Returns the item that follows if so many bytes of layers are left.
+    fn after_layers(&self, left: usize) -> Option<Next> {
+        let (point, _) = self.layout?;
+        Some(if left == 0 { Next::Point(point) } else { Next::Layers(left) })
     }
 }
 
@@ -197,6 +246,11 @@ impl Seek for Guard<'_> {
             && chunks(self.bytes, start).is_none()
         {
             return Err(io::ErrorKind::NotSeekable.into());
+        }
+        // A layer that is not decompressed is stepped over.
+        if let (Some(Next::Layers(more)), SeekFrom::Current(by)) = (self.next, to) {
+            let left = usize::try_from(by).ok().and_then(|by| more.checked_sub(by));
+            self.next = self.after_layers(left.ok_or(io::ErrorKind::InvalidData)?);
         }
         let at = match to {
             SeekFrom::Start(at) => i64::try_from(at).ok(),

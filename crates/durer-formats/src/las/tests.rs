@@ -42,8 +42,25 @@ fn point(format: u8, place: [i32; 3], intensity: u16, color: [u16; 3]) -> Vec<u8
 }
 
 fn points(format: u8, full: u16) -> Vec<Vec<u8>> {
-    let one = |i: i32| point(format, [i, 2 * i, 3 * i], i as u16, [full, 0, 0]);
+    let one = |i: i32| {
+        let mut bytes = point(format, [i, 2 * i, 3 * i], i as u16, [full, 0, 0]);
+        let at = match format {
+            1 | 3 => 20,
+            6.. => 22,
+            _ => return bytes,
+        };
+        bytes[at..at + 8].copy_from_slice(&time(i).to_le_bytes());
+        bytes
+    };
     (0..1000).map(one).collect()
+}
+
+/// Returns a GPS time of one of four sequences, with equal, large and negative steps.
+fn time(i: i32) -> f64 {
+    let i_squared = i.wrapping_mul(i);
+    let start = [1e5, 2e7, -3.0, 5e9][(i_squared % 7 % 4) as usize];
+    let jump = if i % 11 == 0 { f64::from(i_squared) } else { 0.0 };
+    start + 0.001 * f64::from(i / 4 * 4) - jump
 }
 
 fn las(format: u8, full: u16) -> Vec<u8> {
