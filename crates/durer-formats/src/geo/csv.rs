@@ -355,7 +355,9 @@ fn plain(value: &str) -> String {
 fn row<'a>(out: &mut impl Write, values: impl Iterator<Item = Cow<'a, [u8]>>) -> io::Result<()> {
     for (i, value) in values.enumerate() {
         out.write_all(if i > 0 { b"," } else { b"" })?;
-        if value.iter().any(|b| matches!(b, b',' | b'"' | b'\n' | b'\r')) {
+        // Whatever may separate values, because a reader may count them in the first row.
+        let special = |b: &u8| DELIMITERS.contains(b) || matches!(b, b'"' | b'\n' | b'\r');
+        if value.iter().any(special) {
             let doubled = String::from_utf8_lossy(&value).replace('"', "\"\"");
             write!(out, "\"{doubled}\"")?;
         } else {
