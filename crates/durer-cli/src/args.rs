@@ -3,7 +3,7 @@
 use crate::config::ConfigArgs;
 use crate::info::InfoArgs;
 use crate::pick::PickArgs;
-use crate::render::RenderArgs;
+use crate::render_args::RenderArgs;
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
@@ -29,7 +29,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Render models to pictures (PNG, JPEG, WebP, animations), or draw them as SVG, PDF, DXF, HPGL, G-code or GeoJSON
-    #[command(after_long_help = crate::render::EXAMPLES, after_help = "--help shows more, and examples.")]
+    #[command(after_long_help = crate::render_args::EXAMPLES, after_help = "--help shows more, and examples.")]
     Render(Box<RenderArgs>),
     /// Cut map data to windows, polygons or tiles
     #[command(after_long_help = crate::clip::EXAMPLES, after_help = "--help shows more, and examples.")]

@@ -5,7 +5,7 @@ use crate::encoding::EncodingArgs;
 use crate::failure::{Failure, in_words};
 use crate::kind::{Kind, Wanted};
 use crate::output::{self, Name, Target};
-use crate::render::RenderArgs;
+use crate::render_args::RenderArgs;
 use durer::pipeline::Background;
 use durer::target::Pixels;
 use durer_formats::picture::PictureFormat;

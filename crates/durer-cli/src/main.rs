@@ -31,6 +31,7 @@ mod plot;
 mod progress;
 mod regions;
 mod render;
+mod render_args;
 mod report;
 mod resources;
 mod sandbox;

@@ -1,11 +1,8 @@
 //! `durer render`.
 
-mod args;
 mod cells;
 mod check;
 mod streamed;
-
-pub use args::{EXAMPLES, RenderArgs};
 
 use crate::camera::{self, Shot};
 use crate::compare;
@@ -18,6 +15,7 @@ use crate::kind::Wanted;
 use crate::messages::Messages;
 use crate::options::Samples;
 use crate::output::{self, Name, Target};
+use crate::render_args::RenderArgs;
 use crate::report::noticed::Noticed;
 use crate::report::{Failed, Growing, ModelReport, PictureReport};
 use crate::section;

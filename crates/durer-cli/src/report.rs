@@ -1,5 +1,6 @@
 //! The report of `durer render --json`.
 
+pub mod drawing;
 mod growing;
 pub mod noticed;
 
@@ -38,7 +39,7 @@ pub struct PictureReport {
     pub triangles: Triangles,
     /// Report on the drawing, if it is one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub drawing: Option<crate::drawing::report::DrawingReport>,
+    pub drawing: Option<drawing::DrawingReport>,
     /// Seconds for vertices, clipping and set-up.
     pub geometry_seconds: f64,
     /// Seconds for rasterization, shading and resolve.

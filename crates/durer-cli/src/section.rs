@@ -43,22 +43,10 @@ pub struct SectionPlane {
 
 fn section(text: &str) -> Result<SectionPlane, String> {
     let (letter, text) = match text.split_once(':') {
-        Some((name, rest)) => (Some(letter(name)?), rest),
+        Some((name, rest)) => (Some(values::letter(name)?), rest),
         None => (None, text),
     };
     Ok(SectionPlane { letter, plane: plane(text)? })
-}
-
-/// The longest name of a section or a detail.
-const MOST_LETTERS: usize = 3;
-
-/// Returns the name of a section or a detail: a letter, or a few with figures.
-pub fn letter(text: &str) -> Result<String, String> {
-    let right = text.chars().count() <= MOST_LETTERS
-        && text.starts_with(char::is_alphabetic)
-        && text.chars().all(char::is_alphanumeric);
-    let wrong = || format!("`{text}` is no letter, as in A or B1, to stand before the colon");
-    if right { Ok(text.to_owned()) } else { Err(wrong()) }
 }
 
 fn plane(text: &str) -> Result<Plane, String> {

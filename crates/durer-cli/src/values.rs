@@ -188,6 +188,18 @@ pub fn direction(text: &str) -> Result<DVec3, String> {
         .ok_or_else(|| "a direction needs a component other than 0".to_owned())
 }
 
+/// The longest name of a section or a detail.
+const MOST_LETTERS: usize = 3;
+
+/// Returns the name of a section or a detail: a letter, or a few with figures.
+pub fn letter(text: &str) -> Result<String, String> {
+    let right = text.chars().count() <= MOST_LETTERS
+        && text.starts_with(char::is_alphabetic)
+        && text.chars().all(char::is_alphanumeric);
+    let wrong = || format!("`{text}` is no letter, as in A or B1, to stand before the colon");
+    if right { Ok(text.to_owned()) } else { Err(wrong()) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

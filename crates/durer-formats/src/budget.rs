@@ -5,6 +5,9 @@ use crate::{Error, Limits, Place, Result};
 /// Stage of a model's meshes in errors about memory.
 pub(crate) const MODEL: &str = "meshes of the model";
 
+/// Stage of pictures in errors about memory.
+pub(crate) const DECODED: &str = "decoded pictures";
+
 /// Amounts that may still be made of a file.
 pub(crate) struct Budget {
     limits: Limits,

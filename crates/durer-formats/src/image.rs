@@ -16,12 +16,10 @@ pub use orientation::Orientation;
 pub use png::{DeepImage, bits_per_sample, decode_deep};
 pub(crate) use png::{check_png_holds, is_grey};
 
+use crate::budget::DECODED;
 use crate::told::shown;
 use crate::{Error, Limits, Place, Result};
 use durer::scene::Image;
-
-/// Stage of pictures in errors about memory.
-pub(crate) const DECODED: &str = "decoded pictures";
 
 /// Width, height and pixels.
 type Picture = (u32, u32, Vec<[u8; 4]>);

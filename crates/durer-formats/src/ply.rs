@@ -15,6 +15,7 @@
 //! texture coordinates or colors of faces at most 10 times a binary file.
 
 mod body;
+mod bounds;
 mod build;
 mod faces;
 mod finish;

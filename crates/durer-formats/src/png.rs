@@ -3,8 +3,8 @@
 //! All writers take row 0 as the top row, write no time stamp and give the same bytes for the same
 //! pixels. Memory: one row, and what the compressor keeps (some 100 kB); cost: one pass.
 
+use crate::budget::DECODED;
 use crate::foreign;
-use crate::image::DECODED;
 use crate::{Error, Limits, Result};
 use durer::target::{NO_ITEM, Pixels};
 use png::{BitDepth, ColorType, Encoder, EncodingError, Filter, SrgbRenderingIntent};

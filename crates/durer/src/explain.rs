@@ -21,7 +21,7 @@ pub const ALGORITHMS: &[&Info] = &[
     &clip::line::nicholl_lee_nicholl::INFO,
     &clip::line::homogeneous::INFO,
     &clip::line::batch::INFO,
-    &clip::line::polyline::INFO,
+    &clip::polyline::INFO,
     &clip::polygon::sutherland_hodgman::INFO,
     &clip::polygon::liang_barsky::INFO,
     &clip::polygon::weiler_atherton::INFO,

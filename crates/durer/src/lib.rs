@@ -56,7 +56,7 @@
 //! | [Nicholl–Lee–Nicholl](clip::line::nicholl_lee_nicholl) | rectangle | no crossing computed in vain |
 //! | [Homogeneous](clip::line::homogeneous) | rectangle | points with a w of any sign |
 //! | [Batches](clip::line::batch) | rectangle | millions of segments |
-//! | [Polylines](clip::line::polyline) | polygon with holes | chains with attributes, inside or outside part |
+//! | [Polylines](clip::polyline) | polygon with holes | chains with attributes, inside or outside part |
 //!
 //! **Which part of a polygon?** [`clip::polygon`]
 //!

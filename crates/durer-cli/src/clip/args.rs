@@ -1,10 +1,10 @@
 //! The options of `durer clip`.
 
 use super::window::{Window, region};
-use crate::layer::{FieldArgs, SystemArgs};
-use crate::options::RunningArgs;
+use crate::layer::{FieldArgs, SystemArgs, format};
+use crate::options::{RunningArgs, TileCoordinates};
 use crate::values;
-use clap::{Args, ValueEnum, ValueHint};
+use clap::{Args, ValueHint};
 use durer::clip::mask::Algorithm;
 use durer::clip::polygon::{BooleanOp, FillRule};
 use durer_formats::geo::GeoFormat;
@@ -134,21 +134,6 @@ pub struct CuttingArgs {
     /// cross, correctly rounded. With it, and by `vatti` always, all vertices of polygons are snapped. Powers of two are best.
     #[arg(long, value_name = "SIZE", allow_hyphen_values = true, value_parser = values::positive)]
     pub grid: Option<f64>,
-}
-
-/// `--tile-coordinates`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum TileCoordinates {
-    /// Longitude and latitude in degrees
-    Lonlat,
-    /// Web Mercator (EPSG:3857), in metres
-    Mercator,
-}
-
-pub fn format(text: &str) -> Result<GeoFormat, String> {
-    let found = GeoFormat::ALL.into_iter().find(|f| f.name() == text);
-    found
-        .ok_or_else(|| format!("it must be one of {}", GeoFormat::ALL.map(|f| f.name()).join(", ")))
 }
 
 fn names() -> String {

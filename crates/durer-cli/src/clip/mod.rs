@@ -5,11 +5,10 @@ mod cells;
 mod mask;
 mod report;
 mod srids;
-mod tiles;
 mod tiling;
 mod window;
 
-pub use args::{ClipArgs, EXAMPLES, TileCoordinates, format};
+pub use args::{ClipArgs, EXAMPLES};
 pub use report::Counts;
 pub use window::window;
 
@@ -19,7 +18,6 @@ use crate::layer::{self, Fields, Shift, Sink, Source, failure, named_format, wor
 use crate::messages::Messages;
 use crate::places::is_stream;
 use durer::clip::mask::{Algorithm, Area, Cutter, Made, Mask, Rules};
-use durer::clip::polygon::validity::{self, Touching};
 use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes};
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, System, Writer};
 use rayon::prelude::*;
@@ -162,19 +160,6 @@ fn check(args: &ClipArgs) -> Result<(), Failure> {
 fn rules(args: &ClipArgs, feature: &Feature) -> Rules {
     let fill = args.cutting.fill_rule.unwrap_or(feature.fill_rule);
     Rules { fill, grid: args.cutting.grid }
-}
-
-/// Returns whether no polygons of a geometry cross, pinch or overlap themselves or one another.
-pub fn is_valid(geometry: &Geometry) -> bool {
-    let area = Area::of_geometry(geometry);
-    area.shapes.is_empty() || validity::is_valid(&area.shapes, Touching::AtPoints)
-}
-
-/// Returns the union of polygons that are valid, each for itself, with outer rings
-/// counter-clockwise.
-pub fn joined(area: &Area) -> durer::Result<Area> {
-    let rules = Rules { fill: FillRule::Positive, grid: None };
-    Ok(rules.overlay(area, &Shapes::new(), BooleanOp::Union, FillRule::Positive)?.area)
 }
 
 /// Returns the format of the result; of tiles always GeoJSON.

@@ -1,22 +1,20 @@
 //! `durer clip --tiles`: to a file per tile, or to a sequence of features.
 
 use super::report::Counts;
-use super::tiles::{self, Reach, Subject};
 use super::{Job, rules};
 use crate::failure::Failure;
 use crate::layer::failure;
 use crate::places::is_stream;
 use crate::tiles::{BrokenOff, Stopped};
-use durer::clip::tiles::Tile;
+use durer::clip::tiles::{Reach, Subject, Tile, Tiling};
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Writer};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
-use std::sync::atomic::Ordering;
 
 impl Job<'_> {
     /// Each feature to the tiles that it touches.
     pub fn tile(&mut self, zoom: u8) -> Result<(), Failure> {
-        let tiling = tiles::Job::new(zoom, self.args.region.tile_coordinates);
+        let tiling = Tiling::new(zoom, self.args.region.tile_coordinates.into());
         if self.to == GeoFormat::GeoJson && !is_stream(&self.args.output) {
             return self.tile_files(&tiling);
         }
@@ -27,7 +25,7 @@ impl Job<'_> {
     }
 
     /// Feature after feature, each tile after tile.
-    fn tile_sequence(&mut self, tiling: &tiles::Job) -> Result<(), Failure> {
+    fn tile_sequence(&mut self, tiling: &Tiling) -> Result<(), Failure> {
         let (mut writer, mut seen) = (None, BTreeSet::new());
         let limit = self.args.region.max_tiles;
         let mut first = 0;
@@ -51,8 +49,8 @@ impl Job<'_> {
             let cuts: Vec<_> = subjects.par_iter().map(of_one).collect();
             for (subject, pieces) in subjects.iter().zip(cuts) {
                 let pieces = pieces.map_err(|stopped| self.of_tiling(tiling, stopped))?;
-                self.report.repaired += u64::from(subject.repaired.load(Ordering::Relaxed));
-                let feature = &features[subject.index - first];
+                self.report.repaired += u64::from(subject.is_repaired());
+                let feature = &features[subject.index() - first];
                 let own = feature.members.iter().any(|member| member.name == TILE);
                 self.report.replaced += u64::from(own && !pieces.is_empty());
                 for (tile, geometry) in pieces {
@@ -68,7 +66,7 @@ impl Job<'_> {
     }
 
     /// Tile after tile, each in its file, `z/x/y.geojson`.
-    fn tile_files(&mut self, tiling: &tiles::Job) -> Result<(), Failure> {
+    fn tile_files(&mut self, tiling: &Tiling) -> Result<(), Failure> {
         let mut features = Vec::new();
         loop {
             let batch = self.batch()?;
@@ -105,7 +103,7 @@ impl Job<'_> {
         let done = done.map_err(|stopped| self.of_tiling(tiling, stopped));
         self.report.broken_off =
             done.as_ref().err().map(|failure| BrokenOff::new(failure, &written, suffix));
-        let repaired = |subject: &&Subject<'_>| subject.repaired.load(Ordering::Relaxed);
+        let repaired = |subject: &&Subject<'_>| subject.is_repaired();
         self.report.repaired += subjects.iter().filter(repaired).count() as u64;
         self.report.out.join(&out);
         self.report.tiles = Some(written.len() as u64);
@@ -115,7 +113,7 @@ impl Job<'_> {
     /// Returns the features that lie in tiles; takes note of those that do not.
     fn subjects<'a>(
         &mut self,
-        tiling: &'a tiles::Job,
+        tiling: &'a Tiling,
         features: &'a [Feature],
         first: usize,
     ) -> Vec<Subject<'a>> {
@@ -132,11 +130,11 @@ impl Job<'_> {
         subjects
     }
 
-    fn of_tiling(&self, tiling: &tiles::Job, stopped: Stopped) -> Failure {
-        match (stopped, tiling.failed.load(Ordering::Relaxed)) {
+    fn of_tiling(&self, tiling: &Tiling, stopped: Stopped) -> Failure {
+        match (stopped, tiling.failed()) {
             (Stopped::Written(failure), _) => failure,
-            (Stopped::Cut(error), usize::MAX) => self.fail(error),
-            (Stopped::Cut(error), index) => self.of_feature(index as u64, &error),
+            (Stopped::Cut(error), None) => self.fail(error),
+            (Stopped::Cut(error), Some(index)) => self.of_feature(index as u64, &error),
         }
     }
 }

@@ -45,7 +45,7 @@ pub struct DrawArgs {
     #[command(flatten)]
     pub fonts: FontArgs,
     /// The format of the map layers [default: by their content, then by their suffix]
-    #[arg(long, value_name = "FORMAT", value_parser = crate::clip::format, help_heading = "Reading")]
+    #[arg(long, value_name = "FORMAT", value_parser = crate::layer::format, help_heading = "Reading")]
     pub from: Option<GeoFormat>,
     /// Refuse files of more bytes; k, M, G are understood
     #[arg(long, value_name = "BYTES", allow_hyphen_values = true, default_value = "4G", value_parser = values::bytes, help_heading = "Reading")]

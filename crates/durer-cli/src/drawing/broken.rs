@@ -3,7 +3,7 @@
 use super::sheet::Shot;
 use crate::failure::Failure;
 use crate::kind::Kind;
-use crate::render::RenderArgs;
+use crate::render_args::RenderArgs;
 use durer::paper::Breaks;
 use durer::scene::{Camera, Projection, Scene};
 use durer_formats::drawing::DrawingFormat;

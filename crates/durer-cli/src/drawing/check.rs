@@ -1,10 +1,10 @@
 //! Refuses options that a drawing cannot follow, before anything is read.
 
-use super::args::{Fill, Hatch, NAMES, OF_ANNOTATIONS};
 use super::{background, broken, hatch, is_wanted, sheet, tones};
 use crate::failure::Failure;
 use crate::kind::Kind;
-use crate::render::RenderArgs;
+use crate::options::drawing::{Fill, Hatch, NAMES, OF_ANNOTATIONS};
+use crate::render_args::RenderArgs;
 use durer::pipeline::DrawStyle;
 use durer_formats::drawing::DrawingFormat;
 

@@ -1,12 +1,12 @@
 //! The layout of drawings on paper: units, scale, page and margins.
 
-use super::args::Unit;
 use super::callouts::Callouts;
 use super::{Shown, Subject, background, curve_fit, is_trapped};
 use crate::failure::Failure;
 use crate::kind::Kind;
 use crate::options::Ortho;
-use crate::render::RenderArgs;
+use crate::options::drawing::Unit;
+use crate::render_args::RenderArgs;
 use crate::values::Size;
 use durer::paper::{self, Contents, Frame, LaidOut, Page, Scale, SheetView, TitleBlock};
 use durer::target::drawing::Drawing;

@@ -1,13 +1,10 @@
 //! `durer render` to drawings: vector files, and pictures painted from drawings.
 
 pub mod annotations;
-pub mod args;
 mod broken;
 mod callouts;
 mod check;
 mod layout;
-pub mod machine;
-pub mod report;
 mod sheet;
 mod tones;
 
@@ -15,15 +12,16 @@ use crate::camera;
 use crate::failure::Failure;
 use crate::film::Sink;
 use crate::kind::Kind;
+use crate::options::drawing::{Crease, Fill, Hatch, Hidden, Merge, Smooth};
 use crate::options::{Ortho, ViewArgs};
 use crate::output;
-use crate::render::RenderArgs;
+use crate::render_args::RenderArgs;
+use crate::report::drawing::{DrawingReport, FeatureReport};
 use crate::report::{CameraReport, PictureReport};
 use crate::shape;
 use crate::values::Size;
 pub use annotations::Annotated;
-use annotations::{FeatureReport, Look};
-use args::{Crease, Fill, Hatch, Hidden, Merge, Smooth};
+use annotations::Look;
 use callouts::Callouts;
 pub use check::check;
 use durer::math::{DVec2, Vec4};
@@ -36,7 +34,6 @@ use durer::view::components::Component;
 use durer::visibility::line::hidden_line;
 use durer_formats::drawing::{DrawingFormat, DxfStrokes, FileOptions};
 use layout::{lay_out, told_scale, unit};
-use report::DrawingReport;
 use sheet::Shot;
 use std::time::Instant;
 

@@ -1,10 +1,10 @@
 //! The views of `--sheet`: principal ones, sections, details.
 
 use super::Shown;
-use super::args::DetailSpec;
 use crate::failure::Failure;
 use crate::kind::Kind;
-use crate::render::RenderArgs;
+use crate::options::drawing::DetailSpec;
+use crate::render_args::RenderArgs;
 use durer::math::{DVec3, Plane};
 use durer::paper::{Detail, ViewKind};
 use durer::scene::{Camera, Projection, Scene, UpAxis};

@@ -1,9 +1,9 @@
 //! `--hatch contour` and `--hatch stipple`: marks between the lines of a drawing.
 
-use super::args::Hatch;
 use super::{CONTOUR_SPACING, usage};
 use crate::failure::Failure;
-use crate::render::RenderArgs;
+use crate::options::drawing::Hatch;
+use crate::render_args::RenderArgs;
 use durer::paper::ViewBreaks;
 use durer::pipeline::{self, DrawOptions, DrawStyle, ToneMarks};
 use durer::scene::Scene;

@@ -1,9 +1,9 @@
 //! The report of `durer info` on map data.
 
 use super::{Source, open, words};
-use crate::clip::is_valid;
 use crate::failure::Failure;
 use crate::input::display_name;
+use durer::clip::mask::is_valid;
 use durer::math::Rect;
 use durer::work::Work;
 use durer_formats::geo::crs::Crs;

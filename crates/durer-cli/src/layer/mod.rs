@@ -108,3 +108,10 @@ pub fn words(error: &durer_formats::Error) -> String {
         other => other.to_string(),
     }
 }
+
+/// Reads the name of a format.
+pub fn format(text: &str) -> Result<GeoFormat, String> {
+    let found = GeoFormat::ALL.into_iter().find(|f| f.name() == text);
+    found
+        .ok_or_else(|| format!("it must be one of {}", GeoFormat::ALL.map(|f| f.name()).join(", ")))
+}

@@ -1,6 +1,7 @@
 //! Options that name one of a few things, and what the library calls it.
 
 use clap::ValueEnum;
+use durer::clip::tiles;
 use durer::pipeline;
 use durer::scene;
 
@@ -154,6 +155,24 @@ impl From<UpAxis> for scene::UpAxis {
             UpAxis::NegY => Self::NegY,
             UpAxis::NegZ => Self::NegZ,
             UpAxis::NegX => Self::NegX,
+        }
+    }
+}
+
+/// `--tile-coordinates` and `--coordinates`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TileCoordinates {
+    /// Longitude and latitude in degrees
+    Lonlat,
+    /// Web Mercator (EPSG:3857), in metres
+    Mercator,
+}
+
+impl From<TileCoordinates> for tiles::Coordinates {
+    fn from(coordinates: TileCoordinates) -> Self {
+        match coordinates {
+            TileCoordinates::Lonlat => Self::LonLat,
+            TileCoordinates::Mercator => Self::Mercator,
         }
     }
 }

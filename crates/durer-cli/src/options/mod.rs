@@ -1,6 +1,7 @@
 //! Groups of options that several subcommands share.
 
 mod choices;
+pub mod drawing;
 mod look;
 mod picture;
 mod planes;
@@ -8,7 +9,7 @@ mod reading;
 mod running;
 mod view;
 
-pub use choices::{Cull, Samples, Shading, Shadows, ToneMap, UpAxis};
+pub use choices::{Cull, Samples, Shading, Shadows, TileCoordinates, ToneMap, UpAxis};
 pub use look::{Environment, LookArgs};
 pub use picture::PictureArgs;
 pub use planes::PlaneArgs;

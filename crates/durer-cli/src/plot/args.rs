@@ -1,9 +1,9 @@
 //! The options of `durer plot`.
 
 use crate::color;
-use crate::drawing::machine::MachineArgs;
 use crate::encoding::EncodingArgs;
 use crate::options::RunningArgs;
+use crate::options::drawing::MachineArgs;
 use crate::sides::{Sides, sides};
 use crate::values::{self, Size};
 use clap::{Args, ValueEnum, ValueHint};

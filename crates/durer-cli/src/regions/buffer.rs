@@ -1,13 +1,11 @@
 //! `durer buffer`.
 
 use super::{FilesArgs, Job};
-use crate::clip::joined;
 use crate::failure::Failure;
 use crate::values;
 use clap::{Args, ValueEnum};
 use durer::clip::mask::Area;
 use durer::clip::polygon::{FillRule, Shapes};
-use durer::math::DVec2;
 use durer::raster::line::wide::buffer::{self, Options};
 use durer::raster::line::wide::{Cap, Join};
 use durer_formats::geo::crs::Crs;
@@ -102,8 +100,9 @@ pub fn run(args: &BufferArgs) -> Result<(), Failure> {
         let message = "coordinates are degrees, and so is the distance; durer clip --to-crs brings them to metres";
         job.report.warnings.push(message.to_owned());
     }
-    let one =
-        |feature: &Feature, geometry: &Geometry| buffer(geometry, feature.fill_rule, &options);
+    let one = |feature: &Feature, geometry: &Geometry| {
+        buffer::of_geometry(geometry, feature.fill_rule, &options)
+    };
     if !args.dissolve {
         let geometry = |f: &Feature, g: &Geometry| Ok((Area::flat(one(f, g)?).into_geometry(), ()));
         return job.each(geometry, |_, feature, _, ()| feature.fill_rule = FillRule::EvenOdd);
@@ -120,44 +119,11 @@ pub fn run(args: &BufferArgs) -> Result<(), Failure> {
             all.append(&made.map_err(|e| job.fail(format!("feature {number}: {e}")))?);
         }
     }
-    let whole = joined(&Area::flat(all)).map_err(|e| job.fail(e))?;
+    let whole = Area::flat(all).union().map_err(|e| job.fail(e))?;
     let given = job.report.given.features;
     if whole.shapes.is_empty() && given > 0 {
         job.report.warnings.push(format!("nothing is left of {given} features"));
     }
     let features = whole.into_geometry().map(Feature::of_geometry).into_iter().collect();
     job.write(features)
-}
-
-/// Returns the polygons within a distance of all parts of a geometry.
-fn buffer(geometry: &Geometry, rule: FillRule, options: &Options) -> durer::Result<Shapes> {
-    let mut lines: Vec<Vec<DVec2>> = Vec::new();
-    chains(geometry, &mut lines);
-    let area = Area::of_geometry(geometry);
-    let around = match lines.is_empty() {
-        true => Shapes::new(),
-        false => buffer::of_lines(lines.iter().map(|line| &line[..]), options)?,
-    };
-    if area.shapes.is_empty() {
-        return Ok(around);
-    }
-    let mut all = buffer::of_polygons(&area.shapes, rule, options)?;
-    if around.is_empty() {
-        return Ok(all);
-    }
-    all.append(&around);
-    Ok(joined(&Area::flat(all))?.shapes)
-}
-
-/// The lines of a geometry, and its points as lines of one point.
-fn chains(geometry: &Geometry, out: &mut Vec<Vec<DVec2>>) {
-    match geometry {
-        Geometry::Point(points) | Geometry::MultiPoint(points) => {
-            out.extend(points.xy.iter().map(|p| vec![*p]));
-        }
-        Geometry::LineString(line) => out.push(line.xy.clone()),
-        Geometry::MultiLineString(lines) => out.extend(lines.iter().map(|line| line.xy.clone())),
-        Geometry::Collection(parts) => parts.iter().for_each(|part| chains(part, out)),
-        Geometry::Polygon(_) | Geometry::MultiPolygon(_) => {}
-    }
 }

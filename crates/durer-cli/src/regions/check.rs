@@ -37,7 +37,7 @@ pub struct CheckArgs {
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     pub input: PathBuf,
     /// The format of IN [default: by its content, then by its suffix]
-    #[arg(long, value_name = "FORMAT", value_parser = crate::clip::format)]
+    #[arg(long, value_name = "FORMAT", value_parser = crate::layer::format)]
     pub from: Option<GeoFormat>,
     /// Also look at features side by side: overlaps, and points that one neighbour has and the other has not
     #[arg(long)]

@@ -1,12 +1,12 @@
 //! `durer dissolve`.
 
 use super::{FilesArgs, Job};
-use crate::clip::{MIXED, joined};
+use crate::clip::MIXED;
 use crate::failure::Failure;
 use crate::layer;
 use clap::Args;
-use durer::clip::mask::{Area, Rules};
-use durer_formats::geo::{Feature, Geometry, Member, Points};
+use durer::clip::mask::{Rules, Union};
+use durer_formats::geo::{Feature, Member};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -39,9 +39,7 @@ struct Group {
     /// The values of its fields, `null` where there is none.
     fields: Vec<Member>,
     count: u64,
-    area: Area,
-    lines: Vec<Points>,
-    points: Points,
+    union: Union,
     srid: Option<i32>,
 }
 
@@ -76,11 +74,8 @@ pub fn run(args: &DissolveArgs) -> Result<(), Failure> {
             group.count += 1;
             let repaired = made.as_ref().is_some_and(|made| made.repaired);
             *job.report.repaired.get_or_insert(0) += u64::from(repaired);
-            if let Some(made) = made {
-                mixed |= group.area.append(&made.area);
-            }
-            if let Some(geometry) = &feature.geometry {
-                mixed |= group.add(geometry);
+            if let (Some(geometry), Some(made)) = (&feature.geometry, made) {
+                mixed |= group.union.add(geometry, &made.area);
             }
         }
     }
@@ -107,39 +102,8 @@ fn value(own: &[Member], name: &str) -> Member {
 }
 
 impl Group {
-    /// Adds the lines and points of a geometry; returns whether these points have other ordinates.
-    fn add(&mut self, geometry: &Geometry) -> bool {
-        match geometry {
-            Geometry::Point(points) | Geometry::MultiPoint(points) => {
-                let (dimensions, first) = (self.points.dimensions, self.points.is_empty());
-                self.points.append(points);
-                return !first && points.dimensions != dimensions;
-            }
-            Geometry::LineString(line) => self.lines.push(line.clone()),
-            Geometry::MultiLineString(lines) => self.lines.extend(lines.iter().cloned()),
-            Geometry::Collection(parts) => {
-                return parts.iter().fold(false, |mixed, part| self.add(part) | mixed);
-            }
-            Geometry::Polygon(_) | Geometry::MultiPolygon(_) => {}
-        }
-        false
-    }
-
     fn into_feature(mut self) -> durer::Result<Feature> {
-        let area = joined(&self.area)?.into_geometry();
-        let lines = match self.lines.len() {
-            0 => None,
-            1 => self.lines.pop().map(Geometry::LineString),
-            _ => Some(Geometry::MultiLineString(self.lines)),
-        };
-        let points = match self.points.len() {
-            0 => None,
-            1 => Some(Geometry::Point(self.points)),
-            _ => Some(Geometry::MultiPoint(self.points)),
-        };
-        let mut parts: Vec<Geometry> = [area, lines, points].into_iter().flatten().collect();
-        let geometry =
-            if parts.len() > 1 { Some(Geometry::Collection(parts)) } else { parts.pop() };
+        let geometry = self.union.finish()?;
         let mut feature = Feature { geometry, srid: self.srid, ..Feature::default() };
         self.fields.push(Member::new("count", self.count.to_string()));
         feature.set_fields(&self.fields);

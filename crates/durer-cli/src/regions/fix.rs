@@ -3,10 +3,8 @@
 use super::{BATCH, FilesArgs, Job, Report};
 use crate::failure::Failure;
 use clap::Args;
-use durer::clip::mask::{Area, Rules};
-use durer::clip::polygon::coverage::matched;
-use durer::clip::polygon::validity::{Touching, is_valid};
-use durer::clip::polygon::{FillRule, Shapes};
+use durer::clip::mask::{Rules, match_points};
+use durer::clip::polygon::FillRule;
 use durer_formats::geo::{Feature, Geometry};
 use rayon::prelude::*;
 
@@ -58,9 +56,8 @@ fn made(
     geometry: &Geometry,
 ) -> durer::Result<(Option<Geometry>, bool)> {
     let fill = args.rule.unwrap_or(feature.fill_rule);
-    let mut changed = false;
-    let geometry = fixed(geometry, &Rules { fill, grid: None }, &mut changed)?;
-    Ok((geometry, changed))
+    let fixed = Rules { fill, grid: None }.fix(geometry)?;
+    Ok((fixed.geometry, fixed.changed))
 }
 
 /// Takes note of a feature that is valid now.
@@ -109,21 +106,9 @@ fn match_all(mut job: Job<'_>, args: &FixArgs) -> Result<(), Failure> {
 
 /// Gives polygons the points that neighbours have on their borders; returns how many features got some.
 fn with_matched_points(features: &mut [Feature]) -> usize {
-    let area = |feature: &Feature| match &feature.geometry {
-        Some(geometry @ (Geometry::Polygon(_) | Geometry::MultiPolygon(_))) => {
-            Area::of_geometry(geometry)
-        }
-        _ => Area::default(),
-    };
-    let areas: Vec<Area> = features.iter().map(area).collect();
-    let shapes: Vec<Shapes> = areas.iter().map(|area| area.shapes.clone()).collect();
-    let mut count = 0;
-    for ((feature, area), found) in features.iter_mut().zip(areas).zip(matched(&shapes)) {
-        if let Some(found) = found {
-            feature.geometry = area.cut(found.shapes, &found.sources).into_geometry();
-            count += 1;
-        }
-    }
+    let mut geometries: Vec<_> = features.iter_mut().map(|f| f.geometry.take()).collect();
+    let count = match_points(&mut geometries);
+    features.iter_mut().zip(geometries).for_each(|(feature, g)| feature.geometry = g);
     count
 }
 
@@ -132,31 +117,4 @@ pub fn told(repaired: u64) -> String {
     format!(
         "{repaired} features are not valid; they were made so by the even-odd rule, as durer fix does"
     )
-}
-
-/// Returns the geometry with valid polygons; `None` where nothing of it is left.
-fn fixed(
-    geometry: &Geometry,
-    rules: &Rules,
-    changed: &mut bool,
-) -> durer::Result<Option<Geometry>> {
-    match geometry {
-        Geometry::Polygon(_) | Geometry::MultiPolygon(_) => {
-            let area = Area::of_geometry(geometry);
-            let plain = rules.fill == FillRule::EvenOdd;
-            if plain && is_valid(&area.shapes, Touching::AtPoints) {
-                return Ok(Some(geometry.clone()));
-            }
-            let made = rules.clean(geometry)?;
-            *changed |= !is_valid(&area.shapes, Touching::AtPoints);
-            Ok(made.area.into_geometry())
-        }
-        Geometry::Collection(parts) => {
-            let parts = parts.iter().map(|part| fixed(part, rules, changed));
-            let parts: durer::Result<Vec<Option<Geometry>>> = parts.collect();
-            let parts: Vec<Geometry> = parts?.into_iter().flatten().collect();
-            Ok((!parts.is_empty()).then_some(Geometry::Collection(parts)))
-        }
-        other => Ok(Some(other.clone())),
-    }
 }

@@ -38,10 +38,10 @@ pub struct FilesArgs {
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath)]
     pub output: PathBuf,
     /// The format of IN [default: by its content, then by its suffix]
-    #[arg(long, value_name = "FORMAT", value_parser = crate::clip::format, help_heading = "Formats")]
+    #[arg(long, value_name = "FORMAT", value_parser = crate::layer::format, help_heading = "Formats")]
     pub from: Option<GeoFormat>,
     /// The format of OUT [default: by its suffix]
-    #[arg(long, visible_alias = "format", value_name = "FORMAT", value_parser = crate::clip::format, help_heading = "Formats")]
+    #[arg(long, visible_alias = "format", value_name = "FORMAT", value_parser = crate::layer::format, help_heading = "Formats")]
     pub to: Option<GeoFormat>,
     /// Features to keep.
     #[command(flatten)]

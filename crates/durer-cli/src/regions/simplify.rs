@@ -4,12 +4,9 @@ use super::{FilesArgs, Job};
 use crate::failure::Failure;
 use crate::values;
 use clap::{ArgGroup, Args};
-use durer::clip::polygon::signed_area;
-use durer::clip::simplify::coverage::Options;
-use durer::clip::simplify::{Coverage, LineSimplifier, tolerance_for_share};
-use durer::trace::NoTrace;
-use durer_formats::geo::{Feature, Geometry, Points};
-use serde::Serialize;
+use durer::clip::simplify::{self, Amount, Dropped, LineSimplifier};
+use durer_formats::geo::{Feature, Geometry};
+use serde::{Serialize, Serializer};
 
 pub const EXAMPLES: &str = "\
 Examples:
@@ -65,6 +62,7 @@ pub struct Simplified {
     /// Tolerance for all features together.
     #[serde(skip_serializing_if = "Option::is_none")]
     tolerance: Option<f64>,
+    #[serde(serialize_with = "of_dropped")]
     dropped: Dropped,
 }
 
@@ -113,107 +111,11 @@ pub fn run(args: &SimplifyArgs) -> Result<(), Failure> {
 
 /// Simplifies geometries together; returns the tolerance.
 fn simplify(geometries: &mut [&mut Geometry], args: &SimplifyArgs) -> durer::Result<f64> {
-    let mut coverage = Coverage::default();
-    for geometry in geometries.iter_mut() {
-        chains(geometry, &mut |points, closed| {
-            let xy = points.xy.iter().copied();
-            if closed { coverage.push_ring(xy) } else { coverage.push_line(xy) }
-        });
-    }
-    let limit = args.tolerance.unwrap_or(f64::INFINITY);
-    let options = Options { method: args.method, limit };
-    let weights = coverage.weights(&options, &mut NoTrace)?;
-    let tolerance = match args.keep {
-        Some(share) => tolerance_for_share(&weights, share),
-        None => limit,
-    };
-    let mut weights = weights.into_iter();
-    let mut thin = |points: &mut Points, _: bool| {
-        let mut left = Points::new(points.dimensions);
-        for (i, weight) in (0..points.len()).zip(weights.by_ref()) {
-            if weight > tolerance {
-                left.push(points.xy[i], points.zm(i));
-            }
-        }
-        *points = left;
-    };
-    geometries.iter_mut().for_each(|geometry| chains(geometry, &mut thin));
-    Ok(tolerance.max(0.0))
+    let tolerance = Amount::Tolerance(args.tolerance.unwrap_or(f64::INFINITY));
+    simplify::simplify(geometries, args.method, args.keep.map_or(tolerance, Amount::Keep))
 }
 
-/// Calls for each line and ring, and says which it is.
-fn chains(geometry: &mut Geometry, f: &mut dyn FnMut(&mut Points, bool)) {
-    match geometry {
-        Geometry::Point(_) | Geometry::MultiPoint(_) => {}
-        Geometry::LineString(line) => f(line, false),
-        Geometry::MultiLineString(lines) => lines.iter_mut().for_each(|line| f(line, false)),
-        Geometry::Polygon(rings) => rings.iter_mut().for_each(|ring| f(ring, true)),
-        Geometry::MultiPolygon(polygons) => {
-            polygons.iter_mut().flatten().for_each(|ring| f(ring, true));
-        }
-        Geometry::Collection(parts) => parts.iter_mut().for_each(|part| chains(part, f)),
-    }
-}
-
-/// Runs of points that are left out.
-#[derive(Debug, Default, Clone, Copy, Serialize)]
-struct Dropped {
-    /// Rings that enclose less than asked for.
-    small_rings: u64,
-    /// Rings of fewer than three points and lines of fewer than two, as the input had them but for repeated points.
-    degenerate: u64,
-}
-
-impl Dropped {
-    fn add(&mut self, other: Self) {
-        self.small_rings += other.small_rings;
-        self.degenerate += other.degenerate;
-    }
-
-    /// Returns whether a ring stays.
-    fn keeps(&mut self, ring: &Points, least: f64) -> bool {
-        let degenerate = ring.len() < 3;
-        let small = !degenerate && signed_area(&ring.xy).abs() < least;
-        self.degenerate += u64::from(degenerate);
-        self.small_rings += u64::from(small);
-        !degenerate && !small
-    }
-
-    fn polygon(&mut self, mut rings: Vec<Points>, least: f64) -> Option<Vec<Points>> {
-        // Without its outer ring there is nothing of a polygon.
-        let outer = rings.first().is_some_and(|ring| self.keeps(ring, least));
-        let mut first = true;
-        rings.retain(|ring| std::mem::take(&mut first) || self.keeps(ring, least));
-        Some(rings).filter(|_| outer)
-    }
-
-    fn line(&mut self, line: &Points) -> bool {
-        self.degenerate += u64::from(line.len() < 2);
-        line.len() > 1
-    }
-
-    /// Returns the rest of a geometry. A geometry that was empty before stays.
-    fn left(&mut self, geometry: Geometry, least: f64) -> Option<Geometry> {
-        if geometry.is_empty() {
-            return Some(geometry);
-        }
-        let left = match geometry {
-            Geometry::LineString(line) if !self.line(&line) => return None,
-            Geometry::MultiLineString(mut lines) => {
-                lines.retain(|line| self.line(line));
-                Geometry::MultiLineString(lines)
-            }
-            Geometry::Polygon(rings) => Geometry::Polygon(self.polygon(rings, least)?),
-            Geometry::MultiPolygon(polygons) => {
-                let left = polygons.into_iter().filter_map(|rings| self.polygon(rings, least));
-                Geometry::MultiPolygon(left.collect())
-            }
-            Geometry::Collection(parts) => {
-                let left = parts.into_iter().filter_map(|part| self.left(part, least));
-                Geometry::Collection(left.collect())
-            }
-            other => other,
-        };
-        Some(left).filter(|left| !left.is_empty())
-    }
+fn of_dropped<S: Serializer>(dropped: &Dropped, serializer: S) -> Result<S::Ok, S::Error> {
+    let counts = [("small_rings", dropped.small_rings), ("degenerate", dropped.degenerate)];
+    serializer.collect_map(counts)
 }

@@ -1,8 +1,7 @@
 //! The options of `durer tiles`.
 
-use crate::clip::TileCoordinates;
 use crate::layer::FieldArgs;
-use crate::options::RunningArgs;
+use crate::options::{RunningArgs, TileCoordinates};
 use crate::values;
 use clap::{Args, ValueEnum, ValueHint};
 use durer::clip::simplify::LineSimplifier;
@@ -89,7 +88,7 @@ pub struct TilesArgs {
     #[arg(long, help_heading = "Reading")]
     pub short_way: bool,
     /// The format of all IN [default: by content, then by suffix]
-    #[arg(long, value_name = "FORMAT", value_parser = crate::clip::format, help_heading = "Reading")]
+    #[arg(long, value_name = "FORMAT", value_parser = crate::layer::format, help_heading = "Reading")]
     pub from: Option<GeoFormat>,
     /// The format of OUT [default: by its suffix; of a folder mvt]
     #[arg(long, value_name = "FORMAT")]

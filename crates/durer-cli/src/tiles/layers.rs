@@ -1,16 +1,13 @@
-//! The contents of the files, projected and with numbered properties.
+//! The contents of the files, placed on the map and with numbered properties.
 
 use super::args::TilesArgs;
-use crate::clip::TileCoordinates;
 use crate::failure::Failure;
 use crate::input::display_name;
 use crate::layer::{Fields, keep, open, words};
 use crate::messages::Messages;
 use crate::output;
-use durer::clip::polygon::Shapes;
-use durer::clip::tiles::{self, Body, mercator};
-use durer::math::DVec2;
-use durer_formats::geo::{Feature, GeoFormat, Geometry, Points};
+use durer::clip::tiles::{self, Placed};
+use durer_formats::geo::{Feature, GeoFormat};
 use durer_formats::tiles::{Dictionary, Field, LayerInfo, Value};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -80,21 +77,7 @@ struct Doubts {
     no_geometry: Found,
 }
 
-/// A feature's geometry by kinds, and what is odd about it.
-#[derive(Debug, Default)]
-struct Projected {
-    bodies: Vec<Body>,
-    /// Beyond all worlds.
-    far: bool,
-    /// A latitude beyond ±90°.
-    latitude: bool,
-    /// Goes around a pole.
-    pole: bool,
-    /// Has an edge around more than half of the world.
-    long: bool,
-}
-
-/// Features that are projected at a time.
+/// Features that are placed at a time.
 const BATCH: usize = 4096;
 
 /// Reads all files.
@@ -145,10 +128,14 @@ fn read_file(
             break;
         }
         kept += features.len();
-        let project = |(_, f): &(u64, Feature)| project(f.geometry.as_ref(), args);
-        let projected: Vec<_> = features.par_iter().map(project).collect();
-        for ((number, feature), projected) in features.iter().zip(projected) {
-            all.add(args, layer, feature, projected, *number, &mut doubts);
+        let coordinates = args.coordinates.into();
+        let place = |(_, f): &(u64, Feature)| match &f.geometry {
+            Some(geometry) => tiles::place(geometry, coordinates, args.short_way),
+            None => Placed::default(),
+        };
+        let placed: Vec<_> = features.par_iter().map(place).collect();
+        for ((number, feature), placed) in features.iter().zip(placed) {
+            all.add(args, layer, feature, placed, *number, &mut doubts);
         }
         messages.progress.stage(|| format!("{} features", all.read));
     }
@@ -211,23 +198,23 @@ impl Layers {
         args: &TilesArgs,
         layer: usize,
         feature: &Feature,
-        projected: Projected,
+        placed: Placed,
         number: u64,
         doubts: &mut Doubts,
     ) {
         let id = feature.id.as_deref().and_then(whole_number);
         doubts.ids.add(feature.id.is_some() && id.is_none(), number);
-        doubts.far.add(projected.far, number);
-        doubts.latitudes.add(projected.latitude, number);
-        doubts.poles.add(projected.pole, number);
-        doubts.long.add(projected.long, number);
-        doubts.no_geometry.add(projected.bodies.is_empty() && !projected.far, number);
-        if projected.bodies.is_empty() {
+        doubts.far.add(placed.far, number);
+        doubts.latitudes.add(placed.latitude, number);
+        doubts.poles.add(placed.pole, number);
+        doubts.long.add(placed.long, number);
+        doubts.no_geometry.add(placed.bodies.is_empty() && !placed.far, number);
+        if placed.bodies.is_empty() {
             return;
         }
         let properties = self.layers[layer].properties(args, feature.properties.as_deref());
         self.rows.push(Row { layer, id, properties });
-        for body in projected.bodies {
+        for body in placed.bodies {
             self.features.push(tiles::Feature { layer, body, fill: feature.fill_rule });
             self.row_of.push(self.rows.len() - 1);
         }
@@ -285,126 +272,4 @@ fn typed(value: serde_json::Value) -> Option<(Value, Field)> {
 fn whole_number(json: &str) -> Option<u64> {
     let text = json.strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or(json);
     text.parse().ok().filter(|number: &u64| number.to_string() == text)
-}
-
-/// The parts of a geometry by kinds.
-#[derive(Default)]
-struct Parts {
-    points: Vec<DVec2>,
-    lines: Vec<DVec2>,
-    ends: Vec<usize>,
-    areas: Shapes,
-}
-
-fn project(geometry: Option<&Geometry>, args: &TilesArgs) -> Projected {
-    let (mut parts, mut projected) = (Parts::default(), Projected::default());
-    if let Some(geometry) = geometry {
-        parts.add(geometry, args, &mut projected);
-    }
-    let Parts { points, lines, ends, areas } = parts;
-    let bodies = [Body::Areas(areas), Body::Lines { points: lines, ends }, Body::Points(points)];
-    for body in bodies {
-        let near = |p: &DVec2| p.x.abs().max(p.y.abs()) < tiles::WORLDS;
-        projected.far |= !body.points().iter().all(near);
-        if !body.points().is_empty() {
-            projected.bodies.push(body);
-        }
-    }
-    if projected.far {
-        projected.bodies.clear();
-    }
-    projected
-}
-
-impl Parts {
-    fn add(&mut self, geometry: &Geometry, args: &TilesArgs, doubts: &mut Projected) {
-        match geometry {
-            Geometry::Point(points) | Geometry::MultiPoint(points) => {
-                self.points.extend(run(points, false, args, doubts));
-            }
-            Geometry::LineString(line) => self.add_line(line, args, doubts),
-            Geometry::MultiLineString(lines) => {
-                lines.iter().for_each(|line| self.add_line(line, args, doubts));
-            }
-            Geometry::Polygon(rings) => self.add_polygon(rings, args, doubts),
-            Geometry::MultiPolygon(polygons) => {
-                polygons.iter().for_each(|rings| self.add_polygon(rings, args, doubts));
-            }
-            Geometry::Collection(parts) => {
-                parts.iter().for_each(|part| self.add(part, args, doubts));
-            }
-        }
-    }
-
-    fn add_line(&mut self, line: &Points, args: &TilesArgs, doubts: &mut Projected) {
-        self.lines.extend(run(line, args.short_way, args, doubts));
-        self.ends.push(self.lines.len());
-    }
-
-    fn add_polygon(&mut self, rings: &[Points], args: &TilesArgs, doubts: &mut Projected) {
-        let mut first: Option<f64> = None;
-        for ring in rings {
-            let mut places = run(ring, args.short_way, args, doubts);
-            if let ([first, .., last], false) = (&places[..], args.short_way) {
-                doubts.long |= is_long(*last, *first);
-            }
-            if args.short_way {
-                if goes_around(&places) {
-                    doubts.pole = true;
-                    close_along_pole(&mut places);
-                }
-                // Holes are where their polygon is.
-                let start = places.first().map_or(0.0, |p| p.x);
-                let shift = (first.unwrap_or(start) - start).round();
-                places.iter_mut().for_each(|p| p.x += shift);
-                first = first.or(Some(start));
-            }
-            self.areas.push_ring(places);
-        }
-        self.areas.end_polygon();
-    }
-}
-
-/// Returns whether a ring ends in another world than it begins.
-fn goes_around(ring: &[DVec2]) -> bool {
-    matches!((ring.first(), ring.last()), (Some(a), Some(b)) if (a.x - b.x).abs() > 0.5)
-}
-
-/// Leads a ring that goes around a pole back along it, far beyond the last latitude of the map.
-fn close_along_pole(ring: &mut Vec<DVec2>) {
-    /// Beyond 0 … 1.
-    const POLES: [f64; 2] = [-0.5, 1.5];
-    let (Some(&first), Some(&last)) = (ring.first(), ring.last()) else { return };
-    let middle = ring.iter().map(|p| p.y).sum::<f64>() / ring.len() as f64;
-    let pole = POLES[usize::from(middle > 0.5)];
-    let end = first.x + (last.x - first.x).round();
-    ring.extend([(end, first.y), (end, pole), (first.x, pole)].map(DVec2::from));
-}
-
-/// Returns whether an edge goes around more than half of the world, and not along a pole, where no map shows which way
-/// it goes.
-fn is_long(from: DVec2, to: DVec2) -> bool {
-    let is_on_map = |p: DVec2| (0.0..=1.0).contains(&p.y);
-    (to.x - from.x).abs() > 0.5 && (is_on_map(from) || is_on_map(to))
-}
-
-/// Returns the places of positions; where it matters, each in the world nearest to the one before.
-fn run(points: &Points, short_way: bool, args: &TilesArgs, doubts: &mut Projected) -> Vec<DVec2> {
-    let degrees = args.coordinates == TileCoordinates::Lonlat;
-    let mut before: Option<DVec2> = None;
-    let place = |&p: &DVec2| {
-        doubts.latitude |= degrees && p.y.abs() > 90.0;
-        let mut place = if degrees { mercator::project(p) } else { mercator::of_metres(p) };
-        if let Some(before) = before {
-            let across = place.x - before.x;
-            if short_way {
-                place.x -= across.round();
-            } else {
-                doubts.long |= is_long(before, place);
-            }
-        }
-        before = Some(place);
-        place
-    };
-    points.xy.iter().map(place).collect()
 }

@@ -2,9 +2,8 @@
 
 use super::args::{TileFormat, TilesArgs};
 use super::layers::{Layers, Row};
-use durer::clip::tiles::{Piece, Shape, Tile, mercator};
-use durer::math::{DVec2, I64Vec2};
-use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Points, Writer};
+use durer::clip::tiles::{Piece, Shape, Tile};
+use durer_formats::geo::{Feature, GeoFormat, Member, Writer};
 use durer_formats::tiles::{Layer, Value, encode, gzip};
 use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -110,7 +109,7 @@ impl<'a> Maker<'a> {
         for piece in pieces {
             let row = self.row(piece);
             let feature = Feature {
-                geometry: Some(self.geometry(tile, &piece.shape)),
+                geometry: Some(piece.shape.in_degrees(tile, self.extent)),
                 properties: Some(self.properties(row)),
                 id: row.id.map(|id| id.to_string()),
                 members: vec![Member {
@@ -145,32 +144,5 @@ impl<'a> Maker<'a> {
             object.insert(name.clone(), value);
         }
         serde_json::Value::Object(object).to_string()
-    }
-
-    /// Returns a shape in degrees, rings as GeoJSON wants them: outer ones counter-clockwise.
-    fn geometry(&self, tile: Tile, shape: &Shape) -> Geometry {
-        let side = 1.0 / f64::from(1u32 << tile.zoom);
-        let corner = DVec2::new(tile.x.into(), tile.y.into());
-        let degrees = |p: &I64Vec2| {
-            mercator::unproject((corner + p.as_dvec2() / f64::from(self.extent)) * side)
-        };
-        let run = |points: &[I64Vec2]| Points::flat(points.iter().map(degrees).collect());
-        let ring = |points: &[I64Vec2]| Points::flat(points.iter().rev().map(degrees).collect());
-        match shape {
-            Shape::Points(points) if points.len() == 1 => Geometry::Point(run(points)),
-            Shape::Points(points) => Geometry::MultiPoint(run(points)),
-            Shape::Lines(lines) if lines.len() == 1 => Geometry::LineString(run(&lines[0])),
-            Shape::Lines(lines) => {
-                Geometry::MultiLineString(lines.iter().map(|line| run(line)).collect())
-            }
-            Shape::Areas(shapes) => {
-                let polygon = shapes.polygons().map(|p| p.rings().map(ring).collect());
-                let mut polygons: Vec<Vec<Points>> = polygon.collect();
-                match polygons.len() {
-                    1 => Geometry::Polygon(polygons.remove(0)),
-                    _ => Geometry::MultiPolygon(polygons),
-                }
-            }
-        }
     }
 }

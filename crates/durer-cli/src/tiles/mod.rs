@@ -11,8 +11,7 @@ pub use out::deliver;
 use crate::failure::Failure;
 use crate::input::{check_streams, display_name};
 use crate::messages::Messages;
-use durer::clip::tiles::{Options, Pyramid, Tile, mercator};
-use durer::math::{DVec2, Rect};
+use durer::clip::tiles::{Options, Pyramid, Tile, extent};
 use durer::work::Work;
 use durer_formats::tiles::Metadata;
 use layers::Layers;
@@ -94,7 +93,7 @@ pub fn run(args: &TilesArgs) -> Result<(), Failure> {
     let messages = Messages::new(&args.running, 1);
     let (format, path) = out::format(args)?;
     let mut all = layers::read(args, &messages)?;
-    let bounds = bounds(&all);
+    let bounds = extent(&all.features).unwrap_or([-180.0, -85.0, 180.0, 85.0]);
     let fail = |e: durer::Error| Failure::Data(e.to_string());
     let options = Options {
         zooms: args.zoom.clone(),
@@ -225,21 +224,6 @@ impl From<durer::Error> for Stopped {
     fn from(error: durer::Error) -> Self {
         Self::Cut(error)
     }
-}
-
-/// West, south, east and north of all features, in degrees, within the world.
-fn bounds(all: &Layers) -> [f64; 4] {
-    let points = all.features.iter().flat_map(|f| f.body.points().iter().copied());
-    let Some(around) = Rect::around(points) else { return [-180.0, -85.0, 180.0, 85.0] };
-    let (low, high) = (around.min(), around.max());
-    let world = |p: DVec2| mercator::unproject(p.clamp(DVec2::ZERO, DVec2::ONE));
-    let (low, high) = if low.x < 0.0 || high.x > 1.0 {
-        (DVec2::new(0.0, low.y), DVec2::new(1.0, high.y))
-    } else {
-        (low, high)
-    };
-    let (first, last) = (world(low), world(high));
-    [first.x, last.y, last.x, first.y]
 }
 
 fn metadata(args: &TilesArgs, all: &Layers, bounds: [f64; 4]) -> Metadata {

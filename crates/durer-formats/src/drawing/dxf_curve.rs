@@ -1,6 +1,6 @@
 //! Curves as entities of DXF.
 
-use super::dxf::{DxfStrokes, Tags, Target, begin};
+use super::dxf_tags::{DxfStrokes, Tags, Target, begin};
 use durer::curve::pieces;
 use durer::math::DVec2;
 use durer::target::{Arc, Curve, Piece};

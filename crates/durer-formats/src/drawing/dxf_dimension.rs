@@ -1,9 +1,11 @@
 //! Dimensions in DXF: an entity that says what is measured, and an anonymous block that says how it looks, so that
 //! readers that do not draw dimensions themselves show it.
 
-use super::dxf::{DIMSTYLES, DxfStrokes, Tags, begin, block, entity, string, symbol};
+use super::dxf_entity::{block, entity};
+use super::dxf_tags::{DIMSTYLES, DxfStrokes, Tags, begin, string, symbol};
 use durer::math::DVec2;
-use durer::target::dimension::{Dimension, DimensionText, Measure};
+use durer::target::dimension::{DimensionText, Measure};
+use durer::target::sheet::Dimension;
 use durer::target::sheet::{Mark, Sheet};
 
 /// The dimensions of a sheet in the order of drawing, with what the file's tables have for them.

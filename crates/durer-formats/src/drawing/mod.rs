@@ -5,6 +5,8 @@
 mod dxf;
 mod dxf_curve;
 mod dxf_dimension;
+mod dxf_entity;
+mod dxf_tags;
 mod gcode;
 mod geojson;
 mod hpgl;
@@ -15,7 +17,8 @@ mod pdf_text;
 mod svg;
 mod svg_curve;
 
-pub use dxf::{DxfStrokes, write as write_dxf};
+pub use dxf::write as write_dxf;
+pub use dxf_tags::DxfStrokes;
 pub use gcode::write as write_gcode;
 pub use geojson::write as write_geojson;
 pub use hpgl::write as write_hpgl;

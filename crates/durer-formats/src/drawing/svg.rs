@@ -2,16 +2,13 @@
 //! element per stroke, short numbers.
 
 use super::number::{push, short};
-use super::svg_curve;
+use super::svg_curve::{self, DIGITS, pair, separator};
 use crate::Result;
 use durer::curve::pieces;
 use durer::math::DVec2;
 use durer::paper::{dashes, dimension_strokes, text_strokes};
 use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use std::io::Write;
-
-/// Digits after the point of a millimetre: a micrometre is far below what any plotter resolves.
-pub(super) const DIGITS: usize = 3;
 
 /// Writes a sheet as an SVG document of the sheet's size.
 ///
@@ -209,20 +206,6 @@ fn path(text: &mut String, points: &[DVec2], closed: bool) {
     } else if last == rounded(*first) && points.len() < 3 {
         // A stroke shorter than the last digit still is a dot.
         text.push_str("h0");
-    }
-}
-
-/// Two coordinates given in micrometres.
-pub(super) fn pair(text: &mut String, p: DVec2) {
-    push(text, p.x / 1000.0, DIGITS);
-    separator(text, p.y);
-    push(text, p.y / 1000.0, DIGITS);
-}
-
-/// A blank, unless the sign of the next number parts it from the last.
-pub(super) fn separator(text: &mut String, next: f64) {
-    if next >= 0.0 {
-        text.push(' ');
     }
 }
 

@@ -1,9 +1,11 @@
 //! Path data of lines, arcs and cubic curves.
 
 use super::number::{push, short};
-use super::svg::{DIGITS, pair, separator};
 use durer::math::DVec2;
 use durer::target::{Arc, Curve, Piece};
+
+/// Digits after the point of a millimetre: a micrometre is far below what any plotter resolves.
+pub(super) const DIGITS: usize = 3;
 
 /// Arcs are divided so that none turns further, in radians: of a half circle, a last digit of its ends moves the middle
 /// by many.
@@ -78,4 +80,18 @@ fn arcs(text: &mut String, last: &mut DVec2, arc: &Arc, end: DVec2) {
 /// In micrometres.
 fn rounded(p: DVec2) -> DVec2 {
     (p * 1000.0).round()
+}
+
+/// Two coordinates given in micrometres.
+pub(super) fn pair(text: &mut String, p: DVec2) {
+    push(text, p.x / 1000.0, DIGITS);
+    separator(text, p.y);
+    push(text, p.y / 1000.0, DIGITS);
+}
+
+/// A blank, unless the sign of the next number parts it from the last.
+pub(super) fn separator(text: &mut String, next: f64) {
+    if next >= 0.0 {
+        text.push(' ');
+    }
 }

@@ -1,7 +1,7 @@
 //! JSON objects as lists of their members, in the order and spelling of the file.
 
-use super::Member;
 use super::geojson::Text;
+use super::{Feature, Member};
 
 impl Member {
     /// Creates a member from a name and a value in JSON.
@@ -46,6 +46,19 @@ pub fn members(object: &str) -> Vec<Member> {
 pub fn object(members: &[Member]) -> String {
     let parts: Vec<String> = members.iter().map(|m| format!("{}:{}", m.name, m.value)).collect();
     format!("{{{}}}", parts.join(","))
+}
+
+/// Returns the feature with its id among its fields.
+pub(super) fn with_id(feature: &Feature) -> Feature {
+    let mut feature = feature.clone();
+    let mut fields = feature.fields();
+    if let Some(id) = feature.id.take()
+        && !fields.iter().any(|field| field.key() == "id")
+    {
+        fields.insert(0, Member::new("id", id));
+        feature.properties = Some(object(&fields));
+    }
+    feature
 }
 
 #[cfg(test)]

@@ -19,6 +19,7 @@
 //! # Ok::<(), durer_formats::Error>(())
 //! ```
 
+mod beside;
 pub mod crs;
 mod csv;
 mod curve;
@@ -46,11 +47,12 @@ mod wkb;
 mod wkt;
 mod writer;
 
+pub use beside::Beside;
 pub use durer::geometry::{Dimensions, Geometry, Points};
 pub use feature::{Feature, Member};
 pub use format::GeoFormat;
 pub use gzip::unzipped;
-pub use reader::{Beside, Reader, read_all};
+pub use reader::{Reader, read_all};
 pub use schema::{Field, FieldKind, Schema};
 pub use system::System;
 pub use writer::{Finished, Writer};

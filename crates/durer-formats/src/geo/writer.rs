@@ -1,6 +1,6 @@
 //! Features to bytes in any format.
 
-use super::members::object;
+use super::members::with_id;
 use super::{
     Feature, GeoFormat, Member, System, csv, flatgeobuf, geojson, geopackage, geoparquet,
     shapefile, svg, topojson, wkb, wkt,
@@ -204,19 +204,6 @@ impl<W: Write> Writer<W> {
         self.out.flush()?;
         Ok(Finished { out: self.out, beside, warnings })
     }
-}
-
-/// Returns the feature with its id among its fields.
-pub(super) fn with_id(feature: &Feature) -> Feature {
-    let mut feature = feature.clone();
-    let mut fields = feature.fields();
-    if let Some(id) = feature.id.take()
-        && !fields.iter().any(|field| field.key() == "id")
-    {
-        fields.insert(0, Member::new("id", id));
-        feature.properties = Some(object(&fields));
-    }
-    feature
 }
 
 fn unwritten(format: GeoFormat) -> Error {

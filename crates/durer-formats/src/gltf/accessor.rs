@@ -2,8 +2,8 @@
 
 use super::buffer::Source;
 use super::bytes::Bytes;
-use super::check::missing;
 use super::json::{Accessor, Root, Whole};
+use super::missing::missing;
 use crate::{Error, Result};
 
 /// The type of one number.

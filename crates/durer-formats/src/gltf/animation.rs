@@ -2,29 +2,9 @@
 
 use super::buffer::Source;
 use super::json::{Animation, AnimationSampler, Channel, Root};
-use super::node::unit;
+use super::node::{Override, unit};
 use crate::{Error, Pose, Result};
 use durer::math::{DQuat, DVec3};
-
-/// Values that an animation sets for a node.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Override {
-    /// In the parent's space.
-    pub translation: Option<DVec3>,
-    /// Need not have unit length.
-    pub rotation: Option<DQuat>,
-    /// Along the node's axes.
-    pub scale: Option<DVec3>,
-    /// One per morph target.
-    pub weights: Option<Vec<f32>>,
-}
-
-impl Override {
-    /// Returns whether the node's place changes.
-    pub fn moves(&self) -> bool {
-        self.translation.is_some() || self.rotation.is_some() || self.scale.is_some()
-    }
-}
 
 /// Returns names of the animations; `animation0`, `animation1` … where there is none.
 pub fn names(root: &Root) -> Vec<String> {

@@ -1,10 +1,10 @@
 //! Buffers and the views into them, with what their memory is charged to.
 
 use super::bytes::Bytes;
-use super::check::missing;
 use super::container::Container;
 use super::json::{BufferView, Root, Whole};
 use super::meshopt;
+use super::missing::missing;
 use crate::budget::MODEL;
 use crate::{Error, Found, Limits, Place, Resources, Result, Warning, uri};
 use std::cell::Cell;

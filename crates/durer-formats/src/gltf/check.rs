@@ -3,6 +3,7 @@
 
 use super::accessor::Layout;
 use super::json::{Material, Root, TextureInfo, Whole};
+use super::missing::missing;
 use crate::{Error, Result, uri};
 use std::fmt::Display;
 
@@ -24,15 +25,6 @@ fn exists(index: Option<Whole>, count: usize, what: &str, at: impl Display) -> R
         Some(i) if i.index() >= count => Err(missing(what, i, count, at)),
         _ => Ok(()),
     }
-}
-
-/// Returns the error for a reference to one of `count` things that does not exist.
-pub fn missing(what: &str, index: Whole, count: usize, at: impl Display) -> Error {
-    let message = match count {
-        0 => format!("there is no {what} {}, none at all", index.0),
-        _ => format!("there is no {what} {}: there are {count}", index.0),
-    };
-    Error::path(at.to_string(), message)
 }
 
 /// Checks that a required member is present.

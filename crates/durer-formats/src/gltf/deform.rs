@@ -1,8 +1,8 @@
 //! Meshes posed: morph targets, then skins (glTF 2.0, §3.7.2.2 and §3.7.3).
 
 use super::buffer::Source;
+use super::geometry::Geometry;
 use super::json::{Primitive, Whole};
-use super::primitive::Geometry;
 use crate::{Error, Result};
 use durer::math::{DMat3, DMat4, DVec3, Vec3};
 
@@ -154,7 +154,7 @@ fn blend(g: &Geometry, v: usize, joints: &[DMat4], at: &str) -> Result<DMat4> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gltf::primitive::Influences;
+    use crate::gltf::geometry::Influences;
     use durer::math::Vec4;
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::buffer::Source;
 use super::specular_glossiness::Glossy;
-use super::surface::Todo;
+use super::todo::{Job, Todo, What};
 use crate::{Result, texels};
 use durer::math::{Vec3, Vec4};
 use durer::scene::{AlphaMode, Image, Material, Scene, Texture, TextureRef};
@@ -11,32 +11,6 @@ use std::collections::BTreeMap;
 
 /// Share of the light that a clear pane lets through; the rest shows the pane itself.
 const CLEAR: f32 = 0.85;
-
-/// Something to be done to a material once its images are there.
-pub struct Job {
-    /// Its number.
-    pub material: usize,
-    /// The texture that the scene's material has no place for.
-    pub texture: Option<TextureRef>,
-    /// Change to make.
-    pub what: What,
-}
-
-/// Change to make to a material.
-#[derive(Clone, Copy)]
-pub enum What {
-    /// Multiply a factor by the mean of the texture.
-    Mean {
-        /// True if its colours are stored as sRGB.
-        srgb: bool,
-        /// Sets the factor, given the linear mean.
-        set: fn(&mut Material, Vec4),
-    },
-    /// Make base colour, metalness and roughness of the diffuse and the specular-glossiness texture.
-    Glossy(Glossy),
-    /// Make what transmits light blended: its alpha is what it keeps of the light behind it.
-    Glass,
-}
 
 /// Does all that is to be done.
 ///

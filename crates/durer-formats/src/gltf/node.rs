@@ -1,9 +1,28 @@
 //! The tree of nodes: checked once, then walked without recursion.
 
-use super::animation::Override;
 use super::json::{Node, Root, Whole};
 use crate::{Error, Place, Result};
 use durer::math::{DMat4, DQuat, DVec3};
+
+/// Values that an animation sets for a node.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Override {
+    /// In the parent's space.
+    pub translation: Option<DVec3>,
+    /// Need not have unit length.
+    pub rotation: Option<DQuat>,
+    /// Along the node's axes.
+    pub scale: Option<DVec3>,
+    /// One per morph target.
+    pub weights: Option<Vec<f32>>,
+}
+
+impl Override {
+    /// Returns whether the node's place changes.
+    pub fn moves(&self) -> bool {
+        self.translation.is_some() || self.rotation.is_some() || self.scale.is_some()
+    }
+}
 
 /// The nodes' forest.
 #[derive(Debug)]

@@ -1,6 +1,6 @@
 //! Normals and tangents brought to unit length; those that cannot are replaced.
 
-use super::primitive::Geometry;
+use super::geometry::Geometry;
 use crate::model::count_infinite;
 use durer::math::{Vec3, Vec4};
 use durer::scene::Topology;

@@ -3,58 +3,18 @@
 //! The scene holds one number for what extensions may vary by a texture: there the mean of the texture is taken,
 //! with one warning for each extension. What only a texture can say becomes one (`derived.rs`).
 
-use super::derived::{Job, What};
-use super::json::{Clearcoat, MaterialExtensions, Sheen, Specular, TextureInfo};
-use super::material::{BRIGHTEST, texture};
+use super::json::{Clearcoat, MaterialExtensions, Sheen, Specular};
 use super::specular_glossiness::Glossy;
-use crate::{Place, Warning};
-use durer::math::{Vec3, Vec4};
+use super::texture_ref::texture;
+use super::todo::{Job, Todo, What};
+use durer::math::Vec3;
 use durer::scene::{Material, ShadingModel};
-use std::collections::BTreeMap;
+
+/// Emission is cut at this factor, so that light stays finite whatever a file says.
+pub const BRIGHTEST: f32 = 1e6;
 
 /// The index that stands for an infinite one (KHR_materials_ior: 0): all that meets the surface is reflected.
 const MIRROR: f32 = 1e6;
-
-/// Changes to make to materials once their images are loaded, and warnings.
-#[derive(Default)]
-pub struct Todo {
-    /// In this order.
-    pub jobs: Vec<Job>,
-    /// First material and number of materials for each extension and kind of texture that is not applied.
-    left_out: BTreeMap<(&'static str, &'static str), (usize, u64)>,
-}
-
-impl Todo {
-    /// Asks for the mean of a texture, which `set` multiplies to a factor.
-    fn mean(
-        &mut self,
-        material: usize,
-        info: Option<&TextureInfo>,
-        srgb: bool,
-        extension: &'static str,
-        set: fn(&mut Material, Vec4),
-    ) {
-        if let Some(texture) = texture(info) {
-            let texture = Some(texture);
-            self.jobs.push(Job { material, texture, what: What::Mean { srgb, set } });
-            self.leave_out(extension, "is not laid on, its mean is taken", material);
-        }
-    }
-
-    /// Notes that a texture of a material's extension is not laid on.
-    pub fn leave_out(&mut self, extension: &'static str, what: &'static str, material: usize) {
-        self.left_out.entry((extension, what)).or_insert((material, 0)).1 += 1;
-    }
-
-    /// The warnings of what is left out.
-    pub fn tell(&self, warnings: &mut Vec<Warning>) {
-        for ((extension, what), (first, count)) in &self.left_out {
-            let of = if *count > 1 { format!(" ({count} textures)") } else { String::new() };
-            let place = Place::Path(format!("materials[{first}].extensions.{extension}"));
-            warnings.push(Warning { place, message: format!("its texture {what}{of}") });
-        }
-    }
-}
 
 /// Changes a material as its extensions say.
 pub fn extend(

@@ -1,7 +1,7 @@
 //! The faces of a PLY file: polygons and strips, with colours and texture coordinates of their own.
 
 use super::body::Values;
-use super::build::{Bounds, list_length};
+use super::bounds::{Bounds, list_length};
 use super::header::Type;
 use super::names::{Plan, Role, Use};
 use super::row_color::RowColor;

@@ -1,6 +1,7 @@
 //! From the vertices, faces and edges of a PLY file to a scene.
 
-use super::build::{Bounds, Builder};
+use super::bounds::Bounds;
+use super::build::Builder;
 use super::faces::Faces;
 use super::header::{Encoding, Header};
 use super::{splat, texture};

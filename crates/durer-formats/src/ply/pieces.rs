@@ -3,7 +3,7 @@
 //! The vertices of a piece of a mesh are read from where the file has them; near faces mostly have near vertices.
 
 use super::body::Values;
-use super::build::Bounds;
+use super::bounds::Bounds;
 use super::faces::Faces;
 use super::header::{Element, Encoding, Header};
 use super::names::{NORMAL, Plan, RED, ROTATION, Role, SCALE, SPLAT_COLOR, Use};

@@ -6,21 +6,12 @@
 //! the two larger ones, or where the third is not much smaller an octahedron, of its first colour,
 //! without the parts that depend on the direction of sight.
 
-use super::vertices::Vertices;
+use super::vertices::{Shape, Vertices};
 use crate::facets::{Attributes, whole};
 use crate::text::Tally;
 use crate::{Error, Limits, Model, Place, Result};
 use durer::math::{Vec3, Vec4};
 use durer::scene::{Material, Mesh, ShadingModel};
-
-/// Size and rotation of a splat.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Shape {
-    /// Natural logarithms of the standard deviations along the axes.
-    pub scale: Vec3,
-    /// Real part first; of any length.
-    pub rotation: [f32; 4],
-}
 
 /// A disc's radius in standard deviations: neighbours close to a surface, and edges stay where they are.
 const RADIUS: f32 = 1.5;

@@ -1,11 +1,11 @@
 //! The vertices of a PLY file.
 
 use super::body::Values;
+use super::bounds::list_length;
 use super::header::Type;
 use super::names::{
     ALPHA, NORMAL, OPACITY, Plan, RED, ROTATION, SCALE, SPLAT_COLOR, TEX_COORD, Use, VALUES,
 };
-use super::splat::Shape;
 use crate::facets::Attributes;
 use crate::{Error, Result, place};
 use durer::math::{DVec3, Vec2, Vec3, Vec4};
@@ -25,6 +25,15 @@ pub(super) struct Vertices {
     /// Divisors of the values that the file has.
     present: [Option<f64>; VALUES],
     kinds: Kinds,
+}
+
+/// Size and rotation of a splat.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shape {
+    /// Natural logarithms of the standard deviations along the axes.
+    pub scale: Vec3,
+    /// Real part first; of any length.
+    pub rotation: [f32; 4],
 }
 
 /// Attributes of a vertex besides its position.
@@ -105,7 +114,7 @@ impl Vertices {
         for step in &plan.steps {
             match (step.usage, step.list) {
                 (_, Some(length)) => {
-                    let length = super::build::list_length(length, values, plan, row)?;
+                    let length = list_length(length, values, plan, row)?;
                     values.skip(step.kind, length)?;
                 }
                 (Use::Value(slot), None) => vertex[slot] = values.next(step.kind)?,

@@ -1,8 +1,9 @@
 //! Every kind of mark in every writer: what stands in the file for each, to the byte where it is short.
 
 use durer::math::DVec2;
-use durer::target::dimension::{Dimension, DimensionText, Measure};
+use durer::target::dimension::{DimensionText, Measure};
 use durer::target::drawing::Anchor;
+use durer::target::sheet::Dimension;
 use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use durer::target::{Arc, Curve, Piece};
 use durer_formats::drawing::{DxfStrokes, write_dxf, write_hpgl, write_pdf, write_svg};

@@ -4,8 +4,8 @@ use super::quad::Quad;
 use super::style::{CENTER, HALO, Style, THIN};
 use crate::math::{DVec2, Rect};
 use crate::paper::pen_index;
-use crate::target::dimension::Dimension;
 use crate::target::drawing::Anchor;
+use crate::target::sheet::Dimension;
 use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use crate::target::{Arc, Curve, Piece};
 

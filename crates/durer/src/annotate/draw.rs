@@ -5,7 +5,8 @@ use super::quad::Quad;
 use super::style::{GAP, OVER, Style};
 use crate::curve::stroke_font;
 use crate::math::DVec2;
-use crate::target::dimension::{Dimension, DimensionText, Measure};
+use crate::target::dimension::{DimensionText, Measure};
+use crate::target::sheet::Dimension;
 use crate::target::sheet::Mark;
 
 /// Text of a dimension.

@@ -1,6 +1,7 @@
 //! Clipping in two dimensions and in homogeneous coordinates.
 
 pub mod attribute;
+pub mod cells;
 pub(crate) mod exact;
 pub mod hilbert;
 pub mod line;
@@ -8,6 +9,7 @@ pub mod mask;
 pub mod outcode;
 pub mod place;
 pub mod polygon;
+pub mod polyline;
 pub mod simplify;
 pub mod tiles;
 mod touch;

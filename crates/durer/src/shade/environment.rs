@@ -6,11 +6,11 @@
 //! any table. In place of it metals, smooth plastics and clear layers may mirror a [`Studio`], and everything a
 //! [`Panorama`], which then is the light from all around too.
 
+use super::axes::turned;
 use super::lane::{Lane, Vec3Lane};
 use super::panorama::Panorama;
 use super::studio::Studio;
 use crate::math::Vec3;
-use crate::scene::UpAxis;
 use std::sync::Arc;
 
 /// Surroundings of a scene, as a picture's options name it.
@@ -120,15 +120,4 @@ impl Environment {
         let step = x / (x * x + 1.0).sqrt();
         (slope * self.gradient + step * self.step + 1.0).at_least(0.0)
     }
-}
-
-/// Returns the components of a vector along axes.
-#[inline(always)]
-pub(super) fn turned<L: Lane>(v: Vec3Lane<L>, [x, y, z]: &[Vec3; 3]) -> Vec3Lane<L> {
-    Vec3Lane::new(v.dot_all(*x), v.dot_all(*y), v.dot_all(*z))
-}
-
-/// To the right, up and to the front of a scene: what the named views show.
-pub fn world_axes(up: UpAxis) -> [Vec3; 3] {
-    [up.right(), up.up(), up.front()].map(|axis| axis.as_vec3())
 }

@@ -10,9 +10,9 @@
 //!
 //! Cost: O(triangles / stride) for the areas of at most 2¹⁶ triangles, and 2¹² points × lights.
 
-use super::light::PreparedLights;
+use super::light::{Around, PreparedLights, ambient};
 use crate::math::{DVec3, Vec3};
-use crate::scene::{Instance, Mesh, Scene};
+use crate::scene::{Camera, Instance, Light, Mesh, Scene};
 
 /// Exposure of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -42,16 +42,16 @@ const IN_MIRRORS: f32 = 0.5;
 
 /// Measured light.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Metered {
+struct Metered {
     /// By which all lights are to be made stronger; 1 where no light falls on anything.
-    pub factor: f32,
+    factor: f32,
     /// Reflections of point lights in mirrors, before that.
-    pub from_points: Vec3,
+    from_points: Vec3,
 }
 
 impl Metered {
     /// Measures lights, with `ambient` light besides, at the surfaces of a scene.
-    pub(super) fn new(scene: &Scene, lights: &PreparedLights, ambient: Vec3) -> Self {
+    fn new(scene: &Scene, lights: &PreparedLights, ambient: Vec3) -> Self {
         let (mut levels, mut from_points) = (Vec::new(), Vec3::ZERO);
         for point in points(scene, lights.origin) {
             let (far, near) = irradiance(lights, &point);
@@ -67,6 +67,34 @@ impl Metered {
         // Held so that products with colours stay finite.
         let factor = (LEVEL / level).clamp(1e-30, 1e30) as f32;
         Self { factor, from_points: from_points * (IN_MIRRORS / levels.len().max(1) as f32) }
+    }
+}
+
+impl PreparedLights {
+    /// Builds it like [`Self::within`], but makes all light stronger or weaker by one factor, so
+    /// that a white matte surface where much of it falls on the scene is nearly white: see
+    /// [the module](self). If there is no ambient light, [`DEFAULT_AMBIENT`](super::light::DEFAULT_AMBIENT) is added as it is.
+    /// The scene must pass [`Scene::check`].
+    pub fn exposed(around: Around<'_>, lights: &[Light], scene: &Scene, camera: &Camera) -> Self {
+        let mut prepared = Self::without_ambient(around, lights, camera);
+        let ambient = ambient(lights);
+        let Metered { factor, from_points } =
+            Metered::new(scene, &prepared, ambient.unwrap_or_default());
+        let directional = prepared.directional.iter_mut().map(|l| &mut l.color);
+        for color in directional.chain(prepared.points.iter_mut().map(|l| &mut l.color)) {
+            *color *= factor;
+        }
+        prepared.surround(ambient.map(|ambient| ambient * factor), factor, from_points * factor);
+        prepared
+    }
+
+    /// Returns the scene's own lights, [exposed](Self::exposed), or, where it has none,
+    /// [`PreparedLights::auto`].
+    pub fn of(scene: &Scene, camera: &Camera) -> Self {
+        match &scene.lights[..] {
+            [] => Self::auto(camera),
+            lights => Self::exposed(None, lights, scene, camera),
+        }
     }
 }
 

@@ -1,12 +1,12 @@
 //! The one place where a shading model's name becomes its formula, for one sample and for eight.
 
-use super::gouraud::Reflected;
 use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
 use super::lobes::Lobes;
 use super::metallic_roughness::{self, Dielectric, Substance};
 use super::normal::Frame;
 use super::phong::{self, Shininess};
+use super::reflected::Reflected;
 use super::{Shading, tone};
 
 /// Everything that textures and factors say about a point.

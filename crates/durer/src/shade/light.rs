@@ -3,14 +3,14 @@
 //! Point and spot lights fall off as in glTF's KHR_lights_punctual (2018): with the square of the
 //! distance, to nothing at the range, and smoothly between the cone's inner and outer angle.
 
-use super::environment::{Environment, Mirrored, world_axes};
-use super::exposure::Metered;
+use super::axes::world_axes;
+use super::environment::{Environment, Mirrored};
 use super::lane::{Lane, Vec3Lane};
 use super::panorama::Panorama;
 use super::shadow::ShadowMaps;
 use super::tone::{self, Tone};
 use crate::math::{DVec3, Vec3};
-use crate::scene::{Camera, Light, LightKind, Scene, UpAxis};
+use crate::scene::{Camera, Light, LightKind, UpAxis};
 use std::sync::Arc;
 
 /// Ambient light added to lights among which there is none, as a part of white; without it, what no
@@ -83,24 +83,8 @@ impl PreparedLights {
         prepared
     }
 
-    /// Builds it like [`Self::within`], but makes all light stronger or weaker by one factor, so
-    /// that a white matte surface where much of it falls on the scene is nearly white: see
-    /// [`super::exposure`]. If there is no ambient light, [`DEFAULT_AMBIENT`] is added as it is.
-    /// The scene must pass [`Scene::check`].
-    pub fn exposed(around: Around<'_>, lights: &[Light], scene: &Scene, camera: &Camera) -> Self {
-        let mut prepared = Self::without_ambient(around, lights, camera);
-        let ambient = ambient(lights);
-        let Metered { factor, from_points } =
-            Metered::new(scene, &prepared, ambient.unwrap_or_default());
-        let directional = prepared.directional.iter_mut().map(|l| &mut l.color);
-        for color in directional.chain(prepared.points.iter_mut().map(|l| &mut l.color)) {
-            *color *= factor;
-        }
-        prepared.surround(ambient.map(|ambient| ambient * factor), factor, from_points * factor);
-        prepared
-    }
-
-    fn without_ambient(around: Around<'_>, lights: &[Light], camera: &Camera) -> Self {
+    /// Builds it without ambient light and what mirrors show of other lights.
+    pub(super) fn without_ambient(around: Around<'_>, lights: &[Light], camera: &Camera) -> Self {
         let up = camera.up.normalize_or(DVec3::Y).as_vec3();
         let mut environment = Environment { up, ..Environment::uniform(Vec3::ZERO) };
         if let Some((panorama, up)) = around {
@@ -122,7 +106,7 @@ impl PreparedLights {
 
     /// Sets ambient light and what mirrors show: a panorama times `factor`, or what lights make, of which
     /// `from_points` is the part of point lights.
-    fn surround(&mut self, ambient: Option<Vec3>, factor: f32, from_points: Vec3) {
+    pub(super) fn surround(&mut self, ambient: Option<Vec3>, factor: f32, from_points: Vec3) {
         let directional: Vec3 = self.directional.iter().map(|l| l.color).sum();
         let environment = &mut self.environment;
         if let Mirrored::Panorama { .. } = environment.mirrored {
@@ -144,15 +128,6 @@ impl PreparedLights {
         environment.up = camera.axes()[1].normalize_or(DVec3::Y).as_vec3();
         environment.slope = 0.4;
         prepared
-    }
-
-    /// Returns the scene's own lights, [exposed](Self::exposed), or, where it has none,
-    /// [`PreparedLights::auto`].
-    pub fn of(scene: &Scene, camera: &Camera) -> Self {
-        match &scene.lights[..] {
-            [] => Self::auto(camera),
-            lights => Self::exposed(None, lights, scene, camera),
-        }
     }
 
     /// Returns the surroundings that a perfect mirror reflects in a unit direction, as a display shows
@@ -204,7 +179,7 @@ impl PreparedLights {
 }
 
 /// Returns the sum of all ambient lights; `None` where there is none.
-fn ambient(lights: &[Light]) -> Option<Vec3> {
+pub(super) fn ambient(lights: &[Light]) -> Option<Vec3> {
     let ambient = lights.iter().filter(|l| l.kind == LightKind::Ambient);
     ambient.map(|l| l.color).reduce(|a, b| a + b)
 }

@@ -14,7 +14,7 @@ use super::lookup::TexCoords;
 use super::metallic_roughness::Substance;
 use super::normal::{Frame, face_seen, perturbed};
 use super::phong::{Colors, Shininess, from_metallic_roughness};
-use super::plain::Points;
+use super::points::Points;
 use super::sample::Sample;
 use super::slot::{Chains, Slot, Texel, Texels, sampled_x16};
 use super::surface::Surface;

@@ -5,7 +5,7 @@
 //! O(texels); memory a third of the image, which itself is borrowed, not copied.
 
 use super::color::{decode_unorm8, encode_srgb8, encode_unorm8};
-use super::texture::Usage;
+use super::usage::Usage;
 use crate::math::Vec4;
 use crate::scene::Image;
 

@@ -7,6 +7,7 @@
 //! Space: world axes, but with the origin moved to the eye ([`PreparedLights::origin`]), so that
 //! `f32` suffices far from the world's own origin. Colours are linear with sRGB's primaries.
 
+mod axes;
 pub mod color;
 pub mod environment;
 pub mod exposure;
@@ -24,6 +25,8 @@ mod normal;
 pub mod panorama;
 pub mod phong;
 mod plain;
+mod points;
+mod reflected;
 mod sample;
 pub mod shadow;
 mod slot;
@@ -33,6 +36,7 @@ pub mod texture;
 pub mod tone;
 pub mod tone_map;
 pub mod unlit;
+mod usage;
 
 pub use environment::Surroundings;
 pub use exposure::Exposure;
@@ -44,7 +48,8 @@ pub use material::{PreparedMaterial, PreparedMaterials, shade, shade_seen};
 pub(crate) use normal::Frame;
 pub use panorama::Panorama;
 pub(crate) use plain::shade_frame;
-pub use plain::{Faces, Points, shade_points};
+pub use plain::shade_points;
+pub use points::{Faces, Points};
 pub use sample::{Sample, Samples};
 pub use surface::{Surface, TexCoord};
 pub use texture::PreparedTexture;

@@ -8,10 +8,10 @@
 //! Intensity = emission + k_d · (ambient + Σ colour · n·l) + k_s · Σ colour · (n·h)^shininess, sums
 //! over the lights with n·l > 0. Deviation: h is never formed, as (n·h)² = (n·l + n·v)² / (2 + 2 l·v).
 
-use super::gouraud::Reflected;
 use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
 use super::normal::Frame;
+use super::reflected::Reflected;
 use super::shadow;
 use crate::info::{Class, Info};
 use crate::math::Vec3;

@@ -5,7 +5,7 @@
 //! spread, and its light stays as much. So there is neither a table nor a picture, and any roughness costs
 //! the same. Axes: to the right, up, and to the eye.
 
-use super::environment::{turned, world_axes};
+use super::axes::{turned, world_axes};
 use super::lane::{Lane, Vec3Lane};
 use crate::math::{DVec3, Vec3};
 use crate::scene::{Camera, UpAxis};

@@ -1,6 +1,6 @@
 //! A visible point, as the shading formulas want it.
 
-use super::gouraud::Reflected;
+use super::reflected::Reflected;
 use crate::math::{Vec2, Vec3, Vec4};
 
 /// Texture coordinates and how they change over the screen.

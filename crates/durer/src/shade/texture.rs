@@ -4,33 +4,11 @@
 //! right one, texel (i, j) has its centre at ((i + ½)/width, (j + ½)/height). Level of detail after
 //! Williams 1983 and the OpenGL specification (4.6, 8.14): the longer of the two screen derivatives.
 
-use super::color::{decode_rgba8, decode_unorm8};
 use super::mip::{Level, MipChain};
+pub use super::usage::Usage;
 use crate::math::{Vec2, Vec4};
 use crate::scene::{Filter, Image, MipFilter, Sampler, Wrap};
 use std::sync::Arc;
-
-/// Meaning of a texture's 8-bit values, which decides how they are averaged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Usage {
-    /// sRGB colour, averaged in linear light; alpha has no say.
-    Color,
-    /// sRGB colour weighted by its alpha, so that what is transparent does not show at borders.
-    ColorWithAlpha,
-    /// Numbers, averaged as they are.
-    Data,
-}
-
-impl Usage {
-    /// Returns one texel as numbers 0…1; colours become linear.
-    #[inline(always)]
-    pub(super) fn decode(self, code: [u8; 4]) -> Vec4 {
-        match self {
-            Self::Data => Vec4::from_array(code.map(decode_unorm8)),
-            _ => decode_rgba8(code),
-        }
-    }
-}
 
 /// An image with its mip chain, ready to be sampled; cheap to clone.
 ///
@@ -223,7 +201,7 @@ fn inside(i: i64, size: u32, wrap: Wrap) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shade::color::decode_srgb8;
+    use crate::shade::color::{decode_rgba8, decode_srgb8};
 
     const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge];
 

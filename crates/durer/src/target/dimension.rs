@@ -1,6 +1,5 @@
-//! Dimensions on a sheet: what is measured, and how that is drawn.
+//! Dimensions on a sheet ([`Dimension`](super::sheet::Dimension)): what is measured, and the text.
 
-use super::sheet::Mark;
 use crate::math::DVec2;
 
 /// Measured quantity of a dimension; all points in the sheet's millimetres, y down.
@@ -51,21 +50,4 @@ pub struct DimensionText {
     pub height: f64,
     /// Index into [`super::sheet::Sheet::pens`].
     pub pen: usize,
-}
-
-/// A dimension: what it measures, for programs that measure anew, and how it is drawn.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Dimension {
-    /// Measured quantity.
-    pub measure: Measure,
-    /// True value: a length in units of the model, or an angle in radians.
-    pub value: f64,
-    /// Units of the model per millimetre of the sheet.
-    pub units_per_millimetre: f64,
-    /// True if the text says just the value, with the usual sign before it.
-    pub is_plain: bool,
-    /// Strokes and fills: the lines, and the arrows.
-    pub marks: Vec<Mark>,
-    /// The text.
-    pub text: DimensionText,
 }

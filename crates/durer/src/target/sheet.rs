@@ -2,7 +2,7 @@
 //! PDF, DXF and HPGL take, and what is painted into pixels.
 
 use super::Curve;
-use super::dimension::Dimension;
+use super::dimension::{DimensionText, Measure};
 use super::drawing::Anchor;
 use crate::math::DVec2;
 
@@ -67,6 +67,23 @@ pub enum Mark {
     },
     /// A dimension with its lines, arrows and text.
     Dimension(Box<Dimension>),
+}
+
+/// A dimension: what it measures, for programs that measure anew, and how it is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dimension {
+    /// Measured quantity.
+    pub measure: Measure,
+    /// True value: a length in units of the model, or an angle in radians.
+    pub value: f64,
+    /// Units of the model per millimetre of the sheet.
+    pub units_per_millimetre: f64,
+    /// True if the text says just the value, with the usual sign before it.
+    pub is_plain: bool,
+    /// Strokes and fills: the lines, and the arrows.
+    pub marks: Vec<Mark>,
+    /// The text.
+    pub text: DimensionText,
 }
 
 /// Marks that are shown or hidden together.

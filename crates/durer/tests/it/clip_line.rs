@@ -3,10 +3,10 @@
 use durer::clip::attribute::Source;
 use durer::clip::line::batch::{self, Clipped, Segments};
 use durer::clip::line::homogeneous::clip_homogeneous;
-use durer::clip::line::polyline::{self, Part};
 use durer::clip::line::{ConvexPolygon, LineClipper, Segment, cyrus_beck};
 use durer::clip::polygon::Shapes;
 use durer::clip::polygon::rectangle::clip_lines;
+use durer::clip::polyline::{self, Part};
 use durer::math::{DVec2, DVec3, Rect};
 use durer::trace::NoTrace;
 

@@ -1,8 +1,8 @@
 //! `overlay()` on the published suites.
 
-use durer::clip::line::polyline::{self, Part};
 use durer::clip::polygon::overlay::{Options, Output, overlay};
 use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
+use durer::clip::polyline::{self, Part};
 use durer::math::DVec2;
 use durer::trace::NoTrace;
 use serde_json::Value;

@@ -1,9 +1,9 @@
 //! Coverages stay coverages: what neighbours share is cut alike.
 
-use durer::clip::line::polyline;
 use durer::clip::polygon::rectangle::Prepared;
 use durer::clip::polygon::validity::{Touching, is_valid};
 use durer::clip::polygon::{BooleanOp, FillRule, Shapes, coverage};
+use durer::clip::polyline;
 use durer::math::{DVec2, orient2d_value};
 use durer::trace::NoTrace;
 use proptest::prelude::*;

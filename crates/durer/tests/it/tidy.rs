@@ -1,5 +1,6 @@
 //! Invariants of the source itself: dependencies run one way, no file is opened, nothing is printed.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -144,4 +145,117 @@ fn doc_comments_begin_with_nouns_and_verbs() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Files and folders by their paths as modules.
+type Modules = BTreeMap<Vec<String>, PathBuf>;
+
+/// Returns the modules of a crate, without those of tests.
+fn modules(root: &Path) -> Modules {
+    let mut files = Vec::new();
+    sources(root, &mut files);
+    files.retain(|path| !path.ends_with("tests.rs"));
+    let module = |path: PathBuf| {
+        let relative = path.strip_prefix(root).expect("below src").with_extension("");
+        let parts = relative.components().map(|c| c.as_os_str().to_string_lossy().into_owned());
+        let mut parts: Vec<String> = parts.collect();
+        if ["mod", "lib", "main"].contains(&parts.last().expect("a name").as_str()) {
+            parts.pop();
+        }
+        (parts, path)
+    };
+    files.into_iter().map(module).collect()
+}
+
+/// Returns the paths that begin with `crate`, `super` or `self` in the code of a module.
+fn paths(code: &str, module: &[String]) -> Vec<Vec<String>> {
+    let is_name = |c: char| c.is_alphanumeric() || c == '_';
+    let mut found = Vec::new();
+    for start in ["crate::", "super::", "self::"] {
+        for (at, _) in code.match_indices(start) {
+            if code[..at].ends_with(|c: char| is_name(c) || c == ':') {
+                continue;
+            }
+            let (mut rest, mut path) = (&code[at..], Vec::from(module));
+            while let Some((name, after)) =
+                rest.split_once("::").filter(|(name, _)| name.chars().all(is_name))
+            {
+                match name {
+                    "crate" => path.clear(),
+                    "super" => drop(path.pop()),
+                    "self" => {}
+                    name => path.push(name.to_owned()),
+                }
+                rest = after;
+            }
+            let heads = match rest.strip_prefix('{') {
+                Some(group) => heads(group),
+                None => vec![rest.split(|c| !is_name(c)).next().unwrap_or_default()],
+            };
+            found.extend(heads.into_iter().map(|head| [&path[..], &[head.to_owned()]].concat()));
+        }
+    }
+    found
+}
+
+/// Returns the first names of the members of a group of a `use`, which ends at its brace.
+fn heads(group: &str) -> Vec<&str> {
+    let (mut heads, mut depth, mut start) = (Vec::new(), 0, 0);
+    for (at, c) in group.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' | ',' if depth == 0 => {
+                let member = group[start..at].trim();
+                heads.push(member.split([':', ' ']).next().unwrap_or_default());
+                start = at + 1;
+                if c == '}' {
+                    break;
+                }
+            }
+            '}' => depth -= 1,
+            _ => {}
+        }
+    }
+    heads
+}
+
+/// Returns which neighbours in the same folder use which, folder by folder: below `a`, `b::c` uses `d` where `a::b::c`
+/// uses `a::d`.
+fn neighbours(modules: &Modules) -> BTreeMap<Vec<String>, BTreeSet<[String; 2]>> {
+    let mut folders = BTreeMap::<_, BTreeSet<[String; 2]>>::new();
+    for (module, path) in modules {
+        for mut used in paths(&code(path), module) {
+            while !used.is_empty() && !modules.contains_key(&used) {
+                used.pop();
+            }
+            let common = module.iter().zip(&used).take_while(|(a, b)| a == b).count();
+            if let (Some(from), Some(to)) = (module.get(common), used.get(common)) {
+                let arrows = folders.entry(module[..common].to_vec()).or_default();
+                arrows.insert([from.clone(), to.clone()]);
+            }
+        }
+    }
+    folders
+}
+
+/// Checks that files and folders beside each other do not use each other in a circle.
+#[test]
+fn no_circles_between_neighbours() {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    for name in ["durer", "durer-formats", "durer-cli"] {
+        let folders = neighbours(&modules(&crates.join(name).join("src")));
+        assert!(folders.values().map(BTreeSet::len).sum::<usize>() > 50, "{name}: none found");
+        for (folder, mut arrows) in folders {
+            // What uses nothing that uses something else is in no circle.
+            loop {
+                let before = arrows.len();
+                let users: BTreeSet<String> = arrows.iter().map(|[from, _]| from.clone()).collect();
+                arrows.retain(|[_, to]| users.contains(to));
+                if arrows.len() == before {
+                    break;
+                }
+            }
+            assert!(arrows.is_empty(), "{name}, in {folder:?}: {arrows:?}");
+        }
+    }
 }

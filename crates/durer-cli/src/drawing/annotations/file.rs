@@ -1,8 +1,8 @@
 //! `--annotations`: dimensions, notes and threads from a TOML file.
 
-use super::args::thread;
 use crate::failure::Failure;
 use crate::input;
+use crate::options::drawing::thread;
 use durer::annotate::{Along, Place, Request, Side, Thread, What};
 use durer::math::DVec3;
 use std::path::Path;

@@ -1,51 +1,19 @@
 //! Annotations of drawings, as the options ask for them.
 
-pub mod args;
 mod file;
 
 use crate::failure::Failure;
-use args::{AnnotationArgs, Dimensioned};
+use crate::options::drawing::{AnnotationArgs, Dimensioned};
 use durer::annotate::{self, Annotations, Feature, Shown};
-use durer::math::DVec3;
 use durer::paper::LaidOut;
 use durer::scene::Scene;
 use durer::target::drawing::Drawing;
 use durer::visibility::object::{Faces, Weld};
-use serde::Serialize;
 
 /// The annotations asked for, and the round parts of the model.
 pub struct Annotated {
     annotations: Annotations,
     pub features: Vec<Feature>,
-}
-
-/// A round part, as `--json` lists it.
-#[derive(Debug, Serialize)]
-pub struct FeatureReport {
-    /// `hole 1`, …
-    pub name: String,
-    /// The name of its object; left out where it has none.
-    #[serde(skip_serializing_if = "String::is_empty")]
-    pub object: String,
-    /// In units of the model.
-    pub diameter: f64,
-    /// Ends of its axis.
-    pub ends: [[f64; 3]; 2],
-    /// The angle of the arc that is there, degrees.
-    pub angle: f64,
-}
-
-impl From<&Feature> for FeatureReport {
-    fn from(feature: &Feature) -> Self {
-        let c = &feature.cylinder;
-        Self {
-            name: feature.name.clone(),
-            object: feature.object.clone(),
-            diameter: 2.0 * c.radius,
-            ends: c.ends.map(|p: DVec3| p.to_array()),
-            angle: c.angle.to_degrees(),
-        }
-    }
 }
 
 impl Annotated {

@@ -1,6 +1,6 @@
 //! Geometry objects: `coordinates` by their type, with what is repaired.
 
-use super::object::{Cursor, RawMember, Text};
+use super::object::{Cursor, RawMember, Text, kind};
 use crate::geo::{Dimensions, Geometry, MAX_DEPTH, Member, Points, Warnings};
 use crate::{Place, Result};
 use durer::math::DVec2;
@@ -83,7 +83,7 @@ impl Geometries {
             return Err(text.error("geometries are nested too deep"));
         }
         let members = text.members()?;
-        let kind = super::read::kind(&members)
+        let kind = kind(&members)
             .ok_or_else(|| text.error("a geometry needs the member \"type\", a string"))?;
         let unknown = || {
             text.error(format!("`{}` is no type of geometry", crate::text::quote(kind.as_bytes())))

@@ -7,6 +7,6 @@ mod scan;
 mod write;
 
 pub(super) use coordinates::{finish_line, finish_ring};
-pub(super) use object::{Cursor, RawMember, Text};
-pub(super) use read::{Reader, kind};
+pub(super) use object::{Cursor, RawMember, Text, kind};
+pub(super) use read::Reader;
 pub(super) use write::{Flat, position, write_feature, write_member, write_members};

@@ -234,3 +234,9 @@ fn is_number_of_json(text: &[u8]) -> bool {
     };
     fraction && whole > 0 && (whole == 1 || text[0] != b'0')
 }
+
+/// Returns the value of the member `type`, if it is a string.
+pub fn kind(members: &[RawMember<'_>]) -> Option<String> {
+    let (_, value) = members.iter().rfind(|(name, _)| name.as_bytes() == b"\"type\"")?;
+    serde_json::from_slice(value.as_bytes()).ok()
+}

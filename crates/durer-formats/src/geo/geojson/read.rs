@@ -1,7 +1,7 @@
 //! Features from a stream, one at a time; only the feature at hand is held.
 
 use super::coordinates::{Geometries, further_members};
-use super::object::{RawMember, Text};
+use super::object::{RawMember, Text, kind};
 use super::scan::{Progress, Scan};
 use crate::geo::{Feature, Member, Warnings};
 use crate::{Error, Place, Result};
@@ -368,12 +368,6 @@ impl<R: Read> Reader<R> {
             Err(whole.error("a Feature needs the member \"geometry\""))
         }
     }
-}
-
-/// Returns the value of the member `type`, if it is a string.
-pub fn kind(members: &[RawMember<'_>]) -> Option<String> {
-    let (_, value) = members.iter().rfind(|(name, _)| name.as_bytes() == b"\"type\"")?;
-    serde_json::from_slice(value.as_bytes()).ok()
 }
 
 fn unsupported(place: Place, what: &str, hint: &str) -> Error {

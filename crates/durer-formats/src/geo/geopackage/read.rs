@@ -2,8 +2,8 @@
 
 use super::blob;
 use super::contents::{Contents, Layer, contents};
+use crate::geo::beside::Beside;
 use crate::geo::members::{object, quoted};
-use crate::geo::reader::Beside;
 use crate::geo::{Feature, Geometry, Member, System, Warnings, number};
 use crate::sqlite::{Column, Database, Rows, Value};
 use crate::text::Tally;

@@ -5,8 +5,8 @@
 
 use super::{APPLICATION, blob};
 use crate::geo::members::members;
+use crate::geo::members::with_id;
 use crate::geo::schema::{FieldKind, Schema};
-use crate::geo::writer::with_id;
 use crate::geo::{Feature, Member, System, crs, wkb};
 use crate::sqlite::{NewDatabase, NewTable, Value, index, record};
 use crate::{Error, Place, Result, Warning};

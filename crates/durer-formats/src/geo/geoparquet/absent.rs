@@ -1,6 +1,6 @@
 //! A replacement for GeoParquet without the feature `geoparquet`.
 
-use crate::geo::reader::Beside;
+use crate::geo::beside::Beside;
 use crate::geo::{Feature, System, Warnings};
 use crate::{Error, Place, Result};
 use std::io::Write;

@@ -2,8 +2,8 @@
 
 use super::values::{Meaning, json};
 use crate::foreign;
+use crate::geo::beside::Beside;
 use crate::geo::members::object;
-use crate::geo::reader::Beside;
 use crate::geo::{Feature, Geometry, Member, System, Warnings, wkb};
 use crate::text::Tally;
 use crate::{Error, Place, Result};

@@ -2,8 +2,8 @@
 
 use super::{days, projjson};
 use crate::geo::members::members;
+use crate::geo::members::with_id;
 use crate::geo::schema::{FieldKind, Schema};
-use crate::geo::writer::with_id;
 use crate::geo::{Feature, Geometry, System, wkb};
 use crate::{Error, Result};
 use durer::math::Rect;

@@ -8,7 +8,7 @@ mod record;
 mod rings;
 mod write;
 
-use super::reader::Beside;
+use super::beside::Beside;
 use super::{Feature, System, Warnings};
 use crate::text::Tally;
 use crate::{Error, Place, Result};

@@ -29,7 +29,6 @@ pub mod liang_barsky;
 pub mod midpoint;
 pub mod nicholl_lee_nicholl;
 mod passage;
-pub mod polyline;
 
 pub use border::{ClipBox, End};
 pub use convex::{ConvexPolygon, Edge, HalfPlane, HalfSpace};

@@ -2,7 +2,7 @@
 //! geometry and the mask, keeps heights and measures, and gives valid polygons.
 //!
 //! Points are located, lines are clipped by [`rectangle::clip_lines`](super::polygon::rectangle::clip_lines) or
-//! [`polyline`](super::line::polyline), valid polygons by the rectangle clip, all others by
+//! [`polyline`](super::polyline), valid polygons by the rectangle clip, all others by
 //! [`coverage`](super::polygon::coverage), which gives both sides of a common border the same points. A named
 //! [`Algorithm`] can be asked for in its place.
 //!
@@ -23,14 +23,18 @@
 
 mod area;
 mod cutter;
+mod fix;
 mod mean_value;
 mod rules;
 mod segments;
+mod union;
 mod values;
 
 pub use area::Area;
 pub use cutter::{Algorithm, Cut, Cutter};
+pub use fix::{Fixed, is_valid, match_points};
 pub use rules::{Made, Rules};
+pub use union::Union;
 
 use super::polygon::Shapes;
 use super::polygon::rectangle::Prepared;

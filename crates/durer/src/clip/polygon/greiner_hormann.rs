@@ -4,7 +4,8 @@
 //! 17(2), 1998. Touching vertices and common edges after Foster, Hormann and Popa, 2019; where
 //! several borders pass one point, each pair of them is linked there (`node.rs`).
 
-use super::cyclic::{Linked, Lists};
+use super::cyclic::Linked;
+use super::lists::Lists;
 use super::walk::walk_all;
 use super::{BooleanOp, Shapes};
 use crate::Result;
@@ -12,7 +13,7 @@ use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 
-pub use super::walk::{Mark, Operand, Options, Step, replay};
+pub use super::steps::{Mark, Operand, Options, Step, replay};
 
 /// The facts.
 pub const INFO: Info = Info {

@@ -5,7 +5,7 @@
 //! Every such pair gets two linked vertices of its own, all at the same place. Where edges run
 //! together, the subject lies beside the clip, on the side that the operation asks for.
 
-use super::cyclic::{Lists, NOT_SIMPLE};
+use super::lists::{Lists, NOT_SIMPLE, join};
 use crate::Result;
 use crate::math::{DVec2, in_sector};
 use std::cmp::Ordering;
@@ -162,12 +162,4 @@ impl Node {
         };
         self.is_left(m, n.to) == goes
     }
-}
-
-/// Links the vertices of a crossing; `enters` tells whether the subject comes in.
-pub(super) fn join(lists: &mut [Lists; 2], [s, c]: [usize; 2], enters: bool) {
-    let vertex = &mut lists[0].vertices[s];
-    (vertex.twin, vertex.enters) = (Some(c), enters);
-    let vertex = &mut lists[1].vertices[c];
-    (vertex.twin, vertex.enters) = (Some(s), !enters);
 }

@@ -13,7 +13,7 @@ use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 
-pub use super::walk::{Mark, Operand, Options, Step, replay};
+pub use super::steps::{Mark, Operand, Options, Step, replay};
 
 /// The facts.
 pub const INFO: Info = Info {

@@ -9,12 +9,14 @@
 
 pub mod coverage;
 pub mod douglas_peucker;
+mod geometry;
 mod index;
 mod network;
 mod removal;
 pub mod visvalingam;
 
 pub use coverage::Coverage;
+pub use geometry::{Amount, Dropped, simplify};
 
 use crate::math::DVec2;
 use crate::trace::NoTrace;

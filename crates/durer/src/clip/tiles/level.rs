@@ -1,8 +1,9 @@
 //! The features of a pyramid on one of its levels.
 
 use super::Tile;
-use super::piece::{Body, Shape};
-use super::pyramid::{Options, Piece, Pyramid, Ready, cells, runs};
+use super::options::{Options, cells};
+use super::piece::{Body, Piece, Shape};
+use super::ready::{Ready, runs};
 use super::walk::Content;
 use crate::Result;
 use crate::clip::polygon::{FillRule, Shapes};
@@ -11,7 +12,8 @@ use std::collections::BTreeMap;
 
 /// All features on one level.
 pub struct Level<'a> {
-    pyramid: &'a Pyramid,
+    features: &'a [Ready],
+    options: &'a Options,
     pub zoom: u8,
     /// The side of the world in cells.
     cells: f64,
@@ -21,16 +23,16 @@ pub struct Level<'a> {
 
 impl<'a> Level<'a> {
     /// Creates the features of a pyramid.
-    pub fn new(pyramid: &'a Pyramid, zoom: u8) -> Self {
-        let cells = cells(&pyramid.options, zoom);
-        let level = Self { pyramid, zoom, cells, squares: Vec::new() };
+    pub fn new(features: &'a [Ready], options: &'a Options, zoom: u8) -> Self {
+        let cells = cells(options, zoom);
+        let level = Self { features, options, zoom, cells, squares: Vec::new() };
         Self { squares: level.squares(), ..level }
     }
 
     /// Returns the side of a square that polygons smaller than it are joined to, in cells. The last level has
     /// all that have an area there.
     fn tiny(&self) -> f64 {
-        let Options { tiny, zooms, .. } = &self.pyramid.options;
+        let Options { tiny, zooms, .. } = self.options;
         if self.zoom == *zooms.end() { tiny.min(1.0) } else { *tiny }
     }
 
@@ -45,7 +47,7 @@ impl<'a> Level<'a> {
         const NEAR: f64 = 8.0;
         let side = self.tiny() / self.cells;
         let (mut squares, mut sums) = (Vec::new(), BTreeMap::<(usize, i64, i64), f64>::new());
-        for feature in &self.pyramid.features {
+        for feature in self.features {
             let Body::Areas(shapes) = &feature.body else { continue };
             for (polygon, &area) in shapes.polygons().zip(&feature.areas) {
                 let mut full = false;
@@ -65,9 +67,9 @@ impl<'a> Level<'a> {
 
     /// Returns all features, in all worlds from which they are seen in the first.
     pub fn contents(&'a self) -> Vec<Part<'a>> {
-        let reach = f64::from(self.pyramid.options.buffer) / self.cells + self.margin();
+        let reach = f64::from(self.options.buffer) / self.cells + self.margin();
         let mut contents = Vec::new();
-        for (i, feature) in self.pyramid.features.iter().enumerate() {
+        for (i, feature) in self.features.iter().enumerate() {
             if feature.body.points().is_empty() {
                 continue;
             }
@@ -97,7 +99,7 @@ impl<'a> Level<'a> {
 
     /// Returns the window that a tile's features are clipped to, in cells.
     fn window(&self, tile: Tile) -> Result<Rect> {
-        let buffer = DVec2::splat(self.pyramid.options.buffer.into());
+        let buffer = DVec2::splat(self.options.buffer.into());
         let square = self.square(tile).map_or([DVec2::ZERO; 2], |s| [s.min(), s.max()]);
         Rect::new(square[0] - buffer, square[1] + buffer)
     }
@@ -106,7 +108,7 @@ impl<'a> Level<'a> {
     pub fn count_of_boxes(&self) -> u64 {
         let side = self.cells / f64::from(1u32 << self.zoom);
         let last = f64::from((1u32 << self.zoom) - 1);
-        let reach = f64::from(self.pyramid.options.buffer);
+        let reach = f64::from(self.options.buffer);
         let mut count = 0u64;
         for part in self.contents() {
             let around = part.around();
@@ -131,7 +133,7 @@ pub struct Part<'a> {
 
 impl Part<'_> {
     fn ready(&self) -> &Ready {
-        &self.level.pyramid.features[self.feature]
+        &self.level.features[self.feature]
     }
 
     /// Returns a box around the whole feature, in cells.
@@ -189,7 +191,7 @@ impl Part<'_> {
 
     /// Returns the finished piece for its tile.
     pub fn finished(self, tile: Tile) -> Result<Option<Piece>> {
-        let side = i64::from(self.level.pyramid.options.extent);
+        let side = i64::from(self.level.options.extent);
         let origin = I64Vec2::new(tile.x.into(), tile.y.into()) * side;
         let shape = match &self.cut {
             Some(cut) => cut.snapped(origin, FillRule::EvenOdd)?,

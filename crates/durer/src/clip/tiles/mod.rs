@@ -2,17 +2,25 @@
 //! the world, x counts to the east, y to the south.
 //!
 //! [`walk()`] goes down from the world to the tiles of one level and cuts what lies in them on the way;
-//! [`Pyramid`] makes of features what vector tiles have: simplified, on a grid of whole numbers, for many levels.
+//! [`Tiling`] cuts geometries as they are; [`Pyramid`] makes of features what vector tiles have: simplified, on a grid of whole numbers, for many levels.
 
 mod apart;
 mod level;
 pub mod mercator;
+mod options;
 mod piece;
+mod place;
 mod pyramid;
+mod ready;
+mod tiling;
 mod walk;
 
-pub use piece::{Body, Shape};
-pub use pyramid::{Feature, Options, Piece, Pyramid, WORLDS};
+pub use options::Options;
+pub use piece::{Body, Piece, Shape};
+pub use place::{Placed, extent, place};
+pub use pyramid::Pyramid;
+pub use ready::{Feature, WORLDS};
+pub use tiling::{Reach, Subject, Tiling};
 pub use walk::{Content, count, walk};
 
 use super::hilbert;
@@ -26,6 +34,16 @@ pub struct Tile {
     pub x: u32,
     /// Counts to the south.
     pub y: u32,
+}
+
+/// Coordinates of what is placed on tiles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Coordinates {
+    /// Longitude and latitude in degrees.
+    #[default]
+    LonLat,
+    /// Web Mercator (EPSG:3857), in metres.
+    Mercator,
 }
 
 impl std::fmt::Display for Tile {

@@ -1,8 +1,9 @@
 //! Geometry in the tiles' plane, and on the tiles' grid.
 
-use super::apart;
+use super::{Tile, apart, mercator};
 use crate::Result;
 use crate::clip::polygon::{BooleanOp, FillRule, Shapes, overlay, rectangle};
+use crate::geometry::{Geometry, Points};
 use crate::math::{DVec2, I64Vec2, Rect};
 use crate::trace::NoTrace;
 
@@ -31,6 +32,16 @@ pub enum Shape {
     Lines(Vec<Vec<I64Vec2>>),
     /// Valid polygons.
     Areas(Shapes<I64Vec2>),
+}
+
+/// A part of a feature in a tile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Piece {
+    /// The index of the feature.
+    pub feature: usize,
+    /// On the grid of the tile: (0, 0) is its upper left corner, y counts downwards. Outer rings have positive signed
+    /// areas in these coordinates, holes negative ones.
+    pub shape: Shape,
 }
 
 impl Body {
@@ -103,6 +114,33 @@ impl Shape {
             Self::Points(points) => points.is_empty(),
             Self::Lines(lines) => lines.is_empty(),
             Self::Areas(shapes) => shapes.is_empty(),
+        }
+    }
+
+    /// Returns a shape of a tile whose side has so many cells as a geometry in longitude and latitude; outer rings run
+    /// counter-clockwise.
+    pub fn in_degrees(&self, tile: Tile, extent: u32) -> Geometry {
+        let side = 1.0 / f64::from(1u32 << tile.zoom);
+        let corner = DVec2::new(tile.x.into(), tile.y.into());
+        let degrees =
+            |p: &I64Vec2| mercator::unproject((corner + p.as_dvec2() / f64::from(extent)) * side);
+        let run = |points: &[I64Vec2]| Points::flat(points.iter().map(degrees).collect());
+        let ring = |points: &[I64Vec2]| Points::flat(points.iter().rev().map(degrees).collect());
+        match self {
+            Self::Points(points) if points.len() == 1 => Geometry::Point(run(points)),
+            Self::Points(points) => Geometry::MultiPoint(run(points)),
+            Self::Lines(lines) if lines.len() == 1 => Geometry::LineString(run(&lines[0])),
+            Self::Lines(lines) => {
+                Geometry::MultiLineString(lines.iter().map(|line| run(line)).collect())
+            }
+            Self::Areas(shapes) => {
+                let polygon = shapes.polygons().map(|p| p.rings().map(ring).collect());
+                let mut polygons: Vec<Vec<Points>> = polygon.collect();
+                match polygons.len() {
+                    1 => Geometry::Polygon(polygons.remove(0)),
+                    _ => Geometry::MultiPolygon(polygons),
+                }
+            }
         }
     }
 

@@ -6,6 +6,9 @@ use crate::math::DVec2;
 use crate::target::Arc;
 use std::f64::consts::TAU;
 
+/// The fewest chords of a circular arc.
+pub(super) const LEAST: usize = 4;
+
 /// Arcs that turn further are none: what ends where it began is a whole circle.
 const FURTHEST: f64 = TAU - 0.05;
 

@@ -3,7 +3,6 @@
 use super::bends::Bends;
 use super::cubic::{self, Ways};
 use super::measure::Run;
-use super::stretch::LEAST_CIRCLE;
 use super::{EXACT, circle, longest};
 use crate::math::DVec2;
 use crate::target::Piece;
@@ -39,7 +38,7 @@ fn longest_piece(
     }
     let tolerance = bends.tolerance;
     let line = longest_line(bends, from, to);
-    let arc = longest(from, LEAST_CIRCLE, to, |end| {
+    let arc = longest(from, circle::LEAST, to, |end| {
         circle::loose(&Run::of_all(bends, from, end), bends.turned(from, end), tolerance)
     });
     let curve = first_ways(bends, from, to, before).into_iter().flatten().find_map(|first| {

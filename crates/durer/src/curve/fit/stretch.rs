@@ -6,8 +6,7 @@ use super::{circle, ellipse, longest, rest};
 use crate::target::{Arc, Piece};
 use std::f64::consts::PI;
 
-/// The fewest chords of a circular arc, and of an elliptical one.
-pub(super) const LEAST_CIRCLE: usize = 4;
+/// The fewest chords of an elliptical arc.
 const LEAST_ELLIPSE: usize = 6;
 
 /// An arc on which points lie exactly is taken where one to which they are near is no longer than so many times it:
@@ -27,7 +26,7 @@ struct Found {
 /// Appends the pieces of a stretch, each with the index of the point in which it begins.
 pub(super) fn fit(bends: &Bends, from: usize, to: usize, pieces: &mut Vec<(usize, Piece)>) {
     let mut at = from;
-    if to - from >= LEAST_CIRCLE {
+    if to - from >= circle::LEAST {
         for found in prolonged(bends, exact_arcs(bends, from, to), from, to) {
             rest::fit(bends, at, found.from, pieces);
             pieces.push((found.from, Piece::Arc(found.arc, bends.points[found.to])));
@@ -41,7 +40,7 @@ pub(super) fn fit(bends: &Bends, from: usize, to: usize, pieces: &mut Vec<(usize
 fn exact_arcs(bends: &Bends, from: usize, to: usize) -> Vec<Found> {
     let mut arcs = Vec::new();
     let mut at = from;
-    while at + LEAST_CIRCLE <= to {
+    while at + circle::LEAST <= to {
         match exact_arc(bends, at, to) {
             Ok(found) => {
                 at = found.to;
@@ -65,8 +64,8 @@ fn exact_arc(bends: &Bends, from: usize, to: usize) -> Result<Found, usize> {
     }
     let tolerance = bends.tolerance;
     // Folds tell nothing, so that it takes more points to be certain.
-    let more = if (from..to.min(from + LEAST_CIRCLE)).any(|i| bends.is_fold(i)) { 3 } else { 1 };
-    let circle = longest(from, LEAST_CIRCLE * more, to, |end| {
+    let more = if (from..to.min(from + circle::LEAST)).any(|i| bends.is_fold(i)) { 3 } else { 1 };
+    let circle = longest(from, circle::LEAST * more, to, |end| {
         circle::exact(&Run::new(bends, from, end), bends.turned(from, end), tolerance)
     });
     if let Some((end, arc)) = circle
@@ -93,7 +92,7 @@ fn is_certain(bends: &Bends, from: usize, to: usize, (end, arc): (usize, &Arc)) 
     if end == to || arc.turn.abs() >= CERTAIN {
         return true;
     }
-    let near = longest(from, LEAST_CIRCLE, to, |end| {
+    let near = longest(from, circle::LEAST, to, |end| {
         circle::loose(&Run::of_all(bends, from, end), bends.turned(from, end), bends.tolerance)
     });
     let length = |end: usize| bends.along[end] - bends.along[from];
@@ -103,7 +102,7 @@ fn is_certain(bends: &Bends, from: usize, to: usize, (end, arc): (usize, &Arc)) 
 /// Returns whether the polyline turns one way at the next points: this excludes most runs that are
 /// no arc.
 fn goes_round(bends: &Bends, from: usize) -> bool {
-    let turns = &bends.turns[from + 1..from + LEAST_CIRCLE];
+    let turns = &bends.turns[from + 1..from + circle::LEAST];
     turns.iter().all(|t| *t > 0.0) || turns.iter().all(|t| *t < 0.0)
 }
 

@@ -5,7 +5,7 @@
 //! already, and go the way of those around them. In the end the surface as a whole is turned if that gives more of it
 //! the direction of the stronger curvature. O(n log n).
 
-use super::directions::Bent;
+use super::bent::Bent;
 use super::seen::Seen;
 use super::tensor::Tensor;
 use std::cmp::Reverse;

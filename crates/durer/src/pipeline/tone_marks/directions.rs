@@ -7,6 +7,7 @@
 //! Of the two principal directions each surface takes one all over ([`branches`]), mostly that of the stronger
 //! curvature.
 
+use super::bent::Bent;
 use super::branches;
 use super::seen::Seen;
 use super::tensor::Tensor;
@@ -127,20 +128,6 @@ fn evened(seen: &Seen, own: Vec<Tensor>, how: &Evening) -> Vec<Tensor> {
         std::mem::swap(&mut now, &mut next);
     }
     now
-}
-
-/// The two principal directions of a pixel's surface, that of the stronger curvature first.
-pub struct Bent {
-    pub directions: [DVec3; 2],
-    /// Clarity of the directions: 0 where the surface is flat or bends alike in all directions,
-    /// towards 1.
-    pub weight: f64,
-    /// Excess of the first curvature over the second, from 0 towards 1.
-    pub lead: f64,
-}
-
-impl Bent {
-    const NOT: Self = Self { directions: [DVec3::ZERO; 2], weight: 0.0, lead: 0.0 };
 }
 
 /// The change of a surface from pixel to pixel.

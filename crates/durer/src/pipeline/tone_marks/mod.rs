@@ -4,6 +4,7 @@
 //! mark, so marks end within a fraction of a pen's width of where surfaces do. O(pixels), and what
 //! [`crate::curve::streamlines`] and [`crate::raster::stipple`] take.
 
+mod bent;
 mod branches;
 mod directions;
 mod seen;

@@ -9,10 +9,10 @@ use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
 use super::FillRule;
-use super::band::is_convex;
 use super::edge::{BITS, Edge, ONE, Steps, snap};
 use super::ramp::{Eight, Ramp, area, half_inverse};
 use super::sweep::{Sink, lanes};
+use super::turns::is_convex;
 use crate::math::DVec2;
 use crate::raster::bands::BAND_ROWS;
 

@@ -219,3 +219,4 @@ pub(crate) fn check_size(width: u32, height: u32) -> Result<()> {
 
 #[cfg(test)]
 mod tests;
+mod turns;

@@ -1,12 +1,15 @@
 //! From pieces to the lines of a drawing: each drawn once, chained, simplified, ordered.
 
 use super::chain::chains;
-use super::overlap::{Near, Piece, drawn_once};
-use super::page::{GridPoint, Page};
+use super::overlap::{Near, drawn_once};
+use super::page::{GridPoint, Page, Projected};
+use super::piece::Piece;
 use super::simplify::simplify;
 use super::stubs::without_stubs;
 use super::zigzag::without_zigzags;
 use crate::target::drawing::{Line, LineClass};
+use crate::view::picture_plane::PicturePlane;
+use crate::visibility::object::Faces;
 use crate::{Error, Result};
 
 /// Parts of lines shorter than this many steps come from rounding: 2⁻²² of the page.
@@ -101,4 +104,20 @@ pub(super) fn arrange(page: &Page, pieces: Pieces, how: How) -> Vec<Line> {
         closed: c.closed,
     };
     chains.into_iter().map(line).collect()
+}
+
+/// Returns the result of `pieces` for the faces on their page; everything else is freed before lines are
+/// made of it.
+pub(super) fn on_page(
+    faces: &Faces,
+    plane: PicturePlane,
+    pieces: impl FnOnce(&Projected) -> Pieces,
+) -> Option<(Page, Pieces)> {
+    let projected = Projected::new(faces, plane)?;
+    Some((projected.page, pieces(&projected)))
+}
+
+/// Returns the lines of what [`on_page`] gives.
+pub(super) fn arranged(found: Option<(Page, Pieces)>, how: How) -> Vec<Line> {
+    found.map(|(page, pieces)| arrange(&page, pieces, how)).unwrap_or_default()
 }

@@ -5,7 +5,7 @@
 //! *Suggestive contours for conveying shape*, SIGGRAPH 2003, that is averaged over the faces around each
 //! vertex and linear along edges. O(n).
 
-use super::smooth_silhouette::Crossing;
+use super::crossing::Crossing;
 use super::smooth_surface::SmoothSurface;
 use crate::view::picture_plane::PicturePlane;
 use crate::visibility::object::Faces;

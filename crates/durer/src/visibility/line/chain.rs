@@ -3,8 +3,8 @@
 //! At each point where ends of one class and invisibility meet, the pair that turns least is joined
 //! first, then the next, until one or none is left. O(n log n).
 
-use super::overlap::Piece;
 use super::page::GridPoint;
+use super::piece::Piece;
 use crate::target::drawing::LineClass;
 
 /// A polyline on the grid.

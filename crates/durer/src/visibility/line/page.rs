@@ -3,9 +3,7 @@
 //! All decisions in the plane are made with integers and are exact; what projects to one place up to
 //! rounding is at one place.
 
-use super::arrange::{How, Pieces, arrange};
 use crate::math::{DVec2, DVec3, Rect};
-use crate::target::drawing::Line;
 use crate::view::picture_plane::{Borders, PicturePlane, PlanePoint};
 use crate::visibility::object::Faces;
 
@@ -193,22 +191,6 @@ impl Projected {
         let snapped = ends.map(|p| self.page.snap(self.plane.plane_from_view(p)));
         snapped.iter().all(|v| v.depth.is_finite()).then_some(snapped)
     }
-}
-
-/// Returns the result of `pieces` for the faces on their page; everything else is freed before lines are
-/// made of it.
-pub(super) fn on_page(
-    faces: &Faces,
-    plane: PicturePlane,
-    pieces: impl FnOnce(&Projected) -> Pieces,
-) -> Option<(Page, Pieces)> {
-    let projected = Projected::new(faces, plane)?;
-    Some((projected.page, pieces(&projected)))
-}
-
-/// Returns the lines of what [`on_page`] gives.
-pub(super) fn arranged(found: Option<(Page, Pieces)>, how: How) -> Vec<Line> {
-    found.map(|(page, pieces)| arrange(&page, pieces, how)).unwrap_or_default()
 }
 
 /// Extent of the projected points.

@@ -7,8 +7,9 @@
 //! that is not far. O(n) for lines that do not crowd.
 
 use super::chain::{Walk, point, walks};
-use super::overlap::{Piece, distance};
+use super::overlap::distance;
 use super::page::GridPoint;
+use super::piece::Piece;
 use super::table::Table;
 use crate::target::drawing::LineClass;
 

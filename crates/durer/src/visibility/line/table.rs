@@ -1,7 +1,7 @@
 //! Pieces of lines by place: a uniform grid.
 
-use super::overlap::Piece;
 use super::page::GridPoint;
+use super::piece::Piece;
 
 /// A uniform grid of lists of pieces.
 pub(super) struct Table {

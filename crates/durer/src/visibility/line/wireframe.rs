@@ -4,11 +4,11 @@
 //! Joint Computer Conference, 1963. Object space; O(n log n) for n edges. The picture is ambiguous:
 //! nothing says which side is in front (Necker's cube), and several bodies may have the same one.
 
-use super::arrange::{How, Pieces, arrange};
+use super::arrange::{How, Pieces, arrange, arranged, on_page};
 use super::edge_lines::NO_ITEM;
 use super::marks::marks;
-use super::overlap::Piece;
-use super::page::{Page, Projected, arranged, on_page};
+use super::page::{Page, Projected};
+use super::piece::Piece;
 use crate::Result;
 use crate::info::{Class, Info};
 use crate::math::DVec2;

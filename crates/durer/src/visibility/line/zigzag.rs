@@ -5,8 +5,8 @@
 //! twice, and shows all of it, is noise of the mesh. What is between the turns becomes one point. O(n log n).
 
 use super::chain::{point, walks};
-use super::overlap::Piece;
 use super::page::GridPoint;
+use super::piece::Piece;
 
 /// Takes away what runs back and forth of smooth outlines.
 pub(super) fn without_zigzags(pieces: &mut Vec<Piece>) {

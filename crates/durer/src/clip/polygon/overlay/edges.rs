@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::arrangement::{Edge, Winding};
+use super::edge::{Edge, Winding};
 use super::lattice::Coord;
 use super::noding::Noding;
 use super::{Source, parallel};

@@ -18,6 +18,7 @@
 //! not planar, so that windings would be wrong far from the place.
 
 pub(crate) mod arrangement;
+mod edge;
 mod edges;
 pub(crate) mod grid;
 pub(crate) mod lattice;
@@ -38,7 +39,8 @@ use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
 
-use arrangement::{Arrangement, Winding};
+use arrangement::Arrangement;
+use edge::Winding;
 use grid::{Block, Grid, Spread};
 use lattice::{Coord, GridMap, Segment};
 use noding::{Cause, Ends, Noding};

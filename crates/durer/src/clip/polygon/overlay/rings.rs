@@ -2,7 +2,8 @@
 
 use std::cmp::Ordering;
 
-use super::arrangement::{Arrangement, Half, NONE, Patch, Winding};
+use super::arrangement::{Arrangement, NONE, Patch};
+use super::edge::{Half, Winding};
 use super::lattice::{Coord, Point, cross};
 use super::parallel;
 use super::search::Search;

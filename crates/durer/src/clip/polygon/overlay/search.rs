@@ -2,7 +2,8 @@
 
 use std::cmp::Ordering;
 
-use super::arrangement::{Arrangement, Half};
+use super::arrangement::Arrangement;
+use super::edge::Half;
 use super::grid::Grid;
 use super::lattice::{Coord, Point, Segment, cross};
 use super::noding::Noding;

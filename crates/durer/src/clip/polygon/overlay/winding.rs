@@ -1,6 +1,7 @@
 //! The winding numbers of subject and clip on both sides of every edge of the graph.
 
-use super::arrangement::{Arrangement, Half, NONE, Patch, Winding};
+use super::arrangement::{Arrangement, NONE, Patch};
+use super::edge::{Half, Winding};
 use super::lattice::{Coord, Point, cross};
 use super::parallel;
 use super::search::Search;

@@ -7,10 +7,12 @@
 //! of the outline, O((n + k) log n) for n points of it and k crossings. Limits: arcs are polygons within a tolerance.
 
 use super::{Cap, Join, Stroke, outline};
+use crate::clip::mask::Area;
 use crate::clip::polygon::{
     BooleanOp, FillRule, Shapes, overlay, overlay::Options as OverlayOptions,
 };
 use crate::curve::{Contours, Path};
+use crate::geometry::Geometry;
 use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::trace::NoTrace;
@@ -114,6 +116,55 @@ pub fn of_lines<'a>(
         path.extend(&Path::polyline(twice.copied()));
     }
     joined(&Shapes::new(), FillRule::EvenOdd, BooleanOp::Union, &path, options)
+}
+
+/// Returns the polygons within a distance of all parts of a geometry; its own polygons are taken by a fill rule.
+///
+/// ```
+/// use durer::clip::polygon::FillRule;
+/// use durer::geometry::{Geometry, Points};
+/// use durer::math::DVec2;
+/// use durer::raster::line::wide::Cap;
+/// use durer::raster::line::wide::buffer::{Options, of_geometry};
+///
+/// let road = Geometry::LineString(Points::flat(vec![DVec2::ZERO, DVec2::new(10.0, 0.0)]));
+/// let options = Options { distance: 1.0, cap: Cap::Butt, ..Options::default() };
+/// assert_eq!(of_geometry(&road, FillRule::EvenOdd, &options)?.area(), 20.0);
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`of_polygons`].
+pub fn of_geometry(geometry: &Geometry, rule: FillRule, options: &Options) -> Result<Shapes> {
+    let mut lines: Vec<Vec<DVec2>> = Vec::new();
+    chains(geometry, &mut lines);
+    let area = Area::of_geometry(geometry);
+    let around = match lines.is_empty() {
+        true => Shapes::new(),
+        false => of_lines(lines.iter().map(|line| &line[..]), options)?,
+    };
+    if area.shapes.is_empty() {
+        return Ok(around);
+    }
+    let mut all = of_polygons(&area.shapes, rule, options)?;
+    if around.is_empty() {
+        return Ok(all);
+    }
+    all.append(&around);
+    Ok(Area::flat(all).union()?.shapes)
+}
+
+/// Collects the lines of a geometry, and its points as lines of one point.
+fn chains(geometry: &Geometry, out: &mut Vec<Vec<DVec2>>) {
+    match geometry {
+        Geometry::Point(points) | Geometry::MultiPoint(points) => {
+            out.extend(points.xy.iter().map(|p| vec![*p]));
+        }
+        Geometry::LineString(line) => out.push(line.xy.clone()),
+        Geometry::MultiLineString(lines) => out.extend(lines.iter().map(|line| line.xy.clone())),
+        Geometry::Collection(parts) => parts.iter().for_each(|part| chains(part, out)),
+        Geometry::Polygon(_) | Geometry::MultiPolygon(_) => {}
+    }
 }
 
 /// Joins `shapes` and a stroke along a path, or subtracts the stroke.

@@ -1,6 +1,6 @@
 //! Parts of a line that are too short to be seen, and what becomes of them.
 
-use super::cover::Span;
+use super::span::Span;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 

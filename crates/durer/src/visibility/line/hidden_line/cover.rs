@@ -8,6 +8,7 @@
 use super::super::page::{Vertex, orient};
 use super::absorb::absorb;
 use super::occluders::Occluder;
+use super::span::Span;
 
 /// The part of a line that one face hides.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,14 +92,6 @@ fn slope(face: &Occluder, area: f64) -> f64 {
 
 fn line_slope(p: &Vertex, q: &Vertex) -> f64 {
     (q.depth - p.depth).abs() / p.at.distance(q.at)
-}
-
-/// A part of a line that is hidden by one number of faces.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Span {
-    pub from: f64,
-    pub to: f64,
-    pub invisibility: u32,
 }
 
 /// Cuts a line where the number of faces in front changes; if not `counted`, where it becomes 0 or

@@ -22,12 +22,13 @@ mod cells;
 mod cover;
 mod met;
 mod occluders;
+mod span;
 
 pub use cover::Cover;
 
 use self::met::Met;
 use self::occluders::Occluders;
-use super::arrange::{How, Pieces, SLIVER, arrange, corners};
+use super::arrange::{How, Pieces, SLIVER, arrange, arranged, corners, on_page};
 use super::crease_chain::connected;
 use super::edge_lines::{
     ClassSet, EdgeLine, Intersections, NO_ITEM, Outside, Rules, material_number, materials,
@@ -35,8 +36,8 @@ use super::edge_lines::{
 use super::facing::Facing;
 use super::intersection::intersections;
 use super::marks::marks;
-use super::overlap::Piece;
-use super::page::{GridPoint, Page, Projected, Vertex, arranged, on_page};
+use super::page::{GridPoint, Page, Projected, Vertex};
+use super::piece::Piece;
 use super::roundness::Smooth;
 use super::smooth_silhouette::{Whole, divided};
 use super::steps::Steps;
@@ -567,7 +568,7 @@ fn cut(
     covers: &[Cover],
     fold: [f64; 2],
     hidden: bool,
-    spans: &mut Vec<cover::Span>,
+    spans: &mut Vec<span::Span>,
     pieces: &mut Vec<Piece>,
 ) {
     let [p, q] = line.ends;

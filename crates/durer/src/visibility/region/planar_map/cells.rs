@@ -2,8 +2,7 @@
 //! all: so every question asks only what is near, and nothing behind what hides everything (after
 //! Warnock 1969).
 
-use super::edges::CLEARLY;
-use super::faces::{Face, Place, float};
+use super::faces::{CLEARLY, Face, Place, float};
 use crate::math::DVec2;
 
 /// Faces per cell, if they were spread evenly.

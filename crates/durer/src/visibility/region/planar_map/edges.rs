@@ -1,7 +1,7 @@
 //! The lines along which the picture may be divided: sides of faces, and where faces penetrate.
 
 use super::cells::Cells;
-use super::faces::{Face, Place, float, nearest};
+use super::faces::{CLEARLY, Face, Place, float, nearest};
 use crate::clip::polygon::overlay::lattice::cross;
 use crate::math::DVec2;
 use crate::parallel;
@@ -172,9 +172,6 @@ const OVERSHOOT: f64 = 3.0;
 
 /// Limit on the length along a side that is hardly left.
 const FARTHEST: f64 = 65_536.0;
-
-/// For the same reason, what is to be hidden lies behind by this many times what depths can be wrong.
-pub const CLEARLY: f64 = 4.0;
 
 /// Hidden parts closer than this, in grid steps, are one: rounding at the borders of cells.
 const GAP: f64 = 1e-3;

@@ -19,6 +19,10 @@ pub const REACH: f64 = ((1 << 29) - 64) as f64;
 /// Two depths closer than this part of themselves are equal: what a few roundings in f64 leave.
 const ROUNDING: f64 = 1e-12;
 
+/// Factor on the errors of depths by which hidden points lie behind: an edge that ends, its corners being rounded,
+/// before it meets the next would join separate faces.
+pub const CLEARLY: f64 = 4.0;
+
 /// Between the grid, the plane of the picture and the world.
 #[derive(Debug, Clone, Copy)]
 pub struct Frame {

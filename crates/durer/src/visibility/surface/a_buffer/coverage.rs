@@ -4,11 +4,9 @@
 //! row is the covered area, as in analytic anti-aliasing of glyphs (FreeType's and AGG's cells).
 
 use super::edges::RowEdges;
+use super::mask::EIGHT;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4, f32x8};
-
-/// Pixels that are looked at together.
-pub const EIGHT: usize = 8;
 
 /// Offset of each of eight pixels to the right of the first.
 pub const COLUMNS: [f32; EIGHT] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];

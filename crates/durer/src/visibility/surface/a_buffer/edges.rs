@@ -1,8 +1,7 @@
 //! The three edges of a face, side by side: their parts in a row of pixels, and the sub-pixels of a
 //! pixel that lie inside them.
 
-use super::coverage::EIGHT;
-use super::mask::{Common, Direction, MaskTable};
+use super::mask::{Common, Direction, EIGHT, MaskTable};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS};
 use crate::visibility::surface::gather::narrowed;
 use crate::visibility::surface::setup::ScreenTriangle;

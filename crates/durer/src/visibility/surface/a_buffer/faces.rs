@@ -1,6 +1,6 @@
 //! The triangles that touch a row of pixels, from front to back.
 
-use super::fragment::Face;
+use super::face::Face;
 use crate::raster::fixed::SUBPIXEL_BITS;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::setup::{Coverage, ScreenTriangle};

@@ -1,9 +1,10 @@
 //! Fragments: what a triangle leaves in one pixel, in lists that share one pool.
 
-use super::coverage::{Areas, COLUMNS, EIGHT};
-use super::edges::{Edges, Functions, Slopes};
+use super::coverage::{Areas, COLUMNS};
+use super::edges::{Edges, Functions};
+use super::face::Face;
 use super::faces::Active;
-use super::mask::{Direction, MaskTable};
+use super::mask::{Direction, EIGHT, MaskTable};
 use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
@@ -30,36 +31,6 @@ pub struct Fragment {
     pub z_max: f32,
     /// True if it lets something behind it be seen.
     pub blended: bool,
-}
-
-/// A triangle with all that its fragments have in common.
-#[derive(Debug, Clone, Copy)]
-pub struct Face {
-    pub triangle: u32,
-    pub coverage: Coverage,
-    slopes: Slopes,
-    /// Change of depth over half a pixel in both directions.
-    half_depth: f32,
-    /// Towards the far plane, if that is near.
-    far: Option<Direction>,
-}
-
-impl Face {
-    /// Fragment of no triangle.
-    pub const NONE: Self = Self {
-        triangle: u32::MAX,
-        coverage: Coverage::Opaque,
-        slopes: Slopes::NONE,
-        half_depth: 0.0,
-        far: None,
-    };
-
-    #[inline(always)]
-    pub fn new<S: Simd>(simd: S, t: &ScreenTriangle, triangle: u32, coverage: Coverage) -> Self {
-        let half_depth = 0.5 * (t.depth_dx.abs() + t.depth_dy.abs());
-        let far = (t.depth_max >= 1.0).then(|| Direction::new(-t.depth_dx, -t.depth_dy));
-        Self { triangle, coverage, slopes: Slopes::new(simd, t), half_depth, far }
-    }
 }
 
 /// The fragments of a part of a row.

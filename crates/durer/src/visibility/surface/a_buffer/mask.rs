@@ -6,8 +6,10 @@
 //! exact area says, those with the largest function.
 
 use super::Mask;
-use super::coverage::EIGHT;
 use fearless_simd::{Simd, f32x8, prelude::*};
+
+/// Pixels that are looked at together.
+pub const EIGHT: usize = 8;
 
 /// Directions in a quadrant. Coarser ones turn edges by more than a sub-pixel's width.
 const DIRECTIONS: usize = 32;

@@ -19,6 +19,7 @@
 
 mod coverage;
 mod edges;
+mod face;
 mod faces;
 mod fragment;
 mod mask;

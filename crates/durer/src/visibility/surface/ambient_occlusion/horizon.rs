@@ -1,6 +1,6 @@
 //! The light above the horizons around sixteen pixels of a row at a time.
 
-use super::planes::{Lens, Planes};
+use super::planes::{FARTHEST, LANES, Lens, PATTERN, Planes};
 use crate::math::Vec2;
 use crate::scene::Projection;
 use crate::view::View;
@@ -13,15 +13,6 @@ const SLICES: usize = 3;
 
 /// Looks at the depth plane in each of the two directions of a slice.
 const STEPS: usize = 5;
-
-/// The side of the pattern by which slices are turned, in pixels.
-pub const PATTERN: usize = 4;
-
-/// Looks farther than this many pixels away would miss what is near.
-pub const FARTHEST: u32 = 256;
-
-/// Pixels that are worked on together.
-pub const LANES: usize = 16;
 
 /// Neighbours whose planes are farther apart than this part of the radius are different surfaces.
 const SAME_SURFACE: f32 = 0.05;

@@ -1,11 +1,19 @@
 //! The planes of a picture that hold each fourth pixel of a row side by side.
 
-use super::horizon::{FARTHEST, LANES, PATTERN};
 use crate::math::{DMat4, DVec4, Vec3};
 use crate::parallel;
 use crate::scene::Projection;
 use crate::target::Pixels;
 use crate::view::View;
+
+/// The side of the pattern by which slices are turned, in pixels.
+pub const PATTERN: usize = 4;
+
+/// Looks farther than this many pixels away would miss what is near.
+pub const FARTHEST: u32 = 256;
+
+/// Pixels that are worked on together.
+pub const LANES: usize = 16;
 
 /// Number of alternating columns that are kept apart, as a shift.
 const PHASES_SHIFT: u32 = PATTERN.trailing_zeros();

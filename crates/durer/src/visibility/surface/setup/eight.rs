@@ -1,29 +1,14 @@
 //! Set-up of eight triangles side by side: which are seen, and the planes of their depths.
 
+use super::ScreenTriangle;
+use super::corner::{Corner, EIGHT};
+use super::rules::Rules;
 use super::sampled::{Sampled, Span, cover};
 use super::vertex::{Behind, ScreenVertex, code};
-use super::{Filter, ScreenTriangle};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
 use crate::visibility::surface::gather::{self, integers_widened, narrowed, transpose, widened};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4, f32x8, f64x8, i32x8, mask32x8, u32x4, u32x8};
-
-/// Triangles that are set up at a time.
-pub const EIGHT: usize = 8;
-
-/// Limits that triangles are tested against.
-#[derive(Debug, Clone, Copy)]
-pub struct Rules {
-    pub filter: Filter,
-    /// The screen in pixels.
-    pub size: [u32; 2],
-    /// The sign that the area of those has that are seen from behind.
-    pub behind: Behind,
-    /// True if these are left out.
-    pub cull_back: bool,
-    /// The samples, as offsets from pixels' centres, at which small ones are sampled at once; none where they are not.
-    pub sampled: &'static [[i32; 2]],
-}
 
 /// Eight triangles after set-up. Bit i of a mask is triangle i's.
 #[derive(Default)]
@@ -58,15 +43,6 @@ impl Eight {
             item,
         }
     }
-}
-
-/// One corner of eight triangles.
-#[derive(Clone, Copy)]
-pub struct Corner<S: Simd> {
-    pub x: i32x8<S>,
-    pub y: i32x8<S>,
-    code: u32x8<S>,
-    depth: f32x8<S>,
 }
 
 impl<S: Simd> Corner<S> {

@@ -7,14 +7,16 @@
 //! Source: near-plane-only clipping after Blinn & Newell, *Clipping using homogeneous coordinates*
 //! (1978); the guard band as in graphics hardware. Cost: O(vertices + triangles).
 
+mod corner;
 mod eight;
 mod part;
+mod rules;
 mod runs;
 mod sampled;
 mod triangle;
 mod vertex;
 
-pub(crate) use eight::EIGHT;
+pub(crate) use corner::EIGHT;
 pub use runs::{Coverage, Run, runs};
 pub use sampled::Sampled;
 pub(crate) use sampled::{PIXELS, place_in_box};
@@ -28,11 +30,12 @@ use crate::simd::{Level, dispatch};
 use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::surface::{Cull, Marks};
-use eight::{Eight, Rules};
+use eight::Eight;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, u32x16};
 use fearless_simd_macros::simd;
 use part::Part;
+use rules::Rules;
 use std::ops::Range;
 use vertex::{Behind, Transform};
 

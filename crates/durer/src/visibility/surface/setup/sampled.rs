@@ -5,7 +5,8 @@
 //! SIGGRAPH 1987; here they are sampled by the same integers as other triangles, eight side by side, in a few
 //! operations each.
 
-use super::eight::{Corner, EIGHT, Rules};
+use super::corner::{Corner, EIGHT};
+use super::rules::Rules;
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, i32x8, mask32x8, u32x8};

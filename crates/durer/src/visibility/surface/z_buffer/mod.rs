@@ -9,6 +9,7 @@
 //! triangle once per pixel. Equal depths are won by the lower item. Blended surfaces are sorted per
 //! pixel.
 
+mod area;
 mod band;
 mod bins;
 mod blended;
@@ -18,6 +19,7 @@ mod rasterize;
 mod resolve;
 pub mod survey;
 mod tile;
+mod tile_grid;
 
 use crate::info::{Class, Info};
 use crate::math::Vec4;
@@ -33,14 +35,16 @@ use crate::visibility::surface::lit::{Batch, KnownNormals, Lighting, Lit, PointQ
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, ScreenTriangle, runs};
 use crate::visibility::surface::{Background, Cull, Marks, Samples};
 use crate::work::{Charge, Work};
+use area::{Area, Codes};
 use band::{Band, bands};
-use bins::{Bins, TileGrid, jobs};
+use bins::{Bins, jobs};
 use blended::{Blended, light_blended};
 use front_to_back::FrontToBack;
 use micropolygon::Fragments;
 use rasterize::{AllPass, FragmentTest, rasterize};
-use resolve::{Area, Codes, MaskTest, resolve};
+use resolve::{MaskTest, resolve};
 use tile::{SamplePlane, TILE, TILE_PIXELS};
+use tile_grid::TileGrid;
 
 /// The facts.
 pub const INFO: Info = Info {

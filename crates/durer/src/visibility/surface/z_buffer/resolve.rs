@@ -1,9 +1,10 @@
 //! From the visible items of a tile to colours: each triangle is lit once per pixel, the samples of
 //! a pixel are averaged in linear light, blended surfaces are laid over from far to near.
 
+use super::area::{Area, Codes};
 use super::blended::{Blended, resolve_blended};
 use super::rasterize::{FragmentTest, one_by_one};
-use super::tile::{SamplePlane, TILE, TILE_PIXELS, block_of};
+use super::tile::{SamplePlane, TILE, block_of};
 use crate::math::Vec4;
 use crate::shade::color::{encode_premultiplied, premultiply};
 use crate::target::NO_ITEM;
@@ -62,22 +63,6 @@ impl FragmentTest for MaskTest<'_, '_> {
         })
     }
 }
-
-/// Position of a tile in the picture, and the background.
-pub struct Area<'b> {
-    /// The upper left pixel.
-    pub tile: [i32; 2],
-    /// Pixels across and down.
-    pub size: [i32; 2],
-    /// Linear with straight alpha, by row of the picture.
-    pub background: &'b (dyn Fn(i32) -> Vec4 + Sync),
-}
-
-/// The pixels of a tile, row by row: of each the four bytes of its colour, the first one lowest.
-///
-/// They are written here and copied to the picture when all are there: rows of the picture lie far apart, and
-/// going to and fro between them would make each store wait.
-pub type Codes = [u32; TILE_PIXELS];
 
 /// Lights everything that is visible in a tile.
 pub fn resolve<S: Simd>(

@@ -4,11 +4,12 @@
 //! not the scene. What is seen then is a scene by itself, of which the ordinary renderer makes the same picture: opaque
 //! surfaces that are nowhere in front do not change it.
 
-use super::bins::{ByTile, STAGE, TileGrid, sort_by_tile};
+use super::bins::{ByTile, STAGE, sort_by_tile};
 use super::early_samples;
 use super::micropolygon::{Fragments, MOST_TILES, Micropolygons};
 use super::rasterize::{AllPass, rasterize};
 use super::tile::{SamplePlane, TILE, TILE_PIXELS};
+use super::tile_grid::TileGrid;
 use crate::scene::Scene;
 use crate::simd::Level;
 use crate::simd::dispatch;

@@ -10,8 +10,8 @@ mod sheet;
 #[cfg(test)]
 mod tests;
 
+use super::area::{Area, Codes};
 use super::rasterize::rasterize;
-use super::resolve::{Area, Codes};
 use super::tile::{SamplePlane, TILE, TILE_PIXELS, block_of};
 use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;

@@ -1,18 +1,12 @@
 //! The fragments of small triangles: depths at the samples of a pixel that they cover, mostly with
 //! a normal.
 
-use super::tiles::{PIXEL_BITS, Tiles};
+use super::tiles::{ITEM_BITS, LOW_BITS, Tiles};
 use crate::visibility::surface::lit::KnownNormals;
 use crate::visibility::surface::z_buffer::tile::SamplePlane;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, i32x4, u32x4};
 use fearless_simd_macros::simd;
-
-/// Bits of an item's number that are kept with a sample of it; the items of a block have the others in common.
-pub const ITEM_BITS: u32 = 32 - PIXEL_BITS;
-
-/// The bits of an item's number that are kept with its samples.
-pub const LOW_BITS: u32 = (1 << ITEM_BITS) - 1;
 
 /// Stands for the bits of a depth where a sample is not covered: no depth is farther.
 pub const UNCOVERED: i32 = i32::MAX;

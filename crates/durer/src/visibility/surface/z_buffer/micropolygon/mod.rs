@@ -13,8 +13,8 @@ mod tiles;
 
 pub use fragment::Fragments;
 
-use super::bins::TileGrid;
 use super::tile::TILE;
+use super::tile_grid::TileGrid;
 use crate::raster::fixed::SUBPIXELS;
 use crate::simd::dispatch;
 use crate::visibility::surface::gather::four_rows;

@@ -1,6 +1,6 @@
 //! Fragments beside what the triangles give that they are made of.
 
-use super::fragment::ITEM_BITS;
+use super::tiles::ITEM_BITS;
 use super::*;
 use crate::math::{DMat4, DVec3, Vec3};
 use crate::scene::{Camera, Instance, Mesh, Projection, Scene};

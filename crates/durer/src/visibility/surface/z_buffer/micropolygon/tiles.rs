@@ -1,10 +1,15 @@
 //! Things by the tiles of the screen that they are in.
 
-use super::fragment::LOW_BITS;
 use crate::visibility::surface::z_buffer::tile::TILE;
 
 /// Bits of a pixel's place in its tile.
 pub const PIXEL_BITS: u32 = 2 * TILE.trailing_zeros();
+
+/// Bits of an item's number that are kept with a sample of it; the items of a block have the others in common.
+pub const ITEM_BITS: u32 = 32 - PIXEL_BITS;
+
+/// The bits of an item's number that are kept with its samples.
+pub const LOW_BITS: u32 = (1 << ITEM_BITS) - 1;
 
 /// Things by tile, in blocks that stay where they are.
 pub struct Tiles<T> {

@@ -1,16 +1,18 @@
-//! Tiles of web maps as masks: features keep their coordinates, heights and measures.
+//! Tiles of web maps as masks: geometries are cut as they are, and keep their coordinates, heights and measures.
 
-use super::args::TileCoordinates;
-use durer::clip::mask::{Cutter, Mask, Rules};
-use durer::clip::polygon::BooleanOp;
-use durer::clip::tiles::mercator::{self, HALF_WORLD};
-use durer::clip::tiles::{Content, Tile, WORLDS, count, walk};
-use durer::math::{DVec2, Rect};
-use durer_formats::geo::Geometry;
+use super::mercator::{self, HALF_WORLD};
+use super::ready::WORLDS;
+use super::walk::{Content, count, walk};
+use super::{Coordinates, Tile};
+use crate::Result;
+use crate::clip::mask::{Cutter, Mask, Rules};
+use crate::clip::polygon::BooleanOp;
+use crate::geometry::Geometry;
+use crate::math::{DVec2, Rect};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Returns the bounds of a tile. Borders of neighbours are the same numbers.
-pub fn bounds(tile: Tile, coordinates: TileCoordinates) -> durer::Result<Rect> {
+fn bounds(tile: Tile, coordinates: Coordinates) -> Result<Rect> {
     let side = f64::from(1u32 << tile.zoom);
     let x = |x: u32| {
         let part = f64::from(x) / side * 2.0 - 1.0;
@@ -19,42 +21,64 @@ pub fn bounds(tile: Tile, coordinates: TileCoordinates) -> durer::Result<Rect> {
     let y = |y: u32| {
         let part = 1.0 - f64::from(y) / side * 2.0;
         match coordinates {
-            TileCoordinates::Lonlat => mercator::latitude(part),
-            TileCoordinates::Mercator => part * HALF_WORLD,
+            Coordinates::LonLat => mercator::latitude(part),
+            Coordinates::Mercator => part * HALF_WORLD,
         }
     };
     Rect::new(DVec2::new(x(tile.x), y(tile.y + 1)), DVec2::new(x(tile.x + 1), y(tile.y)))
 }
 
 /// Returns the distance from the middle of the world to its eastern border.
-fn half_world(coordinates: TileCoordinates) -> f64 {
+fn half_world(coordinates: Coordinates) -> f64 {
     match coordinates {
-        TileCoordinates::Lonlat => 180.0,
-        TileCoordinates::Mercator => HALF_WORLD,
+        Coordinates::LonLat => 180.0,
+        Coordinates::Mercator => HALF_WORLD,
     }
 }
 
-/// Settings for clipping all features.
-pub struct Job {
-    pub zoom: u8,
-    pub coordinates: TileCoordinates,
-    /// The index of the first feature that could not be cut.
-    pub failed: AtomicUsize,
+/// Tiles of one level that geometries are cut to.
+///
+/// ```
+/// use durer::clip::mask::Rules;
+/// use durer::clip::tiles::{Coordinates, Subject, Tile, Tiling};
+/// use durer::geometry::{Geometry, Points};
+/// use durer::math::DVec2;
+///
+/// let road = Points::flat(vec![DVec2::new(-10.0, 50.0), DVec2::new(10.0, 50.0)]);
+/// let road = Geometry::LineString(road);
+/// let tiling = Tiling::new(1, Coordinates::LonLat);
+/// let subjects = [Subject::new(&tiling, 0, &road, Rules::default())];
+/// let mut tiles = Vec::new();
+/// tiling.visit(&subjects, |_, parts| parts.len(), |tile, count| {
+///     tiles.push((tile, count));
+///     Ok::<(), durer::Error>(())
+/// })?;
+/// assert_eq!(tiles, [(Tile { zoom: 1, x: 0, y: 0 }, 1), (Tile { zoom: 1, x: 1, y: 0 }, 1)]);
+/// # Ok::<(), durer::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct Tiling {
+    zoom: u8,
+    coordinates: Coordinates,
+    /// The index of the first geometry that could not be cut; `usize::MAX` if all could.
+    failed: AtomicUsize,
 }
 
-/// A feature to be cut.
+/// A geometry to be cut.
+#[derive(Debug)]
 pub struct Subject<'a> {
-    pub job: &'a Job,
-    pub index: usize,
-    pub geometry: &'a Geometry,
-    pub rules: Rules,
+    tiling: &'a Tiling,
+    index: usize,
+    geometry: &'a Geometry,
+    rules: Rules,
     /// True if it had to be made valid.
-    pub repaired: AtomicBool,
+    repaired: AtomicBool,
 }
 
 /// Position of a geometry relative to the world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reach {
+    /// All of it lies where tiles are, or in a neighbouring world.
     Within,
     /// Some of it, or all, lies nearer to a pole than the tiles.
     BeyondLatitudes,
@@ -62,9 +86,17 @@ pub enum Reach {
     TooFar,
 }
 
-impl Job {
-    pub fn new(zoom: u8, coordinates: TileCoordinates) -> Self {
+impl Tiling {
+    /// Creates the tiles of a level, at most [`Tile::MAX_ZOOM`].
+    pub fn new(zoom: u8, coordinates: Coordinates) -> Self {
+        let zoom = zoom.min(Tile::MAX_ZOOM);
         Self { zoom, coordinates, failed: AtomicUsize::new(usize::MAX) }
+    }
+
+    /// Returns the index of the first geometry that could not be cut, after [`Tiling::visit`] or [`Tiling::count`] gave
+    /// an error.
+    pub fn failed(&self) -> Option<usize> {
+        Some(self.failed.load(Ordering::Relaxed)).filter(|index| *index != usize::MAX)
     }
 
     /// Returns the position of a geometry relative to the world.
@@ -82,7 +114,10 @@ impl Job {
     }
 
     /// Returns a lower bound of the number of tiles, counted up to a limit.
-    pub fn count(&self, subjects: &[Subject<'_>], limit: u64) -> durer::Result<u64> {
+    ///
+    /// # Errors
+    /// Of the cuts.
+    pub fn count(&self, subjects: &[Subject<'_>], limit: u64) -> Result<u64> {
         let boxes = subjects.iter().map(Subject::count_of_box).fold(0, u64::saturating_add);
         let boxes = boxes.min(Tile::WORLD.count_at(self.zoom));
         if boxes <= limit {
@@ -91,13 +126,17 @@ impl Job {
         count(&contents(subjects), self.zoom, limit)
     }
 
-    /// Visits all tiles.
-    pub fn visit<R: Send, E: From<durer::Error>>(
+    /// Visits the tiles that something lies in, in the order of their numbers, each with the parts of the geometries and
+    /// their indices. What lies beyond 180 degrees comes in on the other side. See [`walk()`](super::walk()).
+    ///
+    /// # Errors
+    /// Of the cuts, and what `take` says.
+    pub fn visit<R: Send, E: From<crate::Error>>(
         &self,
         subjects: &[Subject<'_>],
         make: impl Fn(Tile, Vec<(usize, Geometry)>) -> R + Sync + Send,
-        take: impl FnMut(Tile, R) -> Result<(), E>,
-    ) -> Result<(), E> {
+        take: impl FnMut(Tile, R) -> std::result::Result<(), E>,
+    ) -> std::result::Result<(), E> {
         let make = |tile: Tile, parts: Vec<Part<'_>>| {
             let pieces = parts.into_iter().map(|part| (part.subject.index, part.geometry));
             make(tile, pieces.collect())
@@ -107,18 +146,29 @@ impl Job {
 }
 
 impl<'a> Subject<'a> {
-    pub fn new(job: &'a Job, index: usize, geometry: &'a Geometry, rules: Rules) -> Self {
-        Self { job, index, geometry, rules, repaired: AtomicBool::new(false) }
+    /// Prepares a geometry, which `index` tells from others.
+    pub fn new(tiling: &'a Tiling, index: usize, geometry: &'a Geometry, rules: Rules) -> Self {
+        Self { tiling, index, geometry, rules, repaired: AtomicBool::new(false) }
+    }
+
+    /// Returns the number that tells the geometry from others.
+    pub fn index(&self) -> usize {
+        self.index
+    }
+
+    /// Returns whether the geometry had to be made valid.
+    pub fn is_repaired(&self) -> bool {
+        self.repaired.load(Ordering::Relaxed)
     }
 
     /// No fewer tiles than there are.
     fn count_of_box(&self) -> u64 {
         let Some(own) = self.geometry.bounds() else { return 0 };
-        let square = |p: DVec2| match self.job.coordinates {
-            TileCoordinates::Lonlat => mercator::project(p),
-            TileCoordinates::Mercator => mercator::of_metres(p),
+        let square = |p: DVec2| match self.tiling.coordinates {
+            Coordinates::LonLat => mercator::project(p),
+            Coordinates::Mercator => mercator::of_metres(p),
         };
-        let side = f64::from(1u32 << self.job.zoom);
+        let side = f64::from(1u32 << self.tiling.zoom);
         let (a, b) = (square(own.min()), square(own.max()));
         // Closed tiles meet at their borders.
         let tiles = |low: f64, high: f64| {
@@ -129,18 +179,18 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// A part of a feature, in the first world.
-pub struct Part<'a> {
+/// A part of a geometry, in the first world.
+struct Part<'a> {
     subject: &'a Subject<'a>,
     geometry: Geometry,
 }
 
-/// Returns all features in all worlds, moved to the first.
+/// Returns all geometries in all worlds, moved to the first.
 fn contents<'a>(subjects: &'a [Subject<'a>]) -> Vec<Part<'a>> {
     let mut contents = Vec::new();
     for subject in subjects {
         let Some(own) = subject.geometry.bounds() else { continue };
-        let half = half_world(subject.job.coordinates);
+        let half = half_world(subject.tiling.coordinates);
         // What only touches the border of another world is in this one.
         let first = (((own.min().x - half) / (2.0 * half)).floor() as i64 + 1).min(0);
         let last = (((own.max().x + half) / (2.0 * half)).ceil() as i64 - 1).max(0);
@@ -172,19 +222,19 @@ fn shift(geometry: &mut Geometry, by: f64) {
 }
 
 impl Content for Part<'_> {
-    fn within(&self, tiles: &[Tile]) -> durer::Result<Vec<Option<Self>>> {
-        let Subject { job, rules, index, repaired, .. } = self.subject;
+    fn within(&self, tiles: &[Tile]) -> Result<Vec<Option<Self>>> {
+        let Subject { tiling, rules, index, repaired, .. } = self.subject;
         let cut = |&tile: &Tile| {
-            let mask = &Mask::window(bounds(tile, job.coordinates)?)?;
+            let mask = &Mask::window(bounds(tile, tiling.coordinates)?)?;
             let cutter =
                 Cutter { mask, op: BooleanOp::Intersection, rules: *rules, algorithm: None };
             let cut = cutter.cut(&self.geometry)?;
             repaired.fetch_or(cut.repaired, Ordering::Relaxed);
             Ok(cut.geometry.map(|geometry| Part { subject: self.subject, geometry }))
         };
-        let parts = tiles.iter().map(cut).collect::<durer::Result<_>>();
+        let parts = tiles.iter().map(cut).collect::<Result<_>>();
         parts.inspect_err(|_| {
-            job.failed.fetch_min(*index, Ordering::Relaxed);
+            tiling.failed.fetch_min(*index, Ordering::Relaxed);
         })
     }
 
@@ -194,7 +244,7 @@ impl Content for Part<'_> {
 
     fn covers(&self, tile: Tile) -> bool {
         let (Geometry::Polygon(rings), Ok(window)) =
-            (&self.geometry, bounds(tile, self.subject.job.coordinates))
+            (&self.geometry, bounds(tile, self.subject.tiling.coordinates))
         else {
             return false;
         };
@@ -209,11 +259,11 @@ mod tests {
 
     #[test]
     fn tiles_cover_the_world() {
-        let world = bounds(Tile::WORLD, TileCoordinates::Lonlat).expect("bounds");
+        let world = bounds(Tile::WORLD, Coordinates::LonLat).expect("bounds");
         assert_eq!((world.min().x, world.max().x), (-180.0, 180.0));
         // The latitude where Web Mercator ends.
         assert!((world.max().y - 85.051_128_779_806_59).abs() < 1e-12);
-        let child = |y| bounds(Tile { zoom: 1, x: 0, y }, TileCoordinates::Mercator);
+        let child = |y| bounds(Tile { zoom: 1, x: 0, y }, Coordinates::Mercator);
         let (a, b) = (child(0).expect("bounds"), child(1).expect("bounds"));
         assert_eq!((a.min().y, a.max().y), (0.0, HALF_WORLD));
         assert_eq!(a.min().y, b.max().y);
@@ -223,12 +273,12 @@ mod tests {
     fn what_lies_beyond_the_world_comes_from_the_other_side() {
         let line = |a: f64, b: f64| {
             let xy = vec![DVec2::new(a, 1.0), DVec2::new(b, 1.0)];
-            Geometry::LineString(durer_formats::geo::Points::flat(xy))
+            Geometry::LineString(crate::geometry::Points::flat(xy))
         };
-        let job = Job::new(0, TileCoordinates::Lonlat);
+        let tiling = Tiling::new(0, Coordinates::LonLat);
         let starts = |a, b| {
             let line = line(a, b);
-            let subject = [Subject::new(&job, 0, &line, Rules::default())];
+            let subject = [Subject::new(&tiling, 0, &line, Rules::default())];
             let parts = contents(&subject);
             let boxes = parts.iter().filter_map(|p| p.geometry.bounds());
             boxes.map(|r| r.min().x).collect::<Vec<_>>()
@@ -237,6 +287,6 @@ mod tests {
         assert_eq!(starts(170.0, 190.0), [170.0, -190.0]);
         assert_eq!(starts(200.0, 210.0), [200.0, -160.0]);
         assert_eq!(starts(-541.0, -539.0), [179.0, -181.0, -541.0]);
-        assert_eq!(job.reach(&line(0.0, 1e9)), Reach::TooFar);
+        assert_eq!(tiling.reach(&line(0.0, 1e9)), Reach::TooFar);
     }
 }

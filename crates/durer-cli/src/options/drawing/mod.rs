@@ -1,8 +1,11 @@
 //! The options of drawings.
 
-use super::annotations::args::AnnotationArgs;
-use super::machine::MachineArgs;
-use crate::section::letter;
+mod annotations;
+mod machine;
+
+pub use annotations::{AnnotationArgs, Dimensioned, thread};
+pub use machine::MachineArgs;
+
 use crate::values;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
@@ -397,7 +400,7 @@ fn detail(text: &str) -> Result<DetailSpec, String> {
     let wrong =
         "a detail is LETTER:X,Y,Z,RADIUS[,SCALE[,VIEW]], e.g. B:30,0,8,4 or B:30,0,8,4,5:1,front";
     let (name, rest) = text.split_once(':').ok_or(wrong)?;
-    let letter = letter(name)?;
+    let letter = values::letter(name)?;
     let parts: Vec<&str> = rest.split(',').map(str::trim).collect();
     let (numbers, further) = parts.split_at_checked(4).ok_or(wrong)?;
     let numbers: Vec<f64> = numbers.iter().map(|s| values::number(s)).collect::<Result<_, _>>()?;

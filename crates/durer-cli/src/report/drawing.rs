@@ -1,6 +1,7 @@
 //! The report of a drawing in `--json`.
 
-use super::annotations::FeatureReport;
+use durer::annotate::Feature;
+use durer::math::DVec3;
 use durer::paper::{LaidOut, scale_text};
 use durer::target::drawing::{Drawing, Line, LineClass};
 use serde::Serialize;
@@ -57,6 +58,35 @@ pub struct LineReport {
     pub points: usize,
     /// Their length, model units on the picture plane.
     pub length: f64,
+}
+
+/// A round part, as `--json` lists it.
+#[derive(Debug, Serialize)]
+pub struct FeatureReport {
+    /// `hole 1`, …
+    pub name: String,
+    /// The name of its object; left out where it has none.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub object: String,
+    /// In units of the model.
+    pub diameter: f64,
+    /// Ends of its axis.
+    pub ends: [[f64; 3]; 2],
+    /// The angle of the arc that is there, degrees.
+    pub angle: f64,
+}
+
+impl From<&Feature> for FeatureReport {
+    fn from(feature: &Feature) -> Self {
+        let c = &feature.cylinder;
+        Self {
+            name: feature.name.clone(),
+            object: feature.object.clone(),
+            diameter: 2.0 * c.radius,
+            ends: c.ends.map(|p: DVec3| p.to_array()),
+            angle: c.angle.to_degrees(),
+        }
+    }
 }
 
 impl DrawingReport {

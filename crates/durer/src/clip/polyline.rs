@@ -98,7 +98,7 @@ pub fn replay(options: &Options, steps: &[Step]) -> Vec<(usize, Vec<DVec2>)> {
 /// direction, even-odd); `ends[i]` is where polyline i ends in `points`.
 ///
 /// ```
-/// use durer::clip::line::polyline::{Options, clip};
+/// use durer::clip::polyline::{Options, clip};
 /// use durer::clip::polygon::Shapes;
 /// use durer::math::DVec2;
 /// use durer::trace::NoTrace;

@@ -1,8 +1,8 @@
 //! The options of `durer render`.
 
-use crate::drawing::args::DrawingArgs;
 use crate::explode::ExplodeArgs;
 use crate::kind::Kind;
+use crate::options::drawing::DrawingArgs;
 use crate::options::{LookArgs, PictureArgs, PlaneArgs, ReadingArgs, RunningArgs, ViewArgs};
 use crate::section::SectionArgs;
 use crate::staging::StageArgs;

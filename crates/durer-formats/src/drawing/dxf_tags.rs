@@ -1,0 +1,209 @@
+//! The parts that DXF files are made of: group codes with their values, handles, pens, and text.
+
+use super::number::push;
+use durer::math::DVec2;
+use durer::target::sheet::Pen;
+
+/// The line weights that the format has, in hundredths of a millimetre.
+const WEIGHTS: &[i64] = &[
+    0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200,
+    211,
+];
+
+/// Handles of objects that others refer to.
+pub(super) const BLOCK_RECORDS: u32 = 0x1;
+pub(super) const LAYERS: u32 = 0x2;
+pub(super) const STYLES: u32 = 0x3;
+pub(super) const LTYPES: u32 = 0x5;
+pub(super) const VIEWS: u32 = 0x6;
+pub(super) const UCSS: u32 = 0x7;
+pub(super) const VPORTS: u32 = 0x8;
+pub(super) const APPIDS: u32 = 0x9;
+pub(super) const DIMSTYLES: u32 = 0xa;
+pub(super) const ROOT: u32 = 0xc;
+pub(super) const GROUPS: u32 = 0xd;
+pub(super) const MODEL: u32 = 0x1f;
+pub(super) const PAPER: u32 = 0x1b;
+/// From here on handles are given out in order.
+pub(super) const FIRST: u32 = 0x30;
+
+/// Entity type of strokes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum DxfStrokes {
+    /// LWPOLYLINE throughout, arcs as bulges; ellipses and cubic curves as arcs within 0.005 mm.
+    #[default]
+    Polylines,
+    /// LINE, ARC, CIRCLE, ELLIPSE and SPLINE, a piece each; several lines in a row are one LWPOLYLINE.
+    Pieces,
+}
+
+/// Group codes and values, a line each.
+pub(super) struct Tags {
+    pub text: String,
+    /// The next free handle.
+    pub next: u32,
+    /// The block record that entities belong to.
+    pub owner: u32,
+    /// The line type of the layer.
+    pub line_type: &'static str,
+}
+
+impl Tags {
+    pub fn tag(&mut self, code: u16, value: &str) -> &mut Self {
+        self.text += &format!("{code:>3}\n{value}\n");
+        self
+    }
+
+    pub fn int(&mut self, code: u16, value: i64) -> &mut Self {
+        self.tag(code, &value.to_string())
+    }
+
+    pub fn handle(&mut self, code: u16, value: u32) -> &mut Self {
+        self.tag(code, &format!("{value:X}"))
+    }
+
+    /// Returns a real number; micrometres are the last digits.
+    pub fn real(&mut self, code: u16, value: f64) -> &mut Self {
+        self.precise(code, value, 6)
+    }
+
+    /// Returns a real number with so many digits after the point.
+    pub fn precise(&mut self, code: u16, value: f64, digits: usize) -> &mut Self {
+        let mut text = String::new();
+        push(&mut text, value, digits);
+        // Readers want the zero before the point, and some the point.
+        let text = match (text.strip_prefix('.'), text.strip_prefix("-.")) {
+            (Some(rest), _) => format!("0.{rest}"),
+            (_, Some(rest)) => format!("-0.{rest}"),
+            _ if text.contains('.') => text,
+            _ => format!("{text}.0"),
+        };
+        self.tag(code, &text)
+    }
+
+    pub fn point(&mut self, code: u16, p: DVec2) -> &mut Self {
+        self.real(code, p.x).real(code + 10, p.y)
+    }
+
+    pub fn point3(&mut self, code: u16, p: DVec2) -> &mut Self {
+        self.point(code, p).real(code + 20, 0.0)
+    }
+
+    pub fn class(&mut self, name: &str) -> &mut Self {
+        self.tag(100, name)
+    }
+
+    pub fn section(&mut self, name: &str) -> &mut Self {
+        self.tag(0, "SECTION").tag(2, name)
+    }
+
+    pub fn fresh(&mut self) -> u32 {
+        self.next += 1;
+        self.next - 1
+    }
+
+    pub fn table(&mut self, name: &str, handle: u32, count: usize) -> &mut Self {
+        self.tag(0, "TABLE").tag(2, name).handle(5, handle).handle(330, 0);
+        self.class("AcDbSymbolTable").int(70, count as i64)
+    }
+
+    /// Returns the common start of a table's entry.
+    pub fn record(&mut self, kind: &str, table: u32, class: &str) -> &mut Self {
+        let handle = self.fresh();
+        self.tag(0, kind).handle(5, handle).handle(330, table);
+        self.class("AcDbSymbolTableRecord").class(class)
+    }
+}
+
+/// The names of line types: solid, dashed, and with dashes of two lengths in turn.
+pub(super) const CONTINUOUS: &str = "CONTINUOUS";
+pub(super) const HIDDEN: &str = "HIDDEN";
+pub(super) const CENTER: &str = "CENTER";
+
+pub(super) fn line_type(pen: Option<&Pen>) -> &'static str {
+    match pen.map_or(0, |p| p.dashes.len()) {
+        0 => CONTINUOUS,
+        1..=3 => HIDDEN,
+        _ => CENTER,
+    }
+}
+
+/// Returns the nearest line weight of the format.
+pub(super) fn weight(pen: &Pen) -> i64 {
+    let wanted = (pen.width * 100.0).round() as i64;
+    WEIGHTS.iter().copied().min_by_key(|w| (w - wanted).abs()).unwrap_or(25)
+}
+
+/// Returns the nearest of the palette's first colours and greys; 7 is black on white and white on
+/// black.
+pub(super) fn palette([r, g, b, _]: [u8; 4]) -> i64 {
+    const COLORS: [([u8; 3], i64); 12] = [
+        ([0, 0, 0], 7),
+        ([255, 0, 0], 1),
+        ([255, 255, 0], 2),
+        ([0, 255, 0], 3),
+        ([0, 255, 255], 4),
+        ([0, 0, 255], 5),
+        ([255, 0, 255], 6),
+        ([128, 128, 128], 8),
+        ([51, 51, 51], 250),
+        ([173, 173, 173], 253),
+        ([214, 214, 214], 254),
+        ([255, 255, 255], 255),
+    ];
+    let apart = |c: &[u8; 3]| -> i64 {
+        c.iter().zip([r, g, b]).map(|(a, b)| (i64::from(*a) - i64::from(b)).pow(2)).sum()
+    };
+    COLORS.iter().min_by_key(|(c, _)| apart(c)).map_or(7, |(_, index)| *index)
+}
+
+/// The exact colour, where it is not black: that follows the background.
+pub(super) fn true_color(tags: &mut Tags, [r, g, b, _]: [u8; 4]) {
+    if [r, g, b] != [0; 3] {
+        tags.int(420, (i64::from(r) << 16) | (i64::from(g) << 8) | i64::from(b));
+    }
+}
+
+/// Layer of an entity, and its colour and width.
+pub(super) struct Target<'a> {
+    pub layer: &'a str,
+    pub pen: Option<&'a Pen>,
+}
+
+/// The common start of an entity. Colour and weight are the layer's; they stand here where a layer
+/// may have marks of several pens.
+pub(super) fn begin(tags: &mut Tags, kind: &str, layer: &str, pen: Option<&Pen>) {
+    let (handle, owner) = (tags.fresh(), tags.owner);
+    tags.tag(0, kind).handle(5, handle).handle(330, owner).class("AcDbEntity").tag(8, layer);
+    if let Some(pen) = pen {
+        let line_type = line_type(Some(pen));
+        if line_type != tags.line_type {
+            tags.tag(6, line_type);
+        }
+        tags.int(370, weight(pen));
+    }
+}
+
+/// Returns a name of a table's entry: the format forbids a few characters.
+pub(super) fn symbol(name: &str) -> String {
+    string(name).replace(['<', '>', '/', '\\', '"', ':', ';', '?', '*', '|', ',', '=', '`'], "_")
+}
+
+/// Returns text on one line; `^` and what is not ASCII are written as the format escapes them.
+pub(super) fn string(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '°' => out += "%%d",
+            '±' => out += "%%p",
+            'Ø' | '⌀' => out += "%%c",
+            // Stroke fonts lack it.
+            '–' => out.push('-'),
+            '^' => out += "^ ",
+            c if c.is_control() => out.push(' '),
+            c if c.is_ascii() => out.push(c),
+            c => c.encode_utf16(&mut [0; 2]).iter().for_each(|u| out += &format!("\\U+{u:04X}")),
+        }
+    }
+    out
+}

@@ -1,0 +1,76 @@
+//! The steps of the clippers along linked borders.
+
+use super::Shapes;
+use super::locate::group;
+use crate::math::DVec2;
+
+/// There is nothing to choose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options {}
+
+/// One of the two cyclic lists.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Operand {
+    /// List of the subject.
+    Subject,
+    /// List of the window.
+    Clip,
+}
+
+/// Direction of a list at a crossing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Mark {
+    /// Into the other polygon.
+    Entering,
+    /// Out of it.
+    Leaving,
+}
+
+/// Step of the algorithm, in the direction of the subject's first ring.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step {
+    /// A vertex of a list once crossings are inserted: ring after ring, each in its order.
+    Listed {
+        /// Operand of the list.
+        list: Operand,
+        /// Position of the fault.
+        at: DVec2,
+        /// Direction of the list at a crossing.
+        mark: Option<Mark>,
+    },
+    /// The walk passes a vertex, which belongs to the ring that is being made.
+    Passed {
+        /// Along which list.
+        list: Operand,
+        /// Position of the fault.
+        at: DVec2,
+    },
+    /// Greiner and Hormann: the borders cross here; the subject enters or leaves the clip.
+    Crossing {
+        /// Position of the fault.
+        at: DVec2,
+        /// True if the subject enters.
+        entry: bool,
+    },
+    /// Weiler and Atherton: the walk turns from one border to the other.
+    Turn {
+        /// Position of the fault.
+        at: DVec2,
+        /// True if it goes on along the subject.
+        to_subject: bool,
+    },
+    /// A ring of the result is complete.
+    Ring {
+        /// Its points, the inside on the left, or on the right where the subject's first ring runs clockwise.
+        points: Vec<DVec2>,
+    },
+}
+
+/// Rebuilds the result from its steps.
+pub fn replay(steps: &[Step]) -> Shapes {
+    let rings = steps.iter().filter_map(|step| match step {
+        Step::Ring { points } => Some(points.clone()),
+        _ => None,
+    });
+    group(rings.collect())
+}

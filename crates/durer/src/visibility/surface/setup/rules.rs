@@ -1,0 +1,18 @@
+//! The rules by which triangles are left out.
+
+use super::Filter;
+use super::vertex::Behind;
+
+/// Limits that triangles are tested against.
+#[derive(Debug, Clone, Copy)]
+pub struct Rules {
+    pub filter: Filter,
+    /// The screen in pixels.
+    pub size: [u32; 2],
+    /// The sign that the area of those has that are seen from behind.
+    pub behind: Behind,
+    /// True if these are left out.
+    pub cull_back: bool,
+    /// The samples, as offsets from pixels' centres, at which small ones are sampled at once; none where they are not.
+    pub sampled: &'static [[i32; 2]],
+}

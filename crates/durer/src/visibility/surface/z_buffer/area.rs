@@ -1,0 +1,20 @@
+//! The place of a tile in the picture, and its pixels on their way there.
+
+use super::tile::TILE_PIXELS;
+use crate::math::Vec4;
+
+/// Position of a tile in the picture, and the background.
+pub struct Area<'b> {
+    /// The upper left pixel.
+    pub tile: [i32; 2],
+    /// Pixels across and down.
+    pub size: [i32; 2],
+    /// Linear with straight alpha, by row of the picture.
+    pub background: &'b (dyn Fn(i32) -> Vec4 + Sync),
+}
+
+/// The pixels of a tile, row by row: of each the four bytes of its colour, the first one lowest.
+///
+/// They are written here and copied to the picture when all are there: rows of the picture lie far apart, and
+/// going to and fro between them would make each store wait.
+pub type Codes = [u32; TILE_PIXELS];
