@@ -68,6 +68,12 @@ pub enum Command {
     /// Plot a surface y = f(x, z): a formula or a height map
     #[command(after_long_help = crate::plot::EXAMPLES, after_help = "--help shows more, and examples.")]
     Plot(Box<crate::plot::PlotArgs>),
+    /// List the algorithms, with the space, occluder and coherence that they are classified by
+    #[command(after_long_help = crate::algorithms::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Algorithms(crate::algorithms::AlgorithmsArgs),
+    /// Explain an algorithm step by step: a sheet of pictures, a page with buttons, or data
+    #[command(after_long_help = crate::explain::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Explain(Box<crate::explain::ExplainArgs>),
     /// Write what lets file managers show models as small pictures
     #[command(after_help = crate::thumbnailer::HELP)]
     Thumbnailer(crate::thumbnailer::ThumbnailerArgs),

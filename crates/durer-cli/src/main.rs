@@ -1,5 +1,6 @@
 //! The `durer` command.
 
+mod algorithms;
 mod args;
 mod beside;
 mod camera;
@@ -11,6 +12,7 @@ mod draw;
 mod drawing;
 mod encoding;
 mod environment;
+mod explain;
 mod explode;
 mod failure;
 mod fill;
@@ -135,7 +137,11 @@ fn running(command: &mut Command) -> Option<&mut RunningArgs> {
         Command::Fill(args) => &mut args.running,
         Command::Pick(args) => &mut args.running,
         Command::Plot(args) => &mut args.running,
-        Command::Thumbnailer(_) | Command::Completions { .. } | Command::Man => return None,
+        Command::Explain(args) => &mut args.running,
+        Command::Algorithms(_)
+        | Command::Thumbnailer(_)
+        | Command::Completions { .. }
+        | Command::Man => return None,
     })
 }
 
@@ -183,6 +189,8 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Fill(args) => on_threads(&args.running, || fill::run(&args)),
         Command::Pick(args) => on_threads(&args.running, || pick::run(&args)),
         Command::Plot(args) => on_threads(&args.running, || plot::run(&args)),
+        Command::Algorithms(args) => algorithms::run(&args),
+        Command::Explain(args) => on_threads(&args.running, || explain::run(&args)),
         Command::Thumbnailer(args) => thumbnailer::run(&args),
         Command::Completions { shell } => completions(shell),
         Command::Man => manual(),

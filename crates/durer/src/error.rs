@@ -36,6 +36,16 @@ pub enum Error {
         /// Returns the number of bytes.
         count: usize,
     },
+    /// A name that nothing has.
+    #[error("there is no {what} “{value}”; the nearest are: {near}")]
+    Unknown {
+        /// Kind of the thing, e.g. `"algorithm"`.
+        what: &'static str,
+        /// The name that was given.
+        value: String,
+        /// Names that exist and are like it.
+        near: String,
+    },
     /// A size is above a stated limit.
     #[error("{what} {value} is above the limit of {limit}")]
     Limit {

@@ -12,6 +12,97 @@ pub enum Class {
     ListPriority,
 }
 
+impl Class {
+    /// Every class, in the order of the paper.
+    pub const ALL: &'static [Self] = &[Self::ObjectSpace, Self::ListPriority, Self::ImageSpace];
+
+    /// Returns the name used on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ObjectSpace => "object",
+            Self::ListPriority => "list-priority",
+            Self::ImageSpace => "image",
+        }
+    }
+}
+
+/// The part of a surface that is asked whether it hides others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Occluder {
+    /// Decides no visibility.
+    None,
+    /// Compares single points: pixels, samples, rays.
+    Point,
+    /// Compares lines: the spans of a scan line, the horizon of a plot.
+    Line,
+    /// Compares areas: whole faces, or windows of the picture.
+    Area,
+}
+
+impl Occluder {
+    /// Every kind, the smallest first.
+    pub const ALL: &'static [Self] = &[Self::None, Self::Point, Self::Line, Self::Area];
+
+    /// Returns the name used on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Point => "point",
+            Self::Line => "line",
+            Self::Area => "area",
+        }
+    }
+}
+
+/// A likeness of neighbours that an algorithm saves work by, after Sutherland, Sproull and Schumacker (1974).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Coherence {
+    /// Whole objects lie apart, so they are compared before their faces.
+    Object,
+    /// A value changes smoothly over a face, or is one for all of it.
+    Face,
+    /// The next point of an edge follows from the last; its visibility changes only at crossings.
+    Edge,
+    /// A row of pixels has nearly the edges of the row before.
+    ScanLine,
+    /// Neighbours within a row of pixels are alike.
+    Span,
+    /// Neighbours within an area of the picture are alike.
+    Area,
+    /// Points of one surface lie at nearly one depth, so the next depth follows from the last.
+    Depth,
+    /// The next picture is nearly this one.
+    Frame,
+}
+
+impl Coherence {
+    /// Every kind, from the model to the sequence of pictures.
+    pub const ALL: &'static [Self] = &[
+        Self::Object,
+        Self::Face,
+        Self::Edge,
+        Self::ScanLine,
+        Self::Span,
+        Self::Area,
+        Self::Depth,
+        Self::Frame,
+    ];
+
+    /// Returns the name used on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Object => "object",
+            Self::Face => "face",
+            Self::Edge => "edge",
+            Self::ScanLine => "scan-line",
+            Self::Span => "span",
+            Self::Area => "area",
+            Self::Depth => "depth",
+            Self::Frame => "frame",
+        }
+    }
+}
+
 /// The facts of one published algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Info {
@@ -27,6 +118,13 @@ pub struct Info {
     pub source: &'static str,
     /// Space in which it decides.
     pub class: Class,
+    /// Part of a surface that is compared with others to find what is hidden.
+    pub occluder: Occluder,
+    /// Likenesses of neighbours that save work; none if every element is treated by itself.
+    pub coherence: &'static [Coherence],
+    /// The algorithm in 8 to 20 lines, written from the publication; a step's line counts from 1. Empty if it has no
+    /// lesson.
+    pub pseudocode: &'static [&'static str],
     /// Time and memory, in the usual O-notation, with its letters explained.
     pub cost: &'static str,
     /// Limits, and requirements on the input.

@@ -36,7 +36,7 @@
 //! | question | answer |
 //! |---|---|
 //! | Where must the eye be to see all of it from the front, or from above? | [`view::projection`] |
-//! | Which pixel shows this point of a plane? | [`view::window`]: window to viewport |
+//! | Which pixel shows this point of a plane? | [`view::window`]: window to viewport; [`view::mapping`] as it is taught |
 //! | Several views in one picture? | [`view::layout`] |
 //! | Can this box be seen at all? Which way does this face look? | [`view::cull`] |
 //! | What does a near camera see of this picture with depth? | [`view::warp`]: forward warping |

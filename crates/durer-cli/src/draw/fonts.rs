@@ -14,6 +14,13 @@ const SUFFIXES: [&str; 4] = ["ttf", "otf", "ttc", "otc"];
 /// Folders are searched so deep.
 const MAX_DEPTH: u32 = 16;
 
+/// Returns the font that is always there.
+pub fn built_in() -> Fonts {
+    let mut fonts = Fonts::new();
+    fonts.add(BUILT_IN.to_vec());
+    fonts
+}
+
 /// Returns the fonts given, then those installed if wanted, then the built-in one.
 pub fn load(args: &FontArgs) -> Result<Fonts, Failure> {
     let mut fonts = Fonts::new();

@@ -8,6 +8,7 @@ mod report;
 mod svg;
 
 pub use args::{DrawArgs, EXAMPLES};
+pub use fonts::built_in as built_in_fonts;
 pub use layers::is_style;
 
 use crate::encoding;

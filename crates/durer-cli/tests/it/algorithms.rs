@@ -143,3 +143,27 @@ fn warp_says_what_is_wrong_with_its_input() {
     run("a.png d.png", "--fov 30 --ortho 2 --to-eye 0,0,8").fails(2, "--ortho");
     assert!(!folder.names().contains(&"w.png".to_owned()));
 }
+
+#[test]
+fn algorithms_are_classified_from_their_facts() {
+    let folder = Folder::new();
+    let names = |arguments: &str| -> Vec<String> {
+        let list = folder.must(&format!("algorithms --json {arguments}")).json();
+        let name = |told: &serde_json::Value| told["name"].as_str().unwrap().to_owned();
+        list.as_array().unwrap().iter().map(name).collect()
+    };
+    let all = names("");
+    assert_eq!(all.len(), durer::explain::ALGORITHMS.len());
+    let lines = ["spanning-scan-line", "watkins", "horizon-curves"];
+    assert_eq!(names("--space image --occluder line"), lines);
+    assert_eq!(names("--space list-priority"), ["depth-sort", "painter", "bsp-tree"]);
+    assert_eq!(
+        names("--coherence span --coherence scan-line --occluder none Romney"),
+        ["edge-table"]
+    );
+    assert!(names("no-such-algorithm").is_empty());
+    let text = String::from_utf8(folder.must("algorithms warnock").out).unwrap();
+    let row = ["warnock", "image", "area", "area", "1969", "Warnock's", "area", "subdivision"];
+    assert_eq!(text.lines().nth(1).unwrap().split_whitespace().collect::<Vec<_>>(), row);
+    folder.run("algorithms --space picture").fails(2, "object, list-priority, image");
+}

@@ -13,6 +13,7 @@ mod conformance_clip;
 mod conformance_models;
 mod draw;
 mod drawings;
+mod explain;
 mod faults;
 mod fill;
 mod harness;

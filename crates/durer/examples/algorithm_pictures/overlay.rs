@@ -20,7 +20,7 @@ pub fn draw(step: &Step, row: &mut u32, p: &mut Pixels<[u8; 4]>) {
         }
         Step::SpanningScanLine(spanning::Step::Row { y })
         | Step::ScanLineZ(scan::Step::Row { y }) => *row = y as u32,
-        Step::SpanningScanLine(spanning::Step::Span { item, x0, x1 }) => {
+        Step::SpanningScanLine(spanning::Step::Span { item, x0, x1, .. }) => {
             let [r, g, b] = tint(item);
             (x0..x1).for_each(|x| p.set(x as u32, *row, [r, g, b, 255]));
         }

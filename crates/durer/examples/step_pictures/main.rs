@@ -5,7 +5,7 @@
 
 mod curves;
 mod hidden;
-mod lines;
+mod lessons;
 mod pixels;
 mod polygons;
 #[path = "../algorithm_pictures/scene.rs"]
@@ -17,8 +17,11 @@ type Picture = (&'static str, durer::Result<String>);
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| ".".into());
-    let pictures: [&[fn() -> Picture]; 6] =
-        [lines::ALL, polygons::ALL, pixels::ALL, curves::ALL, hidden::ALL, strokes::ALL];
+    for &(lesson, example) in lessons::SHEETS {
+        std::fs::write(format!("{folder}/{lesson}.svg"), lessons::sheet((lesson, example))?)?;
+    }
+    let pictures: [&[fn() -> Picture]; 5] =
+        [polygons::ALL, pixels::ALL, curves::ALL, hidden::ALL, strokes::ALL];
     for picture in pictures.into_iter().flatten() {
         let (name, svg) = picture();
         std::fs::write(format!("{folder}/{name}.svg"), svg?)?;

@@ -163,14 +163,15 @@ fn seeds() -> durer::Result<String> {
             for (i, _) in walls.concat().bytes().enumerate().filter(|(_, b)| *b == b'#') {
                 panel.cell((i % 16) as f64, (i / 16) as f64, "#444");
             }
-            let steps = &steps.steps()[..steps.steps().len() / part];
+            let runs: Vec<_> = steps.steps().iter().filter_map(seed_fill::Step::filled).collect();
+            let steps = &runs[..runs.len() / part];
             for (i, step) in steps.iter().enumerate() {
                 let color = shade(PALE, BLUE, i as f64 / steps.len() as f64);
                 for x in step.x0..step.x1 {
-                    panel.cell(f64::from(x), f64::from(step.y), &color);
+                    panel.cell(x as f64, step.y as f64, &color);
                 }
                 if method == SeedFill::Spans {
-                    panel.mark(f64::from(step.x0), f64::from(step.y), &format!("{}", i + 1));
+                    panel.mark(step.x0 as f64, step.y as f64, &format!("{}", i + 1));
                 }
             }
             panel.dot(DVec2::new(4.5, 2.5), "#d1495b");

@@ -1,22 +1,15 @@
 //! Polygon clipping.
 
 use durer::clip::polygon::overlay::{self, overlay};
-use durer::clip::polygon::{
-    BooleanOp, Shapes, greiner_hormann, sutherland_hodgman, vatti, weiler_atherton,
-};
+use durer::clip::polygon::{BooleanOp, Shapes, greiner_hormann, vatti};
 use durer::math::{DVec2, Rect};
 use durer::trace::Recorder;
 
 use crate::Picture;
 use crate::sketch::{Panel, svg};
 
-pub const ALL: &[fn() -> Picture] = &[
-    || ("sutherland-hodgman", stages()),
-    || ("weiler-atherton", walks()),
-    || ("greiner-hormann", entries()),
-    || ("vatti", sweep()),
-    || ("overlay", snapping()),
-];
+pub const ALL: &[fn() -> Picture] =
+    &[|| ("greiner-hormann", entries()), || ("vatti", sweep()), || ("overlay", snapping())];
 
 fn ring(points: &[(f64, f64)]) -> Vec<DVec2> {
     points.iter().map(|&p| p.into()).collect()
@@ -36,38 +29,6 @@ fn letter() -> Vec<DVec2> {
     ])
 }
 
-fn stages() -> durer::Result<String> {
-    let window = Rect::new(DVec2::new(6.0, 1.0), DVec2::new(10.0, 8.0))?;
-    let mut steps = Recorder::default();
-    sutherland_hodgman::clip(&window, &letter(), &mut steps)?;
-    let mut rings = vec![Vec::new(); 5];
-    for step in steps.steps() {
-        match *step {
-            sutherland_hodgman::Step::Enters { stage, vertex } => rings[stage].push(vertex),
-            sutherland_hodgman::Step::Leaves { vertex } => rings[4].push(vertex),
-        }
-    }
-    let names = [
-        "the subject",
-        "after the left border",
-        "after the right",
-        "after the bottom",
-        "after the top",
-    ];
-    let mut panels = Vec::new();
-    for (ring, name) in rings.iter().zip(names) {
-        let note =
-            if name == names[4] { " in one ring,\nbridged along the left border" } else { "" };
-        let mut panel = Panel::new((0.0, -1.0), (13.0, 10.0))?;
-        panel.rings([&ring[..]], "fa");
-        panel.rect(&window, "win");
-        ring.iter().for_each(|&p| panel.dot(p, "#1f6fb4"));
-        let count = ring.len();
-        panels.push(panel.caption(format!("{name}: {count} vertices{note}")));
-    }
-    Ok(svg(&panels, 5))
-}
-
 fn pair() -> [Vec<DVec2>; 2] {
     let clip = ring(&[(3.0, -1.0), (9.0, 1.5), (10.0, 7.0), (6.0, 10.5), (2.5, 8.5), (6.5, 4.5)]);
     [letter(), clip]
@@ -83,30 +44,6 @@ fn result(rings: &[Vec<DVec2>]) -> durer::Result<Panel> {
     both(&mut panel, &pair());
     panel.rings(rings.iter().map(|r| &r[..]), "fc");
     Ok(panel)
-}
-
-fn walks() -> durer::Result<String> {
-    let [subject, clip] = pair().map(|ring| Shapes::from_rings([ring]));
-    let mut steps = Recorder::default();
-    let op = BooleanOp::Intersection;
-    weiler_atherton::weiler_atherton(&subject, &clip, op, &Default::default(), &mut steps)?;
-    let mut turns = Panel::new((0.0, -2.0), (13.0, 11.0))?;
-    both(&mut turns, &pair());
-    let mut rings = Vec::new();
-    for step in steps.steps() {
-        match step {
-            weiler_atherton::Step::Turn { at, to_subject } => {
-                turns.dot(*at, if *to_subject { "#1f6fb4" } else { "#d1495b" });
-            }
-            weiler_atherton::Step::Ring { points } => rings.push(points.clone()),
-            _ => {}
-        }
-    }
-    let panels = [
-        turns.caption("the walks turn onto the subject (blue)\nor onto the clip (red)"),
-        result(&rings)?.caption(format!("intersection: {} rings", rings.len())),
-    ];
-    Ok(svg(&panels, 2))
 }
 
 fn entries() -> durer::Result<String> {

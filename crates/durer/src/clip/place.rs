@@ -12,7 +12,7 @@
 
 use super::outcode::{DepthRange, Outcode};
 use super::volume::{self, Blend, ClipVertex, Step, cut_ring, planes_in_source};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, DVec3, DVec4, Plane};
 use crate::trace::Tracer;
 
@@ -24,8 +24,21 @@ pub const WORLD: Info = Info {
     year: 1974,
     source: "Reentrant Polygon Clipping, Communications of the ACM",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(vertices × planes): a dot product each",
     limits: "an affine world; convex polygons",
+    pseudocode: &[
+        "take the six borders back into the world by the matrix: planes n·P + c",
+        "a vertex is not finite: reject, stop",
+        "the ring is the face in the world",
+        "for each of the six planes:",
+        "    for each vertex P, Q the next:",
+        "        n·P + c ≥ 0: keep P",
+        "        sides differ: emit the point of PQ in the plane",
+        "transform what is left by the matrix",
+        "divide by w",
+    ],
 };
 
 /// The facts of clipping in clip space.
@@ -36,8 +49,21 @@ pub const CLIP_SPACE: Info = Info {
     year: 1978,
     source: "Clipping Using Homogeneous Coordinates, SIGGRAPH",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(vertices × borders crossed): an addition each",
     limits: "convex polygons",
+    pseudocode: &[
+        "transform the vertices by the matrix; outcodes of −w ≤ x, y, z ≤ w",
+        "AND of the outcodes ≠ 0: reject, stop",
+        "OR of the outcodes = 0: accept, stop",
+        "for each border that some vertex lies beyond:",
+        "    for each vertex P, Q the next, by boundary coordinates d:",
+        "        d(P) ≥ 0: keep P",
+        "        signs differ: emit the point at t = d(P) / (d(P) − d(Q))",
+        "drop vertices with w ≤ 0",
+        "divide by w",
+    ],
 };
 
 /// The facts of clipping after the division.
@@ -48,8 +74,20 @@ pub const AFTER_DIVISION: Info = Info {
     year: 1973,
     source: "Principles of Interactive Computer Graphics",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(vertices × borders): a comparison each, and one more border for the eye plane",
     limits: "convex polygons; loses digits for triangles that reach behind the eye",
+    pseudocode: &[
+        "transform the vertices by the matrix",
+        "a vertex is not finite: reject, stop",
+        "borders: first w ≥ a little, as nothing else can be divided; divide by w",
+        "then for each border −1 ≤ x, y, z ≤ 1:",
+        "    for each vertex P, Q the next:",
+        "        P inside: keep P",
+        "        sides differ: emit the point of PQ on the border",
+        "attributes are linear only divided by w",
+    ],
 };
 
 /// The facts of clipping in the viewport.
@@ -60,8 +98,20 @@ pub const VIEWPORT: Info = Info {
     year: 1974,
     source: "Reentrant Polygon Clipping, Communications of the ACM",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(vertices × 4 borders) after two borders in clip space",
     limits: "convex polygons; near and far plane must have been cut before",
+    pseudocode: &[
+        "transform the vertices by the matrix",
+        "a vertex is not finite: reject, stop",
+        "borders: near and far in clip space; divide by w",
+        "then for each border of the viewport: left, right, bottom, top:",
+        "    for each vertex P, Q the next:",
+        "        P inside: keep P",
+        "        sides differ: emit the point of PQ on the border",
+        "attributes are linear only divided by w",
+    ],
 };
 
 /// The facts of clipping per pixel.
@@ -72,8 +122,21 @@ pub const PER_PIXEL: Info = Info {
     year: 1992,
     source: "The OpenGL Graphics System: A Specification",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(pixels covered), in the window or not, unless the rasterizer walks the window only",
     limits: "coordinates must fit the rasterizer's guard band",
+    pseudocode: &[
+        "transform the vertices by the matrix",
+        "a vertex is not finite: reject, stop",
+        "nothing is cut but at the eye plane",
+        "for the border w ≥ a little:",
+        "    for each vertex P, Q the next:",
+        "        P inside: keep P",
+        "        sides differ: emit the point of PQ on the border",
+        "divide by w; rasterize",
+        "each pixel: within scissor and mask, depth within the volume?",
+    ],
 };
 
 crate::info::family! {

@@ -20,7 +20,7 @@ use crate::clip::exact::{crossing, side};
 use crate::clip::polygon::Shapes;
 use crate::clip::polygon::rectangle::{ClippedLines, Near, Prepared};
 use crate::clip::touch::{are_one, is_on, reach};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
@@ -35,9 +35,21 @@ pub const INFO: Info = Info {
     source: "Algorithm 112: position of point relative to polygon, Communications of the ACM \
              5(8); asked for the middle of each piece between two crossings",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n e / s + k log k) for n segments, e edges of the polygon in s slabs, s about \
              the root of e, k cuts; O(e) memory",
     limits: "even-odd rule; parts between cuts that round to one point are ignored",
+    pseudocode: &[
+        "for each segment of each polyline:",
+        "    find the edges of the polygon that it crosses",
+        "    sort the crossings along the segment",
+        "    for each part between two neighbouring crossings:",
+        "        M := middle of the part",
+        "        M is inside if a ray from it crosses an odd number of edges",
+        "        judge the part as M",
+        "    join parts that are kept to pieces",
+    ],
 };
 
 /// Part of the polylines to keep: inside or outside.
@@ -73,6 +85,15 @@ pub enum Step {
         /// True if it is in the closed polygon.
         inside: bool,
     },
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Part { .. } => 7,
+        }
+    }
 }
 
 /// Returns the pieces that a list of steps leads to, each with its polyline.

@@ -11,7 +11,7 @@
 //! point always comes first, either direction of an edge gives the same bits.
 
 use super::outcode::{DepthRange, Outcode};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, DVec4, Plane};
 use crate::trace::{NoTrace, Tracer};
 
@@ -23,9 +23,22 @@ pub const INFO: Info = Info {
     year: 1978,
     source: "Clipping Using Homogeneous Coordinates, SIGGRAPH",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(vertices × borders crossed) time, O(vertices) memory",
     limits: "convex polygons; a concave one may get bridging edges along the border. Polygons with a \
              coordinate that is not finite or beyond 10^150 are left out",
+    pseudocode: &[
+        "for each vertex: its boundary coordinates d1 … d6, and the outcode of their signs",
+        "AND of the outcodes ≠ 0, or nothing is left in the end: reject, stop",
+        "OR of the outcodes = 0: accept, stop",
+        "for each border that some vertex lies beyond:",
+        "    for each vertex P of the ring, Q the next, by their d:",
+        "        d(P) ≥ 0: keep P",
+        "        signs differ: emit P + t·(Q − P) with t = d(P) / (d(P) − d(Q)), from the inside end",
+        "drop vertices with w ≤ 0",
+        "divide x, y, z by w",
+    ],
 };
 
 /// Coordinates beyond this are left out: products of two must stay finite.
@@ -137,6 +150,22 @@ pub enum Step {
     },
     /// Vertices without a place, w ≤ 0, were dropped from the result.
     Dropped,
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1: of [`INFO`] and of all places of
+    /// [`super::place`].
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Code { .. } => 1,
+            Self::Rejected => 2,
+            Self::Accepted => 3,
+            Self::Border(_) => 4,
+            Self::Keep { .. } => 6,
+            Self::Cut { .. } => 7,
+            Self::Dropped => 8,
+        }
+    }
 }
 
 /// Returns the six distances from the borders in the order of [`Outcode::BORDERS`]; ≥ 0 is inside.

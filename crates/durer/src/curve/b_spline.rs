@@ -5,7 +5,7 @@
 //! search for the knot span.
 
 use super::bezier::{Point, project};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3};
 use crate::trace::{NoTrace, Tracer};
 use crate::{Error, Result};
@@ -18,8 +18,20 @@ pub const INFO: Info = Info {
     year: 1972,
     source: "On calculating with B-splines, Journal of Approximation Theory 6(1)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(p² + log n) per point for degree p and n knots",
     limits: "knots do not fall; parameters in the domain",
+    pseudocode: &[
+        "find the knot span k with u_k ≤ u < u_(k+1)",
+        "d_i^0 ← control point i, for i = k − p … k",
+        "for level r = 1 … p:",
+        "    for i = k down to k − p + r:",
+        "        // share of the second of the two points below",
+        "        a ← (u − u_i) / (u_(i+p+1−r) − u_i)",
+        "        d_i^r ← (1 − a) · d_(i−1)^(r−1) + a · d_i^(r−1)",
+        "return d_k^p",
+    ],
 };
 
 /// A B-spline curve.
@@ -132,6 +144,13 @@ pub struct Step<P> {
     pub share: f64,
     /// The point.
     pub point: P,
+}
+
+impl<P> Step<P> {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        7
+    }
 }
 
 /// Returns the point of a curve at a parameter, by de Boor's algorithm; parameters outside the domain are

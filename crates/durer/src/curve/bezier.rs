@@ -3,7 +3,7 @@
 //! P. de Casteljau, *Outillages méthodes calcul*, Citroën 1959; P. Bézier, 1962. Cost: O(n²) for degree n, stable
 //! for all parameters in 0 … 1. Points may lie in any space: pixels, world, or homogeneous for rational curves.
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3, DVec4};
 use crate::trace::Tracer;
 
@@ -15,8 +15,20 @@ pub const INFO: Info = Info {
     year: 1959,
     source: "Outillages méthodes calcul, Citroën",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n²) per point for degree n",
     limits: "parameters in 0 … 1",
+    pseudocode: &[
+        "P_i^0 ← control point i, for i = 0 … n",
+        "for level r = 1 … n:",
+        "    for i = 0 … n − r:",
+        "        // the point at t between two neighbours of the level below",
+        "        P_i^r ← (1 − t) · P_i^(r−1) + t · P_(i+1)^(r−1)",
+        "// what is left is one point",
+        "return P_0^n",
+        "// P_0^r and P_(n−r)^r are the control points of both parts",
+    ],
 };
 
 /// Points that can be mixed; what curves are made of.
@@ -51,6 +63,13 @@ pub struct Step<P> {
     pub index: usize,
     /// The point.
     pub point: P,
+}
+
+impl<P> Step<P> {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        5
+    }
 }
 
 /// Returns the point of the curve at parameter `t`; `None` without control points.

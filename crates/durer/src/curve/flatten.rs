@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use super::path::{Path, PathElement};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DAffine2, DVec2};
 use crate::trace::{NoTrace, Tracer};
 
@@ -21,8 +21,21 @@ pub const INFO: Info = Info {
     source: "The subdivision method for finding the intersection between two Bézier curves or \
              surfaces, Journal of Zhejiang University",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(k) points, k of the order of the root of (size / tolerance)",
     limits: "at most 4096 pieces per curve",
+    pseudocode: &[
+        "for each contour of the path:",
+        "    begin a chain at its first point",
+        "    for each curve of degree n with control points P_0 … P_n:",
+        "        b ← largest length of P_i − 2 P_(i+1) + P_(i+2)",
+        "        // a chord over 1/s of the curve is at most n (n − 1) / 8 · b / s² away",
+        "        s ← smallest number of chords that keeps the tolerance",
+        "        for i = 1 … s:",
+        "            append the point of the curve at t = i / s",
+        "    end the chain, closed or open",
+    ],
 };
 
 /// No curve is cut into more pieces: with control points a billion pixels away the tolerance gives way.
@@ -141,12 +154,25 @@ pub enum Step {
         element: usize,
         /// End of the chord.
         end: DVec2,
+        /// The curve lies at most so far from the chord, in the path's unit.
+        error: f64,
     },
     /// The contour ends, closed or open.
     End {
         /// True if it was closed.
         closed: bool,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Start(_) => 2,
+            Self::Chord { .. } => 8,
+            Self::End { .. } => 9,
+        }
+    }
 }
 
 /// Flattens like [`flatten`], with a listener for its steps.
@@ -174,8 +200,12 @@ pub fn flatten_traced(path: &Path, tolerance: f64, t: &mut impl Tracer<Step>) ->
                 }
                 let before = out.points.len();
                 chain(at, element, tolerance, &mut out.points);
-                for end in &out.points[before..] {
-                    t.step(|| Step::Chord { element: index, end: *end });
+                let chords = &out.points[before..];
+                for end in chords {
+                    t.step(|| {
+                        let error = chord_error(at, element, chords.len());
+                        Step::Chord { element: index, end: *end, error }
+                    });
                 }
                 at = p;
             }
@@ -183,6 +213,21 @@ pub fn flatten_traced(path: &Path, tolerance: f64, t: &mut impl Tracer<Step>) ->
     }
     end(&mut out, false, t);
     out
+}
+
+/// Returns the bound that [`segments_for`] keeps, for so many chords of an element.
+fn chord_error(a: DVec2, element: &PathElement, chords: usize) -> f64 {
+    let bound = match *element {
+        PathElement::QuadTo(b, c) => bend(a, b, c) / 4.0,
+        PathElement::CubicTo(b, c, d) => bend(a, b, c).max(bend(b, c, d)) * 0.75,
+        _ => 0.0,
+    };
+    bound / (chords * chords).max(1) as f64
+}
+
+/// Returns the length of the second difference of three control points.
+fn bend(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (a - 2.0 * b + c).length()
 }
 
 /// Ends a contour, if one is open.
@@ -198,7 +243,7 @@ pub(crate) fn chain(a: DVec2, element: &PathElement, tolerance: f64, out: &mut V
     match *element {
         PathElement::LineTo(p) => out.push(p),
         PathElement::QuadTo(b, c) => {
-            let steps = segments_for(2, (a - 2.0 * b + c).length(), tolerance);
+            let steps = segments_for(2, bend(a, b, c), tolerance);
             out.extend((1..steps).map(|i| {
                 let t = f64::from(i) / f64::from(steps);
                 a.lerp(b, t).lerp(b.lerp(c, t), t)
@@ -206,8 +251,7 @@ pub(crate) fn chain(a: DVec2, element: &PathElement, tolerance: f64, out: &mut V
             out.push(c);
         }
         PathElement::CubicTo(b, c, d) => {
-            let bend = (a - 2.0 * b + c).length().max((b - 2.0 * c + d).length());
-            let steps = segments_for(3, bend, tolerance);
+            let steps = segments_for(3, bend(a, b, c).max(bend(b, c, d)), tolerance);
             out.extend((1..steps).map(|i| {
                 let t = f64::from(i) / f64::from(steps);
                 let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
@@ -283,7 +327,8 @@ mod tests {
         for step in recorder.steps() {
             match *step {
                 Step::Start(p) => points = vec![p],
-                Step::Chord { element, end } => {
+                Step::Chord { element, end, error } => {
+                    assert!(error <= 0.1);
                     assert!(!matches!(path.elements()[element], PathElement::Close));
                     points.push(end);
                 }

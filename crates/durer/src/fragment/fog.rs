@@ -3,7 +3,7 @@
 //! Depth cueing: J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes, *Computer Graphics: Principles and Practice*, 2nd ed. 1990, 14.3.4 and 16.1.3.
 //! Fog: *The OpenGL Graphics System* 2.1 (2006), 3.10. Cost: O(1). Limits: colours are mixed as they are, linear light mixes as air does.
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{Vec4, exp2};
 
 /// The facts.
@@ -14,8 +14,11 @@ pub const INFO: Info = Info {
     year: 1990,
     source: "Computer Graphics: Principles and Practice, 14.3.4 and 16.1.3; OpenGL 2.1, 3.10",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(1) per fragment",
     limits: "the air is the same everywhere",
+    pseudocode: &[],
 };
 
 /// Formula for the share of a colour that remains at a distance.

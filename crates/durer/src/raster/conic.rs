@@ -10,7 +10,7 @@
 //! ellipses so flat that their last rows have no step between them are drawn as the line that they are. Limits: where an
 //! ellipse has rows of few pixels beside its tips, a pixel there may be the second nearest, as published.
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::IVec2;
 use crate::trace::Tracer;
 use crate::{Error, Result};
@@ -23,8 +23,21 @@ pub const CIRCLE: Info = Info {
     year: 1977,
     source: "A linear algorithm for incremental digital display of circular arcs, Communications of the ACM 20(2)",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge],
     cost: "O(radius), two integer additions per step and eight pixels",
     limits: "a pixel as centre, a whole radius up to 2^20",
+    pseudocode: &[
+        "x ← 0, y ← r, d ← 1 − r",
+        "while x ≤ y:",
+        "    set the eight pixels (±x, ±y) and (±y, ±x)",
+        "    // d < 0: the midpoint (x + 1, y − ½) lies inside the circle",
+        "    if d < 0:",
+        "        d ← d + 2x + 3",
+        "    else:",
+        "        d ← d + 2(x − y) + 5, y ← y − 1",
+        "    x ← x + 1",
+    ],
 };
 
 /// The facts of ellipses.
@@ -35,8 +48,30 @@ pub const INFO: Info = Info {
     year: 1984,
     source: "An efficient ellipse-drawing algorithm, IEEE Computer Graphics and Applications 4(9)",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge],
     cost: "O(radii), three integer additions per step and four pixels",
     limits: "a pixel as centre, axes along rows and columns, whole radii up to 2^20",
+    pseudocode: &[
+        "x ← 0, y ← b, d ← b² − a²b + a²/4",
+        "while b²(x + 1) < a²(y − ½):",
+        "    set the four pixels (±x, ±y)",
+        "    // flat part: the midpoint is (x + 1, y − ½)",
+        "    if d < 0:",
+        "        d ← d + b²(2x + 3)",
+        "    else:",
+        "        d ← d + b²(2x + 3) + a²(2 − 2y), y ← y − 1",
+        "    x ← x + 1",
+        "d ← b²(x + ½)² + a²(y − 1)² − a²b²",
+        "while y ≥ 0:",
+        "    set the four pixels (±x, ±y)",
+        "    // steep part: the midpoint is (x + ½, y − 1)",
+        "    if d < 0:",
+        "        d ← d + b²(2x + 2) + a²(3 − 2y), x ← x + 1",
+        "    else:",
+        "        d ← d + a²(3 − 2y)",
+        "    y ← y − 1",
+    ],
 };
 
 /// The largest radius, in pixels: products of four of them fit i128 with room to spare, and time is bounded.
@@ -63,6 +98,18 @@ pub struct Step {
     /// The decision variable there; of ellipses four times it, which makes it whole. Where it is negative the next pixel lies straight on in the
     /// flat parts and aslant in the steep one.
     pub d: i128,
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that follows from the decision variable.
+    pub fn line(&self) -> usize {
+        match (self.region, self.d < 0) {
+            (Region::Octant | Region::Flat, true) => 6,
+            (Region::Octant | Region::Flat, false) => 8,
+            (Region::Steep, true) => 15,
+            (Region::Steep, false) => 17,
+        }
+    }
 }
 
 /// Returns the pixels that a list of steps leads to, seen from the centre, in no order.

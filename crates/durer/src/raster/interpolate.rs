@@ -4,7 +4,9 @@
 //! Perspective-correct interpolation: James Blinn, *Hyperbolic Interpolation*, IEEE CG&A, 1992; Paul
 //! Heckbert and Henry Moreton, *Interpolation for Polygon Texture Mapping and Shading*, 1991.
 
-use crate::info::{Class, Info};
+pub mod rows;
+
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DVec2, DVec3};
 use std::ops::{Add, Mul};
 
@@ -16,8 +18,11 @@ pub const BARYCENTRIC: Info = Info {
     year: 1827,
     source: "Der barycentrische Calcul",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(1)",
     limits: "triangles with an area",
+    pseudocode: &[],
 };
 
 /// The facts of perspective-correct interpolation.
@@ -28,8 +33,20 @@ pub const INFO: Info = Info {
     year: 1991,
     source: "Interpolation for polygon texture mapping and shading, in State of the Art in Computer Graphics",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Face],
     cost: "O(1), one division",
     limits: "vertices before the eye",
+    pseudocode: &[
+        "for each corner: keep 1/w and value/w",
+        "// both are linear on the screen, the value itself is not",
+        "for each row that the triangle covers:",
+        "    along its two edges: 1/w and value/w, linear in y",
+        "    for each pixel between them:",
+        "        1/w and value/w, linear in x; value ← (value/w) / (1/w)",
+        "        set the pixel to the value",
+        "// with w = 1 everywhere this is linear interpolation",
+    ],
 };
 
 /// Returns twice the signed area of a triangle by the short formula, in square units of its

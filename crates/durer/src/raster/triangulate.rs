@@ -9,7 +9,7 @@ use earcut::Earcut;
 use crate::Result;
 use crate::clip::polygon::{BooleanOp, FillRule, Shapes, overlay};
 use crate::curve::Contours;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::{NoTrace, Tracer};
 
@@ -21,8 +21,11 @@ pub const INFO: Info = Info {
     year: 1975,
     source: "Polygons have ears, American Mathematical Monthly 82(6)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n log n) time on usual input, O(n²) at worst; O(n) memory",
     limits: "contours that cross need a winding rule; without one triangles need not cover the even-odd area",
+    pseudocode: &[],
 };
 
 /// Triangles of a polygon.

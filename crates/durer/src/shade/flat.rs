@@ -9,7 +9,7 @@
 use super::gouraud::{Reflected, shade_vertex};
 use super::light::PreparedLights;
 use super::material::PreparedMaterial;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::Vec3;
 
 /// The facts.
@@ -20,8 +20,11 @@ pub const INFO: Info = Info {
     year: 1970,
     source: "Communications of the ACM 13(9)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Face],
     cost: "O(l) per face, l lights; O(1) per pixel",
     limits: "curved surfaces look faceted",
+    pseudocode: &[],
 };
 
 /// Returns the light on a whole face, for [`super::Surface::lit`].

@@ -12,7 +12,7 @@ use super::material::PreparedMaterial;
 use super::normal::face_viewer;
 use super::phong;
 pub use super::reflected::Reflected;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::Vec3;
 
 /// The facts.
@@ -23,8 +23,20 @@ pub const INFO: Info = Info {
     year: 1971,
     source: "IEEE Transactions on Computers C-20(6)",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Face],
     cost: "O(l) per vertex, l lights; O(1) per pixel",
     limits: "highlights inside a face are lost; the result depends on the triangulation",
+    pseudocode: &[
+        "for each corner: N ← mean of the normals of its faces",
+        "    I ← light there: ambient + diffuse · max(0, N · L) + …",
+        "for each row that the triangle covers:",
+        "    along its two edges: I_a and I_b, linear in y",
+        "    for each pixel between them:",
+        "        I ← I_a + (I_b − I_a) · (x − x_a) / (x_b − x_a)",
+        "        set the pixel to I",
+        "// a highlight between the corners is lost",
+    ],
 };
 
 /// Returns the light at one vertex of a face, for [`super::Surface::lit`].

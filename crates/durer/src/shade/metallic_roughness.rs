@@ -13,7 +13,7 @@ use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
 use super::normal::Frame;
 use super::shadow;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::Vec3;
 
 /// The facts.
@@ -24,8 +24,11 @@ pub const INFO: Info = Info {
     year: 2017,
     source: "glTF 2.0 specification, appendix B",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(l) per pixel, l lights",
     limits: "surroundings are a closed form, not an image; no shadows",
+    pseudocode: &[],
 };
 
 /// Smoother surfaces than this would lose the highlight's shape in single precision.

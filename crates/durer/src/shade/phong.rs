@@ -13,7 +13,7 @@ use super::light::PreparedLights;
 use super::normal::Frame;
 use super::reflected::Reflected;
 use super::shadow;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::Vec3;
 
 /// The facts.
@@ -24,8 +24,21 @@ pub const INFO: Info = Info {
     year: 1975,
     source: "Communications of the ACM 18(6); halfway vector: SIGGRAPH 1977",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Face],
     cost: "O(l) per pixel, l lights",
     limits: "empirical: reflects more light than it gets at grazing angles",
+    pseudocode: &[
+        "for each corner: N ← mean of the normals of its faces",
+        "// normals are interpolated, not intensities",
+        "for each row that the triangle covers:",
+        "    along its two edges: N_a and N_b, linear in y",
+        "    for each pixel between them:",
+        "        N ← N_a + (N_b − N_a) · (x − x_a) / (x_b − x_a)",
+        "        N ← N / |N|",
+        "        I ← ambient + diffuse · max(0, N · L) + specular · max(0, R · V)^n",
+        "        set the pixel to I",
+    ],
 };
 
 /// An exponent of the specular term, ready to be applied to (n·h)².

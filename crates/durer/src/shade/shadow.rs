@@ -10,7 +10,7 @@
 //! its normal by what its slope makes of a texel; a shadow begins so much away from the body's foot.
 
 use super::lane::{Lane, Vec3Lane};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, Mat4, Vec3};
 use crate::target::Pixels;
 use crate::{Error, Result};
@@ -24,8 +24,11 @@ pub const INFO: Info = Info {
     year: 1978,
     source: "Casting Curved Shadows on Curved Surfaces, SIGGRAPH",
     class: Class::ImageSpace,
+    occluder: Occluder::Point,
+    coherence: &[],
     cost: "one depth picture per map, then O(1) per point and light; 4 bytes a texel",
     limits: "as sharp as the map is fine; blended surfaces, lines and points throw no shadow",
+    pseudocode: &[],
 };
 
 /// Factor of the slope's depth over a texel by which a point is moved: four texels around it are

@@ -2,7 +2,7 @@
 //!
 //! Khronos, *KHR_materials_unlit*, 2017; for scanned models whose textures hold their light.
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -12,6 +12,9 @@ pub const INFO: Info = Info {
     year: 2017,
     source: "glTF 2.0 extension KHR_materials_unlit",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(1) per pixel",
     limits: "shows no form but what the texture shows",
+    pseudocode: &[],
 };

@@ -6,7 +6,7 @@
 
 use crate::clip::outcode::DepthRange;
 use crate::clip::volume::planes_in_source;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, Plane, Rect};
 use crate::scene::{Aabb, BoundingSphere};
 
@@ -18,8 +18,11 @@ pub const INFO: Info = Info {
     year: 1976,
     source: "Hierarchical geometric models for visible surface algorithms, Communications of the ACM 19(10)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Object],
     cost: "O(p) per box or sphere for p planes",
     limits: "conservative: what lies outside near a corner can pass for crossing",
+    pseudocode: &[],
 };
 
 /// Relation of a thing to a volume.

@@ -8,7 +8,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 
@@ -48,8 +48,11 @@ pub const INFO: Info = Info {
     year: 2007,
     source: "Poles of inaccessibility, Scottish Geographical Journal 123(3); search with bounds: 2016",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(s n): s squares looked at, some tens to hundreds, n vertices",
     limits: "distances in f64",
+    pseudocode: &[],
 };
 
 /// A point within a polygon.

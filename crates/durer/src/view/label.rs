@@ -5,7 +5,7 @@
 //! order of their importance, each takes the first of its candidate places that is free, or none.
 //! Class: image space. Cost: O(1) per candidate for labels of similar size, by a grid of buckets.
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
 
 /// The facts.
@@ -16,8 +16,11 @@ pub const INFO: Info = Info {
     year: 1995,
     source: "An empirical study of algorithms for point-feature label placement, ACM Transactions on Graphics 14(3)",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(1) per candidate for labels of similar size",
     limits: "what has been placed stays: not the most labels that there is room for",
+    pseudocode: &[],
 };
 
 /// Buckets have this size in pixels: about that of a label.

@@ -7,6 +7,7 @@ pub mod fit;
 pub mod interior_point;
 pub mod label;
 pub mod layout;
+pub mod mapping;
 pub(crate) mod near;
 pub mod objects;
 mod outermost;

@@ -9,7 +9,7 @@
 //! Object space. Cost: O(triangles of the instances whose boxes are met).
 
 use crate::clip::volume::{ClipVertex, Options, clip_polygon, clip_segment};
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, DVec4, Rect};
 use crate::scene::{Aabb, Mesh, Scene, Topology};
 use crate::trace::NoTrace;
@@ -24,8 +24,11 @@ pub const INFO: Info = Info {
     year: 1997,
     source: "Triangle scan conversion using 2D homogeneous coordinates, Graphics Hardware",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Object],
     cost: "O(t): t triangles of the instances whose boxes are met",
     limits: "what is transparent is met like all else",
+    pseudocode: &[],
 };
 
 /// Largest distance of a model's lines and points from a picked point, in pixels.

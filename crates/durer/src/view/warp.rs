@@ -14,7 +14,7 @@
 
 mod unmixed;
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, DVec4};
 use crate::scene::Camera;
 use crate::target::{Framebuffer, Pixels};
@@ -31,8 +31,11 @@ pub const INFO: Info = Info {
     year: 1993,
     source: "View Interpolation for Image Synthesis, SIGGRAPH",
     class: Class::ImageSpace,
+    occluder: Occluder::Point,
+    coherence: &[Coherence::Frame],
     cost: "O(pixels of the pictures + pixels lit) time, O(pixels of the new picture) memory",
     limits: "what no picture shows is a hole; pixels that become very large are left out",
+    pseudocode: &[],
 };
 
 /// Pixels on a side that a pixel may cover in the new picture. A near camera does not need more, and

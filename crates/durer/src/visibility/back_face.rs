@@ -27,7 +27,7 @@
 //! assert_eq!(kept, [1]);
 //! ```
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
 use crate::scene::{Camera, Mesh, Projection, Scene};
 use crate::trace::Tracer;
@@ -41,8 +41,20 @@ pub const INFO: Info = Info {
     year: 1963,
     source: "Machine Perception of Three-Dimensional Solids, MIT Lincoln Laboratory TR 315",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Face],
     cost: "O(corners)",
     limits: "closed bodies; finds all that is visible of one convex body only",
+    pseudocode: &[
+        "for each face with corners P_1 … P_n, counter-clockwise from outside:",
+        "    N ← (0, 0, 0)",
+        "    for each two neighbours P_i, P_j:",
+        "        N_x ← N_x + (y_i − y_j)(z_i + z_j), N_y and N_z likewise",
+        "    // Newell: N is as long as twice the area of the face",
+        "    d ← N · (eye − mean of the corners)",
+        "    if d > 0: the face turns its front to the eye: keep it",
+        "    if d ≤ 0: it turns its back, or is seen edge-on: remove it",
+    ],
 };
 
 /// From where faces are seen.
@@ -101,6 +113,14 @@ pub enum Step {
         /// The side that is seen.
         side: Face,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        let Self::Tested { side, .. } = self;
+        if *side == Face::Front { 7 } else { 8 }
+    }
 }
 
 /// Returns the places of the polygons that turn their front to the eye, in order. Corners run

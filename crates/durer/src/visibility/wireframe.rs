@@ -9,7 +9,7 @@
 //! algorithms are for. Coherence used: none.
 
 use crate::clip::volume::{self, ClipVertex, clip_segment};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec4, IVec2};
 use crate::raster::line::{self, bresenham};
 use crate::scene::{Mesh, Scene, Topology};
@@ -25,8 +25,11 @@ pub const INFO: Info = Info {
     year: 1963,
     source: "Machine Perception of Three-Dimensional Solids, MIT Lincoln Laboratory TR 315",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(edges · log edges + pixels lit) time, O(edges) memory",
     limits: "ambiguous: what is in front cannot be told",
+    pseudocode: &[],
 };
 
 /// Options for the look of lines.

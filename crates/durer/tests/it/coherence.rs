@@ -148,7 +148,7 @@ fn spans(scene: &Scene, degrees: f64) -> Vec<u32> {
     for step in recorder.steps() {
         match *step {
             spanning::Step::Row { y } => row = y,
-            spanning::Step::Span { item, x0, x1 } => {
+            spanning::Step::Span { item, x0, x1, .. } => {
                 (x0..x1).for_each(|x| items[(row * SIDE as i32 + x) as usize] = item);
             }
             _ => {}

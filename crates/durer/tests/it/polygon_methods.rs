@@ -276,6 +276,11 @@ fn watkins_has_his_tables() {
         })
         .collect();
     assert_eq!(spans, [(0, [0, 4]), (1, [4, 8]), (1, [8, 12])]);
+    let ends = steps.iter().find_map(|s| match *s {
+        Step::Ends { columns: [4, 8], polygons: 2, nearest, depths } => Some((nearest, depths)),
+        _ => None,
+    });
+    assert_eq!(ends, Some(([1, 1], [3.125, 3.875])));
 }
 
 #[test]

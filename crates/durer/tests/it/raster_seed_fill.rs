@@ -42,6 +42,22 @@ fn labels(image: &Pixels<u8>, eight: bool) -> Vec<usize> {
     (0..w * h).map(|i| root(&mut parents, i)).collect()
 }
 
+/// Checks that pixels come off the stack in the reverse order of being put there, the seed's before all others.
+fn check_stack(steps: &[Step]) {
+    let mut stack = Vec::new();
+    for (i, step) in steps.iter().enumerate() {
+        match *step {
+            Step::Push(run) => stack.push(run),
+            Step::Skip(run) => assert_eq!(stack.pop(), Some(run)),
+            Step::Fill { run, waiting } => {
+                assert!(i == 0 || stack.pop() == Some(run));
+                assert_eq!(stack.len(), waiting);
+            }
+        }
+    }
+    assert!(stack.is_empty());
+}
+
 #[test]
 fn fills_take_exactly_the_connected_region() {
     let mut random = Random(1);
@@ -77,9 +93,10 @@ fn fills_take_exactly_the_connected_region() {
                 assert_eq!(flood_fill(&mut same, seed, own, 0, *method, &options, t), n);
                 assert_eq!(same, image);
                 let mut replayed = image.clone();
-                for s in recorder.steps() {
-                    (s.x0..s.x1).for_each(|x| replayed.set(x, s.y, 9));
+                for run in recorder.steps().iter().filter_map(Step::filled) {
+                    (run.x0..run.x1).for_each(|x| replayed.set(x as u32, run.y as u32, 9));
                 }
+                check_stack(recorder.steps());
                 assert_eq!(replayed, filled);
             }
         }

@@ -114,6 +114,8 @@ fn every_algorithm_is_in_the_catalogue() {
         assert!(!listed[..i].iter().any(|other| other.title == info.title && other == info));
         let texts = [info.name, info.title, info.authors, info.source, info.cost, info.limits];
         assert!(texts.iter().all(|text| !text.is_empty()), "{}", info.title);
+        let kinds = info.coherence;
+        assert!((1..kinds.len()).all(|k| !kinds[k..].contains(&kinds[k - 1])), "{}", info.title);
         // Descartes is the oldest.
         assert!((1637..2100).contains(&info.year), "{}", info.title);
     }

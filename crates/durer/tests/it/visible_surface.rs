@@ -308,7 +308,7 @@ fn spanning_scan_line_is_rebuilt_from_its_steps() {
             Step::Row { y } => row = y as u32,
             Step::In { .. } => inside += 1,
             Step::Out { .. } => inside -= 1,
-            Step::Span { item, x0, x1 } => {
+            Step::Span { item, x0, x1, .. } => {
                 spans += 1;
                 (x0..x1).for_each(|x| items.set(x as u32, row, item));
             }

@@ -9,7 +9,7 @@
 //! Cost: O(n); about ten arithmetic instructions and two divisions per end and vector.
 
 use super::{Segment, liang_barsky};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
 use crate::simd::{Level, default_level, dispatch};
 use crate::trace::NoTrace;
@@ -26,8 +26,11 @@ pub const INFO: Info = Info {
     source: "A new concept and method for line clipping, ACM Transactions on Graphics 3(1); \
              without branches, in vectors",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n) for n segments; about ten instructions and two divisions per end and vector",
     limits: "rectangles",
+    pseudocode: &[],
 };
 
 /// Segments as four arrays of one length; segment i is (x0\[i\], y0\[i\]) → (x1\[i\], y1\[i\]).

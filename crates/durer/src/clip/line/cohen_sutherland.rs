@@ -12,7 +12,7 @@ use super::border::{Canonical, bit, doubt, is_greater, lowest_border};
 use super::{ClipBox, End, Segment};
 use crate::Result;
 use crate::clip::outcode::Outcode;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3, Rect};
 use crate::trace::Tracer;
 
@@ -24,8 +24,20 @@ pub const INFO: Info = Info {
     year: 1967,
     source: "Newman & Sproull, Principles of Interactive Computer Graphics, 1973",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(1) per segment; at most one cut per border",
     limits: "axis-parallel windows: rectangle and box",
+    pseudocode: &[
+        "code1 := outcode(A); code2 := outcode(B)",
+        "loop",
+        "    if code1 OR code2 = 0000: accept AB, stop",
+        "    if code1 AND code2 ≠ 0000: reject, stop",
+        "    take an end P whose code c is not 0000",
+        "    take a border whose bit is set in c",
+        "    P := crossing of AB with the border",
+        "    c := outcode(P)",
+    ],
 };
 
 /// There is nothing to choose.
@@ -57,6 +69,18 @@ pub enum Step<P> {
         /// The code of the new end.
         code: Outcode,
     },
+}
+
+impl<P> Step<P> {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Codes { .. } => 1,
+            Self::Accepted => 3,
+            Self::Rejected => 4,
+            Self::Cut { .. } => 7,
+        }
+    }
 }
 
 /// Returns the result that a list of steps leads to.

@@ -12,7 +12,7 @@ use super::border::Canonical;
 use super::passage::clip_convex;
 use super::{ConvexPolygon, HalfPlane, Segment};
 use crate::Result;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3, Plane, Rect};
 use crate::trace::Tracer;
 
@@ -26,8 +26,22 @@ pub const INFO: Info = Info {
     year: 1978,
     source: "Generalized two- and three-dimensional clipping, Computers & Graphics 3(1)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n) per segment, n borders",
     limits: "convex windows; cut points lie within a few ulp of a slanted border",
+    pseudocode: &[
+        "t_E := 0; t_L := 1; v := B − A",
+        "for each border with outer normal n and a point Q on it:",
+        "    t := −(A − Q)·n / (v·n), unless v·n = 0",
+        "    A outside, B inside (v·n < 0): entered, t_E := max(t_E, t)",
+        "    A inside, B outside (v·n > 0): left, t_L := min(t_L, t)",
+        "    A and B outside: nothing is visible",
+        "if t_E > t_L, or all is outside a border: reject, stop",
+        "if t_E > 0: the start is A + t_E·v",
+        "if t_L < 1: the end is A + t_L·v",
+        "accept what is between",
+    ],
 };
 
 /// There is nothing to choose.

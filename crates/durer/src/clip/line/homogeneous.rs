@@ -15,7 +15,7 @@ use super::convex::HalfSpace;
 use super::{ClipBox, Segment, convex, passage};
 use crate::Result;
 use crate::clip::exact::Exact;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3, Plane, Rect};
 use crate::trace::Tracer;
 use std::cmp::Ordering;
@@ -30,8 +30,22 @@ pub const INFO: Info = Info {
     year: 1978,
     source: "Clipping using homogeneous coordinates, SIGGRAPH 1978",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(1) per segment; five boundary coordinates per end, at most two cut points",
     limits: "rectangles; in space the view volume, by clip::volume",
+    pseudocode: &[
+        "α1 := 0; α2 := 1",
+        "for each border with boundary coordinate d(x, y, w), ≥ 0 inside:",
+        "    d1 := d(A); d2 := d(B); α := d1 / (d1 − d2), if the signs differ",
+        "    d1 < 0 ≤ d2: entered, α1 := max(α1, α)",
+        "    d2 < 0 ≤ d1: left, α2 := min(α2, α)",
+        "    d1 < 0 and d2 < 0: nothing is visible",
+        "if α1 > α2, or all is outside a border: reject, stop",
+        "if α1 > 0: the start is A + α1·(B − A), in x, y and w",
+        "if α2 < 1: the end is A + α2·(B − A)",
+        "accept what is between; now divide by w",
+    ],
 };
 
 /// There is nothing to choose.

@@ -11,7 +11,7 @@ use super::border::{Canonical, bit};
 use super::passage::{Bounds, clip_convex, finish};
 use super::{ClipBox, HalfPlane, Relation, Segment};
 use crate::clip::outcode::Outcode;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
@@ -27,8 +27,22 @@ pub const INFO: Info = Info {
     year: 1984,
     source: "A new concept and method for line clipping, ACM Transactions on Graphics 3(1)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(1) per segment; at most two cut points are computed",
     limits: "rectangle, box, and intersections of half-planes",
+    pseudocode: &[
+        "u1 := 0; u2 := 1",
+        "for each border k = left, right, bottom, top:",
+        "    p := −, + Δx, −, + Δy; q := distance of A inwards; r := q/p, unless p = 0",
+        "    p < 0, entered from outside: u1 := max(u1, r)",
+        "    p > 0, left to outside: u2 := min(u2, r)",
+        "    A and B outside (p = 0 and q < 0, too): nothing is visible",
+        "if u1 > u2, or all is outside a border: reject, stop",
+        "if u1 > 0: the start is A + u1·(B − A)",
+        "if u2 < 1: the end is A + u2·(B − A)",
+        "accept what is between",
+    ],
 };
 
 /// There is nothing to choose.

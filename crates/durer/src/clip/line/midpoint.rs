@@ -13,7 +13,7 @@
 
 use super::{End, Segment};
 use crate::clip::outcode::Outcode;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::IVec2;
 use crate::trace::Tracer;
 use crate::{Error, Result};
@@ -26,8 +26,22 @@ pub const INFO: Info = Info {
     year: 1968,
     source: "A clipping divider, Fall Joint Computer Conference",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(log n) per segment, n its length in pixels",
     limits: "integer coordinates; cut points within half a pixel of the segment",
+    pseudocode: &[
+        "halve(P, Q): M := the pixel nearest to the middle of P and Q; c := outcode(M)",
+        "while neither A nor B is inside:",
+        "    if code(A) AND code(B) ≠ 0000, or they are neighbours: reject, stop",
+        "    halve(A, B); if M is inside: V := M, leave the loop",
+        "    the end that is beyond a border together with M becomes M",
+        "for each end P that is outside, with V visible:",
+        "    while P and V are not neighbours:",
+        "        halve(P, V); if M is inside: V := M, else P := M",
+        "    the end moves to V",
+        "accept AB",
+    ],
 };
 
 /// There is nothing to choose.
@@ -95,6 +109,18 @@ pub enum Step {
     Accepted,
     /// Nothing remains.
     Rejected,
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Halved { .. } => 1,
+            Self::Rejected => 3,
+            Self::Cut { .. } => 9,
+            Self::Accepted => 10,
+        }
+    }
 }
 
 /// Returns the result that a list of steps leads to.

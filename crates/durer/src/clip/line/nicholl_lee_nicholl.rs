@@ -12,7 +12,7 @@ use super::border::{Canonical, bit};
 use super::{ClipBox, End, Segment};
 use crate::Result;
 use crate::clip::outcode::Outcode;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 use std::cmp::Ordering;
@@ -25,8 +25,20 @@ pub const INFO: Info = Info {
     year: 1987,
     source: "An efficient new algorithm for 2-D line clipping, SIGGRAPH 1987",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(1) per segment; only crossings that are in the result are computed",
     limits: "rectangles in two dimensions",
+    pseudocode: &[
+        "c := region of A: inside, beside a border, or at a corner",
+        "both ends inside: accept; both beyond one border: reject",
+        "for the corners of the window that the region asks for:",
+        "    compare the side of the ray from A through the corner on which B lies",
+        "if B is beside the rays that see the window: reject, stop",
+        "if A is outside: A := crossing with the border that the rays tell",
+        "if B is outside: B := crossing with the border that the rays tell",
+        "accept AB",
+    ],
 };
 
 /// There is nothing to choose.
@@ -62,6 +74,20 @@ pub enum Step {
     Accepted,
     /// Nothing remains.
     Rejected,
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Region { .. } => 1,
+            Self::Corner { .. } => 4,
+            Self::Rejected => 5,
+            Self::Cut { end: End::Start, .. } => 6,
+            Self::Cut { end: End::End, .. } => 7,
+            Self::Accepted => 8,
+        }
+    }
 }
 
 /// Returns the result that a list of steps leads to.

@@ -37,6 +37,22 @@ pub enum Step<P> {
     Rejected,
 }
 
+impl<P> Step<P> {
+    /// Returns the line of the pseudocode that runs, counted from 1; it is the same for all methods of this kind.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Border { relation: Relation::Inside, .. } => 3,
+            Self::Border { relation: Relation::Entering, .. } => 4,
+            Self::Border { relation: Relation::Leaving, .. } => 5,
+            Self::Border { relation: Relation::Outside, .. } => 6,
+            Self::Rejected => 7,
+            Self::Cut { end: End::Start, .. } => 8,
+            Self::Cut { end: End::End, .. } => 9,
+            Self::Accepted => 10,
+        }
+    }
+}
+
 /// The numbers of a border as the methods are taught; rounded, while what they decide is decided exactly.
 ///
 /// E(P) = n · (P − Q) has a normal n that points inwards, and Q on the border: E ≥ 0 inside. It is q of Liang and

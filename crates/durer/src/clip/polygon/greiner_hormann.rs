@@ -9,7 +9,7 @@ use super::lists::Lists;
 use super::walk::walk_all;
 use super::{BooleanOp, Shapes};
 use crate::Result;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 
@@ -23,10 +23,24 @@ pub const INFO: Info = Info {
     year: 1998,
     source: "Efficient clipping of arbitrary polygons, ACM Transactions on Graphics 17(2)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n log n + p) time for n edges of both and p pairs that are near each other, \
            O(n² + r²) at worst for r rings; O(n + k) memory for k crossings",
     limits: "polygons whose rings neither cross nor overlap, refused otherwise; they may touch in points. \
              Crossings are rounded to f64: rings nearer than that may come out crossing",
+    pseudocode: &[
+        "insert the crossings into the lists of both polygons, by their alpha, linked in pairs",
+        "mark each crossing of each list as entry or exit",
+        "while there is a crossing not yet visited:",
+        "    begin a ring there",
+        "    take the linked crossing of the subject's list",
+        "    subject: emit vertices, forward from an entry, backward from an exit",
+        "    take the linked crossing of the clip's list",
+        "    clip: emit vertices, forward from an entry, backward from an exit",
+        "    at a crossing that was visited the ring is complete; else go to 5",
+        "rings without crossings are inside or outside as a whole",
+    ],
 };
 
 /// Clips polygons with polygons; both with holes, by the even-odd rule.
@@ -74,6 +88,7 @@ fn walk(linked: &Linked, op: BooleanOp, t: &mut impl Tracer<Step>) -> Vec<Vec<DV
     let mut found = Vec::new();
     for (start, vertex) in subject.iter().enumerate() {
         if vertex.twin.is_some() && !visited[start] {
+            t.step(|| Step::Start { at: vertex.at });
             let mut ring = trace(&linked.lists, &entries, start, &mut visited, t);
             // The result lies where the subject does, on the left of its border.
             if !entries[0][start] {

@@ -10,7 +10,7 @@
 //! window's border. Parameters are compared as rounded; cuts lie exactly on their border.
 
 use super::signed_area;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
@@ -23,8 +23,21 @@ pub const INFO: Info = Info {
     year: 1983,
     source: "An analysis and algorithm for polygon clipping, Communications of the ACM 26(11)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n) for n vertices",
     limits: "rectangles; one ring, with bridging edges along the border",
+    pseudocode: &[
+        "for each edge PQ of the ring:",
+        "    t at which its line enters and leaves the slabs of x and of y",
+        "    t_in2 := the later entry; t_out1, t_out2 := the exits in order",
+        "    t_out1 < t_in2: not seen; a corner is passed if 0 < t_out1 ≤ 1: emit it",
+        "    else if 0 < t_out1 and t_in2 ≤ 1: seen",
+        "        t_in2 > 0: emit the point of entry",
+        "        emit the point of exit, or Q if it is inside",
+        "    0 < t_out2 ≤ 1: emit the corner behind the last exit",
+        "the points emitted are the ring",
+    ],
 };
 
 /// Step of the algorithm.
@@ -43,6 +56,17 @@ pub enum Step {
     Point(DVec2),
     /// A corner of the window.
     Turn(DVec2),
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Edge { .. } => 2,
+            Self::Point(_) => 7,
+            Self::Turn(_) => 8,
+        }
+    }
 }
 
 /// Returns the result that a list of steps leads to.

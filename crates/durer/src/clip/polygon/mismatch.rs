@@ -16,7 +16,7 @@ use super::{
     BooleanOp, FillRule, Shapes, overlay, overlay::Options as OverlayOptions, signed_area,
 };
 use crate::clip::touch::{is_on, reach};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Orientation, Rect, in_sector, orient2d};
 use crate::trace::NoTrace;
 use crate::{Error, Result};
@@ -30,8 +30,11 @@ pub const INFO: Info = Info {
     year: 2022,
     source: "Polygonal coverage validation in JTS",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n √n) for n edges of usual data, and a union where gaps are asked for",
     limits: "features must be valid",
+    pseudocode: &[],
 };
 
 /// Mismatch between two features.

@@ -6,7 +6,7 @@
 
 use super::locate::on_segment;
 use super::{FillRule, Ring};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Orientation, orient2d};
 use crate::trace::{NoTrace, Tracer};
 
@@ -20,8 +20,20 @@ pub const INFO: Info = Info {
     year: 1962,
     source: "Algorithm 112: Position of point relative to polygon, Communications of the ACM 5(8)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n) for n edges",
     limits: "none",
+    pseudocode: &[
+        "w := 0",
+        "for each edge AB of all rings:",
+        "    P on AB: on the border, stop",
+        "    A.y and B.y on the same side of P.y: next edge",
+        "    B above A and P left of AB: it crosses the ray upwards, w := w + 1",
+        "    B below A and P right of AB: it crosses downwards, w := w − 1",
+        "w is the winding number",
+        "even-odd: inside if w is odd; non-zero: inside if w ≠ 0",
+    ],
 };
 
 /// Step of the algorithm.
@@ -39,6 +51,17 @@ pub enum Step {
         /// Start and end of the edge.
         edge: [DVec2; 2],
     },
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Border { .. } => 3,
+            Self::Crosses { winding: 1.., .. } => 5,
+            Self::Crosses { .. } => 6,
+        }
+    }
 }
 
 /// Returns the winding number that a list of steps leads to; none on the border.

@@ -11,7 +11,7 @@
 //! to f64. It shares nothing with [`super::overlay()`] and serves it as an oracle; for polygons use that, or [`super::vatti`].
 
 use super::{BooleanOp, FillRule, Shapes};
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 use crate::{Error, Result};
@@ -24,8 +24,21 @@ pub const INFO: Info = Info {
     year: 1992,
     source: "A generic solution to polygon clipping, Communications of the ACM 35(7)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge, Coherence::ScanLine],
     cost: "O(b a²) time for b beams and a edges active at once, memory for the trapezoids",
     limits: "the result is trapezoids; crossings are rounded to f64",
+    pseudocode: &[
+        "find the local minima: two bounds begin at each",
+        "sort the heights of all vertices: beams lie between neighbours",
+        "for each beam, from below to above:",
+        "    active edges: those that ended leave, those that begin come in",
+        "    sort them by x; where two change places they cross",
+        "    divide the beam at the crossings; in each part, from left to right:",
+        "        the edge changes the winding of its polygon",
+        "        it contributes if the result begins or ends at it",
+        "        between two contributing edges is a trapezoid of the result",
+    ],
 };
 
 /// Options for sweeping polygons.
@@ -70,7 +83,7 @@ impl Trapezoid {
 pub enum Step {
     /// A local minimum of a ring: two bounds begin here.
     Minimum {
-        /// Position of the fault.
+        /// Position of the point.
         at: DVec2,
         /// True if it belongs to the clip.
         clip: bool,
@@ -84,7 +97,7 @@ pub enum Step {
     },
     /// Two edges cross in the beam.
     Crossing {
-        /// Position of the fault.
+        /// Position of the point.
         at: DVec2,
     },
     /// An active edge, from left to right, within a beam or between crossings in it.
@@ -98,6 +111,19 @@ pub enum Step {
     },
     /// A part of the result.
     Part(Trapezoid),
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Minimum { .. } => 1,
+            Self::Beam { .. } => 4,
+            Self::Crossing { .. } => 5,
+            Self::Active { .. } => 7,
+            Self::Part(_) => 9,
+        }
+    }
 }
 
 /// Returns the result that a list of steps leads to.

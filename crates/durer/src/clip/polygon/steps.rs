@@ -33,28 +33,33 @@ pub enum Step {
     Listed {
         /// Operand of the list.
         list: Operand,
-        /// Position of the fault.
+        /// Position of the point.
         at: DVec2,
         /// Direction of the list at a crossing.
         mark: Option<Mark>,
+    },
+    /// A ring begins at a crossing of the subject.
+    Start {
+        /// Position of the point.
+        at: DVec2,
     },
     /// The walk passes a vertex, which belongs to the ring that is being made.
     Passed {
         /// Along which list.
         list: Operand,
-        /// Position of the fault.
+        /// Position of the point.
         at: DVec2,
     },
     /// Greiner and Hormann: the borders cross here; the subject enters or leaves the clip.
     Crossing {
-        /// Position of the fault.
+        /// Position of the point.
         at: DVec2,
         /// True if the subject enters.
         entry: bool,
     },
     /// Weiler and Atherton: the walk turns from one border to the other.
     Turn {
-        /// Position of the fault.
+        /// Position of the point.
         at: DVec2,
         /// True if it goes on along the subject.
         to_subject: bool,
@@ -64,6 +69,22 @@ pub enum Step {
         /// Its points, the inside on the left, or on the right where the subject's first ring runs clockwise.
         points: Vec<DVec2>,
     },
+}
+
+impl Step {
+    /// Returns the line of both algorithms' pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Listed { .. } => 1,
+            Self::Crossing { .. } => 2,
+            Self::Start { .. } => 4,
+            Self::Turn { to_subject: true, .. } => 5,
+            Self::Passed { list: Operand::Subject, .. } => 6,
+            Self::Turn { to_subject: false, .. } => 7,
+            Self::Passed { list: Operand::Clip, .. } => 8,
+            Self::Ring { .. } => 9,
+        }
+    }
 }
 
 /// Rebuilds the result from its steps.

@@ -20,7 +20,7 @@ use super::{Shapes, signed_area};
 use crate::clip::line::border::Canonical;
 use crate::clip::line::convex::{self, HalfSpace};
 use crate::clip::line::{ClipBox, ConvexPolygon, HalfPlane};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3, Plane, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
@@ -34,8 +34,22 @@ pub const INFO: Info = Info {
     year: 1974,
     source: "Reentrant polygon clipping, Communications of the ACM 17(1)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n·m), n vertices, m borders; two vertices of memory per border",
     limits: "convex windows; a subject that falls apart keeps bridging edges along the border",
+    pseudocode: &[
+        "for each border of the window:",
+        "    S := the last vertex of the list; out := empty",
+        "    for each vertex P of the list, by the sides of S and P:",
+        "        in→in: emit P",
+        "        in→out: emit the cut of SP with the border",
+        "        out→in: emit the cut of SP, then P",
+        "        out→out: emit nothing",
+        "        S := P",
+        "    list := out",
+        "the list is the result, one ring",
+    ],
 };
 
 /// There is nothing to choose.
@@ -180,6 +194,16 @@ pub enum Step<V> {
         /// The vertex.
         vertex: V,
     },
+}
+
+impl<V> Step<V> {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Enters { .. } => 3,
+            Self::Leaves { .. } => 10,
+        }
+    }
 }
 
 /// Returns the result that a list of steps leads to.

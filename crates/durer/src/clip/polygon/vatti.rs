@@ -8,7 +8,7 @@
 use super::overlay::{self, Winder};
 use super::{BooleanOp, Shapes, Vertex};
 use crate::Result;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::trace::Tracer;
 
 pub use super::overlay::{Options, Output, Step, replay};
@@ -21,8 +21,22 @@ pub const INFO: Info = Info {
     year: 1992,
     source: "A generic solution to polygon clipping, Communications of the ACM 35(7)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge, Coherence::ScanLine],
     cost: "O((n + k) a) time for n edges, k crossings and a edges active at once; O(n + k) memory",
     limits: "as overlay: at most 2^41 grid cells across, 2^29 points",
+    pseudocode: &[
+        "choose a grid; move all points to its cells",
+        "find where edges cross; divide them at the cells that they pass",
+        "sort all nodes",
+        "for each node, from left to right and from below to above:",
+        "    edges that end here leave the active list, edges that begin here come in",
+        "    count the windings of subject and clip from below to above",
+        "    an edge is kept if the result is on one of its sides only",
+        "from each kept edge walk to the next one, the inside on the left:",
+        "    back at the start, the ring is complete",
+        "give each hole to the ring around it",
+    ],
 };
 
 /// Boolean operation on any two sets of polygons, self-crossing too, by any fill rules.

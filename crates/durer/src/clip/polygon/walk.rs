@@ -92,6 +92,7 @@ impl<T: Tracer<Step>> Tracer<Step> for Scaled<'_, T> {
         let place = |at| frame.back(at);
         self.to.step(|| match make() {
             Step::Listed { list, at, mark } => Step::Listed { list, at: place(at), mark },
+            Step::Start { at } => Step::Start { at: place(at) },
             Step::Passed { list, at } => Step::Passed { list, at: place(at) },
             Step::Crossing { at, entry } => Step::Crossing { at: place(at), entry },
             Step::Turn { at, to_subject } => Step::Turn { at: place(at), to_subject },

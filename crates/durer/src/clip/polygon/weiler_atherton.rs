@@ -9,7 +9,7 @@ use super::cyclic::Linked;
 use super::walk::walk_all;
 use super::{BooleanOp, Shapes};
 use crate::Result;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 
@@ -23,10 +23,24 @@ pub const INFO: Info = Info {
     year: 1977,
     source: "Hidden surface removal using polygon area sorting, Computer Graphics 11(2)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n log n + p) time for n edges of both and p pairs that are near each other, \
            O(n² + r²) at worst for r rings; O(n + k) memory for k crossings",
     limits: "polygons whose rings neither cross nor overlap, refused otherwise; they may touch in points. \
              Crossings are rounded to f64: rings nearer than that may come out crossing",
+    pseudocode: &[
+        "insert the crossings into the cyclic lists of both polygons, linked in pairs",
+        "mark each crossing: does the subject enter the clip or leave it?",
+        "while there is a crossing not yet visited at which the subject enters:",
+        "    begin a ring there",
+        "    turn onto the subject's list",
+        "    emit vertices of the subject up to the next crossing",
+        "    turn onto the clip's list at the linked crossing",
+        "    emit vertices of the clip up to the next crossing",
+        "    back where the ring began, it is complete; else go to 5",
+        "rings without crossings are inside or outside as a whole",
+    ],
 };
 
 /// Clips polygons with polygons; both with holes, by the even-odd rule.
@@ -65,6 +79,7 @@ fn walk(linked: &Linked, op: BooleanOp, t: &mut impl Tracer<Step>) -> Vec<Vec<DV
     let mut found = Vec::new();
     for (start, vertex) in subject.iter().enumerate() {
         if vertex.twin.is_some() && vertex.enters == starts_in && !visited[start] {
+            t.step(|| Step::Start { at: vertex.at });
             found.push(trace(linked, op, start, &mut visited, t));
         }
     }

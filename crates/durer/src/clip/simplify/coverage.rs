@@ -18,7 +18,7 @@ use super::index::Index;
 use super::network::{Chain, Network};
 use super::removal::{Guard, Links, Measure, Obstacle, Removal};
 use super::{LineSimplifier, check, douglas_peucker};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 use crate::{Error, Result};
@@ -31,8 +31,11 @@ pub const INFO: Info = Info {
     year: 2023,
     source: "JTS Topology Suite 1.20, CoverageSimplifier",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n log n) for n points on usual data",
     limits: "borders are shared where neighbours have the same points; nodes stay",
+    pseudocode: &[],
 };
 
 /// Options for the amount that is left out.

@@ -14,7 +14,7 @@
 
 use super::{check, or_infinite};
 use crate::Result;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 
@@ -27,8 +27,11 @@ pub const INFO: Info = Info {
     source: "Algorithms for the reduction of the number of points required to represent a digitized line \
              or its caricature, Cartographica 10(2)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n log n) for n points on usual lines, O(n²) at worst",
     limits: "one line by itself may come to cross itself; a coverage keeps it from that",
+    pseudocode: &[],
 };
 
 /// Options for the amount that is left out.

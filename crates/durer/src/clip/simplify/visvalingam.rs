@@ -13,7 +13,7 @@
 use super::check;
 use super::removal::{Free, Links, Measure, Removal};
 use crate::Result;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::{NoTrace, Tracer};
 
@@ -25,8 +25,11 @@ pub const INFO: Info = Info {
     year: 1993,
     source: "Line generalisation by repeated elimination of points, The Cartographic Journal 30(1)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n log n) for n points",
     limits: "one line by itself may come to cross itself; a coverage keeps it from that",
+    pseudocode: &[],
 };
 
 /// Options for the amount that is left out.

@@ -5,7 +5,7 @@
 //! ordered dithering scatters them, so they survive printing; of finer detail less is left.
 
 use super::light;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::target::Pixels;
 use crate::trace::Tracer;
 
@@ -17,8 +17,20 @@ pub const INFO: Info = Info {
     year: 1987,
     source: "Digital Halftoning, MIT Press",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(1) per pixel",
     limits: "33 tones; the screen repeats every 8 pixels",
+    pseudocode: &[
+        "screen ← 8 × 8 thresholds: two spirals that darken from their middles,",
+        "         two that lighten",
+        "for each row y:",
+        "    for each pixel x:",
+        "        T ← (screen[y mod 8][x mod 8] + ½) / 32",
+        "        // neighbours in the screen follow each other: dots hold together",
+        "        if light > T: white",
+        "        else: black",
+    ],
 };
 
 /// The quarter of the screen that a dark dot grows in, in the order in which its pixels turn black: a spiral from the middle.
@@ -52,6 +64,13 @@ pub struct Step {
     pub threshold: f32,
     /// True if it is white.
     pub white: bool,
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        if self.white { 7 } else { 8 }
+    }
 }
 
 /// Returns the image that a list of steps leads to.

@@ -5,7 +5,7 @@
 //! row, 3/16, 5/16 and 1/16 to those below: behind, straight and ahead; nothing is lost but at the borders.
 
 use super::{light, of_level};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::target::Pixels;
 use crate::trace::Tracer;
 
@@ -17,8 +17,22 @@ pub const INFO: Info = Info {
     year: 1976,
     source: "An adaptive algorithm for spatial greyscale, Proceedings of the Society for Information Display 17(2)",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(1) per pixel, two rows of errors",
     limits: "pixels in order: a change moves the pattern of all that come after it",
+    pseudocode: &[
+        "for each row y, from top to bottom:",
+        "    for each pixel x, from left to right:",
+        "        v ← its light and the errors that have come to it",
+        "        level ← the nearest one there is",
+        "        e ← v − light of the level",
+        "        // 7 to the right; 3, 5 and 1 below",
+        "        give 7/16 e to (x + 1, y)",
+        "        give 3/16 e to (x − 1, y + 1)",
+        "        give 5/16 e to (x, y + 1)",
+        "        give 1/16 e to (x + 1, y + 1)",
+    ],
 };
 
 /// Options for diffusing errors.
@@ -50,6 +64,13 @@ pub struct Step {
     /// Error of the level: value − level's light, in sixteenths handed on to 7, 3, 5 and 1
     /// neighbours.
     pub error: f32,
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        5
+    }
 }
 
 /// Returns the image that a list of steps leads to.

@@ -37,7 +37,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::u32x8;
 
 use crate::curve::Contours;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::raster::bands::BAND_ROWS;
 use crate::target::Pixels;
 use crate::trace::Tracer;
@@ -103,8 +103,11 @@ pub const INFO: Info = Info {
     year: 1978,
     source: "A hidden-surface algorithm with anti-aliasing, SIGGRAPH",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::ScanLine, Coherence::Span],
     cost: "O(c + p): c pixels crossed by edges, p pixels covered",
     limits: "sides up to 32,767 pixels; exact up to 24 edges through one pixel",
+    pseudocode: &[],
 };
 
 /// Returns the coverage 0 … 255 of every pixel of a `width` × `height` target by the outline, whose

@@ -9,7 +9,7 @@ use super::band::{BandFiller, PathEdges, coverage_of_area};
 use super::check_size;
 use crate::Result;
 use crate::curve::Contours;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::raster::bands::BAND_ROWS;
 use crate::target::Pixels;
 use crate::trace::Tracer;
@@ -22,8 +22,11 @@ pub const INFO: Info = Info {
     year: 1978,
     source: "A hidden-surface algorithm with anti-aliasing, SIGGRAPH",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::ScanLine, Coherence::Span],
     cost: "O(c + p) per face: c pixels crossed by its edges, p pixels covered",
     limits: "faces that do not overlap, of one colour each; sides up to 32,767 pixels",
+    pseudocode: &[],
 };
 
 /// One face of a partition: a simple polygon, perhaps with holes, of one colour.

@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 
 use super::Course;
 use crate::curve::Contours;
-use crate::info::{Class, Info, family};
+use crate::info::{Class, Coherence, Info, Occluder, family};
 use crate::math::{DVec2, IVec2};
 use crate::trace::Tracer;
 
@@ -23,8 +23,20 @@ pub const WU: Info = Info {
     year: 1991,
     source: "An efficient antialiasing technique, SIGGRAPH",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge],
     cost: "O(n), two pixels per step",
     limits: "pixel end points; diagonal lines come out thinner",
+    pseudocode: &[
+        "Δx ← x2 − x1, Δy ← y2 − y1",
+        "if |Δy| > |Δx|: swap the roles of x and y",
+        "for each x from x1 to x2:",
+        "    y ← y1 + Δy / Δx · (x − x1)",
+        "    d ← y − ⌊y⌋",
+        "    // two pixels share the light by their distances d and 1 − d",
+        "    set pixel (x, ⌊y⌋) to 1 − d",
+        "    set pixel (x, ⌊y⌋ + 1) to d",
+    ],
 };
 
 /// The facts about Gupta and Sproull's lines.
@@ -35,8 +47,20 @@ pub const INFO: Info = Info {
     year: 1981,
     source: "Filtering edges for gray-scale displays, SIGGRAPH",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge],
     cost: "O(n), three pixels per step",
     limits: "pixel end points; ends are cut square to the longer axis",
+    pseudocode: &[
+        "table[k] ← volume of a cone of radius 1 over a line k/32 away",
+        "Δx ← x2 − x1, Δy ← y2 − y1",
+        "if |Δy| > |Δx|: swap the roles of x and y",
+        "for each x from x1 to x2:",
+        "    y ← y1 + Δy / Δx · (x − x1)",
+        "    for each of the three pixels nearest to y in the column:",
+        "        d ← distance of its centre, square to the line",
+        "        set the pixel to table[32 d]",
+    ],
 };
 
 family! {
@@ -50,12 +74,22 @@ family! {
 }
 
 /// One step: a pixel gets some intensity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
     /// Column and row.
     pub pixel: IVec2,
+    /// Distance of its centre from the line, in pixels: across the longer axis for Wu's, square to the line for
+    /// Gupta's and Sproull's.
+    pub distance: f64,
     /// Intensity 1 … 255.
     pub intensity: u8,
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that sets a pixel; it is the same in both algorithms.
+    pub fn line(&self) -> usize {
+        8
+    }
 }
 
 /// Calls `plot` with the pixels of the line between two pixels and their intensities 1 … 255.
@@ -77,9 +111,9 @@ pub fn draw(
         options.window.is_none_or(|(l, h)| p.x >= l.x && p.y >= l.y && p.x <= h.x && p.y <= h.y)
     };
     let across = if course.steep { IVec2::X } else { IVec2::Y } * course.sign.max(-1) as i32;
-    let mut put = |pixel: IVec2, intensity: u8| {
+    let mut put = |pixel: IVec2, distance: f64, intensity: u8| {
         if intensity > 0 && inside(pixel) {
-            t.step(|| Step { pixel, intensity });
+            t.step(|| Step { pixel, distance, intensity });
             plot(pixel, intensity);
         }
     };
@@ -94,14 +128,14 @@ pub fn draw(
         match method {
             SmoothLine::Wu => {
                 let upper = (part * 255.0 + 0.5) as u8;
-                put(pixel, 255 - upper);
-                put(pixel.saturating_add(across), upper);
+                put(pixel, part, 255 - upper);
+                put(pixel.saturating_add(across), 1.0 - part, upper);
             }
             SmoothLine::GuptaSproull => {
                 let nearest = if part > 0.5 { 1 } else { 0 };
                 for k in nearest - 1..=nearest + 1 {
                     let away = (f64::from(k) - part).abs() * cosine;
-                    put(pixel.saturating_add(across * k), filtered(away));
+                    put(pixel.saturating_add(across * k), away, filtered(away));
                 }
             }
         }

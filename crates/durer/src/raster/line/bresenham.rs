@@ -5,7 +5,7 @@
 //! enters the line with the error term it would have there, so exactly the unclipped pixels are lit.
 
 use super::{Course, Options, Step};
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::IVec2;
 use crate::trace::Tracer;
 
@@ -17,8 +17,23 @@ pub const INFO: Info = Info {
     year: 1965,
     source: "Algorithm for computer control of a digital plotter, IBM Systems Journal 4",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge],
     cost: "O(n), two integer additions per pixel",
     limits: "none",
+    pseudocode: &[
+        "Δx ← |x2 − x1|, Δy ← |y2 − y1|",
+        "if Δy > Δx: swap the roles of x and y",
+        "E ← 2Δy − Δx, y ← y1",
+        "for each x from x1 to x2:",
+        "    // E tells the side of the midpoint between the next two pixels",
+        "    set pixel (x, y)",
+        "    if E > 0:",
+        "        y ← y ± 1",
+        "        E ← E + 2Δy − 2Δx",
+        "    else:",
+        "        E ← E + 2Δy",
+    ],
 };
 
 /// Calls `plot` for the pixels of the line between two pixels, both included; any 32-bit coordinates.

@@ -5,7 +5,7 @@
 //! one, for with fewer the error could grow to a pixel over 2³² steps.
 
 use super::{Course, Options, Step};
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::IVec2;
 use crate::trace::Tracer;
 
@@ -17,8 +17,20 @@ pub const INFO: Info = Info {
     year: 1950,
     source: "MADDIDA, Northrop Aircraft",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge],
     cost: "O(n), one wide addition per pixel",
     limits: "none",
+    pseudocode: &[
+        "Δx ← x2 − x1, Δy ← y2 − y1",
+        "if |Δy| > |Δx|: swap the roles of x and y",
+        "m ← Δy / Δx, y ← y1",
+        "for each x from x1 to x2:",
+        "    // y is the sum of all m so far",
+        "    set pixel (x, ⌊y + ½⌋)",
+        "    y ← y + m",
+        "// one addition and one rounding a pixel",
+    ],
 };
 
 /// Bits below one: 32 more than the longest line has steps, twice over, and the sum still fits 127.

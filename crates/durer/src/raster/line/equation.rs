@@ -4,7 +4,7 @@
 //! others are checked against. Exact for all 32-bit end points.
 
 use super::{Course, Options, Step};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::IVec2;
 use crate::trace::Tracer;
 
@@ -16,8 +16,20 @@ pub const INFO: Info = Info {
     year: 1637,
     source: "La géométrie",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n), one division per pixel",
     limits: "none",
+    pseudocode: &[
+        "Δx ← x2 − x1, Δy ← y2 − y1",
+        "if |Δy| > |Δx|: swap the roles of x and y",
+        "m ← Δy / Δx",
+        "for each x from x1 to x2:",
+        "    y ← y1 + m · (x − x1)",
+        "    set pixel (x, ⌊y + ½⌋)",
+        "// one multiplication, one addition and one rounding a pixel",
+        "// every pixel is computed afresh: no error adds up",
+    ],
 };
 
 /// Calls `plot` for the pixels of the line between two pixels, both included.

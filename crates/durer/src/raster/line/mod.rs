@@ -70,6 +70,13 @@ pub struct Step {
     pub e: i64,
 }
 
+impl Step {
+    /// Returns the line of the pseudocode that sets a pixel; it is the same in all three algorithms.
+    pub fn line(&self) -> usize {
+        6
+    }
+}
+
 /// A line seen along its longer axis, in the direction of rising coordinates: every algorithm starts
 /// from here, so all octants and both directions are one case.
 #[derive(Debug, Clone, Copy)]

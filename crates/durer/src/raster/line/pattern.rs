@@ -8,7 +8,7 @@
 //! go on from line to line.
 
 use super::bresenham;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::IVec2;
 use crate::trace::{NoTrace, Tracer};
 
@@ -20,8 +20,11 @@ pub const INFO: Info = Info {
     year: 1990,
     source: "Computer Graphics: Principles and Practice, 3.7 and 3.9",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge],
     cost: "O(n w), n pixels of the thin line and w of the pen",
     limits: "replicated pixels make diagonals thinner by 1/√2, a square pen makes them thicker by √2",
+    pseudocode: &[],
 };
 
 /// Shape drawn at each pixel of the thin line.

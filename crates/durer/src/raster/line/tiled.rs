@@ -8,7 +8,7 @@
 
 use super::pieces::{AT_ONCE, Ends, PIXELS, Pieces, SHORT, TILE_BITS};
 use super::{Course, Options, bresenham};
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::IVec2;
 use crate::simd::{Level, default_level};
 use crate::target::Pixels;
@@ -22,8 +22,11 @@ pub const INFO: Info = Info {
     year: 1989,
     source: "Pixel-Planes 5: A heterogeneous multiprocessor graphics system using processor-enhanced memories, SIGGRAPH",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Area],
     cost: "O(e + p): e tiles that the boxes of the lines touch, p pixels",
     limits: "thin lines between pixels; slower than one by one where there are few",
+    pseudocode: &[],
 };
 
 /// Pixels of a tile's side. With four bytes a pixel a tile is 64 KiB, which the second-level cache holds, and most of it

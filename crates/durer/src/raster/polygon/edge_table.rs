@@ -10,7 +10,7 @@
 pub use super::Options;
 use super::{is_inside, snapped_edges};
 use crate::curve::Contours;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::raster::coverage::FillRule;
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS, first_center};
 use crate::raster::span::Span;
@@ -24,8 +24,24 @@ pub const INFO: Info = Info {
     year: 1967,
     source: "Half-tone perspective drawings by computer, AFIPS FJCC",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge, Coherence::ScanLine, Coherence::Span],
     cost: "O(e log e + c): e edges, c crossings of edges with rows",
     limits: "vertices are snapped to 1/256 of a pixel",
+    pseudocode: &[
+        "ET ← for each row the edges that begin there: y_max, x, Δx/Δy",
+        "AET ← ∅, y ← first row with an edge",
+        "while ET or AET is not empty:",
+        "    move the edges of row y from the ET to the AET",
+        "    sort the AET by x",
+        "    for each pair of neighbours in the AET:",
+        "        fill from the x of the first to that of the second, exclusive",
+        "    y ← y + 1",
+        "    remove the edges with y_max = y from the AET",
+        "    for each edge in the AET:",
+        "        x ← x + ⌊Δx/Δy⌋, acc ← acc + Δx mod Δy",
+        "        if acc ≥ Δy: x ← x + 1, acc ← acc − Δy",
+    ],
 };
 
 /// One step of the algorithm.
@@ -56,6 +72,19 @@ pub enum Step {
     },
     /// A span is emitted.
     Span(Span),
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Table(_) => 1,
+            Self::Enter { .. } => 4,
+            Self::Active { .. } => 5,
+            Self::Span(_) => 7,
+            Self::Leave { .. } => 9,
+        }
+    }
 }
 
 /// An edge in the tables.

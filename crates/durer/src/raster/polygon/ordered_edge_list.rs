@@ -19,7 +19,7 @@ use fearless_simd::u32x8;
 pub use super::Options;
 use super::crossings::{CrossingEdges, CrossingFiller, Path};
 use crate::curve::Contours;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::raster::bands::BAND_ROWS;
 use crate::raster::coverage::sweep::Sink;
 use crate::raster::span::Span;
@@ -33,8 +33,21 @@ pub const INFO: Info = Info {
     year: 1985,
     source: "Procedural Elements for Computer Graphics, McGraw-Hill",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge, Coherence::Span],
     cost: "O(c + p): c crossings of edges with rows, p pixels covered",
     limits: "vertices are snapped to 1/256 of a pixel; sides up to 32,767 pixels",
+    pseudocode: &[
+        "list ← ∅",
+        "for each edge of the polygon:",
+        "    for each row whose centre it crosses:",
+        "        x ← first pixel right of the crossing",
+        "        add (y, x, direction) to the list",
+        "sort the list by y, then by x",
+        "for each row:",
+        "    for each two neighbours between which the rule says inside:",
+        "        fill from the x of the first to that of the second, exclusive",
+    ],
 };
 
 /// One step of the algorithm.
@@ -51,6 +64,16 @@ pub enum Step {
     },
     /// A span is emitted.
     Span(Span),
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Crossing { .. } => 5,
+            Self::Span(_) => 9,
+        }
+    }
 }
 
 /// Calls `emit` for the spans of the polygon within a `width` × `height` target, row by row and from left to right;

@@ -13,7 +13,7 @@ mod region;
 mod rows;
 mod words;
 
-use crate::info::{Class, Info, family};
+use crate::info::{Class, Coherence, Info, Occluder, family};
 use crate::target::Pixels;
 use crate::trace::Tracer;
 use region::Region;
@@ -38,17 +38,59 @@ pub struct Options {
     pub stop_at_value: bool,
 }
 
-/// One step: pixels of a row that were found to belong to the region.
+/// One step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Step {
+pub enum Step {
+    /// Pixels are taken from the stack, or are the seed's, and filled.
+    Fill {
+        /// The pixels.
+        run: Run,
+        /// Size of the stack then: pixels of the naive form, runs of the other.
+        waiting: usize,
+    },
+    /// Pixels are put on the stack: a neighbour, or a run beside a filled one.
+    Push(Run),
+    /// A pixel is taken from the stack that is outside, not of the region, or filled already.
+    Skip(Run),
+}
+
+impl Step {
+    /// Returns the line of the pseudocode; it is the same in both forms.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Skip(_) => 4,
+            Self::Fill { .. } => 5,
+            Self::Push(_) => 7,
+        }
+    }
+}
+
+/// Pixels of a row; those that wait on the stack may lie outside the image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Run {
     /// Row.
-    pub y: u32,
+    pub y: i64,
     /// First pixel.
-    pub x0: u32,
+    pub x0: i64,
     /// One past the last pixel.
-    pub x1: u32,
-    /// Size of the stack: pixels of the naive form, runs of the other.
-    pub waiting: usize,
+    pub x1: i64,
+}
+
+impl Run {
+    fn pixel((x, y): (i64, i64)) -> Self {
+        Self { y, x0: x, x1: x + 1 }
+    }
+
+    fn of((y, start, end): (usize, usize, usize)) -> Self {
+        Self { y: y as i64, x0: start as i64, x1: end as i64 }
+    }
+}
+
+impl Step {
+    /// Returns the pixels that the step fills.
+    pub fn filled(&self) -> Option<Run> {
+        if let Self::Fill { run, .. } = *self { Some(run) } else { None }
+    }
 }
 
 /// The facts of the naive form.
@@ -59,8 +101,20 @@ pub const NAIVE: Info = Info {
     year: 1978,
     source: "How to color in a coloring book, SIGGRAPH",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n) time and memory for n filled pixels",
     limits: "none",
+    pseudocode: &[
+        "push the seed onto the stack",
+        "while the stack is not empty:",
+        "    pop (x, y)",
+        "    if (x, y) is outside, not of the region, or filled: continue",
+        "    fill (x, y)",
+        "    for each neighbour, in the reverse of the order taught:",
+        "        push it",
+        "// the last one pushed is the next one popped",
+    ],
 };
 
 /// The facts of the span form.
@@ -71,8 +125,20 @@ pub const INFO: Info = Info {
     year: 1979,
     source: "Tint fill, SIGGRAPH; A seed fill algorithm, Graphics Gems (1990)",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Span],
     cost: "O(n) time for n filled pixels, memory for the spans at the rim",
     limits: "none",
+    pseudocode: &[
+        "push the run of the seed onto the stack",
+        "while the stack is not empty:",
+        "    pop a run",
+        "    // runs were marked when they were pushed, so none comes twice",
+        "    fill it",
+        "    for each run of the region that touches it in the rows above and below:",
+        "        mark it and push it",
+        "// with eight neighbours a run also touches those at its corners",
+    ],
 };
 
 family! {
@@ -243,9 +309,10 @@ fn listens<P: Copy>(
     t.step(|| {
         listens = true;
         let (before, after) = image.row(y).split_at(x as usize);
-        let left = before.iter().rev().take_while(|p| inside(**p)).count() as u32;
-        let right = after.iter().take_while(|p| inside(**p)).count() as u32;
-        Step { y, x0: x - left, x1: x + right, waiting: 0 }
+        let left = before.iter().rev().take_while(|p| inside(**p)).count();
+        let right = after.iter().take_while(|p| inside(**p)).count();
+        let run = Run::of((y as usize, x as usize - left, x as usize + right));
+        Step::Fill { run, waiting: 0 }
     });
     listens
 }
@@ -260,14 +327,16 @@ fn naive(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer
     let mut found = 0;
     while let Some((x, y)) = stack.pop() {
         if !region.is_open(x, y) {
+            t.step(|| Step::Skip(Run::pixel((x, y))));
             continue;
         }
         region.open[y as usize * region.words + x as usize / 64] &= !(1 << (x as usize % 64));
         found += 1;
         let waiting = stack.len();
-        t.step(|| Step { y: y as u32, x0: x as u32, x1: x as u32 + 1, waiting });
+        t.step(|| Step::Fill { run: Run::pixel((x, y)), waiting });
         // The last put there is the first to be taken: pixels come in the order of the recursive form.
         stack.extend(neighbours.iter().rev().map(|(dx, dy)| (x + dx, y + dy)));
+        stack.iter().skip(waiting).for_each(|&at| t.step(|| Step::Push(Run::pixel(at))));
     }
     found
 }
@@ -281,7 +350,7 @@ fn spans(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer
     while let Some((y, start, end)) = stack.pop() {
         if found > 0 {
             let waiting = stack.len();
-            t.step(|| Step { y: y as u32, x0: start as u32, x1: end as u32, waiting });
+            t.step(|| Step::Fill { run: Run::of((y, start, end)), waiting });
         }
         found += (end - start) as u64;
         let (from, to) = (start.saturating_sub(reach), (end + reach).min(region.width));
@@ -293,6 +362,7 @@ fn spans(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer
             while let Some(hit) = region.next_open(next, x, to) {
                 let run = region.take_run(next, hit);
                 stack.push((next, run.0, run.1));
+                t.step(|| Step::Push(Run::of((next, run.0, run.1))));
                 x = run.1;
             }
         }

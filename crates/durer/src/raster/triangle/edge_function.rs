@@ -6,7 +6,7 @@
 
 pub use super::Options;
 use super::{Edge, SnappedTriangle, Span};
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::trace::Tracer;
 
 /// The facts.
@@ -17,8 +17,20 @@ pub const INFO: Info = Info {
     year: 1988,
     source: "A Parallel Algorithm for Polygon Rasterization, SIGGRAPH",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge],
     cost: "O(pixels of the bounding box) time, O(1) memory",
     limits: "coordinates within the guard band",
+    pseudocode: &[
+        "E_i(x, y) ← Δx_i · (y − y_i) − Δy_i · (x − x_i), one for each edge",
+        "if the edge is neither a left one nor a top one: E_i ← E_i − 1",
+        "for each row y of the bounding box:",
+        "    for each pixel x of the row:",
+        "        // from pixel to pixel E_i grows by −Δy_i, from row to row by Δx_i",
+        "        evaluate E_1, E_2 and E_3 at the pixel's centre",
+        "        if all three are ≥ 0:",
+        "            set pixel (x, y)",
+    ],
 };
 
 /// Step of the algorithm.
@@ -33,6 +45,15 @@ pub enum Step {
         /// The three functions, biased so that ≥ 0 is inside, in 1/256² pixel².
         edges: [i64; 3],
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Sample { .. } => 6,
+        }
+    }
 }
 
 /// Emits the covered pixels, row by row from the top, one span a row.

@@ -7,7 +7,7 @@
 
 pub use super::Options;
 use super::{SnappedTriangle, Span};
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS, first_center};
 use crate::trace::Tracer;
 
@@ -19,8 +19,21 @@ pub const INFO: Info = Info {
     year: 1967,
     source: "Half-Tone Perspective Drawings by Computer, AFIPS Fall Joint Computer Conference",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge, Coherence::ScanLine],
     cost: "O(rows + pixels covered) time, O(1) memory",
     limits: "coordinates within the guard band",
+    pseudocode: &[
+        "sort the corners by y: top, middle, bottom",
+        "for the part above the middle corner, then for the part below it:",
+        "    take the two edges that bound it",
+        "    for each row whose centre lies in the part:",
+        "        left ← first pixel right of the left edge",
+        "        right ← first pixel right of the right edge",
+        "        fill from left to right, exclusive",
+        "        // the next row: both move by Δx/Δy, in whole numbers",
+        "        left ← left + Δx/Δy, right ← right + Δx/Δy",
+    ],
 };
 
 /// Step of the algorithm.
@@ -42,6 +55,16 @@ pub enum Step {
         /// Last column of the triangle, exclusive, not clipped.
         right: i64,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Edges { .. } => 3,
+            Self::Row { .. } => 7,
+        }
+    }
 }
 
 /// Emits the covered pixels, row by row from the top, one span a row.

@@ -8,7 +8,7 @@
 
 pub use super::Options;
 use super::{Edge, SnappedTriangle, Span};
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::trace::Tracer;
 use crate::view::window::PixelRect;
 
@@ -20,8 +20,21 @@ pub const INFO: Info = Info {
     year: 2000,
     source: "Tiled Polygon Traversal Using Half-Plane Edge Functions, Graphics Hardware",
     class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[Coherence::Edge, Coherence::Area],
     cost: "O(tiles of the bounding box + pixels of the tiles on the outline) time, O(1) memory",
     limits: "coordinates within the guard band",
+    pseudocode: &[
+        "E_i(x, y) ← edge function of each edge, ≥ 0 inside",
+        "for each tile of 8 × 8 pixels of the bounding box:",
+        "    if some E_i is negative at the corner where it is largest:",
+        "        reject the tile",
+        "    else if each E_i is ≥ 0 at the corner where it is smallest:",
+        "        accept the tile: set all of its pixels",
+        "    else:",
+        "        for each pixel of the tile:",
+        "            set it if all E_i are ≥ 0 there",
+    ],
 };
 
 /// Width and height of a tile in pixels: a row's mask fits a byte.
@@ -52,6 +65,18 @@ pub enum Step {
         /// Covered pixels, row by row; bit k is column x + k. Not clipped.
         rows: [u8; TILE as usize],
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        let Self::Tile { verdict, .. } = self;
+        match verdict {
+            Verdict::Rejected => 4,
+            Verdict::Accepted => 6,
+            Verdict::Examined => 9,
+        }
+    }
 }
 
 /// Emits the covered pixels, row by row from the top, one span a row.

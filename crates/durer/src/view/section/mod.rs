@@ -11,7 +11,7 @@
 mod cap;
 mod cut;
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, DVec3, Plane, Vec3, Vec4};
 use crate::scene::{Material, Scene, ShadingModel, Topology};
 use crate::{Error, Result};
@@ -24,8 +24,11 @@ pub const INFO: Info = Info {
     year: 1974,
     source: "Reentrant polygon clipping, Communications of the ACM 17(1)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n) for n triangles, O(c²) at worst for c new edges of a cap",
     limits: "bodies that penetrate each other are capped each by itself",
+    pseudocode: &[],
 };
 
 /// Options for the clipping method.

@@ -10,7 +10,7 @@
 //! Limits: between columns horizons are straight, so what is narrower than a column may be lost, and crossings are
 //! as exact as columns are narrow. [`super::floating_horizon`] has none of these limits.
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 use crate::work::Work;
@@ -24,8 +24,22 @@ pub const INFO: Info = Info {
     year: 1973,
     source: "A Two-space Solution to the Hidden Line Problem for Plotting Functions of Two Variables, IEEE TC",
     class: Class::ImageSpace,
+    occluder: Occluder::Line,
+    coherence: &[Coherence::Edge],
     cost: "O(curves · columns) time, O(columns) memory",
     limits: "curves in columns, near ones first; exact to a column's width",
+    pseudocode: &[
+        "upper[x] ← −∞, lower[x] ← ∞ for each column x",
+        "for each curve, from near to far:",
+        "    for each of its points (x, y):",
+        "        visible if y ≥ upper[x] or y ≤ lower[x], else hidden",
+        "    for each two neighbouring points:",
+        "        both visible on the same side: draw the line between them",
+        "        else: interpolate where it passes the horizon,",
+        "              and draw what is visible of it",
+        "    for each point: upper[x] ← max(upper[x], y), lower[x] ← min(lower[x], y)",
+        "    raise the horizons along the line to the ends of the curve before",
+    ],
 };
 
 /// Options for drawing curves.
@@ -110,6 +124,18 @@ pub enum Step {
         /// The lower and the upper horizon.
         horizons: [f64; 2],
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Point { .. } => 4,
+            Self::Crossing { .. } => 7,
+            Self::Draw(_) => 8,
+            Self::Horizon { .. } => 9,
+        }
+    }
 }
 
 /// Returns the result that a list of steps leads to.

@@ -10,7 +10,7 @@ use super::marks::marks;
 use super::page::{Page, Projected};
 use super::piece::Piece;
 use crate::Result;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::scene::Scene;
 use crate::target::drawing::{Drawing, Line, LineClass};
@@ -28,8 +28,11 @@ pub const INFO: Info = Info {
     source: "Sketchpad III: a computer program for drawing in three dimensions, AFIPS Spring Joint \
              Computer Conference",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n log n) for n edges",
     limits: "ambiguous: nothing says what is in front",
+    pseudocode: &[],
 };
 
 /// Options of a wireframe.

@@ -5,7 +5,7 @@
 //! depth, the two share them by how far each lies before the other, as if they crossed there. Cost: O(k log k)
 //! for k fragments. [`crate::visibility::surface::a_buffer`] decides by exact areas and planes where faces cut each other, and renders models.
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Vec4};
 use crate::trace::Tracer;
 
@@ -17,8 +17,23 @@ pub const INFO: Info = Info {
     year: 1984,
     source: "The A-buffer, an Antialiased Hidden Surface Method, SIGGRAPH",
     class: Class::ImageSpace,
+    occluder: Occluder::Area,
+    coherence: &[],
     cost: "O(k log k) per pixel for k fragments",
     limits: "4 × 4 sub-pixels; opaque fragments; faces that cut each other share sub-pixels by a rule of thumb",
+    pseudocode: &[
+        "left[s] ← 1 for each of the 16 sub-pixels; sort the fragments by nearest depth",
+        "for each fragment, from near to far:",
+        "    search ← the sub-pixels with anything left",
+        "    inside ← its mask and search",
+        "    if the next fragment overlaps it in depth:",
+        "        M ← inside and the mask of the next one",
+        "        share ← (z2max − z1min) / ((z1max − z1min) + (z2max − z2min))",
+        "        take share of what is left in M",
+        "    take all that is left in the others of inside",
+        "    weight of the fragment ← what it took / 16",
+        "weight of the background ← what is left / 16",
+    ],
 };
 
 /// All sub-pixels of a pixel.
@@ -113,6 +128,18 @@ pub enum Step {
         /// 0 … 1.
         weight: f64,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Look { .. } => 4,
+            Self::Overlap { .. } => 7,
+            Self::Weight { fragment: Some(_), .. } => 10,
+            Self::Weight { fragment: None, .. } => 11,
+        }
+    }
 }
 
 /// Returns the weights that a list of steps leads to: of each fragment, and of the background.

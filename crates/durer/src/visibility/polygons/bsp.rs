@@ -14,7 +14,7 @@ pub use tree::Tree;
 
 use super::{Face, Screen};
 use crate::Result;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
@@ -28,8 +28,24 @@ pub const INFO: Info = Info {
     year: 1980,
     source: "On visible surface generation by a priori tree structures, SIGGRAPH",
     class: Class::ListPriority,
+    occluder: Occluder::Area,
+    coherence: &[Coherence::Face, Coherence::Frame],
     cost: "O(n log n) pieces as a rule, O(n²) at worst, for n polygons; a walk per eye linear in the pieces",
     limits: "plane polygons; at most so many pieces as the options say",
+    pseudocode: &[
+        "build(list):",
+        "    try some polygons as root: how many others does each one's plane split?",
+        "    the root is the one that splits the fewest",
+        "    for each other polygon of the list:",
+        "        is it in front of the root's plane, behind it, or on it?",
+        "        if on both sides: split it",
+        "    front ← build(those in front), back ← build(those behind)",
+        "paint(tree):",
+        "    on which side of the root's plane is the eye?",
+        "    paint the tree of the other side",
+        "    paint the root, over what is there",
+        "    paint the tree of the eye's side",
+    ],
 };
 
 /// Options for building the tree.
@@ -117,6 +133,20 @@ pub enum Step {
         /// The face.
         face: u32,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Tried { .. } => 2,
+            Self::Node { .. } => 3,
+            Self::Sorted { .. } => 5,
+            Self::Split { .. } => 6,
+            Self::Visit { .. } => 9,
+            Self::Paint { .. } | Self::Pixel { .. } => 11,
+        }
+    }
 }
 
 /// Returns the picture that a list of steps leads to.

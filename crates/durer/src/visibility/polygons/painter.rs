@@ -7,7 +7,7 @@
 
 use super::{Face, Screen};
 use crate::Result;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 
@@ -19,8 +19,20 @@ pub const INFO: Info = Info {
     year: 1972,
     source: "A Solution to the Hidden Surface Problem, ACM Annual Conference",
     class: Class::ListPriority,
+    occluder: Occluder::Area,
+    coherence: &[Coherence::Face, Coherence::Depth],
     cost: "O(n log n + covered pixels), n faces",
     limits: "wrong where faces overlap in depth and in the picture",
+    pseudocode: &[
+        "for each face:",
+        "    z ← its largest depth",
+        "sort the faces by z, the farthest first",
+        "for each face in this order:",
+        "    for each row that it covers:",
+        "        paint it over whatever is there",
+        "// nothing is tested: where faces overlap in depth",
+        "// the picture may be wrong",
+    ],
 };
 
 /// By what faces are sorted.
@@ -61,6 +73,16 @@ pub enum Step {
         /// The column after the last.
         x1: i32,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Sorted { .. } => 3,
+            Self::Paint { .. } => 6,
+        }
+    }
 }
 
 /// Returns the picture that a list of steps leads to.

@@ -12,7 +12,7 @@ use super::Face;
 use crate::clip::line::HalfPlane;
 use crate::clip::polygon::sutherland_hodgman::by_borders;
 use crate::clip::polygon::{BooleanOp, Shapes, overlay};
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DVec2, Rect};
 use crate::trace::{NoTrace, Tracer};
 use crate::{Error, Result};
@@ -25,8 +25,23 @@ pub const INFO: Info = Info {
     year: 1977,
     source: "Hidden Surface Removal Using Polygon Area Sorting, SIGGRAPH",
     class: Class::ObjectSpace,
+    occluder: Occluder::Area,
+    coherence: &[Coherence::Area, Coherence::Depth],
     cost: "O(n²) cuts where few of n polygons overlap, more where many do",
     limits: "plane polygons; cuts are rounded to 2^-37 of the picture",
+    pseudocode: &[
+        "lists ← { all polygons, with nothing behind them }",
+        "while there are lists:",
+        "    take one; if it is empty, what is behind it is visible: report it",
+        "    P ← the polygon of the list with the nearest corner",
+        "    for each other polygon Q of the list:",
+        "        cut Q along the outline of P",
+        "        put what lies outside into the outside list",
+        "        if what lies inside is behind P: it is hidden",
+        "        else: put what is in front of P into the inside list",
+        "    add the inside list, with P behind it",
+        "    add the outside list, with what was behind the list",
+    ],
 };
 
 /// Options for finding regions.
@@ -82,6 +97,19 @@ pub enum Step {
     },
     /// Nothing is in front: this is seen.
     Seen(Region),
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Seen(_) => 3,
+            Self::Nearest { .. } => 4,
+            Self::Cut { .. } => 6,
+            Self::Hidden { .. } => 8,
+            Self::InFront { .. } => 9,
+        }
+    }
 }
 
 /// Returns the result that a list of steps leads to.

@@ -10,7 +10,7 @@
 
 use super::{Face, Screen};
 use crate::Result;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
 use crate::raster::polygon::edge_table::{Edge, table};
 use crate::target::{NO_ITEM, Pixels};
@@ -24,8 +24,24 @@ pub const INFO: Info = Info {
     year: 1970,
     source: "A Real Time Visible Surface Algorithm, University of Utah",
     class: Class::ImageSpace,
+    occluder: Occluder::Line,
+    coherence: &[Coherence::Edge, Coherence::ScanLine, Coherence::Span, Coherence::Depth],
     cost: "O(n log n + rows · (e log e + spans · d)) for n edges, e active ones, d deep",
     limits: "one sample per pixel; plane polygons",
+    pseudocode: &[
+        "ET ← all edges by first row: x, y_max, Δx/Δy, polygon",
+        "PT ← for each polygon its plane and a flag, out",
+        "for each row:",
+        "    move the edges that begin here from the ET to the AET",
+        "    sort the AET by x",
+        "    for each edge of the AET, from left to right:",
+        "        if polygons are in between the edge before and this one:",
+        "            find the nearest of them at both ends of the span",
+        "            if it is the same one: fill the span with it",
+        "            else: halve the span and decide both halves",
+        "        turn over the flag of the edge's polygon",
+        "    remove the edges that end here; x ← x + Δx/Δy of the others",
+    ],
 };
 
 /// An entry of the edge table.
@@ -75,6 +91,8 @@ pub enum Step {
         polygons: usize,
         /// The nearest one at the first column and at the last.
         nearest: [u32; 2],
+        /// Their depths there.
+        depths: [f64; 2],
     },
     /// A polygon is seen in a span.
     Span {
@@ -85,6 +103,21 @@ pub enum Step {
         /// First column and the one after the last.
         columns: [i32; 2],
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Edge(_) => 1,
+            Self::Polygon { .. } => 2,
+            Self::Row { .. } => 3,
+            Self::Active(_) => 5,
+            Self::Ends { .. } => 8,
+            Self::Span { .. } => 9,
+            Self::Flag { .. } => 11,
+        }
+    }
 }
 
 /// Returns the picture that a list of steps leads to.
@@ -184,7 +217,10 @@ impl Row<'_> {
         let mut parts = vec![columns];
         while let Some(columns @ [x0, x1]) = parts.pop() {
             let nearest = [x0, x1 - 1].map(|x| self.nearest(inside, x));
-            t.step(|| Step::Ends { columns, polygons: inside.len(), nearest });
+            t.step(|| {
+                let depths = [self.depth(nearest[0], x0), self.depth(nearest[1], x1 - 1)];
+                Step::Ends { columns, polygons: inside.len(), nearest, depths }
+            });
             if nearest[0] == nearest[1] {
                 let face = nearest[0];
                 t.step(|| Step::Span { face, y: self.y, columns });
@@ -196,10 +232,15 @@ impl Row<'_> {
         }
     }
 
+    /// Returns a polygon's depth at a column; none lies at infinity.
+    fn depth(&self, face: u32, x: i32) -> f64 {
+        self.faces.get(face as usize).map_or(f64::INFINITY, |face| face.at(x, self.y).z)
+    }
+
     /// Returns the nearest polygon at a column, the first of equally near ones.
     fn nearest(&self, inside: &[u32], x: i32) -> u32 {
-        let depth = |face: u32| self.faces[face as usize].at(x, self.y).z;
-        let nearer = |&a: &u32, &b: &u32| depth(a).total_cmp(&depth(b)).then(a.cmp(&b));
+        let nearer =
+            |&a: &u32, &b: &u32| self.depth(a, x).total_cmp(&self.depth(b, x)).then(a.cmp(&b));
         inside.iter().copied().min_by(nearer).unwrap_or(NO_ITEM)
     }
 }

@@ -6,7 +6,7 @@
 
 use super::{Face, Screen};
 use crate::Result;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 
@@ -18,8 +18,20 @@ pub const INFO: Info = Info {
     year: 1974,
     source: "A Subdivision Algorithm for Computer Display of Curved Surfaces, University of Utah",
     class: Class::ImageSpace,
+    occluder: Occluder::Point,
+    coherence: &[Coherence::Edge, Coherence::Depth],
     cost: "O(covered pixels) time, a depth and an item per pixel",
     limits: "one sample per pixel; plane polygons",
+    pseudocode: &[
+        "for each pixel: depth[x, y] ← ∞, item[x, y] ← none",
+        "for each face:",
+        "    for each pixel (x, y) that it covers:",
+        "        z ← depth of the face's plane at (x, y)",
+        "        // the only question: is it nearer than what is there?",
+        "        if z < depth[x, y]:",
+        "            depth[x, y] ← z",
+        "            item[x, y] ← face",
+    ],
 };
 
 /// Step of the algorithm.
@@ -50,6 +62,18 @@ pub enum Step {
         /// Its depth.
         depth: f64,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Clear => 1,
+            Self::Face { .. } => 2,
+            Self::Compare { .. } => 6,
+            Self::Store { .. } => 8,
+        }
+    }
 }
 
 /// Returns the picture that a list of steps leads to.

@@ -11,7 +11,7 @@ use super::planar_map::faces::{Face, Frame, float, nearest};
 use super::planar_map::{self as visible, VisibleMap};
 use crate::Result;
 use crate::clip::volume::{self, ClipVertex, clip_segment};
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DVec2, DVec3, Plane};
 use crate::scene::{Camera, Projection, Scene};
 use crate::shade::PreparedLights;
@@ -27,8 +27,11 @@ pub const INFO: Info = Info {
     year: 1978,
     source: "Polygon shadow generation, SIGGRAPH",
     class: Class::ObjectSpace,
+    occluder: Occluder::Area,
+    coherence: &[Coherence::Edge, Coherence::Face],
     cost: "one visible-region problem per light, six for a light among the faces",
     limits: "hard shadows; 64 lights that cast them",
+    pseudocode: &[],
 };
 
 /// Lights that cast shadows; those beyond shine through everything.

@@ -11,7 +11,7 @@
 //! framebuffer itself. Coherence used: edges, from row to row. Limits: one opaque surface per pixel,
 //! one sample; blended surfaces are kept in a list per pixel of the row and laid over by depth.
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
@@ -30,8 +30,11 @@ pub const INFO: Info = Info {
     year: 1967,
     source: "Half-Tone Perspective Drawings by Computer, AFIPS Fall Joint Computer Conference",
     class: Class::ImageSpace,
+    occluder: Occluder::Point,
+    coherence: &[Coherence::Edge, Coherence::ScanLine, Coherence::Depth],
     cost: "O(n log n + rows crossed + covered pixels) time, O(n + width) memory, n triangles",
     limits: "one sample per pixel",
+    pseudocode: &[],
 };
 
 /// Step of the algorithm.

@@ -18,7 +18,7 @@
 //! for e edges and w pixels. Memory: the triangles, the active list and one row; nothing grows with
 //! the picture's height but the framebuffer itself.
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
@@ -39,9 +39,12 @@ pub const INFO: Info = Info {
     year: 1970,
     source: "A Real Time Visible Surface Algorithm, University of Utah",
     class: Class::ImageSpace,
+    occluder: Occluder::Line,
+    coherence: &[Coherence::Edge, Coherence::ScanLine, Coherence::Span, Coherence::Depth],
     cost: "O(n log n + rows · (e log e + spans · d)) time for n triangles, e edges of a row, d deep; \
            O(n + width) memory",
     limits: "one sample per pixel",
+    pseudocode: &[],
 };
 
 /// Step of the algorithm.
@@ -74,6 +77,8 @@ pub enum Step {
         x0: i32,
         /// The column after the last.
         x1: i32,
+        /// Its depths at the first column and at the last.
+        depths: [f32; 2],
     },
     /// Triangles change places in a span, which is split.
     Split {
@@ -234,7 +239,7 @@ impl Line<'_> {
             }
             let [first, last] = self.nearest_at_ends([x0, x1]);
             if first.triangle == last.triangle && self.wins_throughout(&first, [x0, x1]) {
-                t.step(|| Step::Span { item: first.item, x0, x1 });
+                t.step(|| Step::Span { item: first.item, x0, x1, depths: first.depth });
                 self.fill(first.triangle, [x0, x1]);
             } else if first.triangle != last.triangle {
                 let [from, to] = self.crossing(&first, &last, [x0, x1]);

@@ -6,7 +6,7 @@ use durer::math::{DVec2, DVec3, IVec2};
 use durer::raster::line::{LineRasterizer, Options, Step as Pixel, bresenham};
 use durer::raster::polygon::edge_table::{self, Edge, Step as Row};
 use durer::raster::seed_fill::{
-    Connectivity, Options as How, SeedFill, Step as Run, boundary_fill,
+    Connectivity, Options as How, Run, SeedFill, Step as Filling, boundary_fill,
 };
 use durer::raster::{interpolate, polygon};
 use durer::target::Pixels;
@@ -217,19 +217,25 @@ fn a_stack_of_pixels_keeps_the_order_of_the_recursion() {
     let data = rows.iter().flat_map(|r| r.bytes().map(|b| if b == b'#' { 9 } else { 0 })).collect();
     let image = Pixels::from_data(5, 4, data).unwrap();
     let how = How { connectivity: Connectivity::Four, stop_at_value: true };
-    let mut steps: Recorder<Run> = Recorder::default();
+    let mut steps: Recorder<Filling> = Recorder::default();
     let seed = (1, 1);
     boundary_fill(&mut image.clone(), seed, 7, 9, 0, SeedFill::Naive, &how, &mut steps);
     let mut order = Vec::new();
     recursive(&mut image.clone(), 1, 1, &mut order);
-    let found: Vec<(u32, u32)> = steps.steps().iter().map(|s| (s.x0, s.y)).collect();
+    let runs = |steps: &[Filling]| steps.iter().filter_map(Filling::filled).collect::<Vec<_>>();
+    let pixel = |run: &Run| (run.x0 as u32, run.y as u32);
+    let found: Vec<(u32, u32)> = runs(steps.steps()).iter().map(pixel).collect();
     assert_eq!(found, order);
     assert_eq!(order[..3], [(1, 1), (2, 1), (3, 1)]);
     // Spans take fewer turns and less room.
-    let mut spans: Recorder<Run> = Recorder::default();
+    let mut spans: Recorder<Filling> = Recorder::default();
     boundary_fill(&mut image.clone(), seed, 7, 9, 0, SeedFill::Spans, &how, &mut spans);
-    let deepest = |steps: &[Run]| steps.iter().map(|s| s.waiting).max().unwrap_or(0);
-    assert!(spans.steps().len() * 2 < found.len());
+    let deepest = |steps: &[Filling]| {
+        let waiting =
+            |s: &Filling| if let Filling::Fill { waiting, .. } = s { *waiting } else { 0 };
+        steps.iter().map(waiting).max().unwrap_or(0)
+    };
+    assert!(runs(spans.steps()).len() * 2 < found.len());
     assert!(deepest(spans.steps()) * 3 < deepest(steps.steps()));
 }
 

@@ -34,7 +34,7 @@ mod whole;
 mod winding;
 
 use super::{BooleanOp, FillRule, NestingTree, Shapes, Vertex};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
@@ -57,8 +57,22 @@ pub const INFO: Info = Info {
     source: "Practical segment intersection with finite precision output, \
              Computational Geometry 13(4)",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O((n + k) log n) time for n edges and k crossings on usual data, O(n + k) memory",
     limits: "at most 2^41 grid cells across, 2^29 points in subject and clip",
+    pseudocode: &[
+        "choose a grid; move all points to its cells",
+        "find where edges cross; divide them at the cells that they pass",
+        "sort edges that lie on one another into one",
+        "for the lowest edge of each connected part: its winding number by a ray",
+        "    carry it around every node from edge to edge",
+        "    both sides of each edge now have the windings of subject and clip",
+        "    an edge is kept if the result is on one of its sides only",
+        "from each kept edge walk to the next one, the inside on the left:",
+        "    back at the start, the ring is complete",
+        "give each hole to the ring around it",
+    ],
 };
 
 /// Options for an overlay.
@@ -114,6 +128,18 @@ pub enum Step<P = DVec2> {
         /// True if it is a hole of the last ring that was none.
         hole: bool,
     },
+}
+
+impl<P> Step<P> {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Grid { .. } => 1,
+            Self::Crossing { .. } => 2,
+            Self::Sweep { .. } => 5,
+            Self::Ring { .. } => 9,
+        }
+    }
 }
 
 /// Rebuilds the result of an overlay from its steps.

@@ -29,7 +29,7 @@ pub use prepared::Prepared;
 
 use super::Shapes;
 use crate::clip::attribute::{NoSources, Provenance, Source};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
@@ -43,8 +43,21 @@ pub const INFO: Info = Info {
     year: 1977,
     source: "Hidden surface removal using polygon area sorting, SIGGRAPH; clip polygon a rectangle",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n + k log k), n vertices, k border crossings",
     limits: "axis-parallel windows; valid polygons, whose rings do not touch one another",
+    pseudocode: &[
+        "for each polygon:",
+        "    its box in the window: copy it",
+        "    its box beside the window: leave it out",
+        "    for each ring: find the chains inside, from entry to exit",
+        "    sort entries and exits counter-clockwise round the window",
+        "    while a chain is left: begin a ring with it",
+        "        emit its vertices, and the window's corners up to the next entry",
+        "        follow the chain of that entry; the first one again: the ring is complete",
+        "    give each hole to the ring around it: the polygon is complete",
+    ],
 };
 
 /// There is nothing to choose.
@@ -80,6 +93,20 @@ pub enum Step {
     RingDone,
     /// The polygon is complete.
     PolygonDone,
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Inside { .. } => 2,
+            Self::Outside { .. } => 3,
+            Self::Chain { .. } => 4,
+            Self::Vertex { .. } => 7,
+            Self::RingDone => 8,
+            Self::PolygonDone => 9,
+        }
+    }
 }
 
 /// Returns the result that a list of steps leads to.

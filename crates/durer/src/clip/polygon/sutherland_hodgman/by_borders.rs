@@ -69,6 +69,19 @@ pub enum Step<V> {
     },
 }
 
+impl<V> Step<V> {
+    /// Returns the line of [`super::INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Edge { rule: Rule::InIn, .. } => 4,
+            Self::Edge { rule: Rule::InOut, .. } => 5,
+            Self::Edge { rule: Rule::OutIn, .. } => 6,
+            Self::Edge { rule: Rule::OutOut, .. } => 7,
+            Self::List { .. } => 9,
+        }
+    }
+}
+
 /// Returns the result that a list of steps leads to.
 pub fn replay<V: Clone>(ring: &[V], steps: &[Step<V>]) -> Vec<V> {
     let lists = steps.iter().filter_map(|step| match step {

@@ -18,7 +18,7 @@ pub(super) use edges::{Edge, Meeting, crossing, each_pair, edges_of, meeting};
 pub(super) use touches::{Way, ways};
 
 use super::Shapes;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::{Error, Result};
 use nesting::{each_misplaced, nests};
@@ -32,8 +32,11 @@ pub const INFO: Info = Info {
     year: 2004,
     source: "ISO 19125-1, Simple feature access, 6.1.11",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n √n) for n edges of usual data",
     limits: "some thousand comparisons per edge",
+    pseudocode: &[],
 };
 
 /// Limit on the pairs of edges compared per edge.

@@ -13,7 +13,7 @@ use crate::clip::polygon::{
 };
 use crate::curve::{Contours, Path};
 use crate::geometry::Geometry;
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::NoTrace;
 use crate::{Error, Result};
@@ -26,8 +26,11 @@ pub const INFO: Info = Info {
     year: 2006,
     source: "Exact and efficient construction of planar Minkowski sums using the convolution method, ESA",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O((n + k) log n) for n points of the outline and k crossings",
     limits: "arcs are polygons within a tolerance",
+    pseudocode: &[],
 };
 
 /// Options for the distance of a buffer, and for its corners and ends.

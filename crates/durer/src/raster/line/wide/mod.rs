@@ -17,7 +17,7 @@ mod dashes;
 mod sides;
 
 use crate::curve::{Contours, Path, PathElement};
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 use crate::{Error, Result};
@@ -31,8 +31,11 @@ pub const INFO: Info = Info {
     year: 1990,
     source: "Computer Graphics: Principles and Practice, 2nd edition, 3.9",
     class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
     cost: "O(n) points for n pieces of the flattened path, more where corners and caps are round",
     limits: "the outline crosses itself: fill it by the non-zero rule",
+    pseudocode: &[],
 };
 
 /// Shape of a stroke's ends.

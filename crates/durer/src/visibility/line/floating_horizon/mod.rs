@@ -27,7 +27,7 @@ mod walk;
 
 pub use chain::projected;
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
 use crate::scene::{Camera, HeightField};
 use crate::target::drawing::{Drawing, Line, LineClass};
@@ -43,8 +43,11 @@ pub const INFO: Info = Info {
     year: 1973,
     source: "A Two-Space Solution to the Hidden Line Problem for Plotting Functions of Two Variables, IEEE Transactions on Computers C-22 (1)",
     class: Class::ObjectSpace,
+    occluder: Occluder::Line,
+    coherence: &[Coherence::Edge],
     cost: "O(n h) for n cells, h the pieces of the horizon over one cell",
     limits: "surfaces y = f(x, z) over a grid",
+    pseudocode: &[],
 };
 
 /// Family of lines of a surface.

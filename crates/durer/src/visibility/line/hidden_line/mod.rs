@@ -42,7 +42,7 @@ use super::roundness::Smooth;
 use super::smooth_silhouette::{Whole, divided};
 use super::steps::Steps;
 use super::tangent::Tangents;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
 use crate::scene::Scene;
 use crate::target::drawing::{Drawing, Line, LineClass};
@@ -63,8 +63,11 @@ pub const INFO: Info = Info {
     source: "The notion of quantitative invisibility and the machine rendering of solids, ACM National \
              Conference",
     class: Class::ObjectSpace,
+    occluder: Occluder::Area,
+    coherence: &[Coherence::Edge],
     cost: "O(n + k) for n faces and k pairs of a line and a face that overlap in the picture",
     limits: "all faces are opaque; what lies within 2^-23 of the model's extent of a face touches it",
+    pseudocode: &[],
 };
 
 /// Options for the lines of a drawing.

@@ -31,7 +31,7 @@ pub(super) mod merge;
 pub(super) mod planar;
 
 use crate::Result;
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
 use crate::parallel;
 use crate::scene::Scene;
@@ -51,8 +51,11 @@ pub const INFO: Info = Info {
     year: 1977,
     source: "Hidden Surface Removal Using Polygon Area Sorting, SIGGRAPH",
     class: Class::ObjectSpace,
+    occluder: Occluder::Area,
+    coherence: &[Coherence::Edge, Coherence::Face],
     cost: "O((n + k) log n) usually, O(n^2) at worst, n faces, k visible pieces of edges",
     limits: "every face is opaque; corners are snapped to 2^-30 of the picture",
+    pseudocode: &[],
 };
 
 /// Options for the solver.

@@ -25,7 +25,7 @@ mod fragment;
 mod mask;
 mod resolve;
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;
 use crate::shade::color::premultiply;
@@ -56,8 +56,11 @@ pub const INFO: Info = Info {
     year: 1984,
     source: "The A-buffer, an Antialiased Hidden Surface Method, SIGGRAPH",
     class: Class::ImageSpace,
+    occluder: Occluder::Area,
+    coherence: &[Coherence::ScanLine],
     cost: "O(n log n + fragments + Σ k²) time, k fragments of a pixel; memory by a limit",
     limits: "one colour per face and pixel; needs every part of a pixel: sample_reach of half a pixel",
+    pseudocode: &[],
 };
 
 /// Sub-pixels of a coverage mask.

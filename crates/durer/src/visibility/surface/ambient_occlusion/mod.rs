@@ -15,7 +15,7 @@
 mod horizon;
 mod planes;
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Info, Occluder};
 use crate::parallel;
 use crate::shade::color::{decode_srgb8, encode_srgb8};
 use crate::simd::{Level, dispatch};
@@ -32,8 +32,11 @@ pub const INFO: Info = Info {
     year: 2016,
     source: "Practical Real-Time Strategies for Accurate Indirect Occlusion, SIGGRAPH course",
     class: Class::ImageSpace,
+    occluder: Occluder::Point,
+    coherence: &[],
     cost: "O(n) for n pixels that show something",
     limits: "only what the picture shows takes light away",
+    pseudocode: &[],
 };
 
 /// From so much light on nothing is taken away: a flat floor seen from aside misses a hundredth by the steps of

@@ -20,7 +20,7 @@ mod tiles;
 
 pub use piece::{Cut, Part};
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
 use crate::raster::fixed::unsnap;
 use crate::raster::span::Span;
@@ -49,8 +49,23 @@ pub const INFO: Info = Info {
     year: 1972,
     source: "A Solution to the Hidden Surface Problem, ACM Annual Conference",
     class: Class::ListPriority,
+    occluder: Occluder::Area,
+    coherence: &[Coherence::Face, Coherence::Depth],
     cost: "O(n log n + n · polygons near by and at like depths), O(n²) where all faces cross",
     limits: "one sample per pixel",
+    pseudocode: &[
+        "sort the polygons by their farthest point, the farthest first",
+        "while polygons are left:",
+        "    P ← the first of the list",
+        "    for each Q that P may hide:",
+        "        // P may be painted before Q if one test holds, in this order",
+        "        1 depths apart, 2a boxes apart, 2b Q wholly before P's plane,",
+        "        2c P wholly behind Q's plane, 2d projections apart",
+        "        if none holds:",
+        "            if Q is not marked: mark it, move it before P and look at it",
+        "            else they overlap cyclically: split one along the plane of the other",
+        "    paint P",
+    ],
 };
 
 /// Options for the planes of the picture.
@@ -128,6 +143,19 @@ pub enum Step {
         /// Number of the polygon.
         polygon: u32,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Look { .. } => 3,
+            Self::Tested { .. } => 6,
+            Self::Move { .. } => 9,
+            Self::Split { .. } => 10,
+            Self::Place { .. } => 11,
+        }
+    }
 }
 
 /// A polygon in its place in the order.

@@ -16,7 +16,7 @@ mod primary;
 mod whitted;
 mod world;
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::shade::PreparedLights;
 use crate::shade::color::encode_premultiplied;
 use crate::target::Framebuffer;
@@ -43,8 +43,11 @@ pub const INFO: Info = Info {
     year: 1968,
     source: "Some Techniques for Shading Machine Renderings of Solids, AFIPS",
     class: Class::ImageSpace,
+    occluder: Occluder::Point,
+    coherence: &[Coherence::Object],
     cost: "O(n log n) once, about O(log n) per ray; memory O(n)",
     limits: "lines and points are seen, but have no shadow and no mirror image",
+    pseudocode: &[],
 };
 
 /// Options for the planes of the picture.

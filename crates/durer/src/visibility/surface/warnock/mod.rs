@@ -14,7 +14,7 @@
 mod depth;
 mod glass;
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;
 use crate::shade::PreparedLights;
@@ -41,8 +41,20 @@ pub const INFO: Info = Info {
     year: 1969,
     source: "A Hidden Surface Algorithm for Computer Generated Halftone Pictures, University of Utah",
     class: Class::ImageSpace,
+    occluder: Occluder::Area,
+    coherence: &[Coherence::Area],
     cost: "O(triangles · log pixels) for small triangles; memory likewise",
     limits: "where surfaces blend, each sample is decided",
+    pseudocode: &[
+        "look(window, polygons that concern it):",
+        "    all outside: the window shows the background",
+        "    only one of them concerns it: draw its part in the window",
+        "    one surrounds the window and hides all others: fill the window",
+        "    the window is one sample: the nearest polygon there",
+        "    else: divide the window in four and look at each",
+        "// inside, crossing and surrounding polygons concern a window",
+        "begin with the whole picture and all polygons",
+    ],
 };
 
 /// Place at which a window is divided.
@@ -122,6 +134,21 @@ pub enum Step {
         /// First row of the lower half.
         y: i32,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Look { .. } => 1,
+            Self::Empty { .. } => 2,
+            Self::Single { .. } => 3,
+            Self::Surrounded { .. } => 4,
+            Self::Sample { .. } => 5,
+            Self::Divide { .. } => 6,
+            Self::Begin { .. } => 8,
+        }
+    }
 }
 
 /// Renders the input into the planes that the framebuffer has.

@@ -21,7 +21,7 @@ pub mod survey;
 mod tile;
 mod tile_grid;
 
-use crate::info::{Class, Info};
+use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::Vec4;
 use crate::scene::Scene;
 use crate::shade::color::{encode_premultiplied, premultiply};
@@ -54,8 +54,11 @@ pub const INFO: Info = Info {
     year: 1974,
     source: "A Subdivision Algorithm for Computer Display of Curved Surfaces, University of Utah",
     class: Class::ImageSpace,
+    occluder: Occluder::Point,
+    coherence: &[Coherence::Edge, Coherence::Depth],
     cost: "O(triangles + covered samples)",
     limits: "one surface per sample; edges as fine as the samples",
+    pseudocode: &[],
 };
 
 /// Options for the planes of the picture.

@@ -1,7 +1,94 @@
 //! Steps of algorithms as captions and small drawings; the facts of all algorithms.
+//!
+//! Each algorithm has its own `Step` type, for code that knows it. Here is the door without types: [`run`] runs an
+//! algorithm by its name on an example or on data of one's own, and returns a [`Frame`] for each step: the line of the
+//! pseudocode, a sentence with the step's values in English and German, the state as a table, and a picture.
+//! [`svg`] draws one frame, [`sheet`] all of them side by side.
+//!
+//! ```
+//! use durer::explain::{self, Input, Language};
+//!
+//! let frames = explain::run("cohen-sutherland", &Input::Example(String::new()), &Default::default(), 100)?;
+//! assert_eq!(frames[0].kind, "codes");
+//! println!("{}", frames[0].text(Language::German));
+//! let drawing = explain::sheet(&frames, 3, Language::English);
+//! assert!(drawing.starts_with("<svg"));
+//! # Ok::<(), durer::Error>(())
+//! ```
+
+mod clip_lines;
+mod clip_polygons;
+mod clip_volume;
+mod curves;
+mod faces;
+mod fills;
+mod frame;
+mod grid;
+mod input;
+mod json;
+mod lesson;
+mod letters;
+mod lines;
+mod picture;
+mod shades;
+mod svg;
+mod table;
+mod tones;
+mod viewing;
+mod without;
+mod words;
+
+pub use frame::Frame;
+pub use input::{Figure, Grid, Input, MAX_POINTS, Options};
+pub use json::{json, string as json_string};
+pub use lesson::{Example, Lesson};
+pub use picture::{Look, Mark, Picture, Shape};
+pub use svg::{picture, sheet, svg};
+pub use table::{Cell, Row, Table};
+pub use without::WITHOUT_LESSON;
+pub use words::{Caption, Language, Template, Value, Word};
 
 use crate::info::Info;
-use crate::{clip, curve, fragment, raster, shade, view, visibility};
+use crate::{Result, clip, curve, fragment, raster, shade, view, visibility};
+
+/// Lessons by families, in the order of the pipeline.
+const FAMILIES: &[&[Lesson]] = &[
+    curves::LESSONS,
+    clip_lines::LESSONS,
+    clip_polygons::LESSONS,
+    clip_volume::LESSONS,
+    viewing::LESSONS,
+    lines::LESSONS,
+    fills::LESSONS,
+    shades::LESSONS,
+    tones::LESSONS,
+    faces::LESSONS,
+];
+
+/// Returns every lesson, in the order of the pipeline.
+pub fn lessons() -> impl Iterator<Item = &'static Lesson> {
+    FAMILIES.iter().copied().flatten()
+}
+
+/// Returns the lesson of an algorithm.
+///
+/// # Errors
+/// [`crate::Error::Unknown`] where no lesson has this name; the error lists those that are like it.
+pub fn lesson(name: &str) -> Result<&'static Lesson> {
+    let names = || lessons().map(|lesson| lesson.name);
+    lessons()
+        .find(|l| l.name == name)
+        .ok_or_else(|| lesson::unknown("algorithm to explain", name, names()))
+}
+
+/// Runs an algorithm and returns a frame for each of its steps, at most `cap`, and one more that says how many are
+/// missing where there are more.
+///
+/// # Errors
+/// Those of [`lesson`] and [`Lesson::run`].
+pub fn run(name: &str, input: &Input, options: &Options, cap: usize) -> Result<Vec<Frame>> {
+    lesson(name)?.run(input, options, cap)
+}
 
 /// The facts of every algorithm of this library, in the order of the pipeline.
 ///
@@ -42,6 +129,7 @@ pub const ALGORITHMS: &[&Info] = &[
     &clip::place::AFTER_DIVISION,
     &clip::place::VIEWPORT,
     &clip::place::PER_PIXEL,
+    &view::mapping::INFO,
     &view::cull::INFO,
     &view::pick::INFO,
     &view::section::INFO,

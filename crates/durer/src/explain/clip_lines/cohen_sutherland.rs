@@ -1,0 +1,168 @@
+//! The lesson of Cohen and Sutherland's outcodes.
+
+use super::{BORDERS, CODE, Cutting, END, NO_HEAD, POINT, START, TAKES, end_name, figure, p};
+use crate::Result;
+use crate::clip::line::End;
+use crate::clip::line::cohen_sutherland::{INFO, Step, clip};
+use crate::clip::outcode::Outcode;
+use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::input::{Input, Options};
+use crate::explain::lesson::{Example, Lesson};
+use crate::explain::picture::{Look, Picture};
+use crate::explain::table::Table;
+use crate::explain::words::{Caption, Template, Word};
+use crate::math::DVec2;
+
+pub(super) const LESSON: Lesson = Lesson {
+    name: INFO.name,
+    info: &INFO,
+    takes: TAKES,
+    examples: EXAMPLES,
+    templates: &[&CODES, &CUT, &ACCEPTED, &REJECTED],
+    unreached: &[],
+    make,
+};
+
+const EXAMPLES: &[Example] = &[
+    Example {
+        name: "all-borders",
+        title: Word::new("four cuts, two of them useless", "Vier Schnitte, zwei davon nutzlos"),
+        input: || figure((10.0, 6.0), (-4.0, -2.5), (12.5, 8.5)),
+    },
+    Example {
+        name: "line-ad",
+        title: Word::new(
+            "AD of the lecture: one cut, then rejected",
+            "AD der Vorlesung: ein Schnitt, dann abgelehnt",
+        ),
+        input: || figure((10.0, 6.0), (-5.0, 3.5), (3.0, 9.5)),
+    },
+    Example {
+        name: "line-eh",
+        title: Word::new(
+            "EH of the lecture: cut left and right",
+            "EH der Vorlesung: links und rechts geschnitten",
+        ),
+        input: || figure((10.0, 6.0), (-3.0, 1.5), (13.0, 4.0)),
+    },
+    Example {
+        name: "corner",
+        title: Word::new("through a corner: a point is left", "durch eine Ecke: ein Punkt bleibt"),
+        input: || figure((10.0, 6.0), (8.0, 8.0), (12.0, 4.0)),
+    },
+    Example {
+        name: "inside",
+        title: Word::new("inside: accepted at once", "innen: sofort angenommen"),
+        input: || figure((10.0, 6.0), (1.0, 1.0), (8.0, 5.0)),
+    },
+];
+
+static CODES: Template = Template::new(
+    "codes",
+    "Codes {start} of A and {end} of B: OR is {or}, AND is {and}.",
+    "Codes {start} von A und {end} von B: ODER gibt {or}, UND gibt {and}.",
+);
+static CUT: Template = Template::new(
+    "cut",
+    "The code has the bit of the {border} border: {end} moves to {point}, code {code}.",
+    "Im Code steht das Bit des {border} Rands: {end} wandert nach {point}, Code {code}.",
+);
+static ACCEPTED: Template = Template::new(
+    "accepted",
+    "OR of the codes is 0000: what is left lies inside, accepted.",
+    "ODER der Codes gibt 0000: Was übrig ist, liegt innen und wird angenommen.",
+);
+static REJECTED: Template = Template::new(
+    "rejected",
+    "AND of the codes is {and}, not 0000: all lies beyond one border, rejected.",
+    "UND der Codes gibt {and}, nicht 0000: Alles liegt jenseits eines Rands und wird abgelehnt.",
+);
+
+/// The segment with the codes of its ends.
+struct State {
+    cutting: Cutting,
+    codes: [Outcode; 2],
+}
+
+fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Vec<Frame>> {
+    let cutting = Cutting::new(input)?;
+    let steps = record(cap, |t| clip(&cutting.window, cutting.whole, t))?;
+    let mut state = State { cutting, codes: [Outcode::INSIDE; 2] };
+    Ok(frames(&steps, |step| state.show(step)))
+}
+
+impl State {
+    fn show(&mut self, step: &Step<DVec2>) -> Shown {
+        let caption = self.take(step);
+        let mut picture = self.picture();
+        if let Step::Cut { point, .. } = *step {
+            picture.dot(point, Look::Now);
+        }
+        if *step == Step::Accepted {
+            picture.chain([self.cutting.left.start, self.cutting.left.end], Look::Result);
+        }
+        Shown { line: step.line(), caption, table: self.table(), picture }
+    }
+
+    fn take(&mut self, step: &Step<DVec2>) -> Caption {
+        match *step {
+            Step::Codes { start, end } => {
+                self.codes = [start, end];
+                let values = [start, end, start | end, start & end].map(Into::into);
+                let [start, end, or, and] = values;
+                CODES.with([("start", start), ("end", end), ("or", or), ("and", and)])
+            }
+            Step::Cut { end, border, point, code } => {
+                self.cutting.cut(end, point);
+                self.codes[usize::from(end == End::End)] = code;
+                let index = border.0.trailing_zeros() as usize;
+                let border = BORDERS.get(index).copied().unwrap_or_default();
+                CUT.with([
+                    ("border", border.into()),
+                    ("end", end_name(end)),
+                    ("point", point.into()),
+                    ("code", code.into()),
+                ])
+            }
+            Step::Accepted => ACCEPTED.with([]),
+            Step::Rejected => {
+                self.cutting.gone = true;
+                REJECTED.with([("and", (self.codes[0] & self.codes[1]).into())])
+            }
+        }
+    }
+
+    fn table(&self) -> Table {
+        let mut table = Table::new([NO_HEAD, POINT, CODE]);
+        let left = self.cutting.left;
+        let [start, end] = self.codes;
+        table.row(START, [left.start.into(), start.into()]);
+        table.row(END, [left.end.into(), end.into()]);
+        table.row(Word::new("OR", "ODER"), ["".into(), (start | end).into()]);
+        table.row(Word::new("AND", "UND"), ["".into(), (start & end).into()]);
+        table
+    }
+
+    /// Draws the nine regions with their codes, the window and the segment.
+    fn picture(&self) -> Picture {
+        let cutting = &self.cutting;
+        let [low, high] = cutting.extent();
+        let (a, b) = (cutting.window.min(), cutting.window.max());
+        let mut picture = Picture::new([low, high]);
+        for x in [a.x, b.x] {
+            picture.chain([p(x, low.y), p(x, high.y)], Look::Thin);
+        }
+        for y in [a.y, b.y] {
+            picture.chain([p(low.x, y), p(high.x, y)], Look::Thin);
+        }
+        picture.frame(&cutting.window, Look::Window);
+        for (x0, x1) in [(low.x, a.x), (a.x, b.x), (b.x, high.x)] {
+            for (y0, y1) in [(low.y, a.y), (a.y, b.y), (b.y, high.y)] {
+                let middle = p((x0 + x1) / 2.0, (y0 + y1) / 2.0);
+                picture.label(middle, (0.0, 0.0), Outcode::of_point_2d(&cutting.window, middle));
+            }
+        }
+        cutting.add_segment(&mut picture);
+        picture
+    }
+}

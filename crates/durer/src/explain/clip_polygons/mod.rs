@@ -1,0 +1,144 @@
+//! Lessons of polygon clipping.
+
+mod beams;
+mod edges;
+mod point;
+mod rectangle;
+mod stages;
+mod sweep;
+mod walks;
+
+use super::input::{Figure, Input};
+use super::lesson::Lesson;
+use super::picture::{Look, Picture, corners};
+use super::words::{Value, Word};
+use crate::Result;
+use crate::clip::polygon::Shapes;
+use crate::math::{DVec2, Rect};
+
+pub(super) const LESSONS: &[Lesson] = &[
+    stages::LESSON,
+    edges::LESSON,
+    walks::WEILER_ATHERTON,
+    walks::GREINER_HORMANN,
+    beams::LESSON,
+    sweep::VATTI,
+    sweep::OVERLAY,
+    rectangle::LESSON,
+    point::LESSON,
+];
+
+const TAKES: Word = Word::new(
+    "a ring, and a second ring or a window",
+    "ein Ring und ein zweiter Ring oder ein Fenster",
+);
+const TAKES_WINDOW: Word = Word::new("a ring and a window", "ein Ring und ein Fenster");
+const YES: Word = Word::new("yes", "ja");
+const NO: Word = Word::new("no", "nein");
+const SUBJECT: Word = Word::new("subject", "Subjekt");
+const CLIP: Word = Word::new("clip", "Clip");
+
+fn ring(points: &[(f64, f64)]) -> Vec<DVec2> {
+    points.iter().map(|&p| p.into()).collect()
+}
+
+/// Returns a letter C, which windows cut in two.
+fn letter() -> Vec<DVec2> {
+    ring(&[
+        (1.0, 0.0),
+        (12.0, 0.0),
+        (12.0, 3.0),
+        (4.0, 3.0),
+        (4.0, 6.0),
+        (12.0, 6.0),
+        (12.0, 9.0),
+        (1.0, 9.0),
+    ])
+}
+
+/// Returns a ring and a window.
+fn windowed(points: Vec<DVec2>, low: (f64, f64), high: (f64, f64)) -> Input {
+    let window = Rect::new(low.into(), high.into()).ok();
+    Input::Figure(Figure { window, rings: vec![points], ..Figure::default() })
+}
+
+/// Returns two rings.
+fn pair(subject: Vec<DVec2>, clip: Vec<DVec2>) -> Input {
+    Input::Figure(Figure { rings: vec![subject], clip: vec![clip], ..Figure::default() })
+}
+
+/// Returns the letter and a polygon across it.
+fn letter_and_blade() -> Input {
+    pair(
+        letter(),
+        ring(&[(3.0, -1.0), (9.0, 1.5), (10.0, 7.0), (6.0, 10.5), (2.5, 8.5), (6.5, 4.5)]),
+    )
+}
+
+/// Returns two squares that overlap in a corner.
+fn squares() -> Input {
+    pair(
+        ring(&[(0.0, 0.0), (6.0, 0.0), (6.0, 6.0), (0.0, 6.0)]),
+        ring(&[(3.0, 2.0), (9.0, 2.0), (9.0, 8.0), (3.0, 8.0)]),
+    )
+}
+
+/// Returns subject and window of the lecture, clockwise.
+fn lecture() -> Input {
+    let subject = [
+        (5.0, 9.0),
+        (15.0, 9.0),
+        (18.0, 5.0),
+        (15.0, 1.0),
+        (5.0, 1.0),
+        (5.0, 3.0),
+        (15.0, 3.0),
+        (14.0, 5.0),
+        (15.0, 7.0),
+        (5.0, 7.0),
+    ];
+    pair(ring(&subject), ring(&[(0.0, 10.0), (10.0, 10.0), (10.0, 0.0), (0.0, 0.0)]))
+}
+
+/// The two operands of an operation.
+struct Operands {
+    rings: [Vec<Vec<DVec2>>; 2],
+}
+
+impl Operands {
+    fn new(input: &Input) -> Result<Self> {
+        Ok(Self { rings: input.figure(TAKES)?.operands(TAKES)? })
+    }
+
+    fn shapes(&self) -> [Shapes; 2] {
+        [&self.rings[0], &self.rings[1]].map(Shapes::from_rings)
+    }
+
+    fn picture(&self) -> Picture {
+        let points = self.rings.iter().flatten().flatten().copied();
+        let mut picture = Picture::around(points, 0.1);
+        picture.rings(&self.rings[0], Look::First);
+        picture.rings(&self.rings[1], Look::Second);
+        picture
+    }
+}
+
+/// Subject and window of a lesson with one ring.
+fn ring_and_window(input: &Input) -> Result<(Vec<DVec2>, Rect)> {
+    let figure = input.figure(TAKES_WINDOW)?;
+    Ok((figure.ring(TAKES_WINDOW)?.to_vec(), figure.window(TAKES_WINDOW)?))
+}
+
+/// Returns an empty picture around a ring and a window, with both drawn.
+fn before(points: &[DVec2], window: &Rect) -> Picture {
+    let all = points.iter().copied().chain(corners(window));
+    let mut picture = Picture::around(all, 0.1);
+    picture.ring(points, Look::Pale);
+    picture.frame(window, Look::Window);
+    picture
+}
+
+/// Returns the answer to a question of a table.
+fn yes_or_no(yes: bool) -> Value {
+    if yes { YES } else { NO }.into()
+}

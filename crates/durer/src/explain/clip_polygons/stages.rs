@@ -1,0 +1,186 @@
+//! The lesson of Sutherland and Hodgman's stages.
+
+use super::{TAKES_WINDOW, before, letter, ring, ring_and_window, windowed};
+use crate::Result;
+use crate::clip::line::HalfPlane;
+use crate::clip::polygon::sutherland_hodgman::INFO;
+use crate::clip::polygon::sutherland_hodgman::by_borders::{Rule, Step, clip};
+use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::input::{Input, Options};
+use crate::explain::lesson::{Example, Lesson};
+use crate::explain::picture::{Look, Picture};
+use crate::explain::table::Table;
+use crate::explain::words::{Caption, Template, Value, Word};
+use crate::math::{DVec2, Rect};
+
+pub(super) const LESSON: Lesson = Lesson {
+    name: INFO.name,
+    info: &INFO,
+    takes: TAKES_WINDOW,
+    examples: &[
+        Example {
+            name: "triangle",
+            title: Word::new(
+                "the lecture's triangle at four borders",
+                "das Dreieck der Vorlesung an vier Rändern",
+            ),
+            input: || {
+                windowed(ring(&[(-6.0, 12.0), (14.0, 4.0), (6.0, -8.0)]), (0.0, 0.0), (10.0, 10.0))
+            },
+        },
+        Example {
+            name: "bridge",
+            title: Word::new(
+                "a ring that falls apart keeps a bridge",
+                "ein Ring, der zerfällt, behält eine Brücke",
+            ),
+            input: || windowed(letter(), (6.0, 1.0), (10.0, 8.0)),
+        },
+        Example {
+            name: "abcd",
+            title: Word::new("of A, B, C, D only D is out", "von A, B, C, D liegt nur D außen"),
+            input: || {
+                windowed(
+                    ring(&[(2.0, 8.0), (2.0, 2.0), (8.0, 2.0), (8.0, 14.0)]),
+                    (0.0, 0.0),
+                    (10.0, 10.0),
+                )
+            },
+        },
+    ],
+    templates: &[&IN_IN, &IN_OUT, &OUT_IN, &OUT_OUT, &LIST],
+    unreached: &[],
+    make,
+};
+
+static IN_IN: Template = Template::new(
+    "edge",
+    "{border} border, edge {from} → {to}: in→in, the end is emitted.",
+    "{border} Rand, Kante {from} → {to}: innen→innen, das Ende wird ausgegeben.",
+);
+static IN_OUT: Template = Template::new(
+    "edge",
+    "{border} border, edge {from} → {to}: in→out, the cut {cut} is emitted.",
+    "{border} Rand, Kante {from} → {to}: innen→außen, der Schnitt {cut} wird ausgegeben.",
+);
+static OUT_IN: Template = Template::new(
+    "edge",
+    "{border} border, edge {from} → {to}: out→in, the cut {cut} and the end are emitted.",
+    "{border} Rand, Kante {from} → {to}: außen→innen, Schnitt {cut} und Ende werden ausgegeben.",
+);
+static OUT_OUT: Template = Template::new(
+    "edge",
+    "{border} border, edge {from} → {to}: out→out, nothing is emitted.",
+    "{border} Rand, Kante {from} → {to}: außen→außen, nichts wird ausgegeben.",
+);
+static LIST: Template = Template::new(
+    "list",
+    "{border} border done: {count} vertices are left and go to the next border.",
+    "{border} Rand fertig: {count} Ecken bleiben und gehen zum nächsten Rand.",
+);
+
+/// The borders in the order of the lecture.
+const BORDERS: [Word; 4] = [
+    Word::new("Top", "Oberer"),
+    Word::new("Right", "Rechter"),
+    Word::new("Bottom", "Unterer"),
+    Word::new("Left", "Linker"),
+];
+
+struct State {
+    ring: Vec<DVec2>,
+    window: Rect,
+    /// The list that goes into the border.
+    list: Vec<DVec2>,
+    /// Vertices that have been emitted.
+    out: Vec<DVec2>,
+    border: usize,
+    /// The lists after the borders that are done.
+    lists: Vec<Vec<DVec2>>,
+}
+
+fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Vec<Frame>> {
+    let (ring, window) = ring_and_window(input)?;
+    let [left, right, bottom, top] = HalfPlane::of_rect(&window);
+    let steps = record(cap, |t| clip(&[top, right, bottom, left], &ring, t))?;
+    let list = ring.clone();
+    let mut state = State { ring, window, list, out: Vec::new(), border: 0, lists: Vec::new() };
+    Ok(frames(&steps, |step| state.show(step)))
+}
+
+fn name(border: usize) -> Value {
+    BORDERS.get(border).copied().unwrap_or_default().into()
+}
+
+impl State {
+    fn show(&mut self, step: &Step<DVec2>) -> Shown {
+        let caption = self.take(step);
+        let mut picture = self.picture();
+        let table = self.table();
+        match step {
+            Step::Edge { from, to, emitted, .. } => {
+                picture.arrow(*from, *to, Look::Now);
+                emitted.iter().flatten().for_each(|&p| picture.dot(p, Look::Result));
+            }
+            Step::List { vertices, .. } => {
+                vertices.iter().for_each(|&p| picture.dot(p, Look::Result));
+                self.list.clone_from(vertices);
+                self.out.clear();
+                self.border += 1;
+            }
+        }
+        Shown { line: step.line(), caption, table, picture }
+    }
+
+    fn take(&mut self, step: &Step<DVec2>) -> Caption {
+        match step {
+            Step::Edge { border, from, to, rule, emitted } => {
+                self.out.extend(emitted.iter().flatten());
+                let border = ("border", name(*border));
+                let (from, to) = (("from", (*from).into()), ("to", (*to).into()));
+                let on = Word::new("(an end on the border)", "(ein Ende auf dem Rand)");
+                let cut = ("cut", emitted[0].map_or(Value::from(on), Value::from));
+                match rule {
+                    Rule::InIn => IN_IN.with([border, from, to]),
+                    Rule::InOut => IN_OUT.with([border, from, to, cut]),
+                    Rule::OutIn => OUT_IN.with([border, from, to, cut]),
+                    Rule::OutOut => OUT_OUT.with([border, from, to]),
+                }
+            }
+            Step::List { border, vertices } => {
+                self.lists.push(vertices.clone());
+                self.out.clone_from(vertices);
+                LIST.with([("border", name(*border)), ("count", vertices.len().into())])
+            }
+        }
+    }
+
+    fn table(&self) -> Table {
+        let mut table = Table::new([Word::new("after", "nach"), Word::new("vertices", "Ecken")]);
+        table.row(Word::new("subject", "Subjekt"), [self.ring.clone().into()]);
+        for (border, list) in self.lists.iter().enumerate() {
+            table.row(name(border), [list.clone().into()]);
+        }
+        if self.lists.len() == self.border {
+            table.row(name(self.border), [self.out.clone().into()]);
+        }
+        table
+    }
+
+    /// Draws the list that goes in, the border as it is drawn through, and what came out.
+    fn picture(&self) -> Picture {
+        let mut picture = before(&self.ring, &self.window);
+        picture.ring(self.list.clone(), Look::First);
+        let (low, high) = (self.window.min(), self.window.max());
+        let [from, to] = picture.extent;
+        let through = match self.border {
+            0 => [DVec2::new(from.x, high.y), DVec2::new(to.x, high.y)],
+            1 => [DVec2::new(high.x, from.y), DVec2::new(high.x, to.y)],
+            2 => [DVec2::new(from.x, low.y), DVec2::new(to.x, low.y)],
+            _ => [DVec2::new(low.x, from.y), DVec2::new(low.x, to.y)],
+        };
+        picture.chain(through, Look::Dashed);
+        picture.chain(self.out.clone(), Look::Result);
+        picture
+    }
+}

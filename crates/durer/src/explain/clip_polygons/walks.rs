@@ -1,0 +1,279 @@
+//! Lessons of the walks along linked lists: Weiler–Atherton, and Greiner–Hormann.
+
+use super::{CLIP, Operands, SUBJECT, TAKES, lecture, letter_and_blade, squares};
+use crate::clip::polygon::weiler_atherton::{Mark, Operand, Step};
+use crate::clip::polygon::{greiner_hormann, weiler_atherton};
+use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::lesson::{Example, Lesson};
+use crate::explain::picture::{Look, Picture};
+use crate::explain::table::Table;
+use crate::explain::words::{Caption, Template, Value, Word};
+use crate::math::DVec2;
+
+pub(super) const WEILER_ATHERTON: Lesson = Lesson {
+    name: weiler_atherton::INFO.name,
+    info: &weiler_atherton::INFO,
+    takes: TAKES,
+    examples: EXAMPLES,
+    templates: &[&LISTED, &LISTED_CROSSING, &START, &ONTO_SUBJECT, &ONTO_CLIP, &PASSED, &RING],
+    unreached: &[],
+    make: |_, input, options, cap| {
+        let operands = Operands::new(input)?;
+        let [subject, clip] = operands.shapes();
+        let steps = record(cap, |t| {
+            weiler_atherton::weiler_atherton(
+                &subject,
+                &clip,
+                options.operation,
+                &Default::default(),
+                t,
+            )
+        })?;
+        Ok(show_all(operands, &steps))
+    },
+};
+
+pub(super) const GREINER_HORMANN: Lesson = Lesson {
+    name: greiner_hormann::INFO.name,
+    info: &greiner_hormann::INFO,
+    takes: TAKES,
+    examples: EXAMPLES,
+    templates: &[&LISTED, &LISTED_CROSSING, &ENTRY, &EXIT, &START, &PASSED, &RING],
+    unreached: &[],
+    make: |_, input, options, cap| {
+        let operands = Operands::new(input)?;
+        let [subject, clip] = operands.shapes();
+        let steps = record(cap, |t| {
+            greiner_hormann::greiner_hormann(
+                &subject,
+                &clip,
+                options.operation,
+                &Default::default(),
+                t,
+            )
+        })?;
+        Ok(show_all(operands, &steps))
+    },
+};
+
+const EXAMPLES: &[Example] = &[
+    Example {
+        name: "lecture",
+        title: Word::new(
+            "subject 0 … 9, window a … d: two rings",
+            "Subjekt 0 … 9, Fenster a … d: zwei Ringe",
+        ),
+        input: lecture,
+    },
+    Example {
+        name: "letter",
+        title: Word::new(
+            "a letter cut by a concave polygon",
+            "ein Buchstabe, zerschnitten von einem konkaven Polygon",
+        ),
+        input: letter_and_blade,
+    },
+    Example { name: "squares", title: Word::new("two squares", "zwei Quadrate"), input: squares },
+];
+
+static LISTED: Template = Template::new(
+    "listed",
+    "The list of the {list}: vertex {name} at {at}.",
+    "Die Liste von {list}: Ecke {name} bei {at}.",
+);
+static LISTED_CROSSING: Template = Template::new(
+    "listed",
+    "The list of the {list}: crossing {name} at {at}; here it is {mark} the other polygon.",
+    "Die Liste von {list}: Kreuzung {name} bei {at}; hier {mark} das andere Polygon.",
+);
+static ENTRY: Template = Template::new(
+    "crossing",
+    "Crossing {name}: the subject enters the clip, an entry.",
+    "Kreuzung {name}: Das Subjekt betritt den Clip, ein Eintritt.",
+);
+static EXIT: Template = Template::new(
+    "crossing",
+    "Crossing {name}: the subject leaves the clip, an exit.",
+    "Kreuzung {name}: Das Subjekt verlässt den Clip, ein Austritt.",
+);
+static START: Template =
+    Template::new("start", "A ring begins at {name}.", "Bei {name} beginnt ein Ring.");
+static ONTO_SUBJECT: Template = Template::new(
+    "turn",
+    "At {name} the walk goes on along the subject.",
+    "Bei {name} geht der Gang auf dem Subjekt weiter.",
+);
+static ONTO_CLIP: Template = Template::new(
+    "turn",
+    "At {name} the walk turns onto the clip.",
+    "Bei {name} wechselt der Gang auf den Clip.",
+);
+static PASSED: Template = Template::new(
+    "passed",
+    "{name} on the {list} belongs to the ring: {ring}.",
+    "{name} auf {list} gehört zum Ring: {ring}.",
+);
+static RING: Template = Template::new(
+    "ring",
+    "Back at the start: ring number {number} is complete, {ring}.",
+    "Zurück am Anfang: Ring Nummer {number} ist fertig, {ring}.",
+);
+
+/// The two lists, and the ring that is being made.
+struct State {
+    operands: Operands,
+    lists: [Vec<(DVec2, Option<Mark>)>; 2],
+    /// Crossings in the order in which the clip's list has them, by which they are named.
+    crossings: Vec<DVec2>,
+    ring: Vec<DVec2>,
+    rings: Vec<Vec<DVec2>>,
+}
+
+fn show_all(operands: Operands, steps: &crate::trace::Recorder<Step>) -> Vec<Frame> {
+    let lists = [Vec::new(), Vec::new()];
+    // Crossings are named as they are met round the clip.
+    let met = |step: &Step| match *step {
+        Step::Listed { list: Operand::Clip, at, mark: Some(_) } => Some(at),
+        _ => None,
+    };
+    let crossings = steps.steps().iter().filter_map(met).collect();
+    let mut state = State { operands, lists, crossings, ring: Vec::new(), rings: Vec::new() };
+    frames(steps, |step| state.show(step))
+}
+
+impl State {
+    /// Returns the name of a point: numbers for the subject, letters for the clip and for crossings.
+    fn name(&self, at: DVec2) -> String {
+        let [subject, clip] = &self.operands.rings;
+        let find = |rings: &[Vec<DVec2>]| rings.iter().flatten().position(|&p| p == at);
+        if let Some(k) = find(subject) {
+            return k.to_string();
+        }
+        let letter = |first: u8, k: usize, most: usize, long: char| {
+            let letter = u8::try_from(k).ok().filter(|_| k < most).map(|k| char::from(first + k));
+            letter.map_or_else(|| format!("{long}{}", k + 1), String::from)
+        };
+        if let Some(k) = find(clip) {
+            return letter(b'a', k, 8, 'c');
+        }
+        let met = self.crossings.iter().position(|&p| p == at);
+        letter(b'i', met.unwrap_or(self.crossings.len()), 12, 'x')
+    }
+
+    fn names(&self, points: &[DVec2]) -> Value {
+        Value::List(points.iter().map(|&p| self.name(p).into()).collect())
+    }
+
+    fn show(&mut self, step: &Step) -> Shown {
+        let caption = self.take(step);
+        let mut picture = self.picture();
+        match step {
+            Step::Listed { at, .. }
+            | Step::Start { at }
+            | Step::Passed { at, .. }
+            | Step::Crossing { at, .. }
+            | Step::Turn { at, .. } => {
+                picture.dot(*at, Look::Now);
+            }
+            Step::Ring { .. } => {}
+        }
+        Shown { line: step.line(), caption, table: self.table(), picture }
+    }
+
+    fn take(&mut self, step: &Step) -> Caption {
+        match step {
+            Step::Listed { list, at, mark } => self.listed(*list, *at, *mark),
+            Step::Crossing { at, entry } => {
+                let template = if *entry { &ENTRY } else { &EXIT };
+                template.with([("name", self.name(*at).into())])
+            }
+            Step::Start { at } => {
+                self.ring.clear();
+                START.with([("name", self.name(*at).into())])
+            }
+            Step::Turn { at, to_subject } => {
+                let template = if *to_subject { &ONTO_SUBJECT } else { &ONTO_CLIP };
+                template.with([("name", self.name(*at).into())])
+            }
+            Step::Passed { list, at } => {
+                self.ring.push(*at);
+                let values = [
+                    ("name", self.name(*at).into()),
+                    ("list", operand(*list)),
+                    ("ring", self.names(&self.ring)),
+                ];
+                PASSED.with(values)
+            }
+            Step::Ring { points } => {
+                self.rings.push(points.clone());
+                self.ring.clear();
+                RING.with([("number", self.rings.len().into()), ("ring", self.names(points))])
+            }
+        }
+    }
+
+    fn listed(&mut self, list: Operand, at: DVec2, mark: Option<Mark>) -> Caption {
+        self.lists[usize::from(list == Operand::Clip)].push((at, mark));
+        if mark.is_some() && !self.crossings.contains(&at) {
+            self.crossings.push(at);
+        }
+        let values = [("list", operand(list)), ("name", self.name(at).into()), ("at", at.into())];
+        let Some(mark) = mark else { return LISTED.with(values) };
+        let word = match mark {
+            Mark::Entering => Word::new("entering", "betritt sie"),
+            Mark::Leaving => Word::new("leaving", "verlässt sie"),
+        };
+        let mut caption = LISTED_CROSSING.with(values);
+        caption.values.push(("mark", word.into()));
+        caption
+    }
+
+    fn table(&self) -> Table {
+        let mut table = Table::default();
+        for (list, name) in self.lists.iter().zip([SUBJECT, CLIP]) {
+            let marked = |&(at, mark): &(DVec2, Option<Mark>)| {
+                let arrow = match mark {
+                    None => "",
+                    Some(Mark::Entering) => "↓",
+                    Some(Mark::Leaving) => "↑",
+                };
+                Value::from(self.name(at) + arrow)
+            };
+            table.row(name, [Value::List(list.iter().map(marked).collect())]);
+        }
+        table.row(Word::new("ring", "Ring"), [self.names(&self.ring)]);
+        let rings = self
+            .rings
+            .iter()
+            .map(|ring| Value::List(vec!["{".into(), self.names(ring), "}".into()]));
+        table.row(Word::new("done", "fertig"), [Value::List(rings.collect())]);
+        table
+    }
+
+    fn picture(&self) -> Picture {
+        let mut picture = self.operands.picture();
+        picture.rings(&self.rings, Look::Result);
+        picture.chain(self.ring.clone(), Look::Result);
+        for (list, look) in self.lists.iter().zip([Look::First, Look::Second]) {
+            let plain = list.iter().filter(|(_, mark)| mark.is_none());
+            plain.for_each(|&(at, _)| picture.named(at, self.name(at), look));
+        }
+        let listed = self.lists.iter().flatten().filter(|(_, mark)| mark.is_some());
+        let mut shown: Vec<DVec2> = Vec::new();
+        for &(at, _) in listed {
+            if !shown.contains(&at) {
+                picture.named(at, self.name(at), Look::Result);
+                shown.push(at);
+            }
+        }
+        picture
+    }
+}
+
+fn operand(list: Operand) -> Value {
+    match list {
+        Operand::Subject => SUBJECT,
+        Operand::Clip => CLIP,
+    }
+    .into()
+}

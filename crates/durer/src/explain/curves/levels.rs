@@ -1,0 +1,194 @@
+//! The lessons of de Casteljau's and de Boor's levels of points.
+
+use super::{EXAMPLES, TAKES};
+use crate::curve::b_spline::{self, BSpline, de_boor};
+use crate::curve::bezier::{self, de_casteljau};
+use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::input::Input;
+use crate::explain::lesson::Lesson;
+use crate::explain::picture::{Look, Picture};
+use crate::explain::table::Table;
+use crate::explain::words::{Template, Value, Word};
+use crate::math::DVec2;
+use crate::trace::NoTrace;
+use crate::{Error, Result};
+
+pub(super) const DE_CASTELJAU: Lesson = Lesson {
+    name: bezier::INFO.name,
+    info: &bezier::INFO,
+    takes: TAKES,
+    examples: EXAMPLES,
+    templates: &[&MIXED, &FOUND],
+    unreached: &[],
+    make: |_, input, _, cap| bezier(input, cap),
+};
+
+pub(super) const DE_BOOR: Lesson = Lesson {
+    name: b_spline::INFO.name,
+    info: &b_spline::INFO,
+    templates: &[&SHARED, &REACHED],
+    make: |_, input, _, cap| b_spline(input, cap),
+    ..DE_CASTELJAU
+};
+
+/// Parameter of the point that is shown.
+const PARAMETER: f64 = 0.4;
+
+/// Degree of the spline that is shown.
+const DEGREE: usize = 3;
+
+/// The most control points whose levels can be read.
+const MOST: usize = 12;
+
+static MIXED: Template = Template::new(
+    "point",
+    "Level {level}: {t} of the way from {from} to {to} lies {point}.",
+    "Stufe {level}: Auf {t} des Wegs von {from} nach {to} liegt {point}.",
+);
+static FOUND: Template = Template::new(
+    "point",
+    "Level {level}: {t} of the way from {from} to {to} lies {point}. It is the point of the curve.",
+    "Stufe {level}: Auf {t} des Wegs von {from} nach {to} liegt {point}. Das ist der Punkt der Kurve.",
+);
+static SHARED: Template = Template::new(
+    "point",
+    "Level {level}: the knots give a share of {t}: between {from} and {to} lies {point}.",
+    "Stufe {level}: Die Knoten geben einen Anteil von {t}: Zwischen {from} und {to} liegt {point}.",
+);
+static REACHED: Template = Template::new(
+    "point",
+    "Level {level}: the share is {t}: between {from} and {to} lies {point}, the point of the curve.",
+    "Stufe {level}: Der Anteil ist {t}: Zwischen {from} und {to} liegt {point}, der Punkt der Kurve.",
+);
+
+/// Control points, the points of all levels, and the curve itself.
+struct State {
+    levels: Vec<Vec<Option<DVec2>>>,
+    curve: Vec<DVec2>,
+}
+
+/// A point of a level: mixed from two of the level below.
+struct Mix {
+    level: usize,
+    /// Its place, and those of the two.
+    index: usize,
+    from: [usize; 2],
+    share: f64,
+    point: DVec2,
+}
+
+fn control(input: &Input) -> Result<&[DVec2]> {
+    let line = input.figure(TAKES)?.lines.first().filter(|line| line.len() > 1);
+    let line = line.ok_or_else(|| Error::parameter("input", "without a line", TAKES.en))?;
+    if line.len() > MOST {
+        let (value, limit) = (line.len() as u64, MOST as u64);
+        return Err(Error::Limit { what: "control points to be explained", value, limit });
+    }
+    Ok(line)
+}
+
+fn bezier(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+    let control = control(input)?;
+    let at = |t: f64| de_casteljau(control, t, &mut NoTrace).unwrap_or_default();
+    let mut state = State::new(control, samples(at));
+    let steps = record(cap, |t| {
+        de_casteljau(control, PARAMETER, t);
+        Ok(())
+    })?;
+    Ok(frames(&steps, |step| {
+        let bezier::Step { level, index, point } = *step;
+        let mix = Mix { level, index, from: [index, index + 1], share: PARAMETER, point };
+        let is_last = level + 1 == control.len();
+        state.show(&mix, if is_last { &FOUND } else { &MIXED }, step.line())
+    }))
+}
+
+fn b_spline(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+    let control = control(input)?;
+    let degree = DEGREE.min(control.len() - 1);
+    let spline = BSpline::clamped(degree, control.to_vec())?;
+    let mut state = State::new(control, samples(|t| spline.point(t)));
+    let steps = record(cap, |t| {
+        de_boor(&spline, PARAMETER, t);
+        Ok(())
+    })?;
+    Ok(frames(&steps, |step| {
+        let b_spline::Step { level, index, share, point } = *step;
+        let mix = Mix { level, index, from: [index.saturating_sub(1), index], share, point };
+        state.show(&mix, if level == degree { &REACHED } else { &SHARED }, step.line())
+    }))
+}
+
+/// Returns points of a curve over 0 … 1.
+fn samples(at: impl Fn(f64) -> DVec2) -> Vec<DVec2> {
+    (0..=60).map(|k| at(f64::from(k) / 60.0)).collect()
+}
+
+impl State {
+    fn new(control: &[DVec2], curve: Vec<DVec2>) -> Self {
+        Self { levels: vec![control.iter().copied().map(Some).collect()], curve }
+    }
+
+    fn at(&self, level: usize, index: usize) -> Option<DVec2> {
+        self.levels.get(level)?.get(index).copied().flatten()
+    }
+
+    fn show(&mut self, mix: &Mix, template: &'static Template, line: usize) -> Shown {
+        let count = self.levels.first().map_or(0, Vec::len);
+        if self.levels.len() <= mix.level {
+            self.levels.push(vec![None; count]);
+        }
+        if let Some(place) = self.levels.get_mut(mix.level).and_then(|l| l.get_mut(mix.index)) {
+            *place = Some(mix.point);
+        }
+        let [from, to] = mix.from.map(|index| self.at(mix.level - 1, index).unwrap_or_default());
+        let caption = template.with([
+            ("level", mix.level.into()),
+            ("t", mix.share.into()),
+            ("from", from.into()),
+            ("to", to.into()),
+            ("point", mix.point.into()),
+        ]);
+        Shown { line, caption, table: self.table(), picture: self.picture(mix, [from, to]) }
+    }
+
+    /// Returns the triangle of points, a column for each level.
+    fn table(&self) -> Table {
+        let mut table = Table::new([]);
+        table.heads.push(Word::new("index", "Index"));
+        const LEVELS: [Word; 4] = [
+            Word::new("level 0", "Stufe 0"),
+            Word::new("level 1", "Stufe 1"),
+            Word::new("level 2", "Stufe 2"),
+            Word::new("level 3", "Stufe 3"),
+        ];
+        let more = Word::new("level", "Stufe");
+        let heads = (0..self.levels.len()).map(|k| LEVELS.get(k).copied().unwrap_or(more));
+        table.heads.extend(heads);
+        let count = self.levels.first().map_or(0, Vec::len);
+        for index in 0..count {
+            let value = |level| self.at(level, index).map_or_else(|| "".into(), Value::from);
+            table.row(index, (0..self.levels.len()).map(value));
+        }
+        table
+    }
+
+    fn picture(&self, mix: &Mix, ends: [DVec2; 2]) -> Picture {
+        let control = self.levels.iter().take(1).flatten().flatten().copied();
+        let mut picture = Picture::around(control.clone(), 0.12);
+        picture.chain(self.curve.clone(), Look::Pale);
+        for (number, p) in control.enumerate() {
+            picture.named(p, format!("P{number}"), Look::Window);
+        }
+        for (number, level) in self.levels.iter().enumerate() {
+            let look = if number == 0 { Look::Window } else { Look::First };
+            picture.chain(level.iter().copied().flatten().collect::<Vec<_>>(), look);
+        }
+        for p in self.levels.iter().skip(1).flatten().flatten() {
+            picture.dot(*p, Look::First);
+        }
+        picture.chain(ends, Look::Second);
+        picture.dot(mix.point, Look::Now);
+        picture
+    }
+}

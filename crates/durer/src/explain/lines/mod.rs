@@ -1,0 +1,60 @@
+//! Lessons of lines and conics in pixels.
+
+mod conics;
+mod smooth;
+mod thin;
+
+use super::input::{Figure, Input};
+use super::lesson::{Example, Lesson};
+use super::words::Word;
+
+pub(super) const LESSONS: &[Lesson] = &[
+    thin::EQUATION,
+    thin::DDA,
+    thin::BRESENHAM,
+    smooth::WU,
+    smooth::GUPTA_SPROULL,
+    conics::CIRCLE,
+    conics::ELLIPSE,
+];
+
+const TAKES: Word = Word::new("a line of two points, in pixels", "eine Strecke in Pixeln");
+const PIXEL: Word = Word::new("pixel", "Pixel");
+const STEP: Word = Word::new("step", "Schritt");
+
+/// Examples of all ways to draw lines.
+const EXAMPLES: &[Example] = &[
+    Example {
+        name: "lecture",
+        title: Word::new(
+            "(0, 0) to (5, 3): E = 1, −3, 3, −1, 5",
+            "(0; 0) bis (5; 3): E = 1, −3, 3, −1, 5",
+        ),
+        input: || line((0.0, 0.0), (5.0, 3.0)),
+    },
+    Example {
+        name: "steep-and-back",
+        title: Word::new(
+            "a steep line from top to bottom",
+            "eine steile Strecke von oben nach unten",
+        ),
+        input: || line((4.0, 9.0), (1.0, 0.0)),
+    },
+    Example {
+        name: "ties",
+        title: Word::new(
+            "slope ½: every other pixel is a tie",
+            "Steigung ½: jedes zweite Pixel ein Gleichstand",
+        ),
+        input: || line((0.0, 1.0), (10.0, 6.0)),
+    },
+    Example {
+        name: "flat",
+        title: Word::new("horizontal", "waagrecht"),
+        input: || line((1.0, 2.0), (9.0, 2.0)),
+    },
+];
+
+fn line(from: (f64, f64), to: (f64, f64)) -> Input {
+    Input::Figure(Figure { lines: vec![vec![from.into(), to.into()]], ..Figure::default() })
+}

@@ -1,0 +1,51 @@
+//! Algorithms that have no lesson, each with the reason.
+
+use crate::info::Info;
+use crate::{clip, fragment, raster, shade, view, visibility};
+
+const PRODUCTION: &str = "a fast form of an algorithm that has a lesson, with the same result";
+const FORMULA: &str = "one formula: there are no steps to show";
+const COARSE: &str = "its steps are too coarse to be drawn one by one";
+const UNTRACED: &str = "it reports no steps";
+const UNWRITTEN: &str = "it reports its steps; the lesson is not written yet";
+
+/// Algorithms without a lesson and why, in the order of [`super::ALGORITHMS`]; whoever writes one takes the entry out.
+pub const WITHOUT_LESSON: &[(&Info, &str)] = &[
+    (&clip::line::batch::INFO, PRODUCTION),
+    (&clip::polygon::validity::INFO, UNTRACED),
+    (&clip::polygon::mismatch::INFO, UNTRACED),
+    (&clip::simplify::douglas_peucker::INFO, UNWRITTEN),
+    (&clip::simplify::visvalingam::INFO, UNWRITTEN),
+    (&clip::simplify::coverage::INFO, UNWRITTEN),
+    (&view::cull::INFO, UNTRACED),
+    (&view::pick::INFO, UNTRACED),
+    (&view::section::INFO, UNTRACED),
+    (&view::label::INFO, UNTRACED),
+    (&view::interior_point::INFO, UNWRITTEN),
+    (&view::warp::INFO, UNWRITTEN),
+    (&raster::line::wide::INFO, UNWRITTEN),
+    (&raster::line::wide::buffer::INFO, UNTRACED),
+    (&raster::line::tiled::INFO, PRODUCTION),
+    (&raster::line::pattern::INFO, UNWRITTEN),
+    (&raster::coverage::INFO, UNWRITTEN),
+    (&raster::coverage::PARTITION, UNWRITTEN),
+    (&raster::triangulate::INFO, UNWRITTEN),
+    (&raster::interpolate::BARYCENTRIC, FORMULA),
+    (&shade::unlit::INFO, FORMULA),
+    (&shade::flat::INFO, FORMULA),
+    (&shade::metallic_roughness::INFO, FORMULA),
+    (&shade::shadow::INFO, UNTRACED),
+    (&fragment::fog::INFO, FORMULA),
+    (&visibility::surface::z_buffer::INFO, PRODUCTION),
+    (&visibility::surface::a_buffer::INFO, PRODUCTION),
+    (&visibility::surface::ambient_occlusion::INFO, UNTRACED),
+    (&visibility::surface::scan_line_z::INFO, UNWRITTEN),
+    (&visibility::surface::spanning_scan_line::INFO, PRODUCTION),
+    (&visibility::surface::ray::INFO, UNWRITTEN),
+    (&visibility::region::planar_map::INFO, COARSE),
+    (&visibility::region::SHADOWS, UNTRACED),
+    (&visibility::line::hidden_line::INFO, UNWRITTEN),
+    (&visibility::line::wireframe::INFO, COARSE),
+    (&visibility::line::floating_horizon::INFO, PRODUCTION),
+    (&visibility::wireframe::INFO, COARSE),
+];
