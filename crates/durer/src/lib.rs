@@ -73,6 +73,10 @@
 //! [tree](clip::polygon::NestingTree) of a result tells which ring lies in which.
 //! [`clip::attribute`] carries heights, colours and other values to new vertices.
 //!
+//! **And of any geometry?** [`clip::mask`] clips points, lines and polygons to a window or to polygons, makes polygons
+//! [valid](clip::mask::Rules::fix) and [joins](clip::mask::Union) them; [`clip::cells`] cuts by many cells at once;
+//! [buffers](raster::line::wide::buffer) reach a distance around them.
+//!
 //! **Which of its points matter?** [`clip::simplify`]: of a line by [Douglas–Peucker](clip::simplify::douglas_peucker)
 //! or [Visvalingam–Whyatt](clip::simplify::visvalingam), of lines and areas that share borders
 //! [all together](clip::simplify::coverage).
@@ -177,7 +181,7 @@ struct Repository;
 pub mod error;
 pub mod info;
 pub mod math;
-pub mod parallel;
+mod parallel;
 pub mod simd;
 mod stopwatch;
 pub mod trace;

@@ -11,6 +11,7 @@ mod crs;
 mod drawing;
 mod drawing_machines;
 mod drawing_marks;
+mod errors;
 mod fuzz;
 mod geo;
 mod geo_curves;

@@ -138,7 +138,7 @@ pub fn encode_srgb8(linear: f32) -> u8 {
 ///
 /// Cost: one look-up per channel.
 #[inline(always)]
-pub fn encode_opaque_x16<S: Simd>(simd: S, colors: [f32x16<S>; 3]) -> u32x16<S> {
+pub(crate) fn encode_opaque_x16<S: Simd>(simd: S, colors: [f32x16<S>; 3]) -> u32x16<S> {
     let mut encoding = Encoding::new(simd, colors);
     encoding.look_up();
     encoding.codes(simd)

@@ -80,7 +80,7 @@ impl Environment {
 
     /// Returns the light reflected by a matte white surface with unit normal `n`.
     #[inline(always)]
-    pub fn diffuse<L: Lane>(&self, n: Vec3Lane<L>) -> Vec3Lane<L> {
+    pub(crate) fn diffuse<L: Lane>(&self, n: Vec3Lane<L>) -> Vec3Lane<L> {
         if let Mirrored::Panorama { panorama, axes } = &self.mirrored {
             let light = panorama.diffuse(turned(n, axes)).times_all(self.radiance);
             return light.plus(Vec3Lane::splat(n.x, self.ambient));
@@ -92,7 +92,12 @@ impl Environment {
     /// Returns the reflection in the unit direction `r`; `alpha` is its roughness, squared. `lamps`: how bright
     /// the screens of a studio are, for metal, what is smooth and clear layers; `None` shows no studio.
     #[inline(always)]
-    pub fn reflection<L: Lane>(&self, r: Vec3Lane<L>, alpha: L, lamps: Option<L>) -> Vec3Lane<L> {
+    pub(crate) fn reflection<L: Lane>(
+        &self,
+        r: Vec3Lane<L>,
+        alpha: L,
+        lamps: Option<L>,
+    ) -> Vec3Lane<L> {
         let k = match (&self.mirrored, lamps) {
             (Mirrored::Studio(studio), Some(lamps)) => studio.radiance(r, alpha, lamps),
             (Mirrored::Panorama { panorama, axes }, _) => {

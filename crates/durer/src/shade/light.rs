@@ -193,7 +193,7 @@ impl PointLight {
 
     /// Returns unit vector from `position` to the light, and the light's strength there.
     #[inline(always)]
-    pub fn seen_from<L: Lane>(&self, position: Vec3Lane<L>) -> (Vec3Lane<L>, L) {
+    pub(crate) fn seen_from<L: Lane>(&self, position: Vec3Lane<L>) -> (Vec3Lane<L>, L) {
         let d = Vec3Lane::splat(position.x, self.position).minus(position);
         let distance2 = d.dot(d);
         let to_light = d.unit_or(Vec3Lane::splat(distance2, Vec3::ZERO));

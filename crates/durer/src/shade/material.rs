@@ -113,7 +113,7 @@ impl<'a> PreparedMaterial<'a> {
     /// Returns the one set of texture coordinates that all textures use, where samples of the
     /// material may also be looked up sixteen at a time, by [`Self::shade_x16`]; nothing has vertex
     /// colours.
-    pub fn looked_up_together(&self, shading: Shading) -> Option<usize> {
+    pub(crate) fn looked_up_together(&self, shading: Shading) -> Option<usize> {
         let set = self.slots().next()?.set;
         let suits = |slot: &Slot<'_>| slot.set == set && slot.texture.suits_lanes();
         let plain = self.normal_slot.is_none() && self.lobes.is_none();
@@ -122,7 +122,7 @@ impl<'a> PreparedMaterial<'a> {
     }
 
     /// Returns whether [`Self::shade_x16`] asks how texture coordinates change over the screen.
-    pub fn has_levels(&self) -> bool {
+    pub(crate) fn has_levels(&self) -> bool {
         self.slots().any(|slot| slot.texture.has_levels())
     }
 
@@ -130,7 +130,7 @@ impl<'a> PreparedMaterial<'a> {
     /// gives, but that colours without alpha are not black; the material must be [looked up
     /// together](Self::looked_up_together). Cost: O(lights) and sixteen samples per texture.
     #[simd]
-    pub fn shade_x16<S: Simd>(
+    pub(crate) fn shade_x16<S: Simd>(
         simd: S,
         this: &Self,
         points: &Points<f32x16<S>>,
@@ -178,15 +178,15 @@ impl<'a> PreparedMaterial<'a> {
         self.model.into()
     }
 
-    /// Returns whether the material has one alpha, no textures and no more lobes than most, so that [`super::shade_points`]
-    /// may be used on meshes without vertex colours.
+    /// Returns whether the material has one alpha, no textures and no more lobes than most, so that many points of a mesh
+    /// without vertex colours are shaded at a time.
     pub fn is_plain(&self) -> bool {
         let clear = matches!(self.alpha_mode, AlphaMode::Opaque | AlphaMode::Blend);
         !self.textured && clear && self.lobes.is_none()
     }
 
     /// Returns the alpha of all points of a [plain](Self::is_plain) material.
-    pub fn plain_alpha(&self) -> f32 {
+    pub(crate) fn plain_alpha(&self) -> f32 {
         self.coverage(self.base_color.w)
     }
 
@@ -196,7 +196,7 @@ impl<'a> PreparedMaterial<'a> {
     }
 
     /// Returns whether tangents or position derivatives are needed.
-    pub fn has_normal_map(&self) -> bool {
+    pub(crate) fn has_normal_map(&self) -> bool {
         self.normal_slot.is_some()
     }
 
@@ -298,7 +298,7 @@ impl<'a> PreparedMaterial<'a> {
 
     /// Returns whether samples of the material may be lit by [`super::Samples`]: nothing shines
     /// through, and the formula's parameter for all of them at once is one number.
-    pub fn is_lit_together(&self, shading: Shading) -> bool {
+    pub(crate) fn is_lit_together(&self, shading: Shading) -> bool {
         self.has_one_exponent(shading) && self.alpha_mode != AlphaMode::Blend
     }
 
@@ -313,7 +313,7 @@ impl<'a> PreparedMaterial<'a> {
 
     /// Returns a point with what the textures say of it, to be lit with others; its geometric normal must
     /// be on the viewer's side, as for [`shade_seen`].
-    pub fn sample(&self, surface: &Surface<'_>, shading: Shading) -> Sample<'_> {
+    pub(crate) fn sample(&self, surface: &Surface<'_>, shading: Shading) -> Sample<'_> {
         self.sample_with(surface, face_seen, self.base(surface), shading)
     }
 

@@ -1,8 +1,8 @@
 //! Light on surfaces.
 //!
 //! [`PreparedMaterials`] and [`PreparedLights`] are made once per picture, [`shade`] is called per
-//! visible sample, [`shade_points`] for sixteen samples of one plain material, [`Samples`] for eight of one with
-//! textures, [`shade_vertex`] and [`shade_face`] for the interpolated and the flat model.
+//! visible sample, [`shade_vertex`] and [`shade_face`] for the interpolated and the flat model. Renderers shade eight
+//! and sixteen samples of one material at a time by the same formulas.
 //!
 //! Space: world axes, but with the origin moved to the eye ([`PreparedLights::origin`]), so that
 //! `f32` suffices far from the world's own origin. Colours are linear with sRGB's primaries.
@@ -14,7 +14,7 @@ pub mod exposure;
 pub mod flat;
 mod formula;
 pub mod gouraud;
-pub mod lane;
+pub(crate) mod lane;
 pub mod light;
 mod lobes;
 mod lookup;
@@ -43,14 +43,13 @@ pub use exposure::Exposure;
 pub use flat::shade_face;
 pub use gouraud::{Reflected, shade_vertex};
 pub use light::PreparedLights;
-pub use lookup::TexCoords;
+pub(crate) use lookup::TexCoords;
 pub use material::{PreparedMaterial, PreparedMaterials, shade, shade_seen};
 pub(crate) use normal::Frame;
 pub use panorama::Panorama;
-pub(crate) use plain::shade_frame;
-pub use plain::shade_points;
-pub use points::{Faces, Points};
-pub use sample::{Sample, Samples};
+pub(crate) use plain::{shade_frame, shade_points};
+pub(crate) use points::{Faces, Points};
+pub(crate) use sample::{Sample, Samples};
 pub use surface::{Surface, TexCoord};
 pub use texture::PreparedTexture;
 pub use tone_map::ToneMap;

@@ -71,7 +71,7 @@ impl Rules {
 }
 
 /// Gives polygons the points that neighbours have on the borders that they share, where these lie on the border but for
-/// the rounding of coordinates ([`matched`]); returns how many geometries got some. Collections, lines and points stay
+/// the rounding of coordinates ([`matched()`]); returns how many geometries got some. Collections, lines and points stay
 /// as they are.
 pub fn match_points(geometries: &mut [Option<Geometry>]) -> usize {
     let area = |geometry: &Option<Geometry>| match geometry {

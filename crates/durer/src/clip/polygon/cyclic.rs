@@ -8,12 +8,13 @@
 //! they delay a crossing to the end of common edges, we take the subject as shrunk by less than any
 //! number, for union as grown: then no common edge is left that the result would have on two sides.
 
+use super::group::{group, is_flat};
 use super::lists::{Lists, NOT_SIMPLE, Start, join};
-use super::locate::{Place, group, is_flat, locate, on_segment};
 use super::near::pairs;
 use super::node;
+use super::point::{Place, locate, on_segment};
 use super::steps::{Mark, Operand, Step};
-use super::{BooleanOp, Shapes};
+use super::{BooleanOp, FillRule, Shapes};
 use crate::clip::exact;
 use crate::math::{DVec2, Orientation, orient2d};
 use crate::trace::Tracer;
@@ -126,7 +127,8 @@ impl Linked {
                     nodes.binary_search_by(|node| node.compare(self.lists[k].vertices[v].at));
                 let inside = node.ok().and_then(|i| nodes[i].inside(k, v, grown));
                 inside.unwrap_or_else(|| {
-                    locate(self.rings[1 - k].rings(), self.lists[k].vertices[v].at) == Place::Inside
+                    let (rings, p) = (self.rings[1 - k].rings(), self.lists[k].vertices[v].at);
+                    locate(rings, p, FillRule::EvenOdd) == Place::Inside
                 })
             };
             let inside: Vec<bool> = self.lists[k].starts.iter().map(tell).collect();

@@ -6,9 +6,9 @@
 pub mod coverage;
 mod cyclic;
 pub mod greiner_hormann;
+mod group;
 pub mod liang_barsky;
 mod lists;
-mod locate;
 pub mod mismatch;
 pub mod naive;
 mod near;

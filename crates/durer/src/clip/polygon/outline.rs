@@ -4,7 +4,7 @@
 //! which bounds nothing. What is left of the edges is joined anew at such points, so that every joint
 //! has one wedge of the inside on its left; then each closed way is divided where it meets itself.
 
-use super::locate::is_flat;
+use super::group::is_flat;
 use crate::math::{DVec2, in_sector};
 use std::cmp::Ordering;
 

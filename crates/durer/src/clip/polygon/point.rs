@@ -4,13 +4,21 @@
 //! edges that a ray to the right crosses; counted with their directions they give the winding number. Object space.
 //! Cost: O(n) for n edges. All decisions are exact, and points on the border are told as such.
 
-use super::locate::on_segment;
 use super::{FillRule, Ring};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Orientation, orient2d};
 use crate::trace::{NoTrace, Tracer};
 
-pub use super::locate::Place;
+/// Location of a point relative to a region.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Place {
+    /// Within it.
+    Inside,
+    /// On the border.
+    Border,
+    /// Neither.
+    Outside,
+}
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -70,6 +78,12 @@ pub fn replay(steps: &[Step]) -> Option<i32> {
         Step::Crosses { winding, .. } => Some(sum + winding),
         Step::Border { .. } => None,
     })
+}
+
+/// Returns whether a point lies on a closed segment; exact.
+pub(super) fn on_segment(a: DVec2, b: DVec2, p: DVec2) -> bool {
+    let (low, high) = (a.min(b), a.max(b));
+    p.cmpge(low).all() && p.cmple(high).all() && orient2d(a, b, p) == Orientation::Collinear
 }
 
 /// Returns how often rings wind around a point, counter-clockwise counted positive (y up); `None`

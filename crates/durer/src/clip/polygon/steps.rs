@@ -1,7 +1,7 @@
 //! The steps of the clippers along linked borders.
 
 use super::Shapes;
-use super::locate::group;
+use super::group::group;
 use crate::math::DVec2;
 
 /// There is nothing to choose.

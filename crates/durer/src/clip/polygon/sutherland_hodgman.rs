@@ -15,7 +15,7 @@
 
 pub mod by_borders;
 
-use super::locate::is_flat;
+use super::group::is_flat;
 use super::{Shapes, signed_area};
 use crate::clip::line::border::Canonical;
 use crate::clip::line::convex::{self, HalfSpace};

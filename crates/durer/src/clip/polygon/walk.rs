@@ -1,7 +1,7 @@
 //! The code that clippers along linked borders share: a tame frame of coordinates, and xor as two differences.
 
 use super::cyclic::{Linked, link};
-use super::locate::group;
+use super::group::group;
 use super::outline::simple_rings;
 use super::steps::Step;
 use super::{BooleanOp, Shapes, signed_area};

@@ -25,7 +25,10 @@ pub(super) const LESSON: Lesson = Lesson {
     takes: TAKES,
     examples: EXAMPLES,
     templates: &[&BEGIN, &LOOK_AT, &EMPTY, &SINGLE, &SURROUNDED, &SAMPLE, &NO_SAMPLE, &DIVIDE],
-    unreached: &[],
+    unreached: &[(
+        "sample",
+        "a triangle over the only centre of a window surrounds it: rule 4 is left where rounding cannot tell depths apart",
+    )],
     make: |_, input, _, cap| make(input, cap),
 };
 

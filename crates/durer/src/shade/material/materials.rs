@@ -30,7 +30,7 @@ impl<'a> PreparedMaterials<'a> {
     /// Creates the same where lines and points that have no material are drawn in a linear colour,
     /// unlit.
     #[must_use]
-    pub fn with_ink(mut self, color: Vec3) -> Self {
+    pub(crate) fn with_ink(mut self, color: Vec3) -> Self {
         self.ink.model = ShadingModel::Unlit;
         self.ink.base_color = color.extend(1.0);
         self
@@ -38,7 +38,7 @@ impl<'a> PreparedMaterials<'a> {
 
     /// Returns the material of lines or points: as [`Self::get`], but for `None` the ink.
     #[inline]
-    pub fn of_marks(&self, index: Option<usize>) -> &PreparedMaterial<'a> {
+    pub(crate) fn of_marks(&self, index: Option<usize>) -> &PreparedMaterial<'a> {
         index.map_or(&self.ink, |_| self.get(index))
     }
 

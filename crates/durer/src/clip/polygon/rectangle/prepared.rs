@@ -290,7 +290,7 @@ fn gather(things: &mut [usize], middle: &impl Fn(usize) -> DVec2) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clip::polygon::locate::{Place, locate};
+    use crate::clip::polygon::point::{Place, locate};
     use crate::clip::polygon::rectangle::{Options, clip};
     use crate::clip::polygon::{FillRule, overlay};
     use proptest::prelude::*;
@@ -370,7 +370,7 @@ mod tests {
         fn points_lie_where_every_edge_says(shapes in rings(), x in -14i32..=14, y in -14i32..=14) {
             let at = p((x, y)) * 0.5;
             let prepared = Prepared::new(shapes.clone()).unwrap();
-            let place = locate(shapes.rings(), at);
+            let place = locate(shapes.rings(), at, FillRule::EvenOdd);
             prop_assert_eq!(prepared.contains(at), place != Place::Outside, "{} {:?}", at, shapes);
             prop_assert_eq!(prepared.has_on_border(at), place == Place::Border, "{} {:?}", at, shapes);
         }

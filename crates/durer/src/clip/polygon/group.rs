@@ -1,53 +1,16 @@
-//! The location of points relative to rings, and the nesting of rings: exact, by examining every
-//! edge.
+//! Rings grouped into polygons by how they nest: exact, by examining every edge.
 
-use super::{Ring, Shapes, signed_area};
+use super::point::{Place, locate};
+use super::{FillRule, Ring, Shapes, signed_area};
 use crate::math::{DVec2, Orientation, Rect, orient2d};
-
-/// Location of a point relative to a region.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Place {
-    /// Within it.
-    Inside,
-    /// On the border.
-    Border,
-    /// Neither.
-    Outside,
-}
-
-/// Returns whether a point lies on a closed segment; exact.
-pub(super) fn on_segment(a: DVec2, b: DVec2, p: DVec2) -> bool {
-    let (low, high) = (a.min(b), a.max(b));
-    p.cmpge(low).all() && p.cmple(high).all() && orient2d(a, b, p) == Orientation::Collinear
-}
-
-/// Returns the location of a point relative to the region that rings enclose by the even-odd rule;
-/// exact.
-pub(super) fn locate<'a>(rings: impl IntoIterator<Item = &'a Ring>, p: DVec2) -> Place {
-    let mut inside = false;
-    for ring in rings {
-        let Some(&last) = ring.last() else { continue };
-        let mut a = last;
-        for &b in ring {
-            if on_segment(a, b, p) {
-                return Place::Border;
-            }
-            if (a.y > p.y) != (b.y > p.y) {
-                let left = orient2d(a, b, p) == Orientation::CounterClockwise;
-                inside ^= left == (b.y > a.y);
-            }
-            a = b;
-        }
-    }
-    if inside { Place::Inside } else { Place::Outside }
-}
 
 /// Returns whether `inner` lies within `outer`, for rings that touch at most in points or along
 /// edges.
 fn within(inner: &Ring, outer: &Ring) -> bool {
     let next = |i: usize| inner.get(i + 1).or(inner.first()).copied().unwrap_or_default();
     let middles = inner.iter().enumerate().map(|(i, &p)| (p + next(i)) * 0.5);
-    let places = inner.iter().copied().chain(middles).map(|p| locate([outer], p));
+    let places =
+        inner.iter().copied().chain(middles).map(|p| locate([outer], p, FillRule::EvenOdd));
     places.into_iter().find(|&place| place != Place::Border) == Some(Place::Inside)
 }
 
