@@ -5,7 +5,7 @@ use crate::values;
 use clap::{Args, ValueEnum, ValueHint};
 use durer::clip::polygon::{BooleanOp, FillRule};
 use durer::explain::Language;
-use durer::math::Rect;
+use durer::math::{DVec2, Rect};
 use std::path::PathBuf;
 
 pub const EXAMPLES: &str = "\
@@ -18,7 +18,8 @@ Examples:
 
 INPUT is map data or an SVG for algorithms of the plane: the first polygon is the subject, further ones are the clip, lines
 are what is clipped, points stand alone; --window gives the window. For algorithms of space it is a model of at most 200
-faces, seen obliquely from above. Without INPUT an example is explained.
+faces, seen obliquely from above; for fills and halftones a picture of at most 2000 pixels, from --at. Without INPUT an
+example is explained.
 
 Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
 
@@ -28,7 +29,7 @@ pub struct ExplainArgs {
     /// The algorithm; without one, all are listed with their examples
     #[arg(value_name = "ALGORITHM")]
     pub algorithm: Option<String>,
-    /// Map data, an SVG or a model to explain it on; `-` reads standard input
+    /// Map data, an SVG, a model or a small picture to explain it on; `-` reads standard input
     #[arg(value_name = "INPUT", value_hint = ValueHint::FilePath, conflicts_with = "example")]
     pub input: Option<PathBuf>,
     /// File to write; `-` is standard output
@@ -56,11 +57,14 @@ pub struct ExplainArgs {
     #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(1..=20))]
     pub columns: u16,
     /// Show no more steps than this; how many are missing is said
-    #[arg(long, value_name = "N", default_value = "200", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", default_value = "200", value_parser = clap::value_parser!(u32).range(1..=2_000))]
     pub max_steps: u32,
-    /// The window to clip to
-    #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true, value_parser = values::rect)]
+    /// The window to clip to, in the coordinates of the file; those of an SVG count upwards, so that what it shows is below 0
+    #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true, value_parser = values::rect, requires = "input")]
     pub window: Option<Rect>,
+    /// The pixel from which a picture is filled
+    #[arg(long, value_name = "X,Y", default_value = "0,0", allow_hyphen_values = true, value_parser = values::point)]
+    pub at: DVec2,
     /// Operation on two polygons: intersection, union, difference or xor
     #[arg(long, value_name = "OP", default_value = "intersection", value_parser = operation)]
     pub operation: BooleanOp,

@@ -5,18 +5,22 @@ use crate::failure::Failure;
 use crate::input::{self, display_name};
 use crate::layer;
 use crate::messages::Messages;
-use durer::explain::{Figure, Input};
+use durer::explain::{Figure, Grid, Input};
 use durer::geometry::{Geometry, Points};
 use durer::math::{DVec2, DVec3};
-use durer::scene::{Mesh, Scene, UpAxis};
+use durer::scene::{Image, Mesh, Scene, UpAxis};
 use durer::view::projection::ViewDirection;
 use durer_formats::geo::{self, GeoFormat};
-use durer_formats::{Limits, ReadOptions, read_model};
+use durer_formats::{Limits, ReadOptions, image, read_model};
+use std::collections::BTreeMap;
 
 /// The most faces that can be read in a picture.
 const MOST_FACES: usize = 200;
 /// The most bytes that a file with so few things has.
 const MOST_BYTES: u64 = 16 << 20;
+
+/// First bytes of PNG, JPEG, GIF and BMP files.
+const IMAGES: [&[u8]; 4] = [b"\x89PNG", b"\xff\xd8\xff", b"GIF8", b"BM"];
 
 /// Returns the input that the arguments name: a file or an example.
 pub fn input(args: &ExplainArgs, messages: &Messages) -> Result<Input, Failure> {
@@ -29,6 +33,14 @@ pub fn input(args: &ExplainArgs, messages: &Messages) -> Result<Input, Failure> 
     let bytes = input::bytes_within(path, &limits)?;
     if let Some(format) = layer::format_of(path, &bytes) {
         return figure(args, &bytes, format, &name, messages).map(Input::Figure);
+    }
+    if args.window.is_some() {
+        messages.warning(&name, "--window is for shapes of the plane; here it does nothing");
+    }
+    if IMAGES.iter().any(|magic| bytes.starts_with(magic)) {
+        let image = image::decode(&bytes, &name, &limits);
+        let image = image.map_err(|e| Failure::Data(format!("{name}: {e}")))?;
+        return grid(args, &image, &name, messages).map(Input::Grid);
     }
     let options = ReadOptions { limits, ..ReadOptions::default() };
     let file = path.file_name().unwrap_or_default().to_string_lossy();
@@ -82,6 +94,50 @@ fn add(figure: &mut Figure, geometry: &Geometry) {
 fn polygon(figure: &mut Figure, rings: impl Iterator<Item = Vec<DVec2>>) {
     let operand = if figure.rings.is_empty() { &mut figure.rings } else { &mut figure.clip };
     operand.extend(rings);
+}
+
+/// Returns a picture as greys, which algorithms take as light or as names of colours.
+fn grid(
+    args: &ExplainArgs,
+    image: &Image,
+    name: &str,
+    messages: &Messages,
+) -> Result<Grid, Failure> {
+    let (width, height) = (image.width, image.height);
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels > durer::explain::MAX_POINTS as u64 {
+        let most = durer::explain::MAX_POINTS;
+        return Err(Failure::Data(format!(
+            "{name}: {width}x{height} are more than the {most} pixels that can be explained"
+        )));
+    }
+    let mut colors: BTreeMap<u8, [u8; 4]> = BTreeMap::new();
+    let mut alike = false;
+    let mut cells = Vec::new();
+    for &color in &image.data {
+        let grey = grey(color);
+        alike |= *colors.entry(grey).or_insert(color) != color;
+        cells.push(grey);
+    }
+    if alike {
+        messages.warning(name, "different colours have one grey and are taken as one");
+    }
+    let at = args.at.floor();
+    if !(at.x >= 0.0 && at.y >= 0.0 && at.x < f64::from(width) && at.y < f64::from(height)) {
+        return Err(Failure::Usage(format!(
+            "--at {},{}: the picture is {width}x{height}",
+            at.x, at.y
+        )));
+    }
+    Ok(Grid { columns: width, cells, seed: [at.x as u32, at.y as u32] })
+}
+
+/// Returns the grey of a colour over white, by the weights of BT.709 on bytes as they are.
+fn grey([r, g, b, a]: [u8; 4]) -> u8 {
+    let weighted = u32::from(r) * 2126 + u32::from(g) * 7152 + u32::from(b) * 722;
+    let light = (weighted + 5000) / 10_000;
+    let (light, a) = (light.min(255), u32::from(a));
+    ((light * a + 255 * (255 - a) + 127) / 255) as u8
 }
 
 /// Returns the faces of a model as they are seen obliquely from above.

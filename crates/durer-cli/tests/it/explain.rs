@@ -91,14 +91,21 @@ fn own_shapes_are_explained() {
 fn what_is_wrong_is_told() {
     let folder = Folder::with_models();
     folder.write("plan.geojson", PLAN);
+    folder.write("a.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='8' height='5'><rect width='4' height='5'/></svg>");
+    folder.must("draw a.svg -o a.png");
+    folder.must("draw a.svg -o large.png --size 80x50");
     for (arguments, code, part) in [
         ("explain cohen-suterland", 2, "cohen-sutherland"),
         ("explain cohen-sutherland --example none", 2, "line-eh"),
         ("explain cohen-sutherland plan.geojson", 2, "a window and a line"),
         ("explain cohen-sutherland cube.obj", 2, "a window and a line"),
+        ("explain cohen-sutherland a.png --at 7,4", 2, "a picture"),
+        ("explain cohen-sutherland a.png --at 8,4", 2, "8x5"),
+        ("explain cohen-sutherland large.png", 1, "2000 pixels"),
         ("explain cohen-sutherland none.geojson", 1, "none.geojson"),
         ("explain cohen-sutherland -o a.gif", 2, ".html"),
         ("explain cohen-sutherland --step 99", 2, "1 to "),
+        ("explain cohen-sutherland --window 0,0,1,1", 2, "INPUT"),
         ("explain cohen-sutherland --lang fr", 2, "fr"),
     ] {
         folder.run(arguments).fails(code, part);

@@ -3,7 +3,7 @@
 //! Each algorithm has its own `Step` type, for code that knows it. Here is the door without types: [`run`] runs an
 //! algorithm by its name on an example or on data of one's own, and returns a [`Frame`] for each step: the line of the
 //! pseudocode, a sentence with the step's values in English and German, the state as a table, and a picture.
-//! [`svg`] draws one frame, [`sheet`] all of them side by side.
+//! [`svg()`] draws one frame, [`sheet`] all of them side by side.
 //!
 //! ```
 //! use durer::explain::{self, Input, Language};
@@ -85,7 +85,7 @@ pub fn lesson(name: &str) -> Result<&'static Lesson> {
 /// missing where there are more.
 ///
 /// # Errors
-/// Those of [`lesson`] and [`Lesson::run`].
+/// Those of [`lesson()`] and [`Lesson::run`].
 pub fn run(name: &str, input: &Input, options: &Options, cap: usize) -> Result<Vec<Frame>> {
     lesson(name)?.run(input, options, cap)
 }

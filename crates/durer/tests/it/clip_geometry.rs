@@ -224,3 +224,13 @@ fn tiles_cut_geometries_as_they_are() {
     assert_eq!(tiling.reach(&line(&[(0.0, 0.0), (0.0, 89.0)])), Reach::BeyondLatitudes);
     assert_eq!(tiling.reach(&line(&[(0.0, 0.0), (5000.0, 0.0)])), Reach::TooFar);
 }
+
+#[test]
+fn places_go_to_the_nearest_cells_halves_up() {
+    let body = Body::Points([(0.5, -0.5), (1.4, -1.5), (0.49, 2.0)].map(DVec2::from).into());
+    let cells = [(1, 0), (1, -1), (0, 2)].map(|(x, y)| I64Vec2::new(x, y));
+    let snapped = |origin| body.snapped(origin, FillRule::EvenOdd);
+    assert_eq!(snapped(I64Vec2::ZERO), Ok(Shape::Points(cells.into())));
+    let moved = cells.map(|cell| cell - I64Vec2::new(3, -1));
+    assert_eq!(snapped(I64Vec2::new(3, -1)), Ok(Shape::Points(moved.into())));
+}

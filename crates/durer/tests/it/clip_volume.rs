@@ -336,3 +336,11 @@ fn segments_that_end_in_the_null_vector_are_left_out() {
         }
     }
 }
+
+#[test]
+fn a_corner_in_the_eye_has_no_place_and_is_dropped() {
+    let corners = [(0.5, -0.5, 0.0, 1.0), (0.5, 0.5, 0.0, 1.0), (-0.5, 0.5, 0.0, 1.0)];
+    let corners = corners.map(|p| vertex(p.into()));
+    let ring = [vertex(DVec4::ZERO), corners[0], corners[1], corners[2]];
+    assert_eq!(clip_polygon(&ring, &Options::default(), &mut NoTrace), corners);
+}

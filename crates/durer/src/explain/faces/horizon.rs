@@ -121,7 +121,7 @@ fn laid(figure: &Figure) -> Result<Vec<Curve>> {
             && first.fract() == 0.0
             && first + line.len() as f64 <= MOST as f64;
         let heights = line.iter().map(|p| p.y).collect();
-        fits.then(|| Curve { first: first as usize, heights }).ok_or_else(wrong)
+        fits.then_some(Curve { first: first as usize, heights }).ok_or_else(wrong)
     };
     figure.lines.iter().map(curve).collect()
 }

@@ -54,7 +54,10 @@ impl Triangles {
             near: 0.5,
             far: far + 2.0,
         };
-        Ok((scene::Scene::from(mesh), View::new(camera, width, height)?))
+        let model = scene::Scene::from(mesh);
+        // Coordinates of models are shorter than those of faces.
+        model.check()?;
+        Ok((model, View::new(camera, width, height)?))
     }
 
     /// Returns a triangle's name: its face's letter, and its number where the face has several.

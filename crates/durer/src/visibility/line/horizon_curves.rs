@@ -105,7 +105,7 @@ pub enum Step {
         y: f64,
         /// The lower and the upper horizon there.
         horizons: [f64; 2],
-        /// Position of the vertex.
+        /// Position relative to both.
         seen: Seen,
     },
     /// A curve passes a horizon between two columns.

@@ -102,7 +102,7 @@ pub enum Step {
     Sorted {
         /// The piece.
         piece: u32,
-        /// Position of the vertex.
+        /// Side of the node's plane that it lies on.
         side: Side,
     },
     /// A piece was split.

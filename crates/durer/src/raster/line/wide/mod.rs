@@ -101,7 +101,7 @@ pub enum Step {
     Point {
         /// The vertex of the flattened path that it belongs to.
         vertex: DVec2,
-        /// Position of the vertex.
+        /// Place of the outline's point.
         point: DVec2,
         /// Part of the stroke that it belongs to.
         part: Part,

@@ -107,7 +107,7 @@ pub enum Step {
         x: i32,
         /// Row of its pixel.
         y: i32,
-        /// Reason of the failure.
+        /// Kind of the ray.
         kind: RayKind,
         /// Number of reflections and refractions before it.
         generation: u32,
