@@ -51,6 +51,28 @@ fn outline_of_a_coarse_ball_is_round() {
 }
 
 #[test]
+fn visible_lines_are_the_same_without_the_hidden_ones() {
+    let moved = |k: usize| {
+        let by = DVec3::new(0.13, 0.07, -2.5) * k as f64;
+        ball(12).into_iter().map(move |t| t.map(|p| p + by))
+    };
+    let mut scene: Vec<Triangle> = (0..4).flat_map(moved).collect();
+    scene.extend(quad([
+        [-3.0, -0.4, -9.0],
+        [3.0, -0.4, -9.0],
+        [3.0, 0.3, -9.0],
+        [-3.0, 0.3, -9.0],
+    ]));
+    let v = view(DVec3::ZERO, DVec3::new(0.05, 0.02, 1.0), 8.0, false);
+    let drawn = |hidden| {
+        let options = Options { smooth: Smooth::On, hidden, ..Options::default() };
+        draw(&soup(&scene), &v, &options, &mut NoTrace).expect("drawing").lines
+    };
+    let visible: Vec<_> = drawn(true).into_iter().filter(|l| l.is_visible()).collect();
+    assert_eq!(visible, drawn(false));
+}
+
+#[test]
 fn lines_that_pass_behind_a_smooth_outline_end_on_it() {
     let mut scene = torus(24, 12);
     for i in 0..9 {

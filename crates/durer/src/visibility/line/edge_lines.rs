@@ -240,6 +240,9 @@ impl Rules<'_> {
     /// does.
     fn known(&self, pair: Pair, sharpness: Sharpness) -> Sharpness {
         let Some(steps) = self.steps else { return sharpness };
+        if !steps.may_know(pair.items.map(|item| self.whole.item(item))) {
+            return sharpness;
+        }
         match self.edge_of_whole(pair).and_then(|ends| steps.is_crease(ends)) {
             Some(true) => Sharpness::Sharp,
             Some(false) => Sharpness::Blunt,

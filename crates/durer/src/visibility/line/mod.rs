@@ -16,6 +16,7 @@ mod method;
 mod overlap;
 mod page;
 mod piece;
+mod planes;
 mod roundness;
 mod simplify;
 mod smooth_silhouette;

@@ -4,7 +4,7 @@
 //! they are what it is. Told apart by area, object by object, from the angles alone: not by the view, so that all views
 //! of a thing are drawn alike. O(n).
 
-use crate::math::DVec3;
+use super::planes::Planes;
 use crate::parallel;
 use crate::visibility::object::{Edges, Faces};
 use std::ops::Range;
@@ -44,13 +44,18 @@ impl Smooth {
     }
 
     /// Returns true for each item of an object that has smooth outlines; `None` if none has.
-    pub(super) fn items(self, faces: &Faces, edges: &Edges, crease: f64) -> Option<Vec<bool>> {
-        if self == Self::Off || self == Self::On {
+    pub(super) fn items(
+        self,
+        (faces, edges): (&Faces, &Edges),
+        planes: Option<&Planes>,
+        crease: f64,
+    ) -> Option<Vec<bool>> {
+        let Some(planes) = planes.filter(|_| self == Self::Auto) else {
             return (self == Self::On).then(|| vec![true; faces.len()]);
-        }
+        };
         let objects = faces.runs().iter().map(|r| r.instance + 1).max().unwrap_or(0);
         let mut bent = vec![Bent::default(); objects];
-        for (object, part) in bends(faces, edges, libm::cos(crease)) {
+        for (object, part) in bends((faces, edges), planes, libm::cos(crease)) {
             bent[object].round += part.round;
             bent[object].coarse += part.coarse;
         }
@@ -74,16 +79,16 @@ struct Bent {
 }
 
 /// Returns the bends in parts of one object each, in an order that is always the same.
-fn bends(faces: &Faces, edges: &Edges, crease: f64) -> Vec<(usize, Bent)> {
+fn bends((faces, edges): (&Faces, &Edges), planes: &Planes, crease: f64) -> Vec<(usize, Bent)> {
     let count = faces.points().len() as u32;
     let jobs: Vec<_> = (0..count).step_by(1 << 15).map(|v| v..(v + (1 << 15)).min(count)).collect();
-    parallel::map(jobs, |vertices| bends_from(faces, edges, crease, vertices)).concat()
+    parallel::map(jobs, |vertices| bends_from((faces, edges), planes, crease, vertices)).concat()
 }
 
 /// Returns the same of the edges whose smaller vertices lie in a range.
 fn bends_from(
-    faces: &Faces,
-    edges: &Edges,
+    (faces, edges): (&Faces, &Edges),
+    planes: &Planes,
     crease: f64,
     vertices: Range<u32>,
 ) -> Vec<(usize, Bent)> {
@@ -91,10 +96,7 @@ fn bends_from(
     let (mut items, mut object) = (0..0, 0);
     for (_, sides) in edges.from_vertices(vertices) {
         let [a, b] = sides else { continue };
-        let pair = [a.item(), b.item()].map(|item| normal(faces, item));
-        let lengths = pair.map(DVec3::length);
-        let cosine = pair[0].dot(pair[1]) / (lengths[0] * lengths[1]);
-        let cosine = if a.forward() == b.forward() { -cosine } else { cosine };
+        let cosine = planes.cosine(*a, *b);
         if !(cosine < FLAT && cosine >= crease) {
             continue;
         }
@@ -106,12 +108,8 @@ fn bends_from(
             found.push((object, Bent::default()));
         }
         let Some((_, bent)) = found.last_mut() else { continue };
-        let area = lengths[0] + lengths[1];
+        let area = planes.area(a.item()) + planes.area(b.item());
         *(if cosine < COARSE { &mut bent.coarse } else { &mut bent.round }) += area;
     }
     found
-}
-
-fn normal(faces: &Faces, item: u32) -> DVec3 {
-    faces.corners(item).map_or(DVec3::ZERO, |[a, b, c]| (b - a).cross(c - a))
 }

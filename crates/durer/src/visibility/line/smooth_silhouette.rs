@@ -17,6 +17,7 @@
 
 use super::bend::{Bend, Bends};
 use super::crossing::{Crossing, crossings};
+use super::planes::Planes;
 use super::smooth_surface::SmoothSurface;
 use crate::math::DVec3;
 use crate::scene::Scene;
@@ -112,36 +113,47 @@ type Corner = (u32, DVec3);
 /// Divides the faces that are said to be `round`, item by item; edges are sharp from an angle on, radians.
 pub(super) fn divided(
     scene: &Scene,
-    whole: Faces,
-    edges: &Edges,
+    (whole, edges, planes): (Faces, &Edges, Planes),
     plane: &PicturePlane,
     (round, sharp): (&[bool], f64),
 ) -> Divided {
-    let surface = SmoothSurface::new(scene, (&whole, edges), plane, (round, sharp));
+    let surface = SmoothSurface::new(scene, (&whole, edges, &planes), plane, (round, sharp));
+    drop(planes);
     let mut crossings = crossings(&whole, &surface);
     crossings.sort_unstable_by(|a, b| {
         a.edge.cmp(&b.edge).then(a.at.total_cmp(&b.at)).then(a.item.cmp(&b.item))
     });
     let bends = Bends::new(&whole, &surface, &crossings, plane);
     let found = Vertices::new(&whole, &surface, edges, &crossings, &bends);
-    let mut parts = Vec::new();
+    let (mut parts, mut buffers) = (Vec::new(), (Vec::new(), Vec::new()));
     let mut crossed = vec![false; whole.points().len()];
     crossings.iter().flat_map(|c| c.edge).for_each(|v| crossed[v as usize] = true);
     for (item, triangle) in whole.triangles() {
         if triangle.iter().filter(|v| crossed[**v as usize]).count() > 1 {
-            found.divide(item, triangle, &mut parts);
+            found.divide(item, triangle, &mut buffers, &mut parts);
         }
     }
     let Vertices { points, bends, .. } = found;
-    let (faces, origins) = whole.refined(points, parts.iter().map(|p| (p.item, p.vertices)));
+    let (faces, origins) = whole.refined(edges, points, parts.iter().map(|p| (p.item, p.vertices)));
     let turn = |(item, origin): (u32, &u32)| {
-        let (Some(part), Some(all)) = (faces.triangle(item), whole.triangle(*origin)) else {
-            return 0;
-        };
+        let smooth = surface.corners(*origin).and_then(|_| whole.triangle(*origin));
+        let Some((part, all)) = faces.triangle(item).zip(smooth) else { return 0 };
         surface.side(*origin, |k| part.contains(&all[k]))
     };
     let turns = (0..).zip(&origins).map(turn).collect();
     Divided { faces, whole, origins, turns, bends, surface }
+}
+
+/// Returns for each vertex where those crossings start, which are sorted, of which it is the smaller end; and their number.
+fn starts(crossings: &[Crossing], vertices: usize) -> Vec<u32> {
+    let mut starts = vec![0_u32; vertices + 1];
+    crossings.iter().for_each(|c| starts[c.edge[0] as usize + 1] += 1);
+    let mut sum = 0;
+    for start in &mut starts {
+        sum += *start;
+        *start = sum;
+    }
+    starts
 }
 
 /// The vertices that the silhouette gives to the edges.
@@ -149,6 +161,8 @@ struct Vertices<'a> {
     faces: &'a Faces,
     surface: &'a SmoothSurface,
     crossings: &'a [Crossing],
+    /// For each vertex where the crossings of its edges to larger ones start; one more at the end.
+    starts: Vec<u32>,
     /// Vertex of each crossing, new or old.
     vertices: Vec<u32>,
     /// The points of the faces, and the new ones.
@@ -170,6 +184,7 @@ impl<'a> Vertices<'a> {
             faces,
             surface,
             crossings,
+            starts: starts(crossings, faces.points().len()),
             vertices: Vec::new(),
             points: faces.points().to_vec(),
             bends: vec![Bend::default(); faces.points().len()],
@@ -205,14 +220,20 @@ impl<'a> Vertices<'a> {
         self.points.len() as u32 - 1
     }
 
-    /// Pushes the parts of a triangle, if it has more than one.
-    fn divide(&self, item: u32, triangle: [u32; 3], parts: &mut Vec<Part>) {
-        let mut ring: Vec<Corner> = Vec::with_capacity(6);
-        let mut own = Vec::with_capacity(2);
+    /// Pushes the parts of a triangle, if it has more than one. What is in the buffers is of no matter.
+    fn divide(
+        &self,
+        item: u32,
+        triangle: [u32; 3],
+        (ring, own): &mut (Vec<Corner>, Vec<u32>),
+        parts: &mut Vec<Part>,
+    ) {
+        ring.clear();
+        own.clear();
         for i in 0..3 {
             let (a, b) = (triangle[i], triangle[(i + 1) % 3]);
             ring.push((a, self.faces.points()[a as usize]));
-            self.add_crossings(item, [a, b], &mut ring, &mut own);
+            self.add_crossings(item, [a, b], ring, own);
         }
         ring.dedup_by_key(|c| c.0);
         if ring.len() > 1 && ring[0].0 == ring[ring.len() - 1].0 {
@@ -232,7 +253,7 @@ impl<'a> Vertices<'a> {
                 push(ring[p..=q].to_vec());
                 push(ring[q..].iter().chain(&ring[..=p]).copied().collect());
             }
-            _ => push(ring),
+            _ => push(ring.clone()),
         }
     }
 
@@ -245,10 +266,10 @@ impl<'a> Vertices<'a> {
         own: &mut Vec<u32>,
     ) {
         let edge = [a.min(b), a.max(b)];
-        let start = self.crossings.partition_point(|c| c.edge < edge);
-        let on_edge = self.crossings[start..].iter().take_while(|c| c.edge == edge);
+        let [start, end] = [0, 1].map(|k| self.starts[edge[0] as usize + k] as usize);
+        let here = self.crossings[start..end].iter().zip(&self.vertices[start..end]);
         let first = ring.len();
-        for (crossing, &vertex) in on_edge.zip(&self.vertices[start..]) {
+        for (crossing, &vertex) in here.filter(|(c, _)| c.edge == edge) {
             ring.push((vertex, flat(edge.map(|v| self.faces.points()[v as usize]), crossing.at)));
             if crossing.item == item {
                 own.push(vertex);

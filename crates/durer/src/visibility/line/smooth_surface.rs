@@ -4,6 +4,7 @@
 //! all show one side shows that side too, so outlines run only where faces of both sides meet. O(n), and O(k log k)
 //! for k triangles there.
 
+use super::planes::Planes;
 use super::vertex_normals::{Directions, direction, each_normal};
 use crate::math::{DMat3, DVec3};
 use crate::scene::{Mesh, Scene};
@@ -45,6 +46,7 @@ pub(super) struct SmoothSurface {
 struct Seen<'a> {
     scene: &'a Scene,
     faces: &'a Faces,
+    planes: &'a Planes,
     plane: &'a PicturePlane,
     /// True for each item that approximates a smooth surface.
     round: &'a [bool],
@@ -55,13 +57,13 @@ impl SmoothSurface {
     /// `sharp` on, radians.
     pub fn new(
         scene: &Scene,
-        (faces, edges): (&Faces, &Edges),
+        (faces, edges, planes): (&Faces, &Edges, &Planes),
         plane: &PicturePlane,
         (round, sharp): (&[bool], f64),
     ) -> Self {
-        let seen = Seen { scene, faces, plane, round };
+        let seen = Seen { scene, faces, planes, plane, round };
         let without = seen.without_normals();
-        let directions = Directions::new(faces, edges, sharp, &without);
+        let directions = Directions::new((faces, edges), planes, sharp, &without);
         let near = seen.near_outlines(&directions);
         let mut found = Self {
             corners: vec![[NONE; 3]; faces.len()],
@@ -162,9 +164,11 @@ impl SmoothSurface {
             t.iter().for_each(|v| asked[*v as usize] = true);
         }
         let mut normals = vec![[DVec3::ZERO; 3]; added.len()];
+        let mut place = vec![NONE; faces.len()];
+        added.iter().zip(0..).for_each(|(item, i)| place[*item as usize] = i);
         each_normal(directions, items, &asked, |a, normal| {
-            if let Ok(i) = added.binary_search(&a.item) {
-                normals[i][a.corner as usize] = normal;
+            if let Some(normals) = normals.get_mut(place[a.item as usize] as usize) {
+                normals[a.corner as usize] = normal;
             }
         });
         for (item, normals) in added.into_iter().zip(normals) {
@@ -221,7 +225,7 @@ impl Seen<'_> {
                 else {
                     continue;
                 };
-                let own = side(direction(places).0.dot(self.plane.sight_at(places[0])));
+                let own = side(self.planes.across(item).dot(self.plane.sight_at(places[0])));
                 t.iter().for_each(|v| sides[*v as usize] |= own);
                 if !mesh.normals.is_empty() {
                     let normals = given(mesh, run, matrix, item);

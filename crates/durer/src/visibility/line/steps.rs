@@ -10,9 +10,9 @@
 //! Flat faces are of two triangles or more: single ones that are turned against each other are what scanned meshes are
 //! made of.
 
+use super::planes::Planes;
 use super::roundness::FLAT;
 use super::vertex_normals::Directions;
-use crate::math::DVec3;
 use crate::parallel;
 use crate::visibility::object::{Edges, Faces, Side};
 use std::ops::Range;
@@ -34,21 +34,23 @@ type Ends = [u32; 2];
 pub(super) struct Steps {
     creases: Vec<Ends>,
     facets: Vec<Ends>,
+    /// True for each item at one of them; empty if there are none.
+    items: Vec<bool>,
 }
 
 impl Steps {
     /// Creates those of faces with creases from the angle `crease` on, in radians.
-    pub fn new(faces: &Faces, edges: &Edges, crease: f64) -> Self {
-        let seen = Seen { faces, edges, crease: libm::cos(crease) };
+    pub fn new((faces, edges): (&Faces, &Edges), planes: &Planes, crease: f64) -> Self {
+        let seen = Seen { faces, edges, planes, crease: libm::cos(crease) };
         let mut turns = Turns::default();
         seen.each_job(|vertices| seen.turns(vertices)).into_iter().for_each(|t| turns.add(t));
         let blunt = seen.blunt(&turns.flat);
         let loose = turns.loose(faces.points().len());
         if blunt.is_empty() && loose.is_empty() {
-            return Self { creases: Vec::new(), facets: Vec::new() };
+            return Self { creases: Vec::new(), facets: Vec::new(), items: Vec::new() };
         }
         // Slivers that rounding has turned lie in no plane with others, and are few along lines.
-        let directions = |crease| Directions::new(faces, edges, crease, &[]);
+        let directions = |crease| Directions::new((faces, edges), planes, crease, &[]);
         let fine = directions(crease);
         let blunt = blunt.into_iter().filter(|t| !fine.is_round(t.ends, t.items));
         let creases = turns.held(blunt.map(|t| t.ends).collect(), faces.points().len());
@@ -60,7 +62,10 @@ impl Steps {
         let facets = loose.into_iter().filter(bends_on).flatten();
         let mut facets: Vec<Ends> = facets.map(|t| t.ends).collect();
         facets.sort_unstable();
-        Self { creases, facets }
+        let mut items = vec![false; faces.len()];
+        let known = creases.iter().chain(&facets).flat_map(|ends| edges.at(*ends));
+        known.for_each(|side| items[side.item() as usize] = true);
+        Self { creases, facets, items }
     }
 
     /// Returns whether an edge is a crease, if that is known.
@@ -70,6 +75,11 @@ impl Steps {
         } else {
             self.facets.binary_search(&ends).ok().map(|_| false)
         }
+    }
+
+    /// Returns whether something may be known of the edge between two triangles.
+    pub fn may_know(&self, items: [u32; 2]) -> bool {
+        items.iter().all(|item| self.items.get(*item as usize) == Some(&true))
     }
 
     /// Returns whether nothing is known of any edge.
@@ -176,6 +186,7 @@ impl Lines {
 struct Seen<'a> {
     faces: &'a Faces,
     edges: &'a Edges,
+    planes: &'a Planes,
     /// Cosine of the crease angle.
     crease: f64,
 }
@@ -237,14 +248,8 @@ impl Seen<'_> {
     /// there is no surface, or a triangle has no direction.
     fn turn(&self, sides: &[Side]) -> Option<([u32; 2], f64)> {
         let [a, b] = sides else { return None };
-        let [n, m] = [a, b].map(|side| self.normal(side.item()));
-        let cosine = n.dot(m) / (n.length_squared() * m.length_squared()).sqrt();
-        let cosine = if a.forward() == b.forward() { -cosine } else { cosine };
+        let cosine = self.planes.cosine(*a, *b);
         (!cosine.is_nan()).then_some(([a.item(), b.item()], cosine))
-    }
-
-    fn normal(&self, item: u32) -> DVec3 {
-        self.faces.corners(item).map_or(DVec3::ZERO, |[a, b, c]| (b - a).cross(c - a))
     }
 }
 

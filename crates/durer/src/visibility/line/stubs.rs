@@ -11,6 +11,7 @@ use super::overlap::distance;
 use super::page::GridPoint;
 use super::piece::Piece;
 use super::table::Table;
+use crate::math::DVec2;
 use crate::target::drawing::LineClass;
 
 /// Number of rounds: the line at which a stub ended may end in the open without it, and joined lines
@@ -21,6 +22,13 @@ const ROUNDS: usize = 3;
 /// edge is.
 const COARSE: usize = 3;
 const COARSE_LENGTH: f64 = 4.0;
+
+/// A hidden stub of so few edges that turns back may be so many times as long: at a cusp, outlines of few facets go to and
+/// fro behind each other, and never come to an end.
+const BACK_LENGTH: f64 = 12.0;
+
+/// The cosine of a turn back: 135°.
+const BACK: f64 = -0.707;
 
 /// Gaps up to this part of a stub are closed, whichever line goes on in the other.
 const GAP: f64 = 0.3;
@@ -216,9 +224,11 @@ impl<'a> Lines<'a> {
 
     /// Takes away what lies between the tip of a walk and the next junction, if that is near.
     fn cut_back(&mut self, ends: &[u32], cuts: &mut Vec<Cut>) {
-        let length = self.length;
-        let is_short = |sum: f64, edges: usize| {
-            sum <= length || (edges <= COARSE && sum <= length * COARSE_LENGTH)
+        let (turn, length) = (self.turn_back(ends), self.length);
+        let longest = |k: usize, ends_here: bool| match turn {
+            _ if k >= COARSE => length,
+            Some(turn) if !ends_here || turn <= k => length * BACK_LENGTH,
+            _ => length * COARSE_LENGTH,
         };
         let mut sum = 0.0;
         for (k, &end) in ends.iter().enumerate() {
@@ -228,7 +238,7 @@ impl<'a> Lines<'a> {
             }
             let junction = self.junction(ends, k);
             sum += junction.map_or(piece.length(), |j| j.0);
-            if !is_short(sum, k + 1) {
+            if sum > longest(k, junction.is_some()) {
                 return;
             }
             if let Some((_, at)) = junction {
@@ -237,6 +247,18 @@ impl<'a> Lines<'a> {
             }
         }
         cuts.extend(ends.iter().map(|e| Cut::All(*e as usize / 2)));
+    }
+
+    /// Returns the piece of a walk before which it turns back, if it is hidden and does so within a few pieces.
+    fn turn_back(&self, ends: &[u32]) -> Option<usize> {
+        if self.pieces[*ends.first()? as usize / 2].invisibility == 0 {
+            return None;
+        }
+        let along = |k: usize| {
+            let [x, y] = point(self.pieces, ends[k] ^ 1).minus(point(self.pieces, ends[k]));
+            DVec2::new(x as f64, y as f64).normalize_or_zero()
+        };
+        (1..ends.len().min(COARSE)).find(|k| along(k - 1).dot(along(*k)) < BACK)
     }
 
     /// Returns the first place along a piece of a walk where another line ends on it, or where it ends on
@@ -364,6 +386,21 @@ mod tests {
         // Sharp edges end where they end; and longer ones have a reason.
         assert_eq!(without_stubs(frame(false), 1000.0, 10.0), frame(false));
         assert_eq!(without_stubs(frame(true), 100.0, 10.0), frame(true));
+    }
+
+    #[test]
+    fn hidden_tails_that_turn_back_are_left_out() {
+        let hidden = |a, b| Piece { invisibility: 1, ..piece(a, b, true) };
+        let frame = piece([-900_000, 0], [900_000, 0], false);
+        let tail = |second| vec![frame, hidden([0, 0], [50_000, 30_000]), second];
+        let back = tail(hidden([50_000, 30_000], [-20_000, 20_000]));
+        assert_eq!(without_stubs(back.clone(), 12_000.0, 10.0), [frame]);
+        // What goes on has a reason, and so has what is longer, or to be seen.
+        let on = tail(hidden([50_000, 30_000], [100_000, 90_000]));
+        assert_eq!(without_stubs(on.clone(), 12_000.0, 10.0), on);
+        assert_eq!(without_stubs(back.clone(), 9000.0, 10.0), back);
+        let seen: Vec<Piece> = back.iter().map(|p| Piece { invisibility: 0, ..*p }).collect();
+        assert_eq!(without_stubs(seen.clone(), 12_000.0, 10.0), seen);
     }
 
     #[test]

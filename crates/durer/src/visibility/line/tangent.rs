@@ -5,6 +5,7 @@
 //! facets of the fillet begin on the edge itself, so the mesh turns there by half of what it turns from facet to facet.
 //! O(n log n).
 
+use super::planes::Planes;
 use super::roundness::FLAT;
 use super::vertex_normals::{Directions, UNEVEN};
 use crate::parallel;
@@ -20,9 +21,9 @@ pub(super) struct Tangents(Vec<[u32; 2]>);
 
 impl Tangents {
     /// Creates those with bends of less than the angle `crease`, in radians.
-    pub fn new(faces: &Faces, edges: &Edges, crease: f64) -> Self {
+    pub fn new((faces, edges): (&Faces, &Edges), planes: &Planes, crease: f64) -> Self {
         let items: Vec<u32> = faces.triangles().map(|(item, _)| item).collect();
-        let directions = Directions::new(faces, edges, crease, &items);
+        let directions = Directions::new((faces, edges), planes, crease, &items);
         let (count, crease) = (faces.points().len() as u32, libm::cos(crease));
         let jobs: Vec<_> =
             (0..count).step_by(JOB).map(|v| v..(v + JOB as u32).min(count)).collect();

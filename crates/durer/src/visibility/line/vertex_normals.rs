@@ -8,6 +8,7 @@
 //! What is beyond a sharp edge does not count: beyond a crease, and beyond a bend between two flat faces that are
 //! no facets of anything round. O(n) for vertices of bounded degree.
 
+use super::planes::Planes;
 use super::roundness::FLAT;
 use crate::math::DVec3;
 use crate::visibility::object::{Edges, Faces};
@@ -62,6 +63,7 @@ fn lowness([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
 pub(super) struct Directions<'a> {
     faces: &'a Faces,
     edges: &'a Edges,
+    planes: &'a Planes,
     /// The cosine of the crease angle, of a half and a quarter of it, and of what faces beside a sliver may be turned by.
     crease: f64,
     half: f64,
@@ -69,11 +71,18 @@ pub(super) struct Directions<'a> {
     beside: f64,
     /// The slivers that are turned against the surface that they lie in, with its normal, in item order.
     pub turned: Vec<(u32, DVec3)>,
+    /// True for each item that is among them; empty if none is.
+    is_turned: Vec<bool>,
 }
 
 impl<'a> Directions<'a> {
     /// `crease` is the crease angle in radians; `items` are the triangles to look for slivers among, in order.
-    pub fn new(faces: &'a Faces, edges: &'a Edges, crease: f64, items: &[u32]) -> Self {
+    pub fn new(
+        (faces, edges): (&'a Faces, &'a Edges),
+        planes: &'a Planes,
+        crease: f64,
+        items: &[u32],
+    ) -> Self {
         let mut around = vec![DVec3::ZERO; faces.points().len()];
         let mut slivers = Vec::new();
         for &item in items {
@@ -88,19 +97,27 @@ impl<'a> Directions<'a> {
         }
         let beside = libm::cos(crease.max(BESIDE.min(crease * 1.5)));
         let [crease, half, quarter] = [1.0, 0.5, 0.25].map(|part| libm::cos(crease * part));
-        let mut found = Self { faces, edges, crease, half, quarter, beside, turned: Vec::new() };
+        let (turned, is_turned) = (Vec::new(), Vec::new());
+        let mut found =
+            Self { faces, edges, planes, crease, half, quarter, beside, turned, is_turned };
         let of_surface = |item| Some((item, found.of_surface(item, &around)?));
         found.turned = slivers.into_iter().filter_map(of_surface).collect();
+        if !found.turned.is_empty() {
+            found.is_turned = vec![false; faces.len()];
+            found.turned.iter().for_each(|t| found.is_turned[t.0 as usize] = true);
+        }
         found
     }
 
     /// Returns the unit normal of a triangle, or of the surface that it lies in; zero where there
     /// is none.
     pub fn of(&self, item: u32) -> DVec3 {
-        if let Ok(i) = self.turned.binary_search_by_key(&item, |t| t.0) {
+        if self.is_turned.get(item as usize) == Some(&true)
+            && let Ok(i) = self.turned.binary_search_by_key(&item, |t| t.0)
+        {
             return self.turned[i].1;
         }
-        self.faces.corners(item).map_or(DVec3::ZERO, |c| direction(c).0.normalize_or_zero())
+        self.planes.normal(item)
     }
 
     /// Returns the direction of the surface at a sliver that lies in it but is turned against the faces
@@ -109,7 +126,7 @@ impl<'a> Directions<'a> {
         let [_, second, first] = self.sides_by_length(item)?;
         let ends = first.map(|v| around[v as usize].normalize_or_zero());
         let surface = (ends[0] + ends[1]).try_normalize()?;
-        let across = direction(self.faces.corners(item)?).0;
+        let across = self.planes.across(item);
         let own = across.try_normalize()?;
         if own.dot(surface) >= self.half {
             return None;
@@ -245,7 +262,7 @@ impl<'a> Directions<'a> {
     /// Returns the height of a triangle over one of its sides.
     fn height(&self, [a, b]: [u32; 2], item: u32) -> f64 {
         let length = self.faces.points()[a as usize].distance(self.faces.points()[b as usize]);
-        self.faces.corners(item).map_or(0.0, |c| direction(c).0.length() / length)
+        self.planes.area(item) / length
     }
 }
 
@@ -276,7 +293,7 @@ impl Around {
     fn of(faces: &Faces, directions: &Directions<'_>, item: u32, k: usize) -> Option<Self> {
         let (t, places) = (faces.triangle(item)?, faces.corners(item)?);
         let [p, q, r] = [0, 1, 2].map(|i| places[(k + i) % 3]);
-        let area = direction(places).0.length();
+        let area = directions.planes.area(item);
         let weight = area * libm::atan2(area, (q - p).dot(r - p));
         let others = [t[(k + 1) % 3], t[(k + 2) % 3]];
         let direction = directions.of(item);
@@ -295,7 +312,7 @@ pub(super) fn each_normal(
         let triangles =
             items.iter().filter_map(|item| Some((*item, directions.faces.triangle(*item)?)));
         let all = triangles.flat_map(|(item, t)| (0..3).map(move |k| (item, k, t[k])));
-        all.filter(|(_, _, v)| asked[*v as usize])
+        all.filter(|(_, _, v)| asked[*v as usize]).map(|(item, k, v)| (item, k as u8, v))
     };
     // By vertex, at each in item order.
     let mut ends = vec![0_u32; asked.len()];
@@ -304,14 +321,14 @@ pub(super) fn each_normal(
     for end in &mut ends {
         (*end, sum) = (sum, sum + *end);
     }
-    let mut sorted = vec![(0, 0); sum as usize];
+    let mut sorted = vec![(0, 0_u8); sum as usize];
     for (item, k, v) in corners() {
         sorted[ends[v as usize] as usize] = (item, k);
         ends[v as usize] += 1;
     }
     let (mut start, mut group) = (0, Vec::new());
     for end in ends {
-        let around = |c: &(u32, usize)| Around::of(directions.faces, directions, c.0, c.1);
+        let around = |c: &(u32, u8)| Around::of(directions.faces, directions, c.0, c.1.into());
         group.clear();
         group.extend(sorted[start..end as usize].iter().filter_map(around));
         start = end as usize;

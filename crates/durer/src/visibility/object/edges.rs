@@ -72,25 +72,51 @@ impl Edges {
     /// Returns the same after some triangles were changed, which are given in item order. Costs less than to
     /// find all again where they are few.
     pub(super) fn renewed(self, faces: &Faces, changed: &[u32]) -> Self {
-        if changed.len() > faces.len() / 4 {
+        let mut is_changed = vec![false; faces.len()];
+        changed.iter().for_each(|item| is_changed[*item as usize] = true);
+        self.with(faces, changed, |item| (!is_changed[item as usize]).then_some(item))
+    }
+
+    /// Returns those of faces in which some triangles are divided: for each item it is given which one it was before, in
+    /// order.
+    pub(super) fn divided(&self, faces: &Faces, origins: &[u32]) -> Self {
+        let before = origins.last().map_or(0, |last| *last as usize + 1);
+        let mut number = vec![None; before];
+        let (mut parts, mut item) = (Vec::new(), 0);
+        for of_one in origins.chunk_by(|a, b| a == b) {
+            match of_one {
+                [whole] => number[*whole as usize] = Some(item),
+                _ => parts.extend(item..item + of_one.len() as u32),
+            }
+            item += of_one.len() as u32;
+        }
+        self.with(faces, &parts, |item| number.get(item as usize).copied().flatten())
+    }
+
+    /// Returns the same with the triangles `new`, in item order, and those old ones that have a `number` now, which keeps
+    /// their order.
+    fn with(&self, faces: &Faces, new: &[u32], number: impl Fn(u32) -> Option<u32>) -> Self {
+        if new.len() > faces.len() / 4 {
             return Self::new(faces, |_| true);
         }
-        let mut is_changed = vec![false; faces.len()];
+        let triangles = new.iter().filter_map(|item| Some((*item, faces.triangle(*item)?)));
         let mut new: Vec<(u32, Side)> = Vec::new();
-        for &item in changed {
-            is_changed[item as usize] = true;
-            let Some(t) = faces.triangle(item) else { continue };
+        for (item, t) in triangles {
             faces.each_side(item, t, |a, b| new.push((a.min(b), Side::new(item, a, b))));
         }
         new.sort_unstable();
+        let renumbered = |side: &Side| {
+            let packed = number(side.item())? << 1 | side.packed & 1;
+            Some(Side { packed, ..*side })
+        };
         let mut new = new.into_iter().peekable();
-        let mut starts = Vec::with_capacity(self.starts.len());
+        let vertices = faces.points().len();
+        let mut starts = Vec::with_capacity(vertices + 1);
         let mut sides = Vec::with_capacity(self.sides.len() + new.len());
-        for (v, w) in (0..).zip(self.starts.windows(2)) {
+        for v in 0..vertices as u32 {
             let first = sides.len();
             starts.push(first as u32);
-            let old = &self.sides[w[0] as usize..w[1] as usize];
-            sides.extend(old.iter().filter(|s| !is_changed[s.item() as usize]));
+            sides.extend(self.of_vertex(v).iter().filter_map(renumbered));
             let kept = sides.len();
             sides.extend(std::iter::from_fn(|| new.next_if(|n| n.0 == v)).map(|n| n.1));
             if sides.len() > kept {
@@ -135,14 +161,18 @@ impl Edges {
         }
     }
 
+    /// Returns the sides whose smaller vertex is this one.
+    fn of_vertex(&self, vertex: u32) -> &[Side] {
+        match self.starts.get(vertex as usize..).and_then(|s| s.first_chunk::<2>()) {
+            Some([from, to]) => &self.sides[*from as usize..*to as usize],
+            None => &[],
+        }
+    }
+
     /// Returns the triangles at the edge between two vertices, the smaller first; none where there is
     /// no such edge.
     pub fn at(&self, [a, b]: [u32; 2]) -> &[Side] {
-        let Some([from, to]) = self.starts.get(a as usize..).and_then(|s| s.first_chunk::<2>())
-        else {
-            return &[];
-        };
-        let sides = &self.sides[*from as usize..*to as usize];
+        let sides = self.of_vertex(a);
         let start = sides.partition_point(|s| s.other < b);
         let end = sides.partition_point(|s| s.other <= b);
         &sides[start..end]
@@ -154,12 +184,45 @@ impl Edges {
         vertices: std::ops::Range<u32>,
     ) -> impl Iterator<Item = ([u32; 2], &[Side])> + '_ {
         let of = |v: u32| {
-            let [from, to] = [v, v + 1].map(|v| self.starts[v as usize] as usize);
-            self.sides[from..to]
-                .chunk_by(|a, b| a.other == b.other)
-                .map(move |s| ([v, s[0].other], s))
+            let edges = self.of_vertex(v).chunk_by(|a, b| a.other == b.other);
+            edges.map(move |s| ([v, s[0].other], s))
         };
         let end = vertices.end.min(self.starts.len().saturating_sub(1) as u32);
         (vertices.start..end).flat_map(of)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vec3;
+    use crate::scene::{Instance, Mesh, Scene};
+
+    #[test]
+    fn edges_of_divided_faces_are_those_that_are_found_anew() {
+        let strip = |i: u32| {
+            let at = |k: u32| Vec3::new((k / 2) as f32, (k % 2) as f32, 0.0);
+            if i % 2 == 0 { [at(i), at(i + 2), at(i + 1)] } else { [at(i), at(i + 1), at(i + 2)] }
+        };
+        let positions = (0..24).flat_map(strip).collect();
+        let scene = Scene {
+            meshes: vec![Mesh { positions, ..Mesh::default() }],
+            instances: vec![Instance::of(0)],
+            ..Scene::default()
+        };
+        let faces = Faces::new(&scene).expect("faces");
+        let edges = Edges::new(&faces, |_| true);
+        let [a, b, c] = faces.triangle(5).expect("a triangle");
+        let mut points = faces.points().to_vec();
+        points.push(points[a as usize].midpoint(points[b as usize]));
+        let middle = points.len() as u32 - 1;
+        let [d, e, f] = faces.triangle(9).expect("a triangle");
+        let parts =
+            [(5, [a, middle, c]), (5, [middle, b, c]), (9, [d, e, f]), (9, [f, e, d])].into_iter();
+        let (mut refined, origins) = faces.refined(&edges, points, parts);
+        assert_eq!(origins.len(), 26);
+        let taken = refined.take_edges();
+        assert_eq!(taken, Edges::new(&refined, |_| true));
+        assert_eq!(taken.at([c.min(middle), c.max(middle)]).len(), 2);
     }
 }

@@ -213,11 +213,12 @@ impl Faces {
         }
     }
 
-    /// Returns the same with parts in place of some triangles, and of each triangle the item that it was.
-    /// `parts` are (item, vertices) in item order, `points` those of the faces and more. Parts of one
+    /// Returns the same with parts in place of some triangles, and of each triangle the item that it was. `edges` are
+    /// those of the faces as they are, `parts` are (item, vertices) in item order, `points` those of the faces and more. Parts of one
     /// polygon are one polygon.
     pub(in crate::visibility) fn refined(
         &self,
+        edges: &Edges,
         points: Vec<DVec3>,
         parts: impl Iterator<Item = (u32, [u32; 3])>,
     ) -> (Self, Vec<u32>) {
@@ -241,10 +242,12 @@ impl Faces {
         let polygons = Some(origins.iter().map(polygon).collect());
         let (marks, grains) = (self.marks.clone(), self.grains.clone());
         let mut refined = Self { points, triangles, runs, polygons, marks, ..Self::default() };
-        if !self.outlines.is_empty() {
+        refined.edges = Some(if self.outlines.is_empty() {
+            edges.divided(&refined, &origins)
+        } else {
             let edges = Edges::new(&refined, |_| true);
-            refined.edges = Some(divide(&mut refined, edges, &grains));
-        }
+            divide(&mut refined, edges, &grains)
+        });
         refined.grains = grains;
         (refined, origins)
     }

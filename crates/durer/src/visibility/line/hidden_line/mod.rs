@@ -38,6 +38,7 @@ use super::intersection::intersections;
 use super::marks::marks;
 use super::page::{GridPoint, Page, Projected, Vertex};
 use super::piece::Piece;
+use super::planes::Planes;
 use super::roundness::Smooth;
 use super::smooth_silhouette::{Whole, divided};
 use super::steps::Steps;
@@ -252,17 +253,21 @@ pub fn draw(
     let mut edges = faces.take_edges();
     let count = edges.count();
     let wanted = options.classes.contains(LineClass::Tangent);
-    let tangents = wanted.then(|| Tangents::new(&faces, &edges, options.crease));
-    let steps = options.neighbours.then(|| Steps::new(&faces, &edges, options.crease));
+    let asked = wanted || options.neighbours || options.smooth != Smooth::Off;
+    let planes = asked.then(|| Planes::new(&faces));
+    let mesh = (&faces, &edges);
+    let known = |wanted: bool| planes.as_ref().filter(|_| wanted);
+    let tangents = known(wanted).map(|p| Tangents::new(mesh, p, options.crease));
+    let steps = known(options.neighbours).map(|p| Steps::new(mesh, p, options.crease));
     let known = Known {
         whole: Whole(None),
         tangents: tangents.as_ref(),
         steps: steps.as_ref().filter(|s| !s.is_empty()),
     };
-    let round = options.smooth.items(&faces, &edges, options.crease);
-    let found = if let Some(round) = round {
+    let round = options.smooth.items(mesh, planes.as_ref(), options.crease);
+    let found = if let Some((round, planes)) = round.zip(planes) {
         let sharp = options.smooth.sharp_from(options.crease);
-        let mut divided = divided(scene, faces, &edges, &plane, (&round, sharp));
+        let mut divided = divided(scene, (faces, &edges, planes), &plane, (&round, sharp));
         edges = divided.faces.take_edges();
         let known = Known { whole: Whole(Some(&divided)), ..known };
         on_page(&divided.faces, plane, |p| pieces(&divided.faces, edges, known, p, options, t))
@@ -543,18 +548,14 @@ fn covers_of(
         if line.items.contains(&face.item) {
             return;
         }
-        let outline = line.class == LineClass::Silhouette || whole.at_outline(face.item);
-        if line.vertices[0] != NO_ITEM && outline && occluders.is_beside(face.item, line.vertices) {
-            return;
-        }
-        if line.smooth && line.fold == [0.0; 2] && whole.is_beside(face.item, line.items) {
-            return;
-        }
         let own = line.reach > touching && occluders.same_body(line.items[0], face.item);
         let touching = if own { line.reach } else { touching };
         let Some(cover) = cover::cover(&line.ends, &face, touching) else { return };
+        if does_not_hide(&face, line, occluders, whole) {
+            return;
+        }
         found.push((id, cover));
-        if enough && occluders.hides_for_certain(&cover) {
+        if enough && cover.left && cover.right && cover.weight > 0 {
             met.hide(cover.from, cover.to);
         }
     });
@@ -563,6 +564,20 @@ fn covers_of(
     found.dedup_by_key(|(id, _)| *id);
     covers.clear();
     covers.extend(found.into_iter().map(|(_, cover)| cover));
+}
+
+/// Returns whether a face is beside a line where smooth surfaces are folded, so that it does not hide it.
+fn does_not_hide(
+    face: &occluders::Occluder,
+    line: &FeatureLine,
+    occluders: &Occluders<'_>,
+    whole: Whole<'_>,
+) -> bool {
+    let outline = || line.class == LineClass::Silhouette || whole.at_outline(face.item);
+    if line.vertices[0] != NO_ITEM && occluders.is_beside(face.item, line.vertices) && outline() {
+        return true;
+    }
+    line.smooth && line.fold == [0.0; 2] && whole.is_beside(face.item, line.items)
 }
 
 /// Cuts one line into pieces.

@@ -5,7 +5,6 @@
 
 use super::super::facing::{Facing, turned_on_grid};
 use super::super::page::{Page, Projected, Vertex};
-use super::Cover;
 use super::cells::Lists;
 use super::met::Met;
 use crate::visibility::object::{Bodies, Faces};
@@ -48,6 +47,8 @@ pub(super) struct Occluders<'a> {
     smooth: Vec<bool>,
     /// True for each item that lies folded over an outline; empty if none does.
     folded: Vec<bool>,
+    /// True for each list with such an item; empty if there is none.
+    folds: Vec<bool>,
 }
 
 impl<'a> Occluders<'a> {
@@ -74,6 +75,7 @@ impl<'a> Occluders<'a> {
             bodies: (0..smooth).map(|item| bodies.of(item).unwrap_or(u32::MAX)).collect(),
             smooth: where_any(smooth, |item| facing.is_smooth(item)),
             folded: where_any(smooth, |item| facing.folded(item)),
+            folds: Vec::new(),
         };
         let ids = || {
             let whole = (0..cut_base).filter(|&item| hides[item as usize]);
@@ -106,7 +108,26 @@ impl<'a> Occluders<'a> {
                 .sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.id.cmp(&b.id)));
         }
         (found.starts, found.entries) = (starts, entries);
+        found.folds = found.lists_with_folds(ids());
         found
+    }
+
+    /// See [`Self::folds`].
+    fn lists_with_folds(&self, ids: impl Iterator<Item = u32>) -> Vec<bool> {
+        if self.folded.is_empty() {
+            return Vec::new();
+        }
+        let mut folds = vec![false; self.lists.count()];
+        for id in ids.filter(|id| self.is_folded(*id)) {
+            self.each_cell(id, |cell, _| folds[cell] = true);
+        }
+        folds
+    }
+
+    /// Returns whether a face of a list lies folded over an outline.
+    fn is_folded(&self, id: u32) -> bool {
+        let cut = id.checked_sub(self.cut_base).map(|i| self.projected.cuts[i as usize].item);
+        self.folded.get(cut.unwrap_or(id) as usize) == Some(&true)
     }
 
     /// Returns the end of each cell's list, and of all together; `None` if it takes more entries than `most`.
@@ -161,7 +182,7 @@ impl<'a> Occluders<'a> {
         } else {
             [a, b, c]
         };
-        let weight = if self.folded.get(item as usize) == Some(&true) { -1 } else { 1 };
+        let weight = if self.is_folded(id) { -1 } else { 1 };
         Some(Occluder { item, corners, weight })
     }
 
@@ -178,11 +199,6 @@ impl<'a> Occluders<'a> {
             && self.faces.triangle(item).is_some_and(touches)
     }
 
-    /// Returns whether everything behind a face is hidden, whatever else lies there.
-    pub fn hides_for_certain(&self, cover: &Cover) -> bool {
-        cover.left && cover.right && self.folded.is_empty()
-    }
-
     /// Returns the number of faces.
     pub fn count(&self) -> usize {
         self.cut_base as usize + self.projected.cuts.len()
@@ -194,7 +210,8 @@ impl<'a> Occluders<'a> {
     }
 
     /// Calls `f` once, or now and then more often, with each face that may hide a part of the line; in the order of cells
-    /// and depths. In cells in which the line is known to be hidden, the rest is passed over.
+    /// and depths. In cells in which the line is known to be hidden, the rest is passed over, unless a face there may
+    /// make up for another.
     pub fn along(
         &self,
         line: &[Vertex; 2],
@@ -208,7 +225,9 @@ impl<'a> Occluders<'a> {
             for list in lists {
                 let [from, to] = [list, list + 1].map(|c| self.starts[c] as usize);
                 let is_hidden = |met: &Met| {
-                    !met.hides_nothing() && met.hides(self.lists.stretch(row, list, line))
+                    !met.hides_nothing()
+                        && self.folds.get(list) != Some(&true)
+                        && met.hides(self.lists.stretch(row, list, line))
                 };
                 if from == to || is_hidden(met) {
                     continue;

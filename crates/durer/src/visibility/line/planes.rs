@@ -1,0 +1,64 @@
+//! The planes of triangles, for passes over edges: those meet each triangle three times.
+
+use crate::math::DVec3;
+use crate::parallel;
+use crate::visibility::object::{Faces, Side};
+
+/// Triangles per job.
+const JOB: usize = 1 << 15;
+
+/// The direction and the size of a triangle.
+#[derive(Debug, Clone, Copy)]
+struct Plane {
+    /// Twice the area, along the normal.
+    across: DVec3,
+    /// Twice the area.
+    area: f64,
+}
+
+/// The planes of all triangles, by item.
+pub(super) struct Planes(Vec<Plane>);
+
+impl Planes {
+    /// Creates those of faces; O(n).
+    pub fn new(faces: &Faces) -> Self {
+        let plane = |item: usize| {
+            let corners = faces.corners(item as u32);
+            let across = corners.map_or(DVec3::ZERO, |[a, b, c]| (b - a).cross(c - a));
+            Plane { across, area: across.length() }
+        };
+        let jobs: Vec<_> = (0..faces.len()).step_by(JOB).collect();
+        let of =
+            |first: usize| (first..faces.len().min(first + JOB)).map(plane).collect::<Vec<_>>();
+        Self(parallel::map(jobs, of).concat())
+    }
+
+    /// Returns twice the area of a triangle along its normal; zero where it has none.
+    #[inline]
+    pub fn across(&self, item: u32) -> DVec3 {
+        self.0[item as usize].across
+    }
+
+    /// Returns the unit normal of a triangle; zero where it has none.
+    #[inline]
+    pub fn normal(&self, item: u32) -> DVec3 {
+        let Plane { across, area } = self.0[item as usize];
+        let part = 1.0 / area;
+        if part.is_finite() && part > 0.0 { across * part } else { DVec3::ZERO }
+    }
+
+    /// Returns twice the area of a triangle.
+    #[inline]
+    pub fn area(&self, item: u32) -> f64 {
+        self.0[item as usize].area
+    }
+
+    /// Returns the cosine of what the surface turns by between two triangles at an edge; NaN where one has no
+    /// direction.
+    #[inline]
+    pub fn cosine(&self, a: Side, b: Side) -> f64 {
+        let [p, q] = [a, b].map(|side| self.0[side.item() as usize]);
+        let cosine = p.across.dot(q.across) / (p.area * q.area);
+        if a.forward() == b.forward() { -cosine } else { cosine }
+    }
+}
