@@ -1,5 +1,6 @@
 //! Point clouds, whatever format they come in.
 
+use crate::budget::MODEL;
 use crate::model::count_infinite;
 use crate::{Error, Limits, Model, Place, Result, facets, place};
 use durer::math::{DVec3, Vec4};
@@ -15,7 +16,14 @@ pub(crate) struct Cloud {
     pub full: f32,
     /// Strengths of what the scanner got back, in any unit; shown where there are no colours.
     pub intensities: Vec<f32>,
+    /// Number of points that memory has been taken for.
+    pub room: u64,
 }
+
+/// Bytes of a point while it is read: its place, colour and intensity, and its place and colour in the mesh.
+const BYTES: u64 = 72;
+/// Points that memory is taken for at a time.
+const AT_ONCE: u64 = 1 << 12;
 
 /// The part of all intensities that is as dark, or as bright, as can be: the outliers.
 const OUTLIERS: usize = 100;
@@ -23,16 +31,26 @@ const OUTLIERS: usize = 100;
 const DARKEST: f32 = 0.1;
 
 impl Cloud {
-    /// Refuses more points than allowed.
+    /// Takes the memory for so many points in all, and refuses more than allowed.
     ///
     /// # Errors
-    /// [`Error::Limit`].
-    pub fn check_count(value: u64, place: impl FnOnce() -> Place, limits: &Limits) -> Result<()> {
+    /// [`Error::Limit`]; those of the work.
+    pub fn make_room(
+        &mut self,
+        value: u64,
+        place: impl FnOnce() -> Place,
+        limits: &Limits,
+    ) -> Result<()> {
         let limit = limits.primitives.min(u64::from(u32::MAX));
-        if value <= limit {
-            return Ok(());
+        if value > limit {
+            return Err(Error::Limit { place: place(), what: "number of points", value, limit });
         }
-        Err(Error::Limit { place: place(), what: "number of points", value, limit })
+        if value > self.room {
+            let more = (value - self.room).max(AT_ONCE);
+            limits.work.keep(MODEL, more.saturating_mul(BYTES))?;
+            self.room += more;
+        }
+        Ok(())
     }
 
     /// Adds the points to a model: z is up.
@@ -105,7 +123,7 @@ mod tests {
 
     fn cloud(colors: Vec<Vec4>, intensities: Vec<f32>) -> Mesh {
         let points = (0..4).map(|i| DVec3::splat(f64::from(i))).collect();
-        let cloud = Cloud { points, colors, full: 255.0, intensities };
+        let cloud = Cloud { points, colors, full: 255.0, intensities, ..Cloud::default() };
         cloud.into_model(Model::default()).expect("sound").scene.meshes.remove(0)
     }
 

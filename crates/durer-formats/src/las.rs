@@ -52,7 +52,7 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
     let name = if header.compressed { "LAZ" } else { "LAS" };
     let mut model = Model { format: format!("{name} 1.{}", header.minor), ..Model::default() };
     let mut cloud = Cloud { full: 65535.0, ..Cloud::default() };
-    Cloud::check_count(header.count, || Place::Byte(107), &options.limits)?;
+    cloud.make_room(header.count, || Place::Byte(107), &options.limits)?;
     let read = if header.compressed {
         laz::points(bytes, &header, |record| header.point(record, &mut cloud))?
     } else {

@@ -42,7 +42,8 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
             _ if cloud.points.is_empty() => table.head(line, words)?,
             _ => odd.add(|| Place::Line(line, 0)),
         }
-        Cloud::check_count(cloud.points.len() as u64, || Place::Line(line, 0), &options.limits)?;
+        let count = cloud.points.len() as u64;
+        cloud.make_room(count, || Place::Line(line, 0), &options.limits)?;
     }
     if odd.count > 0 {
         let message = format!("{} lines hold no point and were skipped", odd.count);

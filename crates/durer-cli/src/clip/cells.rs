@@ -89,7 +89,7 @@ impl Job<'_> {
     pub fn cut_by_cells(&mut self, cells: &Cells) -> Result<(), Failure> {
         let args = self.args;
         let cut = |feature: &Feature| match &feature.geometry {
-            Some(geometry) => cells.cells.cut(geometry, rules(args, feature)),
+            Some(geometry) => cells.cells.cut(geometry, &rules(args, feature)),
             None => Ok(Vec::new()),
         };
         let mut writer = None;

@@ -37,7 +37,11 @@ pub fn read(
         }
     }
     messages.warnings(&display_name(path), reader.warnings());
-    let rules = Rules { fill: FillRule::Positive, grid: args.cutting.grid };
+    let rules = Rules {
+        fill: FillRule::Positive,
+        grid: args.cutting.grid,
+        work: args.running.work.clone(),
+    };
     let union = rules.overlay(&all, &Shapes::new(), BooleanOp::Union, rules.fill);
     let union = union.map_err(|e| fail(e.to_string()))?.area;
     if rules.loses(&all, &all.shapes) {

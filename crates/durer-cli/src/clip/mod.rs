@@ -159,7 +159,7 @@ fn check(args: &ClipArgs) -> Result<(), Failure> {
 /// Returns the rules for one feature: those of the options, or else the feature's own.
 fn rules(args: &ClipArgs, feature: &Feature) -> Rules {
     let fill = args.cutting.fill_rule.unwrap_or(feature.fill_rule);
-    Rules { fill, grid: args.cutting.grid }
+    Rules { fill, grid: args.cutting.grid, work: args.running.work.clone() }
 }
 
 /// Returns the format of the result; of tiles always GeoJSON.
@@ -481,7 +481,11 @@ impl Job<'_> {
         let rule = if op == BooleanOp::Xor { FillRule::EvenOdd } else { FillRule::Positive };
         let none = Shapes::new();
         let mask = mask.map_or(&none, Mask::shapes);
-        let rules = Rules { fill: rule, grid: self.args.cutting.grid };
+        let rules = Rules {
+            fill: rule,
+            grid: self.args.cutting.grid,
+            work: self.args.running.work.clone(),
+        };
         let joined = match self.args.cutting.algorithm {
             Some(Algorithm::Polygon(PolygonClipper::Vatti)) => {
                 let area = rules.vatti(&all, mask, op, rule);

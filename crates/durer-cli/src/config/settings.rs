@@ -1,6 +1,7 @@
 //! Keys and values of the file, each checked by the parser of its option.
 
 use crate::failure::Failure;
+use crate::toml_words::fault;
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, Command, ValueHint};
 use std::path::Path;
@@ -74,7 +75,7 @@ pub fn read(
 ) -> Result<Vec<Setting>, Failure> {
     let source = Source { file, text };
     let table = DeTable::parse(text)
-        .map_err(|e| source.wrong(e.span().map_or(0, |s| s.start), e.message()))?;
+        .map_err(|e| source.wrong(e.span().map_or(0, |s| s.start), fault(e.message())))?;
     let mut wanted = Vec::new();
     for (key, value) in table.get_ref() {
         let (title, place) = (key.get_ref(), key.span().start);

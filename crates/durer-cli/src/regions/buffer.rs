@@ -84,7 +84,8 @@ impl BufferArgs {
             CapName::Square => Cap::Square,
         };
         let (distance, tolerance) = (self.distance, self.tolerance);
-        Options { distance, join, cap, miter_limit: self.miter_limit, tolerance }
+        let work = self.files.running.work.clone();
+        Options { distance, join, cap, miter_limit: self.miter_limit, tolerance, work }
     }
 }
 
@@ -119,7 +120,7 @@ pub fn run(args: &BufferArgs) -> Result<(), Failure> {
             all.append(&made.map_err(|e| job.fail(format!("feature {number}: {e}")))?);
         }
     }
-    let whole = Area::flat(all).union().map_err(|e| job.fail(e))?;
+    let whole = Area::flat(all).union(&options.work).map_err(|e| job.fail(e))?;
     let given = job.report.given.features;
     if whole.shapes.is_empty() && given > 0 {
         job.report.warnings.push(format!("nothing is left of {given} features"));

@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::layer;
 use clap::Args;
 use durer::clip::mask::{Rules, Union};
+use durer::work::Work;
 use durer_formats::geo::{Feature, Member};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -54,7 +55,8 @@ pub fn run(args: &DissolveArgs) -> Result<(), Failure> {
             break;
         }
         let clean = |(number, f): &(u64, Feature)| {
-            let rules = Rules { fill: f.fill_rule, grid: None };
+            let rules =
+                Rules { fill: f.fill_rule, grid: None, work: args.files.running.work.clone() };
             let made = f.geometry.as_ref().map(|g| rules.clean(g)).transpose();
             made.map_err(|e| (*number, e))
         };
@@ -90,7 +92,7 @@ pub fn run(args: &DissolveArgs) -> Result<(), Failure> {
         job.report.warnings.push(super::fix::told(repaired));
     }
     let features: durer::Result<Vec<Feature>> =
-        groups.into_par_iter().map(Group::into_feature).collect();
+        groups.into_par_iter().map(|group| group.into_feature(&args.files.running.work)).collect();
     let features = features.map_err(|e| job.fail(e))?;
     job.write(features)
 }
@@ -102,8 +104,8 @@ fn value(own: &[Member], name: &str) -> Member {
 }
 
 impl Group {
-    fn into_feature(mut self) -> durer::Result<Feature> {
-        let geometry = self.union.finish()?;
+    fn into_feature(mut self, work: &Work) -> durer::Result<Feature> {
+        let geometry = self.union.finish(work)?;
         let mut feature = Feature { geometry, srid: self.srid, ..Feature::default() };
         self.fields.push(Member::new("count", self.count.to_string()));
         feature.set_fields(&self.fields);

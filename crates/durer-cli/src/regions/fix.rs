@@ -56,7 +56,8 @@ fn made(
     geometry: &Geometry,
 ) -> durer::Result<(Option<Geometry>, bool)> {
     let fill = args.rule.unwrap_or(feature.fill_rule);
-    let fixed = Rules { fill, grid: None }.fix(geometry)?;
+    let work = args.files.running.work.clone();
+    let fixed = Rules { fill, grid: None, work }.fix(geometry)?;
     Ok((fixed.geometry, fixed.changed))
 }
 

@@ -30,6 +30,13 @@ fn obj(count: u32) -> String {
     text
 }
 
+/// Returns a polygon that crosses itself all over.
+fn ring(points: u64) -> String {
+    let at = |i: u64| format!("[{},{}]", i * 7919 % 1009, i * 104_729 % 1013);
+    let ring: Vec<String> = (0..points).chain([0]).map(at).collect();
+    format!(r#"{{"type":"Polygon","coordinates":[[{}]]}}"#, ring.join(","))
+}
+
 /// Returns a drawing of many curves with wide strokes.
 fn svg(curves: u32) -> String {
     let mut text =
@@ -54,6 +61,19 @@ fn what_needs_more_is_refused_with_its_stage_and_the_option() {
     folder.write("few.svg", svg(5));
     folder.must("render cube.obj -o a.png --depth d.png --size 600x600 --near 1 --far 20");
     folder.write("heights.xyz", "0 0 0\n".repeat(400_000));
+    folder.write("ring.geojson", ring(400));
+    let drawing = |inside: &str| {
+        format!(r#"<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9">{inside}</svg>"#)
+    };
+    folder.write("elements.svg", drawing(&"<g/>".repeat(20_000)));
+    folder.write(
+        "groups.svg",
+        drawing(&format!(
+            "{}<path d='M0 0H9V9'/>{}",
+            "<g opacity='.9'><rect width='1' height='1'/>".repeat(200),
+            "</g>".repeat(200)
+        )),
+    );
     let before = folder.names();
     for (command, budget, stage) in [
         ("render cube.obj -o o.png --size 2000x2000", "8M", "planes of the picture"),
@@ -73,6 +93,12 @@ fn what_needs_more_is_refused_with_its_stage_and_the_option() {
         ("draw few.svg -o o.png --size 3000x3000", "34M", "planes of the picture"),
         ("fill a.png -o o.png --at 0,0 --color red", "1M", "decoded pictures"),
         ("plot heights.xyz -o o.png", "1M", "bytes of the file"),
+        ("render heights.xyz -o o.png --size 9x9", "6M", "meshes of the model"),
+        ("fix ring.geojson -o o.geojson", "2M", "crossings of the overlay"),
+        ("buffer ring.geojson -o o.geojson --distance 1", "2M", "of the overlay"),
+        ("clip ring.geojson -o o.geojson --window 0,0,900,900", "2M", "crossings of the overlay"),
+        ("draw elements.svg -o o.png", "8M", "elements of the drawing"),
+        ("draw groups.svg -o o.png --size 2000x40", "24M", "layers of groups and clip paths"),
         (
             "warp a.png d.png -o o.png --eye 9,9,9 --target 0,0,0 --near 1 --far 20 --to-eye 9,9,8 \
              --size 1500x1500",

@@ -16,6 +16,7 @@ mod drawings;
 mod explain;
 mod faults;
 mod fill;
+mod fuzz;
 mod harness;
 mod hostile;
 mod kinds;

@@ -72,7 +72,7 @@ impl Scans {
             let place = || Place::Path(format!("data3D[{number}]"));
             check(scan, place())?;
             let sum = (self.cloud.points.len() as u64).saturating_add(scan.records);
-            Cloud::check_count(sum, place, &self.limits)?;
+            self.cloud.make_room(sum, place, &self.limits)?;
             let result = self.scan(&mut reader, scan);
             if let Err(why) = result {
                 let count = self.cloud.points.len();

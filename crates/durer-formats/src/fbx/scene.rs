@@ -67,11 +67,20 @@ fn error(e: &ufbx::Error, limits: &Limits) -> Error {
             limit("memory for elements", limits.memory())
         }
         ErrorType::NodeDepthLimit => limit("depth of nodes", u64::from(limits.depth)),
-        // The library's own words say no more.
-        ErrorType::Unknown => Error::whole(
-            "the FBX file cannot be read: an element is broken, or has an index beyond its list",
-        ),
-        _ => Error::whole(format!("the FBX file cannot be read: {}", e.description.to_lowercase())),
+        kind => Error::whole(format!("the FBX file cannot be read: {}", what_is_wrong(kind))),
+    }
+}
+
+/// Returns what is wrong with a file, for the library's own words are of its insides.
+fn what_is_wrong(kind: ErrorType) -> &'static str {
+    match kind {
+        ErrorType::EmptyFile => "it is empty",
+        ErrorType::TruncatedFile | ErrorType::Io => "it is cut off",
+        ErrorType::UnrecognizedFileFormat => "it begins like no FBX file",
+        ErrorType::UnsupportedVersion => "its version is not read; save it as FBX 7.4 or later",
+        ErrorType::InvalidUtf8 => "a name is not in UTF-8",
+        ErrorType::BadNurbs => "a NURBS curve or surface is broken",
+        _ => "an element is broken, or has an index beyond its list",
     }
 }
 

@@ -2,7 +2,7 @@
 //! its `values`, `heights`, `elevation` or `data`; null is a missing height.
 
 use super::{Grid, HeightMapOptions, check_size};
-use crate::{Error, Limits, Place, Result};
+use crate::{Error, Limits, Place, Result, foreign};
 use serde_json::Value;
 
 /// Members of an object that may hold the heights.
@@ -18,11 +18,8 @@ pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
         return Err(Error::Limit { place: Place::Whole, what, value: memory, limit });
     }
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let value: Value = serde_json::from_slice(text).map_err(|e| {
-        let message = e.to_string();
-        let end = message.rfind(" at line").unwrap_or(message.len());
-        Error::line(e.line() as u64, e.column() as u64, &message[..end])
-    })?;
+    let value: Value = serde_json::from_slice(text)
+        .map_err(|e| Error::line(e.line() as u64, e.column() as u64, foreign::json(&e)))?;
     let (name, values) = heights(&value, options)?;
     let rows = array(values, name)?;
     let (columns, rows, heights) = if rows.first().is_some_and(Value::is_array) {

@@ -56,11 +56,13 @@ fn heights(archive: &mut Archive, names: &[&str], options: &HeightMapOptions) ->
 }
 
 fn entry(archive: &mut Archive, name: &str, limits: &Limits) -> Result<Array> {
-    let broken = |e: &dyn std::fmt::Display| Error::path(name, e.to_string());
-    let file = archive.by_name(&format!("{name}.npy")).map_err(|e| broken(&e))?;
+    let file = archive.by_name(&format!("{name}.npy"));
+    let file = file.map_err(|e| Error::path(name, foreign::zip(&e)))?;
     let mut bytes = Vec::new();
     let limit = limits.decoded_bytes;
-    file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| broken(&e))?;
+    file.take(limit.saturating_add(1))
+        .read_to_end(&mut bytes)
+        .map_err(|e| Error::path(name, foreign::inflating(&e)))?;
     if bytes.len() as u64 > limit {
         let (place, what) = (Place::Path(name.to_owned()), "decoded size");
         return Err(Error::Limit { place, what, value: bytes.len() as u64, limit });

@@ -1,12 +1,12 @@
 //! Grey PNG pictures: 0 … 255 or 0 … 65535 is the height; what is fully transparent is missing.
 
 use super::{Grid, HeightMapOptions, check_size};
-use crate::{Error, Place, Result};
+use crate::{Error, Place, Result, foreign};
 use png::{BitDepth, ColorType, Decoder, Transformations};
 use std::io::Cursor;
 
 pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
-    let wrong = |e: png::DecodingError| Error::whole(e.to_string());
+    let wrong = |e: png::DecodingError| Error::whole(format!("the picture {}", foreign::png(&e)));
     let memory = usize::try_from(options.limits.decoded_bytes).unwrap_or(usize::MAX);
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: memory });
     decoder.set_transformations(Transformations::EXPAND);

@@ -122,6 +122,10 @@ impl HasPosition for Spot {
     }
 }
 
+/// The coordinates that can be triangulated.
+const NEEDED: &str =
+    "their coordinates must be 0, or between 1.8e-43 and 3.2e60 to either side of it";
+
 /// Points that lie anywhere, on a grid; what is outside of their hull is missing.
 fn scattered(points: &[[f64; 3]], options: &HeightMapOptions) -> Result<Grid> {
     let told = |message: String| Warning { place: Place::Whole, message };
@@ -129,8 +133,8 @@ fn scattered(points: &[[f64; 3]], options: &HeightMapOptions) -> Result<Grid> {
     let spot = |p: &&[f64; 3]| Spot { at: Point2::new(p[0], p[1]), height: p[2] };
     let spots = whole.iter().map(spot).collect();
     let triangles = DelaunayTriangulation::<Spot>::bulk_load(spots);
-    let triangles =
-        triangles.map_err(|e| Error::whole(format!("the points cannot be triangulated: {e}")))?;
+    let triangles = triangles
+        .map_err(|_| Error::whole(format!("the points cannot be triangulated: {NEEDED}")))?;
     let known = triangles.num_vertices();
     if triangles.num_inner_faces() == 0 {
         let message = "a surface needs three points x, y, z at least that are not on one line";

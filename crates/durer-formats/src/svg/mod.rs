@@ -52,6 +52,7 @@ pub use fonts::{Fonts, no_glyphs};
 use crate::{Error, Limits, NoResources, Place, Resources, Result, Warning, foreign};
 use durer::math::{DAffine2, DVec2};
 use durer::raster::paint::Canvas;
+use durer::work::Charge;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -100,6 +101,32 @@ pub struct Drawing {
     place: Place,
     limits: Limits,
     warnings: Vec<Warning>,
+    /// Charge of the tree to the budget.
+    _charge: Charge,
+}
+
+/// Stage of the tree in errors about memory.
+const TREE: &str = "elements of the drawing";
+
+/// Bytes of an element, of a byte of its attributes, and of a letter with its outline, in the document and in the tree.
+const PER_ELEMENT: u64 = 1 << 10;
+const PER_BYTE: u64 = 8;
+const PER_LETTER: u64 = 2 << 10;
+
+/// Returns about how much memory it takes to resolve a document.
+fn cost(document: &roxmltree::Document<'_>) -> u64 {
+    let (mut elements, mut letters, mut inside) = (0_u64, 0_u64, 0);
+    for node in document.descendants() {
+        elements += u64::from(node.is_element());
+        if node.has_tag_name(TEXT) {
+            inside = inside.max(node.range().end);
+        }
+        if node.is_text() && node.range().start < inside {
+            letters += node.text().map_or(0, |text| text.chars().count() as u64);
+        }
+    }
+    let text = document.input_text().len() as u64;
+    elements * PER_ELEMENT + text * PER_BYTE + letters * PER_LETTER
 }
 
 impl Drawing {
@@ -118,6 +145,7 @@ impl Drawing {
             let message = format!("the root is `{name}`, not `svg` with xmlns=\"{}\"", ROOT.0);
             return Err(Error::line(1, 0, message));
         }
+        let mut charge = options.limits.work.charge(TREE, cost(&document))?;
         let told = Told::new(options.limits.decoded_bytes);
         let prepared = prepared(&document, 0, &told, false)?;
         let tree = {
@@ -130,6 +158,9 @@ impl Drawing {
                 ..usvg::Options::default()
             };
             let amended = prepared.document()?;
+            if let Some(amended) = &amended {
+                charge.grow(cost(amended))?;
+            }
             let document = amended.as_ref().unwrap_or(&document);
             resolved(|| usvg::Tree::from_xmltree(document, &usvg_options))?
         };
@@ -142,7 +173,8 @@ impl Drawing {
         warnings.extend(fonts::missing_letters(&tree, letters).map(warning));
         let at = document.text_pos_at(document.root_element().range().start);
         let place = Place::Line(at.row.into(), at.col.into());
-        Ok(Self { tree, place, limits: options.limits.clone(), warnings })
+        let limits = options.limits.clone();
+        Ok(Self { tree, place, limits, warnings, _charge: charge })
     }
 
     /// Returns the place in the document of the `svg` element that gives the drawing its size.

@@ -5,6 +5,7 @@ use super::package::Package;
 use super::part::{self, Faults, Part, Use};
 use super::property::Texture2d;
 use super::settings::{Settings, VolumeSettings};
+use crate::budget::MODEL;
 use crate::text::Tally;
 use crate::{Error, Limits, Model, Place, Result, image, place};
 use durer::math::{DMat4, DVec3};
@@ -56,6 +57,9 @@ struct Frame {
     next: usize,
     world_from_object: DMat4,
 }
+
+/// Bytes of a triangle that is made of a beam, a ball or paint.
+const PER_TRIANGLE: u64 = 36;
 
 /// Scene's numbers of an object's meshes, and what their positions are relative to.
 type Made = (Vec<usize>, DVec3);
@@ -263,7 +267,9 @@ impl<'a, 'b> Assembly<'a, 'b> {
             mesh::meshes(object, properties, textures, &base, &mut materials, repairs, left)?;
         let first = scene.meshes.len();
         let count: u64 = meshes.iter().map(|m| m.primitive_count() as u64).sum();
-        self.primitives += count.saturating_sub(triangles);
+        let more = count.saturating_sub(triangles);
+        self.primitives += more;
+        self.limits.work.keep(MODEL, more.saturating_mul(PER_TRIANGLE))?;
         scene.meshes.extend(meshes);
         Ok(((first..scene.meshes.len()).collect(), origin))
     }

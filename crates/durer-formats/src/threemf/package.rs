@@ -1,7 +1,9 @@
 //! The archive: parts by name, and the relationship that tells which is the model.
 
+use crate::budget::MODEL;
 use crate::foreign;
 use crate::{Error, Limits, Place, Result, xml};
+use durer::work::Work;
 use quick_xml::Reader;
 use quick_xml::events::Event;
 use std::borrow::Cow;
@@ -19,14 +21,19 @@ pub(super) struct Package<'a> {
     /// Bytes that may still be inflated.
     left: u64,
     limit: u64,
+    work: Work,
 }
+
+/// Memory of a part and of what is read from it, against its own size: numbers take less than their text.
+const PER_BYTE: u64 = 2;
 
 impl<'a> Package<'a> {
     pub fn open(bytes: &'a [u8], limits: Limits) -> Result<Self> {
         let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
             Error::whole(format!("the ZIP archive is broken: {}", foreign::zip(&e)))
         })?;
-        Ok(Self { archive, left: limits.decoded_bytes, limit: limits.decoded_bytes })
+        let (left, limit) = (limits.decoded_bytes, limits.decoded_bytes);
+        Ok(Self { archive, left, limit, work: limits.work })
     }
 
     /// Returns whether there is a part of this name.
@@ -87,6 +94,7 @@ impl<'a> Package<'a> {
             return Err(too_large(bytes.len() as u64));
         }
         self.left -= bytes.len() as u64;
+        self.work.keep(MODEL, PER_BYTE.saturating_mul(bytes.len() as u64))?;
         Ok(bytes)
     }
 

@@ -1,6 +1,7 @@
 //! Messages of readers for files that try to forge them.
 
 use durer_formats::geo::{GeoFormat, Reader};
+use durer_formats::height_map::{self, HeightMapOptions};
 use durer_formats::{NoResources, ReadOptions, read_model, svg};
 
 /// Colours a terminal, and turns the direction of writing.
@@ -208,4 +209,78 @@ fn drawings_of_too_many_elements_are_not_called_ill_formed() {
     let told = svg::Drawing::read(twice.as_bytes(), &svg::ReadOptions::default());
     let told = told.expect_err("too many").to_string();
     assert!(told.contains("1,000,000 elements") && !told.contains("well-formed"), "{told}");
+}
+
+/// Returns beginnings of a file, and the file with some of its bytes changed.
+fn broken(file: &[u8]) -> Vec<Vec<u8>> {
+    let cut = (1..16).map(|i| file[..file.len() * i / 16].to_vec());
+    let changed = (1..64).map(|i| {
+        let mut file = file.to_vec();
+        let at = file.len() * i / 64;
+        file[at..].iter_mut().take(3).for_each(|byte| *byte = byte.wrapping_add(101));
+        file
+    });
+    cut.chain(changed).collect()
+}
+
+/// Returns the seeds of the fuzz target of a name.
+fn seeds(target: &str) -> Vec<Vec<u8>> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds");
+    let files = std::fs::read_dir(folder.join(target)).expect("seeds are part of the repository");
+    files.map(|file| std::fs::read(file.expect("a file").path()).expect("a seed")).collect()
+}
+
+#[test]
+fn words_of_other_libraries_do_not_appear() {
+    let plain = |what: &str, said: Vec<String>| {
+        for message in said {
+            let foreign = FOREIGN.iter().find(|words| message.contains(**words));
+            assert_eq!(foreign, None, "{what}: {message}");
+        }
+    };
+    for (target, name) in [
+        ("gltf", "a.glb"),
+        ("gltf", "a.gltf"),
+        ("obj", "a.obj"),
+        ("stl", "a.stl"),
+        ("ply", "a.ply"),
+        ("threemf", "a.3mf"),
+        ("collada", "a.dae"),
+        ("off", "a.off"),
+        ("las", "a.las"),
+        ("e57", "a.e57"),
+        ("xyz", "a.xyz"),
+    ] {
+        for file in seeds(target).iter().flat_map(|seed| broken(seed)) {
+            plain(name, said_of_model(name, &file));
+        }
+    }
+    for (target, format) in [
+        ("geojson", GeoFormat::GeoJson),
+        ("wkt", GeoFormat::Wkt),
+        ("wkb", GeoFormat::Wkb),
+        ("topojson", GeoFormat::TopoJson),
+        ("flatgeobuf", GeoFormat::FlatGeobuf),
+        ("geopackage", GeoFormat::GeoPackage),
+        ("csv", GeoFormat::Csv),
+        ("kml", GeoFormat::Kml),
+        ("gpx", GeoFormat::Gpx),
+        ("svg", GeoFormat::Svg),
+    ] {
+        for file in seeds(target).iter().flat_map(|seed| broken(seed)) {
+            plain(target, said_of_map(format, &file));
+        }
+    }
+    for file in seeds("drawing").iter().flat_map(|seed| broken(seed)) {
+        let said = svg::Drawing::read(&file, &svg::ReadOptions::default());
+        plain("drawing", said.err().map(|error| error.to_string()).into_iter().collect());
+    }
+    let deep = format!("[{}", "[".repeat(1000)).into_bytes();
+    let of_heights = seeds("height_map").into_iter().flat_map(|seed| broken(&seed)).chain([deep]);
+    for file in of_heights {
+        for name in ["a.json", "a.npy", "a.npz", "a.png", "a.asc", "a.csv", "a.xyz"] {
+            let said = height_map::read(&file, name, &HeightMapOptions::default());
+            plain(name, said.err().map(|error| error.to_string()).into_iter().collect());
+        }
+    }
 }

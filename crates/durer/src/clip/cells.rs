@@ -13,7 +13,7 @@
 //! let square = |x: f64| [(x, 0.0), (x + 1.0, 0.0), (x + 1.0, 1.0), (x, 1.0)].map(DVec2::from);
 //! let cells = Cells::new([0.0, 1.0, 5.0].map(|x| Shapes::from_rings([square(x)])).into())?;
 //! let road = Points::flat(vec![DVec2::new(0.5, 0.5), DVec2::new(1.5, 0.5)]);
-//! let pieces = cells.cut(&Geometry::LineString(road), Rules::default())?;
+//! let pieces = cells.cut(&Geometry::LineString(road), &Rules::default())?;
 //! assert_eq!(pieces.iter().map(|piece| piece.cell).collect::<Vec<_>>(), [0, 1]);
 //! # Ok::<(), durer::Error>(())
 //! ```
@@ -24,6 +24,7 @@ use super::mask::{Area, Cut, Cutter, Mask, Rules};
 use super::polygon::{BooleanOp, Shapes, coverage};
 use crate::geometry::{Dimensions, Geometry};
 use crate::math::Rect;
+use crate::work::Work;
 use crate::{Result, parallel};
 
 /// Cells, ready for many geometries.
@@ -103,7 +104,7 @@ impl Cells {
     ///
     /// # Errors
     /// As [`Cutter::cut`].
-    pub fn cut(&self, geometry: &Geometry, rules: Rules) -> Result<Vec<Piece>> {
+    pub fn cut(&self, geometry: &Geometry, rules: &Rules) -> Result<Vec<Piece>> {
         let Some(bounds) = geometry.bounds() else { return Ok(Vec::new()) };
         let near = self.near(&bounds);
         let large = if near.len() > 1 { Large::new(geometry, rules)? } else { None };
@@ -113,6 +114,7 @@ impl Cells {
                 Some(large) => large.within(of)?,
                 None => {
                     let op = BooleanOp::Intersection;
+                    let rules = rules.clone();
                     Cutter { mask: &of.mask, op, rules, algorithm: None }.cut(geometry)?
                 }
             };
@@ -130,6 +132,7 @@ impl Cells {
 struct Large {
     mask: Mask,
     repaired: bool,
+    work: Work,
 }
 
 /// Number of positions from which a geometry counts as large.
@@ -137,14 +140,15 @@ const MANY: usize = 64;
 
 impl Large {
     /// `None` for what is small, has heights or measures, or is to be cut on a grid.
-    fn new(geometry: &Geometry, rules: Rules) -> Result<Option<Self>> {
+    fn new(geometry: &Geometry, rules: &Rules) -> Result<Option<Self>> {
         let is_polygon = matches!(geometry, Geometry::Polygon(_) | Geometry::MultiPolygon(_));
         let is_flat = geometry.dimensions() == Dimensions::Xy;
         if !is_polygon || !is_flat || geometry.len() < MANY || rules.grid.is_some() {
             return Ok(None);
         }
         let made = rules.clean(geometry)?;
-        Ok(Some(Self { mask: Mask::polygons(made.area.shapes)?, repaired: made.repaired }))
+        let (mask, work) = (Mask::polygons(made.area.shapes)?, rules.work.clone());
+        Ok(Some(Self { mask, repaired: made.repaired, work }))
     }
 
     fn within(&self, cell: &Cell) -> Result<Cut> {
@@ -154,7 +158,9 @@ impl Large {
             Some(false) => Cut::default(),
             Some(true) => Cut { geometry: flat(cell.mask.shapes().clone()), ..Cut::default() },
             None => {
-                let options = coverage::Options { keep: true, ..coverage::Options::default() };
+                let work = self.work.clone();
+                let options =
+                    coverage::Options { keep: true, work, ..coverage::Options::default() };
                 let op = BooleanOp::Intersection;
                 let cut = coverage::cut(cell.mask.shapes(), self.mask.prepared(), op, &options)?;
                 Cut { geometry: flat(cut.shapes), snapped: cut.snapped, ..Cut::default() }

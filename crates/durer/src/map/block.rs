@@ -17,6 +17,7 @@ const LEADING: f64 = 1.05;
 /// as the longest.
 #[derive(Debug)]
 pub struct Block {
+    texts: Vec<String>,
     lines: Vec<TextLine>,
     width: f64,
     size: f64,
@@ -24,16 +25,36 @@ pub struct Block {
 
 impl Block {
     /// Creates a block of lines of letters of a size, pixels.
-    pub fn new(lines: Vec<TextLine>, size: f64) -> Self {
+    pub fn new(texts: Vec<String>, font: &Font<'_>, size: f64) -> Self {
+        let lines: Vec<TextLine> = texts.iter().map(|text| font.line(text, size)).collect();
         let width = lines.iter().map(|line| line.advance).fold(1.0, f64::max);
-        Self { lines, width, size }
+        Self { texts, lines, width, size }
+    }
+
+    /// Drops the outlines of its letters: what is left has its place and size.
+    pub fn forget_outlines(&mut self) {
+        self.lines.iter_mut().for_each(|line| line.path = Path::new());
+    }
+
+    /// Returns the same with its outlines.
+    pub fn with_outlines(&self, font: &Font<'_>) -> Self {
+        Self::new(self.texts.clone(), font, self.size)
+    }
+
+    /// Returns about how many bytes it takes.
+    pub fn bytes(&self) -> u64 {
+        let of = |line: &TextLine| {
+            let path = size_of_val(line.path.elements());
+            path + size_of_val(&line.glyphs[..]) + size_of::<TextLine>()
+        };
+        self.lines.iter().map(of).sum::<usize>() as u64
     }
 
     /// Sets a text in two lines, broken at the blank that makes it narrowest; `None` for a single word.
     pub fn stacked(text: &str, font: &Font<'_>, size: f64) -> Option<Self> {
         let halves = text.match_indices(' ').map(|(at, _)| [text[..at].trim(), text[at..].trim()]);
         let full = halves.filter(|halves| halves.iter().all(|half| !half.is_empty()));
-        let blocks = full.map(|h| Self::new(h.map(|half| font.line(half, size)).to_vec(), size));
+        let blocks = full.map(|h| Self::new(h.map(str::to_owned).to_vec(), font, size));
         blocks.min_by(|a, b| a.width.total_cmp(&b.width))
     }
 
@@ -94,7 +115,7 @@ mod tests {
             return;
         };
         let font = Font::new(&bytes, 0).expect("font");
-        let whole = Block::new(vec![font.line("United Arab Emirates", 12.0)], 12.0);
+        let whole = Block::new(vec!["United Arab Emirates".to_owned()], &font, 12.0);
         let stacked = Block::stacked("United Arab Emirates", &font, 12.0).expect("blanks");
         let halves = ["United Arab", "Emirates"].map(|half| font.line(half, 12.0).advance);
         assert_eq!(stacked.extent().x, halves[0].max(halves[1]));

@@ -219,12 +219,20 @@ pub(super) fn draw(
 ) -> Result<Placed> {
     let no_font = || Error::parameter("fonts", 0, "at least one font for labels");
     let mut planned = Vec::new();
+    let are_many = labels.len() > MANY;
+    let work = canvas.work().clone();
+    let mut charge = work.charge("labels", 0)?;
     for label in labels {
         let unknown = || Error::Dangling { what: "style", index: label.layer, count: styles.len() };
         let style = *styles.get(label.layer).ok_or_else(unknown)?;
         let missing = |font: &Font<'_>| label.text.chars().filter(|c| !font.has(*c)).count();
         let font = fonts.iter().min_by_key(|font| missing(font)).ok_or_else(no_font)?;
-        planned.push(Planned::new(label, font, style, ground.land));
+        let mut one = Planned::new(label, font, style, ground.land);
+        if are_many {
+            one.blocks.iter_mut().for_each(Block::forget_outlines);
+        }
+        charge.grow(one.bytes())?;
+        planned.push(one);
     }
     // The sort is stable: what is equal stays in the order of the file.
     planned.sort_by(Planned::order);
@@ -252,7 +260,12 @@ pub(super) fn draw(
                 Some(spot) => {
                     counts.0 += 1;
                     drawn.missing.extend(&planned.missing);
-                    write(canvas, &planned.outlines(spot, style), style)?;
+                    let outlines = if are_many {
+                        planned.with_outlines().outlines(spot, style)
+                    } else {
+                        planned.outlines(spot, style)
+                    };
+                    write(canvas, &outlines, style)?;
                 }
                 None => counts.1 += 1,
             }
@@ -261,9 +274,13 @@ pub(super) fn draw(
     Ok(drawn)
 }
 
+/// Number of labels beyond which outlines of letters are not kept, as most find no room, but made again for those that do.
+const MANY: usize = 4096;
+
 /// Label with its candidate positions.
-struct Planned {
+struct Planned<'a, 'd> {
     label: Label,
+    font: &'a Font<'d>,
     /// Forms of the label: in one line, then in two or shorter, if an area does not hold one.
     blocks: Vec<Block>,
     /// Letters that its font does not have.
@@ -288,10 +305,10 @@ enum Spot {
     Along(Run),
 }
 
-impl Planned {
-    fn new(label: Label, font: &Font<'_>, style: &Style, land: &Land) -> Self {
+impl<'a, 'd> Planned<'a, 'd> {
+    fn new(label: Label, font: &'a Font<'d>, style: &Style, land: &Land) -> Self {
         let size = style.label_size;
-        let one = Block::new(vec![font.line(&label.text, size)], size);
+        let one = Block::new(vec![label.text.clone()], font, size);
         let missing = label.text.chars().filter(|c| !font.has(*c)).collect();
         let Some(area) = &label.anchor.area else {
             let extent = one.extent();
@@ -302,7 +319,7 @@ impl Planned {
                 spots.chain(upright.into_iter().map(|corner| Spot::At(0, corner))).collect();
             let (fit, held, blocks) = (Fit::Over, 0.0, vec![one]);
             let (tiny, alone) = (false, false);
-            return Self { label, blocks, missing, fit, tiny, held, alone, spots };
+            return Self { label, font, blocks, missing, fit, tiny, held, alone, spots };
         };
         let around = |block: &Block| {
             let (extent, halo) = (block.extent(), DVec2::splat(2.0 * HALO * size));
@@ -318,7 +335,7 @@ impl Planned {
         let mut blocks = vec![one];
         let mut tiny = fit == Fit::Tiny;
         if fit != Fit::Held {
-            let short = label.short.as_ref().map(|s| Block::new(vec![font.line(s, size)], size));
+            let short = label.short.as_ref().map(|s| Block::new(vec![s.clone()], font, size));
             for (block, whole) in [(Block::stacked(&label.text, font, size), true), (short, false)]
             {
                 let Some(block) = block else { continue };
@@ -335,7 +352,20 @@ impl Planned {
                 blocks.push(block);
             }
         }
-        Self { label, blocks, missing, fit, tiny, held, alone, spots: found }
+        Self { label, font, blocks, missing, fit, tiny, held, alone, spots: found }
+    }
+
+    /// Returns about how many bytes it takes.
+    fn bytes(&self) -> u64 {
+        let spots = size_of_val(&self.spots[..]) + size_of::<Self>() + self.label.text.len();
+        spots as u64 + self.blocks.iter().map(Block::bytes).sum::<u64>()
+    }
+
+    /// Returns the same with the outlines of its letters.
+    fn with_outlines(&self) -> Self {
+        let blocks = self.blocks.iter().map(|block| block.with_outlines(self.font)).collect();
+        let (label, missing, spots) = (self.label.clone(), Vec::new(), Vec::new());
+        Self { label, blocks, missing, spots, ..*self }
     }
 
     /// Returns its boxes at a position.

@@ -196,6 +196,7 @@ fn lights(scene: &Scene, options: &DrawOptions) -> PreparedLights {
 fn region_options(options: &DrawOptions) -> region::Options {
     let reach = REACH * seen_height(&options.camera);
     region::Options {
+        work: options.work.clone(),
         cull: options.cull,
         merge: options.merge,
         fill: if options.trapped { Fill::Trapped { reach } } else { Fill::Disjoint },

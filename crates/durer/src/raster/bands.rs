@@ -41,6 +41,12 @@ impl<E> Chunk<E> {
         let index = BandIndex::new(edges.iter().map(rows));
         Self { edges, index }
     }
+
+    /// Returns its size in bytes.
+    pub fn bytes(&self) -> u64 {
+        let index = 8 * self.index.stretches.len() + 4 * self.index.starts.len();
+        (self.edges.capacity() * size_of::<E>() + index + size_of::<Self>()) as u64
+    }
 }
 
 impl<E> Edges<E> {
@@ -69,9 +75,7 @@ impl<E> Edges<E> {
     /// Returns the size of the chunks that are not in the list, in bytes.
     pub fn bytes(&self) -> u64 {
         let Self::Many(chunks) = self else { return 0 };
-        let index = |index: &BandIndex| 8 * index.stretches.len() + 4 * index.starts.len();
-        let of = |c: &Chunk<E>| c.edges.capacity() * size_of::<E>() + index(&c.index);
-        chunks.iter().map(of).sum::<usize>() as u64
+        chunks.iter().map(Chunk::bytes).sum()
     }
 
     /// Returns the edges of the band at row `top` in the order of the path, perhaps with others

@@ -11,6 +11,7 @@ use durer::geometry::{Dimensions, Geometry, Points};
 use durer::math::{DVec2, I64Vec2, Rect};
 use durer::raster::line::wide::buffer::{Options, of_geometry};
 use durer::raster::line::wide::{Cap, Join};
+use durer::work::Work;
 
 type At = (f64, f64);
 
@@ -67,7 +68,7 @@ fn a_large_polygon_is_cut_into_the_same_pieces_as_a_small_one() {
         }));
     }
     let areas = |ring: &[At]| -> Vec<(usize, f64)> {
-        let pieces = cells().cut(&polygon(ring), Rules::default()).expect("finite polygons");
+        let pieces = cells().cut(&polygon(ring), &Rules::default()).expect("finite polygons");
         pieces.iter().map(|p| (p.cell, p.cut.geometry.as_ref().map_or(0.0, area))).collect()
     };
     assert_eq!(areas(&few), [(0, 0.5), (1, 1.0), (2, 1.0), (4, 1.0)]);
@@ -90,7 +91,7 @@ fn polygons_are_made_valid_once() {
     assert!(!again.changed && again.geometry == fixed.geometry);
     // By another rule the rings of what is valid may mean something else.
     let clockwise = polygon(&[(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)]);
-    let positive = Rules { fill: FillRule::Positive, grid: None };
+    let positive = Rules { fill: FillRule::Positive, ..Rules::default() };
     let gone = positive.fix(&clockwise).expect("finite");
     assert_eq!((gone.geometry, gone.changed), (None, false));
 }
@@ -118,13 +119,15 @@ fn unions_join_polygons_and_keep_the_rest() {
     let mut high = Points::new(Dimensions::Xyz);
     high.push(DVec2::new(8.0, 8.0), [3.0, 0.0]);
     assert!(add(&Geometry::Point(high)), "points with and without heights");
-    let Ok(Some(Geometry::Collection(parts))) = union.finish() else { panic!("three parts") };
+    let Ok(Some(Geometry::Collection(parts))) = union.finish(&Work::default()) else {
+        panic!("three parts")
+    };
     assert_eq!(
         parts.iter().map(Geometry::name).collect::<Vec<_>>(),
         ["Polygon", "LineString", "MultiPoint"]
     );
     assert_eq!(area(&parts[0]), 6.0);
-    assert_eq!(Union::default().finish(), Ok(None));
+    assert_eq!(Union::default().finish(&Work::default()), Ok(None));
 }
 
 #[test]

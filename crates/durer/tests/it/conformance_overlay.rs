@@ -93,7 +93,7 @@ fn clipper2_polygons_within_its_own_tolerances() {
         };
         // Clipper2 may join rings that touch, which OGC forbids: its count lies between ours with
         // touching rings taken as one, and ours.
-        let whole = Options { grid: Some(1.0), ..options };
+        let whole = Options { grid: Some(1.0), ..options.clone() };
         let rounded = checked(&name, &case.subject, &case.clip, case.op, &whole);
         let fits = |shapes: &Shapes| {
             let (joined, count) = (joined_rings(shapes) as i64, shapes.ring_count() as i64);
@@ -500,7 +500,7 @@ fn natural_earth_agrees_with_geos() {
             features
                 .iter()
                 .for_each(|f| all.append(&run(f, &none, BooleanOp::Union, &options).shapes));
-            let rule = Options { subject_rule: FillRule::NonZero, ..options };
+            let rule = Options { subject_rule: FillRule::NonZero, ..options.clone() };
             (features, run(&all, &none, BooleanOp::Union, &rule).shapes)
         });
         let ours = match kind {

@@ -2,7 +2,8 @@
 //!
 //! Scenes made by code are kept as PNG files in `tests/golden/`, real models as checksums, for their
 //! pictures do not belong to this repository. `DURER_BLESS=1` rewrites both; a picture that differs
-//! is written beside its golden one into `target/golden/`, with the difference as third panel.
+//! is written beside its golden one into `target/golden/`, with the difference as third panel. What code makes is compared at
+//! every SIMD level.
 
 use crate::{data, scenes};
 use durer::math::{DVec3, Vec3};
@@ -68,15 +69,22 @@ fn check(name: &str, found: &Pixels<[u8; 4]>) {
     }
 }
 
+/// Checks the picture at every SIMD level.
+fn check_render(name: &str, scene: &Scene, options: &RenderOptions) {
+    for level in durer::simd::levels() {
+        let options = RenderOptions { level, ..options.clone() };
+        check(name, &render(scene, &options).expect("picture").0.color);
+    }
+}
+
 #[test]
 fn scenes_made_by_code() {
     for (name, scene) in scenes::all() {
         let mut options = scenes::options(&scene, 160, 140);
-        check(name, &render(&scene, &options).expect("picture").0.color);
+        check_render(name, &scene, &options);
         for &shading in Shading::ALL {
             options.shading = Some(shading);
-            let picture = render(&scene, &options).expect("picture").0.color;
-            check(&format!("{name}_{shading}"), &picture);
+            check_render(&format!("{name}_{shading}"), &scene, &options);
         }
     }
 }
@@ -100,8 +108,7 @@ fn looks_made_by_code() {
     for (name, scene, surroundings, tone_map) in looks.into_iter().chain(mapped) {
         let mut options = scenes::options(scene, 120, 90);
         (options.surroundings, options.tone_map) = (surroundings, tone_map);
-        let picture = render(scene, &options).expect("picture").0.color;
-        check(&format!("look_{name}"), &picture);
+        check_render(&format!("look_{name}"), scene, &options);
     }
 }
 

@@ -457,7 +457,7 @@ fn visible_regions_of_mirrored_instances_keep_their_fronts() {
     for sign in [1.0, -1.0] {
         let mut scene = of_triangles(&square(-0.5, -0.5, 0.0, 1.0));
         scene.instances[0].world_from_mesh = DMat4::from_scale(DVec3::new(sign, 1.0, 1.0));
-        let options = Options { cull: Cull::Back };
+        let options = Options { cull: Cull::Back, ..Options::default() };
         let map = solve(&scene, &view, &options, &mut NoTrace).expect("solved");
         assert!(!map.regions(u64::from).is_empty(), "{sign}");
         // A half turn shows the back.

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::input;
 use crate::options::drawing::thread;
+use crate::toml_words::fault;
 use durer::annotate::{Along, Place, Request, Side, Thread, What};
 use durer::math::DVec3;
 use std::path::Path;
@@ -31,11 +32,12 @@ pub fn read(path: &Path) -> Result<Listed, Failure> {
 }
 
 /// Offset of an error in the file and its message.
-type Wrong = (usize, String);
+pub type Wrong = (usize, String);
 
-fn parse(text: &str) -> Result<Listed, Wrong> {
+/// Parses the text of the file.
+pub fn parse(text: &str) -> Result<Listed, Wrong> {
     let table = DeTable::parse(text)
-        .map_err(|e| (e.span().map_or(0, |s| s.start), e.message().to_owned()))?;
+        .map_err(|e| (e.span().map_or(0, |s| s.start), fault(e.message()).to_owned()))?;
     let mut listed = Listed::default();
     for (key, value) in table.get_ref() {
         let start = key.span().start;

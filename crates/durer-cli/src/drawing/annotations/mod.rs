@@ -10,6 +10,14 @@ use durer::scene::Scene;
 use durer::target::drawing::Drawing;
 use durer::visibility::object::{Faces, Weld};
 
+/// Parses the text of `--annotations`, for fuzzing.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn parse(text: &str) -> Result<(), String> {
+    file::parse(text).map(drop).map_err(|(_, what)| what)
+}
+
 /// The annotations asked for, and the round parts of the model.
 pub struct Annotated {
     annotations: Annotations,

@@ -52,8 +52,11 @@ pub fn write(out: &mut impl Write, features: &[Feature], system: &System) -> Res
     Ok(out.write_all(&bytes)?)
 }
 
-fn failed(error: ParquetError) -> Error {
-    Error::Io(std::io::Error::other(error.to_string()))
+fn failed(_: ParquetError) -> Error {
+    // It is written to memory, so what fails is the table itself.
+    Error::Io(std::io::Error::other(
+        "the features cannot be put into a table of Parquet; write another format",
+    ))
 }
 
 /// A field with the kind that it is stored as.

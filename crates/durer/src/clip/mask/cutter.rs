@@ -14,7 +14,7 @@ use crate::trace::NoTrace;
 use crate::{Error, Result};
 
 /// Mask, operation and settings for clipping geometries.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Cutter<'a> {
     /// Region to clip to.
     pub mask: &'a Mask,
@@ -225,7 +225,8 @@ impl<'a> Cutter<'a> {
             let lost = self.rules.loses(area, &near);
             return Ok(Cut { geometry: cut.into_geometry(), repaired, lost, ..Cut::default() });
         }
-        let options = coverage::Options { rule: self.rules.fill, mend: !apart, keep: false };
+        let work = self.rules.work.clone();
+        let options = coverage::Options { rule: self.rules.fill, mend: !apart, keep: false, work };
         let cut = coverage::cut(&area.shapes, self.mask.prepared(), self.op, &options)?;
         let (lost, snapped) = (cut.lost, cut.snapped);
         if cut.whole {

@@ -9,15 +9,18 @@ use crate::clip::polygon::{BooleanOp, FillRule, Shapes, coverage, vatti};
 use crate::geometry::Geometry;
 use crate::math::{DVec2, Rect};
 use crate::trace::NoTrace;
+use crate::work::Work;
 
 /// Fill rule of polygons and grid of their crossings.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Rules {
     /// Rule that decides which points crossing rings enclose.
     pub fill: FillRule,
     /// Size of a cell of the grid on which vertices are placed, in units of the coordinates; `None` computes
     /// exactly.
     pub grid: Option<f64>,
+    /// Budget of memory, and whether to go on.
+    pub work: Work,
 }
 
 /// Valid polygons made of others.
@@ -59,6 +62,7 @@ impl Rules {
             grid: self.grid.or_else(fit),
             origins: true,
             drop_collinear: false,
+            work: self.work.clone(),
         }
     }
 
@@ -88,7 +92,8 @@ impl Rules {
             let area = self.snapped(area, clip, op, subject_rule)?;
             return Ok(Made { area, ..Made::default() });
         }
-        let options = coverage::Options { rule: subject_rule, mend, keep: false };
+        let work = self.work.clone();
+        let options = coverage::Options { rule: subject_rule, mend, keep: false, work };
         let cut = coverage::join(&area.shapes, clip, op, &options)?;
         let snapped = cut.snapped;
         Ok(Made { area: area.cut(cut.shapes, &cut.sources), repaired: false, snapped })

@@ -4,6 +4,7 @@ use super::{Area, Rules};
 use crate::Result;
 use crate::clip::polygon::{BooleanOp, FillRule, Shapes};
 use crate::geometry::{Geometry, Points};
+use crate::work::Work;
 
 impl Area {
     /// Returns the union of polygons that are valid, each for itself, with outer rings counter-clockwise: borders
@@ -11,8 +12,8 @@ impl Area {
     ///
     /// # Errors
     /// As [`Rules::overlay`].
-    pub fn union(&self) -> Result<Self> {
-        let rules = Rules { fill: FillRule::Positive, grid: None };
+    pub fn union(&self, work: &Work) -> Result<Self> {
+        let rules = Rules { fill: FillRule::Positive, grid: None, work: work.clone() };
         Ok(rules.overlay(self, &Shapes::new(), BooleanOp::Union, FillRule::Positive)?.area)
     }
 }
@@ -23,6 +24,7 @@ impl Area {
 /// use durer::clip::mask::{Rules, Union};
 /// use durer::geometry::{Geometry, Points};
 /// use durer::math::DVec2;
+/// use durer::work::Work;
 ///
 /// let mut union = Union::default();
 /// for x in [0.0, 1.0] {
@@ -30,7 +32,7 @@ impl Area {
 ///     let square = Geometry::Polygon(vec![Points::flat(square.to_vec())]);
 ///     union.add(&square, &Rules::default().clean(&square)?.area);
 /// }
-/// let Some(Geometry::Polygon(rings)) = union.finish()? else { panic!("one polygon") };
+/// let Some(Geometry::Polygon(rings)) = union.finish(&Work::default())? else { panic!("one polygon") };
 /// assert_eq!(rings.len(), 1);
 /// # Ok::<(), durer::Error>(())
 /// ```
@@ -71,8 +73,8 @@ impl Union {
     ///
     /// # Errors
     /// As [`Area::union`].
-    pub fn finish(mut self) -> Result<Option<Geometry>> {
-        let area = self.area.union()?.into_geometry();
+    pub fn finish(mut self, work: &Work) -> Result<Option<Geometry>> {
+        let area = self.area.union(work)?.into_geometry();
         let lines = match self.lines.len() {
             0 => None,
             1 => self.lines.pop().map(Geometry::LineString),

@@ -41,8 +41,21 @@ impl NestingTree {
     /// ```
     pub fn of<P: Vertex>(shapes: &Shapes<P>) -> Self {
         let mut sweep = Sweep::new(shapes);
+        for polygon in shapes.polygons() {
+            let rings = polygon.ring_indices();
+            sweep.outers[rings.clone()].fill(rings.start);
+        }
         sweep.run();
         Self::from_parents(sweep.parents.into_iter().map(Place::ring).collect(), &sweep.order)
+    }
+
+    /// Returns for each ring the one directly around it, whatever polygons they are of: right where no edges cross or overlap and
+    /// each ring has an area, in the same time.
+    pub(super) fn rings_around<P: Vertex>(shapes: &Shapes<P>) -> Vec<Option<usize>> {
+        let mut sweep = Sweep::new(shapes);
+        sweep.by_sides = true;
+        sweep.run();
+        sweep.parents.into_iter().map(Place::ring).collect()
     }
 
     /// `order` names every ring that has a parent, and that parent before it.
@@ -131,8 +144,13 @@ impl Place {
 
 struct Sweep<P> {
     edges: Vec<Edge<P>>,
+    /// True for each edge along which its ring runs from the smaller to the larger point.
+    forward: Vec<bool>,
     /// Outer ring of each ring's polygon; itself for outer rings.
     outers: Vec<usize>,
+    /// True if the edges' directions tell on which side of them the inside of a ring is, and not what valid polygons
+    /// have there.
+    by_sides: bool,
     parents: Vec<Place>,
     /// The lower of the two edges at the first point of each outer ring, once the sweep met it.
     lowest: Vec<Option<usize>>,
@@ -144,23 +162,28 @@ impl<P: Vertex> Sweep<P> {
     fn new(shapes: &Shapes<P>) -> Self {
         let count = shapes.ring_count();
         let mut edges = Vec::with_capacity(shapes.points().len());
+        let mut forward = Vec::with_capacity(shapes.points().len());
         for (ring, points) in shapes.rings().enumerate() {
             for (&p, i) in points.iter().zip(1..) {
                 let q = points[if i < points.len() { i } else { 0 }];
-                match p.order(q) {
+                let order = p.order(q);
+                match order {
                     Ordering::Less => edges.push(Edge { a: p, b: q, ring }),
                     Ordering::Greater => edges.push(Edge { a: q, b: p, ring }),
-                    Ordering::Equal => {}
+                    Ordering::Equal => continue,
                 }
+                forward.push(order.is_lt());
             }
         }
-        let mut outers: Vec<usize> = (0..count).collect();
-        for polygon in shapes.polygons() {
-            let rings = polygon.ring_indices();
-            outers[rings.clone()].fill(rings.start);
+        Self {
+            edges,
+            forward,
+            outers: (0..count).collect(),
+            by_sides: false,
+            parents: vec![Place::Unknown; count],
+            lowest: vec![None; count],
+            order: Vec::new(),
         }
-        let parents = vec![Place::Unknown; count];
-        Self { edges, outers, parents, lowest: vec![None; count], order: Vec::new() }
     }
 
     fn run(&mut self) {
@@ -200,30 +223,31 @@ impl<P: Vertex> Sweep<P> {
     fn resolve(&mut self, ring: usize, status: &Status) {
         let mut chain = Vec::new();
         let mut at = ring;
-        let mut place = loop {
-            if self.parents[at] != Place::Unknown {
-                break self.above(at);
-            }
+        while self.parents[at] == Place::Unknown {
             // Marked, so that what is not valid does not lead around for ever.
             self.parents[at] = Place::Root;
-            chain.push(at);
             let below = self.lowest[at].and_then(|edge| status.below(edge));
-            match below {
-                Some(edge) => at = self.edges[edge].ring,
-                None => break Place::Root,
-            }
-        };
-        for ring in chain.into_iter().rev() {
+            chain.push((at, below));
+            let Some(edge) = below else { break };
+            at = self.edges[edge].ring;
+        }
+        for (ring, below) in chain.into_iter().rev() {
+            let place = below.map_or(Place::Root, |edge| self.above(edge));
             let outer = self.outers[ring];
             self.parents[ring] = if outer == ring { place } else { Place::In(outer) };
             self.order.push(ring);
-            place = self.above(ring);
         }
     }
 
-    /// Returns the place of an outer ring that starts just above an edge of a ring.
-    fn above(&self, ring: usize) -> Place {
-        if self.outers[ring] == ring { self.parents[ring] } else { Place::In(ring) }
+    /// Returns the place of a ring that starts just above an edge: of valid polygons an outer ring.
+    fn above(&self, edge: usize) -> Place {
+        let ring = self.edges[edge].ring;
+        let is_inside = match self.lowest[ring] {
+            // Just above the lower edge at its first point is the inside of a ring.
+            Some(lowest) if self.by_sides => self.forward[edge] == self.forward[lowest],
+            _ => self.outers[ring] != ring,
+        };
+        if is_inside { Place::In(ring) } else { self.parents[ring] }
     }
 }
 

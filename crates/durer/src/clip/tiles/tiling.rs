@@ -227,7 +227,7 @@ impl Content for Part<'_> {
         let cut = |&tile: &Tile| {
             let mask = &Mask::window(bounds(tile, tiling.coordinates)?)?;
             let cutter =
-                Cutter { mask, op: BooleanOp::Intersection, rules: *rules, algorithm: None };
+                Cutter { mask, op: BooleanOp::Intersection, rules: rules.clone(), algorithm: None };
             let cut = cutter.cut(&self.geometry)?;
             repaired.fetch_or(cut.repaired, Ordering::Relaxed);
             Ok(cut.geometry.map(|geometry| Part { subject: self.subject, geometry }))

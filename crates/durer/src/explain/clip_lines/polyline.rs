@@ -2,8 +2,8 @@
 
 use super::{NO_HEAD, p};
 use crate::Result;
-use crate::clip::polyline::{self, INFO, Step, clip};
 use crate::clip::polygon::Shapes;
+use crate::clip::polyline::{self, INFO, Step, clip};
 use crate::explain::frame::{Frame, Shown, frames, record};
 use crate::explain::input::{Figure, Input, Options};
 use crate::explain::lesson::{Example, Lesson};

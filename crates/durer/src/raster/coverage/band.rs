@@ -14,7 +14,7 @@ use super::sweep::{Rows, Sink, alpha, sweep};
 use super::turns::is_convex;
 use super::{FillRule, Options, Overlap};
 use crate::curve::Contours;
-use crate::raster::bands::{BAND_ROWS, Edges};
+use crate::raster::bands::{BAND_ROWS, CHUNK, Chunk, Edges};
 
 /// Convex paths with so many edges are filled without cells; with more, finding the two that cross a row costs more than
 /// cells do.
@@ -59,6 +59,37 @@ impl PathEdges {
     /// With the list it was made with.
     pub fn with<'a>(&'a self, list: &'a [Edge]) -> Path<'a> {
         Path { path: self, list }
+    }
+}
+
+/// The edges of a path that comes in parts, of some contours each, which need not be kept.
+#[derive(Debug)]
+pub(crate) struct PartsOfPath {
+    chunks: Vec<Chunk<Edge>>,
+    extent: outline::Extent,
+}
+
+impl PartsOfPath {
+    /// Begins without parts.
+    pub fn new() -> Self {
+        Self { chunks: Vec::new(), extent: outline::Extent::NONE }
+    }
+
+    /// Adds the edges of contours within a target of the given size; returns their size in bytes.
+    pub fn add(&mut self, contours: &Contours, (width, height): (u32, u32)) -> u64 {
+        let size = outline::size(width, height);
+        let (chunks, extent) = outline::chunks(contours, size, false, CHUNK);
+        self.extent.join(extent);
+        let bytes = chunks.iter().map(Chunk::bytes).sum();
+        self.chunks.extend(chunks);
+        bytes
+    }
+
+    /// Returns the path of all parts; a few edges are added to the list.
+    pub fn path(self, list: &mut Vec<Edge>) -> PathEdges {
+        let edges = Edges::from_chunks(self.chunks, list, Edge::rows);
+        let [rows, columns] = self.extent.pixels();
+        PathEdges { edges, rows, columns, convex: false, whole: false }
     }
 }
 

@@ -20,14 +20,15 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    const NONE: Self = Self { low: (i32::MAX, i32::MAX), high: (0, 0), cut: false };
+    /// Extent of nothing.
+    pub const NONE: Self = Self { low: (i32::MAX, i32::MAX), high: (0, 0), cut: false };
 
     fn add(&mut self, (x, y): (i32, i32)) {
         self.low = (self.low.0.min(x), self.low.1.min(y));
         self.high = (self.high.0.max(x), self.high.1.max(y));
     }
 
-    fn join(&mut self, other: Self) {
+    pub fn join(&mut self, other: Self) {
         self.low = (self.low.0.min(other.low.0), self.low.1.min(other.low.1));
         self.high = (self.high.0.max(other.high.0), self.high.1.max(other.high.1));
         self.cut |= other.cut;
@@ -53,7 +54,7 @@ pub(super) fn edges(
     convex: bool,
     list: &mut Vec<Edge>,
 ) -> (Edges<Edge>, Extent) {
-    let size = DVec2::new(f64::from(width.min(MAX_SIDE)), f64::from(height.min(MAX_SIDE)));
+    let size = size(width, height);
     let count = contours.points().len();
     if count <= FEW_EDGES {
         let first = list.len();
@@ -62,6 +63,11 @@ pub(super) fn edges(
     }
     let (chunks, extent) = chunks(contours, size, convex, CHUNK);
     (Edges::from_chunks(chunks, list, Edge::rows), extent)
+}
+
+/// Returns the size of a target, at most [`MAX_SIDE`] each way.
+pub(super) fn size(width: u32, height: u32) -> DVec2 {
+    DVec2::new(f64::from(width.min(MAX_SIDE)), f64::from(height.min(MAX_SIDE)))
 }
 
 /// Returns the edges of so many points at once; how many changes nothing in them.
@@ -76,6 +82,10 @@ pub(super) fn chunks(
         let mut builder = Builder::new(&mut edges, size, !convex);
         let extent = builder.add(contours, range);
         let parts = builder.parts;
+        // Most of what lies far beyond the target has no edges there.
+        if edges.len() < edges.capacity() / 2 {
+            edges.shrink_to_fit();
+        }
         (Chunk::new(edges, Edge::rows), extent, parts)
     });
     let mut extent = Extent::NONE;

@@ -16,6 +16,7 @@ use crate::raster::bands::BAND_ROWS;
 use crate::raster::coverage::sweep::{Sink, unpacked};
 use crate::raster::coverage::{self, convex};
 use crate::target::Pixels;
+use crate::work::Charge;
 
 /// Paints all commands over the target.
 pub(super) fn render<'a, P: Space>(
@@ -83,7 +84,14 @@ struct Painter<'a, P> {
     spare: Vec<Vec<P>>,
     /// The lines painted next.
     near: Vec<Line>,
+    /// Charge of layers and clips to the budget.
+    charge: Charge,
+    /// Largest number of clip paths that were open together.
+    most_clips: usize,
 }
+
+/// Stage of layers and clips in errors about memory.
+const LAYERS: &str = "layers of groups and clip paths";
 
 impl<P> Drop for Painter<'_, P> {
     fn drop(&mut self) {
@@ -102,7 +110,15 @@ impl<'a, P: Space> Painter<'a, P> {
             floors: Vec::new(),
             spare: Vec::new(),
             near: Vec::new(),
+            // Where the work is stopped nothing is painted.
+            charge: canvas.work.charge(LAYERS, 0).unwrap_or_default(),
+            most_clips: 0,
         }
+    }
+
+    /// Charges a buffer that is made; returns whether it fits, and stops the work where it does not.
+    fn hold(&mut self, bytes: usize) -> bool {
+        self.charge.grow(bytes as u64).map_err(|error| self.canvas.work.stop(error)).is_ok()
     }
 
     /// Paints the commands onto the rows of one band, whose first row is `top`.
@@ -148,12 +164,18 @@ impl<'a, P: Space> Painter<'a, P> {
                     dispatch!(level, simd => self.fill(simd, *outline, how, source, at));
                 }
                 Prepared::PushClip { outline, how } => {
+                    if !self.has_room_for_clip() {
+                        return;
+                    }
                     dispatch!(level, simd => self.push_clip(simd, *outline, how, top));
                 }
                 Prepared::PopClip => drop(self.clips.pop()),
-                Prepared::PushGroup => self.push_group(base.len()),
+                Prepared::PushGroup | Prepared::BeginMask => {
+                    if !self.push_group(base.len()) {
+                        return;
+                    }
+                }
                 Prepared::PopGroup { opacity, blend } => self.pop_group(*opacity, *blend, base),
-                Prepared::BeginMask => self.push_group(base.len()),
                 Prepared::EndMask { kind } => self.end_mask(*kind),
             }
         }
@@ -206,6 +228,15 @@ impl<'a, P: Space> Painter<'a, P> {
         }
     }
 
+    /// Returns whether one more clip path fits into the budget.
+    fn has_room_for_clip(&mut self) -> bool {
+        if self.clips.len() < self.most_clips {
+            return true;
+        }
+        self.most_clips += 1;
+        self.hold(self.width * BAND_ROWS as usize)
+    }
+
     fn push_clip<S: Simd>(
         &mut self,
         simd: S,
@@ -223,12 +254,17 @@ impl<'a, P: Space> Painter<'a, P> {
         self.clips.push(clip);
     }
 
-    fn push_group(&mut self, len: usize) {
+    /// Begins a layer; returns whether it fits into the budget.
+    fn push_group(&mut self, len: usize) -> bool {
         let mut layer = self.spare.pop().unwrap_or_default();
+        if layer.capacity() < len && !self.hold(len * size_of::<P>()) {
+            return false;
+        }
         layer.clear();
         layer.resize(len, P::CLEAR);
         self.layers.push(layer);
         self.floors.push(self.clips.len());
+        true
     }
 
     /// Makes a clip of the last layer.

@@ -16,16 +16,17 @@ pub use source::{Color, Filter, Gradient, Paint, Pattern, Shape, Spread};
 
 use std::sync::{Mutex, PoisonError};
 
+use super::coverage::band::PartsOfPath;
 use super::coverage::convex::Strip;
 use super::coverage::{self, FillRule, Overlap, check_size};
 use super::line::anti_aliased;
 use super::line::wide::{self, Stroke};
 use crate::curve::{Contours, Path, flatten};
-use crate::math::{DAffine2, DVec2};
+use crate::math::{DAffine2, DVec2, Rect};
 use crate::simd::{Level, default_level};
 use crate::target::Pixels;
 use crate::trace::NoTrace;
-use crate::work::Work;
+use crate::work::{Charge, Work};
 use crate::{Error, Result};
 use color::{Linear, Space, Srgb};
 use command::{Brush, Command, Line, Open, Prepared};
@@ -123,6 +124,9 @@ pub struct Canvas {
 
 /// Number of bytes recorded between two charges.
 const CHARGE: u64 = 1 << 18;
+
+/// Number of points of a stroke's outline whose edges are made before it goes on.
+const PART: usize = 1 << 16;
 
 /// Name of the recorded commands in errors about memory.
 const NOTED: &str = "outlines of what is painted";
@@ -249,15 +253,68 @@ impl Canvas {
             self.push_line(line);
             return Ok(());
         }
-        let tolerance = self.options.tolerance / stretch(self.transform).max(1e-9);
-        let outline = wide::outline(path, stroke, tolerance, &mut NoTrace)?;
+        let near = self.window().and_then(|window| wide::parts_near(path, stroke, window));
+        let outline = self.stroked(near.as_ref().unwrap_or(path), stroke)?;
         let overlap = match self.options.overlap {
             Overlap::Adaptive => Overlap::Measured,
             chosen => chosen,
         };
         let how = coverage::Options { rule: FillRule::NonZero, overlap };
-        self.fill_as(&outline.transformed(self.transform), how, paint, opacity);
+        self.push_fill(outline, how, paint, opacity);
         Ok(())
+    }
+
+    /// Returns the target, and a pixel around it, in the space of paths.
+    fn window(&self) -> Option<Rect> {
+        let (low, high) =
+            (DVec2::splat(-1.0), DVec2::new(f64::from(self.width), f64::from(self.height)) + 1.0);
+        let inverse = self.transform.inverse();
+        let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+        let corners = corners.map(|p| inverse.transform_point2(p));
+        // What cannot be inverted has no window.
+        if corners.iter().all(|p| p.is_finite()) { Rect::around(corners) } else { None }
+    }
+
+    /// Returns the edges of a stroke. They are made part by part, for outlines have many times as many points as paths.
+    fn stroked(&mut self, path: &Path, stroke: &Stroke) -> Result<Outline> {
+        let tolerance = self.options.tolerance / stretch(self.transform).max(1e-9);
+        let (map, size) = (self.transform, (self.width, self.height));
+        let is_whole = !self.anti_alias;
+        let mut parts: Option<PartsOfPath> = None;
+        let cost = wide::cost(path, tolerance);
+        let _walk = self.hold(if cost < CHARGE { 0 } else { cost })?;
+        let (mut charge, mut bytes) = (self.hold(0)?, 0);
+        let mut refused = None;
+        let part = |contours: &mut Contours| {
+            if refused.is_some() {
+                contours.clear();
+            }
+            if is_whole || contours.points().len() < PART {
+                return;
+            }
+            let taken = std::mem::take(contours).transformed(map);
+            bytes += parts.get_or_insert_with(PartsOfPath::new).add(&taken, size);
+            refused = charge.grow_to(bytes).err();
+        };
+        let rest = wide::outline_in_parts(path, stroke, tolerance, &mut NoTrace, part)?;
+        if let Some(error) = refused {
+            self.work.stop(error.clone());
+            return Err(error);
+        }
+        // From here on it is counted with the rest.
+        drop(charge);
+        let rest = rest.transformed(map);
+        let Some(mut parts) = parts else { return Ok(self.outline(&rest)) };
+        parts.add(&rest, size);
+        let outline = Outline::of_parts(parts, &mut self.lists);
+        self.own_edges += outline.bytes();
+        self.charge();
+        Ok(outline)
+    }
+
+    /// Takes memory for a while; where it does not fit the work is stopped.
+    fn hold(&self, bytes: u64) -> Result<Charge> {
+        self.work.charge(NOTED, bytes).inspect_err(|error| self.work.stop(error.clone()))
     }
 
     /// A thin straight line of one colour inside the target needs no path.
@@ -306,6 +363,10 @@ impl Canvas {
             return;
         }
         let outline = self.outline(contours);
+        self.push_fill(outline, how, paint, opacity);
+    }
+
+    fn push_fill(&mut self, outline: Outline, how: coverage::Options, paint: &Paint, opacity: f64) {
         if outline.rows().0 < outline.rows().1 {
             let brush = Brush::new(paint, self.transform, opacity);
             self.commands.push(Command::Fill { outline, how, brush });

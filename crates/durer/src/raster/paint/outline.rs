@@ -5,7 +5,7 @@ use fearless_simd_macros::simd;
 
 use crate::curve::Contours;
 use crate::raster::coverage;
-use crate::raster::coverage::band::{self, BandFiller, PathEdges};
+use crate::raster::coverage::band::{self, BandFiller, PartsOfPath, PathEdges};
 use crate::raster::coverage::edge::Edge;
 use crate::raster::coverage::sweep::Sink;
 use crate::raster::polygon::crossings::{self, CrossingEdges, CrossingFiller};
@@ -54,6 +54,11 @@ impl Outline {
         } else {
             Self::Hard(CrossingEdges::new(contours, width, height, &mut lists.hard))
         }
+    }
+
+    /// Returns the outline with smooth edges of a path that came in parts.
+    pub fn of_parts(parts: PartsOfPath, lists: &mut Lists) -> Self {
+        Self::Smooth(parts.path(&mut lists.smooth))
     }
 
     /// Returns its size besides the lists, in bytes.

@@ -22,6 +22,7 @@ use crate::target::drawing::Drawing;
 use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::surface::Cull;
+use crate::work::Work;
 use paint::Paint;
 use planar_map::faces::{Face, Frame};
 use planar_map::merge;
@@ -60,10 +61,12 @@ pub enum Fill {
 }
 
 /// Options for drawing regions.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Options {
     /// Faces to leave out.
     pub cull: Cull,
+    /// Budget of memory, and whether to go on.
+    pub work: Work,
     /// Rule that joins neighbours to one region.
     pub merge: Merge,
     /// Extent of shapes beyond their borders.
@@ -91,7 +94,7 @@ pub fn draw(
     scene.check()?;
     let world = World::new(scene)?;
     let lamps = Lamps::new(&world, view, lights, options.shadows)?;
-    let how = planar_map::Options { cull: options.cull };
+    let how = planar_map::Options { cull: options.cull, work: options.work.clone() };
     let more = |frame: &Frame, faces: &[Face]| lamps.edges(frame, faces);
     let map = planar_map::divide(scene, view, &how, more, &mut NoTrace)?;
     let paint = Paint::new(scene, view, lights, options, &world, &lamps, &map);

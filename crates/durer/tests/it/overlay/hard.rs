@@ -2,6 +2,7 @@
 
 use durer::clip::line::{LineClipper, Segment};
 use durer::clip::polygon::overlay::{Options, overlay};
+use durer::clip::polygon::vatti::vatti;
 use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, rectangle, signed_area};
 use durer::math::{DVec2, Rect};
 use durer::trace::NoTrace;
@@ -170,5 +171,28 @@ fn rings_of_a_hundred_thousand_vertices() {
     let expected = clipped(PolygonClipper::Rectangle);
     for clipper in [PolygonClipper::SutherlandHodgman, PolygonClipper::Overlay] {
         assert!((clipped(clipper) - expected).abs() < 1e-9 * expected, "{clipper}");
+    }
+}
+
+/// Straight below the first point of a hole in a lattice there is nothing but more such points.
+#[test]
+fn holes_in_columns_find_what_is_below_all_of_them() {
+    let square = |x: f64, y: f64, side: f64| {
+        [(x, y), (x + side, y), (x + side, y + side), (x, y + side)].map(DVec2::from)
+    };
+    let places = (0..144).map(|i| (f64::from(i % 12), f64::from(i / 12)));
+    // Around the upper left quarter there is a ring more, and a step to the left in each other row.
+    let mut rings = vec![square(-9.0, -9.0, 40.0), square(-5.0, 14.0, 12.0)];
+    rings.extend(places.clone().map(|(x, y)| square(4.0 * x - 4.0 + y % 2.0, 4.0 * y - 6.0, 2.0)));
+    let shapes = Shapes::from_rings(rings);
+    let none = Shapes::new();
+    for rule in [FillRule::EvenOdd, FillRule::Positive, FillRule::AbsGeqTwo] {
+        let swept =
+            vatti(&shapes, &none, BooleanOp::Union, &Options::with_rule(rule), &mut NoTrace);
+        let options = Options::with_rule(rule);
+        let found = overlay(&shapes, &none, BooleanOp::Union, &options, &mut NoTrace)
+            .expect("finite")
+            .shapes;
+        assert_eq!(found, swept.expect("finite").shapes, "{rule}");
     }
 }

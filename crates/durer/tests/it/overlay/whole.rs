@@ -51,7 +51,7 @@ proptest! {
     ) {
         let options = Options { origins: true, ..Options::with_rule(rule) };
         let whole = run(&a, &b, op, &options);
-        let grid = Options { grid: Some(1.0), ..options };
+        let grid = Options { grid: Some(1.0), ..options.clone() };
         let float = overlay(&floats(&a), &floats(&b), op, &grid, &mut NoTrace).expect("finite");
         prop_assert_eq!(&floats(&whole.shapes), &float.shapes);
         prop_assert_eq!((&whole.origins, whole.cell), (&float.origins, float.cell));

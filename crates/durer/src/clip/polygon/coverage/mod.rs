@@ -23,10 +23,11 @@ use crate::Result;
 use crate::clip::attribute::Source;
 use crate::math::Rect;
 use crate::trace::NoTrace;
+use crate::work::Work;
 use conform::{Mask, Subject};
 
 /// Options for the clipping method.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Options {
     /// Fill rule of the subject.
     pub rule: FillRule,
@@ -36,6 +37,8 @@ pub struct Options {
     /// True if vertices of the mask stay also where it runs along an edge of the subject on both sides of them: where the
     /// mask is what is cut, and the subject what it is cut with.
     pub keep: bool,
+    /// Budget of memory, and whether to go on.
+    pub work: Work,
 }
 
 /// Polygons that the mask leaves.
@@ -117,6 +120,7 @@ fn solve(subject: &Subject, mask: &Mask, op: BooleanOp, chosen: &Options) -> Res
         grid: finest_grid(bounds),
         origins: true,
         drop_collinear: false,
+        work: chosen.work.clone(),
     };
     let output = overlay(subject.shapes(), &mask.near.shapes, op, &options, &mut NoTrace)?;
     Ok(place::place(subject, mask, chosen.keep, output))

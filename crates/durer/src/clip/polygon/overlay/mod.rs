@@ -37,6 +37,7 @@ use super::{BooleanOp, FillRule, NestingTree, Shapes, Vertex};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
+use crate::work::Work;
 use crate::{Error, Result};
 
 use arrangement::Arrangement;
@@ -76,7 +77,7 @@ pub const INFO: Info = Info {
 };
 
 /// Options for an overlay.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Options {
     /// Fill rule of the subject.
     pub subject_rule: FillRule,
@@ -92,6 +93,8 @@ pub struct Options {
     /// True if vertices of the input are left out where the border of the result goes straight on. Else
     /// only what noding added is: neighbours that share a border, and heights along one, need them.
     pub drop_collinear: bool,
+    /// Budget of memory, and whether to go on.
+    pub work: Work,
 }
 
 impl Options {
@@ -294,7 +297,7 @@ impl<P: Vertex> Output<P> {
 /// # Errors
 /// [`Error::NonFinite`] for a coordinate that is not finite, [`Error::Parameter`] for a grid that is
 /// not positive or too fine and for coordinates beyond ±1e300, [`Error::Limit`] for too many points
-/// and for whole numbers too far apart.
+/// and for whole numbers too far apart; those of [`Options::work`].
 pub fn overlay<P: Vertex>(
     subject: &Shapes<P>,
     clip: &Shapes<P>,
@@ -333,8 +336,14 @@ pub(super) fn solve<P: Vertex>(
     });
     let causes = listens || options.origins;
     let job = Job { subject, clip, op, options, lattice: &lattice, winder, bounds, causes };
-    if lattice.fits::<i32>() { Ok(job.run::<i32>(t)) } else { Ok(job.run::<i64>(t)) }
+    if lattice.fits::<i32>() { job.run::<i32>(t) } else { job.run::<i64>(t) }
 }
+
+/// Bytes of the lists for each edge of the input, the edges themselves aside.
+const PER_EDGE: u64 = 24;
+
+/// Bytes of the graph and of the result for each node that an edge passes.
+const PER_HIT: u64 = 64;
 
 /// Limit on points, so that an edge's index and two flags fit 32 bits, and twice an edge's index
 /// too.
@@ -430,20 +439,25 @@ struct Job<'a, P: Vertex> {
 
 impl<P: Vertex> Job<'_, P> {
     /// Returns the order of the stages.
-    fn run<C: Coord>(&self, t: &mut impl Tracer<Step<P>>) -> Output<P> {
+    fn run<C: Coord>(&self, t: &mut impl Tracer<Step<P>>) -> Result<Output<P>> {
+        let work = &self.options.work;
+        let points = (self.subject.points().len() + self.clip.points().len()) as u64;
+        let _edges = work
+            .charge("edges of the overlay", points * (size_of::<Segment<C>>() as u64 + PER_EDGE))?;
         let inputs = [(self.subject, Operand::Subject), (self.clip, Operand::Clip)];
         let corners = self.bounds.iter().flatten().flat_map(|r| [r.min(), r.max()]);
-        let Some(around) = Rect::around(corners) else { return Output::default() };
+        let Some(around) = Rect::around(corners) else { return Ok(Output::default()) };
         let matters = |operand, ring: &[P]| self.matters(operand, ring);
         let outlines = Outlines::new(inputs, self.lattice, around, matters);
         let (segments, sources) =
             outlines.segments::<P, C>([self.subject, self.clip], self.lattice);
         let Some(block) = Block::around(&segments) else {
-            return Output { cell: self.lattice.cell(), ..Output::default() };
+            return Ok(Output { cell: self.lattice.cell(), ..Output::default() });
         };
         let grid = Grid::new(&segments, block, Spread::of(&segments, block));
         let ends = |i: u32| if sources[i as usize].reversed() { Ends::Second } else { Ends::First };
-        let noding = noding::node(&segments, &grid, ends, self.causes);
+        let noding = noding::node(&segments, &grid, ends, self.causes, work)?;
+        let _graph = work.charge("graph of the overlay", noding.hits.len() as u64 * PER_HIT)?;
         let search = Search { grid: &grid, segments: &segments, noding: &noding };
         let rings = edges::Rings { ends: &outlines.ends, sources: &sources };
         let graph = match self.winder {
@@ -465,7 +479,8 @@ impl<P: Vertex> Job<'_, P> {
         let kept = if self.options.drop_collinear { &[][..] } else { &noding.ends[..] };
         let rings = rings::link(graph, kept, &search, inside);
         self.report(&noding, t);
-        self.output(&rings, &noding, &segments, &sources, t)
+        work.check()?;
+        Ok(self.output(&rings, &noding, &segments, &sources, t))
     }
 
     /// Returns whether a ring can affect the result, by bounding boxes alone: outside its box a

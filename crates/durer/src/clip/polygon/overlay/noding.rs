@@ -7,12 +7,21 @@ use super::grid::{Band, Grid, Leaf};
 use super::lattice::{Coord, Point, Segment};
 use super::parallel;
 use super::strips::Strips;
+use crate::Result;
+use crate::work::{Charge, Work};
 
 /// Leaves with more segments than this are divided into strips, smaller ones compare all pairs.
 const CROWD: usize = 96;
 
 /// Number of pixels of a crowded leaf that one task searches for.
 const SEARCHES: usize = if cfg!(test) { 8 } else { 1 << 11 };
+
+/// Stage of the hot pixels in errors about memory.
+const STAGE: &str = "crossings of the overlay";
+
+/// Bytes that it takes at the most, on the way to the hot pixels, to find two segments that cross: the pair, its pixel, and which
+/// segments pass there, each in a list that grows.
+const PER_CROSSING: u64 = 128;
 
 /// Cause of a hot pixel, in one word; of several causes the smallest counts, so that an end comes
 /// before a crossing, and small indices first.
@@ -82,6 +91,8 @@ pub struct Noding<C> {
     pub starts: Vec<u32>,
     /// Indices into `nodes`.
     pub hits: Vec<u32>,
+    /// Charges of all that to the budget.
+    _charges: Vec<Charge>,
 }
 
 impl<C> Noding<C> {
@@ -119,13 +130,23 @@ struct Part<C> {
     ends: Vec<bool>,
     /// Segments and nodes that they pass, by the segments' indices over [`SHELF`].
     hits: Vec<Vec<(u32, u32)>>,
+    charge: Charge,
+}
+
+impl<C> Part<C> {
+    /// Returns its size in bytes.
+    fn bytes(&self) -> u64 {
+        let hits: usize = self.hits.iter().map(Vec::capacity).sum();
+        let nodes = self.nodes.capacity() * (size_of::<Point<C>>() + 2);
+        (nodes + self.causes.capacity() * size_of::<CauseWord>() + hits * 8) as u64
+    }
 }
 
 /// Hits are sorted by segment in shelves of so many: their lists fit the cache.
 const SHELF: usize = if cfg!(test) { 8 } else { 1 << 14 };
 
 /// Scratch space for one leaf.
-struct Workbench<C> {
+struct Workbench<'a, C> {
     segments: Vec<Segment<C>>,
     /// The smallest and largest y of each segment.
     spans: Vec<(C, C)>,
@@ -134,6 +155,7 @@ struct Workbench<C> {
     strips: Strips<C>,
     /// True to keep what made each node.
     causes: bool,
+    work: &'a Work,
 }
 
 /// Ends of a segment that have to become nodes.
@@ -149,20 +171,25 @@ pub enum Ends {
 
 /// Nodes all segments; `ends` tells which ends of each no other segment accounts for, `causes`
 /// whether to keep what made each node.
+///
+/// # Errors
+/// Those of the work: where crossings take more memory than it may have.
 pub fn node<C: Coord>(
     segments: &[Segment<C>],
     grid: &Grid,
     ends: impl Fn(u32) -> Ends + Sync + Send,
     causes: bool,
-) -> Noding<C> {
-    let mut parts = work(segments, grid, ends, causes);
+    work: &Work,
+) -> Result<Noding<C>> {
+    let mut parts = parts(segments, grid, ends, causes, work)?;
     let patch_ends = parallel::ends(parts.iter().map(|part| part.nodes.len()));
     let nodes = parallel::concat(&parts.iter().map(|part| &part.nodes[..]).collect::<Vec<_>>());
     let passed = parallel::concat(&parts.iter().map(|part| &part.passed[..]).collect::<Vec<_>>());
     let ends = parallel::concat(&parts.iter().map(|part| &part.ends[..]).collect::<Vec<_>>());
     let causes = parts.iter_mut().map(|part| std::mem::take(&mut part.causes)).collect();
     let (starts, hits) = gather(segments, &parts, &patch_ends, &nodes);
-    Noding { nodes, patch_ends, passed, ends, causes, starts, hits }
+    let _charges = parts.into_iter().map(|part| part.charge).collect();
+    Ok(Noding { nodes, patch_ends, passed, ends, causes, starts, hits, _charges })
 }
 
 /// Number of segment entries in one task: large enough to hide the cost of a task.
@@ -187,12 +214,13 @@ fn tasks(grid: &Grid) -> Vec<(&Band, &[Leaf])> {
     tasks
 }
 
-fn work<C: Coord>(
+fn parts<C: Coord>(
     segments: &[Segment<C>],
     grid: &Grid,
     ends: impl Fn(u32) -> Ends + Sync + Send,
     causes: bool,
-) -> Vec<Part<C>> {
+    work: &Work,
+) -> Result<Vec<Part<C>>> {
     let run = |(band, leaves): (&Band, &[Leaf])| {
         let mut part = Part {
             nodes: Vec::new(),
@@ -200,6 +228,7 @@ fn work<C: Coord>(
             passed: Vec::new(),
             ends: Vec::new(),
             hits: vec![Vec::new(); segments.len().div_ceil(SHELF)],
+            charge: work.charge(STAGE, 0)?,
         };
         let mut bench = Workbench {
             segments: Vec::new(),
@@ -208,6 +237,7 @@ fn work<C: Coord>(
             pixels: Vec::new(),
             strips: Strips::default(),
             causes,
+            work,
         };
         // About as many nodes as come out of this many entries.
         let load = leaves.iter().map(|leaf| band.items(leaf).len()).sum::<usize>() * 5 / 8;
@@ -218,14 +248,15 @@ fn work<C: Coord>(
         part.passed.reserve(load);
         part.ends.reserve(load);
         for leaf in leaves {
-            bench.leaf(segments, band.items(leaf), leaf, &ends, &mut part);
+            bench.leaf(segments, band.items(leaf), leaf, &ends, &mut part)?;
         }
-        part
+        part.charge.grow_to(part.bytes())?;
+        Ok(part)
     };
-    parallel::map(tasks(grid), run)
+    parallel::map(tasks(grid), run).into_iter().collect()
 }
 
-impl<C: Coord> Workbench<C> {
+impl<C: Coord> Workbench<'_, C> {
     fn leaf(
         &mut self,
         all: &[Segment<C>],
@@ -233,16 +264,16 @@ impl<C: Coord> Workbench<C> {
         leaf: &Leaf,
         ends: &impl Fn(u32) -> Ends,
         part: &mut Part<C>,
-    ) {
+    ) -> Result<()> {
         if items.is_empty() {
-            return;
+            return Ok(());
         }
         self.segments.clear();
         self.segments.extend(items.iter().map(|&i| all[i as usize]));
         self.pixels.clear();
         self.ends(items, leaf, ends);
         if items.len() > CROWD {
-            self.strips.build(&self.segments, leaf.block.min.0, leaf.block.max.0);
+            self.build_strips(leaf, part)?;
             let pixels = &mut self.pixels;
             self.strips.crossings(|i, j, p| push(pixels, leaf, items, (i, j), p));
         } else {
@@ -257,11 +288,25 @@ impl<C: Coord> Workbench<C> {
         }
         if items.len() > CROWD {
             self.crowd_hits(items, first, part);
+            part.charge.grow_to(part.bytes())?;
         } else {
             self.hits(items, first, part);
         }
         part.passed.extend(self.pixels.iter().map(|p| p.1.is_end_of_two()));
         part.ends.extend(self.pixels.iter().map(|p| p.1.is_end()));
+        Ok(())
+    }
+
+    /// Finds the crossings of a crowded leaf, as many as there is memory for.
+    fn build_strips(&mut self, leaf: &Leaf, part: &mut Part<C>) -> Result<()> {
+        let left = self.work.budget().saturating_sub(self.work.used());
+        let room = left / PER_CROSSING / parallel::threads() as u64;
+        self.strips.room = usize::try_from(room).ok().filter(|_| self.work.budget() < u64::MAX);
+        self.strips.build(&self.segments, leaf.block.min.0, leaf.block.max.0);
+        if self.strips.is_full() {
+            return part.charge.grow(left.saturating_add(1));
+        }
+        Ok(())
     }
 
     /// Every point of a ring is the start of one edge, so only starts are looked at there.

@@ -270,10 +270,8 @@ impl<C: Coord> Linker<'_, C> {
         let on = |e: usize| self.courses[e] != Course::No;
         let below =
             parallel::map(holes.chunks(SEARCHES).collect(), |some: &[(Point<C>, u32)]| {
-                let first = |id: u32| self.walks[id as usize].first;
-                some.iter()
-                    .map(|&(_, id)| search.below(&self.graph, first(id), on))
-                    .collect::<Vec<_>>()
+                let firsts = some.iter().map(|&(_, id)| self.walks[id as usize].first);
+                search.below_each(&self.graph, firsts, on)
             });
         for ((_, id), below) in holes.into_iter().zip(below.into_iter().flatten()) {
             let walk = below.map_or(NONE, |half| self.walk_of[half.edge()]);

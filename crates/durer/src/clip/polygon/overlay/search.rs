@@ -25,24 +25,46 @@ struct Piece<C> {
 }
 
 impl<C: Coord> Search<'_, C> {
-    /// Returns the highest of the edges that pass just left of a node, strictly below it, and that
-    /// `take` accepts, in the direction in which it passes to the right.
-    pub fn below(
+    /// Returns for each of some nodes, in the order of their points, the highest of the edges that pass just left of it,
+    /// strictly below it, and that `take` accepts, in the direction in which it passes to the right.
+    pub fn below_each(
         &self,
         graph: &Arrangement<C>,
-        node: u32,
+        nodes: impl Iterator<Item = u32>,
         take: impl Fn(usize) -> bool,
+    ) -> Vec<Option<Half>> {
+        let mut last: Option<(Point<C>, Option<Half>)> = None;
+        let below = nodes.map(|node| {
+            let p = graph.nodes[node as usize];
+            // Straight below there may be many, as in a lattice of holes: then each one's answer is that of the next.
+            let known = last.filter(|(q, _)| q.x == p.x).map(|(q, half)| (q.y.i64(), half));
+            let half = self.below(graph, p, known, &take);
+            last = Some((p, half));
+            half
+        });
+        below.collect()
+    }
+
+    /// Returns the edge below a point; `known` is a height at the same x, not above it, and the answer there.
+    fn below(
+        &self,
+        graph: &Arrangement<C>,
+        p: Point<C>,
+        known: Option<(i64, Option<Half>)>,
+        take: &impl Fn(usize) -> bool,
     ) -> Option<Half> {
-        let p = graph.nodes[node as usize];
         let (x, mut y) = (p.x.i64(), p.y.i64());
         let mut best: Option<Piece<C>> = None;
         while let Some((block, items)) = self.grid.locate(x, y) {
-            self.highest(graph, items, p, &take, &mut best);
+            self.highest(graph, items, p, take, &mut best);
             let floor = Point { x: p.x, y: C::from_i64(block.min.1) };
             if best.is_some_and(|top| cross(top.a, top.b, floor) <= C::Wide::default()) {
                 break;
             }
-            y = block.min.1 - 1;
+            match known {
+                Some((height, half)) if block.min.1 <= height => return half,
+                _ => y = block.min.1 - 1,
+            }
         }
         best.map(|piece| piece.half)
     }

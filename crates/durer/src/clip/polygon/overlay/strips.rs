@@ -42,6 +42,8 @@ pub struct Strips<C> {
     /// halved all.
     lists: Vec<u32>,
     found: Found<C>,
+    /// Number of pairs that there is memory for; with more the rest is not looked for.
+    pub room: Option<usize>,
     /// Segments of the strips that are being worked on, those of a part behind the whole's.
     open: Vec<u32>,
     /// Lowest and highest place on its staircase of each open segment in a strip.
@@ -87,6 +89,11 @@ impl<C: Coord> Strips<C> {
         self.strip(segments, (left - 1, right + 1), 0);
     }
 
+    /// Returns whether there are more pairs than there is memory for.
+    pub fn is_full(&self) -> bool {
+        is_full(&self.found, self.room)
+    }
+
     /// All pairs that cross, with their pixels; some pairs more than once, and of segments that lie on each other
     /// perhaps only the first.
     pub fn crossings(&self, mut f: impl FnMut(usize, usize, Point<C>)) {
@@ -101,6 +108,9 @@ impl<C: Coord> Strips<C> {
         let index = self.strips.len();
         self.strips.push(Strip::default());
         let mut stairs = (0, 0);
+        if self.is_full() {
+            return index as u32;
+        }
         if self.open.len() - start > FEW {
             stairs = self.staircase(&Bounds::new(segments, columns), start);
         }
@@ -217,6 +227,9 @@ impl<C: Coord> Strips<C> {
             list = &distinct;
         }
         for (k, &j) in list.iter().enumerate() {
+            if is_full(&self.found, self.room) {
+                return;
+            }
             for &i in &list[..k] {
                 if let Some(p) = segments[i as usize].crossing(&segments[j as usize]) {
                     self.found.push((i, j, p));
@@ -267,9 +280,15 @@ impl<C: Coord> Strips<C> {
         }
         self.places.clear();
         self.places.resize(rest.len(), (0, 0));
+        let room = self.room;
         let climb = |some: &[u32], places: &mut [(u32, u32)], found: &mut Found<C>| {
             let mut climber = Climber { bounds, stairs, below: (0, 0) };
-            some.iter().zip(places).for_each(|(&i, place)| *place = climber.climb(i, found));
+            for (&i, place) in some.iter().zip(places) {
+                if is_full(found, room) {
+                    return;
+                }
+                *place = climber.climb(i, found);
+            }
         };
         if parallel::threads() == 1 || rest.len() <= CLIMBS {
             return climb(rest, &mut self.places, &mut self.found);
@@ -300,6 +319,11 @@ impl<C: Coord> Strips<C> {
         let half = self.ends.len() / 2;
         self.ends.select_nth_unstable(half).1.i64()
     }
+}
+
+/// Returns whether there are more pairs than there is memory for.
+fn is_full<C>(found: &Found<C>, room: Option<usize>) -> bool {
+    room.is_some_and(|room| found.len() > room)
 }
 
 /// The borders of a strip, by their indices.

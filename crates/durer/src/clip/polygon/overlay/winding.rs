@@ -82,7 +82,7 @@ impl<C: Coord> Arrangement<'_, C> {
         order.sort_unstable_by_key(|part| part.first);
         let tasks = order.chunks(SEARCHES).collect();
         let below = parallel::map(tasks, |some: &[Part<C>]| {
-            some.iter().map(|part| search.below(self, part.node, |_| true)).collect::<Vec<_>>()
+            search.below_each(self, some.iter().map(|part| part.node), |_| true)
         });
         let mut around = vec![Winding::default(); parts.len()];
         for (part, below) in order.iter().zip(below.into_iter().flatten()) {

@@ -1,26 +1,73 @@
 //! The nesting of rings whose edges are apart.
 
 use super::{Fault, Flaw};
-use crate::clip::polygon::Shapes;
 use crate::clip::polygon::rectangle::Prepared;
+use crate::clip::polygon::{NestingTree, Shapes};
 use crate::math::{DVec2, Rect};
 use std::cell::OnceCell;
+
+/// Number of others that overlap a ring from left to right, on average, beyond which pairs of rings are too many.
+const CROWD: usize = if cfg!(test) { 2 } else { 512 };
 
 /// Returns whether holes lie in their outer rings, not in one another, and polygons not in one
 /// another; the edges are apart.
 pub fn nests(shapes: &Shapes) -> bool {
+    let rings = rings_of(shapes);
+    if is_crowded(&rings) {
+        return alternates(shapes);
+    }
     let mut nests = true;
-    each_misplaced(shapes, |_| {
+    each_misplaced_of(&rings, |_| {
         nests = false;
         false
     });
     nests
 }
 
-/// Calls for each ring that lies where it must not, as long as the answer is yes; the edges are apart.
-pub fn each_misplaced(shapes: &Shapes, mut tell: impl FnMut(Flaw) -> bool) {
+/// Calls for each ring that lies where it must not, as long as the answer is yes; the edges are apart. O(n log n) where there
+/// is none, O(n + k) for k pairs of rings of which one's box holds the other's, where there is.
+pub fn each_misplaced(shapes: &Shapes, tell: impl FnMut(Flaw) -> bool) {
+    let rings = rings_of(shapes);
+    if !is_crowded(&rings) || !alternates(shapes) {
+        each_misplaced_of(&rings, tell);
+    }
+}
+
+/// Returns whether directly around each hole is its outer ring, and directly around each outer ring a hole or nothing: then all
+/// that is around a ring comes in pairs of a hole and its outer ring, and nothing is misplaced.
+fn alternates(shapes: &Shapes) -> bool {
+    let around = NestingTree::rings_around(shapes);
+    let mut is_hole = vec![true; around.len()];
+    for polygon in shapes.polygons() {
+        is_hole[polygon.ring_indices()].iter_mut().take(1).for_each(|hole| *hole = false);
+    }
+    shapes.polygons().all(|polygon| {
+        let mut rings = polygon.ring_indices();
+        let outer = rings.start;
+        rings.all(|ring| match around[ring] {
+            None => ring == outer,
+            Some(around) if ring == outer => is_hole[around],
+            Some(around) => around == outer,
+        })
+    })
+}
+
+/// Returns whether there are too many pairs of rings of which one may be in the other.
+fn is_crowded(rings: &[Ring<'_>]) -> bool {
+    let mut left = rings.len().saturating_mul(CROWD);
+    let mut is_crowded = false;
+    each_beside(rings, |_, beside| {
+        let rest = left.checked_sub(beside.len());
+        is_crowded = rest.is_none();
+        left = rest.unwrap_or_default();
+        !is_crowded
+    });
+    is_crowded
+}
+
+fn rings_of(shapes: &Shapes) -> Vec<Ring<'_>> {
     let numbers = shapes.polygons().map(|polygon| polygon.ring_indices()).enumerate();
-    let rings: Vec<Ring<'_>> = numbers
+    numbers
         .flat_map(|(polygon, all)| all.clone().map(move |ring| (polygon, all.start, ring)))
         .filter_map(|(polygon, outer, index)| {
             let points = shapes.ring(index);
@@ -28,11 +75,14 @@ pub fn each_misplaced(shapes: &Shapes, mut tell: impl FnMut(Flaw) -> bool) {
             let prepared = OnceCell::new();
             Some(Ring { points, around, polygon, outer, index, prepared })
         })
-        .collect();
+        .collect()
+}
+
+fn each_misplaced_of(rings: &[Ring<'_>], mut tell: impl FnMut(Flaw) -> bool) {
     let mut at_home = vec![false; rings.len()];
     let mut within = Vec::new();
     let mut go_on = true;
-    each_within(&rings, |inner, outer| {
+    each_within(rings, |inner, outer| {
         let (a, b) = (&rings[inner], &rings[outer]);
         match (a.polygon == b.polygon, (a.is_hole(), b.is_hole())) {
             (true, (true, false)) => at_home[inner] = a.lies_in(b),
@@ -94,22 +144,70 @@ impl Ring<'_> {
 /// Calls for each ring and each other one whose box holds its box, as long as the answer is yes: in the
 /// order of their left ends, each with those that it may lie in or around.
 fn each_within(rings: &[Ring<'_>], mut f: impl FnMut(usize, usize) -> bool) {
-    let mut order: Vec<usize> = (0..rings.len()).collect();
-    order.sort_by(|&i, &j| rings[i].around.min().x.total_cmp(&rings[j].around.min().x));
     let holds = |i: usize, j: usize| {
         let (outer, inner) = (&rings[i].around, &rings[j].around);
         outer.contains(inner.min()) && outer.contains(inner.max())
     };
+    each_beside(rings, |next, beside| {
+        beside.iter().all(|&other| {
+            (!holds(other, next) || f(next, other)) && (!holds(next, other) || f(other, next))
+        })
+    });
+}
+
+/// Calls for each ring, in the order of their left ends, and those before it that overlap it from left to right, as long as
+/// the answer is yes.
+fn each_beside(rings: &[Ring<'_>], mut f: impl FnMut(usize, &[usize]) -> bool) {
+    let mut order: Vec<usize> = (0..rings.len()).collect();
+    order.sort_by(|&i, &j| rings[i].around.min().x.total_cmp(&rings[j].around.min().x));
     let mut active: Vec<usize> = Vec::new();
     for next in order {
         active.retain(|&i| rings[i].around.max().x >= rings[next].around.min().x);
-        for &other in &active {
-            let go_on =
-                (!holds(other, next) || f(next, other)) && (!holds(next, other) || f(other, next));
-            if !go_on {
-                return;
-            }
+        if !f(next, &active) {
+            return;
         }
         active.push(next);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Squares within squares, each a polygon with a square hole or without; `odd` is moved out of line.
+    fn squares(count: i32, odd: Option<i32>) -> Shapes {
+        let ring = |left: i32, right: i32| {
+            [(left, left), (right, left), (right, right), (left, right)]
+                .map(|(x, y)| DVec2::new(x.into(), y.into()))
+        };
+        let mut shapes = Shapes::new();
+        for i in 0..count {
+            let (low, high) = (4 * i, 1000 - 4 * i);
+            let moved = if odd == Some(i) { 5 } else { 1 };
+            shapes.push_ring(ring(low, high));
+            let mut hole = ring(low + moved, high - moved).to_vec();
+            hole.rotate_left(i as usize % 4);
+            if i % 2 == 0 {
+                hole.reverse();
+            }
+            shapes.push_ring(hole);
+            shapes.end_polygon();
+        }
+        shapes
+    }
+
+    #[test]
+    fn many_rings_in_one_another_are_told_as_few_are() {
+        for (shapes, right) in [(squares(100, None), true), (squares(100, Some(60)), false)] {
+            let rings = rings_of(&shapes);
+            assert!(is_crowded(&rings));
+            let mut told = 0;
+            each_misplaced_of(&rings, |_| {
+                told += 1;
+                true
+            });
+            assert_eq!((told == 0, alternates(&shapes), nests(&shapes)), (right, right, right));
+        }
+        assert!(!is_crowded(&rings_of(&squares(2, None))));
     }
 }

@@ -16,6 +16,7 @@ use crate::geometry::Geometry;
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::NoTrace;
+use crate::work::Work;
 use crate::{Error, Result};
 
 /// The facts of buffers.
@@ -34,7 +35,7 @@ pub const INFO: Info = Info {
 };
 
 /// Options for the distance of a buffer, and for its corners and ends.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// The distance, in units of the coordinates. Below 0 polygons shrink, and lines and points vanish.
     pub distance: f64,
@@ -47,12 +48,15 @@ pub struct Options {
     /// Largest distance of polygons from the arcs that they approximate, above 0; `None`: a thousandth of the
     /// distance.
     pub tolerance: Option<f64>,
+    /// Budget of memory, and whether to go on.
+    pub work: Work,
 }
 
 impl Default for Options {
     fn default() -> Self {
         let (join, cap) = (Join::Round, Cap::Round);
-        Self { distance: 1.0, join, cap, miter_limit: 5.0, tolerance: None }
+        let work = Work::default();
+        Self { distance: 1.0, join, cap, miter_limit: 5.0, tolerance: None, work }
     }
 }
 
@@ -154,7 +158,7 @@ pub fn of_geometry(geometry: &Geometry, rule: FillRule, options: &Options) -> Re
         return Ok(all);
     }
     all.append(&around);
-    Ok(Area::flat(all).union()?.shapes)
+    Ok(Area::flat(all).union(&options.work)?.shapes)
 }
 
 /// Collects the lines of a geometry, and its points as lines of one point.
@@ -179,11 +183,13 @@ fn joined(
     options: &Options,
 ) -> Result<Shapes> {
     let (stroke, tolerance) = options.stroke()?;
+    let _walk = options.work.charge("outline of the buffer", super::cost(path, tolerance))?;
     let outline = rings(&outline(path, &stroke, tolerance, &mut NoTrace)?);
     let rules = OverlayOptions {
         subject_rule: rule,
         clip_rule: FillRule::NonZero,
         drop_collinear: true,
+        work: options.work.clone(),
         ..OverlayOptions::default()
     };
     Ok(overlay(shapes, &outline, op, &rules, &mut NoTrace)?.shapes)

@@ -14,6 +14,7 @@
 pub mod buffer;
 mod contour;
 mod dashes;
+mod near;
 mod sides;
 
 use crate::curve::{Contours, Path, PathElement};
@@ -21,6 +22,7 @@ use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 use crate::{Error, Result};
+pub(crate) use near::parts_near;
 use sides::Pen;
 
 /// The facts of strokes.
@@ -145,6 +147,20 @@ pub fn outline(
     tolerance: f64,
     t: &mut impl Tracer<Step>,
 ) -> Result<Contours> {
+    outline_in_parts(path, stroke, tolerance, t, |_| {})
+}
+
+/// Returns the outline as [`outline`] does; `part` is shown what there is after each contour or dash, and may take it.
+///
+/// # Errors
+/// As [`outline`].
+pub(crate) fn outline_in_parts(
+    path: &Path,
+    stroke: &Stroke,
+    tolerance: f64,
+    t: &mut impl Tracer<Step>,
+    mut part: impl FnMut(&mut Contours),
+) -> Result<Contours> {
     check(stroke)?;
     let stroke = &Stroke { width: stroke.width.min(FARTHEST), ..stroke.clone() };
     if let Some((from, to)) = straight(path, stroke) {
@@ -163,9 +179,9 @@ pub fn outline(
             if dashes::only_dots(stroke) {
                 pen.join = Join::Round;
             }
-            contour::each(elements(&dashed), tolerance, |c| pen.stroke(c));
+            contour::each(elements(&dashed), tolerance, |c| pen.stroke(c, &mut part));
         }
-        None => contour::each(elements(path), tolerance, |c| pen.stroke(c)),
+        None => contour::each(elements(path), tolerance, |c| pen.stroke(c, &mut part)),
     }
     Ok(out)
 }
@@ -193,6 +209,30 @@ fn trace(outline: &Contours, t: &mut impl Tracer<Step>) {
         }
         t.step(|| Step::Point { vertex: *point, point: *point, part: Part::Cap });
     }
+}
+
+/// Returns about how many bytes the walk along a path takes at most: the vertices and pieces of its longest contour, and both
+/// sides of them.
+pub(crate) fn cost(path: &Path, tolerance: f64) -> u64 {
+    const BYTES: f64 = 128.0;
+    let (mut chords, mut at) = (0.0, DVec2::ZERO);
+    for element in path.elements() {
+        let (length, end) = match *element {
+            PathElement::MoveTo(p) | PathElement::LineTo(p) => (0.0, p),
+            PathElement::QuadTo(a, p) => (at.distance(a) + a.distance(p), p),
+            PathElement::CubicTo(a, b, p) => (at.distance(a) + a.distance(b) + b.distance(p), p),
+            PathElement::Close => continue,
+        };
+        chords += 1.0 + (length / (8.0 * tolerance)).sqrt();
+        at = end;
+    }
+    (chords * BYTES) as u64
+}
+
+/// Returns how far from its path a stroke reaches at most.
+fn reach(stroke: &Stroke) -> f64 {
+    let join = if stroke.join == Join::Miter { stroke.miter_limit } else { 1.0 };
+    stroke.width / 2.0 * join.max(std::f64::consts::SQRT_2)
 }
 
 /// Returns a point moved to where products of its coordinates stay finite.

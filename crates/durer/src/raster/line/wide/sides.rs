@@ -53,8 +53,13 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         }
     }
 
-    /// Appends the outline of a contour, which is left in any direction.
-    pub fn stroke(&mut self, contour: &mut Contour) {
+    /// Appends the outline of a contour, which is left in any direction, and shows what there is to `part`.
+    pub fn stroke(&mut self, contour: &mut Contour, part: &mut impl FnMut(&mut Contours)) {
+        self.append(contour);
+        part(&mut *self.out);
+    }
+
+    fn append(&mut self, contour: &mut Contour) {
         let Some(start) = contour.vertices.first().copied().filter(|_| contour.drawn) else {
             return;
         };

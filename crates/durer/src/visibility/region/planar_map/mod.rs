@@ -38,6 +38,7 @@ use crate::scene::Scene;
 use crate::trace::Tracer;
 use crate::view::View;
 use crate::visibility::surface::Cull;
+use crate::work::Work;
 use cells::Cells;
 use faces::{Face, Frame};
 use merge::{NOTHING, Patch};
@@ -59,10 +60,12 @@ pub const INFO: Info = Info {
 };
 
 /// Options for the solver.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Options {
     /// Faces to leave out.
     pub cull: Cull,
+    /// Budget of memory, and whether to go on.
+    pub work: Work,
 }
 
 /// Step of the solver; plane units.
@@ -194,7 +197,7 @@ pub(super) fn divide(
     for &(a, b) in &pieces {
         t.step(|| Step::Divide { from: frame.plane(a), to: frame.plane(b) });
     }
-    let map = Planar::new(&pieces);
+    let map = Planar::new(&pieces, &options.work)?;
     drop(pieces);
     let count = |map: &Planar| (map.points.len(), map.edges.len(), map.face_count);
     t.step(|| {

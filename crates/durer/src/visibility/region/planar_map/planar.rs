@@ -2,12 +2,14 @@
 //! to the faces that they lie in.
 
 use super::faces::{Place, float};
+use crate::Result;
 use crate::clip::polygon::overlay::arrangement::Arrangement;
 use crate::clip::polygon::overlay::grid::{self, Block, Grid, Spread};
 use crate::clip::polygon::overlay::lattice::{Segment, cross};
 use crate::clip::polygon::overlay::noding::{self, Ends};
 use crate::clip::polygon::overlay::search::Search;
 use crate::math::DVec2;
+use crate::work::Work;
 
 const NONE: u32 = u32::MAX;
 
@@ -31,22 +33,25 @@ pub struct Planar {
 
 impl Planar {
     /// Nodes the segments and finds what they bound.
-    pub fn new(pieces: &[(Place, Place)]) -> Self {
+    ///
+    /// # Errors
+    /// Those of the work.
+    pub fn new(pieces: &[(Place, Place)], work: &Work) -> Result<Self> {
         let segments: Vec<Segment<i32>> = pieces.iter().map(|&(a, b)| Segment { a, b }).collect();
         let Some(block) = Block::around(&segments) else {
-            return Self { face_count: 1, starts: vec![0], ..Self::default() };
+            return Ok(Self { face_count: 1, starts: vec![0], ..Self::default() });
         };
         let segments: Vec<Segment<i32>> = match grid::spatial_order(&segments, block) {
             Some(order) => order.iter().map(|&i| segments[i as usize]).collect(),
             None => segments,
         };
         let grid = Grid::new(&segments, block, Spread::of(&segments, block));
-        let noding = noding::node(&segments, &grid, |_| Ends::Both, false);
+        let noding = noding::node(&segments, &grid, |_| Ends::Both, false, work)?;
         let graph = Arrangement::of_lines(&noding);
         let search = Search { grid: &grid, segments: &segments, noding: &noding };
         let mut planar = Self::of(&graph);
         planar.find_faces(&graph, &search);
-        planar
+        Ok(planar)
     }
 
     fn of(graph: &Arrangement<i32>) -> Self {
@@ -123,8 +128,8 @@ impl Planar {
         }
         parts.sort_unstable();
         self.part_count = parts.len();
-        for (_, vertex, cycle) in parts {
-            let below = search.below(graph, vertex, |_| true);
+        let below = search.below_each(graph, parts.iter().map(|part| part.1), |_| true);
+        for ((_, _, cycle), below) in parts.into_iter().zip(below) {
             let face = below.map_or(0, |half| face_of_cycle[cycle_of[half.0 as usize] as usize]);
             // Parts further left are done before; one that is not found lies around everything.
             face_of_cycle[cycle as usize] = if face == NONE { 0 } else { face };

@@ -1,0 +1,235 @@
+//! The `durer` command, as a function: the binary calls it, and fuzz targets what it parses.
+
+mod algorithms;
+mod args;
+mod beside;
+mod camera;
+mod clip;
+mod color;
+mod compare;
+mod config;
+mod draw;
+mod drawing;
+mod encoding;
+mod environment;
+mod explain;
+mod explode;
+mod failure;
+mod fill;
+mod film;
+#[doc(hidden)]
+pub mod fuzzing;
+mod info;
+mod input;
+mod kind;
+mod layer;
+mod lights;
+mod memory;
+mod messages;
+mod options;
+mod output;
+mod panics;
+mod pick;
+mod places;
+mod plot;
+mod progress;
+mod regions;
+mod render;
+mod render_args;
+mod report;
+mod resources;
+mod sandbox;
+mod section;
+mod shape;
+mod sides;
+mod staging;
+mod threads;
+mod thumbnailer;
+mod tiles;
+mod toml_words;
+mod values;
+mod warp;
+mod watch;
+
+use args::{Cli, Command};
+use clap::parser::ValueSource;
+use clap::{CommandFactory, FromArgMatches};
+use config::Configured;
+use durer_formats::told::shown_path;
+use encoding::EncodingArgs;
+use failure::Failure;
+use options::RunningArgs;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Runs the command with the arguments of the process, and returns its exit code.
+pub fn main() -> ExitCode {
+    failure::tell_of_large_files();
+    let result = panics::told_at_the_end(parse_and_run);
+    if let Some(code) = watch::interrupted() {
+        return ExitCode::from(code);
+    }
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            let message = failure.to_string();
+            if !message.is_empty() {
+                // A closed standard error leaves nobody to tell; the exit code still says it.
+                let _ = writeln!(std::io::stderr().lock(), "durer: {message}");
+            }
+            failure.exit_code()
+        }
+    }
+}
+
+/// Parses the arguments and runs the command; for a wrong option that comes from the file of
+/// options, the error names that file.
+fn parse_and_run() -> Result<(), Failure> {
+    let (command, file) = parse()?;
+    run(command).map_err(|failure| match (failure, file) {
+        (Failure::Usage(what), Some(file)) => {
+            Failure::Usage(format!("{what} (options of {} count, too)", shown_path(&file)))
+        }
+        (other, _) => other,
+    })
+}
+
+/// Returns the command line, with the options of a file; what was given by hand is noted where that
+/// matters.
+fn parse() -> Result<(Command, Option<PathBuf>), Failure> {
+    let Configured { command, line, file } =
+        config::configured(Cli::command(), std::env::args_os().collect())?;
+    let matches = command.try_get_matches_from(line).map_err(answered)?;
+    let mut cli = Cli::from_arg_matches(&matches).map_err(answered)?;
+    let Some((name, given)) = matches.subcommand() else { return Ok((cli.command, file)) };
+    let by_hand =
+        |id: &&clap::Id| given.value_source(id.as_str()) == Some(ValueSource::CommandLine);
+    let names: Vec<String> = given.ids().filter(by_hand).map(ToString::to_string).collect();
+    if let Some(encoding) = encoding(&mut cli.command) {
+        encoding.quality_given = names.iter().any(|name| name == "quality");
+    }
+    places::settle(name, given)?;
+    if let Some(file) = file.as_ref().filter(|_| is_verbose(given)) {
+        let message = format!("durer: options are taken from {} too", shown_path(file));
+        // As for errors: nobody is there to be told that it failed.
+        let _ = writeln!(std::io::stderr().lock(), "{message}");
+    }
+    if let Command::Render(args) = &mut cli.command {
+        args.given = names;
+    }
+    if let Some(running) = running(&mut cli.command) {
+        running.work = watch::work(running);
+    }
+    Ok((cli.command, file))
+}
+
+/// Returns the options about threads, limits and messages of a command that has them.
+fn running(command: &mut Command) -> Option<&mut RunningArgs> {
+    Some(match command {
+        Command::Render(args) => &mut args.running,
+        Command::Info(args) => &mut args.running,
+        Command::Clip(args) => &mut args.running,
+        Command::Buffer(args) => &mut args.files.running,
+        Command::Dissolve(args) => &mut args.files.running,
+        Command::Fix(args) => &mut args.files.running,
+        Command::Check(args) => &mut args.running,
+        Command::Tiles(args) => &mut args.running,
+        Command::Simplify(args) => &mut args.files.running,
+        Command::Warp(args) => &mut args.running,
+        Command::Draw(args) => &mut args.running,
+        Command::Fill(args) => &mut args.running,
+        Command::Pick(args) => &mut args.running,
+        Command::Plot(args) => &mut args.running,
+        Command::Explain(args) => &mut args.running,
+        Command::Algorithms(_)
+        | Command::Thumbnailer(_)
+        | Command::Completions { .. }
+        | Command::Man => return None,
+    })
+}
+
+/// Returns the encoding options of a command that makes pictures.
+fn encoding(command: &mut Command) -> Option<&mut EncodingArgs> {
+    match command {
+        Command::Render(args) => Some(&mut args.picture.encoding),
+        Command::Draw(args) => Some(&mut args.picture.file.encoding),
+        Command::Fill(args) => Some(&mut args.file.encoding),
+        Command::Warp(args) => Some(&mut args.file.encoding),
+        Command::Plot(args) => Some(&mut args.look.encoding),
+        _ => None,
+    }
+}
+
+fn is_verbose(given: &clap::ArgMatches) -> bool {
+    given.ids().any(|id| id == "verbose") && given.get_flag("verbose")
+}
+
+/// Ends with what clap has to say: help and version, or what is wrong with the command line. A failure is what keeps it
+/// from being said.
+fn answered(answer: clap::Error) -> Failure {
+    if answer.use_stderr() {
+        answer.exit();
+    }
+    match answer.print().and_then(|()| std::io::stdout().flush()) {
+        Ok(()) => std::process::exit(answer.exit_code()),
+        Err(e) => Failure::of_stdout(&e),
+    }
+}
+
+fn run(command: Command) -> Result<(), Failure> {
+    match command {
+        Command::Render(args) => on_threads(&args.running, || render::run(&args)),
+        Command::Info(args) => on_threads(&args.running, || info::run(&args)),
+        Command::Clip(args) => on_threads(&args.running, || clip::run(&args)),
+        Command::Buffer(args) => on_threads(&args.files.running, || regions::buffer(&args)),
+        Command::Dissolve(args) => on_threads(&args.files.running, || regions::dissolve(&args)),
+        Command::Fix(args) => on_threads(&args.files.running, || regions::fix(&args)),
+        Command::Check(args) => on_threads(&args.running, || regions::check(&args)),
+        Command::Tiles(args) => on_threads(&args.running, || tiles::run(&args)),
+        Command::Simplify(args) => on_threads(&args.files.running, || regions::simplify(&args)),
+        Command::Warp(args) => on_threads(&args.running, || warp::run(&args)),
+        Command::Draw(args) => on_threads(&args.running, || draw::run(&args)),
+        Command::Fill(args) => on_threads(&args.running, || fill::run(&args)),
+        Command::Pick(args) => on_threads(&args.running, || pick::run(&args)),
+        Command::Plot(args) => on_threads(&args.running, || plot::run(&args)),
+        Command::Algorithms(args) => algorithms::run(&args),
+        Command::Explain(args) => on_threads(&args.running, || explain::run(&args)),
+        Command::Thumbnailer(args) => thumbnailer::run(&args),
+        Command::Completions { shell } => completions(shell),
+        Command::Man => manual(),
+    }
+}
+
+/// Runs the work on as many threads and with the instructions that were asked for.
+fn on_threads(
+    args: &RunningArgs,
+    work: impl FnOnce() -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    watch::start(args);
+    if let Some(level) = args.simd {
+        durer::simd::set_default_level(level);
+    }
+    threads::start(args)?;
+    work()
+}
+
+fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "durer", &mut script);
+    report::print_text(&String::from_utf8_lossy(&script))
+}
+
+/// One page: the command, then each subcommand with all of its options.
+fn manual() -> Result<(), Failure> {
+    let mut page = Vec::new();
+    let mut command = Cli::command();
+    command.build();
+    let render =
+        |c: &clap::Command, out: &mut Vec<u8>| clap_mangen::Man::new(c.clone()).render(out);
+    render(&command, &mut page).map_err(|e| Failure::of_stdout(&e))?;
+    for sub in command.get_subcommands().filter(|c| c.get_name() != "help") {
+        render(sub, &mut page).map_err(|e| Failure::of_stdout(&e))?;
+    }
+    report::print_text(&String::from_utf8_lossy(&page))
+}
