@@ -22,7 +22,7 @@ fn round_trip(format: GeoFormat, bytes: &[u8]) {
     assert_eq!(write(format, &second), text, "{}", String::from_utf8_lossy(&text));
 }
 
-/// Returns all features, where there is no error.
+/// Returns all features, if there is no error.
 fn read(format: GeoFormat, bytes: &[u8]) -> Option<Vec<Feature>> {
     let mut reader = Reader::new(format, bytes).ok()?;
     let mut features = Vec::new();
@@ -221,7 +221,7 @@ fn settles(format: GeoFormat, bytes: &[u8]) {
     assert_eq!(again(&second), second);
 }
 
-/// One file for every other that is asked for: a table, its encoding, and the coordinate system.
+/// One file for every other that is requested: a table, its encoding, and the coordinate system.
 struct Others<'a>(&'a [u8]);
 
 impl Resources for Others<'_> {

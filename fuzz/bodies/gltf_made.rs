@@ -45,7 +45,7 @@ const NUMBERS: &[&str] = &[
 struct Made<'a, 'b>(&'b mut Unstructured<'a>);
 
 impl Made<'_, '_> {
-    /// Tells whether something rare happens: once in so many times.
+    /// Tells whether something rare happens: once in this many times.
     fn rarely(&mut self, times: u8) -> Result<bool> {
         Ok(self.0.int_in_range(1..=times)? == times)
     }
@@ -71,7 +71,7 @@ impl Made<'_, '_> {
         Ok(format!("[{}]", numbers.join(",")))
     }
 
-    /// Returns an index of one of so many, hardly ever another number.
+    /// Returns an index of one of this many, hardly ever another number.
     fn index(&mut self, count: usize) -> Result<String> {
         if self.rarely(32)? {
             self.number()

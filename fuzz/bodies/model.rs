@@ -420,7 +420,7 @@ const OFF: &[&str] = &[
     "\n",
 ];
 
-/// FBX: where it is not read, there is a word.
+/// FBX: if it is not read, there is a word.
 pub fn fbx(bytes: &[u8]) {
     check(fbx::read(bytes, &Same(bytes), &options()));
 }

@@ -85,7 +85,7 @@ impl From<&Info> for Told {
     }
 }
 
-/// Prints the algorithms that were asked for.
+/// Prints the algorithms that were requested.
 pub fn run(args: &AlgorithmsArgs) -> Result<(), Failure> {
     let found: Vec<Told> =
         ALGORITHMS.iter().filter(|i| is_wanted(args, i)).map(|i| Told::from(*i)).collect();

@@ -34,13 +34,13 @@ pub enum Command {
     /// Cut map data to windows, polygons or tiles
     #[command(after_long_help = crate::clip::EXAMPLES, after_help = "--help shows more, and examples.")]
     Clip(Box<crate::clip::ClipArgs>),
-    /// Make vector tiles of map data for the web: PMTiles, MBTiles, or a file per tile
+    /// Cut map data into vector tiles for the web: PMTiles, MBTiles, or one file per tile
     #[command(after_long_help = crate::tiles::EXAMPLES, after_help = "--help shows more, and examples.")]
     Tiles(Box<crate::tiles::TilesArgs>),
-    /// Leave out points of map data; borders that neighbours share stay shared
+    /// Remove points from map data; borders that neighbours share stay shared
     #[command(after_long_help = crate::regions::SIMPLIFY, after_help = "--help shows more, and examples.")]
     Simplify(Box<crate::regions::SimplifyArgs>),
-    /// Make polygons that reach a distance farther than features do, or less far
+    /// Grow or shrink features by a distance
     #[command(after_long_help = crate::regions::BUFFER, after_help = "--help shows more, and examples.")]
     Buffer(Box<crate::regions::BufferArgs>),
     /// Join features that have the same values of some fields
@@ -49,20 +49,20 @@ pub enum Command {
     /// Make polygons valid
     #[command(after_long_help = crate::regions::FIX, after_help = "--help shows more, and examples.")]
     Fix(Box<crate::regions::FixArgs>),
-    /// Say what is wrong with polygons, and with a coverage, and where
+    /// Report invalid polygons and coverage errors, with their places
     #[command(after_long_help = crate::regions::CHECK, after_help = "--help shows more, and examples.")]
     Check(Box<crate::regions::CheckArgs>),
-    /// Draw an SVG, or a map of GeoJSON, WKT or WKB layers, to a picture
+    /// Draw an SVG file, or a map with layers, as a picture
     #[command(after_long_help = crate::draw::EXAMPLES, after_help = "--help shows more, and examples.")]
     Draw(Box<crate::draw::DrawArgs>),
-    /// Fill what is connected with a pixel of a PNG or JPEG, by seed fill
+    /// Fill the connected area around a pixel of a PNG or JPEG
     #[command(after_long_help = crate::fill::EXAMPLES, after_help = "--help shows more, and examples.")]
     Fill(Box<crate::fill::FillArgs>),
-    /// Say what is in a model, or in a layer of a map
+    /// Describe a model, or the layers of a map
     Info(InfoArgs),
-    /// Say which objects, triangles, lines and points lie behind a point or a rectangle of the picture
+    /// List the objects, triangles, lines and points at a point or in a rectangle of the picture
     Pick(Box<PickArgs>),
-    /// Make a new view from a picture and its depths, for a camera near by
+    /// Compute the view of a nearby camera from a picture and its depths
     #[command(after_long_help = crate::warp::EXAMPLES, after_help = "--help shows more, and examples.")]
     Warp(Box<crate::warp::WarpArgs>),
     /// Plot a surface y = f(x, z): a formula or a height map
@@ -74,7 +74,7 @@ pub enum Command {
     /// Explain an algorithm step by step: a sheet of pictures, a page with buttons, or data
     #[command(after_long_help = crate::explain::EXAMPLES, after_help = "--help shows more, and examples.")]
     Explain(Box<crate::explain::ExplainArgs>),
-    /// Write what lets file managers show models as small pictures
+    /// Write the file that lets file managers show thumbnails of models
     #[command(after_help = crate::thumbnailer::HELP)]
     Thumbnailer(crate::thumbnailer::ThumbnailerArgs),
     /// Write a completion script for a shell to standard output

@@ -9,7 +9,7 @@ use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// The files that are being written now, for whoever interrupts the process.
+/// The files that are being written now, for interruptions of the process.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 /// A new file in the folder of another one, which it replaces when it is whole. Dropped before that,

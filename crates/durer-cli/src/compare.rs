@@ -49,7 +49,7 @@ pub fn wireframe(scene: &Scene, options: &RenderOptions) -> durer::Result<Frameb
     Ok(framebuffer)
 }
 
-/// Returns the pictures of all algorithms, each as large as was asked for, with their names and the
+/// Returns the pictures of all algorithms, each as large as was requested, with their names and the
 /// number of pixels whose item is not the z-buffer's.
 pub fn sheet(
     scene: &Scene,

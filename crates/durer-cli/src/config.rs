@@ -13,7 +13,7 @@ use settings::{Setting, read};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// The file that is taken where none is named.
+/// The file that is taken if none is named.
 const NAME: &str = "durer.toml";
 
 /// More than anybody writes.
@@ -32,10 +32,10 @@ the command line wins over the file; --no-config leaves the file out.";
 /// File with further options.
 #[derive(Debug, Clone, Args)]
 pub struct ConfigArgs {
-    /// Take further options from this file [default: durer.toml, where there is one]
+    /// Read options from this file [default: durer.toml, if it exists]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, global = true, conflicts_with = "no_config", help_heading = "Running")]
     pub config: Option<PathBuf>,
-    /// Take no options from durer.toml
+    /// Ignore durer.toml
     #[arg(long, global = true, help_heading = "Running")]
     pub no_config: bool,
 }
@@ -46,7 +46,7 @@ pub struct Configured {
     pub command: Command,
     /// Arguments as given, except for values that a file can only write in its own words.
     pub line: Vec<OsString>,
-    /// The file, where there is one.
+    /// The file, if there is one.
     pub file: Option<PathBuf>,
 }
 

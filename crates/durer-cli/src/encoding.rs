@@ -9,12 +9,12 @@ use durer::target::Pixels;
 use durer_formats::picture::{self, Encoding, PictureFormat};
 
 /// Warning for a JPEG whose picture was not opaque.
-pub const FLATTENED: &str = "a JPEG has no transparency; what is not opaque lies on white";
+pub const FLATTENED: &str = "a JPEG has no transparency; the picture is composed with white";
 
 /// Formats and sizes of files.
 #[derive(Debug, Clone, Args)]
 pub struct EncodingArgs {
-    /// Effort of PNG compression: `fast` or `small`; the pixels are the same
+    /// Effort of PNG compression; the pixels do not change
     #[arg(long, value_name = "HOW", default_value = "fast")]
     pub compression: Compression,
     /// Quality of a JPEG, 1 to 100 [default: 90]
@@ -39,7 +39,7 @@ pub struct PictureFileArgs {
 /// `--compression`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Compression {
-    /// Some twenty times faster than `small`
+    /// About twenty times faster than `small`
     Fast,
     /// Files a quarter to a half smaller
     Small,
@@ -74,7 +74,7 @@ impl EncodingArgs {
         }
     }
 
-    /// Encodes a picture and puts it in its place; tells whether it had to be laid onto white.
+    /// Encodes a picture and writes it; returns whether it had to be composed with white.
     pub fn deliver(
         &self,
         target: &Target,

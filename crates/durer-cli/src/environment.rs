@@ -9,7 +9,7 @@ use durer::work::Work;
 use durer_formats::{Limits, hdr};
 use std::sync::Arc;
 
-/// Reads the panorama if one is asked for, so that pictures find it.
+/// Reads the panorama if one is requested, so that pictures find it.
 pub fn read(look: &LookArgs, work: &Work) -> Result<(), Failure> {
     let surroundings = match &look.environment {
         Environment::Studio => Surroundings::Studio,

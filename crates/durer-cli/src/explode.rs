@@ -10,11 +10,11 @@ use durer::view::explode::{self, Way};
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Section")]
 pub struct ExplodeArgs {
-    /// Move the parts of an assembly apart: along x, y or z, or radial, away from the middle
+    /// Move the parts of an assembly apart along x, y or z, or radially from the middle
     ///
-    /// Parts are the objects of the file. GAP is the free space between neighbours along the axis, or how far the outermost
-    /// part moves away from the middle, in the model's units. Along an axis, lines lead from part to part. Sections
-    /// without a letter are cut before, those with one after.
+    /// Parts are the objects of the file. GAP is the free space between neighbours along the axis, or how far the
+    /// outermost part moves away from the middle, in the model's units. Along an axis, lines connect the parts.
+    /// Sections without a letter are cut before, those with one after.
     #[arg(long, value_name = "AXIS[:GAP]", allow_hyphen_values = true, value_parser = exploded)]
     pub explode: Option<Explode>,
 }
@@ -32,7 +32,7 @@ fn exploded(text: &str) -> Result<Explode, String> {
     Ok(Explode { way, gap: gap.map(values::positive).transpose()? })
 }
 
-/// Moves the parts of a scene apart, where that is asked for.
+/// Moves the parts of a scene apart, if requested.
 pub fn apply(args: &ExplodeArgs, scene: &mut Scene) -> Result<(), Failure> {
     if let Some(Explode { way, gap }) = args.explode {
         *scene = explode::explode(scene, way, gap).map_err(|e| Failure::Data(format!("--{e}")))?;

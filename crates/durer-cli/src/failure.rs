@@ -14,7 +14,7 @@ pub enum Failure {
     Refused(String),
     /// Options that are wrong, or do not go together.
     Usage(String),
-    /// Some models failed and were skipped; each has been told.
+    /// Some models failed and were skipped; an error was printed for each.
     Partial,
     /// Whoever read the output has gone; nothing to tell.
     ClosedPipe,

@@ -41,16 +41,17 @@ pub struct FillArgs {
     pub image: PathBuf,
     /// File to write the picture to
     ///
-    /// A .png, .jpg or .webp file, or `-` for standard output. A file is replaced only by a whole picture.
+    /// A .png, .jpg or .webp file, or `-` for standard output. A file is only ever replaced by a complete
+    /// picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
-    /// A pixel to start from, counted from 0 at the upper left of the picture as viewers show it; may be given several times
+    /// A pixel to start from, counted from 0 at the upper left of the picture as viewers show it; may be repeated
     ///
-    /// The fills are done one after the other, each on what the one before has left. A point between whole
-    /// numbers means the pixel in which it lies: 1.5,0 is the pixel 1,0.
+    /// Fills are made one after the other, each on the result of the one before. A point between whole
+    /// numbers selects the pixel that contains it: 1.5,0 is the pixel 1,0.
     #[arg(long, value_name = "X,Y", required = true, allow_hyphen_values = true, value_parser = values::point)]
     pub at: Vec<DVec2>,
-    /// The colour that filled pixels get, also one that is not opaque
+    /// The colour of filled pixels; it need not be opaque
     #[arg(long, value_name = "COLOR", value_parser = color::bytes)]
     pub color: [u8; 4],
     /// Largest difference in any channel, 0 to 255, from the pixel where the fill starts (with
@@ -60,7 +61,7 @@ pub struct FillArgs {
     /// Neighbourhood of pixels: 4, or 8 with those that touch at corners
     #[arg(long, value_name = "N", default_value = "4")]
     pub connectivity: Connectivity,
-    /// Fill up to this colour, whatever is inside [default: fill what is like the first pixel]
+    /// Fill up to this colour, whatever is inside [default: fill pixels like the first one]
     #[arg(long, value_name = "COLOR", value_parser = color::bytes)]
     pub boundary: Option<[u8; 4]>,
     /// The algorithm; all fill the same pixels
@@ -69,7 +70,7 @@ pub struct FillArgs {
     /// Compression and quality of the file.
     #[command(flatten)]
     pub file: PictureFileArgs,
-    /// Refuse images that are, or unpack to, more bytes; k, M, G are understood
+    /// Refuse images that have, or decompress to, more bytes; suffixes k, M and G are allowed
     #[arg(long, value_name = "BYTES", allow_hyphen_values = true, default_value = "4G", value_parser = values::bytes)]
     pub max_bytes: u64,
     /// Threads and messages.

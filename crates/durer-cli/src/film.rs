@@ -14,14 +14,14 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter};
 use std::path::Path;
 
-/// Frames a second, where nothing is said.
+/// Frames a second, if nothing is said.
 const FRAMES_PER_SECOND: f64 = 24.0;
 
 /// Timing and format of frames in one file.
 #[derive(Debug, Clone, Copy)]
 pub struct Plan {
     format: AnimationFormat,
-    /// All but the size, which the first frame tells.
+    /// Everything but the size, which the first frame gives.
     options: Options,
 }
 
@@ -157,7 +157,7 @@ impl Sink<'_, '_> {
         }
     }
 
-    /// Puts a picture in its place; tells whether it had to be laid onto white.
+    /// Writes a picture; returns whether it had to be composed with white.
     pub fn put(
         &mut self,
         pixels: &Pixels<[u8; 4]>,

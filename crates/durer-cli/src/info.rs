@@ -70,7 +70,7 @@ struct Info {
     bounds: Option<Bounds>,
     /// Area of all triangles together, in the model's own units; `null` if there are none.
     area: Option<f64>,
-    /// True if the triangles bound a body; `null` where there are none.
+    /// True if the triangles bound a body; `null` if there are none.
     closed: Option<bool>,
     up_axis: &'static str,
     materials: Vec<MaterialInfo>,
@@ -308,7 +308,7 @@ fn closed(scene: &Scene, work: &Work) -> durer::Result<Option<bool>> {
     closed_together(scene, work).map(Some)
 }
 
-/// The most triangles whose meshes are looked at together: more would take more memory than a picture of them.
+/// The most triangles whose meshes are examined together: more would take more memory than a picture of them.
 const MOST_TOGETHER: u64 = 1 << 20;
 
 /// Returns whether the meshes bound bodies together, as those of files with a mesh for each face do; borders that run along

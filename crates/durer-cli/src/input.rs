@@ -57,7 +57,7 @@ pub fn check_streams(models: &[impl AsRef<Path>]) -> Result<(), Failure> {
 pub struct Reading {
     options: ReadOptions,
     root: Option<PathBuf>,
-    /// `--max-triangles` and `--max-bytes`, where they are given.
+    /// `--max-triangles` and `--max-bytes`, if they are given.
     given: [Option<u64>; 2],
 }
 

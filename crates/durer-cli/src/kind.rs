@@ -59,7 +59,7 @@ impl Kind {
         }
     }
 
-    /// Returns the format of one picture; PNG where it has none of its own.
+    /// Returns the format of one picture; PNG if it has none of its own.
     pub fn picture(self) -> PictureFormat {
         match self {
             Self::Picture(format) => format,
@@ -67,7 +67,7 @@ impl Kind {
         }
     }
 
-    /// Returns the format of a file with several pictures, where there is one of this kind.
+    /// Returns the format of a file with several pictures, if there is one of this kind.
     pub fn animation(self) -> Option<AnimationFormat> {
         match self {
             Self::Picture(PictureFormat::Png) => Some(AnimationFormat::Png),
@@ -77,7 +77,7 @@ impl Kind {
         }
     }
 
-    /// Returns the largest width and height in pixels, where there are any.
+    /// Returns the largest width and height in pixels, if there are any.
     pub fn max_side(self) -> u32 {
         match self {
             Self::Picture(format) => format.max_side(),

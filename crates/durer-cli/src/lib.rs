@@ -201,7 +201,7 @@ fn run(command: Command) -> Result<(), Failure> {
     }
 }
 
-/// Runs the work on as many threads and with the instructions that were asked for.
+/// Runs the work on as many threads and with the instructions that were requested.
 fn on_threads(
     args: &RunningArgs,
     work: impl FnOnce() -> Result<(), Failure>,

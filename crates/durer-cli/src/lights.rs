@@ -32,7 +32,7 @@ pub fn light(text: &str) -> Result<Light, String> {
         },
         other => {
             return Err(format!(
-                "`{other}` is no kind of light; there are ambient, directional, point, spot"
+                "`{other}` is not a kind of light; there are ambient, directional, point, spot"
             ));
         }
     };
@@ -53,7 +53,7 @@ pub fn exposure(text: &str) -> Result<Exposure, String> {
     if (-64.0..=64.0).contains(&ev) {
         Ok(Exposure::Ev(ev as f32))
     } else {
-        Err("an exposure lies between -64 and 64 EV".to_owned())
+        Err("an exposure is between -64 and 64 EV".to_owned())
     }
 }
 
@@ -63,7 +63,7 @@ fn half_angle(text: &str) -> Result<f64, String> {
     if degrees > 0.0 && degrees <= 90.0 {
         Ok(degrees.to_radians())
     } else {
-        Err("a spot's half angle lies above 0 and up to 90 degrees".to_owned())
+        Err("the half angle of a spot is above 0 and at most 90 degrees".to_owned())
     }
 }
 

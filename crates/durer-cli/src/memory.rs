@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::{Component, Path};
 
-/// No more than this is taken without being asked for.
+/// No more than this is taken without being requested.
 const MOST: u64 = 4 << 30;
 
-/// Returns the budget where none is given: half of what the machine, its control group or the limits of the
+/// Returns the budget if none is given: half of what the machine, its control group or the limits of the
 /// process allow.
 pub fn usual_budget() -> u64 {
     let read = |path: &str| fs::read_to_string(path).ok();

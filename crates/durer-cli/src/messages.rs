@@ -5,7 +5,7 @@ use crate::progress::Progress;
 use durer_formats::Warning;
 use durer_formats::told;
 
-/// Warnings of one model that are told without `--verbose`; the rest is counted.
+/// Warnings of one model that are printed without `--verbose`; the others are counted.
 const WARNINGS: usize = 5;
 
 /// Errors, warnings and progress, as much as is wanted.
@@ -24,7 +24,7 @@ impl Messages {
         Self { quiet: args.quiet, verbose: args.verbose, progress }
     }
 
-    /// Something went wrong; always told.
+    /// An error; always printed.
     pub fn error(&self, message: impl std::fmt::Display) {
         self.progress.tell(&told::message(&format!("durer: {message}")));
     }
@@ -47,7 +47,7 @@ impl Messages {
         }
         let rest = warnings.len() - told;
         if rest > 0 {
-            let message = format!("durer: warning: {file}: and {rest} more; --verbose tells all");
+            let message = format!("durer: warning: {file}: and {rest} more; --verbose prints all");
             self.progress.tell(&message);
         }
     }

@@ -117,7 +117,7 @@ fn usage(option: &str, path: &Path, what: &str) -> Failure {
 fn stdout_target(option: &str) -> Result<Target, Failure> {
     if io::stdout().is_terminal() {
         let message =
-            format!("{option} -: a picture is no text for a terminal; use a pipe or a file");
+            format!("{option} -: a picture is not text for a terminal; use a pipe or a file");
         return Err(Failure::Usage(message));
     }
     Ok(Target::Stdout)
@@ -192,7 +192,7 @@ impl Name {
     }
 }
 
-/// Returns names without folder and suffix, made different where they are not: by the suffix, then by
+/// Returns names without folder and suffix, made different if they are not: by the suffix, then by
 /// number.
 pub fn stems(models: &[impl AsRef<Path>]) -> Vec<String> {
     let part = |p: Option<&std::ffi::OsStr>| p.unwrap_or_default().to_string_lossy().into_owned();
@@ -316,7 +316,7 @@ fn write_special(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let fail = |e: &io::Error| Failure::of_file(path, in_words(e));
     let mut file = OpenOptions::new().write(true).open(path).map_err(|e| fail(&e))?;
     if file.is_terminal() {
-        return Err(Failure::of_file(path, "a picture is no text for a terminal"));
+        return Err(Failure::of_file(path, "a picture is not text for a terminal"));
     }
     match file.write_all(bytes).and_then(|()| file.flush()) {
         Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Err(Failure::ClosedPipe),

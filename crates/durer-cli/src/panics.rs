@@ -1,4 +1,5 @@
-//! Panics, which are told where they end the command: one that a reader catches is an error of its file.
+//! Panics, which are reported if they end the command; one that a reader catches is an error of its
+//! file.
 
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::io::Write;
@@ -8,7 +9,7 @@ use std::sync::Mutex;
 /// Message and place of the last panic, and the calls if `RUST_BACKTRACE` asks for them.
 static LAST: Mutex<String> = Mutex::new(String::new());
 
-/// Does the work; where it panics, tells so and unwinds on.
+/// Does the work; if it panics, reports that and continues unwinding.
 pub fn told_at_the_end<T>(work: impl FnOnce() -> T) -> T {
     set_hook(Box::new(|panic| {
         let mut told = panic.to_string();

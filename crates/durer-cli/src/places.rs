@@ -7,7 +7,7 @@ use std::ffi::OsStr;
 use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
 
-/// The argument that stands for standard input or output.
+/// The argument that means standard input or output.
 pub const STREAM: &str = "-";
 
 /// Returns whether the argument means standard input or output.
@@ -27,7 +27,7 @@ const OTHER_INPUTS: [&str; 2] = ["environment", "annotations"];
 /// A place for a file, whether there is one or not.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Place {
-    /// Standard output, where it is no file.
+    /// Standard output, if it is not a file.
     Stdout,
     /// A file that is there: the numbers of its device and its inode.
     There(u64, u64),

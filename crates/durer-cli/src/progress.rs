@@ -12,7 +12,7 @@ use std::time::Duration;
 /// Shorter work shows nothing.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// A line on standard error that says what is being done; nothing where that is no terminal.
+/// A line on standard error that says what is being done; nothing where that is not a terminal.
 #[derive(Debug, Default)]
 pub struct Progress {
     /// Work whose progress is counted.
@@ -23,7 +23,7 @@ pub struct Progress {
 #[derive(Debug)]
 struct Shown {
     bar: ProgressBar,
-    /// Dropping it tells the thread that waits to show the bar that there is no need any more.
+    /// Dropping it stops the thread that waits to show the bar.
     wake: Option<Sender<()>>,
     waiting: Option<JoinHandle<()>>,
 }

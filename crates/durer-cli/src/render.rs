@@ -115,7 +115,7 @@ struct Picture {
 }
 
 impl Job<'_> {
-    /// Returns the file that all frames go into, where there is one.
+    /// Returns the file that all frames go into, if there is one.
     fn film(&self) -> Option<Film<'_>> {
         let plan = self.film?;
         match self.pictures.first().map(|p| &p.color) {
@@ -271,7 +271,7 @@ fn render_model(
     Ok(())
 }
 
-/// Tells of a picture, and why nothing of the model is seen in it, where that is so.
+/// Tells of a picture, and why nothing of the model is seen in it, if that is so.
 fn tell_picture(
     name: &str,
     (report, unseen): (PictureReport, Option<String>),
@@ -329,8 +329,8 @@ fn describe(report: &PictureReport) -> String {
     )
 }
 
-/// Data that does not fit the options, such as a camera that the file does not have, is told with
-/// the file's name.
+/// Data that does not fit the options, such as a camera that the file does not have, is reported
+/// with the file's name.
 fn with_file(name: &str, failure: Failure) -> Failure {
     match failure {
         Failure::Data(message) if message.starts_with("--") => {
@@ -340,7 +340,8 @@ fn with_file(name: &str, failure: Failure) -> Failure {
     }
 }
 
-/// Renders one picture and writes its files; tells why nothing of the model is seen, where that is so.
+/// Renders one picture and writes its files; returns why nothing of the model is visible, if that is
+/// so.
 fn render_picture(
     args: &RenderArgs,
     scene: &Scene,
@@ -478,7 +479,7 @@ fn picture_options(
     }
 }
 
-/// Writes the planes beside colour that are asked for; gives the names of the files.
+/// Writes the planes beside colour that are requested; gives the names of the files.
 fn write_planes(
     args: &RenderArgs,
     picture: &Picture,

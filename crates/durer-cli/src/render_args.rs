@@ -42,14 +42,14 @@ pub struct RenderArgs {
     pub models: Vec<PathBuf>,
     /// File to write the picture to
     ///
-    /// A .png, .jpg or .webp file, or a drawing as .svg, .pdf, .dxf, .hpgl, .gcode or .geojson; `-` for
-    /// standard output; a folder (existing, or ending in `/`) for NAME.png of each model. A --turntable goes into
-    /// one .png, .webp or .gif, which is animated; or into a file for each frame: in a folder, or by a name with a
-    /// place for the frame's number, e.g. `frame_%04d.png`. A missing folder for several pictures is made. A
-    /// file is replaced only by a whole picture.
+    /// A .png, .jpg or .webp file, or a drawing as .svg, .pdf, .dxf, .hpgl, .gcode or .geojson; `-` for standard
+    /// output; a folder (existing, or ending in `/`) for NAME.png of each model. A --turntable goes into one .png,
+    /// .webp or .gif, which is animated; or into a file for each frame: in a folder, or by a name with a place for
+    /// the frame's number, e.g. `frame_%04d.png`. A missing folder for several pictures is created. A file is only
+    /// ever replaced by a complete picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
-    /// The format of the output, also where the name has another ending or none [default: by its suffix, else png]
+    /// The format of the output, whatever the suffix of the name [default: by its suffix, else png]
     #[arg(long, value_name = "FORMAT", value_parser = values::kind())]
     pub format: Option<Kind>,
     /// The options that were given, by their names in the parser.
@@ -85,15 +85,15 @@ pub struct RenderArgs {
     /// Threads and messages.
     #[command(flatten)]
     pub running: RunningArgs,
-    /// Go on with the next model where one fails; exit code 3 if some failed and some did not
+    /// Continue with the next model if one fails; exit code 3 if some failed and some did not
     #[arg(long, help_heading = "Running")]
     pub skip_failures: bool,
     /// Write a report on standard output, in JSON
     ///
-    /// Seconds per stage (read, geometry, raster, encode), triangles (in, clipped, culled, drawn,
-    /// not finite), warnings, the peak memory of the process where the system tells it, and of each
-    /// picture its `status`: `ok`, `empty` where the model has nothing to draw, `invisible` where nothing
-    /// of it is seen.
+    /// Seconds per stage (read, geometry, raster, encode), triangles (in, clipped, culled, drawn, not
+    /// finite), warnings, the peak memory of the process if the system reports it, and the `status` of
+    /// each picture: `ok`, `empty` if the model has nothing to draw, `invisible` if nothing of it is
+    /// visible.
     #[arg(long, help_heading = "Running")]
     pub json: bool,
 }

@@ -169,7 +169,7 @@ fn hint(why: Unseen) -> &'static str {
     }
 }
 
-/// Returns the peak of the resident memory, as Linux tells it.
+/// Returns the peak of the resident memory, as Linux reports it.
 pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

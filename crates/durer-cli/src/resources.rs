@@ -56,8 +56,8 @@ impl Folder {
         Self { hint, ..self }
     }
 
-    /// Returns the file's true place, if that is where files may lie; and what is to be told where its name
-    /// is written otherwise.
+    /// Returns the file's true place, if files are allowed there, and a warning if its name is written
+    /// otherwise.
     fn place(&self, path: &str) -> Result<(PathBuf, Option<String>), String> {
         if has_scheme(path) {
             return Err(
@@ -79,7 +79,7 @@ impl Folder {
         }
         let roots = if self.roots.len() > 1 { " and the one of --root" } else { "" };
         Err(format!(
-            "it lies outside the model's folder{roots}, where nothing is read{}",
+            "it is outside the model's folder{roots}, where files are not read{}",
             self.hint
         ))
     }
@@ -93,8 +93,8 @@ impl Folder {
         format!("there is no `{path}`; `{spelled}` is taken, which differs in upper and lower case")
     }
 
-    /// Returns the path with each name that does not exist in another case; `None` where one does not exist
-    /// in any.
+    /// Returns the path with each name that does not exist in another case; `None` if one does not exist in
+    /// any.
     fn other_case(&self, path: &str) -> Option<PathBuf> {
         let mut at = self.base.clone();
         for component in Path::new(path).components() {
@@ -124,7 +124,7 @@ fn directory(folder: &Path) -> io::Result<PathBuf> {
     if full.is_dir() { Ok(full) } else { Err(io::Error::other("it is not a folder")) }
 }
 
-/// Opens a file for reading; does not wait for whoever writes to a pipe.
+/// Opens a file for reading, without waiting for the writer of a pipe.
 fn open(path: &Path) -> io::Result<File> {
     let mut options = File::options();
     #[cfg(unix)]
@@ -163,7 +163,7 @@ fn names(folder: &Path) -> Names {
 }
 
 /// Returns whether a reference begins like `http:` or `file:` (RFC 3986), with at least two letters,
-/// so that it is no drive.
+/// so that it is not a drive.
 fn has_scheme(path: &str) -> bool {
     let Some((scheme, _)) = path.split_once(':') else { return false };
     let letter = |c: char| c.is_ascii_alphanumeric() || "+-.".contains(c);

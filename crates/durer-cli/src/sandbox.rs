@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 pub enum Sandbox {
     /// The command ends with an error.
     Strict,
-    /// A warning, and as much as the system can do.
+    /// The command continues with a warning and as much protection as the system supports.
     BestEffort,
 }
 
@@ -18,8 +18,8 @@ pub enum Sandbox {
 const SYSTEM: [&str; 4] =
     ["/proc/self", "/proc/meminfo", "/sys/fs/cgroup", "/sys/devices/system/cpu"];
 
-/// Confines the process: from here on it opens nothing but what lies in the folders of its inputs, or in folders that it was
-/// given, and makes and replaces files in the folders of its outputs only. It opens no connections.
+/// Confines the process: from here on it opens nothing but what is in the folders of its inputs, or in folders that it
+/// was given, and makes and replaces files in the folders of its outputs only. It opens no connections.
 ///
 /// # Errors
 /// A system that cannot do that.
@@ -29,7 +29,7 @@ pub fn confine(how: Sandbox, inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<
     match (landlocked(&read, &written), how) {
         (Ok(()), _) => Ok(()),
         (Err(why), Sandbox::Strict) => {
-            let hint = "--sandbox=best-effort goes on without";
+            let hint = "--sandbox=best-effort continues without it";
             Err(Failure::Usage(format!("--sandbox: {why}; {hint}")))
         }
         (Err(why), Sandbox::BestEffort) => {

@@ -13,15 +13,15 @@ use durer::view::section::{self, Options, Section};
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Section")]
 pub struct SectionArgs {
-    /// Cut the model by a plane: what lies where NX·x + NY·y + NZ·z + D > 0 stays
+    /// Cut the model by a plane and keep the side where NX·x + NY·y + NZ·z + D > 0
     ///
-    /// In the model's own units and axes, as `durer info` tells its box. Given several times, what
-    /// lies on the right side of all planes stays. Bodies that were closed are closed again by a
-    /// cap; of open ones the inside is seen, and a warning says so. The view is fitted to what is
-    /// left. E.g. --section 0,0,1,-5 keeps what is above z = 5.
+    /// The plane is in the units and axes of the model, as in the box that `durer info` prints. If
+    /// given several times, the part on the right side of all planes is kept. Closed bodies are
+    /// closed again by a cap; open ones show their inside, and a warning says so. The view is
+    /// fitted to the part that is kept. E.g. --section 0,0,1,-5 keeps what is above z = 5.
     ///
-    /// With a letter, a --sheet gets a view of what the plane leaves, seen from the side that is cut away, and shows the
-    /// plane where another view sees it edge on. E.g. --section A:0,1,0,-5 gives the section A–A.
+    /// With a letter, a --sheet gets a view of the part that is kept, seen from the side that is cut away, and other
+    /// views show the plane where it is edge on. E.g. --section A:0,1,0,-5 gives the section A–A.
     #[arg(long, value_name = "[LETTER:]NX,NY,NZ,D", allow_hyphen_values = true, value_parser = section)]
     pub section: Vec<SectionPlane>,
     /// The colour of caps
@@ -81,7 +81,7 @@ pub fn check(args: &SectionArgs, sheet: bool) -> Result<(), Failure> {
     }
 }
 
-/// Cuts a scene as asked for, and tells what is to be known about it; gives the material of the caps.
+/// Cuts a scene as requested, reports warnings, and returns the material of the caps.
 pub fn apply(
     args: &SectionArgs,
     scene: &mut Scene,

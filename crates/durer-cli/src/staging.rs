@@ -23,20 +23,21 @@ pub struct StageArgs {
     /// A set of the options below
     #[arg(long, value_name = "NAME", default_value = "plain")]
     pub look: Look,
-    /// Darken what little light from all around gets to; how much, 0 to 1 [default without a number: 0.8]
+    /// Darken places that little ambient light reaches, by this strength from 0 to 1 [default without a
+    /// number: 0.8]
     #[arg(long, value_name = "STRENGTH", num_args = 0..=1, require_equals = true, default_missing_value = "0.8", value_parser = strength)]
     pub ambient_occlusion: Option<f64>,
-    /// A soft shadow on the floor that the model stands on
+    /// Add a soft shadow on the floor under the model
     #[arg(long)]
     pub ground: bool,
-    /// Draw visible outlines, creases and borders over the picture, exactly; how wide, in pixels
+    /// Draw exact visible outlines, creases and borders over the picture, this many pixels wide
     /// [default without a number: 1.5]
     #[arg(long, value_name = "PIXELS", num_args = 0..=1, require_equals = true, default_missing_value = "1.5", value_parser = values::pixels)]
     pub edges: Option<f64>,
-    /// A grid on the floor; its lines are 1, 2 or 5 times a power of ten apart
+    /// Add a grid on the floor; its lines are 1, 2 or 5 times a power of ten apart
     #[arg(long)]
     pub grid: bool,
-    /// The axes of the world: x red, y green, z blue
+    /// Add the axes of the world: x red, y green, z blue
     #[arg(long)]
     pub axes: bool,
 }
@@ -92,7 +93,7 @@ impl StageArgs {
     }
 }
 
-/// Gives all surfaces the material of the look, if it has one, in its own colour or the one asked for.
+/// Gives all surfaces the material of the look, if it has one, in its own colour or the one requested.
 pub fn give_materials(args: &StageArgs, asked: Option<Vec4>, scene: &mut Scene) {
     let (color, roughness) = match args.look {
         Look::Plain | Look::Studio => return,
@@ -132,7 +133,7 @@ pub struct Staged {
     pub whole: Scene,
 }
 
-/// Returns the scene with what is put around the model; `None` where nothing is.
+/// Returns the scene with what is put around the model; `None` if nothing is.
 pub fn staged(args: &StageArgs, scene: &Scene) -> Result<Option<Staged>, Failure> {
     if !(args.has_ground() || args.grid || args.axes) {
         return Ok(None);
@@ -160,7 +161,7 @@ pub fn occlusion(args: &StageArgs, model: &Scene) -> Option<ambient_occlusion::O
     (radius > 0.0).then_some(ambient_occlusion::Options { radius, strength })
 }
 
-/// Draws the edges of a model over its picture, where they are asked for.
+/// Draws the edges of a model over its picture, if requested.
 pub fn draw_edges(
     args: &StageArgs,
     model: &Scene,

@@ -1,4 +1,4 @@
-//! `durer thumbnailer`: what tells a desktop to let durer make the small pictures of models.
+//! `durer thumbnailer`: the file by which a desktop lets durer make thumbnails of models.
 
 use crate::failure::Failure;
 use crate::output::{self, Target};

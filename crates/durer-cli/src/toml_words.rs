@@ -16,7 +16,7 @@ pub fn fault(message: &str) -> &'static str {
     } else if any(&["comma", "in array"]) {
         "one comma is needed between values"
     } else if any(&["radix", "digit", "zero", "sign", "integer", "float", "date", "time"]) {
-        "this is no number"
+        "this is not a number"
     } else if any(&["assignment", "value", "extra `=`", "key"]) {
         "`key = value` is needed"
     } else {

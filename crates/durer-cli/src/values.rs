@@ -8,7 +8,7 @@ use durer::simd::{self, Level};
 use durer::visibility::wireframe;
 use durer_formats::picture::PictureFormat;
 
-/// Width and height of a picture, in pixels, each at least 1 where it is known.
+/// Width and height of a picture, in pixels, each at least 1 if it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Size {
     /// Columns.
@@ -100,14 +100,14 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
 pub fn angle_of_view(text: &str) -> Result<f64, String> {
     let inside = |n: &f64| (0.001..180.0).contains(n);
     number(text)
-        .and_then(|n| Some(n).filter(inside).ok_or("it must lie between 0 and 180 degrees".into()))
+        .and_then(|n| Some(n).filter(inside).ok_or("it must be between 0 and 180 degrees".into()))
 }
 
 /// Returns an elevation in degrees, straight down to straight up.
 pub fn elevation(text: &str) -> Result<f64, String> {
     let inside = |n: &f64| (-90.0..=90.0).contains(n);
     number(text)
-        .and_then(|n| Some(n).filter(inside).ok_or("it must lie between -90 and 90 degrees".into()))
+        .and_then(|n| Some(n).filter(inside).ok_or("it must be between -90 and 90 degrees".into()))
 }
 
 /// `N` finite numbers with commas between them.
@@ -196,7 +196,7 @@ pub fn letter(text: &str) -> Result<String, String> {
     let right = text.chars().count() <= MOST_LETTERS
         && text.starts_with(char::is_alphabetic)
         && text.chars().all(char::is_alphanumeric);
-    let wrong = || format!("`{text}` is no letter, as in A or B1, to stand before the colon");
+    let wrong = || format!("`{text}` is not a letter, as in A or B1, to stand before the colon");
     if right { Ok(text.to_owned()) } else { Err(wrong()) }
 }
 

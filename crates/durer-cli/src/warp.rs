@@ -76,7 +76,7 @@ pub struct WarpArgs {
     /// Width and height of the new picture; one may be left out [default: as before]
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = sides)]
     pub size: Option<Sides>,
-    /// The colour of holes: what no picture shows
+    /// The colour of holes, which no picture shows
     #[arg(long, value_name = "COLOR", default_value = "#ff00ff", value_parser = color::color)]
     pub holes: durer::math::Vec4,
     /// A second picture and its depths, which fill holes; same lens and planes

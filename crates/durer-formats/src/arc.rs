@@ -35,7 +35,7 @@ pub(crate) struct Arc {
 }
 
 impl Arc {
-    /// `None` where it is a line: its ends are the same, or a radius is 0.
+    /// `None` if it is a line: its ends are the same, or a radius is 0.
     pub fn new(ends: &Ends) -> Option<Self> {
         let mut radii = ends.radii.abs();
         if ends.from == ends.to || radii.min_element() == 0.0 {

@@ -14,7 +14,7 @@ pub(crate) struct Cloud {
     pub colors: Vec<Vec4>,
     /// Divisor of colours.
     pub full: f32,
-    /// Strengths of what the scanner got back, in any unit; shown where there are no colours.
+    /// Strengths of what the scanner got back, in any unit; shown if there are no colours.
     pub intensities: Vec<f32>,
     /// Number of points that memory has been taken for.
     pub room: u64,
@@ -31,7 +31,7 @@ const OUTLIERS: usize = 100;
 const DARKEST: f32 = 0.1;
 
 impl Cloud {
-    /// Takes the memory for so many points in all, and refuses more than allowed.
+    /// Takes the memory for this many points in all, and refuses more than allowed.
     ///
     /// # Errors
     /// [`Error::Limit`]; those of the work.
@@ -83,7 +83,7 @@ impl Cloud {
     fn linear_colors(self, model: &mut Model) -> Vec<Vec4> {
         let mut colors = self.colors;
         let flat = colors.iter().all(|c| Some(c) == colors.first());
-        // Formats with a place for colours have zeros there where there are none.
+        // Formats with a place for colours have zeros there if there are none.
         if flat && self.intensities.iter().any(|i| Some(i) != self.intensities.first()) {
             colors = greys(&self.intensities);
         } else if flat && colors.first().is_some_and(|c| c.truncate().max_element() <= 0.0) {

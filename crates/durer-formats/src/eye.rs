@@ -6,7 +6,7 @@ use durer::scene::{BoundingSphere, Camera, Light, LightKind, NamedCamera, Projec
 use std::cell::LazyCell;
 use std::collections::{HashMap, HashSet};
 
-/// A near plane that a file leaves out stands at this part of the distance to all there is.
+/// A near plane that a file leaves out is at this share of the distance to the scene.
 const NEAR: f64 = 1e-4;
 
 /// Projection of a camera, in the world's units.
@@ -21,10 +21,10 @@ pub(crate) struct Lens {
     pub aspect: Option<f64>,
 }
 
-/// A camera as it stands in a file.
+/// A camera as in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Eye {
-    /// Empty where it has none.
+    /// Empty if it has none.
     pub name: String,
     /// Its frame: it is at the origin and looks along −z, y is up. Scale has no meaning for it.
     pub world: DMat4,

@@ -152,7 +152,7 @@ impl Attributes {
     }
 }
 
-/// Returns the values of corners' vertices; none where vertices have none.
+/// Returns the values of corners' vertices; none if vertices have none.
 fn gathered<T: Copy + Default>(values: &[T], keys: &[Corner]) -> Vec<T> {
     let keys = if values.is_empty() { &[] } else { keys };
     keys.iter().map(|k| values.get(k.position as usize).copied().unwrap_or_default()).collect()

@@ -66,7 +66,7 @@ pub(crate) fn markup(error: &Markup) -> String {
             format!("the prefix of `{prefix}:` is not declared; `svg` needs `xmlns:{prefix}=\"…\"`")
         }
         Markup::UnknownEntityReference(name, _) => {
-            format!("`&{};` is no known entity; `&` itself is written `&amp;`", shown(name))
+            format!("`&{};` is not a known entity; `&` itself is written `&amp;`", shown(name))
         }
         Markup::MalformedEntityReference(_) | Markup::EntityResolver(..) => entity(),
         Markup::DuplicatedAttribute(name, _) => {

@@ -64,7 +64,7 @@ fn header(source: &mut Source<'_>) -> Result<f32> {
             let value = std::str::from_utf8(value).ok().and_then(|v| v.trim().parse::<f32>().ok());
             let value = value.filter(|v| *v > 0.0 && v.is_finite());
             exposure *=
-                value.ok_or_else(|| Error::byte(at as u64, "EXPOSURE is no number above 0"))?;
+                value.ok_or_else(|| Error::byte(at as u64, "EXPOSURE is not a number above 0"))?;
         }
     }
 }
@@ -96,7 +96,7 @@ fn size(line: &[u8], limits: &Limits) -> Result<(usize, usize)> {
 }
 
 fn no_size(line: &[u8]) -> Error {
-    Error::whole(format!("`{}` is no size such as `-Y 512 +X 1024`", quote(line)))
+    Error::whole(format!("`{}` is not a size such as `-Y 512 +X 1024`", quote(line)))
 }
 
 /// Returns a colour from three mantissas and their common exponent.

@@ -1,7 +1,7 @@
 //! Pictures that models wear: PNG, JPEG, WebP, GIF, BMP and TGA to 8-bit RGBA; and deep PNG to 16-bit RGBA.
 //!
-//! What a file is, is told by its first bytes, of TGA by its whole header. Sizes are checked before anything is allocated, also
-//! against what the bytes at hand can hold at all, so a short file cannot ask for a huge picture.
+//! The format is detected by the first bytes of a file, for TGA by its whole header. Sizes are checked before anything
+//! is allocated, also against what the bytes at hand can hold at all, so a short file cannot ask for a huge picture.
 
 mod bmp;
 mod bytes;
@@ -82,7 +82,7 @@ fn show_if_all_transparent(pixels: &mut [[u8; 4]]) {
     }
 }
 
-/// Returns the place of a picture, where it has a name.
+/// Returns the place of a picture, if it has a name.
 fn place(name: &str) -> Place {
     if name.is_empty() { Place::Whole } else { Place::Path(format!("image `{}`", shown(name))) }
 }

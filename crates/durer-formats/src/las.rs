@@ -3,7 +3,7 @@
 //! Source: ASPRS, *LAS Specification 1.4 – R15*, 2019; earlier versions are read alike. Of a point its
 //! place, colour and intensity are taken; intensity is shown as grey where the file has no colours.
 //! Colours are of 16 bits, and scaled where all are below 256, as some programs write them. Classes,
-//! waveforms, and the coordinate system are not looked at. z is up.
+//! waveforms, and the coordinate system are ignored. z is up.
 //!
 //! Cost: one pass. Memory: 24 bytes per point while reading, 20 more for colour and intensity.
 

@@ -1,12 +1,12 @@
 //! The number of digits of a text file's coordinates.
 
-/// Lines that are looked at: what the first say holds for all.
+/// Lines that are examined: what the first say holds for all.
 const LINES: usize = 4096;
 
-/// Returns what a unit of the last digit is worth of the numbers in the lines that begin with the word
-/// `key`, or, where that is empty, of the first three words of all lines. Of numbers with exponents, which all have as many
-/// digits, the largest counts; of others that with most decimals, for zeros at the end may be left out. 0 where
-/// there are no decimals: whole numbers are whole on purpose.
+/// Returns what a unit of the last digit is worth of the numbers in the lines that begin with the word `key`, or, where
+/// that is empty, of the first three words of all lines. Of numbers with exponents, which all have as many digits, the
+/// largest counts; of others that with most decimals, for zeros at the end may be left out. 0 if there are no decimals:
+/// whole numbers are whole on purpose.
 pub(crate) fn last_digit(text: &[u8], key: &[u8]) -> f64 {
     let (mut fixed, mut largest, mut decimals) = (0, None::<i32>, 0);
     let mut seen = 0;
@@ -44,14 +44,14 @@ fn power_of_ten(power: i32) -> f64 {
 /// The place of a number's last digit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Digit {
-    /// Behind so many decimals.
+    /// Behind this many decimals.
     Fixed(i32),
-    /// Behind so many decimals of a number with this power of ten.
+    /// Behind this many decimals of a number with this power of ten.
     Exponent(i32, i32),
 }
 
 impl Digit {
-    /// `None` for what is no number.
+    /// `None` for what is not a number.
     fn of(word: &[u8]) -> Option<Self> {
         let (mantissa, exponent) = match word.iter().position(|b| matches!(b, b'e' | b'E')) {
             Some(at) => (&word[..at], Some(&word[at + 1..])),

@@ -36,7 +36,7 @@ pub trait Resources {
 pub struct Found {
     /// The file's bytes.
     pub bytes: Vec<u8>,
-    /// A sentence for a warning, where the file is not quite what was asked for: one whose name differs in
+    /// A sentence for a warning, where the file is not quite what was requested: one whose name differs in
     /// upper and lower case.
     pub note: Option<String>,
 }
@@ -131,7 +131,7 @@ pub struct ReadOptions {
     /// Name or number of the variant whose materials are shown (KHR_materials_variants); `None` = the
     /// materials that the file shows by default.
     pub variant: Option<String>,
-    /// Only what stands on this plate, counted from 1, of a project that has plates; `None` = all.
+    /// Only the objects on this plate, counted from 1, of a project that has plates; `None` = all.
     pub plate: Option<u32>,
     /// True if lights of COLLADA and FBX shine. Most are what an exporter has left in every file, of units that
     /// nobody keeps to, so that models look worse by them than without. Those of glTF always shine.
@@ -151,7 +151,7 @@ pub struct Model {
     pub animations: Vec<String>,
     /// Names of the variants of its materials.
     pub variants: Vec<String>,
-    /// Names of the plates of a slicer's project, empty where they have none.
+    /// Names of the plates of a slicer's project, empty if they have none.
     pub plates: Vec<String>,
     /// Repairs and omissions.
     pub warnings: Vec<Warning>,

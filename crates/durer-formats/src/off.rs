@@ -83,7 +83,7 @@ fn next_word<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
 /// left out, with a warning.
 ///
 /// # Errors
-/// [`Error::Decode`] with the line for a file that does not begin as OFF, a word that is no number, or
+/// [`Error::Decode`] with the line for a file that does not begin as OFF, a word that is not a number, or
 /// where no vertex, or no vertex of a face, is there; [`Error::Unsupported`] for binary files and those
 /// of four dimensions; [`Error::Limit`] for more primitives than allowed.
 pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
@@ -134,7 +134,7 @@ fn unsupported(cursor: &Cursor<'_>, what: &str, hint: &str) -> Error {
 fn count(cursor: &mut Cursor<'_>, of: &str) -> Result<u64> {
     let word = next_word(cursor).unwrap_or_default();
     let count = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
-    count.ok_or_else(|| cursor.error(format!("`{}` is no number of {of}", quote(word))))
+    count.ok_or_else(|| cursor.error(format!("`{}` is not a number of {of}", quote(word))))
 }
 
 /// State of the reader.
@@ -239,7 +239,7 @@ impl Reader {
     fn face(&mut self, cursor: &mut Cursor<'_>) -> Result<()> {
         let length = self.number(cursor)?;
         if !(0.0..=f64::from(u32::MAX)).contains(&length) || length.fract() != 0.0 {
-            return Err(cursor.error(format!("`{length}` is no number of vertices of a face")));
+            return Err(cursor.error(format!("`{length}` is not a number of vertices of a face")));
         }
         self.corners.clear();
         let mut whole = true;
@@ -289,7 +289,7 @@ impl Reader {
     /// Warns of where the file breaks off.
     ///
     /// # Errors
-    /// `why`, where it is a limit.
+    /// `why`, if it is a limit.
     fn warn_of_end(&self, model: &mut Model, why: Error) -> Result<()> {
         let Error::Decode { place, message } = why else { return Err(why) };
         let ([vertices, faces], points, read) = (self.counts, self.points.len(), self.faces);

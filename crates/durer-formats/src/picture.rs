@@ -48,7 +48,7 @@ impl PictureFormat {
         }
     }
 
-    /// Returns the format that a file name's suffix stands for, without its dot, in any case.
+    /// Returns the format of a file name's suffix, without its dot, in any case.
     pub fn of_suffix(suffix: &str) -> Option<Self> {
         let lower = suffix.to_ascii_lowercase();
         Self::ALL.iter().copied().find(|f| f.suffixes().contains(&lower.as_str()))

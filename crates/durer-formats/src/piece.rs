@@ -80,7 +80,7 @@ impl Builder {
         })
     }
 
-    /// Returns the mesh; `None` where it is empty.
+    /// Returns the mesh; `None` if it is empty.
     pub fn piece(self, values: &dyn Values, name: &str) -> Option<Piece> {
         let Builder { topology, sets, corners, indices, mut faces, runs, .. } = self;
         if indices.is_empty() {

@@ -1,4 +1,4 @@
-//! Models that are read in pieces, over and over, for whoever cannot hold all of one.
+//! Models that are read in pieces, repeatedly, because they do not fit in memory.
 
 use crate::{Model, Result};
 use durer::scene::{Aabb, Scene, UpAxis};
@@ -7,7 +7,7 @@ use durer::work::Charge;
 /// Takes a piece of a model; may change what it is made of.
 pub type Visit<'a> = &'a mut dyn FnMut(&mut Scene) -> durer::Result<()>;
 
-/// A model of one mesh that is read from its file piece by piece, as often as it is asked for.
+/// A model of one mesh that is read from its file piece by piece, as often as it is requested.
 ///
 /// Pieces are scenes of one instance, with the materials of the model; their primitives follow each other as in the scene
 /// that the format's `read` gives, and have the same bits.
@@ -22,7 +22,7 @@ pub trait Pieces {
     fn has_normals(&self) -> bool;
 
     /// Hands over all vertices, and what is drawn with them where that is known: for boxes and cameras. Of vertices that
-    /// nothing is drawn with the coordinates are no numbers. But for the last, pieces have a multiple of
+    /// nothing is drawn with the coordinates are not numbers. But for the last, pieces have a multiple of
     /// [`durer::view::projection::PIECE`] vertices.
     ///
     /// # Errors
@@ -47,7 +47,7 @@ pub trait Pieces {
     /// As [`Self::vertices`]; [`durer::Error::Memory`] where the budget has no room for them.
     fn only(&mut self, numbers: &[u32]) -> Result<(Scene, Charge)>;
 
-    /// Tells what is known of the model as a whole. Reads the file where that has not been done yet.
+    /// Tells what is known of the model as a whole. Reads the file if that has not been done yet.
     ///
     /// # Errors
     /// As [`Self::vertices`].

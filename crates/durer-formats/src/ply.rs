@@ -47,7 +47,7 @@ pub(crate) fn sniff(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`Error::Decode`] with the line (header, ascii) or byte offset (binary) for a header that is not
-/// PLY's, data that end before the first vertex, a word that is no number, or vertex indices that are
+/// PLY's, data that end before the first vertex, a word that is not a number, or vertex indices that are
 /// all out of range; [`Error::Limit`] for more primitives than allowed.
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let stripped = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
@@ -145,7 +145,7 @@ fn missing(element: &Element, row: u64, builder: &Builder, why: Error) -> Result
 /// Returns the place and message for rows of an element that are missing.
 ///
 /// # Errors
-/// `why`, where it is not about what the file holds.
+/// `why`, if it is not about what the file holds.
 fn missing_rows(element: &Element, row: u64, why: Error) -> Result<(Place, String)> {
     let Error::Decode { place, message } = why else { return Err(why) };
     let Element { name, count, .. } = element;
@@ -245,12 +245,12 @@ mod tests {
         let faces =
             format!("{}element face 1\nproperty list uchar int vertex_indices\n", vertices("1"));
         for (text, expected) in [
-            (file(&vertices("-5"), ""), "line 3: `-5` is no count"),
+            (file(&vertices("-5"), ""), "line 3: `-5` is not a count"),
             (file(&vertices("1"), "0 x 000000"), "line 8, column 3: `x` is not a number"),
             (file(&vertices("1"), "0      0\n"), "the file ends"),
             (file(&faces, "0 0 0\n3 0 0 1"), "vertex 1 does not exist"),
             (file(&faces, "0 0 0\n3 0 0 -1"), "vertex -1 does not exist"),
-            (file(&faces, "0 0 0\n-3 0 0"), "`-3` is no length"),
+            (file(&faces, "0 0 0\n-3 0 0"), "`-3` is not a length"),
             (file("element vertex 1\nproperty quaternion x\n", "0"), "`quaternion` is not a type"),
             (file("element vertex 1\nproperty float x\n", "0"), "no property `y`"),
             (file("", ""), "no element `vertex`"),

@@ -20,10 +20,10 @@ pub enum Compression {
     Small,
 }
 
-/// The colour that stands for "no item" in an item picture; items are below it.
+/// The colour that means "no item" in an item picture; items are below it.
 pub const ITEM_BACKGROUND: u32 = 0x00ff_ffff;
 
-/// The grey that stands for "nothing" in a depth picture: the far plane.
+/// The grey that means "nothing" in a depth picture: the far plane.
 pub const DEPTH_BACKGROUND: u16 = u16::MAX;
 
 /// IDAT chunks of this size: large enough that their headers do not count.
@@ -150,7 +150,8 @@ pub fn read_depth(bytes: &[u8], limits: &Limits) -> Result<Pixels<f32>> {
     let info = decoder.read_header_info().map_err(wrong)?;
     let (width, height) = (info.width, info.height);
     if (info.color_type, info.bit_depth) != (ColorType::Grayscale, BitDepth::Sixteen) {
-        let message = "the depth picture is no 16-bit grey PNG, as `durer render --depth` writes";
+        let message =
+            "the depth picture is not a 16-bit grey PNG, as `durer render --depth` writes";
         return Err(Error::whole(message.to_owned()));
     }
     let needed = u64::from(width) * u64::from(height) * 4;
@@ -342,7 +343,7 @@ mod tests {
         let (info, data, srgb) = decode(&bytes);
         let grey: Vec<u16> = data.chunks(2).map(|b| u16::from_be_bytes([b[0], b[1]])).collect();
         assert_eq!(info.bit_depth, BitDepth::Sixteen);
-        assert!(!srgb, "depths are no colours");
+        assert!(!srgb, "depths are not colours");
         assert_eq!(grey, [0, 65535, 32768, 65535, 0, 65535, 1, 2]);
     }
 

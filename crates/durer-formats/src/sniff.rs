@@ -32,7 +32,7 @@ pub enum ModelFormat {
     Las,
     /// E57.
     E57,
-    /// Points as text; told by the name alone.
+    /// Points as text; detected by the name alone.
     Xyz,
 }
 

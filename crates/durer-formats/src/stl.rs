@@ -1,8 +1,8 @@
 //! STL, the stereolithography format: binary and ascii.
 //!
 //! Source: 3D Systems, *StereoLithography Interface Specification*, 1988; colors after VisCAM and
-//! Materialise Magics. Which of the two a file is, is told by its content: many binary files begin
-//! with `solid`, and counts in headers are often wrong.
+//! Materialise Magics. The content decides which of the two a file is: many binary files begin with
+//! `solid`, and counts in headers are often wrong.
 //!
 //! Vertices are not joined and the stored facet normals, which are often wrong, are left out: the
 //! mesh has three vertices per triangle, in the file's order. z is up.

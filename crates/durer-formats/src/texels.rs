@@ -2,7 +2,7 @@
 
 use durer::scene::Image;
 
-/// Returns the size of the smallest picture that loses no texel of several; `None` where none is
+/// Returns the size of the smallest picture that loses no texel of several; `None` if none is
 /// there.
 pub(crate) fn size<const N: usize>(images: [Option<&Image>; N]) -> Option<[u32; 2]> {
     let largest = |side: fn(&Image) -> u32| images.iter().flatten().map(|i| side(i)).max();

@@ -111,7 +111,7 @@ impl<'a> Cursor<'a> {
         Self { bytes, at: 0, line: 1, line_start: 0, word_start: 0, sloppy }
     }
 
-    /// At the start of a text that is the rest of a file, after so many lines.
+    /// At the start of a text that is the rest of a file, after this many lines.
     pub fn at_line(bytes: &'a [u8], lines: u64) -> Self {
         Self { line: lines, ..Self::new(bytes) }
     }
@@ -151,7 +151,7 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.at).copied()
     }
 
-    /// Returns the length of the line end at `at`, 0 where there is none.
+    /// Returns the length of the line end at `at`, 0 if there is none.
     fn line_end(&self, at: usize) -> usize {
         match (self.bytes.get(at), self.bytes.get(at + 1)) {
             (Some(b'\r'), Some(b'\n')) => 2,
@@ -191,7 +191,7 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.word_start..self.at)
     }
 
-    /// Steps to the end of the word that the cursor stands in.
+    /// Steps to the end of the word at the cursor.
     fn finish_word(&mut self) {
         while let Some(byte) = self.peek() {
             let joins = byte == b'\\' && self.line_end(self.at + 1) > 0;
@@ -238,7 +238,7 @@ impl<'a> Cursor<'a> {
         self.word_start = self.at;
     }
 
-    /// Returns the next number of the line; `None` where the line is over.
+    /// Returns the next number of the line; `None` if the line is over.
     ///
     /// # Errors
     /// A word that does not begin with a number.
@@ -293,7 +293,7 @@ impl<'a> Cursor<'a> {
         self.peek().is_none_or(|b| is_blank(b) || ends_line(b) || b == b'#' || b == b'\\')
     }
 
-    /// Returns the whole word that the cursor stands in, for messages.
+    /// Returns the whole word at the cursor, for messages.
     pub fn current_word(&mut self) -> String {
         self.finish_word();
         quote(self.bytes.get(self.word_start..self.at).unwrap_or_default())

@@ -78,8 +78,8 @@ pub fn json(text: &str) -> Cow<'_, str> {
     Cow::Owned(told)
 }
 
-/// Returns a message that quotes words of a file, as a terminal may have it: escaped, with what stands between backticks cut
-/// as by [`shown`], and long numbers written with an exponent.
+/// Returns a message that quotes words of a file, safe for a terminal: escaped, with the text between backticks cut as
+/// by [`shown`], and long numbers written with an exponent.
 pub fn message(text: &str) -> Cow<'_, str> {
     // Nearly all are fine as they are.
     if text.len() <= NUMBER || (text.len() <= WORDS && !has_long_number(text)) {

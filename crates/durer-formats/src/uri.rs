@@ -41,7 +41,7 @@ fn strip_data_scheme(uri: &str) -> Option<&str> {
 }
 
 /// Returns a percent-decoded path with `/` as separator, as [`Resources::find`] takes it. A `%`
-/// without two hexadecimal digits stands for itself, as programs that do not encode write it.
+/// without two hexadecimal digits is taken literally, as programs that do not encode write it.
 pub(crate) fn path(uri: &str) -> std::result::Result<String, &'static str> {
     let bytes = percent_decode(uri).unwrap_or_else(|| uri.as_bytes().to_vec());
     let path = String::from_utf8(bytes).map_err(|_| "it is not UTF-8 when percent-decoded")?;
@@ -61,7 +61,7 @@ pub(crate) fn path(uri: &str) -> std::result::Result<String, &'static str> {
 }
 
 /// Returns the steps of a path with `/` as separator, without `.` and without folders that a `..` leaves
-/// again (RFC 3986, §5.2.4): they need not exist. What is left of `..` stands at the beginning.
+/// again (RFC 3986, §5.2.4): they need not exist. What is left of `..` is at the beginning.
 pub(crate) fn steps(path: &str) -> Vec<&str> {
     let mut steps = Vec::new();
     for step in path.split('/').filter(|step| !matches!(*step, "" | ".")) {

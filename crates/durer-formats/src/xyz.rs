@@ -1,14 +1,14 @@
 //! Point clouds as text: a point per line, of three coordinates and what more there is.
 //!
-//! There is no standard: the files of scanners and of CloudCompare, MeshLab and Open3D, with the
-//! endings `.xyz`, `.xyzrgb`, `.pts`, `.asc`, `.txt` and `.csv`. Numbers are separated by blanks, commas
-//! or semicolons. A first line of one number is the count of points (Leica's PTS, several times where
-//! there are several scans); other lines without numbers before the first point are comments, and say
-//! which column is what where they name `x`, `y` and `z`. Else columns after the third are told by
-//! their values: three from 0 to 255 (or to 1, and not beyond) are colours; of seven columns the fourth
-//! is the intensity. z is up.
+//! There is no standard: the files of scanners and of CloudCompare, MeshLab and Open3D, with the endings
+//! `.xyz`, `.xyzrgb`, `.pts`, `.asc`, `.txt` and `.csv`. Numbers are separated by blanks, commas or
+//! semicolons. A first line of one number is the count of points (Leica's PTS, several times if there
+//! are several scans); other lines without numbers before the first point are comments, and say the
+//! meaning of each column if they name `x`, `y` and `z`. Otherwise columns after the third are
+//! recognized by their values: three from 0 to 255 (or to 1, and not beyond) are colours; of seven
+//! columns the fourth is the intensity. z is up.
 //!
-//! Cost: two passes over the text where there are more than three columns. Memory: 24 bytes per point
+//! Cost: two passes over the text if there are more than three columns. Memory: 24 bytes per point
 //! while reading, 16 more with colours.
 
 use crate::cloud::Cloud;
@@ -16,7 +16,7 @@ use crate::text::{Tally, quote, utf8};
 use crate::{Error, Model, Place, ReadOptions, Resources, Result, number};
 use durer::math::{DVec3, Vec4};
 
-/// Columns that are looked at.
+/// Columns that are examined.
 const COLUMNS: usize = 12;
 
 /// Reads a text of points.
@@ -68,8 +68,7 @@ fn separates(byte: u8) -> bool {
     byte.is_ascii_whitespace() || matches!(byte, b',' | b';')
 }
 
-/// Returns the numbers of a line and how many there are: 0 of a comment; `None` where a word is
-/// none.
+/// Returns the numbers of a line and how many there are: 0 of a comment; `None` if a word is none.
 fn numbers(line: &[u8]) -> Option<([f64; COLUMNS], usize)> {
     let (mut values, mut count) = ([0.0; COLUMNS], 0);
     if line.starts_with(b"#") || line.starts_with(b"//") {
@@ -141,7 +140,7 @@ impl Table {
         }
     }
 
-    /// A line before the first point that is no comment.
+    /// A line before the first point that is not a comment.
     fn head(&mut self, line: u64, words: &[u8]) -> Result<()> {
         self.head += 1;
         self.name(words);
@@ -154,7 +153,8 @@ impl Table {
             return Err(Error::line(line, 0, message));
         }
         if self.head > 20 {
-            let message = format!("`{}` is no point; a line holds three coordinates", quote(words));
+            let message =
+                format!("`{}` is not a point; a line holds three coordinates", quote(words));
             return Err(Error::line(line, 0, message));
         }
         Ok(())
@@ -294,7 +294,7 @@ mod tests {
                 "3\nwater\nO 0 0 0\nH 0 0 1\nH 0 1 0\n",
                 "line 3: a word and three coordinates: molecules",
             ),
-            (&"word\n".repeat(30), "line 21: `word` is no point"),
+            (&"word\n".repeat(30), "line 21: `word` is not a point"),
         ] {
             let e = read(text.as_bytes(), &NoResources, &ReadOptions::default());
             let found = e.expect_err("broken").to_string();

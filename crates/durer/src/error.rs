@@ -56,7 +56,7 @@ pub enum Error {
         /// The limit in force.
         limit: u64,
     },
-    /// The combination asked for has no meaning, e.g. vector output of an image-space algorithm.
+    /// The combination requested has no meaning, e.g. vector output of an image-space algorithm.
     #[error("{what} is not supported; {instead}")]
     Unsupported {
         /// Requested amount.

@@ -57,7 +57,7 @@ pub struct Points {
     pub dimensions: Dimensions,
     /// x and y of each; all are finite.
     pub xy: Vec<DVec2>,
-    /// Height and measure of each, 0 for the one that is not there; empty where neither is.
+    /// Height and measure of each, 0 for the one that is not there; empty if neither is.
     pub zm: Vec<[f64; 2]>,
 }
 
@@ -120,7 +120,7 @@ impl Points {
         self.xy.is_empty()
     }
 
-    /// Returns the height and measure of a position; zeros where there are none.
+    /// Returns the height and measure of a position; zeros if there are none.
     pub fn zm(&self, index: usize) -> [f64; 2] {
         self.zm.get(index).copied().unwrap_or_default()
     }
@@ -138,8 +138,8 @@ impl Points {
 ///
 /// # Guarantees
 /// From readers, all coordinates are finite, rings have at least three positions and line strings
-/// at least two. Rings are open: the first position is not repeated at the end. Whether rings
-/// cross themselves or one another is not looked at.
+/// at least two. Rings are open: the first position is not repeated at the end. Whether rings cross
+/// themselves or one another is ignored.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Geometry {
     /// One position, or none.
@@ -194,7 +194,7 @@ impl Geometry {
         self.len() == 0
     }
 
-    /// Returns the ordinates that any position has; `Xy` where there is none.
+    /// Returns the ordinates that any position has; `Xy` if there is none.
     pub fn dimensions(&self) -> Dimensions {
         let mut all = Dimensions::Xy;
         self.for_each(&mut |points| {
@@ -205,7 +205,7 @@ impl Geometry {
         all
     }
 
-    /// Returns the smallest rectangle around it; `None` where it is empty.
+    /// Returns the smallest rectangle around it; `None` if it is empty.
     pub fn bounds(&self) -> Option<Rect> {
         let mut bounds: Option<Rect> = None;
         self.for_each(&mut |points| {

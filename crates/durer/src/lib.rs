@@ -51,7 +51,7 @@
 //! |---|---|---|
 //! | [Cohen–Sutherland](clip::line::cohen_sutherland) | rectangle, box | most segments wholly inside or outside |
 //! | [Midpoint subdivision](clip::line::midpoint) | integer pixels | hardware without division |
-//! | [Cyrus–Beck](clip::line::cyrus_beck) | convex polygon, convex polyhedron | windows that are no rectangles |
+//! | [Cyrus–Beck](clip::line::cyrus_beck) | convex polygon, convex polyhedron | windows that are not rectangles |
 //! | [Liang–Barsky](clip::line::liang_barsky) | rectangle, box, half-planes | most segments crossing the border |
 //! | [Nicholl–Lee–Nicholl](clip::line::nicholl_lee_nicholl) | rectangle | no crossing computed in vain |
 //! | [Homogeneous](clip::line::homogeneous) | rectangle | points with a w of any sign |
@@ -69,9 +69,9 @@
 //! | [Overlay](mod@clip::polygon::overlay) | anything | valid polygons: the robust door |
 //! | [Rectangle](clip::polygon::rectangle) | polygons and polylines, a rectangle | the fast path for map tiles |
 //!
-//! [Overlay](mod@clip::polygon::overlay) and [Vatti](clip::polygon::vatti) take coordinates of f64 or whole numbers; the
-//! [tree](clip::polygon::NestingTree) of a result tells which ring lies in which.
-//! [`clip::attribute`] carries heights, colours and other values to new vertices.
+//! [Overlay](mod@clip::polygon::overlay) and [Vatti](clip::polygon::vatti) take coordinates of f64 or whole numbers;
+//! the [tree](clip::polygon::NestingTree) of a result gives the nesting of its rings. [`clip::attribute`] carries
+//! heights, colours and other values to new vertices.
 //!
 //! **And of any geometry?** [`clip::mask`] clips points, lines and polygons to a window or to polygons, makes polygons
 //! [valid](clip::mask::Rules::fix) and [joins](clip::mask::Union) them; [`clip::cells`] cuts by many cells at once;
@@ -129,7 +129,7 @@
 //! by a [planar map](visibility::region::planar_map); [hatching](visibility::region::hatch) for pens.
 //!
 //! [Back-face removal](visibility::back_face) leaves out what looks away before anything else is done;
-//! [wireframe](visibility::wireframe) draws all edges, hidden ones too. [`pipeline::status`] tells why nothing
+//! [wireframe](visibility::wireframe) draws all edges, hidden ones too. [`pipeline::status`] says why nothing
 //! of a scene is seen.
 //!
 //! **How does a drawing come onto paper?** [`paper`]: page, scale, pens, dashes, sheets of four views;

@@ -78,8 +78,7 @@ impl Plane {
         self.normal.dot(p) + self.distance
     }
 
-    /// Returns the same plane with a normal of unit length; `None` where the normal has no
-    /// direction.
+    /// Returns the same plane with a normal of unit length; `None` if the normal has no direction.
     pub fn normalized(&self) -> Option<Self> {
         let length = self.normal.length();
         (length.is_finite() && length > 0.0)
@@ -114,7 +113,7 @@ impl Rect {
         }
     }
 
-    /// Returns the smallest rectangle around the finite points; `None` where there is none.
+    /// Returns the smallest rectangle around the finite points; `None` if there is none.
     pub fn around(points: impl IntoIterator<Item = DVec2>) -> Option<Self> {
         let mut points = points.into_iter().filter(|p| p.is_finite());
         let first = points.next()?;

@@ -46,7 +46,7 @@ use crate::{Error, Result};
 /// Source of light.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Lighting {
-    /// The scene's own lights; where it has none, three points: key, fill and rim light that go with
+    /// The scene's own lights; if it has none, three points: key, fill and rim light that go with
     /// the camera, and ambient light.
     #[default]
     Auto,
@@ -98,7 +98,7 @@ pub struct RenderOptions {
     pub samples: Samples,
     /// Resolution of the A-buffer's masks; it takes no samples.
     pub mask: Mask,
-    /// Method that keeps light from surfaces in shadow.
+    /// Method that computes shadows.
     pub shadows: Shadows,
     /// Texels along the side of shadow maps.
     pub shadow_map_side: u32,
@@ -201,9 +201,9 @@ pub struct Report {
     pub raster_seconds: f64,
 }
 
-/// Renders a scene by the algorithm asked for; the z-buffer is the production path.
+/// Renders a scene by the algorithm requested; the z-buffer is the production path.
 ///
-/// Meshes without normals are shown with flat faces, unless Gouraud or Phong shading is asked for:
+/// Meshes without normals are shown with flat faces, unless Gouraud or Phong shading is requested:
 /// then they get smooth normals first ([`crate::scene::Mesh::with_smooth_normals`]).
 ///
 /// The same input gives the same bytes on every CPU and number of threads. Runs on the current
@@ -293,7 +293,7 @@ pub fn render_into(
     })
 }
 
-/// Applies ambient occlusion, where it is asked for, and drops the planes that were there for it alone.
+/// Applies ambient occlusion, if requested, and drops the planes that were there for it alone.
 fn darken(view: &View, options: &RenderOptions, framebuffer: &mut Framebuffer) {
     let Some(occlusion) = &options.ambient_occlusion else { return };
     let Framebuffer { color, depth, normal, .. } = framebuffer;
@@ -342,7 +342,7 @@ fn lights(
     lights
 }
 
-/// Gives a framebuffer the planes that are asked for. Its colours stay where their number is right, for every method
+/// Gives a framebuffer the planes that are requested. Its colours stay where their number is right, for every method
 /// sets all of them; everything else is as new.
 fn make_ready(framebuffer: &mut Framebuffer, options: &RenderOptions) -> Result<()> {
     let Framebuffer { color, .. } = std::mem::replace(framebuffer, Framebuffer::new(0, 0));
@@ -428,7 +428,7 @@ fn from_screen_triangles(
 }
 
 /// Interpolating shadings need normals at the vertices: the scene with those that are missing, where
-/// such a shading is asked for and some are.
+/// such a shading is requested and some are.
 fn with_needed_normals(scene: &Scene, options: &RenderOptions) -> Result<Option<Scene>> {
     let interpolates = matches!(options.shading, Some(Shading::Gouraud | Shading::Phong));
     if !interpolates || scene.meshes.iter().all(|m| !m.normals.is_empty()) {

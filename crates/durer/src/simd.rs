@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 /// Level of all work that asks for no other.
 static DEFAULT: OnceLock<Level> = OnceLock::new();
 
-/// Returns the level that everything works at where no other is asked for: the machine's best, or
+/// Returns the level that everything works at where no other is requested: the machine's best, or
 /// what [`set_default_level`] has chosen.
 pub fn default_level() -> Level {
     *DEFAULT.get_or_init(Level::new)
@@ -55,7 +55,7 @@ pub fn levels() -> Vec<Level> {
     levels
 }
 
-/// Returns the level of a name that [`name`] gives, or the machine's best for `auto`; none where the machine lacks it.
+/// Returns the level of a name that [`name`] gives, or the machine's best for `auto`; none if the machine lacks it.
 ///
 /// ```
 /// use durer::simd::{by_name, levels, name};

@@ -19,13 +19,13 @@
 //! assert_eq!(recorder.steps(), [20, 10, 5]);
 //! ```
 
-/// A listener for the steps of one algorithm.
+/// A tracer for the steps of one algorithm.
 pub trait Tracer<S> {
-    /// Takes note of one step; `make` is called only if somebody listens.
+    /// Takes note of one step; `make` is called only if steps are recorded.
     fn step(&mut self, make: impl FnOnce() -> S);
 }
 
-/// Listens to nothing and costs nothing.
+/// Records nothing and costs nothing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoTrace;
 

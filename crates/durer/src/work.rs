@@ -16,7 +16,7 @@
 //! # Ok::<(), durer::Error>(())
 //! ```
 //!
-//! It also counts how far work has come, for whoever shows that: see [`Work::progress`].
+//! It also counts progress: see [`Work::progress`].
 
 use crate::{Error, Result};
 use std::mem::size_of;
@@ -218,7 +218,8 @@ impl Work {
         }
     }
 
-    /// Stops the work, as [`Self::stop`], because it is seen to hold so many bytes, more than its budget.
+    /// Stops the work, as [`Self::stop`], because it is seen to hold this many bytes, more than its
+    /// budget.
     pub fn stop_at(&self, bytes: u64) {
         if let Some(scope) = &self.0 {
             self.stop(scope.shared.refused(self.stage(), bytes));
@@ -250,7 +251,8 @@ impl Work {
         self.0.as_ref().map_or("start", |scope| *lock(&scope.shared.stage))
     }
 
-    /// Begins a stage of so many steps, none of which is done; [`Self::progress`] tells of it from here on.
+    /// Begins a stage of this many steps, none of which is done; [`Self::progress`] tells of it from here
+    /// on.
     pub fn begin(&self, stage: &'static str, of: u64) {
         if let Some(scope) = &self.0 {
             let mut counted = lock(&scope.shared.counted);
@@ -283,16 +285,16 @@ impl Work {
         self.0.as_ref().map_or(0, |scope| scope.shared.used.load(Ordering::Relaxed))
     }
 
-    /// Returns the budget, bytes; [`u64::MAX`] where there is none.
+    /// Returns the budget, bytes; [`u64::MAX`] if there is none.
     pub fn budget(&self) -> u64 {
         self.0.as_ref().map_or(u64::MAX, |scope| scope.shared.budget)
     }
 
-    /// Returns whether the system has room for a buffer of so many elements: large ones are asked for, and given back at
-    /// once, so that a buffer that cannot be had is an error and does not end the process.
+    /// Returns whether the system has room for a buffer of this many elements: large ones are requested, and given back
+    /// at once, so that a buffer that cannot be had is an error and does not end the process.
     ///
     /// # Errors
-    /// [`Error::Memory`] where it has none.
+    /// [`Error::Memory`] if it has none.
     pub fn room_for<T>(&self, stage: &'static str, count: u64) -> Result<()> {
         let bytes = count.saturating_mul(size_of::<T>() as u64);
         if bytes < LARGE {
@@ -335,7 +337,8 @@ impl Charge {
         Ok(())
     }
 
-    /// Takes what is missing to so many bytes, or nothing where there are more: for a buffer that has grown.
+    /// Takes what is missing to this many bytes, or nothing if there are more: for a buffer that has
+    /// grown.
     ///
     /// # Errors
     /// As [`Work::charge`].

@@ -38,10 +38,10 @@ pub struct ClipArgs {
     pub input: PathBuf,
     /// File to write the result to
     ///
-    /// A file whose suffix tells the format: .geojson, .json; .geojsonl, .ndjson, .jsonl (one
-    /// feature per line); .geojsons (RFC 8142); .topojson; .fgb; .shp, with .dbf, .shx, .cpg and .prj beside it; .csv;
-    /// .wkt; .wkb; .hex; .svg. `-` for standard output, in the format of the input. A file is replaced only by a whole
-    /// result. With --tiles, a folder.
+    /// The suffix selects the format: .geojson, .json; .geojsonl, .ndjson, .jsonl (one feature per line); .geojsons
+    /// (RFC 8142); .topojson; .fgb; .shp, with .dbf, .shx, .cpg and .prj beside it; .csv; .wkt; .wkb; .hex; .svg. `-`
+    /// for standard output, in the format of the input. A file is only ever replaced by a complete result. With
+    /// --tiles, a folder.
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
     /// Options for the clip region.
@@ -59,7 +59,7 @@ pub struct ClipArgs {
     /// The format of IN [default: by its content, then by its suffix]
     #[arg(long, value_name = "FORMAT", value_parser = format, help_heading = "Formats")]
     pub from: Option<GeoFormat>,
-    /// The layer of a TopoJSON or GeoPackage with several [default: all, as one]
+    /// The layer of a TopoJSON or GeoPackage file [default: all, as one]
     #[arg(long, value_name = "NAME", help_heading = "Formats")]
     pub layer: Option<String>,
     /// The format of OUT: geojson, geojsonl, geojsons, topojson, flatgeobuf, shapefile, csv, wkt, wkb, wkb-hex or svg
@@ -78,31 +78,31 @@ pub struct ClipArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Mask")]
 pub struct RegionArgs {
-    /// A rectangle: its left, lower, right and upper border, in the coordinates of the file; those of an SVG count
-    /// upwards, so that what it shows is below 0
+    /// A rectangle: its left, lower, right and upper border, in the coordinates of the file; y of an SVG is
+    /// negated, so that it grows upwards
     ///
     /// In degrees, a left border that is larger than the right one, such as 170,-10,-170,10, makes a window across
-    /// the 180th meridian, as in RFC 7946; it also holds what goes on beyond 180 degrees.
+    /// the 180th meridian, as in RFC 7946; longitudes beyond 180 degrees are in it, too.
     #[arg(long, value_name = "XL,YB,XR,YT", allow_hyphen_values = true, value_parser = region, conflicts_with_all = ["by", "tiles", "cells"])]
     pub window: Option<Window>,
-    /// The polygons of a file, all together
+    /// The polygons of a file, as one mask
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["tiles", "cells"])]
     pub by: Option<PathBuf>,
-    /// The polygons of a file, each feature by itself: what is cut comes out once for each cell that it lies in, with
-    /// the fields of the cell after its own
+    /// The polygons of a file, each feature as a cell: a feature is written once for each cell that it reaches, cut
+    /// to the cell, with the cell's fields after its own
     ///
-    /// A field of the cell whose name the feature has too gets `cell_` before it; cells without fields are told by their
-    /// number in the file, as `cell`.
+    /// If the feature has a field of the same name, that of the cell gets the prefix `cell_`; cells without fields are
+    /// identified by their number in the file, as `cell`.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["tiles", "outside", "op", "algorithm"])]
     pub cells: Option<PathBuf>,
     /// The tiles of a web map at this zoom level, 0 to 24
     ///
-    /// Each tile becomes OUT/z/x/y.geojson; where OUT is `-` or ends in .geojsonl, all go into one
-    /// sequence of features with the member "tile". What lies beyond 180 degrees comes in on the other side. For
-    /// simplified vector tiles of many levels see `durer tiles`.
+    /// Each tile becomes OUT/z/x/y.geojson; where OUT is `-` or ends in .geojsonl, all go into one sequence of
+    /// features with the member "tile". Geometry beyond 180 degrees is moved to the other side. For simplified
+    /// vector tiles of many levels see `durer tiles`.
     #[arg(long, value_name = "Z", allow_hyphen_values = true, value_parser = clap::value_parser!(u8).range(0..=24))]
     pub tiles: Option<u8>,
-    /// At most so many tiles
+    /// Refuse to write more tiles than this
     #[arg(long, value_name = "N", default_value_t = 1_000_000, requires = "tiles", value_parser = values::count)]
     pub max_tiles: u64,
     /// Coordinate system of the input, for --tiles
@@ -117,21 +117,22 @@ pub struct RegionArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Cutting")]
 pub struct CuttingArgs {
-    /// intersection, difference; union, xor: these join all polygons, those of the mask too, to one,
-    /// and leave lines and points out
+    /// intersection, difference; union, xor: these combine all polygons, including the mask's, into
+    /// one and leave out lines and points
     #[arg(long, value_name = "OP", default_value = "intersection", conflicts_with = "tiles")]
     pub op: BooleanOp,
     /// Fill rule that decides which points the polygons of IN and FILE enclose: even-odd, non-zero, positive (rings counter-clockwise),
     /// negative or abs-geq-two (two rings at least) [default: even-odd; of an SVG, the rule of its paths]
     #[arg(long, value_name = "RULE")]
     pub fill_rule: Option<FillRule>,
-    /// An algorithm by its name [default: what is fast and right]
+    /// Name of an algorithm [default: a fast one that is exact for the input]
     #[arg(long, value_name = "NAME", long_help = algorithm_help(), value_parser = algorithm)]
     pub algorithm: Option<Algorithm>,
     /// The grid for vertices of overlays, in units of the coordinates [default: 2^-40 of the extent]
     ///
-    /// Without it, vertices of the input keep their coordinates, and cuts lie where edges of the input
-    /// cross, correctly rounded. With it, and by `vatti` always, all vertices of polygons are snapped. Powers of two are best.
+    /// Without it, vertices of the input keep their coordinates, and cuts are the crossings of edges of the input,
+    /// correctly rounded. With it, and always with `vatti`, all vertices of polygons are snapped. Powers of two are
+    /// best.
     #[arg(long, value_name = "SIZE", allow_hyphen_values = true, value_parser = values::positive)]
     pub grid: Option<f64>,
 }

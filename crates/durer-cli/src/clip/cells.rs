@@ -1,4 +1,5 @@
-//! `durer clip --cells`: every feature cut by each of many cells, and told which cell each piece is in.
+//! `durer clip --cells`: every feature is cut by each of many cells, and each piece gets the fields of
+//! its cell.
 
 use super::args::ClipArgs;
 use super::srids::Srids;
@@ -57,7 +58,7 @@ pub fn read(
         messages.warning(&name, message);
     }
     if without > 0 && !cells.is_empty() {
-        messages.warning(&name, format!("{without} features enclose nothing and are no cells"));
+        messages.warning(&name, format!("{without} features enclose nothing and are not cells"));
     }
     if cells.is_empty() {
         return Err(fail("there is no polygon to cut with".to_owned()));
@@ -66,7 +67,7 @@ pub fn read(
     Ok(Cells { cells, fields })
 }
 
-/// Returns the polygons of a cell and the fields that its pieces get; `None` where a feature encloses nothing.
+/// Returns the polygons of a cell and the fields that its pieces get; `None` if a feature encloses nothing.
 fn cell(
     feature: &Feature,
     number: u64,

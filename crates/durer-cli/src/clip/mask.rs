@@ -65,7 +65,7 @@ pub fn read(
         }
         messages.warning(&display_name(path), format!("{why} in it; nothing is cut away"));
     }
-    // What the algorithm says of the mask alone is no feature's fault.
+    // What the algorithm says of the mask alone is not a feature's fault.
     if let Some(Algorithm::Polygon(clipper)) = args.cutting.algorithm.filter(|a| !a.joins()) {
         let alone = clipper.clip(&Shapes::new(), &union.shapes, BooleanOp::Intersection);
         alone.map_err(|e| fail(e.to_string()))?;

@@ -346,7 +346,7 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Returns a writer that knows what stands before the features.
+    /// Returns a writer that knows the text before the features.
     fn writer(&self) -> Result<Writer<Sink>, Failure> {
         layer::writer(&self.args.output, self.to, &self.members(), self.system())
     }
@@ -364,7 +364,7 @@ impl Job<'_> {
         }
     }
 
-    /// Members of the collection, with the one that tells the coordinate system where GeoJSON must be told.
+    /// Members of the collection, with the one for the coordinate system if GeoJSON needs it.
     fn members(&self) -> Vec<Member> {
         let mut members = self.reader.members().to_vec();
         if !matches!(self.to, GeoFormat::GeoJson | GeoFormat::TopoJson) {
@@ -505,5 +505,5 @@ impl Job<'_> {
     }
 }
 
-/// The member of GeoJSON's older version that tells the coordinate system, as JSON writes it.
+/// The member for the coordinate system in the older version of GeoJSON, as JSON.
 const CRS: &str = "\"crs\"";

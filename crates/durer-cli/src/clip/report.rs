@@ -69,7 +69,7 @@ pub struct Report {
     pub warnings: Vec<String>,
     /// From start to end.
     pub total_seconds: f64,
-    /// The most memory that the process held, where the system tells.
+    /// The peak memory of the process, if the system reports it.
     pub peak_memory_bytes: Option<u64>,
 }
 

@@ -35,7 +35,8 @@ pub struct DrawArgs {
     pub layers: Layers,
     /// File to write the picture to
     ///
-    /// A .png, .jpg or .webp file, or `-` for standard output. A file is replaced only by a whole picture.
+    /// A .png, .jpg or .webp file, or `-` for standard output. A file is only ever replaced by a complete
+    /// picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
     /// Options for the picture.
@@ -64,11 +65,11 @@ pub struct DrawArgs {
 pub struct PictureArgs {
     /// Width and height in pixels [default: an SVG's own; 1024 on the longer side of a map]
     ///
-    /// WxH; one side may be left out, `800x` or `x600`, and follows from the other. What has another
-    /// shape is drawn as large as it fits, in the middle.
+    /// One side may be left out (`800x`, `x600`) and follows from the other. If the shape differs,
+    /// the drawing is as large as fits, in the middle.
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = sides)]
     pub size: Option<Sides>,
-    /// Smooth edges: by the exact area covered, or none
+    /// Anti-aliasing: by the exact area covered, or none
     #[arg(long, value_name = "HOW", default_value = "coverage")]
     pub aa: Smoothing,
     /// A colour, or `transparent` [default: transparent for an SVG, white for a map]
@@ -86,7 +87,7 @@ pub struct PictureArgs {
     /// Compression and quality of the file.
     #[command(flatten)]
     pub file: PictureFileArgs,
-    /// Refuse pictures of more pixels; the default is 16384x16384
+    /// Refuse pictures with more pixels; the default is 16384x16384
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "268435456", value_parser = values::count)]
     pub max_pixels: u64,
 }
@@ -95,13 +96,13 @@ pub struct PictureArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Text")]
 pub struct FontArgs {
-    /// A font, or a folder of fonts: TrueType, OpenType; the first is that of labels
+    /// A font file or a folder of fonts (TrueType, OpenType); the first is used for labels
     ///
-    /// Fonts that are not given are not used, so the picture is the same on every machine. DejaVu Sans
-    /// (Latin, Greek, Cyrillic) is always there and used for what else is missing.
+    /// Only these fonts are used, so the picture is the same on every machine. DejaVu Sans (Latin,
+    /// Greek, Cyrillic) is built in and replaces missing fonts.
     #[arg(long, value_name = "PATH", value_hint = ValueHint::AnyPath)]
     pub font: Vec<PathBuf>,
-    /// Use the fonts that are installed, too; pictures then depend on the machine
+    /// Also use the installed fonts; pictures then depend on the machine
     #[arg(long)]
     pub system_fonts: bool,
 }
@@ -111,7 +112,7 @@ pub struct FontArgs {
 pub enum Smoothing {
     /// Pixels are painted or not, by their centres
     None,
-    /// Pixels are painted as much as they are covered
+    /// Pixels are painted by the share of their area that is covered
     Coverage,
 }
 

@@ -33,7 +33,7 @@ pub fn load(args: &FontArgs) -> Result<Fonts, Failure> {
         for file in files {
             let bytes = fs::read(&file).map_err(|e| Failure::of_file(&file, in_words(&e)))?;
             if fonts.add(bytes) == 0 && !path.is_dir() {
-                return Err(Failure::of_file(&file, "it is no TrueType or OpenType font"));
+                return Err(Failure::of_file(&file, "it is not a TrueType or OpenType font"));
             }
         }
     }

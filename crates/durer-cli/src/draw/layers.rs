@@ -99,18 +99,18 @@ struct LayerArgs {
     /// The width of markers in pixels [default: 6]
     #[arg(long, value_name = "PX", allow_hyphen_values = true, value_parser = values::not_negative)]
     marker_size: Vec<f64>,
-    /// Label features by this property
+    /// Label features with this property
     ///
-    /// Within areas, along lines, beside points. Labels overlap neither each other nor markers: those of upper
-    /// layers come first, then those that --label-priority says, then those of larger features; what finds no room is
-    /// left out. Names that their area does not hold are written in two lines, where that is better, and NAME of Natural
-    /// Earth as ABBREV says, where nothing else has room.
+    /// Labels are placed within areas, along lines and beside points. They overlap neither each other nor markers.
+    /// Those of upper layers come first, then those that --label-priority puts first, then those of larger features;
+    /// labels without room are left out. Names that do not fit their area are written in two lines if that helps, and
+    /// NAME of Natural Earth is replaced by ABBREV if nothing else fits.
     #[arg(long, value_name = "FIELD")]
     label: Vec<String>,
-    /// Place labels with small numbers of this property first, or `-FIELD`: with large ones [default: LABELRANK,
-    /// where features have it]
+    /// Place labels with small values of this property first, or with large ones for `-FIELD` [default:
+    /// LABELRANK, if features have it]
     ///
-    /// Labels that lie wholly within their area hinder no other and come before all.
+    /// Labels that fit within their area do not compete with others and come first.
     #[arg(long, value_name = "FIELD", allow_hyphen_values = true, value_parser = priority)]
     label_priority: Vec<Priority>,
     /// The size of labels in pixels [default: 12]
@@ -159,7 +159,7 @@ fn dashes(text: &str) -> Result<Dashes, String> {
 
 fn share(text: &str) -> Result<f64, String> {
     let inside = |n: &f64| (0.0..=1.0).contains(n);
-    values::number(text).and_then(|n| Some(n).filter(inside).ok_or("it must lie in 0 to 1".into()))
+    values::number(text).and_then(|n| Some(n).filter(inside).ok_or("it must be from 0 to 1".into()))
 }
 
 impl Args for Layers {
@@ -198,7 +198,7 @@ impl FromArgMatches for Layers {
     }
 }
 
-/// Sets what is said in a part of the command line; tells whether anything is.
+/// Sets the options of a part of the command line; returns whether there are any.
 fn apply(matches: &ArgMatches, place: Range<usize>, (style, labels): &mut (Style, Labels)) -> bool {
     let mut any = false;
     macro_rules! set {

@@ -100,7 +100,7 @@ struct Given<'a> {
 }
 
 impl Job<'_> {
-    /// Warnings, told and noted.
+    /// Warnings, printed and noted.
     fn warn(&mut self, name: &str, warnings: &[Warning]) {
         self.messages.warnings(name, warnings);
         self.report.warnings.extend(warnings.iter().map(ToString::to_string));

@@ -1,4 +1,4 @@
-//! `--break`: views without what lies between two places on an axis.
+//! `--break`: views without the part between two places on an axis.
 
 use super::sheet::Shot;
 use crate::failure::Failure;

@@ -94,7 +94,7 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
     sheet::check(args, kind)
 }
 
-/// Refuses what tells visible lines apart where there are none.
+/// Refuses options that distinguish visible lines if there are none.
 fn check_weights(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
     let given = [("depth-cue", args.drawing.depth_cue), ("contour", args.drawing.contour)];
     let Some((name, _)) = given.into_iter().find(|(_, given)| *given) else { return Ok(()) };

@@ -30,7 +30,7 @@ pub(super) fn unit(args: &RenderArgs, subject: &Subject) -> Unit {
     known_unit(args, subject).unwrap_or(Unit::Mm)
 }
 
-/// Returns the model's unit, where it is given or the format says it. Readers bring lengths to metres, and
+/// Returns the model's unit, if it is given or the format says it. Readers bring lengths to metres, and
 /// those of 3MF to millimetres.
 pub(super) fn known_unit(args: &RenderArgs, subject: &Subject) -> Option<Unit> {
     let format = subject.format.to_ascii_lowercase();
@@ -120,7 +120,7 @@ pub(super) fn told_scale(
     }
     known_unit(args, subject).is_none().then(|| {
         let format = subject.format.split(',').next().unwrap_or_default();
-        format!("a unit of the model is taken as 1 mm, as {format} has none; --unit tells another")
+        format!("a unit of the model is taken as 1 mm, as {format} has none; --unit sets another")
     })
 }
 

@@ -65,7 +65,7 @@ pub fn is_wanted(args: &RenderArgs, kind: Kind) -> bool {
     kind.is_vector() || args.drawing.style.is_some() || args.drawing.sheet.is_some()
 }
 
-/// Tells contours from other outlines, and near lines from far ones, where that is asked for.
+/// Tells contours from other outlines, and near lines from far ones, if requested.
 fn weighted(
     args: &RenderArgs,
     scene: &Scene,
@@ -82,7 +82,7 @@ fn weighted(
     Ok(drawing)
 }
 
-/// Returns the colour of the paper. Vector files stay blank unless a colour is asked for.
+/// Returns the colour of the paper. Vector files stay blank unless a colour is requested.
 fn background(args: &RenderArgs, kind: Kind) -> Result<Option<[u8; 4]>, Failure> {
     let asked = args.given.iter().any(|g| g == "background");
     match args.picture.background {
@@ -138,8 +138,8 @@ impl Shown {
     }
 }
 
-/// Draws one picture of a model and writes its file; tells why nothing of the model is seen, where that
-/// is so.
+/// Draws one picture of a model and writes its file; returns why nothing of the model is visible, if
+/// that is so.
 pub fn render(
     args: &RenderArgs,
     subject: &Subject,

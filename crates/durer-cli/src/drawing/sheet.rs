@@ -163,7 +163,7 @@ pub fn add_details(
     Ok(())
 }
 
-/// Returns a detail of the view that it names, or that shows most within its circle; `None` where that is
+/// Returns a detail of the view that it names, or that shows most within its circle; `None` if that is
 /// nothing.
 fn detail(spec: &DetailSpec, shown: &[Shown]) -> Result<Option<Shown>, Failure> {
     let mut best: Option<(f64, Shown)> = None;

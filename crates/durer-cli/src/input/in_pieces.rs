@@ -70,7 +70,7 @@ pub fn in_pieces(path: &Path, reading: &Reading) -> Option<Result<InPieces, Fail
     Some(Ok(InPieces { pieces, name: name.clone(), options }))
 }
 
-/// Returns the pieces of a file of so many bytes; `None` where its format has none.
+/// Returns the pieces of a file of this many bytes; `None` if its format has none.
 fn opened(
     mut file: File,
     length: u64,

@@ -9,16 +9,17 @@ use std::collections::BTreeSet;
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Fields")]
 pub struct FieldArgs {
-    /// Keep features whose field is so: FIELD=VALUE; also !=, <, <=, >, >= and ~ (contains, in any case)
+    /// Keep features whose field satisfies a condition: FIELD=VALUE; also !=, <, <=, >, >= and ~
+    /// (contains, ignoring case)
     ///
-    /// Of several, all must hold. Numbers are compared as numbers, texts by their letters; a field that a feature
-    /// does not have is as `null`, which only FIELD=null lets through. `id` is also the feature's own id.
+    /// If there are several, all must hold. Numbers are compared as numbers, texts by their characters. A missing
+    /// field is `null`, which only FIELD=null accepts. `id` is also the id of the feature.
     #[arg(long = "where", value_name = "FIELD=VALUE", value_parser = condition)]
     pub conditions: Vec<Condition>,
     /// Keep these fields only, in this order
     #[arg(long, value_name = "FIELD,…", value_delimiter = ',')]
     pub select: Vec<String>,
-    /// Give a field another name; --where and --select go by the old ones
+    /// Rename a field; --where and --select use the old names
     #[arg(long, value_name = "OLD=NEW", value_parser = rename, value_delimiter = ',')]
     pub rename: Vec<(String, String)>,
 }
@@ -81,7 +82,7 @@ fn rename(text: &str) -> Result<(String, String), String> {
 }
 
 impl Condition {
-    /// Returns whether a value, nothing where there is no such field, is so.
+    /// Returns whether a value, nothing if there is no such field, is so.
     fn holds(&self, value: Option<&Value>) -> bool {
         let text = match value {
             None | Some(Value::Null) => return self.test == Test::Equal && self.value == "null",
@@ -135,7 +136,7 @@ impl Fields {
         Self { args: args.clone(), missing, known: BTreeSet::new(), any: false }
     }
 
-    /// Returns whether a feature is kept, which then has the fields that are asked for.
+    /// Returns whether a feature is kept, which then has the fields that are requested.
     pub fn apply(&mut self, feature: &mut Feature) -> bool {
         if self.args.is_idle() {
             return true;

@@ -96,7 +96,7 @@ impl Counts {
     }
 }
 
-/// Reads a file and tells what is in it, of each layer.
+/// Reads a file and describes each of its layers.
 pub fn of_layers(path: &Path, work: &Work) -> Result<Vec<LayerInfo>, Failure> {
     let (format, reader) = open(path, None, None, work)?;
     let names = reader.layers();
@@ -108,7 +108,7 @@ pub fn of_layers(path: &Path, work: &Work) -> Result<Vec<LayerInfo>, Failure> {
         let (format, one) = open(path, Some(format), Some(&name), work)?;
         infos.push(of_layer(path, format, one, Some(name))?);
     }
-    // What is no layer is told with the first one.
+    // What is not a layer is told with the first one.
     if let Some(first) = infos.first_mut() {
         first.warnings.splice(0..0, reader.warnings().iter().map(ToString::to_string));
     }
@@ -173,7 +173,7 @@ fn fields(schema: &Schema) -> Vec<FieldInfo> {
     schema.columns().iter().map(field).collect()
 }
 
-/// Texts of examples are cut to so many letters.
+/// Texts of examples are cut to this many letters.
 const LONG: usize = 40;
 
 impl LayerInfo {

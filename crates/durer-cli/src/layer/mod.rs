@@ -24,7 +24,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use watched::Watched;
 
-/// Bytes that are looked at to find the format.
+/// Bytes that are examined to find the format.
 const PROBE: usize = 64 << 10;
 
 /// A reader of a file or of standard input.

@@ -9,7 +9,8 @@ use durer_formats::geo::{GeoFormat, Member, System, Writer};
 use std::io::IsTerminal;
 use std::path::Path;
 
-/// Returns the format of the result: as told, by the suffix, or on a stream that of the input.
+/// Returns the format of the result: the one given, that of the suffix, or for a stream that of the
+/// input.
 pub fn named_format(
     output: &Path,
     to: Option<GeoFormat>,
@@ -22,7 +23,7 @@ pub fn named_format(
     let Some(format) = to.or(named).or(from) else {
         let written = GeoFormat::ALL.into_iter().filter(|f| f.is_written());
         let suffixes = written.map(|f| f.suffixes()[0]).collect::<Vec<_>>().join(", .");
-        return fail(format!("the suffix tells no format; use one of .{suffixes}, or --to"));
+        return fail(format!("the suffix does not name a format; use one of .{suffixes}, or --to"));
     };
     if let Some(feature) = format.missing_feature() {
         let what = format!("this build of durer does not write {format}");
@@ -63,7 +64,7 @@ fn place(output: &Path, to: GeoFormat) -> Result<Sink, Failure> {
         return Sink::file(output);
     }
     if to.is_binary() && std::io::stdout().is_terminal() {
-        let message = format!("--output -: {to} is no text for a terminal; use a pipe or a file");
+        let message = format!("--output -: {to} is not text for a terminal; use a pipe or a file");
         return Err(Failure::Usage(message));
     }
     Ok(Sink::stdout())

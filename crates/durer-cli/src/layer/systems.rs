@@ -9,13 +9,13 @@ use durer_formats::geo::{Feature, System};
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Coordinates")]
 pub struct SystemArgs {
-    /// The coordinate system of IN [default: what the file says; longitude and latitude for GeoJSON]
+    /// The coordinate system of IN [default: that of the file; longitude and latitude for GeoJSON]
     ///
-    /// EPSG:4326 and the like, robinson, equal-earth, mercator, or a definition as well-known text. Longitude comes
-    /// before latitude, easting before northing.
+    /// EPSG:4326 and other codes, robinson, equal-earth, mercator, or a definition as well-known text. Longitude
+    /// comes before latitude, easting before northing.
     #[arg(long, value_name = "CRS", value_parser = Crs::parse)]
     pub from_crs: Option<Crs>,
-    /// Bring all coordinates to this system, after cutting; before it for tiles
+    /// Convert all coordinates to this system, after clipping; before it for tiles
     #[arg(long, value_name = "CRS", value_parser = Crs::parse)]
     pub to_crs: Option<Crs>,
 }
@@ -70,7 +70,7 @@ impl Shift {
         Ok(&self.own.insert(own).1)
     }
 
-    /// Brings a feature there; false where it has no place there.
+    /// Brings a feature there; false if it has no place there.
     ///
     /// # Errors
     /// Where the system that it comes from is not known.
@@ -92,7 +92,7 @@ impl Shift {
         let name =
             system.map_or_else(|| "the new system".to_owned(), |code| format!("EPSG:{code}"));
         let lost = (lost > 0).then(|| {
-            format!("{lost} features reach beyond where {name} shows anything; left out (--window cuts them before)")
+            format!("{lost} features reach beyond the area of {name}; left out (use --window to cut them first)")
         });
         let told: Vec<String> = lost.into_iter().chain(self.shifted()).collect();
         (!told.is_empty()).then(|| told.join("; "))

@@ -27,9 +27,9 @@ pub enum Samples {
 pub enum Shadows {
     /// No shadows
     None,
-    /// By maps of what each light sees
+    /// By a depth map for each light
     Map,
-    /// By rays to the lights; with the algorithm ray
+    /// By rays to the lights, with the algorithm ray
     Rays,
 }
 
@@ -42,22 +42,22 @@ pub enum Shading {
     Gouraud,
     /// Normals interpolated, Blinn's highlights
     Phong,
-    /// glTF's formula
+    /// The formula of glTF
     MetallicRoughness,
-    /// The base colour as it is
+    /// The base colour without lighting
     Unlit,
 }
 
 /// `--tone-map`.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum ToneMap {
-    /// Colours up to white as they are; brighter ones keep their hue and grow paler
+    /// Colours up to white are unchanged; brighter ones keep their hue and become paler
     None,
-    /// Nearly as they are up to 0.8, then compressed; for pictures of goods
+    /// Nearly unchanged up to 0.8, then compressed; for pictures of products
     KhronosNeutral,
     /// The look of film
     Aces,
-    /// Soft; bright colours grow pale
+    /// Soft; bright colours become pale
     Agx,
 }
 
@@ -68,7 +68,7 @@ pub enum Cull {
     None,
     /// Faces seen from behind
     Back,
-    /// Faces seen from behind whose material is single-sided, as glTF has it
+    /// Faces seen from behind whose material is single-sided (as in glTF)
     Material,
 }
 

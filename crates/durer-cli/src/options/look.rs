@@ -47,32 +47,32 @@ pub struct LookArgs {
     /// Side of a model's points in pixels
     #[arg(long, value_name = "PIXELS", allow_hyphen_values = true, default_value = "3", value_parser = values::pixels)]
     pub point_size: f64,
-    /// The colour of what has no material [default: light grey; of lines and points what is seen
-    /// against the background]
+    /// The colour of objects without a material [default: light grey; lines and points contrast
+    /// with the background]
     #[arg(long, value_name = "COLOR", value_parser = color::color)]
     pub color: Option<durer::math::Vec4>,
-    /// Method that keeps light from surfaces in shadow
+    /// Method that computes shadows
     #[arg(long, value_name = "HOW", default_value = "none")]
     pub shadows: Shadows,
     /// Texels along the side of a shadow map
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "2048", value_parser = clap::value_parser!(u32).range(1..=16384), requires = "shadows")]
     pub shadow_map: u32,
-    /// Number of times that rays are reflected by mirrors and refracted by what blends
+    /// Number of times that rays are reflected by mirrors and refracted by transparent surfaces
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "0", value_parser = clap::value_parser!(u32).range(0..=32))]
     pub bounces: u32,
     /// Exposure of the light: `auto`, or a number of EV
     ///
-    /// `auto` makes all lights stronger or weaker by one factor, so that white matte surfaces where much of
-    /// their light falls are nearly white. EV shows light as the file or --light gives it (at 0 one of
-    /// strength 1, or of pi lux, makes white), times two to this power, with the light of what shines by
-    /// itself. Default: auto for the file's own lights and for --environment FILE, else 0.
+    /// `auto` scales all lights by one factor so that well-lit white matte surfaces become nearly white. A
+    /// number multiplies the light of the file or of --light, and of emissive surfaces, by two to this
+    /// power; at 0, a light of strength 1, or of pi lux, makes white. Default: auto for the file's own
+    /// lights and for --environment FILE, else 0.
     #[arg(long, value_name = "EV", allow_hyphen_values = true, value_parser = lights::exposure)]
     pub exposure: Option<Exposure>,
     /// Surroundings that mirrors show: `studio`, `none`, or a panorama in a Radiance file (.hdr)
     ///
-    /// In a studio stand bright screens, which metals and what is smooth mirror; `none` leaves but a sky over
-    /// the ground. A panorama (equirectangular) lights the model too, in place of the default light and
-    /// beside the file's or --light.
+    /// The studio has bright screens, which metals and smooth surfaces reflect; `none` leaves only a sky over
+    /// the ground. A panorama (equirectangular) also lights the model: instead of the default light, and in
+    /// addition to lights of the file or of --light.
     #[arg(long, value_name = "WHAT", default_value = "studio", value_hint = ValueHint::FilePath, value_parser = environment)]
     pub environment: Environment,
     /// Tone map that brings bright light into the range of the picture

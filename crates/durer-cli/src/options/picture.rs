@@ -16,20 +16,20 @@ use durer::view::projection::NamedView;
 pub struct PictureArgs {
     /// Width and height in pixels, or one number for a square
     ///
-    /// One side may be left out, `640x` or `x480`, and follows from the shape of what is seen: the model's
-    /// outline, where the view fits it; the aspect ratio of a camera of the file; square cells of --viewports.
+    /// One side may be left out (`640x`, `x480`); it is then computed from the outline of the model if the
+    /// view fits it, from the aspect ratio of a camera of the file, or from square cells of --viewports.
     #[arg(id = "size", long = "size", value_name = "WxH", allow_hyphen_values = true, default_value = "1024x1024", value_parser = sides)]
     pub sides: Sides,
     /// The same, found where a side was open.
     #[arg(skip)]
     pub size: Size,
-    /// Method that finds visible surfaces [default: z-buffer, or a-buffer where --aa is 64, or ray where
-    /// --shadows rays or --bounces asks for it]
+    /// Method that finds visible surfaces [default: z-buffer; a-buffer with --aa 64; ray with --shadows
+    /// rays or --bounces]
     #[arg(long, value_name = "NAME", value_parser = values::algorithm())]
     pub algorithm: Option<Algorithm>,
-    /// Samples per pixel, where the algorithm takes several
+    /// Samples per pixel, for algorithms that take several
     ///
-    /// The A-buffer has masks of 16 sub-pixels, or of 64 for 64.
+    /// The A-buffer uses masks of 16 sub-pixels, or of 64 with 64.
     #[arg(long, visible_alias = "samples", value_name = "N", default_value = "4")]
     pub aa: Samples,
     /// A colour, `transparent`, `gradient`, or TOP,BOTTOM
@@ -43,19 +43,19 @@ pub struct PictureArgs {
     /// and rows may be given first: `3x1:front,right,iso`. Each view fits the model.
     #[arg(long, value_name = "LAYOUT", value_parser = layout, conflicts_with_all = ["view", "azimuth", "elevation", "eye", "camera"])]
     pub viewports: Option<Layout>,
-    /// N pictures around the up axis, in one animated file or in one file each
+    /// Render N pictures around the up axis, into one animated file or one file each
     #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "viewports", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub turntable: Option<u32>,
-    /// Frames a second, where a turntable goes into one file [default: 24]
+    /// Frames per second of an animated turntable [default: 24]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::positive, requires = "turntable")]
     pub fps: Option<f64>,
-    /// Seconds of a whole turn, where it goes into one file [default: by --fps]
+    /// Seconds per turn of an animated turntable [default: by --fps]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = values::positive, requires = "turntable", conflicts_with = "fps")]
     pub duration: Option<f64>,
     /// Compression and quality of the file.
     #[command(flatten)]
     pub encoding: EncodingArgs,
-    /// Refuse pictures of more pixels; the default is 16384x16384
+    /// Refuse pictures with more pixels; the default is 16384x16384
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "268435456", value_parser = values::count)]
     pub max_pixels: u64,
 }

@@ -20,20 +20,20 @@ pub struct ReadingArgs {
     /// Let the lights of COLLADA and FBX files shine; those of glTF always do
     #[arg(long)]
     pub own_lights: bool,
-    /// Let references lead to any file below this folder [default: the model's own folder]
+    /// Allow references to any file below this folder [default: the model's own folder]
     ///
-    /// Textures, buffers and material libraries are read from the model's folder alone, whatever links and `..`
-    /// lead to; with this also from below another one, for example one above it. Of a model from standard input,
-    /// references start there.
+    /// By default, textures, buffers and material libraries are read from the model's folder only, also if links
+    /// and `..` lead elsewhere. References of a model from standard input are relative to this folder.
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub root: Option<PathBuf>,
-    /// Read only what stands on this plate, counted from 1, of a project of Bambu Studio or OrcaSlicer [default: all plates]
+    /// Read only this plate, counted from 1, of a Bambu Studio or OrcaSlicer project [default: all plates]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub plate: Option<u32>,
-    /// Refuse models of more triangles, lines and points [default: 100 million]
+    /// Refuse models with more triangles, lines and points than this [default: 100 million]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::count)]
     pub max_triangles: Option<u64>,
-    /// Refuse models that are, or unpack to, more bytes; k, M, G are understood [default: 4G]
+    /// Refuse models that have, or decompress to, more bytes; suffixes k, M and G are allowed
+    /// [default: 4G]
     #[arg(long, value_name = "BYTES", allow_hyphen_values = true, value_parser = values::bytes)]
     pub max_bytes: Option<u64>,
 }

@@ -36,7 +36,7 @@ pub struct ViewArgs {
     /// Degrees above the horizon, -90 to 90; fits the model
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::elevation, conflicts_with_all = ["eye", "camera"])]
     pub elevation: Option<f64>,
-    /// Position of the eye, in the world of the file
+    /// Position of the eye, in the coordinates of the file
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, conflicts_with = "camera")]
     pub eye: Option<DVec3>,
     /// Point that the eye looks at [default: the middle of the model]

@@ -35,8 +35,8 @@ pub struct PlotArgs {
     pub input: Option<PathBuf>,
     /// File to write the plot to
     ///
-    /// A file whose suffix tells the format: .svg, .pdf, .dxf, .hpgl, .gcode, .geojson, or .png, .jpg, .webp;
-    /// `-` for standard output, with --to. A file is replaced only by a whole plot.
+    /// The suffix selects the format: .svg, .pdf, .dxf, .hpgl, .gcode, .geojson, or .png, .jpg, .webp; `-`
+    /// for standard output, with --to. A file is only ever replaced by a complete plot.
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
     /// The format of OUT [default: by its suffix]
@@ -78,23 +78,24 @@ pub struct SurfaceArgs {
     /// Points along x and z at which a formula is evaluated
     #[arg(long, value_name = "NxM", allow_hyphen_values = true, default_value = "61x61", value_parser = values::size, requires = "formula")]
     pub samples: Size,
-    /// Factor for heights, or `auto`: as high as 0.4 of the longer side of the ground
+    /// Factor for heights, or `auto`: 0.4 of the longer side of the ground
     #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, default_value = "auto", value_parser = super::exaggeration)]
     pub exaggeration: super::Exaggeration,
     /// Depth over width of the ground as drawn: a number, `equal` for one scale, or `auto`: equal, or 1 where one
     /// range is more than five times the other
     #[arg(long, value_name = "RATIO", allow_hyphen_values = true, default_value = "auto", value_parser = super::aspect)]
     pub aspect: super::Ratio,
-    /// Heights that are drawn; what is lower or higher is missing, as are poles of 1/x and tan
+    /// Range of heights to draw; lower and higher parts are left out, as are poles of 1/x and tan
     #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = values::range)]
     pub y_range: Option<[f64; 2]>,
-    /// A height that stands for a missing one, beside what the format says
+    /// A value that means a missing height, besides that of the format
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true, value_parser = values::number, conflicts_with = "formula")]
     pub no_data: Option<f64>,
     /// Array of an NPZ file or member of a JSON object that holds the heights
     #[arg(long, value_name = "NAME", conflicts_with = "formula")]
     pub array: Option<String>,
-    /// Refuse files that are, or unpack to, more bytes; k, M, G are understood [default: 4G]
+    /// Refuse files that have, or decompress to, more bytes; suffixes k, M and G are allowed
+    /// [default: 4G]
     #[arg(long, value_name = "BYTES", allow_hyphen_values = true, value_parser = values::bytes)]
     pub max_bytes: Option<u64>,
 }
@@ -133,10 +134,10 @@ pub struct PlotLookArgs {
     /// Lines to draw: along x, along z, both, or none
     #[arg(long, value_name = "WHICH", default_value = "both")]
     pub lines: Lines,
-    /// Draw each N-th row and column of the grid, while all of it hides
+    /// Draw every N-th row and column of the grid; all of them hide
     ///
-    /// Without it a file of more than 100 points along a side is resampled to 100, so that lines
-    /// lie close and end at each other. --every 1 takes all there is.
+    /// By default, a file with more than 100 points along a side is resampled to 100. --every 1
+    /// uses all points.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::count)]
     pub every: Option<u64>,
     /// Treatment of hidden parts of lines
@@ -148,7 +149,7 @@ pub struct PlotLookArgs {
     /// Fill the cells, with the colours of --color-map, or with the background's
     #[arg(long)]
     pub fill: bool,
-    /// Leave out the bar that tells the heights of colours
+    /// Leave out the bar with the heights of colours
     #[arg(long)]
     pub no_color_bar: bool,
     /// Colour of lines and labels
@@ -163,7 +164,7 @@ pub struct PlotLookArgs {
     /// Width of the lines in millimetres
     #[arg(long, value_name = "MM", allow_hyphen_values = true, default_value = "0.18", value_parser = values::positive)]
     pub pen: f64,
-    /// Leave the axes out
+    /// Leave out the axes
     #[arg(long)]
     pub no_axes: bool,
     /// Names of the axes, joined by commas [default: x,y,z]
@@ -186,9 +187,9 @@ pub struct PlotLookArgs {
 /// `--lines`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Lines {
-    /// Those along which z is constant
+    /// Lines of constant z
     X,
-    /// Those along which x is constant
+    /// Lines of constant x
     Z,
     /// Both families
     Both,

@@ -33,7 +33,8 @@ use std::time::Instant;
 
 /// More lines than this in a family are a dark area on paper; a finer file is resampled.
 const MOST_LINES: usize = 100;
-/// `--aspect auto`: where one side of the ground is more than so many times the other, both are drawn alike.
+/// `--aspect auto`: where one side of the ground is more than this many times the other, both are drawn
+/// alike.
 const MOST_LENGTHY: f64 = 5.0;
 /// `--exaggeration auto`: height over the longer side of the ground.
 const AUTO_HEIGHT: f64 = 0.4;
@@ -162,7 +163,9 @@ fn format_of(args: &PlotArgs) -> Result<Format, Failure> {
     let suffix = args.output.extension().unwrap_or_default().to_string_lossy();
     let name = args.output.display();
     format(&suffix).map_err(|e| {
-        Failure::Usage(format!("--output {name}: the suffix tells no format; {e}, or use --to"))
+        Failure::Usage(format!(
+            "--output {name}: the suffix does not name a format; {e}, or use --to"
+        ))
     })
 }
 
@@ -219,7 +222,7 @@ impl Surface {
     fn of_file(path: &Path, args: &PlotArgs, messages: &Messages) -> Result<Self, Failure> {
         let name = input::display_name(path);
         if name != "-" && !path.exists() && Formula::parse(&name).is_ok() {
-            let message = format!("there is no file `{name}`; a formula is given with --formula");
+            let message = format!("there is no file `{name}`; use --formula for a formula");
             return Err(Failure::Usage(message));
         }
         let default = Limits::default();
@@ -281,7 +284,7 @@ fn within(field: HeightField, args: &PlotArgs) -> Result<HeightField, Failure> {
     let field = field.within([low, high]).map_err(|e| Failure::Usage(format!("--y-range: {e}")))?;
     match field.range() {
         Some(_) => Ok(field),
-        None => Err(Failure::Usage(format!("--y-range {low},{high}: no height lies in it"))),
+        None => Err(Failure::Usage(format!("--y-range {low},{high}: there is no height in it"))),
     }
 }
 
@@ -302,7 +305,7 @@ fn options(args: &PlotArgs, surface: &Surface) -> Result<plot::Options, Failure>
     let look = &args.look;
     let every = match look.every {
         Some(n) => usize::try_from(n).unwrap_or(usize::MAX),
-        // A file is resampled, a formula has as many samples as were asked for.
+        // A file is resampled, a formula has as many samples as were requested.
         None => 1,
     };
     let along_x = matches!(look.lines, Lines::X | Lines::Both);

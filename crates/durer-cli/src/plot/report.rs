@@ -44,7 +44,7 @@ pub struct Report {
     pub draw_seconds: f64,
     /// Seconds for encoding and writing.
     pub write_seconds: f64,
-    /// The most memory that the process held, where the system tells.
+    /// The peak memory of the process, if the system reports it.
     peak_memory_bytes: Option<u64>,
 }
 

@@ -28,20 +28,20 @@ pub struct BufferArgs {
     /// Distance that the result extends beyond the input, in units of the coordinates
     #[arg(short, long, value_name = "D", allow_hyphen_values = true, value_parser = values::number)]
     pub distance: f64,
-    /// Corners: round, miter or bevel
+    /// Shape of corners
     #[arg(long, value_name = "JOIN", default_value = "round")]
     pub join: JoinName,
-    /// The ends of lines, and points: round, butt (points vanish) or square
+    /// Shape of the ends of lines, and of points
     #[arg(long, value_name = "CAP", default_value = "round")]
     pub cap: CapName,
-    /// Cut off corners that reach farther than this many distances
+    /// Cut off corners that reach farther than this, in multiples of the distance
     #[arg(long, value_name = "L", default_value = "5", value_parser = values::positive)]
     pub miter_limit: f64,
-    /// Largest distance of polygons from the arcs that they approximate, in units of the coordinates [default: a
-    /// thousandth of the distance]
+    /// Largest distance between arcs and the polygons that approximate them, in units of the coordinates
+    /// [default: a thousandth of the distance]
     #[arg(long, value_name = "T", value_parser = values::positive)]
     pub tolerance: Option<f64>,
-    /// Join all to one feature
+    /// Join all features into one
     #[arg(long)]
     pub dissolve: bool,
     /// Input and output.
@@ -65,7 +65,7 @@ pub enum JoinName {
 pub enum CapName {
     /// Half circles; points become discs
     Round,
-    /// Straight, at the end
+    /// Straight, at the end; points vanish
     Butt,
     /// Straight, a distance beyond the end; points become squares
     Square,

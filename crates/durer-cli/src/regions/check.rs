@@ -39,13 +39,13 @@ pub struct CheckArgs {
     /// The format of IN [default: by its content, then by its suffix]
     #[arg(long, value_name = "FORMAT", value_parser = crate::layer::format)]
     pub from: Option<GeoFormat>,
-    /// Also look at features side by side: overlaps, and points that one neighbour has and the other has not
+    /// Also compare neighbouring features: overlaps, and points that only one of two neighbours has
     #[arg(long)]
     pub coverage: bool,
-    /// Also tell holes between features that are narrower than this, in units of the coordinates
+    /// Also report holes between features that are narrower than this, in units of the coordinates
     #[arg(long, value_name = "W", requires = "coverage", value_parser = values::positive)]
     pub gap_width: Option<f64>,
-    /// Tell at most this many faults; all are counted
+    /// Report at most this many faults; all are counted
     #[arg(long, value_name = "N", default_value = "20")]
     pub most: usize,
     /// Threads and messages.
@@ -200,7 +200,7 @@ impl Report {
         }
         let more = self.faults_counted() - self.faults.len() as u64;
         if more > 0 {
-            println!("and {more} more; --most tells more of them");
+            println!("and {more} more; --most prints more of them");
         }
         if self.valid {
             println!("{}: {} features, nothing is wrong", self.input, self.features);

@@ -26,7 +26,7 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 /// The options of `durer dissolve`.
 #[derive(Debug, Args)]
 pub struct DissolveArgs {
-    /// Fields by whose values features are joined
+    /// Join features with equal values of these fields
     #[arg(long, value_name = "FIELD,…", value_delimiter = ',')]
     pub by: Vec<String>,
     /// Input and output.
@@ -37,7 +37,7 @@ pub struct DissolveArgs {
 /// Features that become one.
 #[derive(Default)]
 struct Group {
-    /// The values of its fields, `null` where there is none.
+    /// The values of its fields, `null` if there is none.
     fields: Vec<Member>,
     count: u64,
     union: Union,
@@ -97,7 +97,7 @@ pub fn run(args: &DissolveArgs) -> Result<(), Failure> {
     job.write(features)
 }
 
-/// Returns the value of a field, `null` where there is none.
+/// Returns the value of a field, `null` if there is none.
 fn value(own: &[Member], name: &str) -> Member {
     let found = own.iter().find(|field| field.key() == name).cloned();
     found.unwrap_or_else(|| Member::new(name, "null".to_owned()))

@@ -27,10 +27,10 @@ pub struct FixArgs {
     /// abs-geq-two (two rings at least) [default: even-odd; of an SVG, the rule of its paths]
     #[arg(long, value_name = "RULE")]
     pub rule: Option<FillRule>,
-    /// Give neighbours the same points on the borders that they share: a point that one has and the other lacks is added
-    /// to that, where it lies on the border but for the rounding of its coordinates
+    /// Give neighbours the same points on shared borders: a point that only one of them has is added to the other if it
+    /// is on the border up to the rounding of its coordinates
     ///
-    /// All features are held in memory. What overlaps or leaves gaps beyond that stays; durer check --coverage tells it.
+    /// All features are held in memory. Larger overlaps and gaps remain; durer check --coverage reports them.
     #[arg(long)]
     pub coverage: bool,
     /// Input and output.
@@ -48,7 +48,7 @@ pub fn run(args: &FixArgs) -> Result<(), Failure> {
     job.each(|feature, geometry| made(args, feature, geometry), note)
 }
 
-/// Returns a feature's geometry made valid, `None` where nothing of it is left; and whether it was
+/// Returns a feature's geometry made valid, `None` if nothing of it is left; and whether it was
 /// not.
 fn made(
     args: &FixArgs,

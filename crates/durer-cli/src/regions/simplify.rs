@@ -24,21 +24,21 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("amount").required(true))]
 pub struct SimplifyArgs {
-    /// Largest distance that lines may move, in units of the coordinates: by douglas-peucker the distance of points
-    /// that are left out; by visvalingam the side of a square as large as the triangles that are
+    /// Largest distance that lines may move, in units of the coordinates: with douglas-peucker, the distance of
+    /// removed points; with visvalingam, the side of a square with the area of the removed triangles
     #[arg(long, value_name = "T", group = "amount", allow_hyphen_values = true, value_parser = values::not_negative)]
     pub tolerance: Option<f64>,
-    /// Keep this share of the points that can be left out, e.g. 10%
+    /// Keep this share of the points that can be removed, e.g. 10%
     #[arg(long, value_name = "P%", group = "amount", allow_hyphen_values = true, value_parser = share)]
     pub keep: Option<f64>,
-    /// douglas-peucker (the farthest points stay) or visvalingam (the smallest triangles go)
+    /// douglas-peucker (keeps the farthest points) or visvalingam (removes the smallest triangles)
     #[arg(long, value_name = "NAME", default_value = "visvalingam")]
     pub method: LineSimplifier,
-    /// Leave out rings that then enclose less than this, in squared units of the coordinates; a polygon goes with its
-    /// outer ring, and a feature with all of its polygons
+    /// Remove rings that then enclose less than this, in squared units of the coordinates; a polygon is removed with
+    /// its outer ring, and a feature with its last polygon
     #[arg(long, value_name = "AREA", allow_hyphen_values = true, value_parser = values::not_negative)]
     pub drop_below: Option<f64>,
-    /// Each feature for itself, as a stream; borders between features may come apart
+    /// Simplify each feature separately, as a stream; borders between features may come apart
     #[arg(long)]
     pub each: bool,
     /// Input and output.

@@ -98,7 +98,7 @@ pub fn asks_for_rays(args: &RenderArgs) -> Option<&'static str> {
     }
 }
 
-/// Returns how surfaces are found: as asked for, or as fits the other options.
+/// Returns how surfaces are found: as requested, or as fits the other options.
 pub fn algorithm(args: &RenderArgs) -> Algorithm {
     args.picture.algorithm.unwrap_or_else(|| {
         Algorithm::Surfaces(match args.picture.aa {

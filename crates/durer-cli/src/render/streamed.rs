@@ -123,7 +123,8 @@ impl Streamed<'_> {
         Ok(self.facts.insert(facts).clone())
     }
 
-    /// Renders one picture and writes its files; tells why nothing of the model is seen, where that is so.
+    /// Renders one picture and writes its files; returns why nothing of the model is visible, if that is
+    /// so.
     fn render_picture(
         &mut self,
         picture: &Picture,
@@ -214,7 +215,7 @@ fn tell_pass(messages: &Messages, name: &str, number: u32, what: &str) {
     messages.progress.stage(|| format!("{name}: pass {number} of 3, {what}"));
 }
 
-/// Gives a scene the materials that are asked for.
+/// Gives a scene the materials that are requested.
 fn dress(args: &RenderArgs, scene: &mut Scene) {
     if let Some(color) = args.look.color {
         scene.give_material(colored(color));

@@ -30,7 +30,7 @@ pub struct DrawingReport {
     pub border_edges: u64,
     /// Lines by class, those that have some.
     pub lines: Vec<ClassReport>,
-    /// Round parts, where they are asked for.
+    /// Round parts, if requested.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub features: Vec<FeatureReport>,
     /// Warning about the scale.
@@ -65,7 +65,7 @@ pub struct LineReport {
 pub struct FeatureReport {
     /// `hole 1`, …
     pub name: String,
-    /// The name of its object; left out where it has none.
+    /// The name of its object; left out if it has none.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub object: String,
     /// In units of the model.
@@ -123,7 +123,7 @@ impl DrawingReport {
         }
     }
 
-    /// Tells that most edges are borders, where that is so: faces that should meet do not.
+    /// Tells that most edges are borders, if that is so: faces that should meet do not.
     pub fn loose_faces(&self) -> Option<String> {
         let Self { edges, border_edges, .. } = *self;
         (border_edges >= LOOSE && border_edges * 2 > edges).then(|| {

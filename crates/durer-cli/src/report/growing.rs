@@ -31,7 +31,7 @@ struct Head {
 struct Tail {
     /// From start to end.
     total_seconds: f64,
-    /// The most memory that the process held, where the system tells.
+    /// The peak memory of the process, if the system reports it.
     peak_memory_bytes: Option<u64>,
 }
 

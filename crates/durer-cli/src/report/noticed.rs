@@ -11,7 +11,7 @@ pub struct Noticed {
     /// Reason why nothing of the model is seen in the first picture, if that is so; already
     /// reported.
     pub unseen: Option<String>,
-    /// Triangles of a picture with a vertex that is no number, which the renderer finds, not the reader.
+    /// Triangles of a picture with a vertex that is not a number, which the renderer finds, not the reader.
     non_finite: u64,
     /// The notes on sheets.
     notes: Vec<String>,
@@ -24,7 +24,7 @@ pub struct Noticed {
 }
 
 impl Noticed {
-    /// Adds what a picture tells.
+    /// Adds the notes of a picture.
     pub fn add(&mut self, picture: &PictureReport) {
         self.non_finite = self.non_finite.max(picture.triangles.non_finite);
         for note in &picture.notes {
@@ -40,7 +40,7 @@ impl Noticed {
         self.flattened |= picture.flattened;
     }
 
-    /// Adds warnings to the model, and tells them.
+    /// Adds warnings to the model, and prints them.
     pub fn tell(self, name: &str, model: &mut Model, messages: &Messages) {
         let non_finite = (self.non_finite > 0).then(|| {
             let count = self.non_finite;

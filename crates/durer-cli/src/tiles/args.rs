@@ -31,7 +31,7 @@ pub struct TilesArgs {
     /// File or folder to write the tiles to: map.pmtiles, map.mbtiles, a folder, or a folder with
     /// `{z}/{x}/{y}.mvt` or `.geojson`
     ///
-    /// Into a folder go one file per tile, not compressed, and `tiles.json`, a TileJSON.
+    /// A folder gets one file per tile, not compressed, and `tiles.json`, a TileJSON file.
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
     /// The zoom levels, e.g. 0-14 or 7; at most 24
@@ -43,7 +43,7 @@ pub struct TilesArgs {
     /// Distance that features continue beyond the border of their tile, in cells
     #[arg(long, value_name = "CELLS", default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..8192), help_heading = "Tiles")]
     pub buffer: u32,
-    /// At most so many tiles
+    /// Refuse to write more tiles than this
     #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = values::count, help_heading = "Tiles")]
     pub max_tiles: u64,
     /// Largest distance that lines may move on levels below the highest, in cells; see `durer
@@ -58,8 +58,9 @@ pub struct TilesArgs {
         help_heading = "Simplification"
     )]
     pub method: LineSimplifier,
-    /// Leave out polygons smaller than a square of this side, in cells; those near to each other that are as large
-    /// together become such a square. At most 1 on the highest level; 0 leaves all in that have an area on the grid
+    /// Leave out polygons smaller than a square of this side, in cells; several small ones near each other become
+    /// such a square if their areas add up to it. At most 1 on the highest level; 0 keeps all polygons with an area
+    /// on the grid
     #[arg(long, value_name = "CELLS", default_value_t = 4.0, allow_hyphen_values = true, value_parser = values::not_negative, help_heading = "Simplification")]
     pub tiny: f64,
     /// The name of a layer; one for each IN, or one for all [default: the names of the files]
@@ -137,7 +138,7 @@ impl TileFormat {
 fn zooms(text: &str) -> Result<RangeInclusive<u8>, String> {
     let level = |text: &str| {
         let found = text.parse::<u8>().ok().filter(|zoom| *zoom <= Tile::MAX_ZOOM);
-        found.ok_or_else(|| format!("`{text}` is no level; they are 0 to {}", Tile::MAX_ZOOM))
+        found.ok_or_else(|| format!("`{text}` is not a level; they are 0 to {}", Tile::MAX_ZOOM))
     };
     let (first, last) = text.split_once('-').unwrap_or((text, text));
     let (first, last) = (level(first)?, level(last)?);

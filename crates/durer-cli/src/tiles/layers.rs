@@ -185,7 +185,7 @@ impl Doubts {
             self.long.told(
                 "have edges of more than 180 degrees, which go around the world; --short-way lets them cross the date line",
             ),
-            self.ids.told("have ids that are no whole numbers; vector tiles know no others, left out"),
+            self.ids.told("have ids that are not whole numbers; vector tiles know no others, left out"),
             self.no_geometry.told("have no geometry; left out"),
         ];
         found.into_iter().flatten().collect()

@@ -1,4 +1,4 @@
-//! From what lies in a tile to its bytes.
+//! From the contents of a tile to its bytes.
 
 use super::args::{TileFormat, TilesArgs};
 use super::layers::{Layers, Row};

@@ -154,7 +154,7 @@ fn bounded(args: &TilesArgs, pyramid: &Pyramid) -> Result<(), Failure> {
     too_many(count, args.max_tiles)
 }
 
-/// An error where there are too many tiles; counting stops somewhere above the limit.
+/// An error if there are too many tiles; counting stops somewhere above the limit.
 pub fn too_many(count: u64, limit: u64) -> Result<(), Failure> {
     if count <= limit {
         return Ok(());

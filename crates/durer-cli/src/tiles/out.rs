@@ -20,7 +20,7 @@ pub enum Out {
     Folder(PathBuf, TileFormat),
 }
 
-/// Returns the format that is asked for, and the file or folder.
+/// Returns the format that is requested, and the file or folder.
 pub fn format(args: &TilesArgs) -> Result<(TileFormat, PathBuf), Failure> {
     let path = &args.output;
     let usage = |what: &str| Err(Failure::Usage(format!("--output {}: {what}", path.display())));

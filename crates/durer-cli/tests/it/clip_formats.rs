@@ -195,7 +195,7 @@ fn older_datums_are_shifted_with_a_word_or_refused() {
 fn foreign_formats_are_named() {
     let folder = folder();
     folder.write("a.gpkg", b"SQLite format 3\0");
-    let told = "a.gpkg: this is an SQLite database that is no GeoPackage, such as MBTiles or SpatiaLite; export it as GeoJSON";
+    let told = "a.gpkg: this is an SQLite database that is not a GeoPackage, such as MBTiles or SpatiaLite; export it as GeoJSON";
     folder.run("clip a.gpkg --window 0,0,1,1 -o o.geojson").fails(1, told);
     folder.run("draw a.gpkg -o o.png").fails(1, told);
     folder.write("a.geojson", b"PK\x03\x04");

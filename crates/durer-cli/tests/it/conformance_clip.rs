@@ -38,7 +38,7 @@ fn natural_earth_is_cut_and_united_as_by_geos() {
         let mask = result["window"].as_str().unwrap_or_default();
         let united = op.starts_with("union");
         let mut out = Value::Null;
-        // Each file's union is asked for several times.
+        // Each file's union is requested several times.
         if united && union_of.as_ref().is_none_or(|(of, _)| *of != file) {
             let whole = run(&folder, &file, "--op union -o united.geojsonl");
             union_of = Some((file.clone(), whole));

@@ -46,7 +46,7 @@ fn files(folder: &Path, suffixes: &[&str]) -> Vec<PathBuf> {
     found
 }
 
-/// Renders a model at 64 × 64; `None` where it takes too long.
+/// Renders a model at 64 × 64; `None` if it takes too long.
 fn render(folder: &Folder, model: &Path, out: &str) -> Option<Ended> {
     let start = Instant::now();
     let mut command = folder.command("render --size 64x64 --threads 1 --background transparent -o");

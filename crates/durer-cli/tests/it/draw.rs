@@ -229,7 +229,7 @@ fn an_area_whose_best_place_is_taken_has_others() {
 fn what_a_map_cannot_use_is_told() {
     let folder = folder();
     folder.write("no.ttf", "no font");
-    folder.run("draw map.geojson --font no.ttf -o m.png").fails(1, "it is no TrueType");
+    folder.run("draw map.geojson --font no.ttf -o m.png").fails(1, "it is not a TrueType");
     let told = folder.must("draw map.geojson --dashes 0.0001 -o m.png").err;
     assert!(told.contains("more than 100,000 dashes"), "{told}");
     let told = folder.must("draw map.geojson --dashes 4 --stroke hsl(0,100%,50%) -o m.png").err;

@@ -191,7 +191,7 @@ fn sections_have_lines_of_their_own() {
     assert_eq!((lines.len(), &of("section")["visible"]["polylines"]), (2, &1.into()));
     let length = of("section")["visible"]["length"].as_f64().unwrap();
     assert!((length - 8.0).abs() < 1e-6, "{length}");
-    // What was cut is hatched; or filled, where that is asked for.
+    // What was cut is hatched; or filled, if requested.
     assert!(of("hatch")["visible"]["length"].as_f64().unwrap() > 8.0);
     let ended =
         folder.must("render cube.obj -o cut.svg --section 0,-1,0,0 --view top --hatch none --json");
@@ -482,7 +482,7 @@ fn polygons_that_are_not_flat_have_their_outline_between_their_triangles() {
     assert_eq!((silhouettes(0), silhouettes(60)), (0, 1));
 }
 
-/// Returns a plate with a round hole, of so many sides each.
+/// Returns a plate with a round hole, of this many sides each.
 fn plate(sides: u32) -> String {
     let ring = |radius: f64, z: f64| {
         let angle = move |i: u32| f64::from(i) * std::f64::consts::TAU / f64::from(sides);

@@ -39,7 +39,7 @@ fn tolerance_boundary_and_several_seeds() {
     assert_eq!(pixels(&folder, "--at 7.9,7.9 --color lime"), [8]);
     assert_eq!(pixels(&folder, "--at 7.9,7.9 --color lime --tolerance 15"), [9]);
     assert_eq!(pixels(&folder, "--at 7,7 --color lime --boundary black"), [9]);
-    // Black is like the boundary that is asked for only within the tolerance.
+    // Black is like the boundary that is requested only within the tolerance.
     let nearly = "--at 7,7 --color lime --boundary #0f0f0f --tolerance";
     assert_eq!(pixels(&folder, &format!("{nearly} 15")), [9]);
     assert_eq!(pixels(&folder, &format!("{nearly} 14")), [64]);

@@ -30,7 +30,7 @@ fn chunk(kind: &[u8; 4], data: &[u8]) -> Vec<u8> {
     [&length[..], kind, data, &sum.sum().to_be_bytes()].concat()
 }
 
-/// Returns an RGB picture that says it is of this size and holds so many zeros.
+/// Returns an RGB picture that says it is of this size and holds this many zeros.
 fn png(width: u32, height: u32, zeros: usize) -> Vec<u8> {
     let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
     packed.write_all(&vec![0; zeros]).expect("memory");

@@ -2,7 +2,7 @@
 
 use crate::harness::{Folder, Picture};
 
-/// Returns a white square under one sun of so many lux.
+/// Returns a white square under one sun of this many lux.
 fn lit_square(lux: &str) -> String {
     let floats: [f32; 12] = [-1.0, -1.0, 0.0, 1.0, -1.0, 0.0, 1.0, 1.0, 0.0, -1.0, 1.0, 0.0];
     let indices: [u16; 6] = [0, 1, 2, 0, 2, 3];

@@ -143,7 +143,7 @@ fn what_a_model_from_standard_input_refers_to_is_below_the_root() {
         let mut command = folder.command(&format!("info -{options}"));
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
-        // Where the root is no folder nobody reads.
+        // Where the root is not a folder nobody reads.
         let _ = child.stdin.take().unwrap().write_all(gltf("sub/a%20b.bin").as_bytes());
         let ended = Ended::of(child.wait_with_output().unwrap());
         assert_eq!(ended.code, code, "{options}: {ended:?}");

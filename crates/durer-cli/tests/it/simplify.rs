@@ -90,7 +90,7 @@ fn wrong_use_is_told() {
         ("--keep 101% -o a.wkt", "at most 100%"),
         ("--tolerance -1 -o a.wkt", "--tolerance"),
         ("--keep 10% --method clever -o a.wkt", "clever"),
-        ("--keep 10% -o a.what", "the suffix tells no format"),
+        ("--keep 10% -o a.what", "the suffix does not name a format"),
         ("--keep 10% -o - --json", "--json"),
     ] {
         folder.run(&format!("simplify parcels.wkt {options}")).fails(2, part);

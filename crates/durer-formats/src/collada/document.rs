@@ -36,7 +36,7 @@ struct Element {
 }
 
 impl<'a> Document<'a> {
-    /// Reads a document of at most so many bytes of memory.
+    /// Reads a document of at most this many bytes of memory.
     ///
     /// # Errors
     /// XML that is not well-formed, or too large.

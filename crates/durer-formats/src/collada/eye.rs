@@ -98,8 +98,8 @@ fn parallel(
     Some((Projection::Orthographic { height }, ratio))
 }
 
-/// Returns the light of a frame, which shines along −z; `None` where it is of no known kind.
-/// Colours are as those of materials, linear or not.
+/// Returns the light of a frame, which shines along −z; `None` if it is of no known kind. Colours
+/// are as those of materials, linear or not.
 pub(super) fn lamp(
     document: &Document<'_>,
     light: usize,

@@ -25,7 +25,7 @@ pub(super) fn warn(model: &mut Model, faults: &Faults) {
             "corners have a normal, color or place in a texture beyond its source; they have none",
         ),
         (&faults.short, "faces or lists have too few indices; they are left out"),
-        (&faults.unknown, "geometries are no meshes (splines, bodies); they are left out"),
+        (&faults.unknown, "geometries are not meshes (splines, bodies); they are left out"),
         (
             &faults.sources,
             "inputs name a source that is not there or has no numbers; they are left out",

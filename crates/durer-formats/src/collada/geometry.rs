@@ -35,7 +35,7 @@ struct Reader<'d, 'a> {
     sources: Sources,
     /// With the source of each slot.
     builders: Vec<(Slots, Builder)>,
-    /// Numbers of builders by what tells them apart.
+    /// Numbers of builders by their key.
     numbers: HashMap<(Topology, Slots, Vec<u64>), usize>,
 }
 
@@ -130,7 +130,7 @@ impl Reader<'_, '_> {
             Some("NORMAL") => 1,
             Some("COLOR") => 2,
             Some("TEXCOORD") if sets < SETS => 3 + sets,
-            // Tangents and the like; their index takes its place all the same.
+            // Tangents and similar ones; their index takes its place all the same.
             _ => {
                 inputs.push(Input { slot: usize::MAX, source: 0, offset, set: 0 });
                 return Ok(());
@@ -358,8 +358,8 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Returns the indices of a corner in its sources, and whether they are all there; `None` where
-/// that of its position is not.
+/// Returns the indices of a corner in its sources, and whether they are all there; `None` if that
+/// of its position is not.
 fn key(
     inputs: &[Input],
     sources: &[Option<Rc<Source>>],

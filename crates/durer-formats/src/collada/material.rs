@@ -49,7 +49,7 @@ impl<'d, 'a> Materials<'d, 'a> {
         Self { document, images, known, textures, reversed: reversed.is_some(), linear, lost }
     }
 
-    /// Returns the scene's number of a material; `None` where the document does not have it.
+    /// Returns the scene's number of a material; `None` if the document does not have it.
     pub fn get(&mut self, model: &mut Model, id: &str, channels: Channels<'_>) -> Option<usize> {
         let document = self.document;
         let element = document.by_id(id).filter(|&m| document.name(m) == "material")?;

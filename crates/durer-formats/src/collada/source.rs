@@ -60,7 +60,7 @@ impl Values for Slotted<'_> {
     }
 }
 
-/// Reads a source; `None` where it has no numbers.
+/// Reads a source; `None` if it has no numbers.
 ///
 /// # Errors
 /// [`crate::Error::Limit`].

@@ -9,7 +9,7 @@ use super::units::{Units, Value, Whole};
 /// Colours within colours may be so deep.
 const MAX_DEPTH: u32 = 8;
 
-/// Returns the colour of a text; `current` is what `currentColor` stands for.
+/// Returns the colour of a text; `current` is the value of `currentColor`.
 pub(super) fn parse(text: &str, current: Option<Color>) -> Option<Color> {
     of_pieces(trimmed(&tokens(text)), current, 0)
 }

@@ -125,7 +125,7 @@ fn from_polar([l, c, h]: Row) -> Row {
     [l, c * cos, c * sin]
 }
 
-/// Back; where there is no chroma the hue is not a number.
+/// Back; if there is no chroma the hue is not a number.
 fn to_polar([l, a, b]: Row, none: f64) -> Row {
     let chroma = hypot(a, b);
     let hue = if chroma < none { f64::NAN } else { atan2(b, a).to_degrees() };

@@ -44,7 +44,7 @@ impl Token<'_> {
     }
 }
 
-/// A token and where it stands.
+/// A token and its place.
 #[derive(Debug, Clone)]
 pub(crate) struct Piece<'a> {
     pub token: Token<'a>,
@@ -123,7 +123,7 @@ impl<'a> Lexer<'a> {
         self.text.get(self.at..).unwrap_or_default()
     }
 
-    /// Returns the character so many bytes on, where those before it are ASCII.
+    /// Returns the character this many bytes on, where those before it are ASCII.
     fn peek(&self, ahead: usize) -> Option<char> {
         self.rest().get(ahead..)?.chars().next()
     }

@@ -188,7 +188,7 @@ fn solids(tags: &mut Tags, sheet: &Sheet, layer: &str, rings: &[Vec<DVec2>]) {
         let [a, b, c] = ring[..] else { continue };
         begin(tags, "SOLID", layer, None);
         tags.class("AcDbTrace");
-        // The last corner twice: four are asked for.
+        // The last corner twice: four are requested.
         for (code, p) in [(10, a), (11, b), (12, c), (13, c)] {
             tags.point3(code, DVec2::new(p.x, sheet.size.y - p.y));
         }

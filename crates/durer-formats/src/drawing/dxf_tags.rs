@@ -67,7 +67,7 @@ impl Tags {
         self.precise(code, value, 6)
     }
 
-    /// Returns a real number with so many digits after the point.
+    /// Returns a real number with this many digits after the point.
     pub fn precise(&mut self, code: u16, value: f64, digits: usize) -> &mut Self {
         let mut text = String::new();
         push(&mut text, value, digits);
@@ -157,7 +157,7 @@ pub(super) fn palette([r, g, b, _]: [u8; 4]) -> i64 {
     COLORS.iter().min_by_key(|(c, _)| apart(c)).map_or(7, |(_, index)| *index)
 }
 
-/// The exact colour, where it is not black: that follows the background.
+/// The exact colour, if it is not black: that follows the background.
 pub(super) fn true_color(tags: &mut Tags, [r, g, b, _]: [u8; 4]) {
     if [r, g, b] != [0; 3] {
         tags.int(420, (i64::from(r) << 16) | (i64::from(g) << 8) | i64::from(b));

@@ -14,7 +14,7 @@ use std::io::Write;
 /// | piece | geometry | properties |
 /// |---|---|---|
 /// | line | `LineString`, closed ones repeat their first point | `class`, `visible`, `invisibility` |
-/// | region | `MultiPolygon`, or `Polygon` where it has one outer ring | `class` (`surface`, `shadow`, `cap`), `visible`, `invisibility` 0, `color`, `item` or null |
+/// | region | `MultiPolygon`, or `Polygon` if it has one outer ring | `class` (`surface`, `shadow`, `cap`), `visible`, `invisibility` 0, `color`, `item` or null |
 /// | label | `Point` | `class` `label`, `visible`, `invisibility` 0, `text`, `height` |
 ///
 /// Numbers are the shortest that read back the same.
@@ -110,7 +110,7 @@ fn polygons(rings: &[Vec<DVec2>]) -> Vec<Vec<&[DVec2]>> {
     let (outer, holes): (Vec<_>, Vec<_>) = rings.iter().partition(|r| area(r) >= 0.0);
     let mut polygons: Vec<Vec<&[DVec2]>> = outer.iter().map(|r| vec![r.as_slice()]).collect();
     for hole in holes {
-        // The smallest outer ring around the hole; where there is none the hole stands alone.
+        // The smallest outer ring around the hole; if there is none the hole stands alone.
         let around = (0..outer.len())
             .filter(|&i| inside(outer[i], hole))
             .min_by(|&a, &b| area(outer[a]).total_cmp(&area(outer[b])));

@@ -24,7 +24,7 @@ pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
     write_for(out, sheet, &MachineOptions::default())
 }
 
-/// The same for a plotter with so many pens.
+/// The same for a plotter with this many pens.
 pub(super) fn write_for(
     out: &mut impl Write,
     sheet: &Sheet,

@@ -180,7 +180,7 @@ fn with_parts(mark: &Mark) -> impl Iterator<Item = &Mark> {
     std::iter::once(mark).chain(parts)
 }
 
-/// Gives what the least used pens draw to those most like them, until so many are left.
+/// Gives what the least used pens draw to those most like them, until this many are left.
 fn fold(passes: &mut Vec<Pass>, most: usize) {
     while passes.len() > most.max(1) {
         let lengths: Vec<f64> = passes.iter().map(Pass::length).collect();

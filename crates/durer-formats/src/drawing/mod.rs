@@ -72,7 +72,7 @@ impl DrawingFormat {
         matches!(self, Self::Hpgl | Self::Gcode)
     }
 
-    /// Returns the format that a file name's suffix stands for, without its dot, in any case.
+    /// Returns the format of a file name's suffix, without its dot, in any case.
     pub fn of_suffix(suffix: &str) -> Option<Self> {
         let lower = suffix.to_ascii_lowercase();
         match lower.as_str() {

@@ -64,7 +64,7 @@ impl Words {
         *text += "> Tj ET\n";
     }
 
-    /// Returns the code of a letter; where there are none left, that of a question mark.
+    /// Returns the code of a letter; if there are none left, that of a question mark.
     fn code(&mut self, letter: char) -> u8 {
         match letter {
             ' '..='~' | '\u{a0}'..='\u{ff}' => letter as u8,

@@ -152,7 +152,7 @@ fn dash_array(pen: Option<&Pen>, length: f64, closed: bool) -> String {
     }
 }
 
-/// Returns a colour attribute, and the opacity where it is not opaque.
+/// Returns a colour attribute, and the opacity if it is not opaque.
 fn paint(name: &str, [r, g, b, a]: [u8; 4]) -> String {
     let color = match [r, g, b].map(|c| (c >> 4, c & 15)) {
         [(r, s), (g, t), (b, u)] if r == s && g == t && b == u => format!("#{r:x}{g:x}{b:x}"),

@@ -9,7 +9,7 @@ use durer::scene::{LightKind, Projection};
 use std::f64::consts::FRAC_PI_2;
 use ufbx::{ApertureMode, Camera, Light, LightDecay, LightType, Node, ProjectionMode, Scene};
 
-/// Millimetres of an inch, in which the size of film is told.
+/// Millimetres per inch, the unit of the size of film.
 const INCH: f64 = 25.4;
 
 /// Gives a model the cameras and lights of its nodes. `unit` is the length of the file's unit in metres.

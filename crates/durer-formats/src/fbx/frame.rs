@@ -57,8 +57,8 @@ fn axes(axes: &CoordinateAxes) -> Option<(UpAxis, DMat3)> {
     })
 }
 
-/// Returns a property that is a vector of finite numbers; `None` where it is not there, `Some(None)`
-/// where they are not finite.
+/// Returns a property that is a vector of finite numbers; `None` if it is not there, `Some(None)` if
+/// they are not finite.
 fn vector(props: &Props, name: &str) -> Option<Option<DVec3>> {
     let v = props.find_prop(name)?.value_vec4;
     Some(Some(DVec3::new(v.x, v.y, v.z)).filter(|v| v.is_finite()))

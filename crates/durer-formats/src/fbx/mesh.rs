@@ -108,7 +108,7 @@ pub(super) fn pieces(mesh: &Mesh, budget: &mut Budget, faults: &mut Faults) -> R
     Ok(builders.into_iter().filter_map(|b| b.piece(&values, &called)).collect())
 }
 
-/// Returns the faces that are no holes, by their materials.
+/// Returns the faces that are not holes, by their materials.
 fn by_material(mesh: &Mesh, faults: &mut Faults) -> BTreeMap<u32, Vec<usize>> {
     let mut all: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for face in 0..mesh.faces.len() {

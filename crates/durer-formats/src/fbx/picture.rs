@@ -39,7 +39,7 @@ impl Resources for Pictures<'_> {
     }
 }
 
-/// Returns the path of a texture's picture, with `/` as separator; `None` where it has none.
+/// Returns the path of a texture's picture, with `/` as separator; `None` if it has none.
 pub(super) fn path(texture: &Texture) -> Option<String> {
     let all = [&texture.relative_filename, &texture.filename, &texture.absolute_filename];
     let first = all.into_iter().map(AsRef::as_ref).find(|name: &&str| !name.is_empty());

@@ -18,7 +18,7 @@ const LONGEST: usize = 10_000;
 ///
 /// Numbers; `x`, `z`, and `r` for √(x² + z²); `pi`, `tau`, `e`; `+ - * / %` and `^` (or `**`), which binds
 /// tightest and to the right, so −x^2 is −(x²); parentheses; the functions that [`FUNCTIONS`] lists,
-/// angles in radians. `y =` may stand before it. A result that is no number is a missing point.
+/// angles in radians. `y =` may stand before it. A result that is not a number is a missing point.
 ///
 /// ```
 /// use durer_formats::formula::Formula;
@@ -193,7 +193,7 @@ mod tests {
             ("sin x", "column 5: `sin` needs its arguments in parentheses"),
             ("1 + sin(x, z)", "column 5: `sin` takes 1 argument, not 2"),
             ("min(x)", "column 1: `min` takes 2 arguments, not 1"),
-            ("x(2)", "column 1: `x` is no function; write `*` to multiply"),
+            ("x(2)", "column 1: `x` is not a function; write `*` to multiply"),
             ("π + ü", "column 5: `ü` is not known"),
             ("x $ z", "column 3: an operator is needed before `$ z`"),
             ("x * $", "column 5: a number, x, z, a function or `(` is needed, not `$`"),

@@ -196,7 +196,7 @@ impl<'a> Parser<'a> {
             _ => return self.call(name, start),
         };
         if self.take("(") {
-            let message = format!("`{name}` is no function; write `*` to multiply");
+            let message = format!("`{name}` is not a function; write `*` to multiply");
             return Err(self.error_at(start, message));
         }
         self.operations.push(plain);

@@ -2,7 +2,7 @@
 
 use crate::{NoResources, Resources};
 
-/// Files that are held whole may have so many bytes.
+/// Files that are held whole may have this many bytes.
 pub(super) const MAX_BYTES: u64 = 4 << 30;
 
 /// See the module: the name of a file, its neighbours, and the layer that is wanted.
@@ -12,7 +12,7 @@ pub struct Beside<'a> {
     pub name: &'a str,
     /// Finds the other files of a format that has several, by the file's name with another ending.
     pub resources: &'a dyn Resources,
-    /// The layer that is read of a file with several; all, where none is named.
+    /// The layer that is read of a file with several; all, if none is named.
     pub layer: Option<&'a str>,
 }
 
@@ -20,7 +20,7 @@ impl Beside<'_> {
     /// An unknown system.
     pub const NOTHING: Beside<'static> = Beside { name: "", resources: &NoResources, layer: None };
 
-    /// Returns the file of the same name with another ending; `None` where there is none.
+    /// Returns the file of the same name with another ending; `None` if there is none.
     pub(super) fn find(&self, suffix: &str) -> Option<Vec<u8>> {
         let stem = self.name.strip_suffix(".gz").unwrap_or(self.name);
         let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);

@@ -49,7 +49,7 @@ const HEIGHTS: [&str; 5] = ["z", "height", "elevation", "altitude", "ele"];
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Where {
     Whole(usize),
-    /// x, y, and the height where there is one.
+    /// x, y, and the height if there is one.
     Parts(usize, usize, Option<usize>),
 }
 
@@ -92,7 +92,7 @@ struct Rows {
 }
 
 impl Rows {
-    /// At the first row, which tells what parts values.
+    /// At the first row, which decides what separates values.
     fn new(text: &[u8]) -> Self {
         let mut counts = [0_u32; 4];
         let mut quoted = false;
@@ -112,7 +112,7 @@ impl Rows {
         Self { at: 0, line: 1, delimiter: most.map_or(b',', |(&d, _)| d) }
     }
 
-    /// Steps to the next row that is not empty, and tells its line.
+    /// Steps to the next row that is not empty, and returns its line.
     fn start(&mut self, text: &[u8]) -> u64 {
         while matches!(text.get(self.at), Some(b'\r' | b'\n')) {
             self.line += u64::from(text.get(self.at) == Some(&b'\n'));
@@ -265,7 +265,7 @@ impl Reader {
     }
 }
 
-/// Returns the point at x and y, and at a height where there is one.
+/// Returns the point at x and y, and at a height if there is one.
 fn point(row: &[Cow<'_, [u8]>], (x, y, z): (usize, usize, Option<usize>)) -> Option<Feature> {
     let value = |i: usize| number(row.get(i)?);
     let height = z.and_then(value);

@@ -90,7 +90,7 @@ fn arc_onwards(control: &Points, order: [usize; 3], [a, b, c]: [DVec2; 3]) -> Po
 }
 
 /// Returns the centre of the circle through three positions, and by how much it turns from the first to the
-/// second and to the third; `None` where they lie on a line.
+/// second and to the third; `None` if they lie on a line.
 fn circle(a: DVec2, b: DVec2, c: DVec2) -> Option<(DVec2, f64, f64)> {
     if a == c {
         // A whole circle, counter-clockwise, with its middle between both positions.

@@ -38,7 +38,7 @@ impl Feature {
         Self { geometry: Some(geometry), ..Self::default() }
     }
 
-    /// Returns the properties one by one, in their order; none where there are none.
+    /// Returns the properties one by one, in their order; none if there are none.
     pub fn fields(&self) -> Vec<Member> {
         super::members::members(self.properties.as_deref().unwrap_or_default())
     }

@@ -4,7 +4,7 @@
 const MAGIC: [(&[u8], &str, &str); 17] = [
     (
         b"SQLite format 3\0",
-        "an SQLite database that is no GeoPackage, such as MBTiles or SpatiaLite",
+        "an SQLite database that is not a GeoPackage, such as MBTiles or SpatiaLite",
         EXPORT,
     ),
     (b"PK\x03\x04", "a ZIP archive, such as a packed Shapefile, KMZ or XLSX", "unpack it first"),

@@ -1,4 +1,4 @@
-//! The formats of geodata, and how they are told apart.
+//! The formats of map data, and their detection.
 
 use super::{
     csv, flatgeobuf, foreign, geopackage, geoparquet, markup, shapefile, topojson, wkb, wkt,
@@ -135,7 +135,7 @@ impl GeoFormat {
         !matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex | Self::Svg)
     }
 
-    /// Returns whether its files are bytes that are no text.
+    /// Returns whether its files are bytes that are not text.
     pub fn is_binary(self) -> bool {
         matches!(self, Self::Wkb | Self::Shapefile | Self::FlatGeobuf)
             || matches!(self, Self::GeoPackage | Self::GeoParquet)

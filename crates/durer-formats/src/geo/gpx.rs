@@ -18,7 +18,7 @@ const KIND: &str = "gpx";
 const NUMBERS: [&str; 9] =
     ["ele", "magvar", "geoidheight", "sat", "hdop", "vdop", "pdop", "number", "ageofdgpsdata"];
 
-/// Elements that are no fields of their own.
+/// Elements that are not fields of their own.
 const NO_FIELDS: [&str; 5] = ["extensions", "rtept", "trkseg", "trkpt", "ele"];
 
 /// Reads all waypoints, routes and tracks of a document, in its order.

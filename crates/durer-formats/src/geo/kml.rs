@@ -1,6 +1,6 @@
 //! Placemarks of KML (OGC 12-007r2) as features: name, description, data and geometry.
 //!
-//! Styles, views, overlays and links to other files are not looked at; the last two are told.
+//! Styles and views are ignored; overlays and links to other files give a warning.
 
 use super::geojson::{finish_line, finish_ring};
 use super::members::{object, quoted};
@@ -53,7 +53,7 @@ impl Faults {
         for (tally, what) in [
             (self.others, "overlays and links to other files are left out"),
             (self.models, "models are left out"),
-            (self.coordinates, "coordinates are no numbers; left out"),
+            (self.coordinates, "coordinates are not numbers; left out"),
             (self.times, "moments of tracks are left out; the places are kept"),
         ] {
             if tally.count > 0 {

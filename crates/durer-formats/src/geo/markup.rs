@@ -1,9 +1,9 @@
-//! The root of an XML document, by which its format is told.
+//! The root of an XML document, by which its format is detected.
 
 /// Number of bytes of a document that are searched for its root.
 const PROBE: usize = 16 << 10;
 
-/// Returns the local name of a document's root, where it stands near the beginning.
+/// Returns the local name of a document's root, if it is near the beginning.
 pub fn root(bytes: &[u8]) -> Option<&str> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let text = text.get(..PROBE).unwrap_or(text);

@@ -14,7 +14,7 @@ impl Member {
         serde_json::from_str(&self.name).unwrap_or_else(|_| self.name.clone())
     }
 
-    /// Returns the value where it is a string, without quotes and escapes.
+    /// Returns the value if it is a string, without quotes and escapes.
     pub fn text(&self) -> Option<String> {
         serde_json::from_str(&self.value).ok()
     }

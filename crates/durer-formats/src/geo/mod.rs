@@ -68,9 +68,9 @@ const MAX_WARNINGS: usize = 1000;
 struct Warnings {
     kept: Vec<crate::Warning>,
     more: u64,
-    /// Curves that became lines; told at the end.
+    /// Curves that became lines; reported at the end.
     curves: crate::text::Tally,
-    /// Members of geometries within others, which have no place; told at the end.
+    /// Members of geometries within others, which have no place; reported at the end.
     members: crate::text::Tally,
 }
 

@@ -12,7 +12,7 @@ pub fn write(out: &mut impl Write, value: f64) -> io::Result<()> {
     }
 }
 
-/// Returns the number in JSON; `null` where it is not finite.
+/// Returns the number in JSON; `null` if it is not finite.
 pub fn json(value: f64) -> String {
     let mut text = Vec::new();
     let written = write(&mut text, value).is_ok() && value.is_finite();

@@ -108,8 +108,9 @@ impl<R: Read> Reader<R> {
         told.unwrap_or_else(|| self.system.clone())
     }
 
-    /// Lets features be passed over whose boxes do not meet a window, in the coordinates of the file, where the file has
-    /// an index of places; before the first feature. Features are given that lie outside all the same where it has none.
+    /// Lets features be passed over whose boxes do not meet a window, in the coordinates of the file, where the file
+    /// has an index of places; before the first feature. Features are given that lie outside all the same if it has
+    /// none.
     pub fn choose(&mut self, window: &Rect) {
         if let Source::FlatGeobuf(reader) = &mut self.source {
             reader.choose(window);

@@ -5,7 +5,7 @@ use super::{Member, crs};
 /// The coordinate system that a file says its coordinates are in.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct System {
-    /// Its number in the EPSG's list, where it is known.
+    /// Its number in the EPSG's list, if it is known.
     pub code: Option<i32>,
     /// Its definition as well-known text, as the file has it.
     pub wkt: Option<String>,
@@ -33,7 +33,7 @@ impl System {
     }
 }
 
-/// Returns the system that a member `crs` of GeoJSON tells, as its version of 2008 had it.
+/// Returns the system of a member `crs` of GeoJSON, as in its version of 2008.
 pub fn of_members(members: &[Member]) -> Option<System> {
     let told = members.iter().rfind(|member| member.name == "\"crs\"")?;
     let value: serde_json::Value = serde_json::from_str(&told.value).ok()?;
@@ -47,7 +47,7 @@ pub fn of_members(members: &[Member]) -> Option<System> {
 }
 
 impl System {
-    /// Returns the member `crs` that tells it in GeoJSON; `None` where GeoJSON means it without.
+    /// Returns its member `crs` in GeoJSON; `None` if it is the system that GeoJSON assumes.
     pub fn member(&self) -> Option<Member> {
         let code = self.code.filter(|code| *code != 4326)?;
         let value = format!(

@@ -56,7 +56,7 @@ fn hex([a, b]: [u8; 2]) -> Option<u8> {
     Some(digit(a)? << 4 | digit(b)?)
 }
 
-/// Type and dimensions of a type code of ISO or EWKB; `None` where it is neither.
+/// Type and dimensions of a type code of ISO or EWKB; `None` if it is neither.
 fn kind_of(code: u32) -> Option<(u32, Dimensions)> {
     let plain = code & !(HAS_Z | HAS_M | HAS_SRID);
     let (kind, thousands) = (plain % 1000, plain / 1000);
@@ -251,7 +251,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// The parts of a collection, each with its own header, of one of these kinds; of any where there is none.
+    /// The parts of a collection, each with its own header, of one of these kinds; of any if there is none.
     fn parts(
         &mut self,
         header: &Header,

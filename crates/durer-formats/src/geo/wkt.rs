@@ -49,7 +49,7 @@ pub fn sniff(text: &[u8]) -> bool {
     }
 }
 
-/// Splits `POINTZM` and the like into the name's index and the dimensions, if they are told.
+/// Splits `POINTZM` and similar words into the name's index and the dimensions, if there are any.
 fn tag(word: &str) -> Option<(usize, Option<Dimensions>)> {
     let index = |name: &str| {
         NAMES.iter().position(|n| *n == name).filter(|found| !ABSTRACT.contains(found))
@@ -68,7 +68,7 @@ fn tag(word: &str) -> Option<(usize, Option<Dimensions>)> {
 pub struct Mark {
     /// The next byte.
     at: usize,
-    /// The last place that was told: byte, line, and where the line begins.
+    /// The last place that was reported: byte, line, and the start of the line.
     told: (usize, u64, usize),
 }
 
@@ -110,7 +110,7 @@ impl<'a> Reader<'a> {
         found
     }
 
-    /// Line and column of the next byte that is no blank. Counts on from the place told last.
+    /// Line and column of the next byte that is not a blank. Counts on from the last reported place.
     fn place(&mut self) -> Place {
         self.peek();
         let (from, mut line, mut start) = self.told;
@@ -184,7 +184,7 @@ impl<'a> Reader<'a> {
             return Err(match rest.get(..digits).filter(|digits| digits.len() > 1) {
                 Some(digits) => {
                     let digits = crate::text::quote(digits);
-                    self.error(format!("the SRID {digits} must lie in -2147483648 to 2147483647"))
+                    self.error(format!("the SRID {digits} must be from -2147483648 to 2147483647"))
                 }
                 None => self.expected("the number of a coordinate system"),
             });
@@ -205,7 +205,7 @@ impl<'a> Reader<'a> {
             return Err(if word.is_empty() {
                 self.expected("the name of a geometry")
             } else {
-                self.error(format!("`{word}` is no type of geometry"))
+                self.error(format!("`{word}` is not a type of geometry"))
             });
         };
         let apart = self
@@ -457,7 +457,7 @@ fn empty(kind: usize) -> Geometry {
     }
 }
 
-/// Writes a feature's geometry on one line; nothing where it has none.
+/// Writes a feature's geometry on one line; nothing if it has none.
 pub fn write_feature(out: &mut impl Write, feature: &Feature) -> io::Result<()> {
     let Some(geometry) = &feature.geometry else { return Ok(()) };
     if let Some(srid) = feature.srid {

@@ -10,9 +10,9 @@ use std::io::{self, Seek, SeekFrom, Write};
 
 /// Writes features one after the other.
 ///
-/// GeoJSON, WKT and WKB are written as features come, and GeoPackages by [`Writer::seekable`]; the others at the end. WKT
-/// and WKB keep geometry and SRID only; SVG keeps ids too. CSV, FlatGeobuf and Shapefile keep an id as the field `id`,
-/// where there is no other of that name; so do GeoPackages ids that are no whole numbers which grow.
+/// GeoJSON, WKT and WKB are written as features come, and GeoPackages by [`Writer::seekable`]; the others at the end.
+/// WKT and WKB keep geometry and SRID only; SVG keeps ids too. CSV, FlatGeobuf and Shapefile keep an id as the field
+/// `id`, if there is no other of that name; so do GeoPackages ids that are not whole numbers which grow.
 pub struct Writer<W> {
     format: GeoFormat,
     out: W,

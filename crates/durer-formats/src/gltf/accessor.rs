@@ -376,7 +376,7 @@ fn decode<const SIZE: usize, const N: usize, V, T: From<[V; N]>>(
 fn occupied<'a>(view: &Bytes<'a>, layout: &Layout, at: &str) -> Result<Bytes<'a>> {
     let offset = if layout.count == 0 { 0 } else { layout.offset as u64 };
     let part = u64::try_from(layout.end()).ok().and_then(|end| view.part(offset..end));
-    part.ok_or_else(|| Error::path(at, "its elements lie outside of their view"))
+    part.ok_or_else(|| Error::path(at, "its elements are outside of their view"))
 }
 
 /// Elements one after the other, whatever lies between them.

@@ -6,7 +6,7 @@ use super::node::{Override, unit};
 use crate::{Error, Pose, Result};
 use durer::math::{DQuat, DVec3};
 
-/// Returns names of the animations; `animation0`, `animation1` … where there is none.
+/// Returns names of the animations; `animation0`, `animation1` … if there is none.
 pub fn names(root: &Root) -> Vec<String> {
     let name = |(i, a): (usize, &Animation)| a.name.clone().unwrap_or(format!("animation{i}"));
     root.animations.iter().enumerate().map(name).collect()
@@ -35,7 +35,7 @@ pub fn pose(source: &Source<'_>, pose: Option<&Pose>) -> Result<Vec<Override>> {
     Ok(overrides)
 }
 
-/// Returns the number of the animation asked for; `None` where none is named and there is none.
+/// Returns the number of the animation requested; `None` if none is named and there is none.
 fn find(root: &Root, pose: &Pose) -> Result<Option<usize>> {
     let Some(wanted) = &pose.animation else {
         return Ok((!root.animations.is_empty()).then_some(0));

@@ -26,7 +26,7 @@ impl Broken {
         Ok(())
     }
 
-    /// Warns of what is left out, and of missing buffers; where nothing is left to show, the first of it is an
+    /// Warns of what is left out, and of missing buffers; if nothing is left to show, the first of it is an
     /// error.
     pub fn tell(mut self, missing: impl Iterator<Item = Error>, model: &mut Model) -> Result<()> {
         let unasked = missing.filter(|error| !self.kinds.contains_key(&error.to_string()));

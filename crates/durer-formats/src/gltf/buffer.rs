@@ -63,7 +63,7 @@ enum Buffer<'a> {
     Loaded(Vec<u8>),
     /// The binary chunk.
     Chunk(Bytes<'a>),
-    /// There are no bytes; why, told to whoever asks for them.
+    /// There are no bytes, and the reason, for the error message.
     Missing(Missing),
 }
 
@@ -220,7 +220,7 @@ fn length(view: &BufferView) -> Whole {
     view.byte_length.unwrap_or_default()
 }
 
-/// Returns a buffer, where it has bytes, and what is to be told about its file.
+/// Returns a buffer, if it has bytes, and the warning about its file.
 fn load_buffer<'a>(
     root: &'a Root,
     index: usize,

@@ -50,7 +50,7 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// Returns those of a range; `None` where it leads out of them.
+    /// Returns those of a range; `None` if it leads out of them.
     pub fn part(&self, range: Range<u64>) -> Option<Self> {
         match self {
             Self::Held(bytes) => {

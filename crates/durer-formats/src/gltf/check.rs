@@ -1,5 +1,5 @@
-//! References and sizes, checked before anything is read: so a broken file is told where it is
-//! broken, also in a part that no picture would show.
+//! References and sizes, checked before anything is read, so that the error of a broken file names
+//! the place where it is broken, also in a part that no picture would show.
 
 use super::accessor::Layout;
 use super::json::{Material, Root, TextureInfo, Whole};

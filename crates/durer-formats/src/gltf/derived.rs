@@ -58,13 +58,13 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    /// Returns the image of a texture; `None` where there is none, or it could not be read.
+    /// Returns the image of a texture; `None` if there is none, or it could not be read.
     fn image(&self, texture: Option<TextureRef>) -> Option<&Image> {
         let image = &self.scene.images[self.scene.textures[texture?.texture].image];
         Some(image).filter(|image| !image.data.is_empty())
     }
 
-    /// Returns the linear mean of a texture; white where it has no image.
+    /// Returns the linear mean of a texture; white if it has no image.
     fn mean(&mut self, texture: Option<TextureRef>, srgb: bool) -> Vec4 {
         let Some(image) = self.image(texture) else { return Vec4::ONE };
         let key = (self.scene.textures[texture.map_or(0, |t| t.texture)].image, srgb);
@@ -183,7 +183,7 @@ impl Maker<'_> {
         (through * self.mean(job.texture, false).x, None)
     }
 
-    /// Alpha is what the surface keeps: all where it does not transmit, and the more the darker its colour is,
+    /// Alpha is what the surface keeps: all if it does not transmit, and the more the darker its colour is,
     /// which is what stains the light that goes through.
     fn glass(&mut self, job: &Job) -> Result<()> {
         let mean = self.mean(job.texture, false).x;

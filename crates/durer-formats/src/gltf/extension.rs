@@ -31,7 +31,7 @@ const IN_PART: &[(&str, &str)] = &[
     ("KHR_materials_volume", "its colour tints the surface, its thickness does nothing"),
 ];
 
-/// Extensions whose loss is told where it matters, or changes no picture.
+/// Extensions whose absence is reported elsewhere, or changes no picture.
 const SILENT: &[&str] = &["KHR_texture_basisu", "KHR_xmp", "KHR_xmp_json_ld"];
 
 /// Returns a message's words for the loss of an optional extension.

@@ -18,7 +18,7 @@ pub struct Geometry {
     pub tex_coords: Vec<Vec<Vec2>>,
     /// Linear RGBA, or empty.
     pub colors: Vec<Vec4>,
-    /// `None` where vertex i is index i.
+    /// `None` if vertex i is index i.
     pub indices: Option<Vec<u32>>,
     /// Joints and their weights, four and four.
     pub influences: Vec<Influences>,

@@ -36,7 +36,7 @@ pub fn matrices(source: &Source<'_>, instancing: &Instancing, node: usize) -> Re
     Ok((0..count).map(matrix).collect())
 }
 
-/// The elements of one attribute, where there is one.
+/// The elements of one attribute, if there is one.
 struct Attribute<const N: usize>(Option<Vec<[f32; N]>>);
 
 impl<const N: usize> Attribute<N> {

@@ -41,7 +41,9 @@ pub fn decode(data: &[u8], packing: Packing<'_>) -> Result<Vec<u8>, Refusal> {
             filter::apply(&mut bytes, stride, filter)?;
             Ok(bytes)
         }
-        "TRIANGLES" if count % 3 != 0 => Err("the count of triangles' indices is no multiple of 3"),
+        "TRIANGLES" if count % 3 != 0 => {
+            Err("the count of triangles' indices is not a multiple of 3")
+        }
         "TRIANGLES" => narrow(indices::decode_triangles(data, count)?, stride),
         "INDICES" => narrow(indices::decode_sequence(data, count)?, stride),
         _ => Err("the mode is none of ATTRIBUTES, TRIANGLES, INDICES"),

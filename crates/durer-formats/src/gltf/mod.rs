@@ -1,16 +1,16 @@
 //! glTF 2.0, text and binary (Khronos, 2017; ISO/IEC 12113:2022).
 //!
-//! What is read: meshes of all seven primitive modes, as one [`durer::scene::Mesh`] per primitive and
-//! one instance per node and primitive; the nodes of the default scene depth first; sparse,
-//! interleaved, normalized and quantized accessors; buffer views compressed by meshopt; primitives
-//! compressed by Draco (feature `draco`); materials with their textures, layers and variants; cameras;
-//! lights; skins and morph targets, posed at one moment of an animation; instances by attributes. What is
-//! known of extensions stands in `extension.rs`.
+//! What is read: meshes of all seven primitive modes, as one [`durer::scene::Mesh`] per primitive and one
+//! instance per node and primitive; the nodes of the default scene depth first; sparse, interleaved,
+//! normalized and quantized accessors; buffer views compressed by meshopt; primitives compressed by Draco
+//! (feature `draco`); materials with their textures, layers and variants; cameras; lights; skins and
+//! morph targets, posed at one moment of an animation; instances by attributes. What is known of
+//! extensions is in `extension.rs`.
 //!
-//! Every reference and size of a file is checked before any data are read, also in parts that are
-//! not drawn; what is wrong is told with its path. Where data themselves are broken or missing, what needs
-//! them is left out if something else remains. Nothing recurses, and memory is charged to
-//! [`crate::Limits`] before it is taken.
+//! Every reference and size of a file is checked before any data are read, also in parts that are not
+//! drawn; errors give their path in the JSON. Where data themselves are broken or missing, what needs them
+//! is left out if something else remains. Nothing recurses, and memory is charged to [`crate::Limits`]
+//! before it is taken.
 
 mod accessor;
 mod animation;
@@ -90,9 +90,9 @@ pub fn is_binary(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`Error::Decode`] with the byte of the container, the line of the JSON or the path in it;
-/// [`Error::Unsupported`] for a required extension or a version that is not known;
-/// [`Error::Resource`] for a buffer that cannot be had, and [`Error::Decode`] for a broken primitive, where
-/// nothing is left to draw without it; [`Error::Limit`].
+/// [`Error::Unsupported`] for a required extension or a version that is not known; [`Error::Resource`] for
+/// a buffer that cannot be had, and [`Error::Decode`] for a broken primitive, if nothing is left to draw
+/// without it; [`Error::Limit`].
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     read_parts(&Bytes::Held(bytes), resources, options)
 }
@@ -199,8 +199,8 @@ struct Builder<'a> {
     pose: &'a [Override],
     /// The number of the variant that is shown.
     variant: Option<u64>,
-    /// Scene meshes of a file's mesh and primitive as it stands in the file, neither morphed nor
-    /// skinned; `None` for a primitive that draws nothing.
+    /// Scene meshes of a file's mesh and primitive as in the file, neither morphed nor skinned;
+    /// `None` for a primitive that draws nothing.
     made: BTreeMap<(usize, usize), Option<usize>>,
     /// Parts that could not be read.
     broken: Broken,
@@ -230,7 +230,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Charges the instances of so many primitives at so many places.
+    /// Charges the instances of this many primitives at this many places.
     fn charge(&self, places: u64, primitives: u64, name: usize, n: usize) -> Result<()> {
         let (count, at) = (places.saturating_mul(primitives), format!("nodes[{n}]"));
         self.source.budget.instances(count, &at)?;
@@ -238,7 +238,7 @@ impl Builder<'_> {
         self.source.budget.bytes(count.saturating_mul(bytes), &at)
     }
 
-    /// Returns the scene mesh of a primitive, and whether it is skinned; `None` where it draws
+    /// Returns the scene mesh of a primitive, and whether it is skinned; `None` if it draws
     /// nothing.
     fn mesh(
         &mut self,
@@ -264,7 +264,7 @@ impl Builder<'_> {
         self.pose[n].weights.as_ref().unwrap_or(rest).clone()
     }
 
-    /// Returns the scene mesh of a primitive as it stands, made once.
+    /// Returns the scene mesh of a primitive as in the file, made once.
     fn unposed(&mut self, mesh: usize, p: usize, model: &mut Model) -> Result<Option<usize>> {
         if let Some(made) = self.made.get(&(mesh, p)) {
             return Ok(*made);

@@ -66,9 +66,9 @@ impl Tree {
         world
     }
 
-    /// Returns the nodes of the default scene (of the first one where that is not there; of a file without
-    /// scenes, all), in drawing order: depth first, as in the file. A node that stands under another one of
-    /// the scene comes once; the nodes of the scene that are no roots are told to `odd`.
+    /// Returns the nodes of the default scene (of the first one if that is not there; of a file without
+    /// scenes, all), in drawing order: depth first, as in the file. A node below another one of the scene
+    /// comes once; the nodes of the scene that are not roots are passed to `odd`.
     pub fn scene_nodes(&self, root: &Root, mut odd: impl FnMut(usize)) -> Vec<usize> {
         let scene = root.scenes.get(root.scene.map_or(0, Whole::index)).or(root.scenes.first());
         let roots: Vec<usize> = match scene {

@@ -11,7 +11,7 @@ pub struct Placing {
     node: usize,
     /// Weights of morph targets.
     pub weights: Vec<f32>,
-    /// The matrices of the skin, where there is one.
+    /// The matrices of the skin, if there is one.
     pub joints: Option<Vec<DMat4>>,
     /// In the world; one, or those of EXT_mesh_gpu_instancing.
     pub places: Vec<DMat4>,

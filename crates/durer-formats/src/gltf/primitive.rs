@@ -8,7 +8,7 @@ use crate::{Error, Result};
 use durer::math::{Vec3, Vec4};
 use durer::scene::Topology;
 
-/// Reads a primitive; `None` where it has no positions.
+/// Reads a primitive; `None` if it has no positions.
 ///
 /// # Errors
 /// Where an accessor does not fit its use, or indices refer to no vertex and nothing is left without them.
@@ -63,7 +63,7 @@ impl<'a> Attributes<'a> {
         self.primitive.attributes.get(name).copied()
     }
 
-    /// Returns an attribute of N floats each; `None` where the primitive has it not.
+    /// Returns an attribute of N floats each; `None` if the primitive has it not.
     fn vectors<T: From<[f32; N]>, const N: usize>(&self, name: &str) -> Result<Option<Vec<T>>> {
         let Some(accessor) = self.accessor(name) else { return Ok(None) };
         let at = format!("{}.attributes.{name}", self.at);
@@ -231,8 +231,8 @@ impl Geometry {
         Ok(())
     }
 
-    /// Leaves out what has a corner that is no vertex; `first` tells the first of these. Where nothing is left,
-    /// that is an error.
+    /// Leaves out primitives with a corner that is not a vertex; `first` is the first of these. Where nothing is
+    /// left, that is an error.
     fn leave_out_dangling(&mut self, first: &str, at: &str) -> Result<()> {
         let (corners, kind) = match self.topology {
             Topology::Points => (1, "points"),
@@ -254,7 +254,7 @@ impl Geometry {
         }
         let left_out = (count - kept) / corners;
         if left_out > 0 {
-            let message = "with a corner that is no vertex are left out, the first";
+            let message = "with a corner that is not a vertex are left out, the first";
             self.notes.push(format!("{left_out} {kind} {message}: {first}"));
         }
         Ok(())
@@ -266,9 +266,9 @@ fn read_indices(source: &Source<'_>, primitive: &Primitive, at: &str) -> Result<
     Ok(Some(source.integers::<1>(accessor, &format!("{at}.indices"))?.into_flattened()))
 }
 
-/// Tells the first index that is none of so many vertices, if there is one.
+/// Tells the first index that is none of this many vertices, if there is one.
 fn first_dangling(indices: &[u32], vertices: usize) -> Option<String> {
-    // All of them at once, for there is hardly ever one, and it is found sooner than the first.
+    // All of them at once, because there is hardly ever one, and it is found sooner than the first.
     let dangling = |i: u32| i as usize >= vertices;
     if !indices.iter().fold(false, |any, &i| any | dangling(i)) {
         return None;

@@ -13,7 +13,7 @@ use durer::scene::{Material, ShadingModel};
 /// Emission is cut at this factor, so that light stays finite whatever a file says.
 pub const BRIGHTEST: f32 = 1e6;
 
-/// The index that stands for an infinite one (KHR_materials_ior: 0): all that meets the surface is reflected.
+/// The index that means infinity (KHR_materials_ior: 0): everything is reflected.
 const MIRROR: f32 = 1e6;
 
 /// Changes a material as its extensions say.

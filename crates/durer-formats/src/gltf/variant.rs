@@ -3,15 +3,15 @@
 use super::json::{Primitive, Root, Whole};
 use crate::{Error, Result};
 
-/// Returns names of the variants; `variant0`, `variant1` … where there is none.
+/// Returns names of the variants; `variant0`, `variant1` … if there is none.
 pub fn names(root: &Root) -> Vec<String> {
     let variants = root.extensions.variants.as_ref().map_or(&[][..], |v| &v.variants);
     let name = |(i, name): (usize, &Option<String>)| name.clone().unwrap_or(format!("variant{i}"));
     variants.iter().map(|v| &v.name).enumerate().map(name).collect()
 }
 
-/// Returns the number of the variant of this name, or else of this number; `None` where none is
-/// asked for.
+/// Returns the number of the variant of this name, or else of this number; `None` if none is
+/// requested.
 ///
 /// # Errors
 /// Where there is no such variant, with all that there are.

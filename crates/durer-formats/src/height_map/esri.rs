@@ -17,7 +17,7 @@ struct Header {
     no_data: Option<f64>,
 }
 
-/// The value that stands for a missing height where the file names none.
+/// The value of a missing height if the file names none.
 const NO_DATA: f64 = -9999.0;
 
 pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {

@@ -127,7 +127,7 @@ struct Grid {
 /// of `name`; text that begins with a number is a table.
 ///
 /// # Errors
-/// [`Error::Unknown`] where neither tells the format; [`Error::Decode`] with line or byte for what is
+/// [`Error::Unknown`] if neither gives the format; [`Error::Decode`] with line or byte for what is
 /// broken; [`Error::Limit`] above the limits; [`Error::Unsupported`] for known things that are not read;
 /// [`Error::Library`] for a grid that [`HeightField::new`] refuses.
 pub fn read(bytes: &[u8], name: &str, options: &HeightMapOptions) -> Result<HeightMap> {

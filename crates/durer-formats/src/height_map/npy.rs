@@ -45,7 +45,7 @@ impl Array {
 pub fn array(bytes: &[u8], limits: &Limits) -> Result<Array> {
     let short = || Error::byte(bytes.len() as u64, "the file ends in its header");
     if !bytes.starts_with(MAGIC) {
-        return Err(Error::byte(0, "this is no NPY array"));
+        return Err(Error::byte(0, "this is not an NPY array"));
     }
     let (length, start) = match bytes.get(6).ok_or_else(short)? {
         1 => (u64::from(u16::from_le_bytes(number(bytes, 8).ok_or_else(short)?)), 10),

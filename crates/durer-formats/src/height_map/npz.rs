@@ -36,7 +36,7 @@ pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
     Ok(grid)
 }
 
-/// Returns the array that was asked for, or the first of two dimensions.
+/// Returns the array that was requested, or the first of two dimensions.
 fn heights(archive: &mut Archive, names: &[&str], options: &HeightMapOptions) -> Result<Array> {
     if let Some(name) = options.array.as_deref() {
         if !names.contains(&name) {

@@ -7,7 +7,7 @@ use spade::{DelaunayTriangulation, FloatTriangulation, HasPosition, Point2, Tria
 /// Steps of a grid may differ by this part of them: files round coordinates.
 const EVEN: f64 = 1e-3;
 
-/// Scattered points are put on a grid of so many columns and rows at least and at most.
+/// Scattered points are put on a grid of this many columns and rows at least and at most.
 const SIDES: [usize; 2] = [16, 512];
 
 /// Returns the even grid of a table of three columns, if its rows are points x, y, z: each x with each y once, or
@@ -70,7 +70,7 @@ fn spread(x: &[f64], y: &[f64], heights: Vec<f64>) -> Grid {
             let (j, v) = between(y, row);
             let h =
                 |i: usize, j: usize| south_first.get(j * columns + i).copied().unwrap_or(f64::NAN);
-            // What is missing counts only where it has a part.
+            // What is missing counts only if it has a part.
             let mix = |a: f64, b: f64, part: f64| match part {
                 0.0 => a,
                 1.0 => b,
@@ -146,8 +146,10 @@ fn scattered(points: &[[f64; 3]], options: &HeightMapOptions) -> Result<Grid> {
             .push(told(format!("{} points have no place or height", points.len() - whole.len())));
     }
     if known < whole.len() {
-        let message =
-            format!("{} points lie where others do; the last height counts", whole.len() - known);
+        let message = format!(
+            "{} points have the place of others; the last height counts",
+            whole.len() - known
+        );
         warnings.push(told(message));
     }
     let range = |axis: usize| {

@@ -17,7 +17,8 @@ fn is_row(line: &[u8]) -> bool {
     !line.is_empty() && !line.starts_with(b"#")
 }
 
-/// A table of three columns without a heading that has more rows than this is told what a heading would change.
+/// A table of three columns without a heading and with more rows than this gives a warning about what a heading
+/// would change.
 const LONG: usize = 12;
 
 pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
@@ -43,7 +44,7 @@ pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
         grid.warnings.push(Warning { place: Place::Whole, message });
     }
     if grid.columns == 1 && grid.rows == 1 {
-        return Err(Error::whole("one height is no surface; two rows and columns are needed"));
+        return Err(Error::whole("one height is not a surface; two rows and columns are needed"));
     }
     Ok(grid)
 }
@@ -144,7 +145,7 @@ fn heading_of(line: &[u8], separator: Option<u8>) -> Heading {
     }
 }
 
-/// Returns a height; NaN for what stands for a missing one.
+/// Returns a height; NaN for a missing one.
 fn height(cell: &[u8]) -> Option<f64> {
     let cell = cell.strip_prefix(b"\"").and_then(|c| c.strip_suffix(b"\"")).unwrap_or(cell);
     let none = ["", "na", "n/a", "null", "none", "-", "--"];

@@ -8,7 +8,7 @@ use crate::{Error, Limits, Place, Result};
 
 /// The first bytes.
 pub(super) const MAGIC: &[u8] = b"BM";
-/// The length of the file's header, behind which that of the picture stands.
+/// The length of the file's header, which precedes that of the picture.
 const FILE_HEADER: usize = 14;
 /// Two bytes of a run hold up to 255 pixels, and four leave out up to 255 rows.
 const RUN_PIXELS_PER_BYTE: u64 = 1 << 20;

@@ -9,7 +9,7 @@ impl<'a> Bytes<'a> {
         Self(bytes)
     }
 
-    /// Takes so many; `None` where there are fewer.
+    /// Takes this many; `None` if there are fewer.
     pub fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let (taken, rest) = self.0.split_at_checked(count)?;
         self.0 = rest;

@@ -10,7 +10,7 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 /// The first bytes of a JPEG file: start of image, and the start of the next marker.
 pub(super) const MAGIC: &[u8] = b"\xff\xd8\xff";
 
-/// Each 8 × 8 block of a JPEG costs one bit at least, so a byte holds at most so many pixels.
+/// Each 8 × 8 block of a JPEG costs one bit at least, so a byte holds at most this many pixels.
 const JPEG_PIXELS_PER_BYTE: u64 = 8 * 64;
 
 /// Decodes a file.

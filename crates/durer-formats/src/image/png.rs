@@ -10,7 +10,7 @@ use std::io::Cursor;
 /// The first bytes of a PNG file.
 pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// Deflate's best ratio: a byte of a zlib stream holds at most so many bytes (RFC 1951: 258 bytes
+/// Deflate's best ratio: a byte of a zlib stream holds at most this many bytes (RFC 1951: 258 bytes
 /// per two bits).
 const DEFLATE_RATIO: u64 = 1032;
 
@@ -67,7 +67,7 @@ pub struct DeepImage {
 /// tells [`bits_per_sample`].
 ///
 /// # Errors
-/// As [`super::decode`]; also [`Decode`](crate::Error::Decode) for what is no PNG.
+/// As [`super::decode`]; also [`Decode`](crate::Error::Decode) for what is not a PNG.
 pub fn decode_deep(bytes: &[u8], name: &str, limits: &Limits) -> Result<DeepImage> {
     if !bytes.starts_with(MAGIC) {
         return Err(broken(name, "is no PNG, the one format with 16 bits per channel"));

@@ -36,7 +36,7 @@ struct Header {
 }
 
 impl Header {
-    /// Reads a header; `None` where it is none.
+    /// Reads a header; `None` if it is none.
     fn of(bytes: &[u8]) -> Option<Self> {
         let short = |at: usize| {
             Some(usize::from(u16::from_le_bytes([*bytes.get(at)?, *bytes.get(at + 1)?])))

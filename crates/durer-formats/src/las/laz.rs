@@ -152,7 +152,7 @@ enum Next {
     Point(usize),
     /// The number of points.
     Count,
-    /// Sizes of so many layers; bytes of those before.
+    /// Sizes of this many layers; bytes of those before.
     Sizes(usize, usize),
     /// Number of bytes of layers.
     Layers(usize),
@@ -211,7 +211,7 @@ impl<'a> Guard<'a> {
         }
     }
 
-    /// Returns the item that follows if so many bytes of layers are left.
+    /// Returns the item that follows if this many bytes of layers are left.
     fn after_layers(&self, left: usize) -> Option<Next> {
         let (point, _) = self.layout?;
         Some(if left == 0 { Next::Point(point) } else { Next::Layers(left) })

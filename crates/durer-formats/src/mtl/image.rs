@@ -49,7 +49,7 @@ impl<'a> Images<'a> {
         image.is_some_and(|image| image.data.iter().any(|pixel| pixel[3] < 255))
     }
 
-    /// Returns whether a picture shows normals rather than heights; `None` where it cannot be read,
+    /// Returns whether a picture shows normals rather than heights; `None` if it cannot be read,
     /// after a warning. What is grey, or named after heights, is not decoded for it.
     pub fn shows_normals(&mut self, model: &mut Model, path: &str) -> Option<bool> {
         let name = path.to_ascii_lowercase();

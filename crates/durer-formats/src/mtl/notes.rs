@@ -2,7 +2,7 @@
 
 use crate::{Model, Place};
 
-/// Materials that something is to be told about.
+/// Materials that need a warning.
 #[derive(Debug, Default)]
 pub(super) struct Named {
     count: usize,

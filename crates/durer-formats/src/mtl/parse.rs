@@ -42,7 +42,7 @@ pub(super) struct Statements {
     pub map_bump: Option<Map>,
 }
 
-/// Materials by name; of two with the same name the first stands.
+/// Materials by name; of two with the same name the first counts.
 #[derive(Debug, Default)]
 pub(super) struct Library {
     pub materials: HashMap<String, Statements>,
@@ -100,7 +100,7 @@ impl Library {
             return Ok(());
         }
         let Some((_, m)) = current else {
-            return Err(cursor.error(format!("`{}` stands before any `newmtl`", quote(word))));
+            return Err(cursor.error(format!("`{}` is before any `newmtl`", quote(word))));
         };
         match keyword.as_slice() {
             b"kd" => m.diffuse = Some(color(cursor)?),

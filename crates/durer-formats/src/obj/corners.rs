@@ -42,7 +42,7 @@ impl Corners {
         self.indices.push(vertex);
     }
 
-    /// Adds the corner again that stands at `at`.
+    /// Adds the corner at `at` again.
     pub fn repeat(&mut self, at: usize) {
         if let Some(&vertex) = self.indices.get(at) {
             self.indices.push(vertex);

@@ -2,7 +2,7 @@
 //!
 //! Source: *Wavefront Advanced Visualizer Manual*, appendix B1 (OBJ) and B5 (MTL), 1990s, and what
 //! later writers do. Lines, points and triangles become one mesh each; faces keep the file's order
-//! and are triangulated: fans where these are right, ears where they are not. Names of objects, or of
+//! and are triangulated: fans where these are right, ears if they are not. Names of objects, or of
 //! groups where there is but one object, and materials become parts.
 //!
 //! Choices where the manual is silent or tools differ:
@@ -12,7 +12,7 @@
 //!   last vertex so far.
 //! - corners without a normal get, in a file with smoothing groups, the area-weighted mean of the faces
 //!   of their group around the vertex, or where smoothing is off their face's own. A file without
-//!   normals and groups, also where `s off` stands in it, leaves them to the renderer; where only some
+//!   normals and groups, also with `s off`, leaves them to the renderer; where only some
 //!   corners have normals, the others get the mean of all faces around them.
 //! - what is wrong with one element costs that element only, and a warning.
 //! - a file with vertices and nothing else is a point cloud.
@@ -36,7 +36,7 @@ use crate::{Model, ReadOptions, Resources, Result, text};
 ///
 /// # Errors
 /// [`crate::Error::Decode`] for a file without vertices, and with line and column for numbers that are
-/// none and indices to something that does not exist, where nothing is left without them;
+/// none and indices to something that does not exist, if nothing is left without them;
 /// [`crate::Error::Limit`] for more primitives than allowed. A missing material library or texture is a
 /// warning.
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {

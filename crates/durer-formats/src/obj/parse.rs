@@ -59,7 +59,7 @@ pub(super) struct Parsed {
 }
 
 impl Parsed {
-    /// Returns whether the file tells several objects apart: of a single one, its groups are the parts.
+    /// Returns whether the file has several objects; if it has one, its groups are the parts.
     pub fn has_objects(&self) -> bool {
         let runs = [&self.triangle_runs, &self.line_runs, &self.point_runs];
         let mut named = runs.into_iter().flatten().map(|r| &r.object).filter(|o| !o.is_empty());
@@ -231,7 +231,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// The color of the last position; white before the first and where there is none.
+    /// The color of the last position; white before the first and if there is none.
     fn color(&mut self, color: Option<Vec3>) {
         let colors = &mut self.out.colors;
         if colors.is_empty() {
@@ -261,7 +261,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`; `None` where the line is over.
+    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`; `None` if the line is over.
     fn corner(&mut self) -> Result<Option<Corner>> {
         if self.cursor.line_is_over() {
             return Ok(None);

@@ -1,7 +1,7 @@
 //! Normals of corners that have none of their own.
 //!
 //! In place of such a normal a corner has [`NONE`], or in files with smoothing groups a number from that
-//! of the file's normals on: the first stands for flat faces, the others for the groups.
+//! of the file's normals on: the first is for flat faces, the others are for the groups.
 
 use super::corners::{Corner, NONE};
 use crate::{Model, Place, polygon};
@@ -11,7 +11,7 @@ use durer::scene::Mesh;
 /// Fills in the normals, of a mesh whose faces are fans; `count` is that of the file's.
 ///
 /// Each is the mean of the vector areas of the faces around the vertex that are of the same group. Flat
-/// faces are left without, which stands for the face's own.
+/// faces are left without, which means the face's own.
 pub(super) fn fill(model: &mut Model, mesh: &mut Mesh, keys: &[Corner], count: usize) {
     let missing = keys.iter().filter(|k| k.normal == NONE).count();
     if missing > 0 {

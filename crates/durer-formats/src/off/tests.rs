@@ -78,9 +78,9 @@ fn lines_points_and_what_is_wrong() {
     for (text, expected) in [
         ("OFF\n1 1 0\n0 0 0\n3 0 0 1\n", "line 4, column 7: this vertex does not exist"),
         ("OFF\n1 1 0\n0 x 0\n", "line 3, column 3: `x` is not a number"),
-        ("OFF\nx\n", "line 2, column 1: `x` is no number of vertices"),
+        ("OFF\nx\n", "line 2, column 1: `x` is not a number of vertices"),
         ("OFF\n3 1 0\n", "the file ends too early"),
-        ("OFF\n1 1 0\n0 0 0\n-3 1\n", "`-3` is no number of vertices of a face"),
+        ("OFF\n1 1 0\n0 0 0\n-3 1\n", "`-3` is not a number of vertices of a face"),
         ("4OFF\n1 0 0\n", "four or more dimensions is not supported"),
         ("OFF BINARY\n", "binary OFF is not supported"),
         ("GOFF", "begins with `OFF`, not with `GOFF`"),

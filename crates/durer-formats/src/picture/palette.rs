@@ -16,7 +16,7 @@ pub struct Indexed {
     pub palette: Vec<[u8; 3]>,
     /// Row by row.
     pub indices: Vec<u8>,
-    /// The index that stands for nothing, where there are transparent pixels.
+    /// The index of transparent pixels, if there are any.
     pub transparent: Option<u8>,
 }
 

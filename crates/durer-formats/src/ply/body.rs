@@ -9,7 +9,7 @@ pub(super) trait Values {
     /// Returns the next value. Integers up to 53 bits are exact in a double.
     ///
     /// # Errors
-    /// The end of the file, or a word that is no number.
+    /// The end of the file, or a word that is not a number.
     fn next(&mut self, kind: Type) -> Result<f64>;
 
     /// Steps over `count` values.
@@ -48,7 +48,7 @@ pub(super) trait Values {
         Err(Error::Decode { place: self.place(), message })
     }
 
-    /// Returns whether a value was asked for that the file has no more.
+    /// Returns whether a value was requested that the file has no more.
     fn ended(&self) -> bool;
 
     /// Returns the place and message for values beyond the last element.

@@ -75,6 +75,6 @@ pub(super) fn list_length(
         return Ok(length as u64);
     }
     let message =
-        format!("`{length}` is no length of a list, in row {row} of element `{}`", plan.name);
+        format!("`{length}` is not a length of a list, in row {row} of element `{}`", plan.name);
     Err(Error::Decode { place: values.place(), message })
 }

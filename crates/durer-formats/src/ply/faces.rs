@@ -36,7 +36,7 @@ impl Faces {
         !self.facets.triangles.indices.is_empty()
     }
 
-    /// Prepares for so many rows.
+    /// Prepares for this many rows.
     pub fn begin(&mut self, plan: &Plan, count: usize) {
         if plan.has(Use::Indices) {
             self.facets.triangles.indices.reserve_exact(3 * count);
@@ -174,7 +174,7 @@ impl Faces {
     }
 }
 
-/// Returns the number of a picture; the largest stands for none.
+/// Returns the number of a picture; the largest means none.
 fn picture(value: f64) -> u32 {
     if value >= 0.0 { value as u32 } else { u32::MAX }
 }

@@ -127,10 +127,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header> {
             Some(b"property") => {
                 let property = property(&mut cursor)?;
                 let Some(element) = elements.last_mut() else {
-                    return Err(wrong(
-                        &cursor,
-                        "`property` stands before any `element`".to_owned(),
-                    ));
+                    return Err(wrong(&cursor, "`property` is before any `element`".to_owned()));
                 };
                 element.properties.push(property);
             }
@@ -191,7 +188,7 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Element> {
     let word = cursor.word().unwrap_or_default();
     let count = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
     let Some(count) = count else {
-        return Err(wrong(cursor, format!("`{}` is no count of element `{name}`", quote(word))));
+        return Err(wrong(cursor, format!("`{}` is not a count of element `{name}`", quote(word))));
     };
     Ok(Element { name, count, properties: Vec::new() })
 }

@@ -32,7 +32,7 @@ const IN_PIECE: u64 = 80;
 /// Bytes for a triangle on the screen; a point is two.
 const ON_SCREEN: u64 = 52;
 
-/// A piece ends early at so many corners of triangles, where polygons are large.
+/// A piece ends early at this many corners of triangles, where polygons are large.
 const MOST_CORNERS: usize = 4 << 20;
 
 /// A binary PLY file that is read in pieces.
@@ -44,7 +44,7 @@ pub struct Pieces<R> {
     row: u64,
     count: u64,
     plan: Plan,
-    /// The element of the faces, where there are some.
+    /// The element of the faces, if there are some.
     faces: Option<Arc<(Element, Plan)>>,
     /// Vertices or faces of a piece.
     at_once: u64,
@@ -97,7 +97,8 @@ fn elements(header: &Header) -> Option<(&Element, Option<&Element>)> {
 }
 
 impl<R: Read + Seek> Pieces<R> {
-    /// Opens a file of `length` bytes, in pieces of about so many vertices or faces; `None` where it is no such file.
+    /// Opens a file of `length` bytes, in pieces of about this many vertices or faces; `None` if it is no such
+    /// file.
     ///
     /// # Errors
     /// [`Error::Limit`] for too many vertices, [`Error::Io`], [`durer::Error::Memory`] where the budget has no room for a
@@ -260,7 +261,7 @@ impl<R: Read + Seek> Pieces<R> {
         Ok(self.read(numbers.iter().map(|&n| u64::from(n)))?.into_positions(origin))
     }
 
-    /// Looks at all faces, where that has not been done yet.
+    /// Looks at all faces, if that has not been done yet.
     fn look_at_faces(&mut self) -> Result<()> {
         if self.faces_seen.is_some() || self.faces.is_none() {
             return Ok(());

@@ -107,7 +107,7 @@ impl Shape {
         if self.is_round() { &SOLID } else { &FLAT }
     }
 
-    /// Returns the radii as vectors, the least last; `None` where they are not finite.
+    /// Returns the radii as vectors, the least last; `None` if they are not finite.
     fn radii(&self) -> Option<[Vec3; 3]> {
         let [w, x, y, z] = self.rotation;
         let scale = 2.0 / (w * w + x * x + y * y + z * z);

@@ -24,7 +24,7 @@ pub(super) struct Stream<R> {
 }
 
 impl<R: Read + Seek> Stream<R> {
-    /// Creates a file of so many bytes, from its start on.
+    /// Creates a file of this many bytes, from its start on.
     pub fn new(source: R, little: bool, end: u64) -> Self {
         // Nothing is in the buffer: the first value seeks.
         let (buffer, start) = (Vec::new(), u64::MAX);

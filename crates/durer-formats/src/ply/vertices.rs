@@ -42,13 +42,13 @@ struct Kinds {
     normal: bool,
     color: bool,
     tex_coord: bool,
-    /// A splat's colour, which is used where there is no other.
+    /// A splat's colour, which is used if there is no other.
     splat_color: bool,
     splat: bool,
 }
 
 impl Vertices {
-    /// Prepares for so many rows.
+    /// Prepares for this many rows.
     ///
     /// # Errors
     /// A vertex without coordinates.

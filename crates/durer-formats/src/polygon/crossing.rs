@@ -67,7 +67,7 @@ pub(super) struct Resolved {
     numbers: HashMap<[[usize; 2]; 2], usize>,
 }
 
-/// Finds what an outline encloses by the non-zero rule. `None` where it cannot be told.
+/// Finds what an outline encloses by the non-zero rule. `None` if this cannot be decided.
 pub(super) fn resolve(points: &[DVec2], budget: &mut Budget) -> Option<Resolved> {
     budget.spend(100 * points.len())?;
     let outline = Shapes::from_rings([points]);

@@ -20,8 +20,8 @@ enum Taste {
 
 /// Cuts a polygon that runs counter-clockwise into triangles of its corners' numbers, which run so too.
 ///
-/// Returns whether they are all of it: not where the outline crosses itself. `None` where the budget
-/// is used up.
+/// Returns whether they are all of it: not where the outline crosses itself. `None` if the budget is
+/// used up.
 pub(super) fn cut(
     points: &[DVec2],
     budget: &mut Budget,
@@ -269,7 +269,7 @@ impl Cells {
         cells
     }
 
-    /// Returns the column and row, those at the border for what lies outside.
+    /// Returns the column and row, those at the border for what is outside.
     fn place(&self, p: DVec2) -> [usize; 2] {
         ((p - self.low) * self.scale).to_array().map(|v| (v as usize).min(self.side - 1))
     }

@@ -19,7 +19,7 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// Returns the plane through the first corner, across Newell's normal; where that is nothing,
+    /// Returns the plane through the first corner, across Newell's normal; if that is nothing,
     /// across the largest triangle of the fan. `None` for corners on one line, or that are not
     /// finite.
     pub fn of(points: &[DVec3]) -> Option<Self> {

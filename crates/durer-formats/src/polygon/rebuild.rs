@@ -29,7 +29,7 @@ impl Replaced {
         self.faces.is_empty()
     }
 
-    /// Gives a face triangles of its corners; none are no replacement.
+    /// Gives a face triangles of its corners; none are not replacement.
     pub fn add(&mut self, face: usize, corners: &[u32], triangles: &[[u32; 3]]) {
         if triangles.is_empty() {
             return;

@@ -5,13 +5,13 @@
 pub struct Column {
     /// Its name.
     pub name: String,
-    /// Its type in capitals, without lengths; empty where none is told.
+    /// Its type in capitals, without lengths; empty if it has none.
     pub kind: String,
     /// The value of rows that are older than the column, as a literal.
     pub default: Option<String>,
     /// True if it is the number of the row.
     pub is_number: bool,
-    /// True if rows have a place for it: values that are computed when asked for have none.
+    /// True if rows have a place for it: values that are computed when requested have none.
     pub is_stored: bool,
 }
 
@@ -134,7 +134,7 @@ fn column(part: &[Token]) -> Option<Column> {
     Some(Column { is_number: is_key && kind == "INTEGER", name, kind, default, is_stored })
 }
 
-/// Returns a value in JSON; `None` where it is an expression or null.
+/// Returns a value in JSON; `None` if it is an expression or null.
 fn literal(tokens: &[Token]) -> Option<String> {
     let (sign, tokens) = match tokens {
         [Token::Sign('-'), rest @ ..] => ("-", rest),

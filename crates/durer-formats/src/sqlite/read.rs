@@ -32,7 +32,7 @@ pub struct Table {
     pub kind: String,
     /// Its name.
     pub name: String,
-    /// Its first page; 0 where it has none.
+    /// Its first page; 0 if it has none.
     pub root: u32,
     /// Statement that created it.
     pub sql: String,
@@ -76,7 +76,7 @@ impl Database {
         Ok(Self { page, usable, encoding, bytes })
     }
 
-    /// Returns the number that tells what the file is for.
+    /// Returns the number of the application that the file is for.
     pub fn application(&self) -> u32 {
         word(&self.bytes, 68).unwrap_or(0)
     }
@@ -99,7 +99,7 @@ impl Database {
         Error::byte((u64::from(page).saturating_sub(1)) * self.page as u64, message)
     }
 
-    /// All that the database has, as its first table tells.
+    /// Everything in the database, as its first table lists it.
     ///
     /// # Errors
     /// Where that table cannot be read.
@@ -203,7 +203,9 @@ impl Rows {
                 }
                 Some(_) => return Err(database.wrong(number, "pages are nested too deep")),
                 None if index >= node.count => drop(self.stack.pop()),
-                None => return Err(database.wrong(number, "an entry of the page lies beyond it")),
+                None => {
+                    return Err(database.wrong(number, "an entry of the page is beyond its end"));
+                }
             }
         }
         Ok(None)
@@ -221,13 +223,13 @@ impl Rows {
         node: &Node<'a>,
         index: usize,
     ) -> Result<Row<'a>> {
-        let cut = || database.wrong(node.number, "a row of the page lies beyond it");
+        let cut = || database.wrong(node.number, "a row of the page is beyond its end");
         let cell = node.cell(index).ok_or_else(cut)?;
         let (length, cell) = varint(cell).ok_or_else(cut)?;
         let (number, cell) = varint(cell).ok_or_else(cut)?;
         let length = usize::try_from(length).ok().filter(|l| *l <= database.bytes.len());
         let length = length.ok_or_else(cut)?;
-        let twice = || database.wrong(node.number, "rows of the table lie over each other");
+        let twice = || database.wrong(node.number, "rows of the table overlap");
         self.bytes_left = self.bytes_left.checked_sub(length + 2).ok_or_else(twice)?;
         let here = local(length, database.usable);
         let (own, rest) = cell.split_at_checked(here).ok_or_else(cut)?;

@@ -26,7 +26,7 @@ const LONGEST: usize = 1_000_000_000;
 
 /// The pages of a database that is being written, but for the first one, which is known when all others are.
 pub struct Database {
-    /// Pages that nobody has taken yet.
+    /// Free pages.
     out: Vec<u8>,
     /// The number of the last page written.
     pages: u32,
@@ -34,7 +34,7 @@ pub struct Database {
 }
 
 impl Database {
-    /// Creates a database without a table; what is taken first stands in for the first page.
+    /// Creates a database without a table; the first allocation takes the place of the first page.
     pub fn new() -> Self {
         Self { out: vec![0; PAGE], pages: 1, schema: Vec::new() }
     }
@@ -68,8 +68,8 @@ impl Database {
         self.schema.push(record(&[kind, name, table, Value::Integer(root.into()), sql]));
     }
 
-    /// Returns the first page, and what is left of the others; `application` tells what the file is for,
-    /// `version` which of its kind it is.
+    /// Returns the first page, and what is left of the others; `application` is the number of the
+    /// application, `version` which of its kind it is.
     pub fn finish(mut self, application: u32, version: u32) -> Result<(Vec<u8>, Vec<u8>)> {
         let mut first = Page::new(TABLE_LEAF, HEADER);
         let mut table = Vec::new();
@@ -157,7 +157,7 @@ impl Page {
         self.head() + 2 * (self.ends.len() + 1) + self.cells.len() + cell.len() <= PAGE
     }
 
-    /// Adds a cell where there is room for it.
+    /// Adds a cell if there is room for it.
     fn add(&mut self, cell: &[u8]) -> bool {
         let fits = self.fits(cell);
         if fits {
@@ -251,7 +251,7 @@ impl Table {
 /// a record of at most …
 const CHILDREN: usize = (PAGE - 12) / (15 + RECORD);
 
-/// … so many bytes, its length included.
+/// … this many bytes, its length included.
 const RECORD: usize = 40;
 
 /// Returns parts of a list, none with more than `most` items (2 at least), nor with much fewer than

@@ -190,7 +190,8 @@ impl<'a> Ascii<'a> {
     /// Grows by halves, not by doubling, so that memory stays near what is needed.
     fn reserve(&mut self, read: usize) {
         if self.points.len() == self.points.capacity() {
-            // What was read so far has a vertex per so many bytes; the first guess is a page's worth.
+            // What was read so far has a vertex per this many bytes; the first guess is a page's
+            // worth.
             let more = (self.points.len() / 2).max(read.min(256)).max(16);
             self.points.reserve_exact(more);
         }
@@ -221,7 +222,7 @@ impl<'a> Ascii<'a> {
         check_limit(self.points.len() as u64 / 3, &self.limits)
     }
 
-    /// Makes the last so many points triangles that all have the first of them.
+    /// Makes the last this many points triangles that all have the first of them.
     fn fan(&mut self, count: usize) {
         let corners = self.points.split_off(self.points.len() - count);
         let Some((&first, rest)) = corners.split_first() else { return };
@@ -300,7 +301,7 @@ impl<'a> Ascii<'a> {
         self.solids.iter().map(|s| name(&s.1)).collect()
     }
 
-    /// Each solid is a part, where there are several or the one has a name. Of several, each has a name of its own.
+    /// Each solid is a part, if there are several or the one has a name. Of several, each has a name of its own.
     fn parts(&self) -> Vec<Part> {
         let count = self.points.len() / 3;
         if self.solids.iter().all(|(_, name)| name.is_empty()) && self.solids.len() < 2 {

@@ -42,7 +42,7 @@ pub fn read_binary_stream(
 /// Bytes for a triangle: its corners, some shared, and their numbers.
 pub(super) const BYTES: u64 = 48;
 
-/// Takes the memory for so many triangles from the budget.
+/// Takes the memory for this many triangles from the budget.
 fn keep(triangles: usize, limits: &Limits) -> Result<()> {
     Ok(limits.work.keep(MODEL, triangles as u64 * BYTES)?)
 }
@@ -112,7 +112,7 @@ pub(super) struct Facets {
 }
 
 impl Facets {
-    /// For a file that begins so and has so many facets.
+    /// For a file that begins so and has this many facets.
     pub fn new(head: &[u8], count: usize) -> Self {
         let mesh = Mesh { positions: Vec::with_capacity(3 * count), ..Mesh::default() };
         Self { mesh, count, palette: Palette::new(head), infinite: 0 }
@@ -138,7 +138,7 @@ impl Facets {
         colors.extend(records.iter().flat_map(|r| [self.palette.color(attribute(r)); 3]));
     }
 
-    /// Adds the facets to a model, with colours where some have one, or where it is known that others of the file have.
+    /// Adds the facets to a model, with colours where some have one, or if it is known that others of the file have.
     pub fn into_model(mut self, mut model: Model, colored: bool) -> Result<Model> {
         if colored && self.mesh.colors.is_empty() {
             self.mesh.colors.resize(self.mesh.positions.len(), self.palette.color(0));

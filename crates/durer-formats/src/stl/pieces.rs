@@ -44,7 +44,7 @@ struct Looked {
 
 impl<R: Read + Seek> Pieces<R> {
     /// Creates a file that begins with `head`, for which [`super::is_whole_binary`] holds, in pieces of about
-    /// so many triangles.
+    /// this many triangles.
     ///
     /// # Errors
     /// [`Error::Limit`] for too many triangles, [`durer::Error::Memory`] where the budget has no room for a piece.
@@ -92,7 +92,7 @@ impl<R: Read + Seek> Pieces<R> {
         self.source.seek(SeekFrom::Start(place)).map(drop).map_err(Error::Io)
     }
 
-    /// Makes the next piece, of so many triangles, and tells what is in it.
+    /// Makes the next piece, with this many triangles, and describes it.
     fn make_piece(&mut self, count: u64) -> Result<Looked> {
         let mut found = Looked::default();
         let mut positions = std::mem::take(&mut self.positions);

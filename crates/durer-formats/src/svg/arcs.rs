@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 use std::fmt::Write as _;
 use svgtypes::{PathParser, PathSegment};
 
-/// Calls `curve` with the points of curves after the first of each; `None` where the arc is a line.
+/// Calls `curve` with the points of curves after the first of each; `None` if the arc is a line.
 pub(super) fn curves(ends: &Ends, mut curve: impl FnMut([DVec2; 3])) -> Option<()> {
     let arc = Arc::new(ends)?;
     let turn = if arc.is_half { PI.copysign(arc.turn) } else { arc.turn };
@@ -32,8 +32,8 @@ pub(super) fn curves(ends: &Ends, mut curve: impl FnMut([DVec2; 3])) -> Option<(
     Some(())
 }
 
-/// Returns the path data with curves in place of its arcs, as far as it is well-formed; `None` where
-/// it has none.
+/// Returns the path data with curves in place of its arcs, as far as it is well-formed; `None` if it
+/// has none.
 pub(super) fn as_curves(data: &str) -> Option<String> {
     if !data.contains(['A', 'a']) {
         return None;

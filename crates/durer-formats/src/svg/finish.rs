@@ -215,7 +215,7 @@ impl<'a, 'i> Pending<'a, 'i> {
                 None => told.push((
                     at,
                     format!(
-                        "`{name}` of `{}` is `{}`: {}; it is passed over",
+                        "`{name}` of `{}` is `{}`: {}; it is ignored",
                         self.name(),
                         shown(value),
                         Kind::Functions.wanted()
@@ -257,10 +257,8 @@ impl<'a, 'i> Pending<'a, 'i> {
             } else {
                 "it must be a shape as `circle(10px at 5px 5px)`, or `url(#…)`"
             };
-            return told.push((
-                at,
-                format!("`clip-path` of `{name}` is `{value}`: {why}; it is passed over"),
-            ));
+            return told
+                .push((at, format!("`clip-path` of `{name}` is `{value}`: {why}; it is ignored")));
         };
         let mut number = changes.definitions.len();
         let mut id = format!("clip-{number}");
@@ -292,7 +290,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         let at = self.node.range().start;
         let name = self.name();
         if let Some(id) = filters::links(value).find(missing) {
-            told.push((at, format!("`filter` of `{name}` is `{}`: there is no filter with the id `{}`; it is passed over", shown(value), shown(id))));
+            told.push((at, format!("`filter` of `{name}` is `{}`: there is no filter with the id `{}`; it is ignored", shown(value), shown(id))));
             let rest = filters::without_links(value, |id| missing(&id));
             return set(changes, self.node, "filter", Some(rest).filter(|rest| !rest.is_empty()));
         }

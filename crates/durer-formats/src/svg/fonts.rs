@@ -118,7 +118,7 @@ fn bytes(face: &fontdb::FaceInfo) -> Option<(&[u8], u32)> {
     }
 }
 
-/// Chooses fonts by family and style; tells where what was asked for is not there.
+/// Chooses fonts by family and style; warns about fonts that are not available.
 pub(super) fn resolver(told: &Told) -> FontResolver<'_> {
     let fallback = FontResolver::default_fallback_selector();
     FontResolver {
@@ -143,7 +143,7 @@ pub(super) fn resolver(told: &Told) -> FontResolver<'_> {
 /// Weights that differ by less look alike.
 const SAME_WEIGHT: u16 = 200;
 
-/// Returns a warning if a face is not the one that was asked for.
+/// Returns a warning if a face is not the one that was requested.
 fn replaced(font: &usvg::Font, face: &fontdb::FaceInfo) -> Option<String> {
     let is_one_of = |names: &[&str]| face.families.iter().any(|f| names.contains(&f.0.as_str()));
     let (wanted, same_family) = match font.families().first() {

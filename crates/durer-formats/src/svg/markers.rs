@@ -16,7 +16,7 @@ pub(super) struct Vertex {
     pub angle: f64,
 }
 
-/// A segment: where it ends, and the directions in which it begins and ends; none where it has no length.
+/// A segment: where it ends, and the directions in which it begins and ends; none if it has no length.
 #[derive(Debug, Clone, Copy)]
 struct Segment {
     end: DVec2,

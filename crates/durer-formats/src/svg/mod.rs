@@ -133,9 +133,8 @@ impl Drawing {
     /// Reads an SVG document.
     ///
     /// # Errors
-    /// [`Error::Decode`] with line and column for what is not XML, and where there is no `svg` element
-    /// with a size, or coordinates that overflow. Of the last usvg panics; that is caught here, but the panic hook
-    /// is called.
+    /// [`Error::Decode`] with line and column for what is not XML, and if there is no `svg` element with a size,
+    /// or coordinates that overflow. Of the last usvg panics; that is caught here, but the panic hook is called.
     pub fn read(bytes: &[u8], options: &ReadOptions<'_>) -> Result<Self> {
         let text = source::text(bytes, &options.limits)?;
         let document = parse(&text)?;
@@ -292,7 +291,7 @@ impl Told {
     }
 }
 
-/// A document that has been looked at, and put in terms that usvg knows.
+/// A document that has been examined, and put in terms that usvg knows.
 struct Prepared {
     written: Option<write::Written>,
     warnings: Vec<Warning>,
@@ -403,7 +402,7 @@ fn check_arcs(document: &roxmltree::Document<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Returns whether a number of a segment is beyond [`FARTHEST`]; where there is none, usvg ends the
+/// Returns whether a number of a segment is beyond [`FARTHEST`]; if there is none, usvg ends the
 /// path.
 fn is_far(segment: std::result::Result<PathSegment, svgtypes::Error>) -> bool {
     use PathSegment::*;

@@ -244,7 +244,7 @@ impl<'b, A> Boxes<'b, A> {
         Self { all, around, looked }
     }
 
-    /// Returns the box around an element in its own units, without its transform; `None` where it is not
+    /// Returns the box around an element in its own units, without its transform; `None` if it is not
     /// known, as that of text.
     pub fn find<'a>(&mut self, node: Node<'a, '_>) -> Option<Bounds>
     where

@@ -7,13 +7,14 @@ use durer::target::Pixels;
 use std::sync::Arc;
 use usvg::tiny_skia_path::{self, PathSegment};
 
-/// Tiles of patterns have at most so many pixels a side; larger ones are painted coarser.
+/// Tiles of patterns have at most this many pixels a side; larger ones are painted coarser.
 const MAX_TILE: f64 = 4096.0;
 
-/// Tiles that do not lie on whole pixels have so many times as many a side.
+/// Tiles that do not lie on whole pixels have this many times as many a side.
 const FINER: f64 = 8.0;
 
-/// Tiles are not made finer beyond so many pixels: a tile is painted for each size that it is seen at.
+/// Tiles are not made finer beyond this many pixels: a tile is painted for each size that it is seen
+/// at.
 const FINER_PIXELS: f64 = 1_048_576.0;
 
 /// Sides of tiles that are so near to whole pixels are whole.
@@ -118,7 +119,7 @@ pub(super) struct Tile {
 
 impl Tile {
     /// Creates a tile with as many pixels as it will cover where those are whole ones, else with up to eight
-    /// times as many a side, which are then averaged; `None` where it covers nothing.
+    /// times as many a side, which are then averaged; `None` if it covers nothing.
     pub fn new(pattern: &usvg::Pattern, pixel_from_path: DAffine2) -> Option<Self> {
         let path_from_pattern = affine(pattern.transform());
         let seen = (pixel_from_path * path_from_pattern).matrix2;

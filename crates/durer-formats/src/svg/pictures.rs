@@ -24,8 +24,8 @@ pub(super) struct Picture {
     pub is_within: bool,
 }
 
-/// An address, whether it stands in a drawing that is a picture itself, and how many levels of elements are around: a
-/// drawing that is a picture there may be too deep.
+/// An address, whether it is in a drawing that is a picture itself, and the number of enclosing elements: a drawing
+/// that is a picture there may be too deep.
 pub(super) type Key = (String, bool, usize);
 
 /// Pictures that have been read.
@@ -99,7 +99,7 @@ fn kind(
     }
 }
 
-/// Returns an error without the name that stands for a picture without one.
+/// Returns an error without the placeholder for a picture that has no name.
 fn in_words(error: Error) -> String {
     let words = error.to_string().replacen("image ``: ", "", 1);
     let is_said_of_it = ["is ", "has ", "holds "].iter().any(|verb| words.starts_with(verb));

@@ -10,8 +10,8 @@ use usvg::roxmltree::{Document, Node, NodeId};
 /// Elements within one another and within what refers to them may be so deep, as usvg has it for elements alone.
 pub const MAX_DEPTH: usize = 1024;
 
-/// References may be followed so many times in all: what refers twice to what refers twice, and so on, would keep
-/// a small file busy for ever.
+/// References may be followed this many times in all: what refers twice to what refers twice, and so on, would
+/// keep a small file busy for ever.
 const MAX_FOLLOWED: u64 = 1_000_000;
 
 /// Stack that following a reference takes, in elements.

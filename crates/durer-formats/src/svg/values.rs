@@ -252,7 +252,7 @@ pub(super) enum Fate {
 impl Fate {
     pub fn in_words(self) -> &'static str {
         match self {
-            Self::PassedOver => "it is passed over",
+            Self::PassedOver => "it is ignored",
             Self::PartlyUsed => "what comes before the error is drawn",
             Self::Zero => "it counts as 0",
         }
@@ -333,7 +333,7 @@ fn paint<'v>(value: &'v str, around: &Around) -> Option<Cow<'v, str>> {
     }
     let (link, fallback) = value.split_at(value.find(')')? + 1);
     let fallback = match fallback.trim() {
-        // Pictures and elements of other files are no paint.
+        // Pictures and elements of other files are not paint.
         "" if is_elsewhere(link) => return Some(Cow::Borrowed("none")),
         fallback => fallback,
     };

@@ -38,7 +38,7 @@ impl Changes<'_> {
 #[derive(Debug, Default)]
 pub(super) struct Written {
     pub text: String,
-    /// For each element, in order, where in the old document it stands that it was made of.
+    /// For each element, in order, the place of its original in the old document.
     pub places: Vec<usize>,
 }
 

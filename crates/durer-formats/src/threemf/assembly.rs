@@ -166,7 +166,7 @@ impl<'a, 'b> Assembly<'a, 'b> {
         Ok(())
     }
 
-    /// Notes where an object stands; the frame is for its components.
+    /// Notes the place of an object; the frame is for its components.
     fn enter(
         &mut self,
         from: usize,

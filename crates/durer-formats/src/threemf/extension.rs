@@ -30,7 +30,7 @@ const KNOWN: &[(&str, &str)] = &[
 /// Checks that all that the model element requires is read.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for the first that is not; a prefix that stands for nothing.
+/// [`Error::Unsupported`] for the first that is not; an undefined prefix.
 pub(super) fn check(model: &BytesStart<'_>, here: &Here<'_>) -> Result<()> {
     let required = xml::attribute(model, "requiredextensions").unwrap_or_default();
     for prefix in required.split_ascii_whitespace() {

@@ -47,7 +47,7 @@ pub(super) struct Repairs {
     pub unknown: u64,
     /// Triangles whose paint is broken.
     pub paint: u64,
-    /// Triangles that are modifiers and the like.
+    /// Triangles that are modifiers and similar ones.
     pub hidden: u64,
     /// True if filaments are painted of which the file has no colour.
     pub made_up: bool,

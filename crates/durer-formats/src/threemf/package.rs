@@ -1,4 +1,4 @@
-//! The archive: parts by name, and the relationship that tells which is the model.
+//! The archive: parts by name, and the relationship that names the model.
 
 use crate::budget::MODEL;
 use crate::foreign;
@@ -46,7 +46,7 @@ impl<'a> Package<'a> {
         self.left
     }
 
-    /// Takes so many of the bytes that may still be decoded.
+    /// Takes this many of the bytes that may still be decoded.
     pub fn charge(&mut self, bytes: u64) {
         self.left = self.left.saturating_sub(bytes);
     }

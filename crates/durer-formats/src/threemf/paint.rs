@@ -73,7 +73,7 @@ fn turned([a, b, c]: Corners, first: u32) -> Corners {
     }
 }
 
-/// Adds the children of a triangle of which so many sides are divided, the first one first.
+/// Adds the children of a triangle of which this many sides are divided, the first one first.
 fn children(sides: u32, [a, b, c]: Corners, stack: &mut Vec<Corners>) {
     let middle = |p: DVec3, q: DVec3| (p + q) * 0.5;
     match sides {

@@ -207,7 +207,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Takes memory for so many triangles.
+    /// Takes memory for this many triangles.
     pub fn charge(&mut self, triangles: u64) -> Result<()> {
         self.part.triangles = self.part.triangles.saturating_add(triangles);
         let (value, limit) = (self.part.triangles, self.limit);

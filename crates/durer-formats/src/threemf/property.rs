@@ -71,7 +71,7 @@ pub(super) struct Properties {
 }
 
 impl Properties {
-    /// Returns how a property looks; `None` where the part does not have it.
+    /// Returns how a property looks; `None` if the part does not have it.
     pub fn look(&self, group: u64, index: u64) -> Option<Look> {
         match self.groups.get(&group)? {
             Group::Layers(layers, members) => {
@@ -85,7 +85,7 @@ impl Properties {
         }
     }
 
-    /// Returns how a property looks that is no layering.
+    /// Returns how a property looks that is not layering.
     fn single(&self, group: u64, index: u64) -> Option<Look> {
         let at = usize::try_from(index).ok()?;
         match self.groups.get(&group)? {
@@ -114,7 +114,7 @@ impl Properties {
         (whole > 0.0 && whole.is_finite()).then(|| sum / whole)
     }
 
-    /// Returns the name of a property, empty where it has none.
+    /// Returns the name of a property, empty if it has none.
     pub fn name(&self, group: u64, index: u64) -> &str {
         let Some(Group::Colors(colors)) = self.groups.get(&group) else { return "" };
         let found = usize::try_from(index).ok().and_then(|i| colors.get(i));

@@ -46,7 +46,7 @@ pub(super) struct ObjectSettings {
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub(super) struct VolumeSettings {
     pub filament: Option<u32>,
-    /// True if it is no part of the model: a modifier, a hole, a place for supports.
+    /// True if it is not a part of the model: a modifier, a hole, a place for supports.
     pub hidden: bool,
 }
 
@@ -59,7 +59,7 @@ pub(super) struct Plate {
 }
 
 impl Settings {
-    /// Reads the slicer's files. What cannot be read is a warning: the model stands without it.
+    /// Reads the slicer's files. What cannot be read is a warning: the model is drawn without it.
     pub fn read(package: &mut Package<'_>, model: &mut Model) -> Self {
         let mut settings = Self::default();
         let mut file = |name: &str, parse: &mut dyn FnMut(&[u8]) -> Result<(), String>| {
@@ -82,7 +82,7 @@ impl Settings {
 
     fn set_filaments(&mut self, colors: Vec<String>) -> Result<(), String> {
         for text in colors {
-            let color = color::hex(text.trim()).ok_or(format!("`{text}` is no colour"))?;
+            let color = color::hex(text.trim()).ok_or(format!("`{text}` is not a colour"))?;
             self.filaments.push(Vec3::new(color.x, color.y, color.z).extend(1.0));
         }
         Ok(())

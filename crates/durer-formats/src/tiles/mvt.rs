@@ -126,7 +126,7 @@ const LINE_TO: u32 = 2;
 const CLOSE: u32 = 7;
 
 impl<'a> Layer<'a> {
-    /// Creates a layer without a feature, of so many cells across.
+    /// Creates a layer without a feature, of this many cells across.
     pub fn new(name: &'a str, extent: u32, dictionary: &'a Dictionary) -> Self {
         let (names, values) = Default::default();
         Self { name, extent, dictionary, names, values, features: Vec::new() }

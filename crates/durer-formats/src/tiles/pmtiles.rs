@@ -10,12 +10,13 @@ use crate::{Error, Place, Result};
 use std::collections::BTreeMap;
 use std::io::{Seek, SeekFrom, Write};
 
-/// Header and root directory have to be in the first so many bytes.
+/// Header and root directory have to be in the first this many bytes.
 const HEAD: u64 = 16_384;
 
 const HEADER: u64 = 127;
 
-/// Tiles of at most so many bytes are looked for among those before: the sea, the inside of areas.
+/// Tiles of at most this many bytes are looked for among those before: the sea, the inside of
+/// areas.
 const SMALL: usize = 1024;
 
 /// Number of tiles to remember.

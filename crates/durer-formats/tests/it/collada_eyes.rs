@@ -147,7 +147,7 @@ fn colors_of_lights_are_as_those_of_materials() {
     let color =
         |tool: &str| lamp("directional", "<color>500 1000 0</color>", tool).scene.lights[0].color;
     assert!((color("Blender 2.93.1") - Vec3::new(500.0, 1000.0, 0.0)).length() < 1e-3);
-    // The intensity is no part of the curve.
+    // The intensity is not a part of the curve.
     assert!((color("other") - Vec3::new(214.041, 1000.0, 0.0)).length() < 1e-2);
 }
 

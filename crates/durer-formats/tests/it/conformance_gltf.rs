@@ -6,7 +6,7 @@ use durer_formats::{Error, Model, ReadOptions, Resources, Result, gltf};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Returns the folder of test data; `None`, said on stderr, where there is none.
+/// Returns the folder of test data; `None`, said on stderr, if there is none.
 fn data() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("DURER_DATA").map_or_else(beside, PathBuf::from);
@@ -386,7 +386,7 @@ fn valid_files_of_the_validator_are_read() {
     }
 }
 
-/// Broken files and the begin of their error; empty where they can be read.
+/// Broken files and the begin of their error; empty if they can be read.
 const BROKEN: &[(&str, &str)] = &[
     ("assimp_gltf/BoxBadNormals-glTF-Binary/BoxBadNormals.glb", ""),
     ("assimp_gltf/IndexOutOfRange/AllIndicesOutOfRange.gltf", "meshes[0].primitives[0].indices: "),

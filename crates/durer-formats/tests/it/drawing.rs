@@ -441,7 +441,7 @@ fn sections_get_views_with_titles_and_lines_where_they_cut() {
     let said: Vec<&str> = letters.iter().map(|l| l.0.as_str()).collect();
     assert_eq!(said, ["A", "A", "B", "B"]);
     assert!(letters[..2].iter().all(|l| l.1.x < x - 9.0));
-    // B lies in the view from above and is looked at from below: from the front.
+    // B lies in the view from above and is examined from below: from the front.
     let y = top.sheet_from_model(DVec3::new(0.0, -10.0, 0.0)).unwrap().y;
     assert!(letters[2..].iter().all(|l| l.1.y > y + 9.0 && l.1.x < top.bounds.max().x + 20.0));
     // C is seen edge on by none.

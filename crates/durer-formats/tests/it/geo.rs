@@ -215,8 +215,8 @@ GEOMETRYCOLLECTION(POINT(1 2),LINESTRING(0 0,1 1))\nPOLYGON((0 0,4 0,4 4,0 0),(1
         ("POLYGON ((0 0, 1 1", "the end of the file"),
         ("LINESTRING (0 0, 1 1 2)", "this one has 3"),
         ("CIRCULARSTRING (0 0, 1 1)", "line 1, column 16: arcs need an odd number of positions"),
-        ("CURVE (0 0, 1 1, 2 0)", "line 1, column 1: `CURVE` is no type"),
-        ("BLOB (1 2)", "line 1, column 1: `BLOB` is no type"),
+        ("CURVE (0 0, 1 1, 2 0)", "line 1, column 1: `CURVE` is not a type"),
+        ("BLOB (1 2)", "line 1, column 1: `BLOB` is not a type"),
         ("POINT (1 2))", "line 1, column 12: the end of the geometry"),
     ] {
         let message = error(GeoFormat::Wkt, text.as_bytes());
@@ -531,7 +531,7 @@ fn numbers_of_coordinate_systems_fit_32_bits() {
     for (text, told) in [
         (
             "SRID=99999999999;POINT(1 2)",
-            "the SRID 99999999999 must lie in -2147483648 to 2147483647",
+            "the SRID 99999999999 must be from -2147483648 to 2147483647",
         ),
         ("SRID=99999999999999999999999;POINT(1 2)", "the SRID 1e23 must"),
         ("SRID=x;POINT(1 2)", "the number of a coordinate system is expected, not `x`"),

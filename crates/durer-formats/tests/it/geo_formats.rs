@@ -327,7 +327,7 @@ fn fields_have_kinds_and_examples() {
 #[test]
 fn foreign_formats_are_named() {
     for (bytes, told) in [
-        (&b"SQLite format 3\0rest"[..], "an SQLite database that is no GeoPackage"),
+        (&b"SQLite format 3\0rest"[..], "an SQLite database that is not a GeoPackage"),
         (b"PK\x03\x04", "a ZIP archive, such as a packed Shapefile"),
         (b"II*\0", "GeoTIFF"),
         (b"<osm version=\"0.6\">", "OpenStreetMap XML"),

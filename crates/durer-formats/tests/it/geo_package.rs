@@ -242,7 +242,7 @@ fn more_fields_than_a_table_has_are_refused() {
 
 #[test]
 fn other_databases_say_what_they_are() {
-    // A database with a table that is no list of contents.
+    // A database with a table that is not a list of contents.
     let mut file = PLAIN.to_vec();
     for at in 0..file.len() - 13 {
         if file[at..].starts_with(b"gpkg_contents") {
@@ -258,5 +258,5 @@ fn other_databases_say_what_they_are() {
     tiles[68..72].copy_from_slice(b"MPBX");
     assert!(error(&tiles, None).starts_with("this is MBTiles"));
     assert_eq!(GeoFormat::of_content(&tiles), None);
-    assert!(GeoFormat::foreign(&tiles).contains("SQLite database that is no GeoPackage"));
+    assert!(GeoFormat::foreign(&tiles).contains("SQLite database that is not a GeoPackage"));
 }

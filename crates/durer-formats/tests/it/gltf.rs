@@ -334,7 +334,7 @@ fn what_has_a_corner_that_is_no_vertex_is_left_out() {
         let first = indices.iter().position(|i| *i > 2).unwrap();
         let why = format!("the first: index {first} is vertex {} of 3", indices[first]);
         let told = model.warnings.last().unwrap().to_string();
-        let all = format!("{word} with a corner that is no vertex are left out, {why}");
+        let all = format!("{word} with a corner that is not a vertex are left out, {why}");
         assert_eq!(told, format!("meshes[0].primitives[0]: {all}"));
     }
 }

@@ -118,7 +118,7 @@ fn tables_that_may_be_meant_otherwise_are_told() {
     let long: String = (0..20).map(|i| format!("{i},{},{}\n", i * i, i % 3)).collect();
     let found = map(long.as_bytes(), "a.csv");
     assert!(found.warnings[0].message.contains("points x, y, z need a heading"), "{found:?}");
-    assert!(error(b"5\n").contains("one height is no surface"));
+    assert!(error(b"5\n").contains("one height is not a surface"));
 }
 
 #[test]

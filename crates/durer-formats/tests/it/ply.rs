@@ -339,7 +339,7 @@ fn nonsense_after_some_faces_costs_the_rest() {
     assert_eq!(model.scene.triangle_count(), 2);
     let text = warnings(&model);
     assert!(
-        text.contains("line 20, column 1: `-3` is no length") && text.contains("2 of 4 rows"),
+        text.contains("line 20, column 1: `-3` is not a length") && text.contains("2 of 4 rows"),
         "{text}"
     );
 }

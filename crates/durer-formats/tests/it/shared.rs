@@ -3,7 +3,7 @@
 use durer_formats::Resources;
 use std::path::{Path, PathBuf};
 
-/// Returns the folder of shared data: `DURER_DATA`, or beside the workspace. Says so where there is
+/// Returns the folder of shared data: `DURER_DATA`, or beside the workspace. Says so if there is
 /// none.
 pub fn data() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");

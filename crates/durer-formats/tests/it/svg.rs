@@ -475,7 +475,7 @@ fn coordinates_that_overflow_are_refused() {
     assert!(read(&strokes.replace("1e20", "1e10")).is_ok());
 }
 
-/// Drawings in images of a drawing are looked at like the drawing itself.
+/// Drawings in images of a drawing are examined like the drawing itself.
 #[test]
 fn images_that_are_drawings_cannot_fill_the_stack() {
     let image = |body: &str| {

@@ -253,7 +253,7 @@ fn what_is_not_understood_is_told_with_its_line() {
         ("<g style='text-shadow:1px 1px red'/>", "`text-shadow: 1px 1px red` is not drawn"),
         ("<style>@font-face{src:url(x)}</style>", "`@font-face` is passed over"),
         ("<style>a{b{fill:red}}</style>", "the rule for `b` within another rule is passed over"),
-        ("<style>rect{fill red}</style>", "`fill red` is no declaration"),
+        ("<style>rect{fill red}</style>", "`fill red` is not a declaration"),
         (
             "<style>@media (hovering){a{}}</style>",
             "`@media` is passed over: `(hovering)` is not understood",

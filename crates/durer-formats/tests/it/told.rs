@@ -104,7 +104,7 @@ const FAULTS: [(&str, &str); 17] = [
     ("<R><q:a/></R>", "`svg` needs `xmlns:q=\"…\"`"),
     ("<R><a b='1' b='2'/></R>", "an element has the attribute `b` twice"),
     ("<R xmlns:q='u' xmlns:q='v'/>", "an element has `xmlns:q` twice"),
-    ("<R>&nothing;</R>", "`&nothing;` is no known entity; `&` itself is written `&amp;`"),
+    ("<R>&nothing;</R>", "`&nothing;` is not a known entity; `&` itself is written `&amp;`"),
     ("<R>a & b</R>", "after `&` no known entity follows"),
     ("<R><a b='<'/></R>", "an attribute's value holds `<`, which is written `&lt;`"),
     ("<R>]]></R>", "a text holds `]]>`, which is written `]]&gt;`"),

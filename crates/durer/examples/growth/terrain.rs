@@ -27,7 +27,7 @@ pub fn terrain(n: u32) -> Scene {
     }
 }
 
-/// Steps of a method for a picture of so many pixels along its sides.
+/// Steps of a method for a picture of this many pixels along its sides.
 pub fn steps(method: SurfaceMethod, scene: &Scene, side: u32) -> durer::Result<f64> {
     let projection = Projection::Perspective { fov_y: 0.7 };
     let (eye, target, up) = (DVec3::new(0.9, -1.6, 2.0), DVec3::ZERO, DVec3::Y);

@@ -1,5 +1,5 @@
 //! The pictures of docs/algorithms for two dimensions, curves and lines: each panel a step, or some
-//! steps, as a listener was told them.
+//! steps, as a tracer was told them.
 //!
 //! `cargo run --example step_pictures -- docs/algorithms`
 

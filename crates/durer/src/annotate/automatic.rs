@@ -26,7 +26,8 @@ pub(super) fn said(sign: &str, value: f64, count: usize, view: &Seen, unit: f64)
     Said { text, is_plain, value, scale: 1.0 / view.factor().max(f64::MIN_POSITIVE) }
 }
 
-/// Puts the size along each axis of the world into the first view that shows it; tells what has none.
+/// Puts the size along each axis of the world into the first view that shows it; returns the sizes
+/// without one.
 pub(super) fn sizes(
     board: &mut Board,
     views: &[Seen],

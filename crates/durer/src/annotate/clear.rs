@@ -1,4 +1,4 @@
-//! Lines end before text that stands on them.
+//! Lines end before text that is placed on them.
 
 use super::quad::Quad;
 use crate::curve::pieces;
@@ -9,7 +9,7 @@ use crate::target::{Arc, Curve, Piece};
 /// Shortest rest of a line between two texts, in millimetres: a shorter one looks like dirt.
 const SHORTEST: f64 = 0.3;
 
-/// Curves are looked at as chains this near to them, millimetres; arcs in chords of two degrees.
+/// Curves are examined as chains this near to them, millimetres; arcs in chords of two degrees.
 const NEAR: f64 = 0.01;
 const CHORD: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
@@ -20,7 +20,7 @@ pub(super) fn clear(sheet: &mut Sheet, quads: &[Quad]) {
     }
 }
 
-/// Layers that stay as they are: nothing is written across the frame, and areas are no lines.
+/// Layers that stay as they are: nothing is written across the frame, and areas are not lines.
 fn is_whole(layer: &str) -> bool {
     matches!(layer, "frame" | "title-block" | "regions")
 }
@@ -52,7 +52,7 @@ fn cut_marks(marks: &mut Vec<Mark>, quads: &[Quad]) {
     *marks = kept;
 }
 
-/// Returns the parts of a chain outside of all quads; `None` where that is all of it.
+/// Returns the parts of a chain outside of all quads; `None` if that is all of it.
 fn outside(points: &[DVec2], closed: bool, quads: &[Quad]) -> Option<Vec<Vec<DVec2>>> {
     let again = points.first().copied().filter(|_| closed);
     let chain: Vec<DVec2> = points.iter().copied().chain(again).collect();
@@ -79,8 +79,8 @@ fn outside(points: &[DVec2], closed: bool, quads: &[Quad]) -> Option<Vec<Vec<DVe
     Some(parts)
 }
 
-/// Returns the parts of a curve outside of all quads, each piece on its own; `None` where that is
-/// all of it.
+/// Returns the parts of a curve outside of all quads, each piece on its own; `None` if that is all
+/// of it.
 fn outside_of_curve(curve: &Curve, quads: &[Quad]) -> Option<Vec<Curve>> {
     outside(&pieces::points(curve, NEAR), curve.closed, quads)?;
     let parts = curve.iter().flat_map(|(start, piece)| match *piece {

@@ -54,7 +54,7 @@ fn stroke(points: Vec<DVec2>, pen: usize) -> Mark {
 
 impl Board<'_> {
     /// Returns a dimension line with its extension lines, arrows and text. What is too short for arrows has
-    /// them outside, and the text beside them where it is too long.
+    /// them outside, and the text beside them if it is too long.
     pub fn linear(&mut self, l: &Linear, said: &Said) -> Draft {
         let (style, thin, letters) = (self.style, self.thin(), self.letters());
         let along = reading(l.along);

@@ -1,4 +1,4 @@
-//! Dimensions and notes that are asked for one by one.
+//! Dimensions and notes that are requested one by one.
 
 use super::automatic::{no_room, place_diameter, said};
 use super::board::Board;
@@ -76,7 +76,7 @@ fn views_of<'a, 'b>(views: &'a [Seen<'b>], request: &Request) -> Result<Vec<&'a 
 }
 
 impl Model<'_> {
-    /// Returns a point of a place, and the direction of its axis where it has one.
+    /// Returns a point of a place, and the direction of its axis if it has one.
     fn place(&self, place: &Place) -> Result<(DVec3, Option<DVec3>)> {
         match place {
             Place::Point(p) => Ok((*p, None)),

@@ -95,7 +95,7 @@ fn object<'a>(scene: &'a Scene, faces: &Faces, item: u32) -> &'a str {
 /// Returns the features of a name: one by its own, all of an object.
 ///
 /// # Errors
-/// [`Error::Parameter`] that tells some of the names there are.
+/// [`Error::Parameter`], with some of the existing names.
 pub(super) fn named<'a>(features: &'a [Feature], name: &str) -> Result<Vec<&'a Feature>> {
     let name = name.trim();
     let own = features.iter().filter(|f| f.name == name);
@@ -109,7 +109,7 @@ pub(super) fn named<'a>(features: &'a [Feature], name: &str) -> Result<Vec<&'a F
 /// Returns the one feature of a name.
 ///
 /// # Errors
-/// [`Error::Parameter`] where there is none, or several.
+/// [`Error::Parameter`] if there is none, or several.
 pub(super) fn one<'a>(features: &'a [Feature], name: &str) -> Result<&'a Feature> {
     match named(features, name)?[..] {
         [only] => Ok(only),

@@ -25,7 +25,7 @@ const SPARE: f64 = 0.6;
 /// Distance from a letter beyond which other marks do not matter, in millimetres.
 const REACH: f64 = 20.0;
 
-/// Curves are looked at as chords this near to them, millimetres.
+/// Curves are examined as chords this near to them, millimetres.
 const NEAR: f64 = 0.05;
 
 /// Moves each letter that lies on an annotation to the nearest place where it lies on nothing, if there is one near by; the

@@ -1,8 +1,8 @@
 //! The annotations that draughtsmen write on a drawing: centre lines, dimensions, threads, notes.
 //!
 //! [`annotate`] puts them on a sheet whose views are known ([`PlacedView`]), beside the views and clear of each
-//! other, in the layers `center`, `thread` and `dimension`. Lines end before text that stands on them. Signs, lines
-//! and arrows are those of ISO 128-2, ISO 129-1 and ISO 6410-1.
+//! other, in the layers `center`, `thread` and `dimension`. Lines end before text that is placed on them. Signs,
+//! lines and arrows are those of ISO 128-2, ISO 129-1 and ISO 6410-1.
 
 mod automatic;
 mod board;

@@ -60,8 +60,7 @@ pub(super) fn linear(
     false
 }
 
-/// Returns a point of a dimension line at a distance from a view, or, for one that stands obliquely, from
-/// its ends.
+/// Returns a point of a dimension line at a distance from a view, or, for an oblique one, from its ends.
 fn lane_at(bounds: Rect, ends: [DVec2; 2], along: DVec2, side: Side, distance: f64) -> DVec2 {
     let (min, max) = (bounds.min(), bounds.max());
     let straight = along.x.abs() < 1e-3 || along.y.abs() < 1e-3;
@@ -103,7 +102,7 @@ pub(super) fn sides(
 }
 
 /// Puts a leader with a text to one of several targets that are alike, on the shortest way that is free. Whether
-/// there was one. `measure` tells what is measured, from the target, the end of the leader and its way.
+/// there was one. `measure` returns the measured value from the target, the end of the leader and its direction.
 pub(super) fn leader(
     board: &mut Board,
     view: &Seen,

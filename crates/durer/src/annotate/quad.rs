@@ -16,7 +16,7 @@ impl Quad {
         Self([a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)])
     }
 
-    /// Returns one that stands straight, so much larger to each side.
+    /// Returns an upright one, this much larger on each side.
     pub fn wider(self, by: f64) -> Self {
         let signs = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
         let mut corners = self.0;
@@ -82,7 +82,7 @@ impl Quad {
         self.0.iter().all(|p| p.cmpge(min).all() && p.cmple(max).all())
     }
 
-    /// Returns the part of a segment inside, as shares of its length; `None` where there is none.
+    /// Returns the part of a segment inside, as shares of its length; `None` if there is none.
     pub fn inside(&self, a: DVec2, b: DVec2) -> Option<(f64, f64)> {
         let middle = self.0.iter().sum::<DVec2>() / 4.0;
         let (mut from, mut to) = (0.0f64, 1.0f64);

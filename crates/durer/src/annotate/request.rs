@@ -1,4 +1,4 @@
-//! The annotations that are asked for.
+//! The annotations that are requested.
 
 use crate::math::DVec3;
 
@@ -33,7 +33,7 @@ pub struct Request {
     pub what: What,
     /// The name of its view; `None` for the first that shows it.
     pub view: Option<String>,
-    /// On which side of the view it stands; `None` for the first with room.
+    /// The side of the view; `None` for the first one with room.
     pub side: Option<Side>,
     /// Text, with `<>` for the measured value; `None` for that value alone.
     pub text: Option<String>,
@@ -121,7 +121,7 @@ pub enum Side {
 pub struct Thread {
     /// The name of the object, or of a feature.
     pub name: String,
-    /// Its size, where it is known.
+    /// Its size, if it is known.
     pub size: Option<ThreadSize>,
 }
 

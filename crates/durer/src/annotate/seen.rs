@@ -74,7 +74,7 @@ impl<'a> Seen<'a> {
         (to - from).dot(DVec2::new(way.x, -way.y))
     }
 
-    /// Returns a direction of the world on the sheet, where it is not of unit length any more.
+    /// Returns a direction of the world on the sheet, if it is not of unit length any more.
     pub fn way(&self, direction: DVec3) -> DVec2 {
         DVec2::new(direction.dot(self.axes[0]), -direction.dot(self.axes[1]))
     }

@@ -40,7 +40,7 @@ impl Style {
     }
 }
 
-/// Returns a length in units of the model, to a hundredth of a millimetre where a unit is so many
+/// Returns a length in units of the model, to a hundredth of a millimetre where a unit is this many
 /// millimetres; no trailing zeros.
 pub(super) fn length(value: f64, unit: f64) -> String {
     let digits = (2.0 + libm::log10(unit.max(1.0)).ceil()).clamp(2.0, 8.0) as usize;

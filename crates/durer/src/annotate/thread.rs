@@ -97,7 +97,7 @@ fn dashed(board: &mut Board) -> usize {
     board.pen(super::style::THIN, dashes)
 }
 
-/// Returns whether the lines of a thread seen from the side are hidden; `None` where nothing of it is drawn. The
+/// Returns whether the lines of a thread seen from the side are hidden; `None` if nothing of it is drawn. The
 /// outline of a screw is seen; that of a hole in sections, elsewhere as a hidden line.
 fn is_hidden(view: &Seen, feature: &Feature, ends: [DVec2; 2], way: DVec2) -> Option<bool> {
     let side = way.perp() * feature.cylinder.radius * view.factor();

@@ -42,7 +42,7 @@ impl Source {
     }
 }
 
-/// A listener for the sources of output vertices: `Vec<Source>`, or [`NoSources`].
+/// A tracer for the sources of output vertices: `Vec<Source>`, or [`NoSources`].
 pub trait Provenance: Default {
     /// The source of the next vertex.
     fn push(&mut self, source: impl FnOnce() -> Source);
@@ -111,7 +111,7 @@ impl Provenance for Vec<Source> {
 /// assert_eq!(clipped, Some(vec![20.0, 17.5, 0.0]));
 /// ```
 ///
-/// `None` where a source names a point that `values` does not have.
+/// `None` if a source names a point that `values` does not have.
 pub fn interpolate<V: Copy>(
     sources: &[Source],
     values: &[V],

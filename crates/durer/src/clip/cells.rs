@@ -128,7 +128,7 @@ impl Cells {
     }
 }
 
-/// Polygons with so many points that cells are cut with them, and not they with the cells.
+/// Polygons with this many points that cells are cut with them, and not they with the cells.
 struct Large {
     mask: Mask,
     repaired: bool,

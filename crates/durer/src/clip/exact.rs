@@ -49,7 +49,7 @@ fn side_in_whole_numbers(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
 }
 
 /// Returns the point where two closed segments cross, each coordinate correctly rounded: the same
-/// bits for either order and direction. `None` where they keep apart or lie on one line.
+/// bits for either order and direction. `None` if they keep apart or lie on one line.
 pub(crate) fn crossing([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<DVec2> {
     let apart = |s: Ordering, t: Ordering| s == t;
     if apart(side(a, b, c), side(a, b, d)) || apart(side(c, d, a), side(c, d, b)) {

@@ -4,7 +4,7 @@
 //! In the world each border is a plane, one dot product a vertex, and what is rejected is never
 //! transformed. In clip space the borders are the same for all cameras, additions suffice, and w may
 //! have any sign. After the division borders are constants, but a triangle through the eye plane has
-//! no image: what lies in and behind that plane must be cut off first, and attributes are no longer
+//! no image: what is in and behind that plane must be cut off first, and attributes are no longer
 //! linear. In the viewport the near and the far plane have done their work, and four borders of a
 //! rectangle in the plane are left. Per pixel nothing is cut but at the eye plane: each pixel is asked
 //! whether it lies within the scissor rectangle ([`crate::raster`] walks no others), within any mask

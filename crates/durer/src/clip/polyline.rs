@@ -9,7 +9,7 @@
 //! Which edges a segment meets is decided exactly, by orientations; a vertex of either that lies on the
 //! other but for the rounding of its coordinates is met there, so that what was cut before stays as it is.
 //! The places of other cuts are correctly rounded, and parts of a segment between two cuts that round to one
-//! point are ignored. Whether the part between two cuts is inside is told by its middle, exactly, by the
+//! point are ignored. The middle of the part between two cuts decides, exactly, whether it is inside, by the
 //! even-odd rule.
 //!
 //! Object space. The border's edges are kept in horizontal slabs, so a segment looks only at edges of
@@ -150,7 +150,7 @@ pub fn clip(
     run(&Near::all(polygon.clone()), points, ends, options, t)
 }
 
-/// Returns the same for polygons that were made ready: only those near the polylines are looked at.
+/// Returns the same for polygons that were made ready: only those near the polylines are examined.
 ///
 /// # Errors
 /// As [`clip`].
@@ -214,7 +214,7 @@ fn clip_one(
             let inside = known.unwrap_or_else(|| {
                 cuts.on_border(start, end) || border.contains_middle(start, end)
             });
-            // Kept or not: which part is asked for has no say in it.
+            // Kept or not: which part is requested has no say in it.
             if cuts.is_empty() {
                 known = Some(inside);
             }

@@ -1,7 +1,7 @@
 //! Points that lie on an edge but for the rounding of their coordinates.
 //!
 //! A crossing is rounded by half an ulp on each axis, so that it mostly lies beside both edges. Whoever cuts
-//! what was cut before has to see that it lies on them. What is near is told by the point and the edge
+//! what was cut before has to see that it lies on them. The point and the edge alone decide what is near
 //! alone, so that all who have them decide alike.
 
 use super::exact;

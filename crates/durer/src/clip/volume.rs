@@ -59,9 +59,9 @@ pub enum Borders {
     /// All six.
     #[default]
     All,
-    /// The near plane; and the four sides only for what reaches beyond the guard band
-    /// −g·w ≤ x, y ≤ g·w, as graphics hardware does. The rasterizer's own clip does the rest, and
-    /// the depth test must discard what lies beyond the far plane.
+    /// The near plane; and the four sides only for what reaches beyond the guard band −g·w ≤ x, y ≤
+    /// g·w, as graphics hardware does. The rasterizer's own clip does the rest, and the depth test
+    /// must discard what is beyond the far plane.
     NearOnly {
         /// g, above 1; a power of two keeps results exactly inside. Half the rasterizer's range
         /// divided by half the viewport's width is right; more overflows its coordinates, less
@@ -280,7 +280,7 @@ fn needed<A>(
 /// Clips a segment; both ends are returned in their order, those inside bit for bit.
 ///
 /// A segment that touches the volume in one point is returned with two equal ends. One that ends in
-/// the null vector, which is no point, is left out.
+/// the null vector, which is not a point, is left out.
 pub fn clip_segment<A: Blend>(
     segment: [ClipVertex<A>; 2],
     options: &Options,

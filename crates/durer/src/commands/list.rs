@@ -28,7 +28,7 @@ impl DisplayLists {
         ListId(self.lists.len() - 1)
     }
 
-    /// Puts other commands in the place of a list's; whoever calls it, calls these from now on.
+    /// Replaces the commands of a list; later calls run the new ones.
     ///
     /// # Errors
     /// [`Error::Dangling`] for a list of another collection.

@@ -108,9 +108,9 @@ pub enum Command {
     Fragments(FragmentState),
     /// Draws.
     Draw(Primitive, Vec<Vertex>),
-    /// Evaluates a curve at so many equal steps of its parameter and draws them as a line strip.
+    /// Evaluates a curve at this many equal steps of its parameter and draws them as a line strip.
     EvaluateCurve(Curve, u32),
-    /// Evaluates a patch at so many equal steps both ways and draws its triangles.
+    /// Evaluates a patch at this many equal steps both ways and draws its triangles.
     EvaluatePatch(Patch, [u32; 2]),
     /// Replays a display list with the state as it is; what it changes stays changed.
     Call(ListId),

@@ -175,7 +175,7 @@ impl Step {
     }
 }
 
-/// Flattens like [`flatten`], with a listener for its steps.
+/// Flattens like [`flatten`], with a tracer for its steps.
 pub fn flatten_traced(path: &Path, tolerance: f64, t: &mut impl Tracer<Step>) -> Contours {
     let mut out = Contours::new();
     let (mut start, mut at) = (None, DVec2::ZERO);
@@ -215,7 +215,7 @@ pub fn flatten_traced(path: &Path, tolerance: f64, t: &mut impl Tracer<Step>) ->
     out
 }
 
-/// Returns the bound that [`segments_for`] keeps, for so many chords of an element.
+/// Returns the bound that [`segments_for`] keeps, for this many chords of an element.
 fn chord_error(a: DVec2, element: &PathElement, chords: usize) -> f64 {
     let bound = match *element {
         PathElement::QuadTo(b, c) => bend(a, b, c) / 4.0,

@@ -11,12 +11,12 @@ use std::collections::VecDeque;
 
 /// Directions in the plane, and how far apart lines along them should be.
 pub trait Field {
-    /// Returns the direction at a point, of unit length; its sign does not matter. `None` where the field has
+    /// Returns the direction at a point, of unit length; its sign does not matter. `None` if the field has
     /// none: lines end.
     fn direction(&self, p: DVec2) -> Option<DVec2>;
 
-    /// Returns the distance that lines should have at a point, above 0. `None` where there should
-    /// be none.
+    /// Returns the distance that lines should have at a point, above 0. `None` if there should be
+    /// none.
     fn separation(&self, p: DVec2) -> Option<f64>;
 
     /// Returns whether a line may go from one point to another, a step away.

@@ -70,7 +70,7 @@ impl TextLine {
     }
 }
 
-/// Returns the point so far along a polyline, and the unit direction there; `None` where it has no
+/// Returns the point so far along a polyline, and the unit direction there; `None` if it has no
 /// length.
 pub fn place_along(polyline: &[DVec2], mut along: f64) -> Option<(DVec2, DVec2)> {
     let mut last = None;

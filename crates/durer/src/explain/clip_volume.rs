@@ -151,7 +151,7 @@ static ACCEPTED: Template = Template::new(
 );
 static REJECTED: Template = Template::new(
     "rejected",
-    "All that is left lies beyond one border, or is no area: rejected.",
+    "All that is left lies beyond one border, or is not an area: rejected.",
     "Was übrig ist, liegt ganz jenseits eines Rands oder ist keine Fläche: abgelehnt.",
 );
 static DROPPED: Template = Template::new(

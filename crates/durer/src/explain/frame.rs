@@ -35,7 +35,7 @@ pub(super) static MORE: Template = Template::new(
     "{shown} Schritte sind gezeigt; {dropped} weitere folgen.",
 );
 
-/// Runs an algorithm with a listener and returns its steps, up to `cap`.
+/// Runs an algorithm with a tracer and returns its steps, up to `cap`.
 pub(super) fn record<S, T>(
     cap: usize,
     run: impl FnOnce(&mut Recorder<S>) -> Result<T>,

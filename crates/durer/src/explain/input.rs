@@ -173,7 +173,7 @@ impl Figure {
         ring.map(Vec::as_slice).ok_or_else(missing)
     }
 
-    /// Returns the rings of both operands; those of the clip are the window's border where there are none.
+    /// Returns the rings of both operands; those of the clip are the window's border if there are none.
     pub(super) fn operands(&self, wanted: Word) -> Result<[Vec<Vec<DVec2>>; 2]> {
         self.ring(wanted)?;
         if !self.clip.is_empty() {

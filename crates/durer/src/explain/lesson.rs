@@ -41,7 +41,7 @@ pub struct Example {
 
 impl Lesson {
     /// Runs the algorithm and returns a frame for each of its steps, at most `cap`, and one more that says how many
-    /// are missing where there are more.
+    /// are missing if there are more.
     ///
     /// # Errors
     /// [`Error::Parameter`] where the algorithm takes another kind of input; [`Error::Unknown`] for an example that

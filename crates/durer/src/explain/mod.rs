@@ -82,7 +82,7 @@ pub fn lesson(name: &str) -> Result<&'static Lesson> {
 }
 
 /// Runs an algorithm and returns a frame for each of its steps, at most `cap`, and one more that says how many are
-/// missing where there are more.
+/// missing if there are more.
 ///
 /// # Errors
 /// Those of [`lesson()`] and [`Lesson::run`].

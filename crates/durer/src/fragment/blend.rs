@@ -91,9 +91,9 @@ pub enum Equation {
     Subtract,
     /// Destination − source.
     ReverseSubtract,
-    /// The smaller of source and destination; factors are not looked at.
+    /// The smaller of source and destination; factors are ignored.
     Min,
-    /// The larger of source and destination; factors are not looked at.
+    /// The larger of source and destination; factors are ignored.
     Max,
 }
 

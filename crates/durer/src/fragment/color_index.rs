@@ -82,7 +82,7 @@ impl Palette {
         (0..=255).min_by_key(distance).unwrap_or(0)
     }
 
-    /// Writes the colours of the indices to the colour plane; nothing, where there are no indices.
+    /// Writes the colours of the indices to the colour plane; nothing, if there are no indices.
     pub fn resolve(&self, target: &mut Framebuffer) {
         if let Some(indices) = &target.index {
             let pixels = target.color.data_mut().iter_mut().zip(indices.data());

@@ -3,7 +3,7 @@
 use crate::curve::text::place_along;
 use crate::math::DVec2;
 
-/// Places on a line are looked at in steps of this share of the letters' size.
+/// Places on a line are examined in steps of this share of the letters' size.
 const STEP: f64 = 0.5;
 
 /// A line is smoothed over this many steps to both sides: letters do not follow each bend of a river.
@@ -32,7 +32,7 @@ impl Run {
 }
 
 /// Returns the positions of a label of this length and size of letters along a line: those near its middle first, none
-/// where it bends too much. Labels run from the left to the right.
+/// if it bends too much. Labels run from the left to the right.
 pub fn runs(line: &[DVec2], length: f64, size: f64) -> Vec<Run> {
     let step = STEP * size;
     let whole: f64 = line.windows(2).map(|pair| pair[0].distance(pair[1])).sum();

@@ -10,7 +10,7 @@ use crate::math::DVec2;
 /// less than 0.1/255; on a grid of 1/256 that was 1/255, which can be seen as another colour.
 const GRID: f64 = 4096.0;
 
-/// Outer rings run one way and holes the other, so that the winding number tells how many of the areas
+/// Outer rings run one way and holes the other, so that the winding number is the number of the areas
 /// hold a point.
 #[derive(Debug, Default)]
 pub struct Joined {

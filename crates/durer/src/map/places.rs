@@ -1,8 +1,8 @@
 //! Positions for the label of an area: inside it if the label fits, otherwise where it hides least.
 //!
 //! Names that their area holds cannot get in each other's way, so they come first. A name that would hide most of its
-//! area stands beside it in the open, as names of small islands do on maps; one that only reaches a little over the
-//! border stays where most of it is inside. No name stands on an area that is not its own without reaching into its own.
+//! area is placed beside it in the open, as names of small islands are on maps; one that only reaches a little over the
+//! border stays where most of it is inside. No name is placed on another area without reaching into its own.
 
 use crate::clip::polygon::{Shapes, rectangle};
 use crate::curve::Contours;
@@ -17,7 +17,7 @@ const HELD: f64 = 0.98;
 /// less of theirs.
 pub const NEARLY: f64 = 0.75;
 
-/// A label stands on an area that holds at least this share of it.
+/// A label belongs to an area that contains at least this share of it.
 const MOSTLY: f64 = 0.5;
 
 /// Smallest share of a label that an area has to hold for the label to reach out of it, if there is no better place.
@@ -32,7 +32,7 @@ const ALONE: f64 = 1.5;
 /// Numbers of columns and rows of candidate positions within an area.
 const GRID: (u32, u32) = (17, 13);
 
-/// The land is looked at in no more pixels than this a side.
+/// The land is examined in no more pixels than this a side.
 const LAND_SIDE: f64 = 1024.0;
 
 /// Quality of a label's position in its area; better ones are placed first.

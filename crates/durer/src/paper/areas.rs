@@ -308,8 +308,8 @@ impl RowCurve<'_> {
         self.points[i % self.points.len()]
     }
 
-    /// Returns the part of the curve between two points of the polyline, so many steps from the first; `None`
-    /// where one of them does not lie on it.
+    /// Returns the part of the curve between two points of the polyline, this many steps from the first;
+    /// `None` if one of them does not lie on it.
     fn part(&self, first: usize, steps: usize) -> Option<Curve> {
         let count = self.points.len();
         let shift = if self.closed { *self.fitted.from.first()? } else { 0 };

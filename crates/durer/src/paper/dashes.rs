@@ -18,7 +18,7 @@ pub fn length(points: &[DVec2], closed: bool) -> f64 {
 }
 
 /// Returns the nominal dashes stretched for one stroke of the given length: it begins and ends with a
-/// whole dash, and a closed one has a whole number of periods. `None` where it is too short for two
+/// whole dash, and a closed one has a whole number of periods. `None` if it is too short for two
 /// dashes: then it is drawn solid.
 ///
 /// ```

@@ -10,7 +10,7 @@ use crate::target::{Arc, Curve, Piece};
 /// Lines that end this near to a chord, as a part of the tolerance, end on it.
 const MEETS: f64 = 0.1;
 
-/// Returns the curve for each line, in millimetres on paper, where it is not the polyline that it was; all of it within
+/// Returns the curve for each line, in millimetres on paper, if it is not the polyline that it was; all of it within
 /// `tolerance` millimetres.
 ///
 /// Points that lines share, and ends, stay points of both to the bit.
@@ -38,7 +38,8 @@ pub(super) fn curves(
     curves
 }
 
-/// Returns whether a curve is no better than the polyline of so many points that it was fitted to.
+/// Returns whether a curve is no better than the polyline of this many points that it was fitted
+/// to.
 pub(super) fn is_as_it_was(curve: &Curve, points: usize) -> bool {
     let pieces = curve.pieces.len();
     curve.is_straight() && (pieces + 1 >= points || pieces < 3)

@@ -56,7 +56,7 @@ pub enum Frame {
     /// All of the drawing, and no more.
     #[default]
     Content,
-    /// The drawing's window, where it has one: what the camera sees.
+    /// The drawing's window, if it has one: what the camera sees.
     Window,
 }
 
@@ -321,7 +321,7 @@ fn put(sheet: &mut Sheet, views: &[Placed], options: &Options) {
     put_labels(sheet, views, options);
 }
 
-/// Returns the steps of nearness that lines behind so many surfaces have, the farthest first.
+/// Returns the steps of nearness that lines behind this many surfaces have, the farthest first.
 fn steps(views: &[Placed], depth: u32) -> Vec<Option<u8>> {
     let told = depth == 0 && views.iter().any(|v| !v.drawing.nearness.is_empty());
     let near = if told { NEARNESS_STEPS } else { 0 };
@@ -355,7 +355,7 @@ fn onto_paper(p: DVec2, origin: DVec2, factor: f64) -> DVec2 {
 struct Strokes<'a> {
     /// With how near they are.
     lines: Vec<(Option<u8>, &'a Line)>,
-    /// For each line its curve on paper, where it is not drawn as a polyline; none at all without fitting.
+    /// For each line its curve on paper, if it is not drawn as a polyline; none at all without fitting.
     curves: Vec<Option<Curve>>,
     /// Position of the origin, as in [`onto_paper`].
     origin: DVec2,
@@ -460,7 +460,7 @@ fn text_pen(sheet: &mut Sheet, height: f64, options: &Options) -> usize {
     pen_index(sheet, Pen { width: height * 0.1, color: options.pens.color, dashes: Vec::new() })
 }
 
-/// Returns the index of a pen, which the sheet gets where it does not have it.
+/// Returns the index of a pen, which the sheet gets if it does not have it.
 pub(crate) fn pen_index(sheet: &mut Sheet, pen: Pen) -> usize {
     match sheet.pens.iter().position(|p| *p == pen) {
         Some(index) => index,

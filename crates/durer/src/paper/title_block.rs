@@ -13,7 +13,7 @@ pub struct TitleBlock {
     pub name: String,
     /// The unit of the model, e.g. `mm`.
     pub unit: String,
-    /// A date; left out where it is not given, so that the same model gives the same sheet.
+    /// A date; left out if it is not given, so that the same model gives the same sheet.
     pub date: Option<String>,
 }
 

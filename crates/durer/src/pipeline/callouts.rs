@@ -15,9 +15,9 @@ const ROWS: u32 = 1000;
 /// Marks what belongs to no part.
 const NONE: u32 = u32::MAX;
 
-/// Finds for each kind of part a place where one of it is seen, as far from what is around it as can be, in
-/// plane units of a [`crate::target::drawing::Drawing`] of the camera; `None` where it is not seen. `aspect` is width
-/// over height of what the camera sees, 1/8 … 8.
+/// Finds for each kind of part a place where one of it is seen, as far from what is around it as can be, in plane
+/// units of a [`crate::target::drawing::Drawing`] of the camera; `None` if it is not seen. `aspect` is width over
+/// height of what the camera sees, 1/8 … 8.
 ///
 /// Cost: that of a picture of a thousand rows.
 ///

@@ -97,7 +97,7 @@ impl Vertices {
         Ok(Self { seen, tree, one_place })
     }
 
-    /// Returns the depths at the points of a line; `None` where there are no vertices.
+    /// Returns the depths at the points of a line; `None` if there are no vertices.
     fn along(&self, line: &Line) -> Option<Vec<f64>> {
         let mut nearest = Nearest::new(VERTICES);
         let mut at = |p: &DVec2| {

@@ -16,16 +16,16 @@ use crate::{Error, Result};
 /// Content of a drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum DrawStyle {
-    /// The edges that can be seen, and those that cannot, told apart.
+    /// Visible edges, and hidden ones in a style of their own.
     #[default]
     HiddenLine,
-    /// All edges, whatever lies in front of them.
+    /// All edges, hidden or not of them.
     Wireframe,
     /// The visible parts of surfaces in flat colours.
     Regions,
-    /// The same with lines on top.
+    /// Regions with lines on top.
     RegionsAndLines,
-    /// The same with exact shadows.
+    /// Regions with exact shadows.
     Shadows,
 }
 
@@ -91,7 +91,7 @@ pub struct DrawOptions {
     /// otherwise they share their borders.
     pub trapped: bool,
     /// The material of a section's caps ([`crate::view::section::Section::cap_material`]): their
-    /// regions are told apart and get the hatching of sections.
+    /// regions are distinguished and get the hatching of sections.
     pub cap_material: Option<usize>,
     /// Budget of the work, and its cancellation; for its lines this counts, not that of [`Self::lines`].
     pub work: Work,
@@ -182,7 +182,7 @@ fn regions(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing>
     let _faces = faces(scene, options)?;
     let lights = lights(scene, options);
     let mut drawing = region::draw(scene, view, &lights, &region_options(options))?;
-    // Fills show where shadows end; their outlines are drawn where they are asked for.
+    // Fills show where shadows end; their outlines are drawn if requested.
     drawing.lines.retain(|l| options.lines.classes.contains(l.class));
     options.work.check().map(|()| drawing)
 }

@@ -60,5 +60,5 @@ pub fn draw_edges(
     canvas.render(&mut picture.color)
 }
 
-/// Length of stubs, as in drawings that are looked at ([`hidden_line::Options::stubs`]).
+/// Length of stubs, as in drawings that are examined ([`hidden_line::Options::stubs`]).
 const STUBS: f64 = 0.01;

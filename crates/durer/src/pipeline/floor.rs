@@ -100,7 +100,7 @@ pub fn add_axes(scene: &mut Scene, model: &Aabb) {
     }
 }
 
-/// 1, 2 or 5 times a power of ten, at most the length; `None` for what is no length.
+/// 1, 2 or 5 times a power of ten, at most the length; `None` for what is not a length.
 fn round_length(length: f64) -> Option<f64> {
     if !(length.is_finite() && length > 0.0) {
         return None;
@@ -145,8 +145,8 @@ fn add(scene: &mut Scene, mut mesh: Mesh, origin: DVec3, material: Material) {
     scene.materials.push(material);
 }
 
-/// Adds the soft shadow that a model, in its box, has on the floor that it stands on: darker where it is
-/// nearer to the floor.
+/// Adds the soft shadow that a model, in its box, has on the floor under it: darker where it is nearer
+/// to the floor.
 ///
 /// The model is seen from below, and what is up to so high over the floor darkens it around, the
 /// lower the more sharply. Cost: a picture of 512 × 512 pixels.

@@ -45,7 +45,7 @@ pub enum Unseen {
     Transparent,
     /// It is in the picture, in the colour of the background.
     LikeBackground,
-    /// No sample of a pixel lies on it, or no line of a drawing is asked for.
+    /// No sample of a pixel lies on it, or no line of a drawing is requested.
     Missed,
 }
 
@@ -134,7 +134,7 @@ fn other_color(background: Background) -> Vec4 {
     Vec4::new(ink.x, 0.5, 1.0 - ink.z, 1.0)
 }
 
-/// Returns what the places of the vertices tell; `None` where some may be seen.
+/// Returns what the places of the vertices tell; `None` if some may be seen.
 fn status_of_vertices(scene: &Scene, view: &View) -> Option<Status> {
     let mut places = Places::new(view);
     places.add(scene);

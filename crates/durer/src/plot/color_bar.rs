@@ -1,4 +1,4 @@
-//! A bar that tells which colours stand for which heights.
+//! A bar with the colours of heights.
 
 use super::ticks::{offset, short, ticks};
 use super::{BAR, MARGIN, Options, SHADES, bar_width, index_of};
@@ -6,8 +6,8 @@ use crate::math::DVec2;
 use crate::target::drawing::Anchor;
 use crate::target::sheet::{Mark, Pen, Sheet};
 
-/// Returns the heights that it tells, with the share of its length at which they stand from its foot; empty
-/// where there is no bar.
+/// Returns its labelled heights, with their distance from its foot as a share of its length; empty if
+/// there is no bar.
 pub fn labels(heights: Option<[f64; 2]>, options: &Options) -> Vec<(f64, String)> {
     let Some([low, high]) = heights else { return Vec::new() };
     if !options.color_bar || options.color_map.is_none() {

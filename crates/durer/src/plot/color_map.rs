@@ -54,7 +54,7 @@ impl ColorMap {
         }
     }
 
-    /// Returns the colour of a number from 0 to 1, sRGB, opaque; what lies beyond is taken for the
+    /// Returns the colour of a number from 0 to 1, sRGB, opaque; what is beyond is taken for the
     /// end.
     pub fn at(self, part: f64) -> [u8; 4] {
         let table: &[[u8; 3]] = match self {

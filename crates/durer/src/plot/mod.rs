@@ -38,7 +38,7 @@ pub struct Options {
     pub exaggeration: f64,
     /// Depth over width of the ground as it is seen; labels tell the true coordinates. `None` has one scale for both.
     pub aspect: Option<f64>,
-    /// True if a bar tells which colours stand for which heights, where there is a colour map.
+    /// True if there is a bar with the colours of heights, if there is a colour map.
     pub color_bar: bool,
     /// Colours by height; `None` draws all lines with `ink`, and fills with `paper`.
     pub color_map: Option<ColorMap>,
@@ -88,7 +88,7 @@ pub struct Plot {
 
 /// A margin around everything, millimetres.
 const MARGIN: f64 = 4.0;
-/// Steps of colour along a line: finer ones are not told apart.
+/// Steps of colour along a line: finer ones are not distinguished.
 const SHADES: usize = 32;
 /// Dashes and gaps of hidden lines, in widths of the pen.
 const DASHES: [f64; 2] = [6.0, 4.0];
@@ -217,7 +217,7 @@ fn with_height(bounds: &Aabb) -> Aabb {
     Aabb { min: bounds.min - DVec3::Y * up, max: bounds.max + DVec3::Y * up }
 }
 
-/// Returns the camera of an eye that stands somewhere, in coordinates with exaggerated heights.
+/// Returns the camera of an eye at a given place, in coordinates with exaggerated heights.
 fn standing(
     bounds: &Aabb,
     places: [DVec3; 2],

@@ -3,11 +3,11 @@
 //! P. Heckbert, *Nice Numbers for Graph Labels*, Graphics Gems, 1990: steps of 1, 2 or 5 times a power of
 //! ten.
 
-/// Numbers with more digits than this are told by what they exceed an offset by.
+/// Numbers with more digits than this are written as differences from an offset.
 const DIGITS: f64 = 1e6;
 
 /// Returns the round number that a range far from zero is better counted from: 0 where its own numbers are short
-/// enough to be told apart.
+/// enough to be distinguished.
 ///
 /// ```
 /// use durer::plot::ticks::offset;
@@ -79,7 +79,7 @@ pub fn short(value: f64) -> String {
     long.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Returns a number with so many decimals, or with an exponent where that would be long.
+/// Returns a number with this many decimals, or with an exponent where that would be long.
 fn text(value: f64, decimals: usize) -> String {
     let value = value + 0.0;
     if value == 0.0 && decimals > 6 {

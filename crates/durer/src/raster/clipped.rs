@@ -7,7 +7,7 @@ use crate::math::DVec2;
 /// Farther coordinates are moved here first, so that products stay finite.
 const FARTHEST: f64 = 1e15;
 
-/// Points that are looked at together.
+/// Points that are examined together.
 const BLOCK: usize = 32;
 
 /// Lines of a contour that follow each other.
@@ -64,7 +64,7 @@ pub(crate) fn lines(points: &[DVec2], own: Range<usize>) -> impl Iterator<Item =
 /// right of the box moved onto its border, for left of it they still wind around everything in their rows.
 ///
 /// Which pieces they are depends on the two ends alone and not on the direction, so both faces of a shared edge
-/// get the same. `None` where the edge lies wholly above or below the box.
+/// get the same. `None` if the edge lies wholly above or below the box.
 pub(crate) fn pieces(a: DVec2, b: DVec2, low: DVec2, high: DVec2) -> Option<[(DVec2, DVec2); 3]> {
     let far = DVec2::splat(FARTHEST);
     let (a, b) = (a.clamp(-far, far), b.clamp(-far, far));

@@ -1,6 +1,6 @@
 //! A run of pixels in one row.
 
-/// Pixels x0 … x1 − 1 of row y; never empty where an algorithm emits it.
+/// Pixels x0 … x1 − 1 of row y; never empty if an algorithm emits it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Span {
     /// Row, growing downwards.

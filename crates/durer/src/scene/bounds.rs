@@ -12,7 +12,7 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// Returns the smallest box around the finite points; `None` where there is none.
+    /// Returns the smallest box around the finite points; `None` if there is none.
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
         let mut points = points.into_iter().filter(|p| p.is_finite());
         let first = points.next()?;

@@ -38,7 +38,7 @@ pub struct Camera {
 /// A camera of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedCamera {
-    /// Its name; readers make names unique, and give `camera0`, `camera1` … where there is none.
+    /// Its name; readers make names unique, and give `camera0`, `camera1` … if there is none.
     pub name: String,
     /// The camera. Files without a far plane get one from the scene's bounds.
     pub camera: Camera,

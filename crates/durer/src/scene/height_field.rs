@@ -15,7 +15,7 @@ const LARGEST: f64 = 1e100;
 /// where all four of its corners are there. A cell is two triangles, parted by the diagonal whose
 /// ends differ less in height.
 ///
-/// A surface may be cut off at two [levels](Self::within): what lies below or above is no part of it, and a cell with
+/// A surface may be cut off at two [levels](Self::within): what lies below or above is not a part of it, and a cell with
 /// corners on both sides, which jumps over all that is between, is left out, as poles of functions make them.
 ///
 /// # Guarantees
@@ -138,7 +138,7 @@ impl HeightField {
         between(self.z, row, self.rows)
     }
 
-    /// Returns the height of a point; `None` where it is missing or outside the grid.
+    /// Returns the height of a point; `None` if it is missing or outside the grid.
     pub fn height(&self, column: usize, row: usize) -> Option<f64> {
         if column >= self.columns {
             return None;
@@ -146,7 +146,7 @@ impl HeightField {
         self.heights.get(row * self.columns + column).copied().filter(|h| !h.is_nan())
     }
 
-    /// Returns a point of the surface; `None` where its height is missing.
+    /// Returns a point of the surface; `None` if its height is missing.
     pub fn point(&self, column: usize, row: usize) -> Option<DVec3> {
         self.height(column, row).map(|y| DVec3::new(self.x(column), y, self.z(row)))
     }
@@ -180,7 +180,7 @@ impl HeightField {
         self.levels.is_none_or(|[low, high]| (low..=high).contains(&y))
     }
 
-    /// Returns the lowest and the highest height, between the levels; `None` where all are missing or
+    /// Returns the lowest and the highest height, between the levels; `None` if all are missing or
     /// beyond them.
     pub fn range(&self) -> Option<[f64; 2]> {
         let start = [f64::INFINITY, f64::NEG_INFINITY];
@@ -191,7 +191,7 @@ impl HeightField {
         any.then_some([lo.max(low), hi.min(high)])
     }
 
-    /// Returns the box around the grid and all heights of the [range](Self::range); `None` where there
+    /// Returns the box around the grid and all heights of the [range](Self::range); `None` if there
     /// are none.
     pub fn bounds(&self) -> Option<Aabb> {
         let [lo, hi] = self.range()?;
@@ -312,7 +312,7 @@ impl HeightField {
     }
 }
 
-/// Leaves of a convex ring what lies between two levels. Returns whether it was cut.
+/// Leaves of a convex ring the part between two levels. Returns whether it was cut.
 pub(crate) fn cut(ring: &mut Vec<DVec3>, levels: Option<[f64; 2]>) -> bool {
     let Some([low, high]) = levels else { return false };
     if ring.iter().all(|p| (low..=high).contains(&p.y)) {

@@ -36,7 +36,7 @@ pub enum ShadingModel {
     /// Ambient, diffuse and specular reflection after Phong and Blinn (MTL).
     #[default]
     Phong,
-    /// The base colour as it is.
+    /// The base colour without lighting.
     Unlit,
 }
 

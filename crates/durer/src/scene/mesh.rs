@@ -23,18 +23,18 @@ pub struct Part {
     pub range: Range<u32>,
     /// Index into [`super::Scene::materials`]; `None` is the default material.
     pub material: Option<usize>,
-    /// Name of the group or object, empty where the file has none.
+    /// Name of the group or object, empty if the file has none.
     pub name: String,
 }
 
 /// Geometry in its own coordinates.
 ///
-/// Attribute arrays are empty where the file has none, else as long as `positions`. Readers of
-/// formats with double precision keep coordinates exact to 24 bits of the model's own extent by
-/// moving a far-off model to its middle and the offset into the instance's matrix.
+/// Attribute arrays are empty if the file has none, else as long as `positions`. Readers of formats
+/// with double precision keep coordinates exact to 24 bits of the model's own extent by moving a
+/// far-off model to its middle and the offset into the instance's matrix.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
-    /// Name in the file, empty where it has none.
+    /// Name in the file, empty if it has none.
     pub name: String,
     /// Shapes that the indices form.
     pub topology: Topology,
@@ -48,13 +48,13 @@ pub struct Mesh {
     pub tex_coords: Vec<Vec<Vec2>>,
     /// Linear RGBA, straight alpha.
     pub colors: Vec<Vec4>,
-    /// Vertex numbers; `None` where vertex i is index i.
+    /// Vertex numbers; `None` if vertex i is index i.
     pub indices: Option<Vec<u32>>,
     /// Runs of primitives by material, in order, without gaps; empty = one part, default material.
     pub parts: Vec<Part>,
     /// First triangle of each face, in order, where the file had faces of more than three vertices;
-    /// empty where each face is one triangle. The triangles of a face cover it, run around as it does,
-    /// and follow each other: a fan from its first vertex where that covers it, as in convex faces, else
+    /// empty if each face is one triangle. The triangles of a face cover it, run around as it does, and
+    /// follow each other: a fan from its first vertex where that covers it, as in convex faces, else
     /// any. n vertices make n − 2 of them, fewer where some lie on spikes without area, others where the
     /// outline crosses itself.
     pub faces: Vec<u32>,

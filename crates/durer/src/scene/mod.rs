@@ -68,8 +68,8 @@ impl UpAxis {
         }
     }
 
-    /// From the model to who stands in front of it; unit length. Turning the world around it by quarters
-    /// takes y, x, −y and −x up into each other; by half, z and −z.
+    /// From the model towards its front; unit length. Turning the world around it by quarters takes y,
+    /// x, −y and −x up into each other; by half, z and −z.
     pub const fn front(self) -> DVec3 {
         match self {
             Self::Y | Self::X | Self::NegY | Self::NegX => DVec3::Z,
@@ -77,7 +77,7 @@ impl UpAxis {
         }
     }
 
-    /// To the right for who stands in front: up × front; unit length.
+    /// To the right as seen from the front: up × front; unit length.
     pub const fn right(self) -> DVec3 {
         match self {
             Self::Y | Self::Z => DVec3::X,
@@ -95,7 +95,7 @@ pub struct Instance {
     pub mesh: usize,
     /// Takes the mesh's coordinates to the world's. Affine; may mirror.
     pub world_from_mesh: DMat4,
-    /// The name of the node or object, empty where the file has none.
+    /// The name of the node or object, empty if the file has none.
     pub name: String,
 }
 
@@ -123,8 +123,8 @@ pub struct Scene {
     /// Meshes in their places; item order.
     pub instances: Vec<Instance>,
     /// For each instance the number of the object that it is a part of, where the file tells objects apart that have
-    /// nothing to do with each other; those beyond the end, and all where it is empty, are of tree 0. Borders of one tree that lie on each other are
-    /// one ([`crate::visibility::object::Weld`]).
+    /// nothing to do with each other; those beyond the end, and all if it is empty, are of tree 0. Borders of one tree
+    /// that lie on each other are one ([`crate::visibility::object::Weld`]).
     pub trees: Vec<u32>,
     /// Value of a unit in the last digit of the meshes' coordinates in the file, in their units: 0.001 for three
     /// decimals. 0 if the file is not text, or if it is not known.
@@ -135,7 +135,7 @@ pub struct Scene {
     pub textures: Vec<Texture>,
     /// Decoded images, shared by textures.
     pub images: Vec<Image>,
-    /// The file's own lights, in world space; empty where it has none.
+    /// The file's own lights, in world space; empty if it has none.
     pub lights: Vec<Light>,
     /// The file's own cameras, in world space.
     pub cameras: Vec<NamedCamera>,

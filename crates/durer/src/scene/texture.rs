@@ -7,7 +7,7 @@
 pub struct Image {
     /// Name or URI in the file.
     pub name: String,
-    /// Pixels; `data` of zero size stands for an image that could not be read and samples white.
+    /// Pixels; `data` of zero size means an image that could not be read, and samples white.
     pub width: u32,
     /// Rows.
     pub height: u32,

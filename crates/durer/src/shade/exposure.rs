@@ -3,10 +3,10 @@
 //! Files give light in units of their own: lux and candela, or what an artist's program makes of watts.
 //! [`Exposure::Auto`] does what a photographer does who measures the light that falls on a scene (incident
 //! light, ISO 2720:1974): it is measured at points that are spread evenly over all surfaces, and of the lit
-//! ones the brightest few are left out of account, for there a lamp is all but touched. All lights then
-//! become weaker or stronger by one factor, so that scenes that differ in the strength of all their
-//! lamps look alike. What shines by itself, or is shown without light, is in parts of white already and
-//! stays. The eye's place has no say, so that all pictures of a scene are exposed alike; nor have shadows.
+//! ones the brightest few are left out of account, because there a lamp is all but touched. All lights then
+//! become weaker or stronger by one factor, so that scenes that differ in the strength of all their lamps
+//! look alike. What shines by itself, or is shown without light, is in parts of white already and stays.
+//! The eye's place has no say, so that all pictures of a scene are exposed alike; nor have shadows.
 //!
 //! Cost: O(triangles / stride) for the areas of at most 2¹⁶ triangles, and 2¹² points × lights.
 
@@ -88,7 +88,7 @@ impl PreparedLights {
         prepared
     }
 
-    /// Returns the scene's own lights, [exposed](Self::exposed), or, where it has none,
+    /// Returns the scene's own lights, [exposed](Self::exposed), or, if it has none,
     /// [`PreparedLights::auto`].
     pub fn of(scene: &Scene, camera: &Camera) -> Self {
         match &scene.lights[..] {

@@ -37,7 +37,7 @@ pub trait Lane:
     fn exp2_whole(self) -> Self;
     /// Returns the nearest whole number below or equal.
     fn floor(self) -> Self;
-    /// Calls `f` without making it part of the caller: for what is long and seldom asked for.
+    /// Calls `f` without making it part of the caller: for what is long and seldom requested.
     fn apart<R>(self, f: impl FnOnce() -> R) -> R;
     /// Creates a function of one number per value, lane by lane: for what has no formula, such as
     /// looking up.
@@ -54,7 +54,7 @@ pub trait Lane:
         self.if_above(limit, self, self.splat(limit))
     }
 
-    /// `self` where it is not above `limit`, else `limit`; NaN stays.
+    /// `self` if it is not above `limit`, else `limit`; NaN stays.
     #[inline(always)]
     fn at_most(self, limit: f32) -> Self {
         self.if_above(limit, self.splat(limit), self)
@@ -371,7 +371,7 @@ impl<L: Lane> Vec3Lane<L> {
         self.scale(length2.splat(1.0) / length2.sqrt())
     }
 
-    /// Returns unit length; `otherwise` where there is no direction: zero, NaN, or beyond 1e18.
+    /// Returns unit length; `otherwise` if there is no direction: zero, NaN, or beyond 1e18.
     #[inline(always)]
     pub fn unit_or(self, otherwise: Self) -> Self {
         let (length2, unit) = (self.dot(self), self.unit());

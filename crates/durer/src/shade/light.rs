@@ -178,7 +178,7 @@ impl PreparedLights {
     }
 }
 
-/// Returns the sum of all ambient lights; `None` where there is none.
+/// Returns the sum of all ambient lights; `None` if there is none.
 pub(super) fn ambient(lights: &[Light]) -> Option<Vec3> {
     let ambient = lights.iter().filter(|l| l.kind == LightKind::Ambient);
     ambient.map(|l| l.color).reduce(|a, b| a + b)

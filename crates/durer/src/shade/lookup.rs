@@ -85,7 +85,7 @@ impl PreparedTexture<'_> {
         let near = self.in_levels(simd, &at.uv, &levels);
         let Some(mixed) = mixed else { return near };
         for i in 0..16 {
-            // What is not between two levels is not looked at.
+            // What is not between two levels is ignored.
             levels[i] = if weights[i] > 0.0 { levels[i] } else { mixed } + 1;
         }
         let far = self.in_levels(simd, &at.uv, &levels);
@@ -166,7 +166,7 @@ impl PreparedTexture<'_> {
         means
     }
 
-    /// The texels of so many columns and rows from the texel `first` on, row by row.
+    /// The texels of this many columns and rows from the texel `first` on, row by row.
     #[inline(always)]
     fn decode_area(
         &self,
@@ -178,7 +178,7 @@ impl PreparedTexture<'_> {
         for (row, out) in out.chunks_exact_mut(columns).take(rows).enumerate() {
             let start = first + row * level.width as usize;
             let codes = level.texels.get(start..start + columns).unwrap_or(&[]);
-            // A loop for each use, which is asked for once.
+            // A loop for each use, which is requested once.
             match self.chain.usage {
                 Usage::Color => decode_all(codes, out, |code| Usage::Color.decode(code)),
                 Usage::Data => decode_all(codes, out, |code| Usage::Data.decode(code)),
@@ -209,8 +209,8 @@ fn decode_all(codes: &[[u8; 4]], out: &mut [[f32; 4]], decode: impl Fn([u8; 4]) 
 /// Sixteen colours, four side by side.
 type Rows<S> = [f32x16<S>; 4];
 
-/// Returns four colours side by side: those of the points from `4 i` on, so many texels after their
-/// first.
+/// Returns four colours side by side: those of the points from `4 i` on, this many texels after
+/// their first.
 #[inline(always)]
 fn four_near<S: Simd>(
     simd: S,

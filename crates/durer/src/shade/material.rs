@@ -26,7 +26,7 @@ use fearless_simd::{Simd, f32x16};
 use fearless_simd_macros::simd;
 
 /// Dielectrics up to this roughness mirror what metals do. What rougher ones mirror is so soft that it cannot
-/// be told from the sky, which takes less time.
+/// be distinguished from the sky, which takes less time.
 const SMOOTH: f32 = 0.4;
 
 /// Returns whether a formula takes Phong's inputs.

@@ -139,8 +139,8 @@ pub(super) fn reflect<L: Lane>(
     )
 }
 
-/// Adds what each light sends towards the eye to `sum`; `lit` tells the part of a light's colour by the
-/// unit vector to the light.
+/// Adds what each light sends towards the eye to `sum`; `lit` returns the part of a light's colour by
+/// the unit vector to the light.
 #[inline(always)]
 pub(super) fn under_lights<L: Lane>(
     frame: &Frame<L>,

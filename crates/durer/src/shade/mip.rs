@@ -31,7 +31,7 @@ pub(super) struct MipChain<'a> {
     pub usage: Usage,
 }
 
-/// The single white texel that stands for an image that could not be read.
+/// The single white texel that replaces an image that could not be read.
 const WHITE: &[[u8; 4]] = &[[255; 4]];
 
 impl<'a> MipChain<'a> {

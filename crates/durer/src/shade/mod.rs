@@ -65,7 +65,7 @@ crate::info::family! {
         Phong => phong::INFO,
         /// glTF's metallic-roughness formula per pixel.
         MetallicRoughness => metallic_roughness::INFO,
-        /// The base colour as it is.
+        /// The base colour without lighting.
         Unlit => unlit::INFO,
     }
 }

@@ -3,7 +3,7 @@
 //! Light on matte surfaces: R. Ramamoorthi and P. Hanrahan, *An Efficient Representation for Irradiance
 //! Environment Maps*, SIGGRAPH 2001, nine numbers per colour. Rough mirrors: B. Karis, *Real Shading in
 //! Unreal Engine 4*, 2013: the panorama is blurred once for each of some roughnesses by the lobe of a
-//! surface that is seen straight on, and what lies between is interpolated. Cost: O(pixels) once, and
+//! surface that is seen straight on, and the part between is interpolated. Cost: O(pixels) once, and
 //! O(texels²) of 128 × 64 texels; memory: at most 2¹⁷ + 2¹⁴ texels of 12 bytes.
 
 use super::lane::{Lane, Vec3Lane};

@@ -112,7 +112,7 @@ pub(super) fn reflect<L: Lane>(
         diffuse: lights.environment.diffuse(frame.normal).scale(occlusion),
         specular: Vec3Lane::splat(one, Vec3::ZERO),
     };
-    // Apart, for calls by which shadows are looked up cost time even where there are none.
+    // Apart, for calls by which shadows are looked up cost time even if there are none.
     if lights.shadows.is_empty() {
         add_lights::<L, false>(frame, position, lights, shininess, &mut sums);
     } else {

@@ -12,9 +12,9 @@ use fearless_simd_macros::simd;
 /// Returns linear red, green and blue of sixteen samples, each bit for bit what
 /// [`super::shade_seen`] gives.
 ///
-/// The material must be [plain](PreparedMaterial::is_plain): textures and vertex colours are not
-/// looked at, alpha is [`PreparedMaterial::plain_alpha`]. Cost: O(lights), a tenth of [`super::shade`] per sample
-/// where eight lanes are native.
+/// The material must be [plain](PreparedMaterial::is_plain): textures and vertex colours are ignored, alpha is
+/// [`PreparedMaterial::plain_alpha`]. Cost: O(lights), a tenth of [`super::shade`] per sample where eight lanes
+/// are native.
 #[simd]
 pub fn shade_points<S: Simd>(
     simd: S,

@@ -19,7 +19,7 @@ pub struct Points<L> {
 /// By what it is known which side of a surface is seen at several points.
 #[derive(Debug, Clone, Copy)]
 pub enum Faces<L> {
-    /// Unit normals of the faces' planes, on the viewer's side; zero where there is none.
+    /// Unit normals of the faces' planes, on the viewer's side; zero if there is none.
     Seen(Vec3Lane<L>),
     /// No correction needed: interpolated normals have a length and are on the viewer's side of the faces, and
     /// neither flat shading nor shadows need the faces' own normals.

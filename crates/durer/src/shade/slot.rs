@@ -109,7 +109,7 @@ impl<'a> Chains<'a> {
         Self { scene, made: Vec::new() }
     }
 
-    /// Returns a slot for a texture; none where it refers to nothing.
+    /// Returns a slot for a texture; none if it refers to nothing.
     pub fn slot(&mut self, reference: Option<TextureRef>, usage: Usage) -> Option<Slot<'a>> {
         let reference = reference?;
         let texture = self.scene.textures.get(reference.texture)?;

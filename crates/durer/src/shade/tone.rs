@@ -1,4 +1,4 @@
-//! The last steps of every formula: exposure, a tone map if one is asked for, and what a display still
+//! The last steps of every formula: exposure, a tone map if one is requested, and what a display still
 //! cannot show is brought into 0…1.
 
 use super::lane::{Lane, Vec3Lane};

@@ -1,4 +1,4 @@
-//! Chains of lines, arcs and cubic curves: what strokes of a sheet are made of where they are not polylines.
+//! Chains of lines, arcs and cubic curves: what strokes of a sheet are made of if they are not polylines.
 
 use crate::math::DVec2;
 use std::f64::consts::TAU;
@@ -70,7 +70,7 @@ impl Piece {
         }
     }
 
-    /// Returns in which ways it leaves `start` and comes to its end; of any length, 0 where it has no extent.
+    /// Returns in which ways it leaves `start` and comes to its end; of any length, 0 if it has no extent.
     pub fn ways(&self, start: DVec2) -> [DVec2; 2] {
         match *self {
             Self::Line(end) => [end - start; 2],

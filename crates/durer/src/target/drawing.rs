@@ -6,7 +6,7 @@ use crate::math::{DVec2, Rect};
 /// Class of a drawing's line; layers, pens and line types follow it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum LineClass {
-    /// A silhouette or border with nothing behind it, where these are told apart.
+    /// A silhouette or border with nothing behind it, if these are distinguished.
     Contour,
     /// Edge between a face that looks to the eye and one that looks away.
     Silhouette,
@@ -137,7 +137,7 @@ impl Line {
 /// Kind of the surface that a region is a part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum RegionKind {
-    /// A surface of the scene; lit by all lights, where shadows are asked for.
+    /// A surface of the scene; lit by all lights, where shadows are requested.
     Surface,
     /// A surface in the shadow of another.
     Shadow,
@@ -155,14 +155,14 @@ pub struct Region {
     pub rings: Vec<Vec<DVec2>>,
     /// sRGB with straight alpha.
     pub color: [u8; 4],
-    /// The face that it shows: the triangle's index in scene order; `None` where several are merged.
+    /// The face that it shows: the triangle's index in scene order; `None` if several are merged.
     pub item: Option<u32>,
     /// Instance that was cut, for a cap, if it is known: parts are hatched in directions of their own.
     pub part: Option<u32>,
 }
 
 impl Region {
-    /// Returns the area in squared plane units: what lies in holes is not counted.
+    /// Returns the area in squared plane units: what is in holes is not counted.
     pub fn area(&self) -> f64 {
         let ring = |points: &Vec<DVec2>| {
             let Some((&origin, rest)) = points.split_first() else { return 0.0 };
@@ -231,7 +231,7 @@ pub struct Drawing {
     /// Counts of the edges between the faces that the lines belong to.
     pub edges: EdgeCount,
     /// For each line how near it is, in steps from 0, the nearest, below [`NEARNESS_STEPS`]; `None` for lines of
-    /// which that is not told. Empty where it is told of none.
+    /// which that is unknown. Empty if it is unknown for all.
     pub nearness: Vec<Option<u8>>,
 }
 
@@ -245,7 +245,7 @@ pub struct EdgeCount {
 }
 
 impl Drawing {
-    /// Returns the smallest rectangle around all regions, lines and labels' points; `None` where there
+    /// Returns the smallest rectangle around all regions, lines and labels' points; `None` if there
     /// are none.
     pub fn bounds(&self) -> Option<Rect> {
         let regions = self.regions.iter().flat_map(|r| r.rings.iter().flatten());

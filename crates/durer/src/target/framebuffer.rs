@@ -127,7 +127,7 @@ impl<T: Copy> Pixels<T> {
 /// The item of a pixel that nothing covers.
 pub const NO_ITEM: u32 = u32::MAX;
 
-/// The planes a picture is made in. Colour is always there; the others when asked for.
+/// The planes a picture is made in. Colour is always there; the others when requested.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Framebuffer {
     /// Row that comes first; the algorithms work from the top and a reader may turn it over.
@@ -138,7 +138,7 @@ pub struct Framebuffer {
     pub depth: Option<Pixels<f32>>,
     /// Index of the visible item at the pixel centre, [`NO_ITEM`] where nothing is.
     pub item: Option<Pixels<u32>>,
-    /// Unit normal in world space at the pixel centre; zero where nothing is.
+    /// Unit normal in world space at the pixel centre; zero if nothing is.
     pub normal: Option<Pixels<[f32; 3]>>,
     /// Stencil values.
     pub stencil: Option<Pixels<u8>>,
@@ -173,7 +173,7 @@ impl Framebuffer {
         Ok(Self { color, ..Self::new(0, 0) })
     }
 
-    /// Gives the framebuffer the planes that are asked for, cleared as new, within a budget.
+    /// Gives the framebuffer the planes that are requested, cleared as new, within a budget.
     ///
     /// # Errors
     /// As [`Pixels::within`].

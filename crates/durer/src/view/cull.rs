@@ -97,7 +97,7 @@ impl ConvexVolume {
         &self.planes
     }
 
-    /// Returns a box against the region; two corners a plane are looked at, whatever its size.
+    /// Returns a box against the region; two corners a plane are examined, whatever its size.
     pub fn contains_box(&self, b: &Aabb) -> Containment {
         let (center, half) = (b.min * 0.5 + b.max * 0.5, b.max * 0.5 - b.min * 0.5);
         self.contains(center, |normal| normal.abs().dot(half))

@@ -40,7 +40,7 @@ impl std::str::FromStr for Way {
 const GAP: f64 = 0.08;
 const RADIAL_GAP: f64 = 0.8;
 
-/// Scenes of more instances are no assemblies whose parts could be told apart.
+/// Scenes with more instances are not assemblies with distinguishable parts.
 const MOST: usize = 4000;
 
 /// Boxes that overlap by less than this part of the scene's extent lie beside each other.

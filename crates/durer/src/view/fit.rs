@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 /// A perspective near plane is at least this part of the far plane, for depth to keep its precision.
 const NEAREST: f64 = 1e-4;
 
-/// A turning model is taken for so many discs, one above another.
+/// A turning model is taken for this many discs, one above another.
 const SLABS: usize = 512;
 
 /// Points on the rim of each disc; at 64 the rim is at most 0.12 % outside of them.
@@ -101,7 +101,7 @@ fn circles(scene: &Scene, center: DVec3, axis: DVec3) -> Vec<(f64, f64)> {
     let mut discs: Vec<Option<(f64, f64, f64)>> = vec![None; SLABS];
     for_each_point(scene, |p| {
         let (radius, height) = place(p);
-        // Where all heights are one, the product is no number and the cast gives slab 0.
+        // Where all heights are one, the product is not a number and the cast gives slab 0.
         let slab = &mut discs[(((height - lowest) * slabs) as usize).min(SLABS - 1)];
         let (r, low, high) = slab.unwrap_or((radius, height, height));
         *slab = Some((r.max(radius), low.min(height), high.max(height)));

@@ -29,7 +29,7 @@ impl Default for Options {
     }
 }
 
-/// One step: a square has been looked at, or, with a half side of 0, a place in the middle of those as far.
+/// One step: a square has been examined, or, with a half side of 0, a place in the middle of those as far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
     /// Its centre.
@@ -65,9 +65,9 @@ pub struct Interior {
 }
 
 /// Returns the point of a polygon that is farthest from its rings — the inside by the even-odd rule — to
-/// within `options.precision`; `None` where nothing is inside. Of points that are as far, as in long
-/// rectangles, the centre of the largest ring's area is taken, if it is one, else one in their middle. Points
-/// that are not finite are left out.
+/// within `options.precision`; `None` if nothing is inside. Of points that are as far, as in long rectangles,
+/// the centre of the largest ring's area is taken, if it is one, else one in their middle. Points that are
+/// not finite are left out.
 ///
 /// ```
 /// use durer::math::DVec2;

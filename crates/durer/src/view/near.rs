@@ -87,8 +87,8 @@ const COARSEST: f64 = 1.0 / 1024.0;
 /// A border's end moves by at most this part of the longest border at it: what is small is not lost.
 pub(crate) const OF_EDGE: f64 = 1.0 / 16.0;
 
-/// Returns how far the ends of borders that were one may lie apart, where numbers as large as the largest coordinate are
-/// `step` apart and the last digit of coordinates is worth `digit`, 0 where that is not known.
+/// Returns how far the ends of borders that were one may lie apart, where numbers as large as the largest coordinate
+/// are `step` apart and the last digit of coordinates is worth `digit`, 0 if that is not known.
 pub(crate) fn reach(step: f64, digit: f64, extent: f64) -> f64 {
     let written = if digit <= extent * COARSEST { digit * DIGITS } else { 0.0 };
     (step * STEPS).max(written)

@@ -6,9 +6,9 @@ use crate::math::{DMat4, DVec3, Vec3};
 use crate::scene::{Aabb, Instance, Mesh, Part, Scene, Topology};
 use std::collections::BTreeMap;
 
-/// Returns a scene in which each named part of a mesh of triangles is an instance of its own; `None` where no mesh has parts
-/// of two names. Files that tell objects apart by names alone are read as one mesh; with this their objects are the parts
-/// of assemblies ([`super::components`], [`super::explode`]).
+/// Returns a scene in which each named part of a mesh of triangles is an instance of its own; `None` if no mesh has
+/// parts of two names. Files that tell objects apart by names alone are read as one mesh; with this their objects are
+/// the parts of assemblies ([`super::components`], [`super::explode`]).
 ///
 /// Parts of one name are one object. Objects with like names, as `bolt.001` and `bolt.002`, that are one up to a shift are
 /// instances of one mesh. Memory: that of the meshes again. Cost: O(n log n) for n triangles of such meshes.
@@ -99,8 +99,8 @@ fn shift(from: &Mesh, to: &Mesh, last_digit: f64) -> Option<DVec3> {
     all.then_some(way)
 }
 
-/// Returns the objects of a mesh by name, in the order of their first parts; none where there are
-/// not two.
+/// Returns the objects of a mesh by name, in the order of their first parts; none if there are not
+/// two.
 fn objects(mesh: &Mesh) -> Vec<Mesh> {
     let mut order: Vec<(&str, Vec<&Part>)> = Vec::new();
     let mut place: BTreeMap<&str, usize> = BTreeMap::new();
@@ -148,7 +148,7 @@ fn object(mesh: &Mesh, name: &str, parts: &[&Part]) -> Mesh {
     found
 }
 
-/// Returns the attributes of some vertices; none where there are none.
+/// Returns the attributes of some vertices; none if there are none.
 fn chosen<T: Copy>(all: &[T], used: &[u32]) -> Vec<T> {
     used.iter().filter_map(|i| all.get(*i as usize).copied()).collect()
 }

@@ -6,10 +6,10 @@
 use crate::math::{DMat3, DMat4, DVec3, Vec3};
 use crate::scene::{Aabb, Scene};
 
-/// Points that are looked at together: neighbours in the file mostly are neighbours in space.
+/// Points that are examined together: neighbours in the file mostly are neighbours in space.
 const BATCH: usize = 64;
 
-/// Batches of a mesh that are looked at together. The first of them is looked at before all others.
+/// Batches of a mesh that are examined together. The first of them is examined before all others.
 const GROUP: usize = 16;
 
 /// Vertices of a group: pieces of meshes end where groups do.
@@ -138,7 +138,7 @@ impl<const N: usize> Outermost<N> {
         }
     }
 
-    /// Returns the outermost points along the directions; the origin where there are none.
+    /// Returns the outermost points along the directions; the origin if there are none.
     pub fn points(&self) -> [DVec3; N] {
         self.furthest.map(|f| f.point)
     }
@@ -239,7 +239,7 @@ fn around([min, max]: [Vec3; 2], place: &DMat4) -> Aabb {
 /// The extent of no points.
 const NOTHING: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
 
-/// Returns the least and the largest coordinates of points, of those that are numbers; [`NOTHING`] where
+/// Returns the least and the largest coordinates of points, of those that are numbers; [`NOTHING`] if
 /// there are none.
 fn extent(positions: &[Vec3]) -> [Vec3; 2] {
     // Four points are twelve numbers: three registers, whose lanes are put together in the end.

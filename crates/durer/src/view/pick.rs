@@ -1,4 +1,4 @@
-//! Picking: what lies behind a point or a rectangle of the screen.
+//! Picking: what is behind a point or a rectangle of the screen.
 //!
 //! A rectangle and the near and far plane bound a part of the view volume; a triangle is hit if its
 //! part within (Blinn & Newell's homogeneous clipping) is not empty. A point is decided by the edge
@@ -202,7 +202,7 @@ fn at_point(corners: &[DVec3; 3], screen_from_mesh: &DMat4, p: DVec2) -> Option<
     let determinant = edges[0] * h[0].w + edges[1] * h[1].w + edges[2] * h[2].w;
     let weights = edges.map(|e| e / determinant);
     let sum = weights[0] + weights[1] + weights[2];
-    // Weights that are no numbers, of a triangle without area, are not inside.
+    // Weights that are not numbers, of a triangle without area, are not inside.
     if !(weights.iter().all(|&w| w >= 0.0) && sum > 0.0 && sum.is_finite()) {
         return None;
     }

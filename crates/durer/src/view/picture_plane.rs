@@ -132,7 +132,7 @@ impl PicturePlane {
     }
 
     /// Returns the part of a segment of the world that lies behind the near plane, as seen; `None`
-    /// where all of it lies before.
+    /// if all of it lies before.
     pub fn project_segment(&self, a: DVec3, b: DVec3) -> Option<[DVec2; 2]> {
         let ends = cut(|p| self.inside(0, p, 1.0), [a, b].map(|p| self.view_from_world(p)))?;
         Some(ends.map(|p| self.plane_from_view(p).at))
@@ -193,7 +193,7 @@ impl PicturePlane {
     }
 
     /// Returns the part of a convex polygon in view space that lies inside the borders: what
-    /// neighbours share they still share. Empty where nothing is left. (Sutherland–Hodgman, border by
+    /// neighbours share they still share. Empty if nothing is left. (Sutherland–Hodgman, border by
     /// border.)
     pub fn clip_face(&self, corners: &[DVec3], borders: Borders) -> Vec<DVec3> {
         let mut ring = corners.to_vec();

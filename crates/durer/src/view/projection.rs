@@ -194,7 +194,7 @@ impl Default for FitOptions {
 }
 
 /// The nearest point of the model is no nearer to the eye than this part of its radius: a needle that
-/// points at the eye is not looked at from within.
+/// points at the eye is ignored from within.
 pub const CLOSEST: f64 = 0.02;
 
 /// Near and far plane keep this part of the radius from the model.
@@ -247,7 +247,7 @@ pub fn fit_scene(scene: &Scene, direction: &ViewDirection, options: &FitOptions)
 }
 
 /// Returns the box around all finite vertices that a scene draws something with, in world space; `None`
-/// where there are none.
+/// if there are none.
 ///
 /// Cost: O(vertices), a few operations each.
 pub fn drawn_bounds(scene: &Scene) -> Option<Aabb> {
@@ -418,7 +418,7 @@ fn smallest_extent(center: DVec3, size: f64) -> f64 {
     if size > place * 1e-9 { 0.0 } else { (place * 1e-6).max(if size > 0.0 { 0.0 } else { 1.0 }) }
 }
 
-/// Returns the box itself, or a cube where it has no extent at all.
+/// Returns the box itself, or a cube if it has no extent at all.
 fn visible_extent(bounds: Option<&Aabb>) -> Aabb {
     let bounds = bounds.copied().unwrap_or(Aabb { min: DVec3::ZERO, max: DVec3::ZERO });
     let center = bounds.center();

@@ -55,7 +55,7 @@ pub fn mesh_topology(mesh: &Mesh) -> MeshTopology {
 }
 
 /// Returns the same for a mesh of a file whose coordinates have a last digit that is worth
-/// `last_digit`, as [`crate::scene::Scene::last_digit`] tells.
+/// `last_digit`, as [`crate::scene::Scene::last_digit`] returns it.
 pub fn written_topology(mesh: &Mesh, last_digit: f64) -> MeshTopology {
     let welded = weld(mesh, last_digit);
     let mut found = MeshTopology { oriented: true, ..MeshTopology::default() };
@@ -99,8 +99,8 @@ fn finite_corners(mesh: &Mesh, corners: [u32; 3]) -> Option<[DVec3; 3]> {
 /// close real gaps, less would leave models open that are closed.
 const WELD: f64 = 1.0 / (1u64 << 26) as f64;
 
-/// For each vertex the number of one at the same place, the same for all of them; the last digit of coordinates is worth
-/// `last_digit`, 0 where that is not known.
+/// For each vertex the number of one at the same place, the same for all of them; the last digit of coordinates is
+/// worth `last_digit`, 0 if that is not known.
 pub(super) fn weld(mesh: &Mesh, last_digit: f64) -> Vec<u32> {
     let mut welded = weld_places(&mesh.positions);
     let lone = border_ends(mesh, &welded);

@@ -47,7 +47,7 @@ impl PixelRect {
         Ok(Self { min: [0; 2], max: [side(width)?, side(height)?] })
     }
 
-    /// Returns the rectangle between two corners, empty where they are reversed.
+    /// Returns the rectangle between two corners, empty if they are reversed.
     pub fn spanning(x0: i32, y0: i32, x1: i32, y1: i32) -> Self {
         Self { min: [x0, y0], max: [x1.max(x0), y1.max(y0)] }
     }
@@ -92,7 +92,7 @@ impl PixelRect {
         (self.min[0]..self.max[0]).contains(&x) && (self.min[1]..self.max[1]).contains(&y)
     }
 
-    /// Returns the pixels in both; where there are none, some empty rectangle.
+    /// Returns the pixels in both; if there are none, some empty rectangle.
     pub fn intersection(&self, other: &Self) -> Self {
         let lo = [0, 1].map(|k| self.min[k].max(other.min[k]));
         let hi = [0, 1].map(|k| self.max[k].min(other.max[k]));

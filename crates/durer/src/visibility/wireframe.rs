@@ -5,8 +5,8 @@
 //! coordinates and drawn by J. Bresenham's lines; each edge once, though two faces share it. Cost:
 //! O(edges · log edges + pixels lit); memory O(edges).
 //!
-//! Limits: the picture is ambiguous — front and back cannot be told apart. That is what the other
-//! algorithms are for. Coherence used: none.
+//! Limits: the picture is ambiguous — front and back cannot be distinguished, which is what the
+//! other algorithms are for. Coherence used: none.
 
 use crate::clip::volume::{self, ClipVertex, clip_segment};
 use crate::info::{Class, Info, Occluder};

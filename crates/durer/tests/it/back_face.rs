@@ -198,7 +198,7 @@ fn concave_polygons_have_one_side() {
     };
     assert_eq!((sides(true, 5.0), sides(true, -5.0)), (vec![0, 1], vec![]));
     assert_ne!((sides(false, 5.0).len(), sides(false, -5.0).len()), (2, 0));
-    // The same polygon by the triangles that readers give it, which are no fan.
+    // The same polygon by the triangles that readers give it, which are not fan.
     let mut scene = scene;
     scene.meshes[0].indices = Some(vec![3, 0, 1, 1, 2, 3]);
     for z in [5.0, -5.0] {

@@ -61,8 +61,8 @@ fn all_methods_compose_what_the_z_buffer_sorts() {
     }
 }
 
-/// Draws so many panes through each other that they are lit in several turns, and of which the last are not
-/// visible.
+/// Draws this many panes through each other that they are lit in several turns, and of which the last are
+/// not visible.
 #[test]
 fn all_methods_agree_where_next_to_nothing_comes_through_many_panes() {
     let mut numbers = Numbers(5);

@@ -325,7 +325,7 @@ fn a_corner_on_the_border_comes_out_once() {
     }
 }
 
-/// Checks that the null vector, which is no point, is never an end of a visible segment.
+/// Checks that the null vector, which is not a point, is never an end of a visible segment.
 #[test]
 fn segments_that_end_in_the_null_vector_are_left_out() {
     let inside = vertex(DVec4::new(0.0, 0.0, 0.0, 1.0));

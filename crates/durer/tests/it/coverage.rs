@@ -31,7 +31,7 @@ struct Layer {
 }
 
 impl Layer {
-    /// Creates a square that is parted again and again by chords from edge to edge; what lies beyond an
+    /// Creates a square that is parted again and again by chords from edge to edge; what is beyond an
     /// edge gets the vertex where a chord ends.
     fn new(random: &mut Random, parts: usize) -> Self {
         let points = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(DVec2::from).to_vec();
@@ -193,7 +193,7 @@ fn lies_on(p: DVec2, [a, b]: Edge, ulp: f64) -> bool {
     beside && orient2d_value(a, b, p).abs() <= 4.0 * ulp * a.distance(b)
 }
 
-/// Returns whether an edge without a neighbour lies where there is none: on one edge of the mask or of the
+/// Returns whether an edge without a neighbour lies if there is none: on one edge of the mask or of the
 /// layer's border, or between two corners of the mask so near that they are one.
 fn is_outer(edge: Edge, borders: &[Edge], ulp: f64) -> bool {
     borders.iter().any(|&border| edge.iter().all(|&p| lies_on(p, border, ulp)))

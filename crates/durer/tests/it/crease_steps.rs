@@ -8,7 +8,7 @@ use durer::trace::NoTrace;
 use durer::visibility::line::Smooth;
 use durer::visibility::line::hidden_line::{Options, draw};
 
-/// Returns the length of all creases that are no outlines, from above.
+/// Returns the length of all creases that are not outlines, from above.
 fn creases(triangles: &[Triangle], crease: f64, neighbours: bool) -> f64 {
     let view = view(DVec3::ZERO, DVec3::new(0.0, -0.3, 1.0), 12.0, false);
     let options = Options { crease: crease.to_radians(), neighbours, ..Options::default() };

@@ -84,7 +84,7 @@ fn circles_seen_at_an_angle_are_ellipses() {
     assert_eq!((half.start, end), (points[0], points[24]));
 }
 
-/// Returns a slot: two half circles of so many chords, and lines.
+/// Returns a slot: two half circles of this many chords, and lines.
 fn slot(chords: u32) -> Vec<DVec2> {
     let half = |x: f64, from: f64| {
         let angle = move |i: u32| from + f64::from(i) * PI / f64::from(chords);

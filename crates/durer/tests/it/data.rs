@@ -4,7 +4,7 @@ use durer_formats::{Model, Pose, ReadOptions, Resources};
 use std::path::{Path, PathBuf};
 
 /// Returns the folder of shared data: `DURER_DATA`, else `../shared/data` beside the workspace.
-/// Says that a test is skipped where there is none.
+/// Says that a test is skipped if there is none.
 pub fn folder() -> Option<PathBuf> {
     let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("DURER_DATA").map_or(default, PathBuf::from);
@@ -37,7 +37,7 @@ pub fn try_read_model(path: &Path) -> Option<Model> {
     durer_formats::read_model(&bytes, &name, &resources, &ReadOptions::default()).ok()
 }
 
-/// Reads a model that is known to be good, posed so many seconds into its first animation.
+/// Reads a model that is known to be good, posed this many seconds into its first animation.
 pub fn read_posed(path: &Path, time: Option<f64>) -> Model {
     let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let resources = Folder(path.parent().expect("folder").to_owned());

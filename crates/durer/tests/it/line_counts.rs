@@ -14,7 +14,7 @@ use durer::view::View;
 use durer::visibility::line::hidden_line::{Options, draw};
 use std::collections::BTreeMap;
 
-/// The picture is so many pixels wide.
+/// The picture is this many pixels wide.
 const PIXELS: f64 = 1000.0;
 
 /// A feature of the scene.

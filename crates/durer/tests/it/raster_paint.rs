@@ -55,7 +55,7 @@ fn card(options: Options) -> Canvas {
     c
 }
 
-/// Returns a ring of so many vertices, some of them beyond the picture.
+/// Returns a ring of this many vertices, some of them beyond the picture.
 fn jagged(count: u32) -> Contours {
     Contours::polygon((0..count).map(|i| {
         let angle = f64::from(i) / f64::from(count) * std::f64::consts::TAU;
@@ -351,7 +351,7 @@ fn strokes_have_their_width_caps_and_dashes() {
     }
 }
 
-/// The outline of a stroke overlaps itself wherever it bends, which is no noise.
+/// The outline of a stroke overlaps itself wherever it bends, which is not noise.
 #[test]
 fn strokes_of_many_short_edges_are_measured() {
     let mut random = Random(12);

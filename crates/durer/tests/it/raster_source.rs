@@ -173,7 +173,7 @@ fn faces_mix_with_what_is_below_and_with_each_other() {
     near(drawn(&half, [255; 4]), [127, 127, 127, 255]);
     near(drawn(&half, [0; 4]), [0, 0, 0, 128]);
     near(drawn(&half, [255, 255, 255, 128]), [84, 84, 84, 192]);
-    // Faces that overlap, against what was asked for, share the pixel.
+    // Faces that overlap, against what was requested, share the pixel.
     near(drawn(&[face([0, 0, 0, 100]), face([0, 0, 0, 100])], [0; 4]), [0, 0, 0, 100]);
     near(drawn(&[face([255, 0, 0, 255]), face([0, 0, 255, 255])], [255; 4]), [128, 0, 128, 255]);
 }

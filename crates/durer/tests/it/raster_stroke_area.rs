@@ -192,7 +192,7 @@ fn a_small_square_with_a_wide_stroke_has_no_hole() {
     }
 }
 
-/// The pen sweeps what lies beyond the centre of a bend, however few ends are near that.
+/// The pen sweeps what is beyond the centre of a bend, however few ends are near that.
 #[test]
 fn tight_bends_are_swept_on_both_sides() {
     let (centre, r) = (DVec2::new(100.0, 110.0), 10.0);

@@ -268,7 +268,7 @@ fn turned(profile: &[[f64; 2]], n: usize) -> Vec<Triangle> {
 
 #[test]
 fn a_cylinder_that_ends_in_a_cone_is_straight() {
-    // Its rim turns by 35°: that is no crease, but nothing is round along the axis.
+    // Its rim turns by 35°: that is not a crease, but nothing is round along the axis.
     let aside = 4.0 - 1.5 * 35.0_f64.to_radians().tan();
     let barrel = turned(&[[4.0, -6.0], [4.0, 6.0], [aside, 7.5]], 60);
     for to_eye in [DVec3::new(0.0, -1.0, 0.1), DVec3::new(0.3, -1.0, -0.2)] {

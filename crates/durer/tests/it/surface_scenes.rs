@@ -152,7 +152,7 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// Returns the sizes at which scenes are looked at; the large ones seldom.
+/// Returns the sizes at which scenes are examined; the large ones seldom.
 pub fn size(seed: u64) -> (u32, u32) {
     match seed % 16 {
         0 => (256, 256),

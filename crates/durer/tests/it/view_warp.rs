@@ -58,7 +58,7 @@ fn warped(pictures: &[(Framebuffer, Camera)], to: &Camera) -> Warped {
     warp(&sources, to, [SIDE; 2], &Options::default(), &mut NoTrace).expect("warped")
 }
 
-/// Pixels that are no hole and have another colour than they should.
+/// Pixels that are not holes and have another colour than they should.
 fn wrong(found: &Warped, expected: &Framebuffer) -> usize {
     let pairs = found.framebuffer.color.data().iter().zip(expected.color.data());
     let shown = found.source.data().iter().map(|&s| s != HOLE);

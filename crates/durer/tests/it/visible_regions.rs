@@ -54,7 +54,7 @@ fn distance(rings: &[Vec<DVec2>], p: DVec2) -> f64 {
 }
 
 /// Returns the item of the nearest triangle on the line of sight through a point of the plane;
-/// `None` where another is as near but for rounding.
+/// `None` if another is as near but for rounding.
 fn by_ray(scene: &Scene, camera: &Camera, p: DVec2) -> Option<Option<u32>> {
     let [right, up, back] = camera.axes();
     let at = camera.target + right * p.x + up * p.y;

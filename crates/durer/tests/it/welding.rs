@@ -44,7 +44,7 @@ fn corners_that_rounding_has_moved_are_one() {
         let found = drawn(&soup(&noisy(amount)), Weld::Auto);
         assert_like(&format!("{amount}"), &found, &exact);
     }
-    // More is no rounding, but may be asked for.
+    // More is not rounding, but may be requested.
     let apart = soup(&noisy(1e-3));
     assert!(drawn(&apart, Weld::Auto).edges.borders > 18);
     assert_eq!(drawn(&apart, Weld::Within(4e-3)).edges.borders, 0);

@@ -24,7 +24,7 @@ pub struct Listed {
 pub fn read(path: &Path) -> Result<Listed, Failure> {
     let bytes = input::bytes(path, MOST_BYTES)?;
     let wrong = |what: String| Failure::Usage(format!("--annotations {}: {what}", path.display()));
-    let text = String::from_utf8(bytes).map_err(|_| wrong("it is no UTF-8 text".to_owned()))?;
+    let text = String::from_utf8(bytes).map_err(|_| wrong("it is not a UTF-8 text".to_owned()))?;
     parse(&text).map_err(|(offset, what)| {
         let line = text.bytes().take(offset).filter(|b| *b == b'\n').count() + 1;
         wrong(format!("line {line}: {what}"))
@@ -46,11 +46,11 @@ pub fn parse(text: &str) -> Result<Listed, Wrong> {
             return Err((start, format!("`{name}`: there are [[dimension]] and [[thread]]")));
         }
         let DeValue::Array(entries) = value.get_ref() else {
-            return Err((start, format!("`{name}` stands in double brackets: [[{name}]]")));
+            return Err((start, format!("`{name}` needs double brackets: [[{name}]]")));
         };
         for entry in entries.iter() {
             let DeValue::Table(keys) = entry.get_ref() else {
-                return Err((start, format!("`{name}` stands in double brackets: [[{name}]]")));
+                return Err((start, format!("`{name}` needs double brackets: [[{name}]]")));
             };
             let entry = Entry { keys, start: entry.span().start };
             match name {

@@ -18,15 +18,15 @@ pub fn parse(text: &str) -> Result<(), String> {
     file::parse(text).map(drop).map_err(|(_, what)| what)
 }
 
-/// The annotations asked for, and the round parts of the model.
+/// The annotations requested, and the round parts of the model.
 pub struct Annotated {
     annotations: Annotations,
     pub features: Vec<Feature>,
 }
 
 impl Annotated {
-    /// Reads the options, and finds the round parts of a scene once for all its views and frames; `None` where they ask for
-    /// nothing.
+    /// Reads the options, and finds the round parts of a scene once for all its views and frames; `None` if they ask
+    /// for nothing.
     pub fn new(args: &AnnotationArgs, scene: &Scene, weld: Weld) -> Result<Option<Self>, Failure> {
         let annotations = annotations(args)?;
         if annotations.is_empty() {

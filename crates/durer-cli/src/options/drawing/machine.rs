@@ -9,26 +9,27 @@ use durer_formats::drawing::{DrawingFormat, MachineOptions};
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Machines with pens")]
 pub struct MachineArgs {
-    /// Put strokes in an order with short ways for a pen [.hpgl and .gcode always are]
+    /// Order strokes so that the pen moves little between them [always on for .hpgl and .gcode]
     ///
-    /// Strokes may be drawn backwards, closed ones from any of their points, and those that meet become one. Each
-    /// layer is ordered by itself; in .hpgl and .gcode each pen is.
+    /// Strokes may be reversed, closed ones may start at any point, and those that meet are joined. Each layer is
+    /// ordered by itself; in .hpgl and .gcode each pen is.
     #[arg(long)]
     pub pen_order: bool,
     /// Number of pens in the plotter, for .hpgl and .gcode [default: one for each width and colour]
     ///
-    /// With fewer pens than the drawing has, strokes go to the pen that is most alike; with 1 no pen is ever changed.
+    /// With fewer pens than the drawing has, strokes go to the most similar pen; with 1 the pen is never changed.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::count)]
     pub pens: Option<u64>,
-    /// Speed of the pen while it draws, millimetres a minute, for .gcode [default: 1500]
+    /// Speed of the pen while it draws, in millimetres per minute, for .gcode [default: 1500]
     #[arg(long, value_name = "MM/MIN", allow_hyphen_values = true, value_parser = values::positive)]
     pub feed: Option<f64>,
-    /// Speed of the raised pen, millimetres a minute, for .gcode [default: as fast as the machine moves]
+    /// Speed of the raised pen, in millimetres per minute, for .gcode [default: as fast as the machine
+    /// moves]
     ///
-    /// Such moves are G1 with this speed then, for GRBL takes none for G0.
+    /// Such moves are then G1 with this speed, because GRBL takes no speed for G0.
     #[arg(long, value_name = "MM/MIN", allow_hyphen_values = true, value_parser = values::positive)]
     pub travel: Option<f64>,
-    /// Write arcs to .gcode as chords, for machines that know no G2 and G3
+    /// Write arcs to .gcode as chords, for machines without G2 and G3
     #[arg(long)]
     pub gcode_lines: bool,
     /// The G-code that puts the pen down; \n begins a line [default: 'M3 S1000\nG4 P0.2']
@@ -37,7 +38,7 @@ pub struct MachineArgs {
     /// lift the pen along Z take e.g. --pen-down 'G1 Z0 F600' --pen-up 'G0 Z5'; lasers need less power than S1000.
     #[arg(long, value_name = "CODE", value_parser = lines)]
     pub pen_down: Option<String>,
-    /// The G-code that lifts it [default: 'M5\nG4 P0.2']
+    /// The G-code that lifts the pen [default: 'M5\nG4 P0.2']
     #[arg(long, value_name = "CODE", value_parser = lines)]
     pub pen_up: Option<String>,
 }

@@ -27,14 +27,14 @@ pub struct DrawingArgs {
     /// Treatment of hidden lines
     #[arg(long, value_name = "HOW", default_value = "drop")]
     pub hidden: Hidden,
-    /// Edges whose faces turn by more degrees are drawn as creases
+    /// Draw edges as creases if their faces turn by more than this many degrees
     ///
-    /// With TO, e.g. 40,25, a crease that has begun goes on, though its edges get blunter, as long as they
-    /// turn by more than TO degrees and it goes straight on: for sculpted models, whose edges fade.
+    /// With TO, e.g. 40,25, a crease continues straight on along blunter edges as long as they turn by
+    /// more than TO degrees; this suits sculpted models, whose edges fade.
     ///
-    /// Without an angle, and with --smooth, what is beside an edge decides, too: edges from 3 degrees on are creases
-    /// between flat faces that bend no further, and a few edges of up to 60 degrees that begin and end within a round
-    /// part are none. Any other angle than 40 decides alone.
+    /// By default, and with --smooth, the surroundings of an edge count too: edges from 3 degrees are creases if the
+    /// faces beside them are flat, and a few edges of up to 60 degrees that begin and end within a round part are
+    /// not. With any angle other than 40, the angle alone decides.
     #[arg(long, value_name = "FROM[,TO]", allow_hyphen_values = true, default_value = "40", value_parser = crease)]
     pub crease: Crease,
     /// Classes of lines to draw, separated by commas [default: all but tangent, wire and shadow]
@@ -44,36 +44,39 @@ pub struct DrawingArgs {
     /// all,tangent.
     #[arg(long, value_name = "CLASSES", value_parser = |s: &str| line_classes(s).map_err(|e| e.to_string()))]
     pub lines: Option<ClassSet>,
-    /// Cut back lines that end in the open, where that takes at most this much of the drawing's larger
-    /// side, in percent [default: 1; 0 for .geojson]
+    /// Cut back lines with loose ends by at most this much, in percent of the drawing's larger side
+    /// [default: 1; 0 for .geojson]
     ///
-    /// Silhouettes of round parts and creases are cut back to the next junction or left out (four times as
-    /// far where that takes at most three edges of the mesh), small gaps in them are closed, and where they
-    /// would run into another line on paper, that line alone is drawn. 0 gives the mesh as it is, and so
-    /// does --lines where it leaves out classes.
+    /// Silhouettes of round parts and creases are cut back to the next junction or removed (up to four
+    /// times as far if at most three edges of the mesh are affected), small gaps in them are closed, and of
+    /// lines that would touch on paper only one is drawn. 0 draws the mesh as it is, and so does --lines if
+    /// it excludes classes.
     #[arg(long, value_name = "PERCENT", allow_hyphen_values = true, value_parser = stubs)]
     pub stubs: Option<f64>,
     /// Leave out hidden lines that run within this much of visible ones, in percent of the drawing's larger side
     /// [default: 0.2; 0 for .geojson and with --stubs 0]
     ///
-    /// On paper their strokes would run into each other: where a view is nearly along an axis, what is hidden lies
-    /// a hair beside what is seen.
+    /// Their strokes would touch on paper: in a view nearly along an axis, hidden lines are very close to visible
+    /// ones.
     #[arg(long, value_name = "PERCENT", allow_hyphen_values = true, value_parser = stubs)]
     pub beneath: Option<f64>,
     /// Widths of strokes in millimetres: WIDTH[,CLASS=WIDTH…]
     ///
-    /// E.g. `0.35,silhouette=0.7,hidden=0.18`; the first is for all that are not named. Classes are those
-    /// of --lines, `contour` and `hidden`. By default outlines are 0.5, edges 0.35, hidden lines 0.25 wide.
+    /// E.g. `0.35,silhouette=0.7,hidden=0.18`; the first applies to all classes that are not named. Classes
+    /// are those of --lines, `contour` and `hidden`. By default outlines are 0.5, edges 0.35, hidden lines
+    /// 0.25 wide.
     #[arg(long, value_name = "WIDTHS", value_parser = parsed::<Pens>)]
     pub pen: Option<Pens>,
     /// Draw near lines wider and darker than far ones, in four steps with layers of their own
     ///
-    /// From 1.4 times the width of the class's pen to half of it; for parallel views and perspective.
+    /// Widths go from 1.4 times that of the class's pen to half of it; for parallel views and
+    /// perspective.
     #[arg(long)]
     pub depth_cue: bool,
-    /// Draw outlines that have nothing behind them as a class of their own: `contour`, 0.7 mm wide unless --pen says
+    /// Draw outlines that have nothing behind them as a class of their own: `contour`, 0.7 mm wide unless --pen sets
+    /// it
     ///
-    /// Silhouettes and borders before other parts of the model stay what they are.
+    /// Silhouettes and borders in front of other parts of the model keep their class.
     #[arg(long)]
     pub contour: bool,
     /// Hatching of areas instead of filling [default: shade for .hpgl and .gcode, else none]
@@ -83,15 +86,17 @@ pub struct DrawingArgs {
     /// of a --section are hatched among lines anyway; `none` fills them.
     #[arg(long, value_name = "HOW")]
     pub hatch: Option<Hatch>,
-    /// Rule that joins neighbouring areas [default: shade; band for .dxf, face for .geojson]
+    /// Rule by which neighbouring areas are joined [default: shade; band for .dxf, face for
+    /// .geojson]
     #[arg(long, value_name = "HOW")]
     pub merge: Option<Merge>,
-    /// Extent of areas: to their borders, or under what covers them [default: trapped for .svg, .pdf and
-    /// .png without --hatch shade, else disjoint]
+    /// Extent of areas: to their borders, or a little under those that cover them [default: trapped for
+    /// .svg, .pdf and .png without --hatch shade, else disjoint]
     #[arg(long, value_name = "HOW")]
     pub fill: Option<Fill>,
-    /// Draw outlines of round parts where the normals turn away, not along the edges between facets
-    /// [default: auto; off for .geojson and with --stubs 0; without a word: on]
+    /// Draw outlines of round parts where their normals turn away from the eye, instead of along
+    /// edges between facets [default: auto; off for .geojson and with --stubs 0; on without a
+    /// value]
     #[arg(long, value_name = "HOW", num_args = 0..=1, require_equals = true, default_missing_value = "on")]
     pub smooth: Option<Smooth>,
     /// Faces whose intersections are drawn as lines
@@ -99,26 +104,26 @@ pub struct DrawingArgs {
     pub intersections: Intersections,
     /// Largest distance at which borders of faces are joined
     ///
-    /// `auto` takes what rounding may have moved: a few of the last digits of the file's coordinates. A length, in
-    /// units of the model, closes wider gaps. `none` takes vertices as they are in the file.
+    /// `auto` allows for rounding: a few of the last digits of the file's coordinates. A length, in units of the
+    /// model, closes wider gaps. `none` uses the vertices as they are in the file.
     #[arg(long, value_name = "LENGTH|auto|none", allow_hyphen_values = true, default_value = "auto", value_parser = weld)]
     pub weld: Weld,
     /// Largest distance between fitted curves and the mesh's lines, in millimetres on paper; 0 draws
     /// lines as polylines [default: 0.02; 0 for pictures]
     ///
-    /// Lines become circles, arcs, ellipses and cubic curves where those lie that near to all their points. Where a
-    /// line turns regularly, it is taken for a round one, whose facets the curve leaves as an arc through their corners
-    /// does: five turns in a row or more, one way, by at most 30 degrees, over chords of like lengths. So a polygon of 12
-    /// sides is a circle, and one of 8 is not; corners, junctions and ends stay where they are. .geojson
-    /// has polylines.
+    /// Lines become circles, arcs, ellipses and cubic curves that pass all their points within this distance. A line
+    /// that turns regularly is taken to be round, and the curve goes through its corners: at least five turns in a row,
+    /// in one direction, by at most 30 degrees, with chords of similar lengths. So a polygon of 12 sides becomes a
+    /// circle, and one of 8 does not. Corners, junctions and ends do not move. .geojson has polylines.
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = values::not_negative)]
     pub fit: Option<f64>,
-    /// Write curves to .dxf as polylines with arcs, for programs that know no circles, ellipses and splines
+    /// Write curves to .dxf as polylines with arcs, for programs that do not read circles, ellipses and
+    /// splines
     #[arg(long)]
     pub dxf_polylines: bool,
     /// The paper: A0 … A6, letter, legal, tabloid, WxH in millimetres, or fit [default: fit]
     ///
-    /// Named sizes are turned as the drawing needs; A4-landscape and A4-portrait are not.
+    /// Named sizes are rotated to fit the drawing; A4-landscape and A4-portrait are not.
     #[arg(long, value_name = "PAGE", value_parser = parsed::<Page>)]
     pub page: Option<Page>,
     /// Free space at each side of the paper, in millimetres [default: 10 with --page or --sheet, else 5]
@@ -126,9 +131,10 @@ pub struct DrawingArgs {
     pub margin: Option<f64>,
     /// Scale on the paper: 1:10, 2:1, …, or auto
     ///
-    /// `auto` takes the largest of 1:1, 1:2, 1:5, 1:10 … and 2:1, 5:1, 10:1 … that fits, and is the default
-    /// for parallel views with --page or --sheet. Without them a .dxf is 1:1, for machines, and where the unit is known,
-    /// from the file or --unit, so are a .gcode, and an .svg of 20 to 420 mm; all else fills the paper, 180 mm without a page.
+    /// `auto` takes the largest of 1:1, 1:2, 1:5, 1:10 … and 2:1, 5:1, 10:1 … that fits, and is the default for
+    /// parallel views with --page or --sheet. Without them a .dxf is 1:1, for machines, and if the unit is known, from
+    /// the file or --unit, so are a .gcode, and an .svg of 20 to 420 mm; everything else fills the paper, 180 mm
+    /// without a page.
     #[arg(long, value_name = "SCALE", value_parser = parsed::<Scale>)]
     pub scale: Option<Scale>,
     /// Unit of the model's coordinates [default: m for glTF, COLLADA and FBX, else mm]
@@ -136,35 +142,35 @@ pub struct DrawingArgs {
     pub unit: Option<Unit>,
     /// Several views on one page with a title block: front, top, right and isometric, or those of --views
     ///
-    /// Sections with a letter (--section A:…) and details (--detail) come beside or below them.
+    /// Sections with a letter (--section A:…) and details (--detail) are placed beside or below
+    /// them.
     #[arg(long, value_name = "KIND")]
     pub sheet: Option<SheetKind>,
     /// The views of a sheet, joined by commas: front, top, right, left, bottom, back, iso
     #[arg(long, value_name = "VIEWS", requires = "sheet", value_delimiter = ',', value_parser = parsed::<NamedView>)]
     pub views: Vec<NamedView>,
-    /// Show a part of a view within a circle again, enlarged, on the sheet
+    /// Repeat a circular part of a view on the sheet, enlarged
     ///
-    /// The circle's middle and its radius are in the units of the model. Without a SCALE, e.g. 5:1, it is a standard
-    /// one. The circle stands in the VIEW that shows most within it, if none is named. E.g.
-    /// --detail B:30,0,8,4 or --detail B:30,0,8,4,10:1,front. May be given several times.
+    /// The centre and the radius of the circle are in the units of the model. SCALE, e.g. 5:1, is a standard one by
+    /// default, and VIEW is the one that shows most within the circle. E.g. --detail B:30,0,8,4 or --detail
+    /// B:30,0,8,4,10:1,front. May be given several times.
     #[arg(long, value_name = "LETTER:X,Y,Z,RADIUS[,SCALE[,VIEW]]", requires = "sheet", allow_hyphen_values = true, value_parser = detail)]
     pub detail: Vec<DetailSpec>,
-    /// Leave out what lies between two places on an axis: x, y or z, in the model's own units
+    /// Leave out the part between two places on an axis: x, y or z, in the units of the model
     ///
-    /// Views that see the axis in its true length show the rest moved together, with break lines where it is broken;
-    /// all others show all of the model. Dimensions keep the true length. E.g. --break x:40,260. May be given several
-    /// times.
+    /// Views that show the axis in its true length close the gap and draw break lines there; all others show the
+    /// whole model. Dimensions keep the true length. E.g. --break x:40,260. May be given several times.
     #[arg(id = "break", long, value_name = "AXIS:FROM,TO", allow_hyphen_values = true, value_parser = parsed::<Break>)]
     pub breaks: Vec<Break>,
     /// Number the parts of an assembly around the isometric view, or the only one, and list them
     ///
-    /// Parts are the objects of the file; those of one mesh have one number and are counted.
+    /// Parts are the objects of the file; those that share a mesh have one number and are counted.
     #[arg(long)]
     pub callouts: bool,
     /// Text of the title [default: the model's name]
     #[arg(long, value_name = "TEXT")]
     pub title: Option<String>,
-    /// A date for the title block; there is none where it is not given
+    /// A date for the title block [default: none]
     #[arg(long, value_name = "TEXT", requires = "sheet")]
     pub date: Option<String>,
     /// Pens and what moves them.
@@ -259,7 +265,7 @@ impl Default for Crease {
 
 fn crease(text: &str) -> Result<Crease, String> {
     let wrong =
-        || "it must lie between 0 and 180 degrees; or two angles, FROM,TO, TO not above FROM";
+        || "it must be between 0 and 180 degrees; or two angles, FROM,TO, TO not above FROM";
     let angle = |text: &str| {
         let inside = |n: &f64| (0.0..=180.0).contains(n);
         values::number(text).and_then(|n| Some(n).filter(inside).ok_or(wrong().into()))
@@ -306,15 +312,15 @@ pub enum Hatch {
 /// `--merge`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Merge {
-    /// None: each area shows one face
+    /// Each face is an area of its own
     Face,
-    /// Those of one material and shade
+    /// Areas with the same material and shade
     Shade,
-    /// Those of one material and like shades, of 16: round faces become bands
+    /// Areas with the same material and one of 16 shades: round faces become bands
     Band,
-    /// Those of one material
+    /// Areas with the same material
     Material,
-    /// Those of one part
+    /// Areas of the same part
     Part,
 }
 
@@ -330,10 +336,9 @@ pub enum Fill {
 /// `--smooth`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Smooth {
-    /// On objects that the mesh says are round: where most of what bends turns by less than 25 degrees from facet to
-    /// facet
+    /// On round objects: those whose bent edges mostly turn by less than 25 degrees
     Auto,
-    /// On all that has no creases
+    /// Wherever there is no crease
     On,
     /// Outlines are edges of the mesh
     Off,
@@ -342,7 +347,7 @@ pub enum Smooth {
 /// `--intersections`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Intersections {
-    /// Between bodies: what is modelled in one piece is taken to be sound
+    /// Between bodies only; a body modelled in one piece is assumed not to intersect itself
     Bodies,
     /// Within bodies too
     All,
@@ -366,9 +371,9 @@ pub enum Unit {
 /// `--sheet`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum SheetKind {
-    /// The view from above stands on top of the front view, that from the right on the right
+    /// The top view is above the front view, the right view on the right
     ThirdAngle,
-    /// The view from above stands below the front view, that from the right on the left
+    /// The top view is below the front view, the right view on the left
     FirstAngle,
 }
 

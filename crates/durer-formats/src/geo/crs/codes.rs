@@ -312,7 +312,7 @@ fn is_close(one: &Kind, other: &Kind) -> bool {
     }
 }
 
-/// Returns all numbers of a projection; parallels in one order, for it says nothing.
+/// Returns all numbers of a projection; parallels in one order, because it says nothing.
 fn numbers(projection: &Projection) -> [f64; 8] {
     let two = |[a, b]: [f64; 2]| [a.min(b), a.max(b)];
     let [p, q, r, s] = match projection.method {

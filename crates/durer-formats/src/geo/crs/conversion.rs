@@ -28,7 +28,7 @@ impl Crs {
     }
 
     /// Returns the name of the projection's method, its parameters, and the unit of coordinates in metres;
-    /// `None` where coordinates are longitude and latitude.
+    /// `None` if coordinates are longitude and latitude.
     pub(in super::super) fn conversion(&self) -> Option<(&'static str, Vec<Parameter>, f64)> {
         let Kind::Projected { projection, unit } = &self.kind else { return None };
         let degrees = |angle: f64| (angle.to_degrees() * 1e10).round() / 1e10;

@@ -1,4 +1,4 @@
-//! Frames that longitudes and latitudes are told in, and how they lie to each other.
+//! Frames of longitudes and latitudes, and the transformations between them.
 //!
 //! Those of today differ from WGS 84 by less than two metres, and by what continents move; coordinates are taken over
 //! between them as they are, as other software does where no grid is at hand. Those of old surveys are hundreds of metres

@@ -1,9 +1,10 @@
 //! Coordinate systems, and from one to another.
 //!
 //! Longitude comes before latitude, easting before northing, as in GeoJSON, whatever order a system itself would have.
-//! Between frames that differ by less than two metres (WGS 84, ETRS89, NAD83 …) coordinates are taken over as they
-//! are; of older frames some (OSGB36, DHDN, ED50, MGI, Belge 1972) are brought there by seven parameters, to within a
-//! few metres, which [`Transform::accuracy`] tells; others are refused by name. All formulas are computed with the functions of `libm`, so that results are the same on every machine.
+//! Between frames that differ by less than two metres (WGS 84, ETRS89, NAD83 …) coordinates are taken over as they are;
+//! of older frames some (OSGB36, DHDN, ED50, MGI, Belge 1972) are brought there by seven parameters, to within a few
+//! metres, which [`Transform::accuracy`] returns; others are refused. All formulas are computed with the functions of
+//! `libm`, so that results are the same on every machine.
 //!
 //! ```
 //! use durer_formats::geo::crs::{Crs, Transform};
@@ -46,7 +47,7 @@ pub struct Crs {
 enum Kind {
     /// Longitude and latitude in degrees.
     Geographic,
-    /// Lengths in units of so many metres.
+    /// Lengths in units of this many metres.
     Projected { projection: Projection, unit: f64 },
 }
 
@@ -99,7 +100,7 @@ impl Crs {
         }
     }
 
-    /// Returns its number, where it has one.
+    /// Returns its number, if it has one.
     pub fn code(&self) -> Option<i32> {
         self.code
     }
@@ -165,7 +166,7 @@ impl Transform {
         self.is_shifted().then_some((worst.name, from.accuracy + to.accuracy))
     }
 
-    /// Returns a place in the other system; `None` where it has none there.
+    /// Returns a place in the other system; `None` if it has none there.
     pub fn apply(&self, p: DVec2) -> Option<DVec2> {
         if self.is_identity() {
             return Some(p);
@@ -178,8 +179,8 @@ impl Transform {
         self.to.place(place).filter(|p| p.is_finite())
     }
 
-    /// Returns a geometry with all its positions in the other system; heights and measures stay. `None` where
-    /// a position has no place there.
+    /// Returns a geometry with all its positions in the other system; heights and measures stay. `None` if a
+    /// position has no place there.
     pub fn geometry(&self, geometry: &Geometry) -> Option<Geometry> {
         let all =
             |runs: &[Points]| runs.iter().map(|run| self.points(run)).collect::<Option<Vec<_>>>();
@@ -204,7 +205,7 @@ impl Transform {
     }
 }
 
-/// Returns the number of the system that a definition is of, where it is known.
+/// Returns the number of the system that a definition is of, if it is known.
 pub fn code_of_wkt(text: &str) -> Option<i32> {
     code_of_node(&wkt::Node::parse(text)?)
 }

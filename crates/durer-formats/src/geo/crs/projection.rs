@@ -39,7 +39,7 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// From longitude and latitude in radians; `None` where the projection has no such place.
+    /// From longitude and latitude in radians; `None` if the projection has no such place.
     pub fn forward(&self, lon: f64, lat: f64) -> Option<DVec2> {
         if lat.abs() > FRAC_PI_2 + 1e-10 {
             return None;
@@ -89,7 +89,7 @@ impl Projection {
         far && is_pole(lat)
     }
 
-    /// To longitude and latitude in radians; `None` where nothing lies there.
+    /// To longitude and latitude in radians; `None` if nothing lies there.
     pub fn inverse(&self, p: DVec2) -> Option<(f64, f64)> {
         let (body, a) = (self.body, self.body.a);
         let p = p - self.offset;

@@ -19,7 +19,7 @@ pub struct Node {
 }
 
 impl Node {
-    /// Reads a definition; `None` where it is none.
+    /// Reads a definition; `None` if it is none.
     pub fn parse(text: &str) -> Option<Self> {
         let mut rest = text.trim();
         let node = Self::read(&mut rest, 0)?;
@@ -150,7 +150,7 @@ impl Node {
                 body = body.sphere();
                 Method::Mercator { scale: 1.0 }
             }
-            // How web maps' system is told where there is no name for it.
+            // How web maps' system is told if there is no name for it.
             "mercator_1sp"
                 if self.node("EXTENSION").is_some_and(|n| n.value(1).contains("+b=6378137")) =>
             {

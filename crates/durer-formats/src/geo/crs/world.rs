@@ -94,7 +94,7 @@ const ROBINSON_Y: [[f32; 4]; 19] = [
 const WIDTH: f64 = 0.8487;
 const HEIGHT: f64 = 1.3523;
 
-/// Returns the value of a piece at so many degrees from its start, and how it grows.
+/// Returns the value of a piece at this many degrees from its start, and how it grows.
 fn piece(c: &[f32; 4], z: f64) -> (f64, f64) {
     let [c0, c1, c2, c3] = c.map(f64::from);
     (c0 + z * (c1 + z * (c2 + z * c3)), c1 + z * (2.0 * c2 + z * 3.0 * c3))

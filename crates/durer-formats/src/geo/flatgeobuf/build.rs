@@ -51,7 +51,7 @@ impl Builder {
         place.into_iter().for_each(|place| place.copy_from_slice(bytes));
     }
 
-    /// Adds zeros until what follows so many bytes later is aligned.
+    /// Adds zeros until what follows this many bytes later is aligned.
     fn align(&mut self, size: usize, before: usize) {
         while !(self.out.len() + before).is_multiple_of(size) {
             self.out.push(0);

@@ -101,7 +101,7 @@ fn parent(children: &[Node], offset: u64) -> Node {
     children.iter().fold(Node { offset, ..Node::EMPTY }, join)
 }
 
-/// Returns the number of the first node of each level, the root's first; empty where there is no index. One
+/// Returns the number of the first node of each level, the root's first; empty if there is no index. One
 /// feature has a root above it.
 fn starts(count: u64, width: u16) -> Vec<u64> {
     if count == 0 || width == 0 {
@@ -126,14 +126,14 @@ fn starts(count: u64, width: u16) -> Vec<u64> {
     sizes.iter().rev().map(next).collect()
 }
 
-/// Bytes of the index over so many features, of nodes of so many children.
+/// Bytes of the index over this many features, of nodes of this many children.
 pub fn size(count: u64, width: u16) -> u64 {
     let nodes = starts(count, width).last().map_or(0, |last| last.saturating_add(count));
     nodes.saturating_mul(NODE as u64)
 }
 
 /// Returns the places, in bytes, of features whose boxes meet a window, in the order of the file; `None`
-/// where the index leads beyond itself, or twice to the same.
+/// if the index leads beyond itself, or twice to the same.
 pub fn search(index: &[u8], count: u64, width: u16, window: &Rect) -> Option<Vec<u64>> {
     let starts = starts(count, width);
     let (_, lower) = starts.split_first()?;

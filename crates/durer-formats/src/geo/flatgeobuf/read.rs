@@ -64,7 +64,8 @@ impl Reader {
         Ok(Self { index, chosen, columns, kind, has_z, has_m, system, at, bytes, binary, infinite })
     }
 
-    /// Lets only features be read whose boxes meet a window, before the first one; nothing happens where there is no index.
+    /// Lets only features be read whose boxes meet a window, before the first one; nothing happens if there is no
+    /// index.
     pub fn choose(&mut self, window: &Rect) {
         let (place, count, width) = &self.index;
         let bytes = self.bytes.get(place.clone()).unwrap_or_default();
@@ -138,7 +139,7 @@ fn is_finite(geometry: &Geometry) -> bool {
     finite
 }
 
-/// Returns the bytes of a piece after its length, which stands at a place.
+/// Returns the bytes of a piece after its length, which is at `at`.
 fn piece(bytes: &[u8], at: usize) -> Option<(usize, usize)> {
     let length = u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?) as usize;
     let start = at + 4;
@@ -254,11 +255,11 @@ impl Shapes<'_> {
         Error::Decode { place: self.place.clone(), message: message.to_owned() }
     }
 
-    /// Counts what is made, so that what is told once is not made many times.
+    /// Counts warnings, so that one that is printed once is not built many times.
     fn charge(&mut self, count: usize) -> Result<()> {
         let left = self.left.checked_sub(count);
         self.left =
-            left.ok_or_else(|| self.wrong("parts of the geometry are told more than once"))?;
+            left.ok_or_else(|| self.wrong("parts of the geometry are given more than once"))?;
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! Tables of FlatBuffers in bytes that may be anything.
 //!
-//! <https://flatbuffers.dev/internals>: an offset leads from where it stands to what it is of; a table begins with
-//! the way back to the list of where its fields stand.
+//! <https://flatbuffers.dev/internals>: an offset leads from its own place to its target; a table begins with the
+//! way back to the list of where its fields stand.
 
 /// A table in a buffer.
 #[derive(Debug, Clone, Copy)]
@@ -73,7 +73,7 @@ impl<'a> Table<'a> {
         Self::at(self.bytes, follow(self.bytes, self.field(slot)?)?)
     }
 
-    /// Elements of so many bytes; `None` also where there is no room for them.
+    /// Elements of this many bytes; `None` also if there is no room for them.
     pub fn vector(&self, slot: usize, size: usize) -> Option<Vector<'a>> {
         let start = follow(self.bytes, self.field(slot)?)?;
         let len = u32::from_le_bytes(take(self.bytes, start)?) as usize;

@@ -22,7 +22,7 @@ enum Run {
 }
 
 impl Geometries {
-    /// Returns a geometry by its type; `None` where there is no such type.
+    /// Returns a geometry by its type; `None` if there is no such type.
     pub fn geometry(
         &mut self,
         kind: &str,
@@ -86,7 +86,10 @@ impl Geometries {
         let kind = kind(&members)
             .ok_or_else(|| text.error("a geometry needs the member \"type\", a string"))?;
         let unknown = || {
-            text.error(format!("`{}` is no type of geometry", crate::text::quote(kind.as_bytes())))
+            text.error(format!(
+                "`{}` is not a type of geometry",
+                crate::text::quote(kind.as_bytes())
+            ))
         };
         if depth == 0 {
             self.further = further_members(&members)?;
@@ -129,7 +132,7 @@ impl Geometries {
         Ok(runs)
     }
 
-    /// Returns an array of positions; empty where it had to be left out.
+    /// Returns an array of positions; empty if it had to be left out.
     fn run(&mut self, cursor: &mut Cursor<'_>, kind: Run) -> Result<Points> {
         // Places cost a look at all of the text before them, so they wait until they are needed.
         let start = cursor.clone();

@@ -4,7 +4,7 @@ use super::scan::{Progress, Scan};
 use crate::foreign;
 use crate::{Error, Place, Result};
 
-/// A piece of a file, and where a value in it stands.
+/// A piece of a file, and the place of a value in it.
 #[derive(Debug, Clone, Copy)]
 pub struct Text<'a> {
     bytes: &'a [u8],
@@ -29,7 +29,7 @@ impl<'a> Text<'a> {
         self.bytes.get(self.from..self.to).unwrap_or_default()
     }
 
-    /// Returns the value as it stands; checked to be JSON.
+    /// Returns the value unchanged; checked to be JSON.
     pub fn checked(&self) -> Result<String> {
         let text = std::str::from_utf8(self.as_bytes())
             .map_err(|e| self.error_at(self.from + e.valid_up_to(), "this is not UTF-8"))?;

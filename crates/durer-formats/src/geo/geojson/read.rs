@@ -7,7 +7,7 @@ use crate::geo::{Feature, Member, Warnings};
 use crate::{Error, Place, Result};
 use std::io::Read;
 
-/// Bytes asked for at a time.
+/// Bytes requested at a time.
 const CHUNK: usize = 64 << 10;
 
 /// A value cut out of the stream, with line and column of its first byte.
@@ -67,7 +67,7 @@ impl<R: Read> Stream<R> {
         Error::line(self.here.0, self.here.1, message)
     }
 
-    /// Returns the next byte that is no blank.
+    /// Returns the next byte that is not a blank.
     fn next(&mut self) -> Result<Option<u8>> {
         while let Some(byte) = self.peek()? {
             if !matches!(byte, b' ' | b'\t' | b'\r' | b'\n') {
@@ -153,8 +153,8 @@ pub struct Reader<R> {
     in_lines: u64,
 }
 
-/// After so many features that each stand on one line all others do: a line that is cut off is not read on to the
-/// end of the file.
+/// After this many features that each stand on one line all others do: a line that is cut off is not read on to
+/// the end of the file.
 const LINES: u64 = 2;
 
 impl<R: Read> Reader<R> {
@@ -220,7 +220,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Goes into the next document, to its end or its array of features; false where there is none.
+    /// Goes into the next document, to its end or its array of features; false if there is none.
     fn begin(&mut self) -> Result<bool> {
         // Byte-order mark, and the separators of RFC 8142.
         if self.documents == 0 && self.stream.peek()? == Some(0xef) {
@@ -267,7 +267,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Returns whether nothing that has been read says that this is no collection.
+    /// Returns whether nothing that has been read says that this is not a collection.
     fn may_be_collection(&self) -> bool {
         let kind = self.open.iter().find(|(name, _)| name.bytes == b"\"type\"");
         kind.is_none_or(|(_, value)| value.bytes == b"\"FeatureCollection\"")
@@ -322,7 +322,7 @@ impl<R: Read> Reader<R> {
                 let geometry = self.geometries.geometry(&kind, whole, members)?;
                 let geometry = geometry.ok_or_else(|| {
                     let kind = crate::text::quote(kind.as_bytes());
-                    whole.error(format!("`{kind}` is no type of GeoJSON"))
+                    whole.error(format!("`{kind}` is not a type of GeoJSON"))
                 })?;
                 let geometry_members = further_members(members)?;
                 Ok(Feature { geometry_members, ..Feature::of_geometry(geometry) })

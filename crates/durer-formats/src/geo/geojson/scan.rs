@@ -25,7 +25,7 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// Takes the next byte, the first one included. Blanks before the value are no part of it.
+    /// Takes the next byte, the first one included. Blanks before the value are not parts of it.
     pub fn feed(&mut self, byte: u8) -> Progress {
         if self.in_string {
             return self.feed_string(byte);

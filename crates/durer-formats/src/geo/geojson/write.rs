@@ -33,8 +33,8 @@ pub fn write_member(out: &mut impl Write, member: &Member) -> io::Result<()> {
     write!(out, ",{}:{}", Flat(&member.name), Flat(&member.value))
 }
 
-/// JSON as it stands, but on one line: line ends between its parts become blanks. (Within strings
-/// JSON has none.)
+/// JSON unchanged, but on one line: line ends between its parts become blanks. (Within strings JSON
+/// has none.)
 pub struct Flat<'a>(pub &'a str);
 
 impl std::fmt::Display for Flat<'_> {

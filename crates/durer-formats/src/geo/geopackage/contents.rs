@@ -14,7 +14,7 @@ pub struct Layer {
     pub root: u32,
     /// Its columns.
     pub columns: Vec<Column>,
-    /// The place of the column of geometries, where it has one.
+    /// The place of the column of geometries, if it has one.
     pub geometry: Option<usize>,
     /// True for each column that holds JSON.
     pub json: Vec<bool>,
@@ -143,7 +143,7 @@ type Record = BTreeMap<String, Value<'static>>;
 struct Records(Vec<Record>);
 
 impl Records {
-    /// Returns all rows of the table of a name; `None` where there is none.
+    /// Returns all rows of the table of a name; `None` if there is none.
     fn of(database: &Database, tables: &[Table], name: &str) -> Result<Option<Self>> {
         let Some(table) = tables.iter().find(|t| t.kind == "table" && is(&t.name, name)) else {
             return Ok(None);

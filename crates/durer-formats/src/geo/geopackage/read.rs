@@ -29,10 +29,10 @@ struct Faults {
 }
 
 impl Reader {
-    /// Reads what the file has, and looks for what of it stands beside it.
+    /// Reads the contents of the file, and looks for the files beside it.
     ///
     /// # Errors
-    /// What is no GeoPackage, one whose last changes are in another file, and a layer that there is not.
+    /// What is not a GeoPackage, one whose last changes are in another file, and a layer that there is not.
     pub fn new(bytes: Vec<u8>, beside: &Beside<'_>, warnings: &mut Warnings) -> Result<Self> {
         refuse_changes(beside)?;
         let database = Database::new(bytes)?;
@@ -141,7 +141,7 @@ fn names(layers: &[Layer]) -> String {
     layers.iter().map(|layer| &layer.name[..]).collect::<Vec<_>>().join(", ")
 }
 
-/// Returns the layers to read; all features, where none is named.
+/// Returns the layers to read; all features, if none is named.
 fn chosen(contents: Contents, name: Option<&str>, warnings: &mut Warnings) -> Result<Vec<Layer>> {
     let Contents { layers, left_out } = contents;
     if let Some(name) = name {
@@ -200,7 +200,7 @@ impl Row<'_> {
         let read = match value {
             Some(Value::Blob(bytes)) => blob::read(bytes, self.warnings, &self.place),
             None | Some(Value::Null) => return None,
-            Some(_) => Err(Error::whole("it is no blob")),
+            Some(_) => Err(Error::whole("it is not a blob")),
         };
         read.unwrap_or_else(|error| {
             if self.faults.geometries.count == 0 {

@@ -155,8 +155,8 @@ impl Writer {
         self.table.add_at(&mut self.database, number, &values)
     }
 
-    /// Writes what is left, under the name of a layer: gives the first page, which takes the place of the first one that
-    /// was taken, the pages at the end, and what is to be told.
+    /// Writes what is left, under the name of a layer: gives the first page, which takes the place of the first one
+    /// that was taken, the pages at the end, and the warnings.
     ///
     /// # Errors
     /// As [`Self::add`].

@@ -3,7 +3,7 @@
 /// Days of 400 years.
 const ERA: i64 = 146_097;
 
-/// Returns the day of a text such as 2024-02-29; `None` where there is no such day.
+/// Returns the day of a text such as 2024-02-29; `None` if there is no such day.
 pub fn of_text(text: &str) -> Option<i32> {
     let mut parts = text.splitn(3, '-').map(|part| part.parse::<i64>().ok());
     let (year, month, day) = (parts.next()??, parts.next()??, parts.next()??);
@@ -30,7 +30,7 @@ pub fn to_text(days: i64) -> String {
     format!("{year:04}-{month:02}-{day:02}")
 }
 
-/// Returns a time as text, of so many parts in a second; with the day, in UTC, or without.
+/// Returns a time as text, of this many parts in a second; with the day, in UTC, or without.
 pub fn time(count: i64, parts: i64, has_day: bool, is_utc: bool) -> String {
     let (seconds, rest) = (count.div_euclid(parts), count.rem_euclid(parts));
     let (days, second) = (seconds.div_euclid(86_400), seconds.rem_euclid(86_400));

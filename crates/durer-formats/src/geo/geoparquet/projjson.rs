@@ -5,8 +5,7 @@ use crate::geo::crs::{Crs, Parameter};
 use crate::geo::{System, Warnings};
 use serde_json::{Value, json};
 
-/// Returns the system that a member `crs` tells; longitude and latitude where there is none, nothing where it
-/// is null.
+/// Returns the system of a member `crs`; longitude and latitude if there is none, nothing if it is null.
 pub fn system(told: Option<&Value>, warnings: &mut Warnings) -> System {
     let Some(told) = told else { return System::LONLAT };
     if told.is_null() {

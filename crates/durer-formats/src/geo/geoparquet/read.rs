@@ -20,7 +20,7 @@ pub struct Reader {
     row: u64,
     /// The column of geometries.
     geometry: String,
-    /// Columns that are no fields: boxes around geometries, and further geometries.
+    /// Columns that are not fields: boxes around geometries, and further geometries.
     hidden: Vec<String>,
     /// Meanings of columns' values, in the columns' order.
     meanings: Vec<Meaning>,
@@ -35,7 +35,7 @@ impl Reader {
     /// Reads what the file says of its columns.
     ///
     /// # Errors
-    /// What is no Parquet, or has no geometries as well-known binary.
+    /// What is not a Parquet, or has no geometries as well-known binary.
     pub fn new(bytes: Vec<u8>, _: &Beside<'_>, warnings: &mut Warnings) -> Result<Self> {
         super::footer::check(&bytes)?;
         // Of broken files the crate may be of another opinion than its authors.
@@ -145,7 +145,7 @@ fn check(column: &Value, name: &str, warnings: &mut Warnings) -> Result<()> {
     Ok(())
 }
 
-/// Columns that are no fields.
+/// Columns that are not fields.
 fn hidden(geo: &Value, geometry: &str, warnings: &mut Warnings) -> Vec<String> {
     let columns = geo["columns"].as_object().into_iter().flatten();
     let mut hidden = Vec::new();

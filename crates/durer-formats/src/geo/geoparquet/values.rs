@@ -15,9 +15,9 @@ pub enum Meaning {
     Plain,
     /// Texts that are JSON.
     Json,
-    /// Times with days, of so many parts of a second; in UTC, or as a clock shows them.
+    /// Times with days, of this many parts of a second; in UTC, or as a clock shows them.
     Instant(i64, bool),
-    /// Times without days, of so many parts of a second.
+    /// Times without days, of this many parts of a second.
     Clock(i64),
 }
 

@@ -42,7 +42,7 @@ impl Encoding {
     }
 
     /// Returns the encoding of a Windows or MS-DOS code page, or a part of ISO 8859 by `88591` and
-    /// the like.
+    /// similar ones.
     fn of_page(page: u32) -> Option<Self> {
         let label = match page {
             437 => return Some(Self::Page(CP437)),
@@ -62,7 +62,7 @@ impl Encoding {
         encoding_rs::Encoding::for_label(label.as_bytes()).map(Self::Known)
     }
 
-    /// Returns the encoding that the language driver of a table stands for.
+    /// Returns the encoding of the language driver of a table.
     pub fn of_driver(driver: u8) -> Option<Self> {
         Self::of_page(match driver {
             0x01 | 0x09 | 0x0b | 0x0d | 0x0f | 0x11 | 0x15 | 0x18 | 0x19 | 0x1b => 437,

@@ -52,7 +52,7 @@ pub struct Faults {
 }
 
 impl Reader {
-    /// Looks for what stands beside the file.
+    /// Looks for the files beside this one.
     ///
     /// # Errors
     /// What is no .shp, and a table that cannot be read.

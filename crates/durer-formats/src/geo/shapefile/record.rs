@@ -58,7 +58,7 @@ impl Content {
         self.starts.iter().zip(ends).map(|(&start, end)| self.part(start, end))
     }
 
-    /// Returns the positions from one to another, none where they do not come in this order.
+    /// Returns the positions from one to another, none if they do not come in this order.
     fn part(&self, start: usize, end: usize) -> Points {
         let mut part = Points::new(self.points.dimensions);
         part.xy = self.points.xy.get(start..end).unwrap_or_default().to_vec();
@@ -190,7 +190,7 @@ fn areas(content: &Content, place: &Place, warnings: &mut Warnings) -> Vec<Vec<P
         finish_ring(ring, || place.clone(), warnings);
     }
     all.retain(|ring| !ring.is_empty());
-    // The largest ring is no hole: where it runs the other way, all do, as some programs write them.
+    // The largest ring is not a hole: where it runs the other way, all do, as some programs write them.
     let areas = all.iter().map(|ring| signed_area(&ring.xy));
     let largest = areas.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
     let is_outer = |ring: &Points| (signed_area(&ring.xy) > 0.0) == (largest > 0.0);

@@ -47,7 +47,7 @@ pub fn polygons(
     if !alone.is_empty() {
         let count = alone.len();
         let message =
-            format!("{count} rings run as holes do, but lie in no ring; they are polygons");
+            format!("{count} rings are oriented as holes but are in no ring; they become polygons");
         warnings.push(place.clone(), message);
     }
     polygons.append(&mut alone);

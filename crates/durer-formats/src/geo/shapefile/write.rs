@@ -184,7 +184,7 @@ fn records(shapes: &[Shape], kind: Kind) -> Result<(Vec<u8>, Vec<u8>)> {
     Ok((shp, shx))
 }
 
-/// Returns the least and the most of numbers, zeros where there are none.
+/// Returns the least and the most of numbers, zeros if there are none.
 fn range(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     let joined = numbers.map(|n| [n, n]).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
     joined.unwrap_or_default()
@@ -243,7 +243,7 @@ fn content(shape: &Shape, kind: Kind) -> Vec<u8> {
 struct Column<'a> {
     /// Its name, cut where it is long.
     key: String,
-    /// The field of the features; `None` for their numbers, where there is no field.
+    /// The field of the features; `None` for their numbers, if there is no field.
     field: Option<&'a Field>,
     kind: u8,
     width: usize,

@@ -1,13 +1,13 @@
 //! The shapes of an SVG document as features, one at a time.
 //!
-//! Read are `path`, `polygon`, `polyline`, `line`, `rect`, `circle` and `ellipse`, with the
-//! `transform`s and `id`s on them and on the groups around them, and what `use` shows of them elsewhere. Bézier curves
-//! become [`path::STEPS`] edges each, arcs and round corners as many per quarter turn, with all corners on the curve.
-//! Closed parts become polygons, open parts lines, and open parts without length points. Which points the closed parts
-//! of a path enclose is told by `fill-rule`, as attribute or in `style`, on it or around it; non-zero where nothing is
-//! said. What is not drawn is left out: what stands in `defs`, `clipPath` and the like, and what `display` or
-//! `visibility` hide. Other styles, style sheets, text, clipping and view boxes of nested documents are not looked at.
-//! Coordinates are those of the document turned over, so that y is up, as [`super::svg`] writes them.
+//! Read are `path`, `polygon`, `polyline`, `line`, `rect`, `circle` and `ellipse`, with the `transform`s and `id`s on
+//! them and on the groups around them, and what `use` shows of them elsewhere. Bézier curves become [`path::STEPS`]
+//! edges each, arcs and round corners as many per quarter turn, with all corners on the curve. Closed parts become
+//! polygons, open parts lines, and open parts without length points. Which points the closed parts of a path enclose
+//! is decided by `fill-rule`, as attribute or in `style`, on it or around it; non-zero if nothing is said. What is
+//! not drawn is left out: the content of `defs`, `clipPath` and similar elements, and what `display` or `visibility`
+//! hide. Other styles, style sheets, text, clipping and view boxes of nested documents are ignored. Coordinates are
+//! those of the document turned over, so that y is up, as [`super::svg`] writes them.
 
 mod attributes;
 mod path;
@@ -121,15 +121,15 @@ struct Walk {
     /// The document, then what the `use`s being followed show.
     frames: Vec<Frame>,
     has_root: bool,
-    /// The first byte of the elements with an `id`, when a `use` has asked for it.
+    /// The first byte of the elements with an `id`, when a `use` has requested it.
     ids: Option<HashMap<Box<str>, usize>>,
     /// Bytes shown by `use`.
     used: u64,
-    /// The last place that was told: byte, line, and where the line begins.
+    /// The last place that was reported: byte, line, and the start of the line.
     told: (usize, u64, usize),
 }
 
-/// Returns the events of a text from a byte on. Whether names match is looked at by [`Walk`], which goes on
+/// Returns the events of a text from a byte on. Whether names match is examined by [`Walk`], which goes on
 /// from any byte.
 fn events(text: &[u8], from: usize) -> quick_xml::Reader<&[u8]> {
     let mut reader = quick_xml::Reader::from_reader(text.get(from..).unwrap_or_default());
@@ -189,7 +189,7 @@ impl Walk {
         Ok(None)
     }
 
-    /// Line and column of a byte. Counts on from the place told last.
+    /// Line and column of a byte. Counts on from the last reported place.
     fn place(&mut self, text: &[u8], at: usize) -> Place {
         let at = at.min(text.len());
         let (from, mut line, mut start) = if at < self.told.0 { (0, 1, 0) } else { self.told };
@@ -262,7 +262,7 @@ impl Walk {
         let Some(levels) = self.frames.last().map(|f| &f.levels) else { return Ok(()) };
         let Some(level) = levels.get(1..).and_then(<[_]>::last) else {
             let blank = words.trim_start_matches('\u{feff}').trim().is_empty();
-            let outside = "text stands outside of the svg element";
+            let outside = "there is text outside of the svg element";
             return if blank { Ok(()) } else { Err(self.fail(text, at, outside)) };
         };
         let is_sheet = name_at(text, level.start).ends_with(b"style");
@@ -345,7 +345,7 @@ impl Walk {
 
     fn root(&mut self, text: &[u8], at: usize, name: &str) -> Result<()> {
         if std::mem::replace(&mut self.has_root, true) {
-            return Err(self.fail(text, at, "a second element stands beside the svg element"));
+            return Err(self.fail(text, at, "there is a second element beside the svg element"));
         }
         if name != "svg" {
             let name = crate::text::quote(name.as_bytes());
@@ -425,7 +425,7 @@ fn enter(
     Ok(level)
 }
 
-/// A document within the document, or a symbol: at its place, where it has no scale of its own.
+/// A document within the document, or a symbol: at its place, if it has no scale of its own.
 fn nested(element: &BytesStart<'_>, level: &mut Level) -> Result<(), String> {
     if attribute(element, "viewBox")?.is_some() {
         let name = element.local_name();
@@ -442,7 +442,7 @@ fn nested(element: &BytesStart<'_>, level: &mut Level) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the geometry of an element; `None` where it is no shape, or an empty one.
+/// Returns the geometry of an element; `None` if it is not a shape, or an empty one.
 fn shape(
     element: &BytesStart<'_>,
     level: &Level,

@@ -123,7 +123,7 @@ impl Path {
                 let to = base + s.pair()?;
                 self.arc(&Ends { from: self.at, to, radii, turned, large, sweep });
             }
-            _ => return Err(format!("`{letter}` is no command of a path")),
+            _ => return Err(format!("`{letter}` is not a command of a path")),
         }
         Ok(())
     }
@@ -158,7 +158,7 @@ impl Path {
         self.line_to(ends.to);
     }
 
-    /// An ellipse with its axes along the coordinates'; none where a radius is not above zero.
+    /// An ellipse with its axes along the coordinates'; none if a radius is not above zero.
     pub fn ellipse(&mut self, center: DVec2, radii: DVec2) {
         if radii.cmpgt(DVec2::ZERO).all() {
             (0..4 * STEPS).for_each(|i| self.line_to(center + on_circle(i) * radii));

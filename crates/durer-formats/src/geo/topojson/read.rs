@@ -235,7 +235,7 @@ impl Topology<'_> {
             }
             other => {
                 let other = crate::text::quote(other.as_bytes());
-                return Err(object.error(format!("`{other}` is no type of geometry")));
+                return Err(object.error(format!("`{other}` is not a type of geometry")));
             }
         }))
     }

@@ -4,7 +4,7 @@ use super::{Bytes, Refusal, TOO_LONG, TOO_SHORT};
 
 /// Elements of a group, which share the width of their differences.
 const GROUP: usize = 16;
-/// A block is at most so many bytes, and at most so many elements.
+/// A block is at most this many bytes, and at most this many elements.
 const BLOCK_BYTES: usize = 8192;
 const BLOCK_ELEMENTS: usize = 256;
 
@@ -15,7 +15,7 @@ enum Channel {
     Bytes,
     /// Two 16-bit numbers, each by its zigzag difference.
     Words,
-    /// One 32-bit number by exclusive or, rotated left by so many bits.
+    /// One 32-bit number by exclusive or, rotated left by this many bits.
     Xor(u32),
 }
 

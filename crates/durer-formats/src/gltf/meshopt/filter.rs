@@ -83,7 +83,7 @@ fn exponential(v: i32) -> f32 {
     (power * f64::from(mantissa)) as f32
 }
 
-/// RGBA from luma, two chroma and alpha; the highest set bit of the alpha tells the scale.
+/// RGBA from luma, two chroma and alpha; the highest set bit of the alpha gives the scale.
 fn color([y, co, cg, _]: [i32; 4], alpha: u32, max: f32) -> [f32; 4] {
     // The luma is unsigned, whatever the lanes are.
     let y = y & max as i32;

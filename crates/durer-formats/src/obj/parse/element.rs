@@ -6,7 +6,7 @@ use super::{Parser, Run};
 use crate::{Error, Place, Result, text};
 use durer::scene::Topology;
 
-/// From so many parts on, a change of name alone starts no new one: a name per face would take
+/// From this many parts on, a change of name alone starts no new one: a name per face would take
 /// more memory than the file.
 const MAX_NAMED_PARTS: usize = 1 << 16;
 
@@ -25,7 +25,7 @@ impl Parser<'_> {
         self.check_limit()
     }
 
-    /// Adds a face's corners as triangles from the first; false where there are fewer than three.
+    /// Adds a face's corners as triangles from the first; false if there are fewer than three.
     fn fan(&mut self, start: usize) -> Result<bool> {
         let (Some(first), Some(second)) = (self.corner()?, self.corner()?) else {
             return Ok(false);

@@ -11,7 +11,7 @@ use usvg::roxmltree::{Node, NodeId};
 const MAX_COPIED: usize = 100_000;
 
 impl<'a, 'i> Walk<'a, 'i> {
-    /// Copies what `use` elements show where custom properties around them make it look otherwise than where it stands.
+    /// Copies what `use` elements show if custom properties around them make it look different there.
     pub(super) fn copy_shown(&mut self) -> Result<()> {
         let mut left = MAX_COPIED;
         for (node, scope) in std::mem::take(&mut self.uses) {

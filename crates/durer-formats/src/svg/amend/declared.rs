@@ -35,12 +35,7 @@ impl<'a, 'i> Walk<'a, 'i> {
             self.varied.insert(node.id());
         }
         let Some(value) = self.styles.variables.replaced(&declared.value, scope.variables) else {
-            self.tell(
-                (name, &declared.value),
-                element,
-                at,
-                "it stands for nothing; it is passed over",
-            );
+            self.tell((name, &declared.value), element, at, "it is undefined; it is ignored");
             return set(name, None);
         };
         let value = value.trim();
@@ -75,7 +70,7 @@ impl<'a, 'i> Walk<'a, 'i> {
                         (name, value),
                         element,
                         at,
-                        "only colours are drawn behind a drawing; it is passed over",
+                        "only colours are drawn behind a drawing; it is ignored",
                     );
                 }
                 return;
@@ -99,7 +94,7 @@ impl<'a, 'i> Walk<'a, 'i> {
                     (name, value),
                     element,
                     at,
-                    "only masks that are elements are drawn; it is passed over",
+                    "only masks that are elements are drawn; it is ignored",
                 );
             }
             "width" | "height" if is_root && (value == "auto" || value.ends_with('%')) => {
@@ -119,7 +114,7 @@ impl<'a, 'i> Walk<'a, 'i> {
                         (name, value),
                         element,
                         at,
-                        &format!("{}; it is passed over", kind.wanted()),
+                        &format!("{}; it is ignored", kind.wanted()),
                     );
                     return set(name, None);
                 }

@@ -1,6 +1,6 @@
 //! A drawing's document in terms that usvg knows: attributes with values that it understands, in place of style sheets
-//! and of what is newer than it. What cannot be used is told with its place and taken out: then what is inherited or the
-//! default counts, as CSS has it.
+//! and of what is newer than it. What cannot be used gives a warning with its place and is removed: then what is
+//! inherited or the default counts, as CSS has it.
 
 mod copies;
 mod declared;
@@ -23,7 +23,7 @@ use usvg::roxmltree::{Document, Node, NodeId};
 /// Result of amending a document.
 #[derive(Default)]
 pub(super) struct Amended {
-    /// `None` where nothing has to be other.
+    /// `None` if nothing has to be other.
     pub written: Option<Written>,
     pub warnings: Vec<Warning>,
     /// The addresses of pictures, in the place of which their numbers stand now, and where they were.
@@ -43,7 +43,7 @@ pub(super) fn amended(document: &Document<'_>, first_picture: usize) -> Result<A
             stack.pop();
         }
         if stack.len() > MAX_DEPTH {
-            // Such a document is refused when its references are looked at.
+            // Such a document is refused when its references are examined.
             return Ok(Amended::default());
         }
         let scope = stack.last().map(|(_, scope)| *scope).unwrap_or_default();
@@ -221,12 +221,7 @@ impl<'a, 'i> Walk<'a, 'i> {
                     edits.push((Cow::Borrowed(name), Some(said.clone())));
                 }
                 None => {
-                    self.tell(
-                        (name, value),
-                        element,
-                        at,
-                        "it stands for nothing; it is passed over",
-                    );
+                    self.tell((name, value), element, at, "it is undefined; it is ignored");
                     return edits.push((Cow::Borrowed(name), None));
                 }
             }
@@ -291,9 +286,7 @@ impl<'a, 'i> Walk<'a, 'i> {
         let element = node.tag_name().name();
         let wants = match name {
             "fill" | "stroke" => "nothing is painted",
-            "clip-path" | "mask" | "marker-start" | "marker-mid" | "marker-end" => {
-                "it is passed over"
-            }
+            "clip-path" | "mask" | "marker-start" | "marker-mid" | "marker-end" => "it is ignored",
             "href" if matches!(element, "use" | "textPath" | "tref") => "nothing is drawn",
             _ => return,
         };

@@ -29,7 +29,7 @@ impl Matcher {
         Self { positions, steps: Cell::new(0) }
     }
 
-    /// Returns whether too much was looked at, so that answers are not to be relied on.
+    /// Returns whether too much was examined, so that answers are not to be relied on.
     pub fn is_exhausted(&self) -> bool {
         self.steps.get() > MAX_STEPS
     }
@@ -57,8 +57,8 @@ impl Matcher {
         true
     }
 
-    /// Returns the elements that are `compound` and to which one of those stands so, the innermost
-    /// first.
+    /// Returns the elements that are `compound` and have one of those in this relation, the
+    /// innermost first.
     fn step_back<'a, 'i>(
         &self,
         combinator: Combinator,

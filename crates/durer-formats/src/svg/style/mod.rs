@@ -30,7 +30,7 @@ const MAX_APPLIED: usize = 1 << 29;
 /// Cost of a declaration for an element, beside its value.
 const COST: usize = 64;
 
-/// Something in a style sheet or attribute to be told, and where in the document it stands.
+/// A warning about a style sheet or attribute, and its place in the document.
 pub(super) type Told = (usize, String);
 
 /// The style sheets of a document, and what of them elements get.

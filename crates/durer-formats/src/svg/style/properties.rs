@@ -90,7 +90,7 @@ const OTHERS: [&str; 45] = [
     "width",
     "x",
     "y",
-    // Parts of shorthands that are asked for by themselves.
+    // Parts of shorthands that are requested by themselves.
     "font",
     "marker",
     "background",
@@ -131,7 +131,7 @@ const NOT_DRAWN: [&str; 26] = [
     "text-decoration-color",
 ];
 
-/// Returns the value that a property has where nothing is said, if elements take it from around.
+/// Returns the value that a property has if nothing is said, if elements take it from around.
 pub(crate) fn initial(name: &str) -> Option<&'static str> {
     INHERITED.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
 }
@@ -168,7 +168,7 @@ fn is_general(value: &str) -> bool {
 /// Returns the usable values of a declaration for properties that drawings have.
 ///
 /// # Errors
-/// What is to be told where it cannot be used.
+/// The warning if it cannot be used.
 pub(super) fn usable(
     declaration: &Declaration,
     is_sheet: bool,
@@ -198,21 +198,21 @@ pub(super) fn usable(
         "background" => return Ok(vec![said("background-color", value)]),
         "font" if !has_variables(value) && !is_general(value) => {
             let parts = font(value).ok_or_else(|| {
-                format!("`font` of `style` is `{}`: it must be a style, a size and families, as `bold 12px serif`; it is passed over", shown(value))
+                format!("`font` of `style` is `{}`: it must be a style, a size and families, as `bold 12px serif`; it is ignored", shown(value))
             })?;
             return Ok(parts.iter().map(|(name, value)| said(name, value)).collect());
         }
         _ => {}
     }
     let Some(kind) = Kind::of_style(name) else { return Ok(vec![declaration.clone()]) };
-    // Of an element's own it is looked at when it is known whether they mean something there.
+    // Of an element's own it is examined when it is known whether they mean something there.
     if !is_sheet && !takes("g", name) {
         return Ok(vec![declaration.clone()]);
     }
     let needs_unit = is_sheet && NEED_UNITS.contains(&name.as_str());
     if needs_unit && value.parse::<f64>().is_ok_and(|v| v != 0.0) {
         return Err(format!(
-            "`{name}` of `style` is `{}`: in style sheets it needs a unit, as `{value}px`; it is passed over",
+            "`{name}` of `style` is `{}`: in style sheets it needs a unit, as `{value}px`; it is ignored",
             shown(value)
         ));
     }
@@ -223,7 +223,7 @@ pub(super) fn usable(
     if is_usable {
         return Ok(vec![declaration.clone()]);
     }
-    Err(format!("`{name}` of `style` is `{}`: {}; it is passed over", shown(value), kind.wanted()))
+    Err(format!("`{name}` of `style` is `{}`: {}; it is ignored", shown(value), kind.wanted()))
 }
 
 /// Returns a warning about a declaration that changes a picture in browsers, but not here.

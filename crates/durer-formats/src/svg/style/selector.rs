@@ -91,7 +91,7 @@ pub(super) type Compound = Vec<Simple>;
 /// Specificity of a selector: its numbers of ids, classes and types, which order rules.
 pub(super) type Specificity = [u32; 3];
 
-/// An element, and what stands around it.
+/// An element, and its surroundings.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Selector {
     /// Conditions on the element itself.
@@ -102,7 +102,7 @@ pub(super) struct Selector {
     pub specificity: Specificity,
 }
 
-/// Returns the selectors of a list; `None` where one is not understood, as then none counts.
+/// Returns the selectors of a list; `None` if one is not understood, as then none counts.
 pub(super) fn list(pieces: &[Piece<'_>]) -> Option<Vec<Selector>> {
     list_at(pieces, 0)
 }

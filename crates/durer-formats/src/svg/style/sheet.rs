@@ -150,7 +150,7 @@ impl Reader<'_, '_> {
                 self.tell(at, "rules of `@layer` count as if they stood outside of it".to_owned());
                 self.rules(open + 1, close, depth + 1);
             }
-            // Browsers know nearly all that is asked for.
+            // Browsers know nearly all that is requested.
             "supports" if is_block && depth < MAX_DEPTH => {
                 let is_not = prelude
                     .iter()
@@ -197,7 +197,7 @@ impl Reader<'_, '_> {
                     self.tell(
                         at,
                         format!(
-                            "`{said}` is no declaration, as `fill: red` is one; it is passed over"
+                            "`{said}` is not a declaration, as `fill: red` is one; it is ignored"
                         ),
                     );
                 }

@@ -1,4 +1,4 @@
-//! Custom properties, and `var()` where they are used.
+//! Custom properties, and `var()` if they are used.
 //!
 //! Source: *CSS Custom Properties for Cascading Variables Module Level 1*, W3C.
 
@@ -74,8 +74,8 @@ impl Variables {
         None
     }
 
-    /// Returns a value with what its `var()` stand for; `None` where one stands for nothing, or for
-    /// too much.
+    /// Returns a value with its `var()` replaced; `None` if one is undefined, or replaced by too
+    /// much.
     pub fn replaced(&mut self, value: &str, set: Option<usize>) -> Option<String> {
         if !has_variables(value) {
             return Some(value.to_owned());

@@ -279,7 +279,7 @@ pub(crate) fn parameter<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canon
 }
 
 /// Moves a cut point that rounding has put outside to the inside, by a few ulp at most, so that
-/// clipping its segment again finds it inside and leaves it alone; `None` where that fails.
+/// clipping its segment again finds it inside and leaves it alone; `None` if that fails.
 fn settled<const N: usize, H: HalfSpace<N>>(
     spaces: &[H],
     mut point: [f64; N],
@@ -301,7 +301,7 @@ fn settled<const N: usize, H: HalfSpace<N>>(
 const SETTLE_ROUNDS: i32 = 64;
 
 /// Moves a cut point that rounding has put outside along one axis to the first number inside the border
-/// that it is beyond, if that is inside all others and near; `None` where no axis does.
+/// that it is beyond, if that is inside all others and near; `None` if no axis does.
 ///
 /// Where coordinates differ much in size, a step of an ulp of the larger one leads through the tip of
 /// a needle and out again; the smaller one has numbers inside.

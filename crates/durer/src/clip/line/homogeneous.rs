@@ -1,9 +1,9 @@
 //! Line clipping in homogeneous coordinates.
 //!
 //! James Blinn and Martin Newell, "Clipping using homogeneous coordinates", SIGGRAPH 1978. Object
-//! space; O(1), at most two cut points. A point (x, y, w) stands for (x/w, y/w). Each border has a
-//! boundary coordinate, x − xmin·w for the left one, which is ≥ 0 inside; along a segment it is linear,
-//! so the border is crossed at t = d₁ / (d₁ − d₂). The division by w comes after clipping, so w may be
+//! space; O(1), at most two cut points. A point (x, y, w) means (x/w, y/w). Each border has a boundary
+//! coordinate, x − xmin·w for the left one, which is ≥ 0 inside; along a segment it is linear, so the
+//! border is crossed at t = d₁ / (d₁ − d₂). The division by w comes after clipping, so w may be
 //! anything: of a segment that runs behind the eye the part before it is found.
 //!
 //! The signs of boundary coordinates and the order of crossings are exact, and w ≥ 0 is one more

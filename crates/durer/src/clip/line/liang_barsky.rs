@@ -135,7 +135,7 @@ fn run<const N: usize, P: From<[f64; N]>>(
     Ok(Some(finish(segment, &line, cut(lower), cut(upper), t)))
 }
 
-/// Tells a listener of every border, in order, crossed or not.
+/// Tells a tracer of every border, in order, crossed or not.
 fn report<const N: usize, P>(
     window: &ClipBox<N>,
     line: &Canonical<N>,

@@ -91,7 +91,7 @@ impl PixelWindow {
 /// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
-    /// The middle between two pixels was looked at.
+    /// The middle between two pixels was examined.
     Halved {
         /// The pixel nearest to the middle.
         middle: IVec2,
@@ -211,7 +211,7 @@ struct Gap {
     visible: Fine,
 }
 
-/// Returns a gap for each end, found by halving while both ends are outside; `None` where nothing is
+/// Returns a gap for each end, found by halving while both ends are outside; `None` if nothing is
 /// visible.
 fn gaps(
     window: &PixelWindow,

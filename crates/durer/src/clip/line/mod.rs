@@ -78,7 +78,7 @@ crate::info::family! {
 }
 
 impl LineClipper {
-    /// Returns the part of the segment in the closed window; `None` where there is none.
+    /// Returns the part of the segment in the closed window; `None` if there is none.
     ///
     /// # Errors
     /// [`Error::NonFinite`] for a NaN or infinite coordinate; [`Error::Unsupported`] for

@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 /// Step of an algorithm, in the direction of the caller's segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step<P> {
-    /// A border was looked at: every one of a rectangle or box by Liang and Barsky, otherwise all up to the first
+    /// A border was examined: every one of a rectangle or box by Liang and Barsky, otherwise all up to the first
     /// that both ends lie beyond.
     Border {
         /// Its index in the window; of a rectangle or box 2·axis, plus 1 for the larger coordinate.
@@ -71,7 +71,7 @@ pub struct Numbers {
 
 impl Numbers {
     /// p of Liang and Barsky, the product of the outer normal and the segment's direction: where it is
-    /// negative the segment enters, where it is positive it leaves, where it is zero it runs along the border.
+    /// negative the segment enters, where it is positive it leaves, if it is zero it runs along the border.
     pub fn p(&self) -> f64 {
         self.start - self.end
     }
@@ -85,7 +85,7 @@ impl Numbers {
     }
 }
 
-/// The bounds of the parameter that a listener is told: from 0 to 1 before the first border.
+/// The bounds of the parameter in the steps: from 0 to 1 before the first border.
 #[derive(Clone, Copy)]
 pub(super) struct Bounds {
     lower: f64,
@@ -227,7 +227,7 @@ struct Passage {
     leaving: Option<usize>,
 }
 
-/// Finds the last border entered and the first one left; `None` where the segment misses the
+/// Finds the last border entered and the first one left; `None` if the segment misses the
 /// intersection of the half spaces. `report` hears of every half space looked at.
 fn passage<const N: usize, H: HalfSpace<N>>(
     spaces: &[H],

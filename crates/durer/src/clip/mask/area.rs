@@ -14,7 +14,7 @@ pub struct Area {
     /// The polygons.
     pub shapes: Shapes,
     dimensions: Dimensions,
-    /// One for each of the shapes' points; empty where there is neither height nor measure.
+    /// One for each of the shapes' points; empty if there is neither height nor measure.
     zm: Vec<Zm>,
 }
 
@@ -156,7 +156,7 @@ impl Area {
 /// second or less; beyond it heights are interpolated along the border from the known ones.
 const PAIRS: usize = 1 << 26;
 
-/// Returns values where none is known: along the ring, by length, between the known ones before and
+/// Returns values if none is known: along the ring, by length, between the known ones before and
 /// after; where the ring has none, by `otherwise`.
 fn fill(ring: &[DVec2], known: &[Option<Zm>], otherwise: impl Fn(DVec2) -> Zm) -> Vec<Zm> {
     let count = ring.len();

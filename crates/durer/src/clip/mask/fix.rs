@@ -10,7 +10,7 @@ use crate::geometry::Geometry;
 /// A geometry whose polygons are valid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fixed {
-    /// The geometry; `None` where nothing of it is left.
+    /// The geometry; `None` if nothing of it is left.
     pub geometry: Option<Geometry>,
     /// True if its polygons were not valid.
     pub changed: bool,

@@ -47,7 +47,7 @@ impl<'a> MeanValues<'a> {
         Self { polygons: all.map(polygon).collect() }
     }
 
-    /// Returns the values at a place within a polygon; `None` where it is in none.
+    /// Returns the values at a place within a polygon; `None` if it is in none.
     pub fn at(&self, place: DVec2) -> Option<Zm> {
         self.polygons.iter().find_map(|polygon| within(polygon, place))
     }

@@ -4,7 +4,7 @@
 //! Points are located, lines are clipped by [`rectangle::clip_lines`](super::polygon::rectangle::clip_lines) or
 //! [`polyline`](super::polyline), valid polygons by the rectangle clip, all others by
 //! [`coverage`](super::polygon::coverage), which gives both sides of a common border the same points. A named
-//! [`Algorithm`] can be asked for in its place.
+//! [`Algorithm`] can be requested in its place.
 //!
 //! ```
 //! use durer::clip::mask::{Cutter, Mask};
@@ -83,7 +83,7 @@ impl Mask {
         self.polygons.bounds().is_some_and(|own| own.overlaps(bounds))
     }
 
-    /// Returns whether a box is wholly inside; `None` where the mask's border comes near.
+    /// Returns whether a box is wholly inside; `None` if the mask's border comes near.
     pub fn side(&self, bounds: &Rect) -> Option<bool> {
         if !self.meets(bounds) {
             return Some(false);

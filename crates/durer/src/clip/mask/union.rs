@@ -69,7 +69,7 @@ impl Union {
         false
     }
 
-    /// Returns all as one geometry, a collection where there are several kinds; `None` where there is nothing.
+    /// Returns all as one geometry, a collection if there are several kinds; `None` if there is nothing.
     ///
     /// # Errors
     /// As [`Area::union`].

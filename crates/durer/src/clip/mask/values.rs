@@ -1,4 +1,4 @@
-//! Heights and measures of polygons at places that are no vertices of theirs.
+//! Heights and measures of polygons at places that are not vertices of theirs.
 
 use crate::clip::attribute::Source;
 use crate::clip::polygon::Shapes;
@@ -44,7 +44,7 @@ impl Values<'_> {
     }
 
     /// Fills in the values of places on edges, as far as rounding lets them be there; where several
-    /// edges pass, of the first. Each edge is looked at once, with the places of its own width.
+    /// edges pass, of the first. Each edge is examined once, with the places of its own width.
     pub fn on_edges(&self, places: &[DVec2], values: &mut [Option<Zm>]) {
         let mut open: Vec<usize> = (0..places.len()).filter(|&i| values[i].is_none()).collect();
         let Some(bounds) = self.shapes.bounds().filter(|_| !open.is_empty()) else { return };

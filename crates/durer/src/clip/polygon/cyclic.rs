@@ -1,12 +1,13 @@
 //! Two sets of rings as cyclic lists of vertices with their crossings linked: what Weiler–Atherton
 //! and Greiner–Hormann walk on.
 //!
-//! Touching vertices and common edges are told from true crossings in the spirit of E. L. Foster,
-//! K. Hormann and R. T. Popa (*Clipping simple polygons with degenerate intersections*, Computers &
-//! Graphics: X 2, 2019). They look at each pair of borders; we look at a common point with all the
-//! borders that pass it, so that rings of one operand may touch one another there (`node.rs`). Where
-//! they delay a crossing to the end of common edges, we take the subject as shrunk by less than any
-//! number, for union as grown: then no common edge is left that the result would have on two sides.
+//! Touching vertices and common edges are distinguished from true crossings in the spirit of E. L.
+//! Foster, K. Hormann and R. T. Popa (*Clipping simple polygons with degenerate intersections*,
+//! Computers & Graphics: X 2, 2019). They look at each pair of borders; we look at a common point
+//! with all the borders that pass it, so that rings of one operand may touch one another there
+//! (`node.rs`). Where they delay a crossing to the end of common edges, we take the subject as
+//! shrunk by less than any number, for union as grown: then no common edge is left that the result
+//! would have on two sides.
 
 use super::group::{group, is_flat};
 use super::lists::{Lists, NOT_SIMPLE, Start, join};
@@ -58,7 +59,7 @@ pub(super) fn link(subject: &Shapes, clip: &Shapes, op: BooleanOp) -> Result<Lin
     let mut linked = Linked { lists: [Lists::new(&rings[0]), Lists::new(&rings[1])], rings };
     linked.divide()?;
     let crossings = linked.crossings();
-    // Neighbours at common points are looked at before rounded crossings come between them.
+    // Neighbours at common points are examined before rounded crossings come between them.
     let grown = op == BooleanOp::Union;
     let nodes = node::common(&linked.lists);
     for node in &nodes {
@@ -178,7 +179,7 @@ impl Linked {
         }
     }
 
-    /// Tells a listener of both lists.
+    /// Tells a tracer of both lists.
     pub fn tell(&self, t: &mut impl Tracer<Step>) {
         for (lists, list) in self.lists.iter().zip([Operand::Subject, Operand::Clip]) {
             for v in lists.starts.iter().flat_map(|start| lists.ring(start.vertex)) {

@@ -79,7 +79,7 @@ pub fn replay(steps: &[Step]) -> Vec<DVec2> {
     if signed_area(&ring) == 0.0 { Vec::new() } else { ring }
 }
 
-/// Returns the part of a ring in a rectangle, as one ring; empty where there is none.
+/// Returns the part of a ring in a rectangle, as one ring; empty if there is none.
 ///
 /// ```
 /// use durer::clip::polygon::{liang_barsky, signed_area};

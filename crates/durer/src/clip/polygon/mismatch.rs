@@ -1,12 +1,11 @@
 //! The check that polygons side by side are a coverage: none overlaps another, and where two share a border, both have
 //! the same edges there, point for point.
 //!
-//! M. Davis, *Polygonal coverage validation in JTS*, 2022: by edges, without an overlay. An edge of two features must run
-//! the other way in the second one; edges that cross, run along each other in part, or end on one another
-//! have no counterpart. At common vertices no edge may lead into the other, and a polygon that meets no border of
-//! another feature is looked for in it. Gaps are holes
-//! of the union. Class: object space, exact but for the gaps. Cost: as of [validity](super::validity), and of a union where gaps are
-//! asked for.
+//! M. Davis, *Polygonal coverage validation in JTS*, 2022: by edges, without an overlay. An edge of two features must
+//! run the other way in the second one; edges that cross, run along each other in part, or end on one another have no
+//! counterpart. At common vertices no edge may lead into the other, and a polygon that meets no border of another
+//! feature is looked for in it. Gaps are holes of the union. Class: object space, exact but for the gaps. Cost: as of
+//! [validity](super::validity), and of a union where gaps are requested.
 
 use super::rectangle::{Near, Prepared};
 use super::validity::{
@@ -81,7 +80,7 @@ pub struct Misfit {
     pub features: [usize; 2],
 }
 
-/// Returns what keeps features from being a coverage, sorted by features and places; empty where they are one.
+/// Returns what keeps features from being a coverage, sorted by features and places; empty if they are one.
 /// Each feature must be [valid](super::validity::flaws).
 ///
 /// `gap_width`: holes of the whole whose area is less than this times half their length are gaps; `None`: none is.

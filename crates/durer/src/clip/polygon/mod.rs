@@ -80,7 +80,7 @@ impl PolygonClipper {
         Ok(match self {
             Self::Rectangle => {
                 let window = as_rectangle(clip).ok_or(Error::Unsupported {
-                    what: "a clip polygon that is no axis-parallel rectangle",
+                    what: "a clip polygon that is not an axis-parallel rectangle",
                     instead: "choose another algorithm",
                 })?;
                 rectangle::clip(&window, subject, &Default::default(), t)?

@@ -101,7 +101,7 @@ impl NestingTree {
         &self.roots
     }
 
-    /// Returns the ring directly around a ring; `None` for roots and where there is no such ring.
+    /// Returns the ring directly around a ring; `None` for roots and if there is no such ring.
     pub fn parent(&self, ring: usize) -> Option<usize> {
         self.parents.get(ring).copied().flatten()
     }

@@ -87,8 +87,8 @@ impl Node {
         [side(s.from, c.from, c.to), side(s.to, c.to, c.from)]
     }
 
-    /// Returns whether the edge from a vertex of an operand goes into the other's inside; `None`
-    /// where the other does not pass here.
+    /// Returns whether the edge from a vertex of an operand goes into the other's inside; `None` if
+    /// the other does not pass here.
     pub fn inside(&self, k: usize, vertex: usize, grown: bool) -> Option<bool> {
         let x = self.passages[k].iter().find(|p| p.vertex == vertex)?.to;
         let rays = self.passages[1 - k].iter().flat_map(|p| [(p.to, true), (p.from, false)]);

@@ -2,7 +2,7 @@
 //!
 //! M. Shimrat, *Algorithm 112: Position of point relative to polygon*, Communications of the ACM 5(8), 1962, counts the
 //! edges that a ray to the right crosses; counted with their directions they give the winding number. Object space.
-//! Cost: O(n) for n edges. All decisions are exact, and points on the border are told as such.
+//! Cost: O(n) for n edges. All decisions are exact, and points on the border are reported as such.
 
 use super::{FillRule, Ring};
 use crate::info::{Class, Info, Occluder};

@@ -5,7 +5,7 @@ use crate::math::{DVec2, Rect};
 
 /// A closed curve of straight edges; the edge from the last point to the first is implied.
 ///
-/// Units and space are the caller's; orientation is told with y up.
+/// Units and space are the caller's; orientations are for y up.
 pub type Ring = [DVec2];
 
 /// Returns the shoelace sum: the signed area of a ring, positive where it runs counter-clockwise (y
@@ -52,7 +52,7 @@ impl<P> Shapes<P> {
         self.ring_ends.push(self.points.len());
     }
 
-    /// Ends the polygon being built; does nothing where it has no ring.
+    /// Ends the polygon being built; does nothing if it has no ring.
     pub fn end_polygon(&mut self) {
         if self.polygon_ends.last().copied().unwrap_or(0) < self.ring_ends.len() {
             self.polygon_ends.push(self.ring_ends.len());
@@ -79,14 +79,14 @@ impl<P> Shapes<P> {
         (0..self.ring_ends.len()).map(|i| self.ring(i))
     }
 
-    /// Returns the indices into [`Shapes::points`] of a ring; empty where there is no such ring.
+    /// Returns the indices into [`Shapes::points`] of a ring; empty if there is no such ring.
     pub fn ring_range(&self, index: usize) -> std::ops::Range<usize> {
         let Some(&end) = self.ring_ends.get(index) else { return 0..0 };
         let start = index.checked_sub(1).and_then(|i| self.ring_ends.get(i)).copied();
         start.unwrap_or(0)..end
     }
 
-    /// Returns a ring by its index over all polygons; empty where there is none.
+    /// Returns a ring by its index over all polygons; empty if there is none.
     pub fn ring(&self, index: usize) -> &[P] {
         self.points.get(self.ring_range(index)).unwrap_or_default()
     }
@@ -156,7 +156,7 @@ impl<P: Vertex> Shapes<P> {
 }
 
 impl Shapes {
-    /// Returns the smallest rectangle around all finite points; `None` where there is none.
+    /// Returns the smallest rectangle around all finite points; `None` if there is none.
     pub fn bounds(&self) -> Option<Rect> {
         Rect::around(self.points.iter().copied())
     }

@@ -48,7 +48,7 @@ pub struct Status {
 }
 
 impl Status {
-    /// For so many edges, none of them on the line.
+    /// For this many edges, none of them on the line.
     pub fn new(edges: usize) -> Self {
         Self { nodes: vec![Node { parent: NONE, children: [NONE; 2] }; edges], root: NONE }
     }

@@ -148,8 +148,8 @@ impl<H, V> Stage<H, V> {
     }
 }
 
-/// Returns the cut of an edge whose ends are on different sides of a border; none where one end is
-/// on it.
+/// Returns the cut of an edge whose ends are on different sides of a border; none if one end is on
+/// it.
 fn cut<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
     border: &H,
     (a, a_in): (V, bool),
@@ -290,7 +290,7 @@ impl<H, V> Pipeline<H, V> {
     }
 }
 
-/// Returns the part of a ring in a rectangle, as one ring; empty where there is none.
+/// Returns the part of a ring in a rectangle, as one ring; empty if there is none.
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a vertex with a NaN or infinite coordinate.
@@ -302,7 +302,7 @@ pub fn clip<V: Vertex<2>>(
     run(HalfPlane::of_rect(window), ring, t)
 }
 
-/// Returns the part of a ring in a convex polygon, as one ring; empty where there is none.
+/// Returns the part of a ring in a convex polygon, as one ring; empty if there is none.
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a vertex with a NaN or infinite coordinate.

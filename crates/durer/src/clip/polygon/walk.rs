@@ -80,7 +80,7 @@ fn reversed(shapes: &Shapes) -> Shapes {
     out
 }
 
-/// A listener that is told the caller's coordinates.
+/// A tracer that gets the caller's coordinates.
 pub(super) struct Scaled<'t, T> {
     to: &'t mut T,
     frame: Frame,

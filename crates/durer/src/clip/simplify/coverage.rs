@@ -43,7 +43,7 @@ pub const INFO: Info = Info {
 pub struct Options {
     /// Method that orders points.
     pub method: LineSimplifier,
-    /// Points of a larger weight are not looked at and weigh infinitely; infinite for all weights. In units of the
+    /// Points of a larger weight are ignored and weigh infinitely; infinite for all weights. In units of the
     /// coordinates. The time falls as it gets smaller.
     pub limit: f64,
 }
@@ -119,7 +119,7 @@ impl Coverage {
             LineSimplifier::Visvalingam => Measure::Area,
             LineSimplifier::DouglasPeucker => {
                 let weights = self.distances(&network, &links)?;
-                // What holds a closed line in place is no node of the network.
+                // What holds a closed line in place is not a node of the network.
                 for (link, weight) in links.0.iter_mut().zip(&weights) {
                     if weight.is_infinite() {
                         *link = [super::removal::NONE; 2];
@@ -186,7 +186,7 @@ impl Coverage {
     }
 }
 
-/// Lets a closed walk begin, and end, at a place that stays; where there is none, makes two.
+/// Lets a closed walk begin, and end, at a place that stays; if there is none, makes two.
 fn hold(walk: &mut Vec<u32>, weights: &mut [Option<f64>], places: &[DVec2]) {
     let stays = |i: &u32| weights[*i as usize] == Some(f64::INFINITY);
     let start = walk.iter().position(stays).or_else(|| {

@@ -115,7 +115,7 @@ fn divide(points: &[DVec2], tolerance: f64, mut found: impl FnMut(usize, f64)) {
 }
 
 /// Returns the first of the points between two that are farthest from the segment between these, and its
-/// squared distance; `None` where no point is between them.
+/// squared distance; `None` if no point is between them.
 fn farthest(points: &[DVec2], from: usize, to: usize) -> Option<(usize, f64)> {
     let (&a, &b) = (points.get(from)?, points.get(to)?);
     let between = points.get(from + 1..to)?;

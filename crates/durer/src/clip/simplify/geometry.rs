@@ -85,7 +85,7 @@ fn chains(geometry: &mut Geometry, f: &mut dyn FnMut(&mut Points, bool)) {
 /// Rings and lines that are left out because too little of them remains.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub struct Dropped {
-    /// Rings that enclose less than asked for.
+    /// Rings that enclose less than requested.
     pub small_rings: u64,
     /// Rings of fewer than three points and lines of fewer than two, as the input had them but for repeated points.
     pub degenerate: u64,
@@ -120,9 +120,9 @@ impl Dropped {
         line.len() > 1
     }
 
-    /// Counts and removes rings that enclose less than `least`, in squared units of the coordinates, and rings and lines
-    /// of too few points; a polygon goes with its outer ring. Returns the rest, `None` where there is none. A geometry
-    /// that was empty before stays.
+    /// Counts and removes rings that enclose less than `least`, in squared units of the coordinates, and rings and
+    /// lines of too few points; a polygon goes with its outer ring. Returns the rest, `None` if there is none. A
+    /// geometry that was empty before stays.
     pub fn left(&mut self, geometry: Geometry, least: f64) -> Option<Geometry> {
         if geometry.is_empty() {
             return Some(geometry);

@@ -93,7 +93,7 @@ fn check(points: &[DVec2], tolerance: f64) -> Result<()> {
     Ok(())
 }
 
-/// Returns a measure that is no number, because numbers overflowed on the way, as one that keeps
+/// Returns a measure that is not a number, because numbers overflowed on the way, as one that keeps
 /// the point.
 fn or_infinite(measure: f64) -> f64 {
     if measure.is_nan() { f64::INFINITY } else { measure }

@@ -12,7 +12,7 @@ pub struct Network {
     pub places: Vec<DVec2>,
     /// The place of each point, chain after chain.
     pub place_of: Vec<u32>,
-    /// The neighbours of places that are no nodes.
+    /// The neighbours of places that are not nodes.
     pub links: Links,
     /// Edges between two nodes, the smaller one first.
     pub direct: BTreeSet<[u32; 2]>,

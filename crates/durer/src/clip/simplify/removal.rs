@@ -168,8 +168,8 @@ fn is_current(now: &[f64], &(bits, point): &Entry) -> bool {
 const GONE: f64 = -1.0;
 
 impl<G: Guard> Removal<'_, G> {
-    /// Leaves out what it can; `told` hears of each point and its weight. Gives the weights, infinite for points
-    /// that stay.
+    /// Leaves out what it can; `told` is called with each point and its weight. Gives the weights, infinite for
+    /// points that stay.
     pub fn run(mut self, mut told: impl FnMut(usize, f64)) -> Vec<f64> {
         let count = self.places.len();
         let mut weights = vec![f64::INFINITY; count];

@@ -43,7 +43,7 @@ pub struct Options {
 /// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
-    /// The line has so many points.
+    /// The line has this many points.
     Begin {
         /// Number of points.
         points: usize,

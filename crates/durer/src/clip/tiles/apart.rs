@@ -1,14 +1,14 @@
 //! Rings on a grid that neither cross nor touch: they are valid polygons as they are, which costs a fraction of an
 //! overlay to find out.
 //!
-//! Edges are compared within horizontal slabs, in the order of their left ends. Which ring lies in which is told by the
-//! edges on the left of its leftmost point. Object space, exact; O(n √n) for n edges of usual data, and what
-//! would take longer is left to the overlay.
+//! Edges are compared within horizontal slabs, in the order of their left ends. The nesting of rings is found by the
+//! edges on the left of its leftmost point. Object space, exact; O(n √n) for n edges of usual data, and what would take
+//! longer is left to the overlay.
 
 use crate::clip::polygon::{FillRule, Shapes, Vertex};
 use crate::math::{I64Vec2, IVec2, Orientation};
 
-/// Coordinates have so many bits at most, so that products of their differences fit 64.
+/// Coordinates have this many bits at most, so that products of their differences fit 64.
 const BITS: u32 = 29;
 
 /// Limit on the ratio of entries in slabs to edges.
@@ -27,8 +27,8 @@ struct Edge {
     ring: u32,
 }
 
-/// Returns the points of a ring without those that are repeated, lie on a straight line, or are the tips of spikes: it encloses
-/// the same without them. Empty where nothing is left.
+/// Returns the points of a ring without those that are repeated, lie on a straight line, or are the tips of spikes: it
+/// encloses the same without them. Empty if nothing is left.
 pub fn cleaned(points: impl IntoIterator<Item = I64Vec2>) -> Vec<I64Vec2> {
     let mut ring: Vec<I64Vec2> = Vec::new();
     for p in points {
@@ -64,8 +64,8 @@ fn is_idle(a: I64Vec2, b: I64Vec2, c: I64Vec2) -> bool {
     a == b || b == c || Vertex::turn(a, b, c) == Orientation::Collinear
 }
 
-/// Returns the polygons that rings enclose by a rule, if no two of their edges have more in common than the vertex between
-/// them; `None` where some have, or it takes long to see. Outer rings have positive areas, holes negative ones.
+/// Returns the polygons that rings enclose by a rule, if no two of their edges have more in common than the vertex
+/// between them; `None` if some have, or it takes long to see. Outer rings have positive areas, holes negative ones.
 ///
 /// The rings are [`cleaned`].
 pub fn polygons(rings: &Shapes<I64Vec2>, fill: FillRule) -> Option<Shapes<I64Vec2>> {
@@ -155,7 +155,7 @@ struct Slabs {
 }
 
 impl Slabs {
-    /// `None` where the edges are too high and too many.
+    /// `None` if the edges are too high and too many.
     fn new(edges: Vec<Edge>) -> Option<Self> {
         let top = edges.iter().map(Edge::high).max()?;
         let mut count = (edges.len() / 16).isqrt() as i32 + 1;
@@ -236,7 +236,7 @@ impl Slabs {
 struct Nest {
     /// The leftmost point of each ring.
     first: Vec<IVec2>,
-    /// 1 where a ring has a positive area, −1 where it has a negative one.
+    /// 1 where a ring has a positive area, −1 if it has a negative one.
     turns: Vec<i32>,
     /// The rings around each, the innermost one last.
     around: Vec<Vec<u32>>,

@@ -43,7 +43,7 @@ impl<'a> Level<'a> {
 
     /// Returns the tiny polygons that a square replaces: those that fill it.
     fn squares(&self) -> Vec<bool> {
-        /// Polygons in one square of so many times the side count together.
+        /// Polygons in one square of this many times the side count together.
         const NEAR: f64 = 8.0;
         let side = self.tiny() / self.cells;
         let (mut squares, mut sums) = (Vec::new(), BTreeMap::<(usize, i64, i64), f64>::new());

@@ -1,8 +1,9 @@
 //! Tiles of web maps: the square of Web Mercator, halved on both axes per zoom level; tile 0/0/0 is
 //! the world, x counts to the east, y to the south.
 //!
-//! [`walk()`] goes down from the world to the tiles of one level and cuts what lies in them on the way;
-//! [`Tiling`] cuts geometries as they are; [`Pyramid`] makes of features what vector tiles have: simplified, on a grid of whole numbers, for many levels.
+//! [`walk()`] goes down from the world to the tiles of one level and cuts what is in them on the way; [`Tiling`] cuts
+//! geometries as they are; [`Pyramid`] makes of features what vector tiles have: simplified, on a grid of whole
+//! numbers, for many levels.
 
 mod apart;
 mod level;

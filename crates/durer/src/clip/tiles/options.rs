@@ -20,7 +20,8 @@ pub struct Options {
     /// pixel for tiles of 512. 0 leaves out only points on straight lines. The last level has all points.
     pub tolerance: f64,
     /// Polygons smaller than a square of this side, in cells, are left out; whenever those near to each other
-    /// are together as large, such a square stands for them. On the last level it is 1 at most; 0 leaves all in.
+    /// have the same area together, such a square replaces them. On the last level it is 1 at most; 0 leaves all
+    /// in.
     pub tiny: f64,
 }
 

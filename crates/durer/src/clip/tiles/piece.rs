@@ -117,8 +117,8 @@ impl Shape {
         }
     }
 
-    /// Returns a shape of a tile whose side has so many cells as a geometry in longitude and latitude; outer rings run
-    /// counter-clockwise.
+    /// Returns a shape of a tile whose side has this many cells as a geometry in longitude and latitude; outer rings
+    /// run counter-clockwise.
     pub fn in_degrees(&self, tile: Tile, extent: u32) -> Geometry {
         let side = 1.0 / f64::from(1u32 << tile.zoom);
         let corner = DVec2::new(tile.x.into(), tile.y.into());

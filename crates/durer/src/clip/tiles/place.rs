@@ -9,7 +9,7 @@ use crate::math::{DVec2, Rect};
 /// A geometry by kinds, and what is odd about it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Placed {
-    /// Its areas, lines and points, those that there are; none where it is far.
+    /// Its areas, lines and points, those that there are; none if it is far.
     pub bodies: Vec<Body>,
     /// True if it lies beyond all worlds.
     pub far: bool,
@@ -28,7 +28,7 @@ struct Way {
     short: bool,
 }
 
-/// Returns west, south, east and north of all features within the world, in degrees; `None` where there is no place.
+/// Returns west, south, east and north of all features within the world, in degrees; `None` if there is no place.
 pub fn extent(features: &[Feature]) -> Option<[f64; 4]> {
     let around = Rect::around(features.iter().flat_map(|f| f.body.points().iter().copied()))?;
     let (mut low, mut high) = (around.min(), around.max());

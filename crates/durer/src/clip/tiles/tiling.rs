@@ -126,8 +126,8 @@ impl Tiling {
         count(&contents(subjects), self.zoom, limit)
     }
 
-    /// Visits the tiles that something lies in, in the order of their numbers, each with the parts of the geometries and
-    /// their indices. What lies beyond 180 degrees comes in on the other side. See [`walk()`](super::walk()).
+    /// Visits the tiles that something lies in, in the order of their numbers, each with the parts of the geometries
+    /// and their indices. Geometry beyond 180 degrees is moved to the other side. See [`walk()`](super::walk()).
     ///
     /// # Errors
     /// Of the cuts, and what `take` says.

@@ -6,7 +6,7 @@ use crate::parallel;
 
 /// Something that lies in tiles, or a part of it.
 pub trait Content: Send + Sync + Sized {
-    /// Returns the parts in some tiles, which lie in the tile where this part comes from; `None` where
+    /// Returns the parts in some tiles, which lie in the tile where this part comes from; `None` if
     /// nothing is.
     ///
     /// # Errors
@@ -20,13 +20,13 @@ pub trait Content: Send + Sync + Sized {
     fn covers(&self, tile: Tile) -> bool;
 }
 
-/// Subtrees of so many levels are worked on at once by one thread, if they have no more than …
+/// Subtrees of this many levels are worked on at once by one thread, if they have no more than …
 const LEVELS: u8 = 2;
 
-/// … so many positions.
+/// … this many positions.
 const SIZE: usize = 1 << 16;
 
-/// Results of so many subtrees are held at once.
+/// Results of this many subtrees are held at once.
 const JOBS: usize = 32;
 
 type Open<C> = Vec<(Tile, Vec<C>)>;

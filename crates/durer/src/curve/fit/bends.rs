@@ -7,14 +7,14 @@ use std::f64::consts::PI;
 /// Larger turns are corners.
 const CORNER: f64 = PI / 6.0 + 1e-3;
 
-/// Like angles are no more than so many times each other: where a line goes over into an arc, the first turn
-/// is half of the others, and seen at an angle arcs turn unevenly.
+/// Like angles are no more than this many times each other: where a line goes over into an arc, the first
+/// turn is half of the others, and seen at an angle arcs turn unevenly.
 const LIKE: f64 = 3.2;
 
-/// A fold turns by less than so many times what its neighbours turn.
+/// A fold turns by less than this many times what its neighbours turn.
 const LITTLE: f64 = 0.5;
 
-/// A chord is not longer than so many times both of those beside it.
+/// A chord is not longer than this many times both of those beside it.
 const LENGTHS: f64 = 2.5;
 
 /// Number of turns in a row that make something round.
@@ -35,7 +35,7 @@ pub(super) struct Bends {
     pub turns: Vec<f64>,
     /// Largest distance of the curve from each chord.
     pub allowed: Vec<f64>,
-    /// True if a point is a fold; empty where none is.
+    /// True if a point is a fold; empty if none is.
     pub folds: Vec<bool>,
     /// Points at which pieces have to end, with the first and the last point.
     pub breaks: Vec<usize>,
@@ -90,8 +90,8 @@ impl Bends {
         (i + self.shift) % self.count()
     }
 
-    /// Begins a closed polyline at its first break or, where it has none, at the end of its longest chord, of those that
-    /// the curve may not leave where there are some: that is where a line between arcs ends.
+    /// Begins a closed polyline at its first break or, if it has none, at the end of its longest chord, of those that
+    /// the curve may not leave if there are some: that is where a line between arcs ends.
     pub fn started(self) -> Self {
         if !self.closed {
             return self;
@@ -192,7 +192,7 @@ fn regular(turns: &[f64], chords: &[f64], closed: bool) -> Vec<bool> {
         a * b > 0.0 && high <= low * LIKE && chords[i] <= before.max(after) * LENGTHS
     };
     let mut regular: Vec<bool> = (0..count).map(is_like).collect();
-    // A closed polyline is walked from where it is not regular.
+    // A closed polyline is walked from if it is not regular.
     let start = if closed { regular.iter().position(|r| !r).map_or(0, |i| i + 1) } else { 0 };
     let mut run: Vec<usize> = Vec::new();
     for k in 0..=count {

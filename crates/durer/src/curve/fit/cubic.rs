@@ -10,7 +10,7 @@ use crate::math::DVec2;
 /// Number of times that parameters are moved; more hardly ever helps.
 const ROUNDS: usize = 4;
 
-/// An error that is so many times too large is not mended by moving parameters.
+/// An error that is this many times too large is not mended by moving parameters.
 const HOPELESS: f64 = 6.0;
 
 /// The ways, of length 1, in which a curve leaves its start and comes to its end.
@@ -89,7 +89,7 @@ fn largest_error(points: &[DVec2], parameters: &[f64], curve: &[DVec2; 4]) -> f6
     errors.fold(0.0, f64::max).sqrt()
 }
 
-/// Newton's step towards the foot of each point on the curve; `None` where the points would not follow each other.
+/// Newton's step towards the foot of each point on the curve; `None` if the points would not follow each other.
 fn move_parameters(points: &[DVec2], parameters: &mut [f64], curve: &[DVec2; 4]) -> Option<()> {
     let [a, b, c, d] = *curve;
     let first = [b - a, c - b, d - c].map(|v| v * 3.0);

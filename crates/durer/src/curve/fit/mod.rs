@@ -57,11 +57,11 @@ pub struct Polyline<'a> {
     pub points: &'a [DVec2],
     /// True if the last point is joined to the first.
     pub closed: bool,
-    /// True if a point stays the end of a piece, for each point; where there are fewer, those beyond need not.
+    /// True if a point stays the end of a piece, for each point; if there are fewer, those beyond need not.
     pub kept: &'a [bool],
 }
 
-/// A fitted curve, and what it stands for.
+/// A fitted curve, and the points that it replaces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fitted {
     /// The curve.
@@ -74,7 +74,7 @@ pub struct Fitted {
 /// polyline gives a closed curve. `is_met` tells whether something ends on the chord between two points: such a chord
 /// stays within the tolerance, however round the polyline is.
 ///
-/// `None` where the polyline has fewer than two points, or one that is not finite.
+/// `None` if the polyline has fewer than two points, or one that is not finite.
 ///
 /// ```
 /// use durer::curve::fit::{Options, Polyline, fit};
@@ -176,7 +176,7 @@ fn through(arc: &Arc, start: DVec2, end: DVec2) -> Option<Arc> {
     (arc.center.is_finite() && arc.axis.is_finite()).then_some(arc)
 }
 
-/// Returns an arc that begins and ends where a run does: as it is where that is so but for rounding,
+/// Returns an arc that begins and ends where a run does: as it is if that is so but for rounding,
 /// else moved.
 fn joined(arc: Arc, run: &Run<'_>, tolerance: f64) -> Option<Arc> {
     let (first, last) = (arc.at(arc.start), arc.at(arc.start + arc.turn));

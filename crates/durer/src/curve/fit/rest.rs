@@ -13,7 +13,8 @@ const LEAST_CUBIC: usize = 3;
 /// The fewest chords that a line is for.
 const LEAST_LINE: usize = 2;
 
-/// A line is taken before a curve, and a circular arc before a cubic curve, that is no longer than so many times it.
+/// A line is taken before a curve, and a circular arc before a cubic curve, that is no longer than this many times
+/// it.
 const FURTHER: f64 = 1.25;
 
 /// Appends the pieces from one point to another, each with the index of the point in which it begins.

@@ -9,8 +9,8 @@ use std::f64::consts::PI;
 /// The fewest chords of an elliptical arc.
 const LEAST_ELLIPSE: usize = 6;
 
-/// An arc on which points lie exactly is taken where one to which they are near is no longer than so many times it:
-/// any curve is a circle for a short way.
+/// An arc on which points lie exactly is taken where one to which they are near is no longer than this many times
+/// it: any curve is a circle for a short way.
 const FURTHER: f64 = 1.6;
 
 /// An arc that turns so far is one, however far a near one goes.
@@ -56,7 +56,7 @@ fn exact_arcs(bends: &Bends, from: usize, to: usize) -> Vec<Found> {
 /// since from every point an almost straight polyline would take forever.
 const STEPS: usize = 16;
 
-/// Returns the longest exact arc from a point, where it is one rather than a short way of another curve; else
+/// Returns the longest exact arc from a point, if it is one rather than a short way of another curve; else
 /// over how many chords one would go.
 fn exact_arc(bends: &Bends, from: usize, to: usize) -> Result<Found, usize> {
     if !goes_round(bends, from) {

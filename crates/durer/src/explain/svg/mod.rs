@@ -39,7 +39,7 @@ pub fn svg(frame: &Frame, language: Language) -> String {
     out + "</svg>\n"
 }
 
-/// Draws frames side by side in rows of so many, each with its number and its caption.
+/// Draws frames side by side in rows of this many, each with its number and its caption.
 pub fn sheet(frames: &[Frame], columns: usize, language: Language) -> String {
     let columns = columns.min(frames.len()).max(1);
     let wide = frames

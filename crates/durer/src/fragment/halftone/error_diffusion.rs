@@ -106,7 +106,7 @@ pub fn dither(image: &Pixels<f32>, options: &Options, t: &mut impl Tracer<Step>)
             let error = value - of_level(level, steps);
             t.step(|| Step { pixel: [x as u32, y], value, level, error });
             levels.row_mut(y)[x] = level;
-            // The pixels before and behind in the direction of the row, where there are any.
+            // The pixels before and behind in the direction of the row, if there are any.
             let [next, last] = [
                 x.checked_add_signed(if backward { -1 } else { 1 }),
                 x.checked_add_signed(if backward { 1 } else { -1 }),

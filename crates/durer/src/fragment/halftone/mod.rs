@@ -13,7 +13,7 @@ fn light(value: f32) -> f32 {
     if value > 0.0 { value.min(1.0) } else { 0.0 }
 }
 
-/// Returns the light of a level, of so many steps.
+/// Returns the light of a level, of this many steps.
 fn of_level(level: u8, steps: u8) -> f32 {
     f32::from(level) / f32::from(steps)
 }

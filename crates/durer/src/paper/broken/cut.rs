@@ -23,7 +23,7 @@ struct Side<'a> {
     of: &'a ViewBreak,
     /// Position of the line on the axis.
     at: f64,
-    /// 1 where what lies above stays, −1 where what lies below does.
+    /// 1 where what is above stays, −1 where what lies below does.
     sign: f64,
     /// The zigzag: places along the line, and how far it swings off there.
     knots: [(f64, f64); 4],
@@ -31,7 +31,7 @@ struct Side<'a> {
     ends: [f64; 2],
 }
 
-/// Cuts a drawing at both lines of a break and moves what lies above.
+/// Cuts a drawing at both lines of a break and moves what is above.
 pub(super) fn cut(of: &ViewBreak, drawing: Drawing) -> Result<Drawing> {
     let Some(bounds) = drawing.bounds() else { return Ok(drawing) };
     let span = across(of, &drawing);

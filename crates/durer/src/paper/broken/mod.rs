@@ -1,4 +1,4 @@
-//! Broken views (ISO 128-3): what lies between two planes across an axis is left out, and the rest is moved together.
+//! Broken views (ISO 128-3): the part between two planes across an axis is left out, and the rest is moved together.
 
 mod cut;
 
@@ -149,7 +149,7 @@ struct ViewBreak {
 }
 
 impl ViewBreak {
-    /// By how much what lies beyond is moved.
+    /// By how much what is beyond is moved.
     fn shift(&self) -> f64 {
         self.to - self.from - self.gap
     }
@@ -210,7 +210,7 @@ impl ViewBreaks {
     /// # Errors
     /// [`Error::NonFinite`] for regions with a corner that is not finite.
     pub fn cut(&self, drawing: Drawing) -> Result<Drawing> {
-        // From the upper end on, as breaks move what lies above them only.
+        // From the upper end on, as breaks move what is above them only.
         self.0.iter().rev().try_fold(drawing, |drawing, b| cut::cut(b, drawing))
     }
 }

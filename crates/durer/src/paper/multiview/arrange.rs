@@ -15,14 +15,15 @@ use crate::{Error, Result};
 const GAP: f64 = 10.0;
 const GAP_OF_PARENT: f64 = 20.0;
 
-/// The paper where none is asked for: A4.
+/// The paper if none is requested: A4.
 const PAGE: Page = Page::Either(DVec2::new(210.0, 297.0));
 
 /// Number of smaller scales that are tried until all views have room: down to a ten-thousandth.
 const SMALLER: usize = 13;
 /// Halvings of the interval in which the largest scale is looked for.
 const HALVINGS: usize = 24;
-/// A sheet that is to be as large as its views need is made larger by this much, so many times at most.
+/// A sheet that is to be as large as its views need is made larger by this much, this many times at
+/// most.
 const GROWTH: f64 = 1.05;
 const MOST_GROWTHS: usize = 200;
 
@@ -43,7 +44,7 @@ pub struct Arranged {
     pub scale: f64,
     /// By view.
     pub places: Vec<Place>,
-    /// The list of parts, where there is one, and its lower right corner.
+    /// The list of parts, if there is one, and its lower right corner.
     pub list: Option<(Shape, DVec2)>,
 }
 
@@ -54,7 +55,7 @@ struct Room {
     list: Option<(Shape, DVec2)>,
 }
 
-/// Finds the page, the way round that gives the larger scale, and the largest scale that is asked for at which
+/// Finds the page, the way round that gives the larger scale, and the largest scale that is requested at which
 /// all views have room.
 pub fn arrange(contents: &Contents, options: &Options) -> Result<Arranged> {
     let free = matches!((options.page, options.scale), (Page::Fit, Scale::Fit | Scale::Standard));

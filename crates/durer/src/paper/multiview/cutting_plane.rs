@@ -45,7 +45,7 @@ pub fn put(
 struct Trace {
     /// Ends of the line in the drawing, on the sheet.
     ends: [DVec2; 2],
-    /// The direction in which the section is looked at, on the sheet; unit length.
+    /// The direction in which the section is examined, on the sheet; unit length.
     sight: DVec2,
 }
 

@@ -27,9 +27,9 @@ use marks::Annotator;
 /// On which side of the front view the others stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Angle {
-    /// The view from the right stands on the left, that from above beneath.
+    /// The right view is on the left, the top view below.
     First,
-    /// The view from the right stands on the right, that from above on top.
+    /// The right view is on the right, the top view above.
     #[default]
     Third,
 }
@@ -100,7 +100,7 @@ pub struct Contents<'a> {
     pub views: &'a [SheetView<'a>],
     /// Numbers of parts around views.
     pub callouts: &'a [Callout],
-    /// The list of parts, which stands on the title block, or in its place; nothing for none.
+    /// The list of parts, which is above the title block, or in its place; `None` for none.
     pub parts: &'a [PartsListRow],
     /// Title block; without one there is no frame either.
     pub title: Option<&'a TitleBlock>,

@@ -23,7 +23,7 @@ const TEXT: f64 = 2.5;
 /// Widths of the columns for numbers and quantities, and of that for names at least and at most.
 const NUMBER: f64 = 12.0;
 const NAME: (f64, f64) = (45.0, 90.0);
-/// Below the views a list of so many rows is not divided.
+/// Below the views a list of this many rows is not divided.
 const HIGH: usize = 12;
 /// Space between a border and letters.
 const PAD: f64 = 1.6;

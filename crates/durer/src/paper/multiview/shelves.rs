@@ -28,7 +28,7 @@ pub struct Shelved {
 const SLACK: f64 = 1e-6;
 
 /// Puts the further views on shelves below the principal ones, or, `beside`, in columns right of them; `None`
-/// where there is no room.
+/// if there is no room.
 pub fn shelved(load: &Load, room: DVec2, beside: bool) -> Option<Shelved> {
     let turn = |p: DVec2| if beside { DVec2::new(p.y, p.x) } else { p };
     let others: Vec<DVec2> = load.others.iter().map(|p| turn(*p)).collect();
@@ -70,7 +70,7 @@ fn height(shelf: &[usize], sizes: &[DVec2]) -> f64 {
     shelf.iter().map(|&i| sizes[i].y).fold(0.0, f64::max)
 }
 
-/// Fills shelves in order; `None` where one thing is too long for any.
+/// Fills shelves in order; `None` if one thing is too long for any.
 fn filled(sizes: &[DVec2], length: f64, gap: f64) -> Option<Vec<Vec<usize>>> {
     let mut shelves: Vec<Vec<usize>> = Vec::new();
     let mut used = f64::INFINITY;

@@ -16,7 +16,7 @@ pub struct Ends {
     turns: Vec<Turn>,
     /// By end.
     points: Vec<DVec2>,
-    /// The nearest ends of other strokes, up to so many an end, the nearest first.
+    /// The nearest ends of other strokes, up to this many an end, the nearest first.
     near: Vec<End>,
     /// Start of each end's list; one more than there are ends.
     firsts: Vec<u32>,

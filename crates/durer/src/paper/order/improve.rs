@@ -182,8 +182,8 @@ impl Way {
         true
     }
 
-    /// Moves the row of so many strokes at `first` behind the stroke at the place `after`, reversed if told;
-    /// `false` where that is too far.
+    /// Moves the row of this many strokes at `first` behind the stroke at the place `after`, reversed if
+    /// told; `false` where that is too far.
     fn shift(&mut self, first: usize, length: usize, after: usize, reversed: bool) -> bool {
         let count = self.sequence.len();
         let mut row: Vec<End> = (0..length).map(|i| self.at(first + i)).collect();

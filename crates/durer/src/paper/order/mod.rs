@@ -122,7 +122,7 @@ fn meet(last: &Stroke, next: &Stroke) -> bool {
 
 /// Orders the marks of a sheet, layer by layer, for pens that draw one layer after another: within a layer
 /// each pen is taken once, for strokes and then for texts, which stay in one piece. Strokes with dashes are
-/// not joined, and layers with fills stay as they are, for what comes later covers what is there.
+/// not joined, and layers with fills stay as they are, because what comes later covers what is there.
 pub fn sheet(sheet: &mut Sheet) {
     let solid: Vec<bool> = sheet.pens.iter().map(|p| p.dashes.is_empty()).collect();
     let mut at = DVec2::ZERO;

@@ -131,7 +131,7 @@ pub struct Nearest {
 }
 
 impl Nearest {
-    /// Room for so many.
+    /// Room for this many.
     pub fn new(most: usize) -> Self {
         Self { list: Vec::with_capacity(most + 1), most }
     }

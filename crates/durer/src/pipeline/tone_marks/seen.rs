@@ -118,7 +118,7 @@ impl Seen {
         self.pixel(x, y).is_some_and(Pixel::is_seen).then_some((x, y))
     }
 
-    /// Returns the lightness at a point; `None` where no surface is.
+    /// Returns the lightness at a point; `None` if no surface is.
     pub fn tone(&self, p: DVec2) -> Option<f64> {
         let (x, y) = self.around(p)?;
         self.pixel(x, y).map(|pixel| f64::from(pixel.tone))

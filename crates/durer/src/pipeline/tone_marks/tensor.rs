@@ -21,7 +21,7 @@ impl Tensor {
         Self([of(0, 0), of(0, 1), of(0, 2), of(1, 1), of(1, 2), of(2, 2)].map(|v| v as f32))
     }
 
-    /// Returns the sum with so many times another.
+    /// Returns the sum with this many times another.
     pub fn plus(self, other: Self, times: f32) -> Self {
         Self(std::array::from_fn(|k| self.0[k] + times * other.0[k]))
     }

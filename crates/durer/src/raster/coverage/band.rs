@@ -16,8 +16,8 @@ use super::{FillRule, Options, Overlap};
 use crate::curve::Contours;
 use crate::raster::bands::{BAND_ROWS, CHUNK, Chunk, Edges};
 
-/// Convex paths with so many edges are filled without cells; with more, finding the two that cross a row costs more than
-/// cells do.
+/// Convex paths with this many edges are filled without cells; with more, finding the two that cross a row costs more
+/// than cells do.
 const SIMPLE: usize = 3;
 /// The edges of one path and which of them each band needs.
 #[derive(Debug)]

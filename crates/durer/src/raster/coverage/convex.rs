@@ -31,8 +31,8 @@ pub(crate) struct Strip {
 }
 
 impl Strip {
-    /// Creates the strip with these corners; `None` where it is not thin, not convex or not inside a target
-    /// of the given size.
+    /// Creates the strip with these corners; `None` if it is not thin, not convex or not inside a target of
+    /// the given size.
     pub fn new(corners: [DVec2; 4], width: u32, height: u32) -> Option<Self> {
         let size = DVec2::new(f64::from(width), f64::from(height));
         let inside = |p: &DVec2| p.cmpge(DVec2::ZERO).all() && p.cmple(size).all();

@@ -40,7 +40,7 @@ pub(crate) struct Steps {
 }
 
 impl Steps {
-    /// x at the border so many rows below the first one, 32.32.
+    /// x at the border this many rows below the first one, 32.32.
     #[inline(always)]
     pub fn at(&self, rows: i32) -> i64 {
         (i64::from(self.crossing) << BITS) + self.slope.wrapping_mul(i64::from(rows))

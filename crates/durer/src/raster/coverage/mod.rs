@@ -7,13 +7,12 @@
 //! two bits per pixel and resolved exactly, and an edge gives the same integers whichever of its two
 //! faces it is drawn for, so a partition's areas add up to exactly one.
 //!
-//! Class: image space. Cost: O(pixels crossed by edges + pixels touched); rows are worked on in bands,
-//! which are the parallel task. Limits: sides of at most 32,767 pixels; winding numbers beyond ±32,767 wrap
-//! around; pixels crossed by more than 24 edges are measured along 16 to 256 lines; unless [`Overlap::Exact`] is asked
-//! for, bands of noise take the integral of the winding number for the area: those of more than 256 edges, short ones
-//! that cross each other in more than a fifth of what they touch. To resolve those too takes twelve times as long (a
-//! random walk of 10⁵ steps at 2048²: 180 ms instead of 15).
-//! Where a contour starts and which way it runs changes nothing.
+//! Class: image space. Cost: O(pixels crossed by edges + pixels touched); rows are worked on in bands, which are the
+//! parallel task. Limits: sides of at most 32,767 pixels; winding numbers beyond ±32,767 wrap around; pixels crossed
+//! by more than 24 edges are measured along 16 to 256 lines; unless [`Overlap::Exact`] is requested, bands of noise
+//! take the integral of the winding number for the area: those of more than 256 edges, short ones that cross each
+//! other in more than a fifth of what they touch. To resolve those too takes twelve times as long (a random walk of
+//! 10⁵ steps at 2048²: 180 ms instead of 15). Where a contour starts and which way it runs changes nothing.
 
 pub(crate) mod band;
 pub(crate) mod cells;
@@ -113,7 +112,7 @@ pub const INFO: Info = Info {
 /// Returns the coverage 0 … 255 of every pixel of a `width` × `height` target by the outline, whose
 /// contours count as closed; coordinates in pixels, y down.
 ///
-/// Points that are not finite are left out; what lies outside the target is clipped. The error is that
+/// Points that are not finite are left out; what is outside the target is clipped. The error is that
 /// of rounding to 8 bits, plus 2⁻¹⁷ of a pixel per edge through it.
 ///
 /// # Errors

@@ -34,7 +34,7 @@ impl Extent {
         self.cut |= other.cut;
     }
 
-    /// Returns the first row touched and one past the last, not larger where there are none; first and last
+    /// Returns the first row touched and one past the last, not larger if there are none; first and last
     /// pixel touched.
     pub fn pixels(&self) -> [(i32, i32); 2] {
         if self.low.0 > self.high.0 {
@@ -70,7 +70,7 @@ pub(super) fn size(width: u32, height: u32) -> DVec2 {
     DVec2::new(f64::from(width.min(MAX_SIDE)), f64::from(height.min(MAX_SIDE)))
 }
 
-/// Returns the edges of so many points at once; how many changes nothing in them.
+/// Returns the edges of this many points at once; how many changes nothing in them.
 pub(super) fn chunks(
     contours: &Contours,
     size: DVec2,

@@ -12,7 +12,7 @@ use crate::raster::bands::BAND_ROWS;
 pub(super) const ROOM: usize = 128;
 /// An edge adds one for each row of a band at most.
 const FULL: usize = ROOM - BAND_ROWS as usize;
-/// Places of a list: eight are written at a time, whether so many are meant or not.
+/// Places of a list: eight are written at a time, whether this many are meant or not.
 const PLACES: usize = ROOM + 8;
 
 /// The edge goes upwards in its path.
@@ -71,7 +71,8 @@ impl Parts {
         self.count > FULL
     }
 
-    /// Adds what an edge does in the rows of the band whose first row is `top`; a row has so many cells.
+    /// Adds what an edge does in the rows of the band whose first row is `top`; a row has this many
+    /// cells.
     ///
     /// Edges of several rows are added eight rows at a time, the first and the last among them: to guess how long an edge
     /// is costs more than rows that are not meant.

@@ -16,13 +16,13 @@ use crate::raster::bands::BAND_ROWS;
 const ALL: Limits = Limits { exact: 24, measured: u32::MAX, measures: 6144, lines: (16, 256) };
 /// The same in noise that is to be measured.
 const IN_NOISE: Limits = Limits { exact: 4, measured: 32, measures: 512, lines: (16, 64) };
-/// A band with at most so many edges is resolved, whatever it shows: that takes no long time, and in small drawings
-/// each pixel is looked at.
+/// A band with at most this many edges is resolved, whatever it shows: that takes no long time, and in small
+/// drawings each pixel is examined.
 const FEW_EDGES: u32 = 256;
 /// Number of shared pixels, two in a row on average, above which another band's content counts as noise as
 /// well,
 const FEW_SHARED: u32 = 2 * BAND_ROWS as u32;
-/// more than one in so many of the touched ones,
+/// more than one in this many of the touched ones,
 const OFTEN: u32 = 5;
 /// and so few of them for each edge that they do not come from long edges side by side.
 const PER_EDGE: u32 = 4;
@@ -34,13 +34,13 @@ const NONE: u32 = u32::MAX;
 /// Limits of resolving pixels.
 #[derive(Debug, Clone, Copy)]
 struct Limits {
-    /// Up to so many pieces exactly,
+    /// Up to this many pieces exactly,
     exact: usize,
-    /// with up to so many along lines; those of more keep the integral's answer.
+    /// with up to this many along lines; those of more keep the integral's answer.
     measured: u32,
     /// Number of measures for all pieces together,
     measures: usize,
-    /// and at least and at most so many.
+    /// and at least and at most this many.
     lines: (usize, usize),
 }
 
@@ -249,7 +249,7 @@ impl Resolver {
         }
     }
 
-    /// Returns the covered area of one pixel; `None` where the integral already tells.
+    /// Returns the covered area of one pixel; `None` if the integral is enough.
     fn area(&mut self, pixel: Shared, sum: i32, rule: FillRule) -> Option<f64> {
         // Each piece changes the winding number by one, so it has one sign all over the pixel where its
         // mean is so far from zero.
@@ -380,7 +380,7 @@ fn push_segments(piece: &Piece, out: &mut Vec<Segment>) {
     }
 }
 
-/// Heights between which a pixel with so many segments is measured in the middle, from 0 to 1.
+/// Heights between which a pixel with this many segments is measured in the middle, from 0 to 1.
 fn lines(segments: usize, limits: &Limits, cuts: &mut Vec<f64>) {
     let count = (limits.measures / segments).clamp(limits.lines.0, limits.lines.1);
     cuts.clear();

@@ -1,4 +1,4 @@
-//! Small convex outlines: all pixels around them are summed, so nobody need remember which ones edges have touched.
+//! Small convex outlines: all pixels around them are summed, so touched pixels need not be remembered.
 //!
 //! The same integers as in [`super::cells`], added up almost without branches: a steep edge in eight rows at once, a flat
 //! one row by row, eight pixels at once.
@@ -25,7 +25,7 @@ const LIMIT: i32 = ((WIDEST + 1) << BITS) - 1;
 /// A row of cells, as in [`super::cells`].
 type Row = [i32; CELLS];
 
-/// The cells of a band, and some rows more than it has, for they are added several at a time.
+/// The cells of a band, and some rows more than it has, because they are added several at a time.
 #[derive(Debug)]
 pub(super) struct SmallCells {
     rows: Vec<Row>,

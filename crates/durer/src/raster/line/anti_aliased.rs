@@ -170,7 +170,7 @@ pub fn outline(from: DVec2, to: DVec2, width: f64) -> Contours {
     corners(from, to, width).map_or_else(Contours::new, Contours::polygon)
 }
 
-/// Returns the corners of that outline, around; `None` where it is empty.
+/// Returns the corners of that outline, around; `None` if it is empty.
 pub(crate) fn corners(from: DVec2, to: DVec2, width: f64) -> Option<[DVec2; 4]> {
     let along = to - from;
     let length = along.length();

@@ -65,8 +65,8 @@ pub struct Step {
     pub across: f64,
     /// Bresenham's E at this pixel, 2Δy − Δx at the first one: twice the distance, times Δx, from the point midway
     /// between the two pixels that may come next to the line. Where it is positive the next pixel lies one further
-    /// across and 2Δy − 2Δx is added, where it is negative it lies straight on and 2Δy is added; where it is zero
-    /// the smaller coordinate across decides.
+    /// across and 2Δy − 2Δx is added, where it is negative it lies straight on and 2Δy is added; if it is zero the
+    /// smaller coordinate across decides.
     pub e: i64,
 }
 
@@ -93,7 +93,7 @@ struct Course {
     sign: i64,
     /// True if the caller's line runs the other way.
     swapped: bool,
-    /// The steps to take, both included; empty where `first > last`.
+    /// The steps to take, both included; empty if `first > last`.
     first: i64,
     last: i64,
 }
@@ -174,7 +174,7 @@ impl Course {
         ((wanted + twice - 1) / twice).clamp(0, i128::from(self.steps) + 1) as i64
     }
 
-    /// Tells a listener of all pixels, in the caller's direction.
+    /// Tells a tracer of all pixels, in the caller's direction.
     fn report(&self, t: &mut impl Tracer<Step>) {
         for step in self.first..=self.last {
             t.step(|| {

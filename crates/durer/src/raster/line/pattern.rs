@@ -32,7 +32,7 @@ pub const INFO: Info = Info {
 pub enum Pen {
     /// Pixels across the longer axis, replicated: columns of flat lines, rows of steep ones.
     Replicated(u32),
-    /// A square of so many pixels each way. Pixels may be plotted several times.
+    /// A square of this many pixels each way. Pixels may be plotted several times.
     Square(u32),
 }
 
@@ -43,7 +43,7 @@ pub struct Options {
     pub pen: Pen,
     /// 16 bits, of which the lowest is used first: the pen is down where they are 1.
     pub pattern: u16,
-    /// Each bit counts for so many steps; 0 is taken as 1.
+    /// Each bit counts for this many steps; 0 is taken as 1.
     pub repeat: u32,
     /// Step of the pattern at which the line begins.
     pub offset: u64,

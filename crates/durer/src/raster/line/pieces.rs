@@ -11,7 +11,7 @@ pub(super) const AT_ONCE: usize = 8;
 pub(super) const TILE_BITS: u32 = 7;
 /// Pixels of a tile.
 pub(super) const PIXELS: usize = 1 << (2 * TILE_BITS);
-/// Short lines have at most so many steps.
+/// Short lines have at most this many steps.
 pub(super) const SHORT: u32 = 511;
 /// Bits of the distance across below the pixel: as 8 · steps · (steps + 1) < 2²¹ it comes out exact.
 const BITS: u32 = 21;

@@ -41,8 +41,8 @@ const AHEAD: usize = 2;
 const FEW: usize = 24;
 /// Bits of the distance across below the pixel.
 const BITS: u32 = 40;
-/// Lines with up to so many steps are followed in binary fractions; as 2 · steps · (steps + 1) < 2³⁹ they come out
-/// exact.
+/// Lines with up to this many steps are followed in binary fractions; as 2 · steps · (steps + 1) < 2³⁹ they come
+/// out exact.
 const EXACT_STEPS: i64 = 1 << 19;
 
 /// A line between two pixels, both included, and what it leaves there.
@@ -61,7 +61,7 @@ pub struct Line<T> {
 pub struct Step<T> {
     /// First and last pixel of the tile, both included; tiles at the target's border end with it.
     pub tile: (IVec2, IVec2),
-    /// The line; what lies outside the tile is drawn elsewhere.
+    /// The line; what is outside the tile is drawn elsewhere.
     pub line: Line<T>,
 }
 

@@ -57,7 +57,8 @@ pub(super) fn render<'a, P: Space>(
     target.data_mut().chunks_mut(rows_per_band).enumerate().for_each(|b| paint(&mut painter, b));
 }
 
-/// Lines are fetched so many at a time: they lie far apart in memory, and so are waited for together.
+/// Lines are fetched this many at a time: they lie far apart in memory, and so are waited for
+/// together.
 const AT_ONCE: usize = 16;
 
 /// Work to do in a band.
@@ -116,7 +117,7 @@ impl<'a, P: Space> Painter<'a, P> {
         }
     }
 
-    /// Charges a buffer that is made; returns whether it fits, and stops the work where it does not.
+    /// Charges a buffer that is made; returns whether it fits, and stops the work if it does not.
     fn hold(&mut self, bytes: usize) -> bool {
         self.charge.grow(bytes as u64).map_err(|error| self.canvas.work.stop(error)).is_ok()
     }
@@ -358,7 +359,7 @@ fn clear<S: Simd>(_simd: S, pixels: &mut [Color], color: Color) {
     fill(pixels, color);
 }
 
-/// Sets pixels; those in the middle perhaps twice, for then there are few lengths to be told apart.
+/// Sets pixels; those in the middle perhaps twice, because then there are few distinct lengths.
 #[inline(always)]
 fn fill<P: Copy>(pixels: &mut [P], color: P) {
     match pixels.len() {
@@ -378,7 +379,7 @@ fn fill<P: Copy>(pixels: &mut [P], color: P) {
     }
 }
 
-/// Sets the first and the last so many pixels.
+/// Sets the first and the last this many pixels.
 #[inline(always)]
 fn fill_ends<P: Copy, const COUNT: usize>(pixels: &mut [P], color: P) {
     if let Some(first) = pixels.first_chunk_mut::<COUNT>() {

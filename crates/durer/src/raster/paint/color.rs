@@ -275,7 +275,7 @@ fn div255_half<S: Simd>(simd: S, x: u16x8<S>) -> u16x8<S> {
     (x + (x >> 8)) >> 8
 }
 
-/// A pixel of linear light in 16 bits, premultiplied; a type of its own, for it is not sRGB.
+/// A pixel of linear light in 16 bits, premultiplied; a type of its own, because it is not sRGB.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Linear([u16; 4]);
 

@@ -16,7 +16,7 @@ pub(super) struct Line {
     pub opacity: f32,
 }
 
-/// The bit that tells the number of a line from that of a command.
+/// The bit that distinguishes the number of a line from that of a command.
 const LINE: u32 = 1 << 31;
 
 /// Something to do in a band.

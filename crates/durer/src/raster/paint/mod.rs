@@ -312,7 +312,7 @@ impl Canvas {
         Ok(outline)
     }
 
-    /// Takes memory for a while; where it does not fit the work is stopped.
+    /// Takes memory for a while; if it does not fit the work is stopped.
     fn hold(&self, bytes: u64) -> Result<Charge> {
         self.work.charge(NOTED, bytes).inspect_err(|error| self.work.stop(error.clone()))
     }

@@ -125,7 +125,7 @@ pub(crate) struct Ramp<P> {
     gradient: Arc<Gradient>,
     paint_from_pixel: DAffine2,
     opacity: f64,
-    /// Colours at equal steps of the parameter; `None` where they change too fast for a table.
+    /// Colours at equal steps of the parameter; `None` if they change too fast for a table.
     colors: Vec<Option<P>>,
 }
 
@@ -173,7 +173,7 @@ pub(crate) struct Image {
     opacity: f64,
 }
 
-/// Returns an opacity 0 … 1; what is no number is 1.
+/// Returns an opacity 0 … 1; what is not a number is 1.
 pub(super) fn opacity(opacity: f64) -> f64 {
     if opacity.is_finite() { opacity.clamp(0.0, 1.0) } else { 1.0 }
 }
@@ -239,7 +239,7 @@ impl<P: Space> Source<P> {
 
 /// Returns the centres of eight pixels of row `y` from column `x` on, mapped. Steps begin at every eighth
 /// column, so that where a pixel's centre comes to lie does not depend, in its last bits, on the pixels that
-/// are asked for with it.
+/// are requested with it.
 fn centers(map: &DAffine2, x: usize, y: usize) -> impl Iterator<Item = DVec2> {
     let step = map.matrix2.x_axis;
     let begin = x & !7;
@@ -263,7 +263,7 @@ fn stop_color(stops: &[(f64, Color)], t: f64) -> [f64; 4] {
     std::array::from_fn(|i| f64::from(c0[i]) + (f64::from(c1[i]) - f64::from(c0[i])) * share)
 }
 
-/// Returns the gradient's parameter at a point; `None` where no circle passes through it.
+/// Returns the gradient's parameter at a point; `None` if no circle passes through it.
 fn parameter(shape: &Shape, p: DVec2) -> Option<f64> {
     match *shape {
         Shape::Linear { start, end } => {
@@ -299,7 +299,7 @@ fn spread_over(spread: Spread, t: f64) -> f64 {
     }
 }
 
-/// Returns the column or row of an image of `n` that stands at place `at`.
+/// Returns the column or row, of `n` of an image, at `at`.
 fn within(at: i64, n: i64, pattern: &Pattern) -> Option<u32> {
     let at = match pattern.spread {
         None if (0..n).contains(&at) => at,
@@ -349,7 +349,8 @@ fn bilinear(pattern: &Pattern, p: DVec2) -> Mixture {
 
 fn area(pattern: &Pattern, p: DVec2, image_from_pixel: &DAffine2) -> [f64; 4] {
     let size = DVec2::new(pattern.image.width().into(), pattern.image.height().into());
-    // Repeated images are so common, and have so many points, that places in them are found without division.
+    // Repeated images are so common, and have this many points, that places in them are found without
+    // division.
     let (again, per_size) = (pattern.spread == Some(Spread::Repeat), size.recip());
     let mut sum = Mixture::default();
     for part in 0..64 {

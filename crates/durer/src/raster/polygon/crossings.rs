@@ -226,7 +226,7 @@ impl CrossingFiller {
         }
     }
 
-    /// Lists the crossings of each row; `false` where there are too many.
+    /// Lists the crossings of each row; `false` if there are too many.
     #[inline(never)]
     fn list(&mut self, path: Path<'_>, top: i32) -> bool {
         let Self { counts, lists, width, .. } = self;

@@ -63,7 +63,7 @@ pub enum Step {
         /// As it is in this row.
         edge: Edge,
     },
-    /// Edges that end above this row leave the table; so many stay.
+    /// Edges that end above this row leave the table; this many stay.
     Leave {
         /// Row.
         y: i32,
@@ -109,7 +109,7 @@ pub struct Edge {
 
 impl Edge {
     /// Creates the edge between two snapped points, set up for row `top` or its first one below; `None`
-    /// where it crosses no row's centres.
+    /// if it crosses no row's centres.
     fn new(a: (i32, i32), b: (i32, i32), top: i32) -> Option<Self> {
         let (upper, lower, winding) = if a.1 <= b.1 { (a, b, 1) } else { (b, a, -1) };
         let first = first_center(upper.1).max(top);

@@ -1,11 +1,10 @@
 //! Seed fills: from one pixel to all that are connected with it and belong together.
 //!
-//! A flood fill takes the pixels that are like the seed, a boundary fill those that are not like a
-//! boundary. The naive form keeps a stack of pixels; the span form takes whole runs of a row and looks for
-//! runs in the rows above and below (A. R. Smith, *Tint fill*, SIGGRAPH 1979; P. Heckbert, *A seed fill
-//! algorithm*, Graphics Gems, 1990). A listener sees that; where nobody listens the runs are those of 64 pixels at a
-//! time, row after row away from the seed, and only what lies behind a turn of the region is kept on a stack. All fill
-//! the same set; none recurses.
+//! A flood fill takes the pixels that are like the seed, a boundary fill those that are not like a boundary. The naive
+//! form keeps a stack of pixels; the span form takes whole runs of a row and looks for runs in the rows above and
+//! below (A. R. Smith, *Tint fill*, SIGGRAPH 1979; P. Heckbert, *A seed fill algorithm*, Graphics Gems, 1990). A
+//! tracer sees that; without one the runs are those of 64 pixels at a time, row after row away from the seed, and only
+//! what is behind a turn of the region is kept on a stack. All fill the same set; none recurses.
 //!
 //! Class: image space. Cost: O(n) for n filled pixels; the naive form touches each up to eight times.
 
@@ -34,7 +33,7 @@ pub struct Options {
     /// Neighbourhood of pixels.
     pub connectivity: Connectivity,
     /// For [`boundary_fill`]: whether pixels that have the new value already stop it, too, as is taught
-    /// (`current ≠ boundary and current ≠ fill`). Then what lies behind them is not reached.
+    /// (`current ≠ boundary and current ≠ fill`). Then what is behind them is not reached.
     pub stop_at_value: bool,
 }
 
@@ -298,7 +297,7 @@ pub fn fill_where<P: Copy>(
     found
 }
 
-/// Tells a listener of the run of the seed; says whether there is one.
+/// Tells a tracer of the run of the seed; says whether there is one.
 fn listens<P: Copy>(
     image: &Pixels<P>,
     (x, y): (u32, u32),
@@ -341,7 +340,7 @@ fn naive(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer
     found
 }
 
-/// A listener has been told of the first run.
+/// The first run has been reported.
 fn spans(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer<Step>) -> u64 {
     let reach = usize::from(eight);
     let first = region.take_run(seed.1 as usize, seed.0 as usize);

@@ -11,7 +11,7 @@ pub(super) struct Region {
     /// Words of a row.
     pub words: usize,
     pub open: Vec<u64>,
-    /// The rows that have been looked at.
+    /// The rows that have been examined.
     known: Range<usize>,
 }
 
@@ -117,7 +117,7 @@ pub(super) fn read_row<P: Copy>(
 /// Returns one bit for each of at most 64 pixels.
 #[inline(always)]
 fn bits<P: Copy>(pixels: &[P], inside: &impl Fn(P) -> bool) -> u64 {
-    // Bytes first, for those are compared many at a time.
+    // Bytes first, because those are compared many at a time.
     let mut flags = [0_u8; 64];
     if let Some(whole) = pixels.first_chunk::<64>() {
         flags = whole.map(|pixel| u8::from(inside(pixel)));
@@ -173,7 +173,7 @@ fn paint_word<P: Copy>(pixels: &mut [P], word: u64, value: P) {
     if word == 0 {
         return;
     }
-    // Each bit in its own byte, for bytes are looked at many at a time.
+    // Each bit in its own byte, because bytes are examined many at a time.
     let mut taken = [0_u8; 64];
     for (i, eight) in taken.as_chunks_mut::<8>().0.iter_mut().enumerate() {
         let byte = (word >> (8 * i)) & 255;

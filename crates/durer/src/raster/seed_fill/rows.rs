@@ -1,7 +1,7 @@
-//! Seed fill where nobody listens: row by row away from the seed, then word by word what that leaves.
+//! Seed fill without a tracer: row by row away from the seed, then word by word for the rest.
 //!
 //! Most of a region lies straight below or above what is already reached. So one pass goes down from the seed and
-//! one up: each row is looked at, filled and left while it is in the cache. What lies behind a turn of the region
+//! one up: each row is examined, filled and left while it is in the cache. What lies behind a turn of the region
 //! waits as seeds in the rows that have been passed, and is followed by words ([`super::words`]).
 
 use super::region::{Region, paint, read_row};

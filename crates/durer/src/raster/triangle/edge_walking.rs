@@ -46,7 +46,7 @@ pub enum Step {
         /// Last row, exclusive.
         y1: i32,
     },
-    /// Both edges reached a row; empty where `left ≥ right`.
+    /// Both edges reached a row; empty if `left ≥ right`.
     Row {
         /// Row.
         y: i32,
@@ -94,7 +94,7 @@ pub fn rasterize(
     }
 }
 
-/// The two bounds of a triangle followed downwards by whoever holds many triangles at a time.
+/// The two bounds of a triangle, followed downwards, for callers with many triangles at a time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RowWalk {
     left: Walk,
@@ -106,7 +106,7 @@ pub(crate) struct RowWalk {
 }
 
 impl RowWalk {
-    /// Begins at the first row that is not above `y`; `None` where there is none.
+    /// Begins at the first row that is not above `y`; `None` if there is none.
     pub fn start(triangle: &SnappedTriangle, y: i32) -> Option<(Self, i32)> {
         let [upper, lower] = Chains::new(triangle)?.halves();
         let y = y.max(upper.y0);
@@ -118,7 +118,7 @@ impl RowWalk {
         Some((Self { left, right, turn: upper.y1, end: lower.y1 }, y))
     }
 
-    /// Returns the first column, and the column after the last; empty where `x0 ≥ x1`.
+    /// Returns the first column, and the column after the last; empty if `x0 ≥ x1`.
     #[inline]
     pub fn span(&self) -> [i64; 2] {
         [self.left.x, self.right.x]

@@ -42,8 +42,7 @@ impl<'a> PreparedMaterials<'a> {
         index.map_or(&self.ink, |_| self.get(index))
     }
 
-    /// Returns the material of this index; for `None`, or where there is none, the default
-    /// material.
+    /// Returns the material of this index; for `None`, or if there is none, the default material.
     #[inline]
     pub fn get(&self, index: Option<usize>) -> &PreparedMaterial<'a> {
         index.and_then(|i| self.materials.get(i)).unwrap_or(&self.default)

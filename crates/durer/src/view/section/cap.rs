@@ -5,8 +5,8 @@ use crate::math::{DVec2, DVec3, Orientation, Vec3, orient2d};
 use earcut::Earcut;
 use std::collections::HashMap;
 
-/// Returns the triangles that close a cut, their front against `normal`; `None` where its edges do
-/// not close.
+/// Returns the triangles that close a cut, their front against `normal`; `None` if its edges do not
+/// close.
 ///
 /// Every edge is a side of exactly one triangle, so that a closed mesh stays closed.
 pub fn triangles(
@@ -43,7 +43,7 @@ pub fn triangles(
     Some(triangles)
 }
 
-/// Returns closed walks that use each segment once; `None` where some walk cannot be closed.
+/// Returns closed walks that use each segment once; `None` if some walk cannot be closed.
 fn loops(segments: &[[u32; 2]]) -> Option<Vec<Vec<u32>>> {
     // Segments that run both ways bound nothing.
     let mut sorted = segments.to_vec();

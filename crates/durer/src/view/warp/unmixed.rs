@@ -47,7 +47,7 @@ fn own_color(source: &Source<'_>, at: [u32; 2]) -> Option<[u8; 4]> {
 }
 
 /// Returns whether depth jumps from a pixel to the next one, compared with the step on its other side: on
-/// one plane both are equal, for window depth is linear on the screen.
+/// one plane both are equal, because window depth is linear on the screen.
 fn jumps(here: f32, next: f32, opposite: f32) -> bool {
     let nothing = |depth: f32| depth >= 1.0;
     nothing(here) != nothing(next) || (next - here).abs() > 3.0 * (here - opposite).abs() + ROUNDING

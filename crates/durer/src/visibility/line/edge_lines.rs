@@ -1,4 +1,4 @@
-//! The choice of edges that become lines: silhouettes, creases, borders and the like.
+//! The choice of edges that become lines: silhouettes, creases, borders and similar ones.
 
 use super::facing::{Facing, Pair};
 use super::smooth_silhouette::Whole;
@@ -70,7 +70,7 @@ pub(super) const NO_ITEM: u32 = u32::MAX;
 pub(super) struct EdgeLine {
     pub ends: [u32; 2],
     pub class: LineClass,
-    /// Two of the triangles at it; [`NO_ITEM`] where there are fewer.
+    /// Two of the triangles at it; [`NO_ITEM`] if there are fewer.
     pub items: [u32; 2],
     /// True if the surface is not sharp there.
     pub smooth: bool,
@@ -106,7 +106,7 @@ pub(super) struct Rules<'a> {
     pub edges: &'a Edges,
     pub facing: &'a Facing,
     pub bodies: &'a Bodies,
-    /// Materials by item, where there are several.
+    /// Materials by item, if there are several.
     pub materials: Option<Vec<u32>>,
     /// Material as in `materials`; its faces are the caps of a section.
     pub cap: Option<u32>,
@@ -122,7 +122,7 @@ pub(super) struct Rules<'a> {
     pub crease_end: f32,
 }
 
-/// Returns the material of each item; `None` where all have the same.
+/// Returns the material of each item; `None` if all have the same.
 pub(super) fn materials(faces: &Faces) -> Option<Vec<u32>> {
     let runs = faces.runs();
     runs.iter().any(|r| r.material != runs[0].material).then(|| {

@@ -10,10 +10,9 @@ use std::cmp::Ordering;
 pub(super) struct Facing {
     /// 1 where the front is seen, −1 the back, 0 edge-on; after turning.
     turn: Vec<i8>,
-    /// The same of the smooth surfaces that triangles stand for, 0 where one stands for itself; empty where
-    /// all do.
+    /// The same for the smooth surfaces that triangles approximate, 0 for a flat one; empty if all do.
     surface: Vec<i8>,
-    /// Unit normals after turning; zero where a triangle is too thin to have one.
+    /// Unit normals after turning; zero if a triangle is too thin to have one.
     normals: Vec<[f32; 3]>,
 }
 

@@ -55,7 +55,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// Creates a picture of so many columns, with gaps at the ends filled.
+    /// Creates a picture of this many columns, with gaps at the ends filled.
     pub fn columns(columns: usize) -> Self {
         Self { columns, fill_ends: true, work: Work::default() }
     }
@@ -204,7 +204,7 @@ fn ends(first: usize, heights: &[f64]) -> Option<[DVec2; 2]> {
     Some([DVec2::new(first as f64, *start), DVec2::new(last as f64, *end)])
 }
 
-/// For each column the lower and the upper horizon; apart the wrong way round where there is none yet.
+/// For each column the lower and the upper horizon; apart the wrong way round if there is none yet.
 struct Horizons(Vec<[f64; 2]>);
 
 impl Horizons {

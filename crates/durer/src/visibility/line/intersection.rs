@@ -81,7 +81,7 @@ struct Tree<'a> {
     faces: &'a Faces,
     between: bool,
     nodes: Vec<Bounds>,
-    /// The body of all faces below each node, or [`MIXED`]; empty where bodies do not matter.
+    /// The body of all faces below each node, or [`MIXED`]; empty if bodies do not matter.
     bodies: Vec<u32>,
     /// Nodes from here on are leaves.
     first_leaf: u32,

@@ -10,7 +10,7 @@ const ARM: f64 = 0.0025;
 const LONGEST: f64 = (1u32 << 25) as f64;
 
 /// Returns the segments that stand for the model's own lines and points on the page, in their order;
-/// what lies outside the view volume is cut off.
+/// what is outside the view volume is cut off.
 pub(super) fn marks<'a>(
     faces: &'a Faces,
     projected: &'a Projected,

@@ -5,7 +5,7 @@ use super::{floating_horizon, hidden_line, wireframe};
 crate::info::family! {
     /// The algorithms that draw lines: those of scenes, and that of height fields.
     pub enum LineMethod {
-        /// All edges, whatever lies in front.
+        /// All edges, hidden or not.
         Wireframe => wireframe::INFO,
         /// Finds the visible parts of edges, and how many surfaces hide the rest.
         HiddenLine => hidden_line::INFO,

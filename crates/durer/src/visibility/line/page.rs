@@ -11,7 +11,7 @@ use crate::visibility::object::Faces;
 const HALF_PAGE: f64 = (1u32 << 27) as f64;
 
 /// Faces that reach further than this many times beyond the window are cut there, so that the grid
-/// is not spent on what nobody sees.
+/// is not spent on invisible detail.
 const GUARD: f64 = 2.0;
 
 /// Points of the grid, in steps.
@@ -97,7 +97,7 @@ pub(super) struct Projected {
 }
 
 impl Projected {
-    /// Projects all vertices; `None` where nothing can be seen.
+    /// Projects all vertices; `None` if nothing can be seen.
     pub fn new(faces: &Faces, plane: PicturePlane) -> Option<Self> {
         let view = |p: &DVec3| plane.view_from_world(*p);
         let depth_only = Borders { depth: true, sides: None };
@@ -160,8 +160,7 @@ impl Projected {
         }
     }
 
-    /// Returns the corners of a triangle on the grid; `None` where it reaches out of the view
-    /// volume.
+    /// Returns the corners of a triangle on the grid; `None` if it reaches out of the view volume.
     #[inline]
     pub fn corners(&self, t: [u32; 3]) -> Option<[Vertex; 3]> {
         let whole = self.inside.is_empty() || t.iter().all(|v| self.inside[*v as usize]);
@@ -214,7 +213,7 @@ impl Around {
         }
     }
 
-    /// Returns the same of what lies in the window, and the guard around it.
+    /// Returns the same of what is in the window, and the guard around it.
     fn limited(&self, window: Rect, faces: &Faces, plane: &PicturePlane) -> Self {
         let mut depths = Self::default();
         let volume = Borders { depth: true, sides: Some(GUARD) };
@@ -235,7 +234,7 @@ impl Around {
         }
     }
 
-    /// Returns the grid; `None` where nothing is there, or nothing that numbers can hold.
+    /// Returns the grid; `None` if nothing is there, or nothing that numbers can hold.
     fn page(&self) -> Option<Page> {
         let size = self.max - self.min;
         if !(size.is_finite() && size.min_element() >= 0.0) {

@@ -33,13 +33,13 @@ impl Planes {
         Self(parallel::map(jobs, of).concat())
     }
 
-    /// Returns twice the area of a triangle along its normal; zero where it has none.
+    /// Returns twice the area of a triangle along its normal; zero if it has none.
     #[inline]
     pub fn across(&self, item: u32) -> DVec3 {
         self.0[item as usize].across
     }
 
-    /// Returns the unit normal of a triangle; zero where it has none.
+    /// Returns the unit normal of a triangle; zero if it has none.
     #[inline]
     pub fn normal(&self, item: u32) -> DVec3 {
         let Plane { across, area } = self.0[item as usize];

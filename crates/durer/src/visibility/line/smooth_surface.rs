@@ -1,4 +1,5 @@
-//! The smooth surface that a mesh stands for, near its outlines: a normal at each corner of each triangle.
+//! The smooth surface that a mesh approximates, near its outlines: a normal at each corner of each
+//! triangle.
 //!
 //! The normals are those of the file where it has some, else averages (`vertex_normals`). An average of faces that
 //! all show one side shows that side too, so outlines run only where faces of both sides meet. O(n), and O(k log k)
@@ -23,13 +24,13 @@ const EDGE_ON: f64 = 1e-6;
 /// No corner.
 const NONE: u32 = u32::MAX;
 
-/// A vertex may have so many corners that are looked through for one that is alike.
+/// A vertex may have this many corners that are looked through for one that is alike.
 const ALIKE: usize = 64;
 
 /// Normals by corner; corners at one vertex with the same normal are one.
 #[derive(Default)]
 pub(super) struct SmoothSurface {
-    /// The corners of each triangle, by item; [`NONE`] where it stands for itself.
+    /// The corners of each triangle, by item; [`NONE`] if it is flat.
     corners: Vec<[u32; 3]>,
     /// Unit normals, by corner.
     pub normals: Vec<DVec3>,
@@ -82,7 +83,7 @@ impl SmoothSurface {
         found
     }
 
-    /// Returns the corners of a triangle, if it stands for a surface that is not flat.
+    /// Returns the corners of a triangle, if it approximates a curved surface.
     pub fn corners(&self, item: u32) -> Option<[u32; 3]> {
         self.corners.get(item as usize).copied().filter(|c| c[0] != NONE)
     }
@@ -263,8 +264,8 @@ fn given(mesh: &Mesh, run: &FaceRun, matrix: DMat3, item: u32) -> [DVec3; 3] {
     of_mesh.map(|v| (matrix * mesh.normals[v as usize].as_dvec3()).normalize_or_zero())
 }
 
-/// Returns the normals of a triangle; none where they have nothing to do with it, as where a file gives one
-/// to the corner of a cube. On a round surface a sliver may be turned any way, so that is no reason there.
+/// Returns the normals of a triangle; none if they have nothing to do with it, as where a file gives one to
+/// the corner of a cube. On a round surface a sliver may be turned any way, so that is no reason there.
 fn believed(places: [DVec3; 3], normals: [DVec3; 3]) -> Option<[DVec3; 3]> {
     let (own, sliver) = direction(places);
     let own = own.normalize_or_zero();

@@ -17,10 +17,10 @@ use crate::parallel;
 use crate::visibility::object::{Edges, Faces, Side};
 use std::ops::Range;
 
-/// The cosine of 3°: blunter edges are not looked at, for files have rounded coordinates.
+/// The cosine of 3°: blunter edges are ignored, for files have rounded coordinates.
 const BLUNTEST: f64 = 0.998_63;
 
-/// The angle in radians from which an edge is no step of a round part, 60°, and its cosine.
+/// The angle in radians from which an edge is not a step of a round part, 60°, and its cosine.
 const NO_STEP: f64 = std::f64::consts::FRAC_PI_3;
 const NO_STEP_COSINE: f64 = 0.5;
 
@@ -102,7 +102,7 @@ struct Turns {
     flat: Vec<u32>,
     /// Edges that may be steps of a round part, though they are above the crease angle.
     coarse: Vec<Turn>,
-    /// Vertices of others that are no smooth surface.
+    /// Vertices of others that are not smooth surface.
     sharp: Vec<u32>,
 }
 
@@ -244,7 +244,7 @@ impl Seen<'_> {
         found
     }
 
-    /// Returns the triangles at an edge of two, and the cosine of what the surface turns by there. None where
+    /// Returns the triangles at an edge of two, and the cosine of what the surface turns by there. None if
     /// there is no surface, or a triangle has no direction.
     fn turn(&self, sides: &[Side]) -> Option<([u32; 2], f64)> {
         let [a, b] = sides else { return None };

@@ -3,8 +3,8 @@
 //! On a mesh the silhouette of a round surface is a zigzag of edges: it leaves spurs where it turns into
 //! the surface, and gaps where one edge hides the next. Creases flicker where a rounding is about as
 //! sharp as the crease angle. A draughtsman draws none of this. So tips of such lines that nearly meet
-//! are joined, and those that end in the open are cut back to the next junction, or left out, where
-//! that is not far. O(n) for lines that do not crowd.
+//! are joined, and those that end in the open are cut back to the next junction, or left out, if that is
+//! not far. O(n) for lines that do not crowd.
 
 use super::chain::{Walk, point, walks};
 use super::overlap::distance;
@@ -23,8 +23,8 @@ const ROUNDS: usize = 3;
 const COARSE: usize = 3;
 const COARSE_LENGTH: f64 = 4.0;
 
-/// A hidden stub of so few edges that turns back may be so many times as long: at a cusp, outlines of few facets go to and
-/// fro behind each other, and never come to an end.
+/// A hidden stub of so few edges that turns back may be this many times as long: at a cusp, outlines of few facets go
+/// to and fro behind each other, and never come to an end.
 const BACK_LENGTH: f64 = 12.0;
 
 /// The cosine of a turn back: 135°.
@@ -54,7 +54,7 @@ const BESIDE: f64 = 0.4;
 /// each other.
 const DUST: f64 = 0.3;
 
-/// Returns the pieces without stubs up to `length` steps; what lies within `touch` steps touches.
+/// Returns the pieces without stubs up to `length` steps; what is within `touch` steps touches.
 pub(super) fn without_stubs(mut pieces: Vec<Piece>, length: f64, touch: f64) -> Vec<Piece> {
     let touch = touch.max(4.0);
     for _ in 0..ROUNDS {
@@ -222,7 +222,7 @@ impl<'a> Lines<'a> {
         open
     }
 
-    /// Takes away what lies between the tip of a walk and the next junction, if that is near.
+    /// Takes away the part between the tip of a walk and the next junction, if that is near.
     fn cut_back(&mut self, ends: &[u32], cuts: &mut Vec<Cut>) {
         let (turn, length) = (self.turn_back(ends), self.length);
         let longest = |k: usize, ends_here: bool| match turn {
@@ -460,7 +460,7 @@ mod tests {
         // Side by side, both from the left, they are two.
         let beside = vec![pieces[0], smooth([1000, 60_000], [498_000, 1500])];
         assert_eq!(chains_of(&without_stubs(beside, 10_000.0, 10.0)), 2);
-        // What is short is no line that goes on.
+        // What is short is not a line that goes on.
         let short = piece([507_000, 1900], [498_000, 1500], false);
         let sharp = vec![piece([0, 0], [500_000, 0], false), short];
         assert_eq!(chains_of(&without_stubs(sharp, 10_000.0, 10.0)), 2);

@@ -4,10 +4,11 @@
 use super::page::GridPoint;
 use super::piece::Piece;
 
-/// Cells are made smaller where there are more than so many pieces for each one in which a piece begins.
+/// Cells are made smaller if there are more than this many pieces for each one in which a piece
+/// begins.
 const CROWD: usize = 8;
 
-/// Side by side at most so many smaller cells.
+/// Side by side at most this many smaller cells.
 const MOST_SMALL_ACROSS: f64 = 16_384.0;
 
 /// A uniform grid of lists of pieces.
@@ -33,7 +34,7 @@ struct Cells {
 }
 
 impl Cells {
-    /// Cells over a size in steps, for so many pieces.
+    /// Cells over a size in steps, for this many pieces.
     fn new(low: GridPoint, size: [i64; 2], shift: u32, pieces: usize) -> Self {
         let [columns, rows] = size.map(|d| (d >> shift) as usize + 1);
         let all = columns * rows;
@@ -110,7 +111,7 @@ fn shift_of(side: f64) -> u32 {
 }
 
 impl Table {
-    /// `None` where there are no pieces. `close` is the largest margin of entries and questions.
+    /// `None` if there are no pieces. `close` is the largest margin of entries and questions.
     pub fn new(pieces: &[Piece], close: f64) -> Option<Self> {
         let mut points = pieces.iter().flat_map(|p| p.ends);
         let first = points.next()?;

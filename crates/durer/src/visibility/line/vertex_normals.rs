@@ -29,7 +29,8 @@ const SLIVERS: usize = 4;
 /// a triangulation has slivers.
 const BESIDE: f64 = std::f64::consts::FRAC_PI_4;
 
-/// A sliver reaches out of its surface by at most so many times what its longest side does, which is a chord.
+/// A sliver reaches out of its surface by at most this many times what its longest side does, which is a
+/// chord.
 const SAGITTAS: f64 = 3.0;
 
 /// The part of a sliver's turn that faces beside it are turned by at most: else it is no more turned than they are.
@@ -109,8 +110,8 @@ impl<'a> Directions<'a> {
         found
     }
 
-    /// Returns the unit normal of a triangle, or of the surface that it lies in; zero where there
-    /// is none.
+    /// Returns the unit normal of a triangle, or of the surface that it lies in; zero if there is
+    /// none.
     pub fn of(&self, item: u32) -> DVec3 {
         if self.is_turned.get(item as usize) == Some(&true)
             && let Ok(i) = self.turned.binary_search_by_key(&item, |t| t.0)
@@ -140,7 +141,7 @@ impl<'a> Directions<'a> {
             return None;
         }
         let turned = a.distance(surface).max(b.distance(surface));
-        // A riser between two treads is no part of them: these do not bend.
+        // A riser between two treads is not a part of them: these do not bend.
         let [p, q] = first.map(|v| self.faces.points()[v as usize]);
         let sagitta = (q - p).dot(ends[1] - ends[0]).abs() / 8.0;
         let aside = across.cross(surface).length() / p.distance(q);
@@ -283,7 +284,7 @@ pub(super) struct Around {
     vertex: u32,
     /// The other two vertices.
     others: [u32; 2],
-    /// Its unit normal; zero where it has none.
+    /// Its unit normal; zero if it has none.
     direction: DVec3,
     weight: f64,
 }
@@ -301,7 +302,7 @@ impl Around {
     }
 }
 
-/// Calls `f` with the normals of those corners of triangles whose vertices are asked for. `items` are in order.
+/// Calls `f` with the normals of those corners of triangles whose vertices are requested. `items` are in order.
 pub(super) fn each_normal(
     directions: &Directions<'_>,
     items: &[u32],

@@ -169,8 +169,8 @@ impl Edges {
         }
     }
 
-    /// Returns the triangles at the edge between two vertices, the smaller first; none where there is
-    /// no such edge.
+    /// Returns the triangles at the edge between two vertices, the smaller first; none if there is no
+    /// such edge.
     pub fn at(&self, [a, b]: [u32; 2]) -> &[Side] {
         let sides = self.of_vertex(a);
         let start = sides.partition_point(|s| s.other < b);

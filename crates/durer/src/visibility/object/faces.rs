@@ -268,8 +268,8 @@ impl Faces {
     }
 
     /// Returns the vertices of a triangle, indices into [`Self::points`], counter-clockwise seen from
-    /// its front (unless its instance mirrors); `None` where two are one, or one is not finite, or for
-    /// an item that does not exist.
+    /// its front (unless its instance mirrors); `None` if two are one, or one is not finite, or for an
+    /// item that does not exist.
     #[inline]
     pub fn triangle(&self, item: u32) -> Option<[u32; 3]> {
         self.triangles.get(item as usize).copied().filter(|t| *t != NONE)
@@ -305,14 +305,14 @@ impl Faces {
         &self.runs
     }
 
-    /// Returns the run of an item; `None` where there is no such item. O(log runs).
+    /// Returns the run of an item; `None` if there is no such item. O(log runs).
     pub fn run_of(&self, item: u32) -> Option<&FaceRun> {
         let run = self.runs.get(self.runs.partition_point(|r| r.items.end <= item))?;
         run.items.contains(&item).then_some(run)
     }
 
     /// Returns whether two triangles are parts of one face with more than three corners, as the file
-    /// had it: their common side is no edge. Neighbours in item order only, as fans are.
+    /// had it: their common side is not an edge. Neighbours in item order only, as fans are.
     #[inline]
     pub fn same_polygon(&self, a: u32, b: u32) -> bool {
         self.polygons.as_ref().is_some_and(|p| p.get(a as usize) == p.get(b as usize))
@@ -347,7 +347,7 @@ fn face_runs(scene: &Scene) -> Result<Vec<FaceRun>> {
     Ok(triangles.collect())
 }
 
-/// For each item the first item of its polygon; `None` where each polygon is one triangle.
+/// For each item the first item of its polygon; `None` if each polygon is one triangle.
 fn polygons(scene: &Scene) -> Option<Vec<u32>> {
     scene.meshes.iter().any(|m| !m.faces.is_empty()).then(|| {
         let mut first_of = Vec::new();

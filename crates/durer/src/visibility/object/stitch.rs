@@ -21,7 +21,7 @@ pub(super) struct Grain {
     pub tree: u32,
     /// The spacing of numbers as large as its largest coordinate.
     pub step: f64,
-    /// The last digit that its file gives of coordinates, 0 where that is not known.
+    /// The last digit that its file gives of coordinates, 0 if that is not known.
     pub digit: f64,
     /// Its extent.
     pub extent: f64,
@@ -161,7 +161,7 @@ struct Borders {
 }
 
 impl Borders {
-    /// `None` where there are none that may meet.
+    /// `None` if there are none that may meet.
     fn new(faces: &Faces, edges: &Edges, grains: &[Grain]) -> Option<Self> {
         let mut all: Vec<Border> =
             edges.borders().map(|(ends, item)| Border { ends, item, kind: 0 }).collect();

@@ -2,7 +2,7 @@
 //!
 //! In Newell, Newell, Sancha, *A Solution to the Hidden Surface Problem*, ACM Annual Conference 1972, the first step
 //! of the depth sort. Class: list priority. Cost: O(n log n + covered pixels). It is wrong where faces overlap in depth
-//! and in the picture, and no order at all is right where they overlap in a ring: so it is no member of any family.
+//! and in the picture, and no order at all is right where they overlap in a ring: so it is not a member of any family.
 //! Use [`crate::visibility::surface::depth_sort`].
 
 use super::{Face, Screen};

@@ -1,9 +1,10 @@
 //! Visible regions by cutting polygons along each other.
 //!
-//! K. Weiler, P. Atherton, *Hidden Surface Removal Using Polygon Area Sorting*, SIGGRAPH 1977. Object space. The nearest
-//! polygon cuts all others like a pastry cutter: into what is inside its outline and what is outside. Inside, what lies
-//! behind it goes; if nothing is left there, it is seen, else what is left, which is in front of it, is treated in the same
-//! way, and so is the outside. Coherence used: areas. Cost: O(n²) cuts where few overlap; memory O(regions).
+//! K. Weiler, P. Atherton, *Hidden Surface Removal Using Polygon Area Sorting*, SIGGRAPH 1977. Object space. The
+//! nearest polygon cuts all others like a pastry cutter: into what is inside its outline and what is outside. Inside,
+//! what is behind it goes; if nothing is left there, it is seen, else what is left, which is in front of it, is treated
+//! in the same way, and so is the outside. Coherence used: areas. Cost: O(n²) cuts where few overlap; memory
+//! O(regions).
 //!
 //! Deviations: cuts are made by the overlay, which takes any polygons; polygons that pierce each other are divided where
 //! their planes meet. [`crate::visibility::region::planar_map`] finds the same regions of models, in far less time.

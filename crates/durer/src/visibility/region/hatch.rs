@@ -28,11 +28,11 @@ impl Default for Options {
     }
 }
 
-/// Tones told apart: every 8th, 4th, 2nd or each line.
+/// Distinct tones: every 8th, 4th, 2nd or each line.
 const TONES: i32 = 4;
 
 /// In which directions the caps of one part after the other are hatched, degrees beside the first: 45°, and then
-/// what can be told from it and from each other.
+/// what can be distinguished from it and from each other.
 const PARTS: [f64; 6] = [0.0, 90.0, 15.0, 105.0, -15.0, 75.0];
 
 /// Lines over one region, at most: beyond that it is black anyway.
@@ -142,7 +142,7 @@ fn crossings(a: DVec2, b: DVec2, spacing: f64, stride: i64, meets: &mut Vec<(i64
     let (low, high) = if (a.y, a.x) <= (b.y, b.x) { (a, b) } else { (b, a) };
     let step = spacing * stride as f64;
     let (first, end) = ((low.y / step).ceil(), (high.y / step).ceil());
-    // Written so that numbers beyond all measure, and what is no number, fall through.
+    // Written so that numbers beyond all measure, and what is not a number, fall through.
     if !(end - first <= MOST_LINES && first.abs() < 1e15) {
         return;
     }

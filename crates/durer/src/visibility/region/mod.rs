@@ -1,8 +1,8 @@
 //! Visible regions: what of the faces of a scene can be seen, as exact polygons.
 //!
 //! [`draw`] gives a finished [`Drawing`]: filled regions, flat-shaded, disjoint or trapped, with exact
-//! shadows where they are asked for. [`planar_map::solve`] gives the planar map behind it, whose
-//! faces know the triangle that they show; [`hatch`] replaces tones by lines.
+//! shadows if requested. [`planar_map::solve`] gives the planar map behind it, whose faces know the
+//! triangle that they show; [`hatch`] replaces tones by lines.
 
 mod caps;
 pub mod hatch;
@@ -39,7 +39,7 @@ pub enum Merge {
     /// Those that show one material in like shades, of 16 between black and white, in the colour of most of the area
     /// that the material has in that shade: round faces become bands.
     Band,
-    /// Those of one material, in the colour of most of their area.
+    /// Areas with the same material, in the colour of most of their area.
     Material,
     /// Those of one instance of a mesh, likewise.
     Part,

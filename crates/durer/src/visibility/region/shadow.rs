@@ -208,7 +208,7 @@ impl<'a> Lamps<'a> {
 
     /// Returns the lights that reach the side of an item that is seen at a point of the eye's
     /// picture: bit i for light i, directional ones first. Light that falls on the other side counts
-    /// as reaching it, for shading leaves it out.
+    /// as reaching it, because shading leaves it out.
     pub fn reaching(&self, frame: &Frame, item: u32, at: DVec2) -> u64 {
         if self.lamps.is_empty() {
             return LIT;
@@ -272,8 +272,7 @@ fn is_before(picture: &VisibleMap, at: DVec2, depth: f64, item: u32) -> bool {
         .any(|face| face.item != item && face.covers(at) && face.depth(at) + face.error < depth)
 }
 
-/// Returns the largest error of each item's depth in a picture; infinite where it has no face
-/// there.
+/// Returns the largest error of each item's depth in a picture; infinite if it has no face there.
 fn errors(faces: &[Face], scene: &Scene) -> Vec<f64> {
     let mut errors = vec![f64::INFINITY; scene.triangle_count() as usize];
     for face in faces {

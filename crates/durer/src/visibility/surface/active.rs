@@ -10,7 +10,7 @@ pub struct Active {
     pub triangle: u32,
     /// First column whose centre is covered; within the screen.
     pub x0: i32,
-    /// The column after the last; the span is empty where `x0 ≥ x1`.
+    /// The column after the last; the span is empty if `x0 ≥ x1`.
     pub x1: i32,
     walk: RowWalk,
 }

@@ -10,8 +10,8 @@ use crate::work::Work;
 
 /// The triangles of a scene on the screen, in item order; what each algorithm takes.
 ///
-/// A triangle that was cut at the near plane stands there in several pieces with the same item.
-/// The production z-buffer does without this list; all others read it.
+/// A triangle that was cut at the near plane has several pieces with the same item. The production
+/// z-buffer does without this list; all others read it.
 #[derive(Debug, Clone)]
 pub struct SurfaceInput<'a> {
     /// The scene, which has passed [`Scene::check`].

@@ -40,7 +40,7 @@ pub(crate) struct Layers<'a> {
 }
 
 /// Writes row `y` to all planes: `row` is what is nearest, blended or not; in the colours blended
-/// surfaces, where there are some, lie over what is opaque.
+/// surfaces, if there are some, lie over what is opaque.
 pub(crate) fn write_row(
     y: i32,
     row: &DepthRow,
@@ -57,7 +57,7 @@ pub(crate) fn write_row(
 }
 
 impl<'a> Layers<'a> {
-    /// `None` where nothing blends.
+    /// `None` if nothing blends.
     pub fn of(input: &'a SurfaceInput<'_>) -> Option<Self> {
         let (triangles, blended) = (&input.triangles, input.having(Coverage::Blended));
         let opaque = DepthRow::new(input.view.width());

@@ -48,7 +48,7 @@ const WIDEST: f32 = 0.5;
 const MARGIN: f64 = 1.05;
 
 /// The near plane as a part of the far plane's distance: depth keeps enough digits, and little that
-/// stands so near to a light is left out.
+/// is this near to a light is left out.
 const NEAR: f64 = 1e-3;
 
 /// Makes the maps of all directional, spot and point lights into [`PreparedLights::shadows`].

@@ -16,7 +16,7 @@ pub struct Sight {
     middle: [f32; 2],
     /// Towards the eye there; in perspective of unit length, world axes, as are the others.
     at_middle: Vec3,
-    /// Its change from one pixel to the next along x; zero where projection lines are parallel.
+    /// Its change from one pixel to the next along x; zero if projection lines are parallel.
     right: Vec3,
     /// Its change along y, downwards.
     down: Vec3,

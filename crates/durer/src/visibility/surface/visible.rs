@@ -56,7 +56,7 @@ impl Visible {
         (first..).zip(rows).map(|(y, (items, depths))| (y, items, depths))
     }
 
-    /// Writes a sample, whatever was there; what lies beyond the far plane is not seen.
+    /// Writes a sample, whatever was there; what is beyond the far plane is not seen.
     #[inline]
     pub fn put(&mut self, x: i32, y: i32, depth: f32, item: u32) {
         if depth < 1.0 {

@@ -11,7 +11,7 @@ fn data() -> PathBuf {
         .unwrap_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"))
 }
 
-/// Returns a file of the shared data; `None`, with a note, where there is none.
+/// Returns a file of the shared data; `None`, with a note, if there is none.
 pub fn shared(path: &str) -> Option<String> {
     let root = std::env::var_os("DURER_DATA")
         .map(PathBuf::from)
@@ -150,7 +150,7 @@ fn opened(mut points: Vec<DVec2>) -> Vec<DVec2> {
     points
 }
 
-/// Returns the polygons of a geometry in WKT or hexadecimal WKB; `None` where it holds anything but
+/// Returns the polygons of a geometry in WKT or hexadecimal WKB; `None` if it holds anything but
 /// polygons.
 pub fn well_known(text: &str) -> Option<Shapes> {
     let text = text.trim();

@@ -1,6 +1,6 @@
 //! Subject and mask made to meet bit for bit where they come within rounding of each other.
 //!
-//! What is near is told by the point and the edge of the input alone, so that neighbours decide alike.
+//! The point and the edge of the input alone decide what is near, so that neighbours agree.
 
 use crate::clip::attribute::Source;
 use crate::clip::polygon::rectangle::Near;
@@ -14,7 +14,7 @@ use std::ops::Range;
 #[derive(Debug)]
 pub(super) struct Subject<'a> {
     input: &'a Shapes,
-    /// With more vertices, where there are any, and where each point comes from.
+    /// With more vertices, if there are any, and where each point comes from.
     divided: Option<(Shapes, Vec<Source>)>,
 }
 
@@ -110,13 +110,13 @@ fn around(edges: &[Edge]) -> Option<Rect> {
     Rect::around(edges.iter().flat_map(|edge| edge.ends))
 }
 
-/// A vertex of polygons that are not valid lies on another edge of theirs, or one of a neighbour on its edge, within so many
-/// times the usual reach, 32 to 64 ulp: such vertices are mostly crossings that a program found in f64, several ulp
-/// beside the edges. A larger number would bend borders by more than the coordinates are worth.
+/// A vertex of polygons that are not valid lies on another edge of theirs, or one of a neighbour on its edge, within
+/// this many times the usual reach, 32 to 64 ulp: such vertices are mostly crossings that a program found in f64,
+/// several ulp beside the edges. A larger number would bend borders by more than the coordinates are worth.
 pub(super) const OWN_REACH: f64 = 16.0;
 
-/// Calls with all edges of ours and theirs whose boxes are near each other, within so many times the usual reach, and some
-/// that are not.
+/// Calls with all edges of ours and theirs whose boxes are near each other, within this many times the usual reach, and
+/// some that are not.
 pub(super) fn each_near(
     ours: &[Edge],
     theirs: &[Edge],

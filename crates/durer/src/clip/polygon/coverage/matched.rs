@@ -59,7 +59,7 @@ pub fn matched(features: &[Shapes]) -> Vec<Option<Matched>> {
     features.iter().zip(inserted).map(|(shapes, points)| divided(shapes, points)).collect()
 }
 
-/// Returns the shapes with points on their edges; `None` where there are none, or the shapes would not be
+/// Returns the shapes with points on their edges; `None` if there are none, or the shapes would not be
 /// valid any more.
 fn divided(input: &Shapes, inserted: Vec<(usize, DVec2)>) -> Option<Matched> {
     if inserted.is_empty() {

@@ -100,8 +100,8 @@ pub fn join(first: &Shapes, second: &Shapes, op: BooleanOp, options: &Options) -
 
 /// Returns the grid that [`cut`] and [`join`] decide on: the finest that the overlay takes.
 ///
-/// A power of two that leaves 2³⁹ to 2⁴⁰ cells across, and 53 bits for a coordinate; `None` where there is
-/// no extent.
+/// A power of two that leaves 2³⁹ to 2⁴⁰ cells across, and 53 bits for a coordinate; `None` if there is no
+/// extent.
 pub fn finest_grid(bounds: [Option<Rect>; 2]) -> Option<f64> {
     let all = Rect::around(bounds.into_iter().flatten().flat_map(|b| [b.min(), b.max()]))?;
     let farthest = all.min().abs().max(all.max().abs()).max_element();

@@ -171,7 +171,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         self.patches.partition_point(|patch| patch.nodes.end <= node as usize)
     }
 
-    /// Returns the half-edge that goes from a node straight on to another one; `None` where those
+    /// Returns the half-edge that goes from a node straight on to another one; `None` if those
     /// edges have cancelled.
     pub fn between(&self, from: u32, to: u32) -> Option<Half> {
         if let Some(place) = self.place_of(from) {

@@ -28,7 +28,8 @@ const PER_SQUARE: f64 = 8.0;
 /// empty squares cost little.
 const SPARSEST: f64 = 1.0 / 16.0;
 
-/// Curves that go on in the next square all but once in so many segments are in order as they come.
+/// Curves that go on in the next square all but once in this many segments are in order as they
+/// come.
 const FEW_JUMPS: usize = 64;
 
 /// Segments that start in one band of rows, and that one task handles: their data fit the cache.
@@ -48,7 +49,7 @@ pub struct Block {
 }
 
 impl Block {
-    /// Returns the block around all segments; `None` where there is none.
+    /// Returns the block around all segments; `None` if there is none.
     pub fn around<C: Coord>(segments: &[Segment<C>]) -> Option<Self> {
         let blocks = parallel::map(segments.chunks(TASK).collect(), |some| {
             let start = (some[0].a.x, some[0].b.x, some[0].a.y, some[0].a.y);
@@ -297,7 +298,7 @@ impl Log2Floor for f64 {
 }
 
 /// Returns the order in which segments that start close together have close indices, so that all
-/// that follows finds its data in the cache, `None` where they are in such an order.
+/// that follows finds its data in the cache, `None` if they are in such an order.
 #[inline(never)]
 pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> Option<Vec<u32>> {
     let (width, height) = block.size();
@@ -308,8 +309,8 @@ pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> Option<
     order_by_squares(segments.len(), size, square, FEW_JUMPS)
 }
 
-/// Returns the order of things by the squares of a grid, column by column along each row; `None`
-/// where at most one in `few_jumps` is not in or beside the square of the one before.
+/// Returns the order of things by the squares of a grid, column by column along each row; `None` if
+/// at most one in `few_jumps` is not in or beside the square of the one before.
 pub fn order_by_squares(
     count: usize,
     [columns, rows]: [usize; 2],

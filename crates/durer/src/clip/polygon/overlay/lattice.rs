@@ -198,8 +198,8 @@ impl<C: Coord> Segment<C> {
         in_box && self.side_of_pixel(p) == Ordering::Equal
     }
 
-    /// Returns the pixel in which two segments cross, each in the other's interior; `None` where
-    /// they touch, overlap or keep apart. Exact, and the same whichever comes first.
+    /// Returns the pixel in which two segments cross, each in the other's interior; `None` if they
+    /// touch, overlap or keep apart. Exact, and the same whichever comes first.
     #[inline(always)]
     pub fn crossing(&self, other: &Self) -> Option<Point<C>> {
         let zero = C::Wide::default();

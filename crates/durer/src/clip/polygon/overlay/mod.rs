@@ -205,7 +205,7 @@ pub struct Output<P = DVec2> {
     /// Valid polygons: outer rings run counter-clockwise (y up), holes clockwise; every ring starts
     /// with its smallest point (by x, then y), polygons and holes are sorted by their points.
     pub shapes: Shapes<P>,
-    /// The origin of each of the shapes' points, if [`Options::origins`] asked for them.
+    /// The origin of each of the shapes' points, if [`Options::origins`] requested them.
     pub origins: Vec<Origin>,
     /// The size of a grid cell.
     pub cell: f64,
@@ -257,10 +257,10 @@ impl<P: Vertex> Output<P> {
 /// Overlays two sets of polygons.
 ///
 /// The input may be anything: rings that cross themselves or each other, spikes, repeated points;
-/// which points it encloses is told by the fill rules over all its rings. The result is valid in
-/// the sense of OGC Simple Features: simple rings, disjoint interiors, holes inside their own
-/// outer ring, each polygon's interior connected. It does not depend on the order of the rings,
-/// their starting points, or the number of threads.
+/// the fill rules over all its rings decide which points it encloses. The result is valid in the
+/// sense of OGC Simple Features: simple rings, disjoint interiors, holes inside their own outer
+/// ring, each polygon's interior connected. It does not depend on the order of the rings, their
+/// starting points, or the number of threads.
 ///
 /// Points are [`DVec2`], which are snapped to a grid, or [`I64Vec2`](crate::math::I64Vec2), which are
 /// taken as they are: any coordinates of which no two lie further apart than 2⁴¹ − 2, also beyond the

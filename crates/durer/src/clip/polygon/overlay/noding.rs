@@ -142,7 +142,7 @@ impl<C> Part<C> {
     }
 }
 
-/// Hits are sorted by segment in shelves of so many: their lists fit the cache.
+/// Hits are sorted by segment in shelves of this many: their lists fit the cache.
 const SHELF: usize = if cfg!(test) { 8 } else { 1 << 14 };
 
 /// Scratch space for one leaf.
@@ -309,7 +309,7 @@ impl<C: Coord> Workbench<'_, C> {
         Ok(())
     }
 
-    /// Every point of a ring is the start of one edge, so only starts are looked at there.
+    /// Every point of a ring is the start of one edge, so only starts are examined there.
     #[inline(never)]
     fn ends(&mut self, items: &[u32], leaf: &Leaf, ends: &impl Fn(u32) -> Ends) {
         for (s, &i) in self.segments.iter().zip(items) {
@@ -352,7 +352,7 @@ impl<C: Coord> Workbench<'_, C> {
     fn crowd_hits(&mut self, items: &[u32], first: u32, part: &mut Part<C>) {
         let (strips, segments, pixels) = (&self.strips, &self.segments, &self.pixels);
         let mut list: Vec<(Point<C>, u32)> = (pixels.iter().map(|p| p.0)).zip(0..).collect();
-        // In the order of the segments that end there, for those mostly follow one another.
+        // In the order of the segments that end there, because those mostly follow one another.
         list.sort_by_key(|&(_, k)| pixels[k as usize].1);
         if parallel::threads() == 1 || list.len() <= SEARCHES {
             strips.hits(segments, &list, |i, k| {
@@ -372,7 +372,7 @@ impl<C: Coord> Workbench<'_, C> {
         }
     }
 
-    /// Pixels are in the order of x: of each segment only those in its range of x are looked at.
+    /// Pixels are in the order of x: of each segment only those in its range of x are examined.
     #[inline(never)]
     fn hits(&mut self, items: &[u32], first: u32, part: &mut Part<C>) {
         for (s, &i) in self.segments.iter().zip(items) {

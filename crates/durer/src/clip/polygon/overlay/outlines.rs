@@ -125,8 +125,7 @@ impl Outlines {
     }
 }
 
-/// Returns the order of points by the squares of a rough grid; `None` where they are in such an
-/// order.
+/// Returns the order of points by the squares of a rough grid; `None` if they are in such an order.
 fn order(points: &[DVec2], bounds: Rect) -> Option<Vec<u32>> {
     let size = bounds.max() - bounds.min();
     let squares = points.len() as f64 / PER_SQUARE;

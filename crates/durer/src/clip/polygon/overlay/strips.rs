@@ -66,13 +66,13 @@ struct Strip {
 /// Segments between two stairs of a staircase that are not on it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Group<C> {
-    /// Places on the staircase below this belong to the group or to those before: above so many
+    /// Places on the staircase below this belong to the group or to those before: above this many
     /// stairs.
     end: u32,
     /// Columns from `middle` on belong to the right half.
     middle: C,
     halves: Option<(u32, u32)>,
-    /// Its segments, compared one by one, where there are no halves.
+    /// Its segments, compared one by one, if there are no halves.
     rest: (u32, u32),
 }
 

@@ -122,7 +122,8 @@ impl<C: Coord> Arrangement<'_, C> {
     }
 
     /// Finds the winding numbers by a sweep from left to right with a list of the edges it cuts,
-    /// from low to high; `f` is told the list's length at each node. All edges must be straight.
+    /// from low to high; `f` is called with the length of the list at each node. All edges must be
+    /// straight.
     pub fn sweep(&mut self, mut f: impl FnMut(Point<C>, usize)) {
         let nodes = self.nodes;
         self.right = vec![Winding::default(); self.edges.len()];

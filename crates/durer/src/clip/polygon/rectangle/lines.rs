@@ -17,7 +17,7 @@ pub struct ClippedLines {
     pub ends: Vec<usize>,
     /// Index of the input polyline that each piece is a part of.
     pub lines: Vec<usize>,
-    /// The source of each point; empty unless asked for.
+    /// The source of each point; empty unless requested.
     pub sources: Vec<Source>,
 }
 
@@ -52,7 +52,7 @@ impl ClippedLines {
 ///
 /// A polyline is cut where it leaves the window and nowhere else, not where it crosses itself; parts
 /// along the border are kept; parts that are single points are dropped. With `sources`, the source of
-/// every point of the result is told.
+/// every point of the result is reported.
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] names the first point with a NaN or infinite coordinate;

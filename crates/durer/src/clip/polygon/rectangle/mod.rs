@@ -206,7 +206,7 @@ enum Extent {
     NonFinite,
 }
 
-/// The box around some points; `zero` is not zero where one of them is not finite.
+/// The box around some points; `zero` is not zero if one of them is not finite.
 #[derive(Debug, Clone, Copy)]
 struct Bounds {
     min: DVec2,

@@ -4,7 +4,7 @@
 //! box lies beyond a border of the window has no edge in it. A run whose box lies to the right of a
 //! point crosses the ray from the point to the right an odd number of times where its two ends lie on
 //! different sides of the ray, whatever it does between them; so of the edges around a point only
-//! those of the runs right at it are looked at. Rings are found by boxes likewise.
+//! those of the runs right at it are examined. Rings are found by boxes likewise.
 
 use super::rings::{Clipper, Directed, Guide, crosses};
 use super::tree::Tree;
@@ -88,7 +88,7 @@ impl Prepared {
         &self.shapes
     }
 
-    /// Returns the smallest rectangle around them; `None` where there is no point.
+    /// Returns the smallest rectangle around them; `None` if there is no point.
     pub fn bounds(&self) -> Option<Rect> {
         self.tree.around()
     }

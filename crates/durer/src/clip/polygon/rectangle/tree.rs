@@ -59,7 +59,7 @@ impl Tree {
         Some(self.nodes[index].around)
     }
 
-    /// Returns the box around everything; `None` where there is nothing.
+    /// Returns the box around everything; `None` if there is nothing.
     pub(in crate::clip::polygon) fn around(&self) -> Option<Rect> {
         self.nodes.first().map(|node| node.around)
     }

@@ -46,7 +46,7 @@ impl Rule {
 /// Step of the algorithm.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step<V> {
-    /// An edge was looked at.
+    /// An edge was examined.
     Edge {
         /// The border's index.
         border: usize,

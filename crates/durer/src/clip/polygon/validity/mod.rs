@@ -111,7 +111,7 @@ pub struct Flaw {
     pub fault: Fault,
     /// A point of it: of crossings the nearest to it, of rings a vertex.
     pub at: DVec2,
-    /// The two rings, by their index over all polygons; twice the same where it is one.
+    /// The two rings, by their index over all polygons; twice the same if it is one.
     pub rings: [usize; 2],
 }
 
@@ -123,11 +123,11 @@ pub fn is_valid(shapes: &Shapes, touching: Touching) -> bool {
     edges_are_apart(shapes, touching) && nests(shapes)
 }
 
-/// Returns what is wrong with polygons, sorted by rings and places; empty where they are valid. Points that come
+/// Returns what is wrong with polygons, sorted by rings and places; empty if they are valid. Points that come
 /// twice in a row are no fault.
 ///
-/// Crossings and touches of one pair of rings come once per place. Where edges cross or overlap, it is not
-/// looked at how rings lie in each other.
+/// Crossings and touches of one pair of rings come once per place. Where edges cross or overlap, it is
+/// ignored how rings lie in each other.
 ///
 /// ```
 /// use durer::clip::polygon::{Shapes, validity::{Fault, flaws}};
@@ -219,7 +219,7 @@ pub fn edges_are_apart(shapes: &Shapes, touching: Touching) -> bool {
     each_fault(shapes, touching, |_| false)
 }
 
-/// Returns the points, by their indices, at the ends of edges that are not apart, each once; `None` where it
+/// Returns the points, by their indices, at the ends of edges that are not apart, each once; `None` if it
 /// takes too many comparisons.
 pub(super) fn faults(shapes: &Shapes, touching: Touching) -> Option<Vec<usize>> {
     let mut points = Vec::new();
@@ -232,8 +232,8 @@ pub(super) fn faults(shapes: &Shapes, touching: Touching) -> Option<Vec<usize>> 
     all.then_some(points)
 }
 
-/// Calls with the points of each fault, with none where it takes too many comparisons, as long as
-/// the answer is yes; returns whether that was to the end.
+/// Calls with the points of each fault, with none if it takes too many comparisons, as long as the
+/// answer is yes; returns whether that was to the end.
 fn each_fault(shapes: &Shapes, touching: Touching, mut tell: impl FnMut(&[usize]) -> bool) -> bool {
     for ring in 0..shapes.ring_count() {
         let range = shapes.ring_range(ring);

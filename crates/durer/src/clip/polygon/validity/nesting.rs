@@ -24,8 +24,8 @@ pub fn nests(shapes: &Shapes) -> bool {
     nests
 }
 
-/// Calls for each ring that lies where it must not, as long as the answer is yes; the edges are apart. O(n log n) where there
-/// is none, O(n + k) for k pairs of rings of which one's box holds the other's, where there is.
+/// Calls for each ring that lies where it must not, as long as the answer is yes; the edges are apart. O(n log n) if
+/// there is none, O(n + k) for k pairs of rings of which one's box holds the other's, where there is.
 pub fn each_misplaced(shapes: &Shapes, tell: impl FnMut(Flaw) -> bool) {
     let rings = rings_of(shapes);
     if !is_crowded(&rings) || !alternates(shapes) {

@@ -49,7 +49,7 @@ fn repeated(dashes: &[f64]) -> impl Iterator<Item = f64> {
     dashes.iter().copied().cycle().take(times * dashes.len())
 }
 
-/// Returns the dashes of a path of finite points; `None` where it stays solid: without dashes, or with
+/// Returns the dashes of a path of finite points; `None` if it stays solid: without dashes, or with
 /// too many.
 pub(super) fn dashed(
     path: impl Iterator<Item = PathElement>,

@@ -7,18 +7,18 @@ use super::{Stroke, elements, reach};
 use crate::curve::{Path, PathElement};
 use crate::math::{DVec2, Rect};
 
-/// Paths that are not so many times larger than the window are left as they are.
+/// Paths that are not this many times larger than the window are left as they are.
 const FAR: f64 = 64.0;
 
-/// Curves are halved until they are at most so many windows large, or have been so often.
+/// Curves are halved until they are at most this many windows large, or have been so often.
 const LARGE: f64 = 4.0;
 const MOST_HALVINGS: u32 = 40;
 
 /// A piece of a contour: where it begins, and the element itself.
 type Piece = (DVec2, PathElement);
 
-/// Returns the parts of a path of which the stroke may reach the window, which is in the space of the path; `None` where that
-/// saves nothing, and for dashes, which have to be counted from the start.
+/// Returns the parts of a path of which the stroke may reach the window, which is in the space of the path; `None` if
+/// that saves nothing, and for dashes, which have to be counted from the start.
 ///
 /// Contours are cut where they are away from the window, and have ends there.
 pub(crate) fn parts_near(path: &Path, stroke: &Stroke, window: Rect) -> Option<Path> {
@@ -61,7 +61,7 @@ struct Cut {
     /// Side of the largest curves that are not halved.
     large: f64,
     out: Path,
-    /// Its pieces near the window, and `None` where there are others.
+    /// Its pieces near the window, and `None` if there are others.
     pieces: Vec<Option<Piece>>,
 }
 

@@ -146,7 +146,7 @@ pub fn front_to_back(field: &HeightField, camera: &Camera) -> [Vec<usize>; 2] {
 }
 
 /// Draws a surface: its lines as [`LineClass::Grid`] on the plane of the picture. Hidden pieces, where
-/// asked for, have invisibility 1, however many layers of the surface hide them.
+/// requested, have invisibility 1, however many layers of the surface hide them.
 ///
 /// ```
 /// use durer::math::DVec3;

@@ -10,7 +10,7 @@ use crate::scene::{Camera, HeightField, Projection};
 /// Abscissas are multiples of this part of the picture's width, rounded to a power of two: columns that
 /// are one in exact arithmetic, such as a diagonal's ends seen along it, are one in the picture.
 const SNAP: f64 = 1.0 / (1u64 << 34) as f64;
-/// A single picture is wide enough where no point is farther aside than so many times ahead.
+/// A single picture is wide enough where no point is farther aside than this many times ahead.
 const WIDEST: f64 = 2.0;
 /// Nearer to the eye's own plumb line than this part of the surface's extent nothing is projected.
 const FOOT: f64 = 1e-4;
@@ -83,8 +83,8 @@ impl Sight {
         }
     }
 
-    /// Returns the upright pictures that hold all of the surface; none where it is seen straight
-    /// along the plumb line, and nothing hides anything.
+    /// Returns the upright pictures that hold all of the surface; none if it is seen straight along
+    /// the plumb line, and nothing hides anything.
     pub fn pictures(self, field: &HeightField, middle: DVec3) -> Vec<Picture> {
         let points = Points { field, middle };
         let pictures = match self {

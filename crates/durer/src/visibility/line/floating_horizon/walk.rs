@@ -246,7 +246,7 @@ impl<'a> Walk<'a> {
     /// Returns the number of a cell's corner, and its place relative to the middle.
     fn corner(&self, column: usize, row: usize, k: usize) -> (usize, DVec3) {
         let (column, row) = (column + (k & 1), row + (k >> 1));
-        // Only asked for where it is there.
+        // Only requested where it is there.
         let point = self.field.point(column, row).unwrap_or(self.middle);
         (row * self.field.columns() + column, point - self.middle)
     }

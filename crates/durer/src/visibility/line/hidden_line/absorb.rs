@@ -55,7 +55,7 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// Gives the shortest sliver away; `false` where there is none.
+    /// Gives the shortest sliver away; `false` if there is none.
     fn absorb_shortest(&mut self) -> bool {
         let Some(i) = self.next() else { return false };
         let gone = self.spans[i];

@@ -7,14 +7,14 @@
 use super::super::page::{GridPoint, Vertex};
 use std::ops::Range;
 
-/// Side by side at most so many cells.
+/// Side by side at most this many cells.
 const MOST_ACROSS: f64 = 4096.0;
 
 /// Limit on smaller cells, of which few are kept.
 const MOST_SMALL_ACROSS: f64 = 65_536.0;
 
-/// Cells are made smaller where lines run through less than one in so many, and their lists have more entries than this on
-/// average: round bodies with fine facets have some ten along their outlines.
+/// Cells are made smaller where lines run through less than one in this many, and their lists have more entries than
+/// this on average: round bodies with fine facets have some ten along their outlines.
 const FEW: usize = 16;
 const LONG: usize = 64;
 
@@ -43,7 +43,7 @@ impl Cells {
         let size = high.minus(low).map(|d| d.max(1));
         let [w, h] = size.map(|d| d as f64);
         let side = (w * h / count.max(1) as f64).sqrt().max(w.max(h) / MOST_ACROSS).max(16.0);
-        // The next power of two that is not much larger than the side asked for.
+        // The next power of two that is not much larger than the side requested.
         Self::of_side(low, size, (libm::frexp(side).1 - 1).clamp(LEAST_SHIFT as i32, 30) as u32)
     }
 
@@ -184,7 +184,8 @@ impl Lists {
         Self::all(Cells::new(bounds(lines.clone()), faces), lines)
     }
 
-    /// Smaller cells, where lines run through few of these and their lists, of so many entries together, are long.
+    /// Smaller cells, where lines run through few of these and their lists, of this many entries together, are
+    /// long.
     pub fn finer(
         &self,
         (faces, entries): (usize, usize),

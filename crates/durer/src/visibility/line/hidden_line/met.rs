@@ -17,7 +17,7 @@ pub(super) struct Met {
 }
 
 impl Met {
-    /// For lines among so many faces.
+    /// For lines among this many faces.
     pub fn new(faces: usize) -> Self {
         let count = faces.clamp(1, MOST_SLOTS).next_power_of_two();
         Self { line: 0, slots: vec![[0; 2]; count], hidden: Vec::new(), times: 0 }

@@ -79,7 +79,7 @@ pub struct Options {
     /// Edges whose faces are turned against each other by more than this are creases; radians, 0 … π.
     pub crease: f64,
     /// A crease goes on, though its edges get blunter, as long as they turn by more than this and it goes
-    /// straight on; radians. `crease` or more, as by default, ends it where it is no crease any more. Lower
+    /// straight on; radians. `crease` or more, as by default, ends it if it is not a crease any more. Lower
     /// angles suit sculpted surfaces; on coarse meshes of round ones they show facets.
     pub crease_end: f64,
     /// True if the surroundings of an edge may decide against `crease`: edges from 3° on between
@@ -109,7 +109,7 @@ pub struct Options {
     /// or left out, where that takes at most this part of the drawing's larger side, or four times as
     /// much but three edges of the mesh; gaps between their tips are closed up to 0.3 times as wide.
     /// 0 leaves all as it is on the mesh, and so does a choice of classes that lacks some of
-    /// [`ClassSet::default`]. 0.01 suits drawings that are looked at.
+    /// [`ClassSet::default`]. 0.01 suits drawings that are examined.
     pub stubs: f64,
     /// Hidden lines, and parts of them, that lie within this part of the drawing's larger side of a visible one all
     /// along are left out: their strokes would run into each other, as where a view is nearly along an axis. 0
@@ -480,7 +480,7 @@ struct FeatureLine {
     fold: [f64; 2],
     /// Largest distance in front of it of a face of its own body that does not hide it, in steps.
     reach: f64,
-    /// Its vertices, where it is a sharp outline of smooth faces: those around these lie folded over each other, and
+    /// Its vertices, if it is a sharp outline of smooth faces: those around these lie folded over each other, and
     /// none hides it.
     vertices: [u32; 2],
 }

@@ -41,7 +41,7 @@ pub(super) struct Occluders<'a> {
     entries: Vec<Entry>,
     /// Ids from here on are cut faces.
     cut_base: u32,
-    /// The body of each item, where that is asked for.
+    /// The body of each item, if requested.
     bodies: Vec<u32>,
     /// True for each item that approximates a smooth surface; empty if none does.
     smooth: Vec<bool>,
@@ -160,7 +160,7 @@ impl<'a> Occluders<'a> {
         });
     }
 
-    /// Returns the face of a list's entry; `None` where it is seen edge-on.
+    /// Returns the face of a list's entry; `None` if it is seen edge-on.
     fn get(&self, id: u32) -> Option<Occluder> {
         let (item, corners) = if id < self.cut_base {
             (id, self.projected.corners(self.faces.triangle(id)?)?)
@@ -186,7 +186,7 @@ impl<'a> Occluders<'a> {
         Some(Occluder { item, corners, weight })
     }
 
-    /// Returns whether two faces are of one body; of none where that was not asked for.
+    /// Returns whether two faces are of one body; of none if that was not requested.
     pub fn same_body(&self, a: u32, b: u32) -> bool {
         let of = |item: u32| self.bodies.get(item as usize).filter(|b| **b != u32::MAX);
         of(a).is_some() && of(a) == of(b)

@@ -68,8 +68,7 @@ impl Sums {
 
     /// Returns the cylinder: its axis is what the normals are most at right angles to, its circle the
     /// best one in the algebraic sense (I. Kåsa, *A circle fitting procedure and its error analysis*,
-    /// IEEE Transactions on Instrumentation and Measurement, 1976). `None` where the points are in
-    /// line.
+    /// IEEE Transactions on Instrumentation and Measurement, 1976). `None` if the points are in line.
     pub fn fit(&self) -> Option<Surface> {
         let axis = smallest_direction(self.normals)?;
         let [u, v] = across(axis);
@@ -93,7 +92,7 @@ const MANY: usize = 18;
 const STEPS: usize = 3;
 
 /// Returns one step of Gauss and Newton to the cylinder that is nearest to points: the axis tilts and moves,
-/// the radius changes. `None` where the points do not tell it.
+/// the radius changes. `None` if the points do not tell it.
 fn nearer(surface: &Surface, points: &[DVec3]) -> Option<Surface> {
     let [u, v] = surface.across();
     let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
@@ -176,7 +175,7 @@ fn circle(points: impl Iterator<Item = DVec2> + Clone) -> Option<(DVec2, f64)> {
 }
 
 /// Returns the eigenvector of the smallest eigenvalue of a symmetric matrix, by rotations (C. G. J.
-/// Jacobi, *Über ein leichtes Verfahren …*, 1846); `None` where it is 0 or not finite.
+/// Jacobi, *Über ein leichtes Verfahren …*, 1846); `None` if it is 0 or not finite.
 fn smallest_direction([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Option<DVec3> {
     /// Off-diagonal entries shrink quadratically: six rounds reach the last bit.
     const ROUNDS: usize = 8;

@@ -2,10 +2,10 @@
 //!
 //! Region growing, as in Paul J. Besl and Ramesh C. Jain, *Segmentation through variable-order surface
 //! fitting*, IEEE PAMI, 1988, on triangles: two neighbours that turn a little give a first cylinder, which
-//! takes in neighbours whose corners lie on it, and is fitted anew whenever it has doubled. The vertices
-//! of a mesh lie on the surface that it stands for, so corners must lie on it nearer than the
-//! middles of the mesh's own facets do. Bands of spheres and tori look like short cylinders; they are known
-//! by what goes on smoothly beyond their rims. O(n).
+//! takes in neighbours whose corners lie on it, and is fitted anew whenever it has doubled. The vertices of
+//! a mesh lie on the surface that it approximates, so corners must lie on it nearer than the middles of the
+//! mesh's own facets do. Bands of spheres and tori look like short cylinders; they are known by what goes
+//! on smoothly beyond their rims. O(n).
 
 mod fit;
 
@@ -70,7 +70,7 @@ const LEAST_ANGLE: f64 = 25.0 * std::f64::consts::PI / 180.0;
 const LEAST_FACETS: usize = 4;
 /// A part cylinder has at least so much of the rectangle that it would be if it were unrolled.
 const WHOLE: f64 = 0.8;
-/// A triangle that has been in vain in so many regions is in none.
+/// A triangle that has been in vain in this many regions is in none.
 const TRIES: u8 = 8;
 /// Number of triangles that give a first cylinder if two neighbours do not.
 const PATCH: usize = 14;
@@ -157,7 +157,7 @@ impl Finder<'_> {
     /// Grows a region from some triangles and returns it, if it is a cylinder.
     fn tried(&mut self, edges: &Edges, items: Vec<u32>, turn: f64) -> Option<Cylinder> {
         let Some(region) = self.seed(&items, turn) else {
-            // Two neighbours may be so by chance; many that are no cylinder stand for what is around them.
+            // Two neighbours may be so by chance; many that are not cylinder stand for what is around them.
             if items.len() > 2 {
                 self.mark(&items, false);
             }
@@ -177,7 +177,7 @@ impl Finder<'_> {
         }
     }
 
-    /// Returns the triangles around two that turn little against them; `None` where they are no more. Where
+    /// Returns the triangles around two that turn little against them; `None` if they are no more. Where
     /// triangles are tilted, two normals do not tell the axis.
     fn patch(&self, edges: &Edges, pair: [u32; 2]) -> Option<Vec<u32>> {
         let normal = self.normal(pair[0])?;
@@ -208,7 +208,7 @@ impl Finder<'_> {
         found
     }
 
-    /// Returns the unit normal of a triangle, out of its body; `None` where it is too thin to have
+    /// Returns the unit normal of a triangle, out of its body; `None` if it is too thin to have
     /// one.
     fn normal(&self, item: u32) -> Option<DVec3> {
         self.normals.get(item as usize).copied().filter(|n| *n != DVec3::ZERO)

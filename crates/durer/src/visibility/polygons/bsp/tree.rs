@@ -28,7 +28,7 @@ struct Cut {
     before: Option<u32>,
 }
 
-/// A plane, what lies in it, and the halves.
+/// A plane, what is in it, and the halves.
 #[derive(Debug, Clone)]
 struct Node {
     plane: Plane,
@@ -134,7 +134,7 @@ impl Tree {
         node
     }
 
-    /// Shares a list out to both sides of a node's plane; what lies in it stays there.
+    /// Shares a list out to both sides of a node's plane; what is in it stays there.
     fn divide(
         &mut self,
         node: u32,
@@ -224,7 +224,7 @@ impl Tree {
     }
 
     /// Returns the pieces from back to front as an eye sees them: each may be painted over those before it.
-    /// Of what lies in one plane the faces that come first are painted last.
+    /// Of what is in one plane the faces that come first are painted last.
     pub fn back_to_front(&self, eye: Eye, t: &mut impl Tracer<Step>) -> Vec<u32> {
         let mut order = Vec::new();
         // A node that is to be walked through, or whose own pieces are next.

@@ -261,7 +261,7 @@ fn is_surface(mesh: &Mesh) -> bool {
 struct Vertices {
     instance: Option<usize>,
     clip: Vec<DVec4>,
-    /// On the grid, with depth; `None` where it lies outside the picture.
+    /// On the grid, with depth; `None` if it lies outside the picture.
     placed: Vec<Option<(Place, f64)>>,
 }
 

@@ -22,7 +22,7 @@ pub struct Patch {
 pub struct Patches {
     /// In the order of their first half-edges.
     pub list: Vec<Patch>,
-    /// For each face of the map its patch; [`NOTHING`] where it has none.
+    /// For each face of the map its patch; [`NOTHING`] if it has none.
     pub of_face: Vec<u32>,
 }
 
@@ -62,7 +62,7 @@ pub fn patches(map: &Planar, labels: &[u32]) -> Patches {
     Patches { list, of_face }
 }
 
-/// For each face one that stands for all that it is joined to.
+/// For each face the representative of all faces joined to it.
 fn join(map: &Planar, keep: impl Fn(usize) -> bool) -> Vec<u32> {
     let mut parent: Vec<u32> = (0..map.face_count as u32).collect();
     fn root(parent: &mut [u32], mut i: u32) -> u32 {

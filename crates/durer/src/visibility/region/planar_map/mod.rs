@@ -5,12 +5,12 @@
 //! space; the result does not depend on pixels. Cost: O((n + k) log n) on usual scenes, for n faces and k visible
 //! pieces of edges; at worst every face lies over every other, O(n²).
 //!
-//! The paper divides the picture along the outline of the nearest polygon, throws away what lies behind
-//! it, and goes on with the rest, again and again; polygons that penetrate are split. Here all divisions
-//! are made at once, in four steps, so that cost follows what overlaps and neighbours share their borders:
+//! The paper divides the picture along the outline of the nearest polygon, throws away what is behind it,
+//! and goes on with the rest, again and again; polygons that penetrate are split. Here all divisions are
+//! made at once, in four steps, so that cost follows what overlaps and neighbours share their borders:
 //!
 //! 1. Faces are cut at the border of the picture and their corners snapped to an integer grid of 2³⁰ steps
-//!    across; from then on the sides of a point are told exactly. Depth is linear over each face.
+//!    across; from then on the sides of a point are decided exactly. Depth is linear over each face.
 //! 2. A grid of cells holds faces from front to back, as far as the first that covers the cell.
 //! 3. Each side of a face, and each segment along which two faces penetrate, is freed of the parts behind
 //!    faces: an interval for each face before it. What is left divides the picture.

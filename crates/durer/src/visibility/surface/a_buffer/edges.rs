@@ -137,7 +137,7 @@ pub struct Functions<S: Simd> {
 const COLUMNS_F64: [f64; EIGHT] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 impl<S: Simd> Functions<S> {
-    /// At the centres of eight pixels, of which the first is so many columns after the first.
+    /// At the centres of eight pixels, of which the first is this many columns after the first.
     #[inline(always)]
     pub fn at(&self, simd: S, columns: usize) -> [f32x8<S>; 3] {
         let columns = f64x8::from_slice(simd, &COLUMNS_F64) + columns as f64;

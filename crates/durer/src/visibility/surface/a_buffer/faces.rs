@@ -26,7 +26,7 @@ pub struct Faces<'a> {
     free: Vec<u32>,
     /// True if some items come in several pieces.
     pub in_pieces: bool,
-    /// The run of the latest item that was asked for: its first item, how many it has, and how it covers.
+    /// The run of the latest item that was requested: its first item, how many it has, and how it covers.
     run: (u32, u32, Coverage),
 }
 
@@ -92,7 +92,7 @@ impl<'a> Faces<'a> {
         let [first, end] = [0, 1].map(|i| starts[y as usize + i] as usize);
         let new = &mut waiting[first..end];
         for new in new.iter_mut() {
-            // All at once, for they have to be waited for.
+            // All at once, because they have to be waited for.
             let t = input.triangles[new.triangle as usize];
             new.place = free.pop().unwrap_or(places.len() as u32);
             match places.get_mut(new.place as usize) {

@@ -72,8 +72,8 @@ impl<'a> Pool<'a> {
     }
 
     /// Returns a depth behind which nothing of a pixel can be seen: opaque fragments before it
-    /// cover all of the pixel. It depends on the order in which fragments came; infinite where
-    /// there is none.
+    /// cover all of the pixel. It depends on the order in which fragments came; infinite if there
+    /// is none.
     #[inline(always)]
     pub fn hidden_from(&self, x: i32) -> f32 {
         self.hidden_from[x as usize]

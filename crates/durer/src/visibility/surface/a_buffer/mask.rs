@@ -8,13 +8,13 @@
 use super::Mask;
 use fearless_simd::{Simd, f32x8, prelude::*};
 
-/// Pixels that are looked at together.
+/// Pixels that are examined together.
 pub const EIGHT: usize = 8;
 
 /// Directions in a quadrant. Coarser ones turn edges by more than a sub-pixel's width.
 const DIRECTIONS: usize = 32;
 
-/// Steps of e from −½ to ½: half of what tells neighbouring counts of 64 sub-pixels apart.
+/// Steps of e from −½ to ½: half of the difference of neighbouring counts of 64 sub-pixels.
 const DISTANCES: usize = 128;
 
 /// Masks in the table; a power of two.

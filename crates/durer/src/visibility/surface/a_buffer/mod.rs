@@ -5,7 +5,7 @@
 //! Anti-Aliasing*, SIGGRAPH 1983. Image space. Every triangle leaves in each pixel that it touches a
 //! fragment: the mask of the sub-pixels it covers, the exact area, the smallest and the largest
 //! depth. A pixel's fragments are sorted front to back; masks tell what is seen of each. Where the
-//! depths of two overlap within the pixel, a priority mask tells at which sub-pixels one lies in
+//! depths of two overlap within the pixel, a priority mask gives the sub-pixels at which one is in
 //! front of the other, so penetrating faces meet in a clean line. Blended surfaces need no order.
 //!
 //! Deviations: opaque fragments weigh by their exact area, masks only tell what part of it is hidden;

@@ -182,7 +182,7 @@ impl Pixel {
 
     /// Fragments of which some are blended, [in order](Self::is_in_order): composed front to back.
     ///
-    /// `alpha` says that of a fragment, by its number; it is not asked for what next to nothing of is
+    /// `alpha` says that of a fragment, by its number; it is not requested what next to nothing of is
     /// seen.
     pub fn resolve_in_order(&mut self, full: u64, mut alpha: impl FnMut(usize, &Fragment) -> f32) {
         let share_of_bit = 1.0 / full.count_ones() as f32;

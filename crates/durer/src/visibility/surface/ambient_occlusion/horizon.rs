@@ -69,7 +69,7 @@ impl Surroundings {
     }
 }
 
-/// The directions of a turn's slices, and the pixels that are looked at to their two sides.
+/// The directions of a turn's slices, and the pixels that are examined to their two sides.
 struct Looks {
     reach: f32,
     slices: [(Vec2, [[[i32; 2]; STEPS]; 2]); SLICES],
@@ -121,7 +121,7 @@ struct Points<S: Simd> {
 }
 
 impl<S: Simd> Points<S> {
-    /// Returns those from the column `x` on; `None` where they show nothing.
+    /// Returns those from the column `x` on; `None` if they show nothing.
     #[inline(always)]
     fn get(simd: S, planes: &Planes, x: i32, y: i32) -> Option<Self> {
         let at = planes.place(x, y);
@@ -277,7 +277,7 @@ fn highest<S: Simd>(
         let fading = squared * around.per_radius_squared;
         let cosine = delta.dot(to_eye) / squared.sqrt();
         let above = low + (cosine - low) * (splat(1.0) - fading);
-        // Not so where nothing is, for that is no number.
+        // Not so where nothing is, because that is not a number.
         let counts = fading.simd_lt(splat(1.0)) & squared.simd_gt(splat(0.0));
         highest = (counts & above.simd_gt(highest)).select(above, highest);
     }

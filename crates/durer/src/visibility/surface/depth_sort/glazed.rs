@@ -17,7 +17,7 @@ pub struct Glazed<'a> {
     lighting: Lighting<'a>,
     look: &'a picture::Options,
     opaque: Visible,
-    /// Linear, premultiplied; `None` where nothing was blended since the latest opaque surface.
+    /// Linear, premultiplied; `None` if nothing was blended since the latest opaque surface.
     sums: Vec<Option<Vec4>>,
     lit: Lit<'a>,
 }

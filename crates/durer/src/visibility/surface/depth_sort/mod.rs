@@ -205,10 +205,9 @@ pub fn order(input: &SurfaceInput<'_>, t: &mut impl Tracer<Step>) -> Result<Vec<
     order_after(input, &[], t)
 }
 
-/// [`order`] with frame-to-frame coherence: polygons are looked at as they stood in an order of the same
-/// scene seen before, not from far to near. `previous` has that order's items. Any list gives an order that is
-/// as right; the picture is the same. Little is saved: a tenth of the moves, where frames are a degree
-/// apart.
+/// [`order`] with frame-to-frame coherence: polygons are examined as they stood in an order of the same scene
+/// seen before, not from far to near. `previous` has that order's items. Any list gives an order that is as
+/// right; the picture is the same. Little is saved: a tenth of the moves, where frames are a degree apart.
 ///
 /// # Errors
 /// As [`order`].
@@ -226,7 +225,7 @@ pub fn order_after(
 const COMPARISONS: u64 = 1 << 26;
 const COMPARISONS_PER_TRIANGLE: u64 = 4096;
 
-/// [`order_after`] with so many comparisons at most.
+/// [`order_after`] with this many comparisons at most.
 fn order_within(
     input: &SurfaceInput<'_>,
     previous: &[u32],
@@ -329,7 +328,7 @@ fn paint(
     visible
 }
 
-/// A comparison takes as long as about so many looks into the list of a tile.
+/// A comparison takes as long as about this many looks into the list of a tile.
 const LOOKS_PER_COMPARISON: u64 = 16;
 
 /// The list of polygons on its way to order.

@@ -13,7 +13,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x8, u32x16};
 use fearless_simd_macros::simd;
 
-/// Up to so many patches wait.
+/// Up to this many patches wait.
 const MOST: usize = 32;
 
 /// Patches of settled points of one plain run under lights from infinitely far away.
@@ -114,7 +114,7 @@ impl Batch {
             let Some(plane) = self.plane_of(lit, item) else {
                 self.waiting.truncate(first);
                 if item != NO_ITEM {
-                    // What waits may be of a run that is not asked for any more.
+                    // What waits may be of a run that is not requested any more.
                     Self::flush(simd, self, lit, codes);
                 }
                 return false;

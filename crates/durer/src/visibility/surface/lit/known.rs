@@ -1,4 +1,4 @@
-//! Normals that were found before anybody asked for them by items: where triangles were sampled while they were set up.
+//! Normals that were found before anybody requested them by items: where triangles were sampled while they were set up.
 //!
 //! Where pixels have one sample each has room for a normal of its own; where they have four, the samples of a pixel share
 //! those that were found.
@@ -12,7 +12,7 @@ use fearless_simd::{Simd, f32x4, f32x16, i32x4, mask32x8, mask32x16, u32x4, u32x
 /// Normals at the samples of a tile, of the side that is seen, settled, of any length.
 pub struct KnownNormals {
     any: bool,
-    /// Whose normal each sample has here; [`NO_ITEM`] where there is none.
+    /// Whose normal each sample has here; [`NO_ITEM`] if there is none.
     items: Vec<u32>,
     /// Index of each sample's normal, for pixels of several samples.
     places: Vec<u32>,
@@ -26,7 +26,8 @@ pub struct KnownNormals {
 pub type Known<S> = (mask32x16<S>, Vec3Lane<f32x16<S>>);
 
 impl KnownNormals {
-    /// Makes room for so many pixels of one sample or four, and none of other pixels, of which nothing is known.
+    /// Makes room for this many pixels of one sample or four, and none of other pixels, of which nothing is
+    /// known.
     pub fn new(pixels: usize, samples: usize) -> Self {
         let (rooms, of_pixels) = match samples {
             1 => (pixels, pixels),
@@ -47,7 +48,7 @@ impl KnownNormals {
         }
     }
 
-    /// Sets the normal of an item at a pixel of one sample; NaN where it is not known.
+    /// Sets the normal of an item at a pixel of one sample; NaN if it is not known.
     #[inline(always)]
     pub fn set(&mut self, pixel: usize, item: u32, [x, y, z]: [f32; 3]) {
         self.any = true;

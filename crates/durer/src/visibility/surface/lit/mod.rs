@@ -27,7 +27,7 @@ use crate::visibility::surface::sight::Sight;
 use crate::visibility::surface::triangles::{OF_ROWS, OF_TILES, Part, Triangles, parallel_view};
 use lighting::{LookedUp, RunInfo};
 
-/// Sets of texture coordinates that are looked at.
+/// Sets of texture coordinates that are examined.
 const TEX_COORD_SETS: usize = 4;
 
 /// From where a point of an item is seen.
@@ -95,7 +95,7 @@ impl<'a> Lit<'a> {
         info
     }
 
-    /// Has the triangle of an item made ready that will be asked for after [`Self::make_ready`]; several at a
+    /// Has the triangle of an item made ready that will be requested after [`Self::make_ready`]; several at a
     /// time is faster than each when it is needed.
     #[inline(always)]
     pub fn expect(&mut self, item: u32) {

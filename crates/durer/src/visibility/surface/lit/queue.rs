@@ -71,7 +71,7 @@ impl PointQueue {
         self.sums[pixel as usize] += color * weight;
     }
 
-    /// Adds a point of an item, which is lit now or at the latest by [`Self::flush`]; its normal is given where it is
+    /// Adds a point of an item, which is lit now or at the latest by [`Self::flush`]; its normal is given if it is
     /// known, settled, and all that lighting asks for.
     #[inline(always)]
     pub fn add<S: Simd>(

@@ -159,7 +159,7 @@ impl<'a> Lit<'a> {
         })
     }
 
-    /// Returns the normals of an item, where they are settled and nobody asks for more.
+    /// Returns the normals of an item, if they are settled and no more are needed.
     #[inline(always)]
     pub(super) fn settled_plane(&mut self, item: u32, run: usize) -> Option<&NormalPlane> {
         match self.part {
@@ -199,7 +199,7 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// [`Self::points`] where some of the normals may be known; of these, positions are not asked for.
+    /// [`Self::points`] where some of the normals may be known; of these, positions are not requested.
     #[inline(always)]
     pub(super) fn points_known<S: Simd>(
         &mut self,

@@ -156,7 +156,7 @@ fn split(boxes: &[Box3], part: &mut [u32], depth: u32, likelihood: Likelihood) -
     } else {
         1 + usize::from(extent.z > extent.y)
     };
-    // Also where the extent is no number.
+    // Also where the extent is not a number.
     if !(extent[axis] > 0.0 && extent[axis] < f32::INFINITY) {
         return None;
     }

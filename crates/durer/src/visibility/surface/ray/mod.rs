@@ -55,7 +55,7 @@ pub const INFO: Info = Info {
 pub struct Options {
     /// Shading and background.
     pub look: picture::Options,
-    /// Method that keeps light from surfaces in shadow.
+    /// Method that computes shadows.
     pub shadows: bool,
     /// True if rays are followed that mirrors reflect and transparent surfaces refract.
     pub reflections: bool,
@@ -124,7 +124,7 @@ pub fn render(
     framebuffer: &mut Framebuffer,
     t: &mut impl Tracer<Step>,
 ) {
-    // The closure is called only if somebody listens.
+    // The closure is called only if steps are recorded.
     let mut listens = false;
     t.step(|| {
         listens = true;
@@ -198,7 +198,7 @@ const BAND: i32 = 16;
 struct Band {
     /// Depth and item of what is nearest at pixels' centres.
     hits: Vec<([i32; 2], (f32, u32))>,
-    /// Empty where rays are only cast to find what is visible.
+    /// Empty if rays are only cast to find what is visible.
     colors: Vec<[u8; 4]>,
     steps: Vec<Step>,
 }

@@ -21,7 +21,7 @@ const LEAST: f32 = 1.0 / 512.0;
 /// Rays are not followed further than this, whatever the options say.
 const DEEPEST: u32 = 32;
 
-/// Blended surfaces that are looked through behind the last bounce; more are not told from a wall.
+/// Blended surfaces that are looked through behind the last bounce; more count as opaque.
 const MOST_LAYERS: usize = 1024;
 
 /// A ray must be this far away, times the largest coordinate, before it hits anything: more than the

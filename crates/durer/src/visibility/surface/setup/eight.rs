@@ -20,7 +20,7 @@ pub struct Eight {
     pub uncut: u64,
     /// Those of the others that may be seen.
     pub seen: u64,
-    /// Those that are seen and were sampled at once; the others may be asked for by [`Self::triangle`].
+    /// Those that are seen and were sampled at once; the others may be requested by [`Self::triangle`].
     pub sampled: Sampled,
     rows: [[[u32; EIGHT]; EIGHT]; 2],
 }
@@ -94,8 +94,7 @@ fn four_columns<S: Simd>(simd: S, of: &[&ScreenVertex; EIGHT], from: usize) -> [
     gather::four_columns(simd, rows)
 }
 
-/// Back-face and area test, bounding box test, depth plane; of small triangles, where that is asked for, which pixels they
-/// cover.
+/// Back-face and area test, bounding box test, depth plane; of small triangles, if requested, which pixels they cover.
 #[inline(always)]
 pub fn set_up<S: Simd>(
     simd: S,

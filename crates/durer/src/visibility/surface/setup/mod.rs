@@ -96,8 +96,8 @@ pub trait Sink {
     /// Takes one.
     fn take(&mut self, triangle: ScreenTriangle);
 
-    /// Returns the samples, as offsets from pixels' centres in 1/256 pixel, at which small triangles are sampled at once
-    /// and go to [`Self::take_sampled`]; none where they are not.
+    /// Returns the samples, as offsets from pixels' centres in 1/256 pixel, at which small triangles are sampled at
+    /// once and go to [`Self::take_sampled`]; none if they are not.
     fn takes_sampled(&self) -> &'static [[i32; 2]] {
         &[]
     }
@@ -210,8 +210,8 @@ impl<'a> Assembler<'a> {
     }
 
     /// Transforms the vertices of a range of triangles: all between the smallest and the largest
-    /// index, where that is not many more than are used, and then gives the smallest; else three
-    /// for each triangle.
+    /// index, if that is not many more than are used, and then gives the smallest; else three for
+    /// each triangle.
     fn transform_vertices(
         &mut self,
         mesh: &Mesh,
@@ -316,7 +316,7 @@ impl<'a> Assembler<'a> {
     }
 }
 
-/// Returns the least and the largest of some numbers; where there are none, the least is the larger
+/// Returns the least and the largest of some numbers; if there are none, the least is the larger
 /// one.
 #[simd]
 fn least_and_largest<S: Simd>(simd: S, numbers: &[u32]) -> (u32, u32) {

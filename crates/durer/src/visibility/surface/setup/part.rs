@@ -29,7 +29,7 @@ impl Part<'_> {
     }
 
     /// Returns the vertices of eight triangles from the i-th on, by corner. Where there are fewer than eight
-    /// left, the last stands for those missing.
+    /// left, the last replaces missing ones.
     #[inline(always)]
     pub(super) fn eight(&self, i: usize) -> [[&ScreenVertex; EIGHT]; 3] {
         let mut vertices = [[&self.vertices[0]; EIGHT]; 3];

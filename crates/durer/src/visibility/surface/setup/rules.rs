@@ -13,6 +13,6 @@ pub struct Rules {
     pub behind: Behind,
     /// True if these are left out.
     pub cull_back: bool,
-    /// The samples, as offsets from pixels' centres, at which small ones are sampled at once; none where they are not.
+    /// The samples, as offsets from pixels' centres, at which small ones are sampled at once; none if they are not.
     pub sampled: &'static [[i32; 2]],
 }

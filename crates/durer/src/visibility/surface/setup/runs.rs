@@ -37,7 +37,7 @@ pub struct Run {
 /// points, so that the item of a triangle does not depend on them.
 ///
 /// # Errors
-/// [`crate::Error::Limit`] where there are more than 2³² − 2 primitives.
+/// [`crate::Error::Limit`] if there are more than 2³² − 2 primitives.
 pub fn runs(scene: &Scene) -> crate::Result<Vec<Run>> {
     let mut runs = Vec::new();
     let mut next_item: u64 = 0;

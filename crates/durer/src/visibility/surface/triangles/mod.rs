@@ -226,7 +226,7 @@ fn most_change(reach: i32) -> f32 {
     LEAST_WEIGHT * SUBPIXELS as f32 / (reach + 1) as f32
 }
 
-/// Normals of triangles of one run that nobody has asked for by their items yet.
+/// Normals of triangles of one run that have not been requested by item yet.
 pub struct RunNormals<'a> {
     mesh: &'a Mesh,
     transform: RunTransform,

@@ -322,7 +322,7 @@ fn agreeing<S: Simd>(simd: S, front: Vectors<S>, &[a, b, c]: &[Vectors<S>; 3]) -
     agreeing
 }
 
-/// Returns unit normals of the faces' fronts in single precision, world axes; zero where there is
+/// Returns unit normals of the faces' fronts in single precision, world axes; zero if there is
 /// none.
 #[inline(always)]
 fn front<S: Simd>(simd: S, t: &RunTransform, at: &[Corners<S>; 3]) -> Vectors<S> {
@@ -345,7 +345,7 @@ fn across<S: Simd>([[ax, ay, az], [bx, by, bz], [cx, cy, cz]]: &[Corners<S>; 3])
     [uy * vz - vy * uz, uz * vx - vz * ux, ux * vy - vx * uy]
 }
 
-/// Returns unit normals of the faces' fronts, world axes; zero where there is none.
+/// Returns unit normals of the faces' fronts, world axes; zero if there is none.
 #[inline(always)]
 fn face_normals<S: Simd>(simd: S, eye: &[Corners<S>; 3], handedness: f64) -> Vectors<S> {
     let [x, y, z] = across(eye);
@@ -358,7 +358,7 @@ fn dot<S: Simd>([ax, ay, az]: [f32x8<S>; 3], [bx, by, bz]: [f32x8<S>; 3]) -> f32
     ax * bx + ay * by + az * bz
 }
 
-/// Returns one over the length, of which the square is given; 0 where there is no direction.
+/// Returns one over the length, of which the square is given; 0 if there is no direction.
 #[inline(always)]
 fn inverse_length<S: Simd>(simd: S, length2: f64x8<S>) -> f64x8<S> {
     let zero = simd.splat_f64x8(0.0);

@@ -14,8 +14,8 @@ pub type Corners<S> = [f64x8<S>; 3];
 /// Values of eight triangles at their corners, by corner.
 pub type AtCorners<S> = [Vectors<S>; 3];
 
-/// Positions and normals at the corners of eight primitives, as they are read from a mesh: before they are needed, for they
-/// have to be waited for.
+/// Positions and normals at the corners of eight primitives, as they are read from a mesh: before they are needed,
+/// because they have to be waited for.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Read {
     /// By corner and primitive; the fourth numbers mean nothing.

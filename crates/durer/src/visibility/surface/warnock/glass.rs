@@ -19,7 +19,7 @@ pub struct Glass {
 }
 
 impl Glass {
-    /// A layer at a place of the window; what lies beyond the far plane is not seen.
+    /// A layer at a place of the window; what is beyond the far plane is not seen.
     pub fn put(&mut self, place: usize, depth: f32, item: u32) {
         if depth < 1.0 {
             self.layers.push(Layer { place: place as u32, item, depth });

@@ -1,8 +1,8 @@
 //! Area subdivision.
 //!
 //! J. Warnock, *A Hidden Surface Algorithm for Computer Generated Halftone Pictures*, University of
-//! Utah TR 4-15, 1969. Image space. A window is looked at with the triangles that concern it; if it
-//! is simple it is drawn, else it is divided. Cost: O(triangles · log pixels) for small triangles, at
+//! Utah TR 4-15, 1969. Image space. A window is examined with the triangles that concern it; if it is
+//! simple it is drawn, else it is divided. Cost: O(triangles · log pixels) for small triangles, at
 //! most one look per sample and triangle that concerns it; memory O(triangles · log pixels).
 //! Coherence used: areas.
 //!
@@ -90,7 +90,7 @@ pub enum Step {
         /// Samples along the side of a pixel.
         per_pixel: i32,
     },
-    /// A window is looked at.
+    /// A window is examined.
     Look {
         /// The window.
         window: Window,
@@ -329,7 +329,7 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Drops what lies behind a surrounding triangle: the one whose farthest corner is nearest.
+    /// Drops what is behind a surrounding triangle: the one whose farthest corner is nearest.
     fn drop_hidden(&self, window: &Window, entries: &mut Vec<Entry>) {
         let surrounding = entries.iter().filter(|e| e.surrounds);
         let mut best: Option<(f32, u32, u32)> = None;
@@ -456,7 +456,7 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// Triangles whose vertices are looked at to divide a window; more would take longer than it saves.
+/// Triangles whose vertices are examined to divide a window; more would take longer than it saves.
 const VERTEX_CANDIDATES: usize = 16;
 
 /// Returns the parts of a window that are not empty.

@@ -12,7 +12,7 @@ use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 /// Tiles with fewer triangles are not worth it.
 const FEWEST: usize = 64;
 
-/// Ranges of depth that triangles are told apart by.
+/// Ranges of depth into which triangles are sorted.
 const BUCKETS: usize = 64;
 
 /// After these parts of the triangles, in 64ths, the farthest depths are found anew: the first are
@@ -70,7 +70,7 @@ impl<'a> FrontToBack<'a> {
         self.depths.extend(self.given.iter().map(|t| t.depth_min));
         let nearest = self.depths.iter().copied().fold(f32::INFINITY, f32::min);
         let farthest = self.depths.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        // Where all are equally near the product is no number, and the cast gives bucket 0.
+        // Where all are equally near the product is not a number, and the cast gives bucket 0.
         let scale = BUCKETS as f32 / (farthest - nearest);
         let bucket = |depth: f32| (((depth - nearest) * scale) as usize).min(BUCKETS - 1);
         let mut next = [0; BUCKETS + 1];

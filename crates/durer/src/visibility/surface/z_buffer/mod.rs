@@ -174,8 +174,8 @@ pub fn render(
     Ok(report)
 }
 
-/// Returns the samples at which small triangles are sampled while they are set up; none where there are too many, or
-/// where others are looked at too, as at pixels' centres for the planes besides colour.
+/// Returns the samples at which small triangles are sampled while they are set up; none if there are too many, or
+/// where others are examined too, as at pixels' centres for the planes besides colour.
 fn early_samples(samples: Samples, with_planes: bool) -> &'static [[i32; 2]] {
     match samples {
         Samples::Four if with_planes => &[],
@@ -201,7 +201,7 @@ struct Frame<'a> {
 /// One thread's buffers.
 struct Scratch<'a> {
     planes: Vec<SamplePlane>,
-    /// One sample at the pixel's centre, for depth, item and normal: made where they are first asked for.
+    /// One sample at the pixel's centre, for depth, item and normal: made where they are first requested.
     center: Vec<SamplePlane>,
     known: KnownNormals,
     blended: Blended,
@@ -276,7 +276,7 @@ impl<'a> Frame<'a> {
         index: u32,
     ) -> bool {
         let mut any = false;
-        // There are none where pixels have more samples than a plane holds.
+        // There are none if pixels have more samples than a plane holds.
         let [plane] = planes else { return any };
         for fragments in self.fragments {
             dispatch!(self.options.level, simd =>

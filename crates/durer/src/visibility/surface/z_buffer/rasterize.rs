@@ -12,7 +12,7 @@ use fearless_simd::{Simd, i32x8};
 use fearless_simd_macros::simd;
 use planes::{Edges, LaneDepths, top_left};
 
-/// Is asked for the fragments that pass the depth test; a fragment is written only if it passes.
+/// Is requested the fragments that pass the depth test; a fragment is written only if it passes.
 pub trait FragmentTest {
     /// Returns which of consecutive samples pass, among those whose bits are all set in `write`: from the first
     /// sample of the tile-local pixel `at` on, of a plane whose pixels have 2^`shift` samples from the number
@@ -65,7 +65,7 @@ impl<S: Simd> LaneEdges<S> {
         self.row[0] | self.row[1] | self.row[2]
     }
 
-    /// [`Self::outside`] so many rows further down.
+    /// [`Self::outside`] this many rows further down.
     #[inline(always)]
     fn outside_in_row(&self, row: i32) -> S::i32s {
         let [a, b, c] = &self.row;
@@ -84,7 +84,7 @@ impl<S: Simd> LaneEdges<S> {
 }
 
 /// Rasterizes triangles into the planes of the tile whose upper left pixel is `tile`, cut off after
-/// `size` pixels; `test` is asked for each fragment where it is given.
+/// `size` pixels; `test` is requested each fragment if it is given.
 #[simd]
 pub fn rasterize<'a, S: Simd, T: FragmentTest>(
     simd: S,

@@ -152,7 +152,7 @@ fn expect_column<S: Simd>(
     let none = u32x16::splat(simd, NO_ITEM);
     let any_known = known.any();
     for plane in planes {
-        // Rows with 64 items in all: a bit of each says whether it is asked for.
+        // Rows with 64 items in all: a bit of each says whether it is requested.
         let (rows, across) = if plane.shift > 0 { (2, 32) } else { (8, 8) };
         let (mut before, mut before_that) = (none, none);
         for y in (0..height as usize).step_by(rows) {

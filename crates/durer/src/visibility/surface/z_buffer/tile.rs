@@ -54,7 +54,7 @@ pub struct SamplePlane {
 }
 
 impl SamplePlane {
-    /// Planes for so many samples, each for one of them or for four.
+    /// Planes for this many samples, each for one of them or for four.
     pub fn of(offsets: &[SampleOffset]) -> Vec<Self> {
         let chunk = if offsets.len().is_multiple_of(4) { 4 } else { 1 };
         let chunks = offsets.chunks(chunk).enumerate();

@@ -27,11 +27,11 @@ struct Fragment {
 /// Number of fragments that are collected before those that nothing can precede are lit.
 const MANY: usize = if cfg!(test) { 64 } else { 4 * TILE_PIXELS };
 
-/// After so many triangles it is asked whether anything comes through.
+/// After this many triangles it is asked whether anything comes through.
 const AT_ONCE: usize = 8;
 
-/// Lights the first triangles, at least so many and as many as their depths do not tell from the others, sorted pixel by
-/// pixel: how many they are.
+/// Lights the first triangles, at least this many and as many as their depths do not tell from the others, sorted pixel
+/// by pixel: how many they are.
 #[inline(always)]
 pub fn light_sorted<S: Simd>(
     simd: S,

@@ -38,7 +38,7 @@ pub struct Layers {
 type Colors = [[f32; LANES]; 4];
 
 impl Layers {
-    /// For pixels of so many samples.
+    /// For pixels of this many samples.
     pub fn new(count: usize) -> Self {
         Self {
             all: Vec::new(),
@@ -91,7 +91,7 @@ impl Layers {
         self.closed_count >= (size[0] * size[1]) as usize
     }
 
-    /// Lights an item at each pixel of a block where there is one and something comes through; `covered` are its
+    /// Lights an item at each pixel of a block if there is one and something comes through; `covered` are its
     /// samples as bits.
     #[inline(always)]
     pub fn light<S: Simd>(

@@ -104,7 +104,7 @@ pub fn light_blended<S: Simd>(
 }
 
 /// Lights the first triangles, as many as do not cover each other, if all others are behind them: how many they
-/// are; else lights none and tells how many it has looked at.
+/// are; otherwise it lights none and returns how many it has examined.
 #[inline(always)]
 fn light_sheet<S: Simd>(
     simd: S,

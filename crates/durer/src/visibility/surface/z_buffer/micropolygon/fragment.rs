@@ -52,7 +52,7 @@ pub struct Sample<const N: usize> {
 /// The same with a normal.
 #[derive(Debug, Clone, Copy)]
 pub struct Fragment<const N: usize> {
-    /// The normal of the side that is seen, of any length; NaN where it is to be found when it is asked for.
+    /// The normal of the side that is seen, of any length; NaN where it is to be found when it is requested.
     pub normal: [f32; 3],
     pub sample: Sample<N>,
 }
@@ -200,7 +200,7 @@ pub struct Fragments {
 }
 
 impl Fragments {
-    /// Makes room for what is in so many tiles, of pixels with one or four samples.
+    /// Makes room for what is in this many tiles, of pixels with one or four samples.
     pub fn have(&mut self, tiles: usize, samples: usize) {
         if samples == 1 { self.one.have(tiles) } else { self.four.have(tiles) }
     }

@@ -46,7 +46,7 @@ struct Queue {
 }
 
 impl Queue {
-    /// Adds one of eight triangles where there is room.
+    /// Adds one of eight triangles if there is room.
     #[inline(always)]
     fn push(
         &mut self,
@@ -85,7 +85,8 @@ impl Queue {
         let lines = this.lines(simd, normals);
         let (halves, _) = this.touched.as_chunks::<{ EIGHT / 2 }>();
         for (half, touched) in halves.iter().enumerate() {
-            // Which pixels of which triangles, one after the other: so many in one loop, for where it ends is not foreseen.
+            // Which pixels of which triangles, one after the other: this many in one loop, for where it ends is not
+            // foreseen.
             let mut left = 0;
             for (i, &touched) in touched.iter().enumerate() {
                 left |= u64::from(touched) << (PIXELS * i);
@@ -238,14 +239,14 @@ impl Screen {
 pub struct Micropolygons<'f> {
     /// Those whose fronts are seen.
     fronts: Queue,
-    /// The others: mostly hidden, so nobody asks for their normals.
+    /// The others: mostly hidden, so their normals are not needed.
     backs: Queue,
     fragments: &'f mut Fragments,
     screen: Screen,
 }
 
 impl<'f> Micropolygons<'f> {
-    /// For a screen whose pixels have samples at these places; none where nothing is sampled before its time.
+    /// For a screen whose pixels have samples at these places; none if nothing is sampled before its time.
     pub fn new(grid: TileGrid, offsets: &[[i32; 2]], fragments: &'f mut Fragments) -> Self {
         if !offsets.is_empty() {
             fragments.have(grid.count() as usize, offsets.len());
@@ -254,7 +255,7 @@ impl<'f> Micropolygons<'f> {
         Self { fronts, backs, fragments, screen: Screen::new(grid, offsets) }
     }
 
-    /// Adds those of eight triangles whose bits are set; where they are given, the normals are made of those whose
+    /// Adds those of eight triangles whose bits are set; if they are given, the normals are made of those whose
     /// fronts are seen.
     #[inline(always)]
     pub fn add<S: Simd>(

@@ -35,7 +35,7 @@ fn scene() -> Scene {
         let size = if i % 20 == 0 { 0.15 } else { 0.025 };
         let [a, b, c] = [0; 3].map(|_| middle + Vec3::new(random(), random(), random()) * size);
         let face = (b - a).cross(c - a).normalize_or_zero();
-        // Of some the normals point anywhere, so that they are found when they are asked for.
+        // Of some the normals point anywhere, so that they are found when they are requested.
         let off = if i % 10 == 0 { 2.0 } else { 0.1 };
         for corner in [a, b, c] {
             mesh.positions.push(corner);

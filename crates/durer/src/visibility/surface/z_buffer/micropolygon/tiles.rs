@@ -38,7 +38,7 @@ impl<T> Default for Tiles<T> {
 }
 
 impl<T> Tiles<T> {
-    /// Makes room for the things of so many tiles.
+    /// Makes room for the things of this many tiles.
     pub fn have(&mut self, tiles: usize) {
         self.by_tile.resize_with(tiles, Blocks::default);
     }
