@@ -10,7 +10,7 @@ use clap_complete::Shell;
 const ABOUT: &str = "Renders 3D models to pictures and drawings, on the CPU";
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use; 3 done in part \
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage; 3 partly done \
 (several models with --skip-failures).";
 
 /// Renders 3D models to pictures, on the CPU.

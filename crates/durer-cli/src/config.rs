@@ -21,13 +21,13 @@ const MOST_BYTES: u64 = 1 << 20;
 
 /// Text about the file of options at the end of the help.
 pub const HELP: &str = "\
-Options can stand in a file, `durer.toml` in the current folder or --config FILE, each under its command:
+Options can also be set in a file, `durer.toml` in the current folder or --config FILE, under their command:
   [render]
   size = 512
   background = \"transparent\"
   light = [\"ambient:white:0.2\", \"directional:-1,-2,-1\"]
-Flags are true or false, lists of numbers may be arrays, and paths are relative to the file. What is on \
-the command line wins over the file; --no-config leaves the file out.";
+Flags are true or false, lists of numbers may be arrays, and paths are relative to the file. The command line \
+overrides the file, and --no-config ignores it.";
 
 /// File with further options.
 #[derive(Debug, Clone, Args)]

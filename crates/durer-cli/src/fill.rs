@@ -28,10 +28,10 @@ Examples:
   durer fill map.png -o map2.png --at 10,10 --at 300,200 --color lightgray --connectivity 8
   durer fill ink.png -o red.png --at 64,64 --color red --boundary black --tolerance 100
 
-A pixel is as different from another as the channel (red, green, blue, alpha) that differs most. A PNG of 16 bits
-per channel stays one, unless it becomes a JPEG or WebP: a step of 8 bits is 257 of its steps.
+The difference of two pixels is that of the channel (red, green, blue, alpha) in which they differ most. A PNG with \
+16 bits per channel keeps them, unless the output is JPEG or WebP; a difference of 1 then means 257 of its steps.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
 
 /// The options of `durer fill`.
 #[derive(Debug, Args)]
@@ -58,7 +58,7 @@ pub struct FillArgs {
     /// --boundary: from the boundary's colour)
     #[arg(long, value_name = "T", default_value = "0", allow_hyphen_values = true)]
     pub tolerance: u8,
-    /// Neighbourhood of pixels: 4, or 8 with those that touch at corners
+    /// Neighbourhood of pixels
     #[arg(long, value_name = "N", default_value = "4")]
     pub connectivity: Connectivity,
     /// Fill up to this colour, whatever is inside [default: fill pixels like the first one]
@@ -84,10 +84,10 @@ pub struct FillArgs {
 /// `--connectivity`.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum Connectivity {
-    /// No
+    /// Pixels that share a side
     #[value(name = "4")]
     Four,
-    /// Yes
+    /// Pixels that share a side or a corner
     #[value(name = "8")]
     Eight,
 }

@@ -7,9 +7,8 @@ use durer::scene::{Light, LightKind};
 
 /// The help of `--light`.
 pub const SYNTAX: &str = "\
-A light, in world space; may be given several times and replaces the default lights but for a faint one from \
-everywhere, which `ambient:black` takes away. COLOR is as for \
---background, INTENSITY a factor (both optional, default white:1):
+A light, in world space; may be repeated. Lights replace the default lights, except for a faint ambient one that \
+`ambient:black` removes. COLOR is as for --background, INTENSITY a factor (both optional, default white:1):
   ambient[:COLOR[:INTENSITY]]
   directional:DX,DY,DZ[:COLOR[:INTENSITY]]   shines along the direction
   point:X,Y,Z[:COLOR[:INTENSITY]]            intensity at a distance of 1, falls with its square

@@ -30,7 +30,7 @@ Examples:
   durer render scene.glb -o scene.png --style regions+lines --size 1600x1200
   curl -s https://example.org/a.glb | durer render - -o - --size 256x256 > a.png
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use; 3 done in part \
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage; 3 partly done \
 (several models with --skip-failures).";
 
 /// The options of `durer render`.

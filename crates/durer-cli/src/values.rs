@@ -38,13 +38,13 @@ pub enum Algorithm {
     All,
 }
 
-/// Returns the name of an algorithm; all names are told in the help.
+/// Returns the name of an algorithm; the help lists all names.
 pub fn algorithm() -> impl TypedValueParser<Value = Algorithm> {
     let methods =
         SurfaceMethod::ALL.iter().map(|m| PossibleValue::new(m.name()).help(m.info().title));
     let wireframe = PossibleValue::new(wireframe::INFO.name).help("All edges, hidden ones too");
     let all = PossibleValue::new("all").help(
-        "A contact sheet of all but wireframe, with the pixels whose item is not the z-buffer's",
+        "A contact sheet of all but wireframe, and the pixels that differ from the z-buffer's",
     );
     PossibleValuesParser::new(methods.chain([wireframe, all])).try_map(|name| match &*name {
         "all" => Ok(Algorithm::All),

@@ -26,10 +26,11 @@ Examples:
   durer render part.stl -o a.png --depth a_depth.png --eye 8,3,9 --target 0,0,0 --near 4 --far 20
   durer warp a.png a_depth.png -o b.png --eye 8,3,9 --target 0,0,0 --near 4 --far 20 \\
     --to-eye 8.5,3,8.6
-  `durer render --json` tells the camera of each picture. Holes are what the picture does not show;
-  --fill names a second picture that may.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+`durer render --json` reports the camera of each picture. Holes are places that the picture does not show; --fill names \
+a second picture that may show them.
+
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
 
 /// The options of `durer warp`.
 #[derive(Debug, Args)]

@@ -24,10 +24,10 @@ Examples:
   cat planet.geojsonl | durer clip - --window 5,45,11,48 -o - > alps.geojsonl
 
 Properties, ids and members that GeoJSON does not define are kept; heights and measures are \
-interpolated at cuts. Lines keep their order and direction. Polygons come out valid, by the \
-rectangle clip where the input is valid and the mask a window, else by an overlay on a grid.
+interpolated at cuts. Lines keep their order and direction. Polygons are valid: valid input \
+is clipped to a window by the rectangle clip, and all else by an overlay.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
 
 /// The options of `durer clip`.
 #[derive(Debug, Args)]

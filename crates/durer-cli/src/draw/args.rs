@@ -22,10 +22,10 @@ Examples:
       --background '#cfe2f0' --window -10,35,30,60
   durer clip roads.geojson --window 5,45,11,48 -o - | durer draw - -o alps.png
 
-Map layers are drawn in the order given. Options of the style follow the layer that they are for; \
-those before the first layer are for all layers.
+Map layers are drawn in the order given. Style options apply to the layer before them; \
+those before the first layer apply to all layers.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
 
 /// The options of `durer draw`.
 #[derive(Debug, Args)]

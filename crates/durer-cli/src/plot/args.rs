@@ -21,11 +21,11 @@ Examples:
   durer plot terrain.asc -o terrain.png --size 1600x1200 --fill --color-map terrain
   durer plot heights.npy -o plotter.hpgl --lines x --page A3
 
-Formulas know x, z, r = sqrt(x^2 + z^2), pi, tau, e; + - * / % ^; and the functions
+Formulas may use x, z, r = sqrt(x^2 + z^2), pi, tau, e; + - * / % ^; and the functions
 sin cos tan asin acos atan atan2 sinh cosh tanh exp ln log log2 log10 sqrt cbrt pow hypot abs sign
 floor ceil round fract mod min max clamp sinc erf j0 j1.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
 
 /// The options of `durer plot`.
 #[derive(Debug, Args)]

@@ -17,10 +17,10 @@ Examples:
   durer buffer parcels.fgb --distance -2.5 --join miter -o buildable.fgb
   durer buffer wells.csv --distance 500 --dissolve -o protected.geojson
 
-The distance is in units of the coordinates: bring longitude and latitude to metres first, with durer clip --to-crs. \
-Below 0 polygons shrink. Heights and measures are not kept.
+The distance is in units of the coordinates: convert longitude and latitude to metres first, with durer clip --to-crs. \
+A negative distance shrinks polygons. Heights and measures are not kept.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
 
 /// The options of `durer buffer`.
 #[derive(Debug, Args)]

@@ -22,13 +22,13 @@ Examples:
   durer check parcels.geojson --coverage --gap-width 0.5
   durer check countries.shp --json | jq .faults[0]
 
-A polygon is valid as the OGC's Simple Features say: rings neither cross nor touch themselves and touch one another \
-in points only, holes lie in their outer ring, the inside is in one piece. A layer is a coverage where no two \
-features overlap and neighbours have the same points on the border that they share.
+A polygon is valid as in OGC Simple Features: rings neither cross nor touch themselves and touch one another in points \
+only, holes are inside the outer ring, and the interior is connected. A layer is a coverage if no two features overlap \
+and neighbours have the same points on their shared border.
 
-What had to be mended or left out to read the file counts as `reading`.
+Repairs and omissions made while reading the file count as `reading`.
 
-Exit codes: 0 nothing is wrong; 1 something is, or the file cannot be read; 2 wrong use.";
+Exit codes: 0 nothing is wrong; 1 something is, or the file cannot be read; 2 wrong usage.";
 
 /// The options of `durer check`.
 #[derive(Debug, Args)]

@@ -17,11 +17,11 @@ Examples:
   durer dissolve parcels.shp --by owner,use -o holdings.fgb
   durer dissolve lakes.geojson -o one.geojson
 
-Features with the same value of all fields become one, in the order in which the values come first; without --by \
-all become one. It keeps these fields, and counts its features as `count`. Polygons are joined: borders between \
-them vanish, and what overlapped counts once. Lines and points are put together as they are.
+Features with equal values of all fields become one, in the order of their first feature; without --by, all features \
+become one. The result keeps these fields, and `count` is the number of its features. Polygons are joined: borders \
+between them vanish, and overlaps count once. Lines and points are collected unchanged.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
 
 /// The options of `durer dissolve`.
 #[derive(Debug, Args)]

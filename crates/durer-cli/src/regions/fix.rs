@@ -14,11 +14,11 @@ Examples:
   durer fix outlines.wkt --rule non-zero -o filled.wkt
   durer fix counties.geojson --coverage -o matched.geojson
 
-Features that are valid come out as they went in. Of the others, polygons that enclose the same points by the rule, \
-with their heights and measures: edges that cross are cut there, spikes and doubled rings vanish. durer check says \
-what is wrong and where.
+Valid features are not changed. Other polygons are replaced by valid ones that enclose the same points by the rule and \
+keep heights and measures: crossing edges are cut, spikes and doubled rings vanish. durer check reports what is wrong \
+and where.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
 
 /// The options of `durer fix`.
 #[derive(Debug, Args)]

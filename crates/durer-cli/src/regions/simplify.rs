@@ -14,11 +14,11 @@ Examples:
   durer simplify parcels.geojson --keep 10% -o light.geojson
   durer simplify roads.geojsonl --each --tolerance 2 --method douglas-peucker -o -
 
-Borders that neighbours share, point by point, are simplified once and stay shared; lines and borders that do not \
-cross before do not cross after; every ring keeps three points. Properties, ids and members are kept, and so are \
-the heights and measures of points that stay.
+Borders that neighbours share point by point are simplified once and stay shared. Lines and borders that do not cross \
+before do not cross afterwards, and every ring keeps at least three points. Properties, ids and members are kept, and \
+so are the heights and measures of the remaining points.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
 
 /// The options of `durer simplify`.
 #[derive(Debug, Args)]

@@ -17,10 +17,10 @@ Examples:
   durer tiles countries.geojson --zoom 0-6 -o tiles/
   durer tiles countries.geojson --zoom 3 -o 'tiles/{z}/{x}/{y}.geojson'
 
-Each file becomes a layer. All of a layer is simplified together, so that neighbours keep their borders; the highest \
-level has all points. Polygons come out valid. What lies beyond 180 degrees comes in on the other side.
+Each file becomes a layer. The features of a layer are simplified together, so that neighbours keep their borders; the \
+highest level keeps all points. Polygons are valid. Geometry beyond 180 degrees is moved to the other side.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
 
 /// The options of `durer tiles`.
 #[derive(Debug, Args)]

@@ -19,7 +19,7 @@ pub enum DrawStyle {
     /// Visible edges, and hidden ones in a style of their own.
     #[default]
     HiddenLine,
-    /// All edges, hidden or not of them.
+    /// All edges, hidden or not.
     Wireframe,
     /// The visible parts of surfaces in flat colours.
     Regions,

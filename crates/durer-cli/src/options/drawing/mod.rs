@@ -153,13 +153,13 @@ pub struct DrawingArgs {
     ///
     /// The centre and the radius of the circle are in the units of the model. SCALE, e.g. 5:1, is a standard one by
     /// default, and VIEW is the one that shows most within the circle. E.g. --detail B:30,0,8,4 or --detail
-    /// B:30,0,8,4,10:1,front. May be given several times.
+    /// B:30,0,8,4,10:1,front. May be repeated.
     #[arg(long, value_name = "LETTER:X,Y,Z,RADIUS[,SCALE[,VIEW]]", requires = "sheet", allow_hyphen_values = true, value_parser = detail)]
     pub detail: Vec<DetailSpec>,
     /// Leave out the part between two places on an axis: x, y or z, in the units of the model
     ///
     /// Views that show the axis in its true length close the gap and draw break lines there; all others show the
-    /// whole model. Dimensions keep the true length. E.g. --break x:40,260. May be given several times.
+    /// whole model. Dimensions keep the true length. E.g. --break x:40,260. May be repeated.
     #[arg(id = "break", long, value_name = "AXIS:FROM,TO", allow_hyphen_values = true, value_parser = parsed::<Break>)]
     pub breaks: Vec<Break>,
     /// Number the parts of an assembly around the isometric view, or the only one, and list them
