@@ -43,6 +43,7 @@ mod line_oracle;
 mod line_scenes;
 mod marks;
 mod overlay;
+mod pages;
 mod paper_break;
 mod paper_fit;
 mod pieces;
