@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn wrong_lights_say_what_is_wrong() {
         for (text, part) in [
-            ("sun", "no kind"),
+            ("sun", "not a kind"),
             ("directional", "direction is missing"),
             ("directional:0,0,0", "other than 0"),
             ("point:1,2", "three numbers"),

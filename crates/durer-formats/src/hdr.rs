@@ -242,7 +242,7 @@ mod tests {
             ("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n", "xyze"),
             ("#?RADIANCE\nEXPOSURE=-1\n\n", "EXPOSURE"),
             ("#?RADIANCE\n\n+X 3 -Y 1\n", "orientation"),
-            ("#?RADIANCE\n\n-Y 0 +X 1\n", "no size"),
+            ("#?RADIANCE\n\n-Y 0 +X 1\n", "not a size"),
             ("#?RADIANCE\n\n-Y 99999 +X 1\n", "image side"),
             ("#?RADIANCE\n\n-Y 16000 +X 16000\n", "decoded size"),
             ("#?RADIANCE\n\n-Y 1 +X 3\n\u{1}\u{1}\u{1}\u{1}", "no colour"),

@@ -16,12 +16,12 @@ Examples:
   durer explain sutherland-hodgman plan.geojson --window 2,2,8,8 -o steps.png
   durer explain liang-barsky --step 3 --lang de -o step3.svg
 
-INPUT is map data or an SVG for algorithms of the plane: the first polygon is the subject, further ones are the clip, lines
-are what is clipped, points stand alone; --window gives the window. For algorithms of space it is a model of at most 200
-faces, seen obliquely from above; for fills and halftones a picture of at most 2000 pixels, from --at. Without INPUT an
-example is explained.
+INPUT is map data or an SVG for algorithms of the plane: the first polygon is the subject, further ones are the clip, \
+lines are clipped, and single points are tested; --window sets the window. For algorithms of space it is a model of at most \
+200 faces, seen obliquely from above; for fills and halftones a picture of at most 2000 pixels, filled from --at. \
+Without INPUT an example is explained.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
 
 /// The options of `durer explain`.
 #[derive(Debug, Args)]
@@ -56,10 +56,10 @@ pub struct ExplainArgs {
     /// Pictures in a row of the sheet
     #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(1..=20))]
     pub columns: u16,
-    /// Show no more steps than this; how many are missing is said
+    /// Show no more steps than this; a last step says how many are missing
     #[arg(long, value_name = "N", default_value = "200", value_parser = clap::value_parser!(u32).range(1..=2_000))]
     pub max_steps: u32,
-    /// The window to clip to, in the coordinates of the file; those of an SVG count upwards, so that what it shows is below 0
+    /// The window to clip to, in the coordinates of the file; y of an SVG is negated, so that it grows upwards
     #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true, value_parser = values::rect, requires = "input")]
     pub window: Option<Rect>,
     /// The pixel from which a picture is filled

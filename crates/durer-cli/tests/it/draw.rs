@@ -278,7 +278,9 @@ fn text_is_set_in_the_font_that_is_there_and_a_missing_one_is_told() {
     assert!(told.contains("font `Papyrus` is missing; `DejaVu Sans` is used"), "{told}");
     assert!(picture(&folder, "a.png").shows_something());
     assert_eq!(folder.read("a.png"), folder.read("b.png"));
-    folder.run("draw plain.svg -o a.png --font plain.svg").fails(1, "no TrueType or OpenType font");
+    folder
+        .run("draw plain.svg -o a.png --font plain.svg")
+        .fails(1, "not a TrueType or OpenType font");
     folder.run("draw plain.svg -o a.png --font nowhere").fails(1, "nowhere");
 }
 

@@ -113,7 +113,7 @@ fn options_that_do_not_fit_say_what_does() {
         ("-o a.svg --views front,top", "--sheet"),
         ("-o a.svg --section A:0,0,1,0", "a view of a --sheet"),
         ("-o a.png --section A:0,0,1,0", "a view of a --sheet"),
-        ("-o a.svg --sheet third-angle --section A4711:0,0,1,0", "is no letter"),
+        ("-o a.svg --sheet third-angle --section A4711:0,0,1,0", "is not a letter"),
         ("-o a.svg --sheet third-angle --section A:0,0,0,1", "NX,NY,NZ,D"),
         (
             "-o a.svg --sheet third-angle --section A:0,0,1,0 --detail A:0,0,1,1",

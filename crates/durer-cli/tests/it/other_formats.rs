@@ -56,7 +56,7 @@ fn a_jpeg_lies_on_white_and_says_so() {
         folder.must("render cube.obj -o a.jpg --size 16x16 --background transparent --json");
     assert!(ended.err.contains("a JPEG has no transparency"), "{}", ended.err);
     let warnings = ended.json()["models"][0]["warnings"].to_string();
-    assert!(warnings.contains("lies on white"), "{warnings}");
+    assert!(warnings.contains("composed with white"), "{warnings}");
     let image = image::decode(&folder.read("a.jpg"), "a.jpg", &Limits::default()).unwrap();
     assert!(image.data[0][..3].iter().all(|c| *c >= 250), "{:?}", image.data[0]);
     let colored = folder.must("render cube.obj -o b.jpg --size 16x16 --background navy");

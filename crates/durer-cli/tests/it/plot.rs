@@ -58,8 +58,8 @@ fn options_of_plots_are_checked() {
         ("plot --formula x+ -o a.svg", "column 3"),
         ("plot --formula y -o a.svg", "the ground is x and z"),
         ("plot --formula sqrt(-1) -o a.svg", "no value"),
-        ("plot --formula x -o a.bmp", "tells no format"),
-        ("plot --formula x -o a", "tells no format"),
+        ("plot --formula x -o a.bmp", "does not name a format"),
+        ("plot --formula x -o a", "does not name a format"),
         ("plot --formula x --x 4,-4 -o a.svg", "the first the smaller"),
         ("plot --formula x --samples 0 -o a.svg", "whole pixels"),
         ("plot --formula x --exaggeration 0 -o a.svg", "above 0"),
@@ -71,7 +71,7 @@ fn options_of_plots_are_checked() {
         ("plot --formula x --eye 9,9,9 --azimuth 3 -o a.svg", "cannot be used with"),
         ("plot --formula x --samples 1x9 -o a.svg", "2x2 points at least"),
         ("plot --formula x --aspect 0 -o a.svg", "or `auto`, `equal`"),
-        ("plot --formula x --y-range 8,9 -o a.svg", "no height lies in it"),
+        ("plot --formula x --y-range 8,9 -o a.svg", "there is no height in it"),
     ] {
         let ended = folder.run(arguments);
         let code = if arguments.contains("5x5") { 1 } else { 2 };

@@ -144,6 +144,7 @@ fn links_lead_to_files() {
         "docs/clip.md",
         "docs/drawing.md",
         "docs/draw.md",
+        "docs/explain.md",
         "docs/plot.md",
         "samples/README.md",
         "peers/render/README.md",

@@ -90,7 +90,7 @@ pub(super) fn read(
     let whole = |key| accessor.and_then(|a| document.whole(a, key));
     let limit = |n: u64| n.min(1 << 32) as usize;
     let stride = whole("stride").map_or(named.len(), limit).max(1);
-    // Components without a name are passed over; where none has one, all are meant.
+    // Components without a name are ignored; where none has one, all are meant.
     let components: Vec<usize> = (0..named.len()).filter(|&i| named[i]).collect();
     let components = if components.is_empty() { (0..stride.min(4)).collect() } else { components };
     let count = whole("count").map_or(usize::MAX, limit);

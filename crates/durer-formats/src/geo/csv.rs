@@ -77,7 +77,9 @@ fn keys(row: &[Cow<'_, [u8]>]) -> Vec<String> {
 fn places(keys: &[String]) -> Option<Where> {
     let lower: Vec<String> = keys.iter().map(|key| key.to_lowercase()).collect();
     let index = |name: &&str| lower.iter().position(|key| key == *name);
-    let whole = GEOMETRY.iter().find_map(index);
+    // The last of that name: tables that are written here have the geometry at the end, after any field of the same name.
+    let last = |name: &&str| lower.iter().rposition(|key| key == *name);
+    let whole = GEOMETRY.iter().find_map(last);
     let height = HEIGHTS.iter().find_map(index);
     let pair = || PLACES.iter().find_map(|(x, y)| Some((index(x)?, index(y)?)));
     whole.map(Where::Whole).or_else(|| pair().map(|(x, y)| Where::Parts(x, y, height)))

@@ -80,7 +80,7 @@ fn split_binary<'a>(file: &Bytes<'a>, warnings: &mut Vec<Warning>) -> Result<Con
         warnings.push(Warning { place: Place::Byte(at), message });
     };
     if length < file.len() {
-        warn(length, format!("{} bytes after the end are passed over", file.len() - length));
+        warn(length, format!("{} bytes after the end are ignored", file.len() - length));
     }
     let (json, end) = match chunk(file, length, FIRST)? {
         (JSON, data, end) => (data.whole()?, end),
@@ -97,7 +97,7 @@ fn split_binary<'a>(file: &Bytes<'a>, warnings: &mut Vec<Warning>) -> Result<Con
             BIN | JSON => {
                 return Err(Error::byte(at, "a second chunk of a type that may stand once"));
             }
-            _ => warn(at, format!("a chunk of unknown type 0x{kind:08x} is passed over")),
+            _ => warn(at, format!("a chunk of unknown type 0x{kind:08x} is ignored")),
         }
         at = end;
     }

@@ -1,6 +1,6 @@
 //! The JSON part of a glTF file, as far as it matters for a picture.
 //!
-//! Unknown members are passed over; wrong types are errors with line and column. Numbers that are
+//! Unknown members are ignored; wrong types are errors with line and column. Numbers that are
 //! indices or sizes may be written as `3` or `3.0`, as JSON Schema allows.
 
 use super::old;

@@ -98,7 +98,7 @@ impl<'a> Attributes<'a> {
             let (joints, weights) = (format!("JOINTS_{set}"), format!("WEIGHTS_{set}"));
             let Some(accessor) = self.accessor(&joints) else { break };
             let Some(weights) = self.vectors(&weights)? else {
-                g.notes.push(format!("{joints} without {weights} is passed over"));
+                g.notes.push(format!("{joints} without {weights} is ignored"));
                 break;
             };
             let at = format!("{}.attributes.{joints}", self.at);

@@ -186,7 +186,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         let Some(bounds) = self.bounds(&view, reference) else {
             let value = said("transform-box").unwrap_or_default();
             let name = self.name();
-            return told.push((at, format!("`transform-box` of `{name}` is `{value}`: its box is not known; its transform is passed over")));
+            return told.push((at, format!("`transform-box` of `{name}` is `{value}`: its box is not known; its transform is ignored")));
         };
         let (corner, size) = (bounds.low.to_array(), bounds.size().to_array());
         let units = &self.around.units;

@@ -59,7 +59,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use svgtypes::{PathParser, PathSegment};
 use usvg::roxmltree;
 
-/// Elements that are passed over, beside those that only describe.
+/// Elements that are ignored, beside those that only describe.
 const NOT_DRAWN: [&str; 12] = [
     "animate",
     "animateColor",
@@ -431,7 +431,7 @@ fn passed_over(document: &roxmltree::Document<'_>) -> Vec<Warning> {
         if NOT_DRAWN.contains(&name) && seen.insert(name) {
             let at = document.text_pos_at(node.range().start);
             let place = Place::Line(at.row.into(), at.col.into());
-            warnings.push(Warning { place, message: format!("`{name}` elements are passed over") });
+            warnings.push(Warning { place, message: format!("`{name}` elements are ignored") });
         }
     }
     warnings

@@ -470,7 +470,7 @@ fn bad_svg_is_told() {
         ("<svg/></svg>", "`svg` ends, but has not begun"),
         ("<svg/><svg/>", "a second element"),
         ("<kml><svg/></kml>", "the document is a `kml`"),
-        ("<svg/>\nwords", "text stands outside"),
+        ("<svg/>\nwords", "there is text outside"),
         ("<!-- nothing -->", "there is no svg element"),
         ("", "there is no svg element"),
     ] {

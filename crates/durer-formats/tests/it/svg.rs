@@ -182,7 +182,7 @@ fn values_that_cannot_be_used_are_told_with_their_place() {
         ),
         ("<g\nopacity='half'/>", "line 3, column 1: `opacity` of `g`", "0 to 1"),
         ("<rect width='abc' height='3'/>", "`width` of `rect` is `abc`", "a length of at least 0"),
-        ("<rect width='3furlongs' height='3'/>", "is `3furlongs`", "passed over"),
+        ("<rect width='3furlongs' height='3'/>", "is `3furlongs`", "is ignored"),
         (
             "<rect width='-3' height='3'/>",
             "is `-3`",

@@ -1,6 +1,5 @@
 //! Inputs that algorithms are explained on: an example by name, or data of one's own.
 
-use super::lesson::Lesson;
 use super::words::Word;
 use crate::clip::polygon::{BooleanOp, FillRule};
 use crate::math::{DVec2, DVec3, DVec4, Rect};
@@ -201,13 +200,4 @@ impl Grid {
             format!("{} cells in {} columns with seed {x},{y}", self.cells.len(), self.columns);
         Err(Error::parameter("picture", value, "whole rows, with the seed in it"))
     }
-}
-
-/// Returns the example of a name, the first one for an empty name.
-pub(super) fn example(lesson: &Lesson, name: &str) -> Result<Input> {
-    let found = lesson.examples.iter().find(|example| name.is_empty() || example.name == name);
-    let names = || lesson.examples.iter().map(|example| example.name);
-    found
-        .map(|example| (example.input)())
-        .ok_or_else(|| super::lesson::unknown("example", name, names()))
 }

@@ -1,7 +1,7 @@
 //! Lessons: an algorithm with its examples, its sentences, and the function that makes frames of its steps.
 
 use super::frame::Frame;
-use super::input::{self, Input, Options};
+use super::input::{Input, Options};
 use super::words::{Template, Word};
 use crate::info::Info;
 use crate::{Error, Result};
@@ -49,11 +49,18 @@ impl Lesson {
     /// [`Error::NonFinite`]; and those of the algorithm.
     pub fn run(&self, input: &Input, options: &Options, cap: usize) -> Result<Vec<Frame>> {
         if let Input::Example(name) = input {
-            let input = input::example(self, name)?;
+            let input = self.example(name)?;
             return (self.make)(self, &input, options, cap);
         }
         input.check()?;
         (self.make)(self, input, options, cap)
+    }
+
+    /// Returns the example of a name, the first one for an empty name.
+    fn example(&self, name: &str) -> Result<Input> {
+        let found = self.examples.iter().find(|example| name.is_empty() || example.name == name);
+        let names = || self.examples.iter().map(|example| example.name);
+        found.map(|example| (example.input)()).ok_or_else(|| unknown("example", name, names()))
     }
 
     /// Returns the kinds of steps, each once.

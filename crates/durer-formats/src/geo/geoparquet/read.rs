@@ -166,5 +166,5 @@ fn broken(message: &str) -> Error {
 
 /// Returns the result of a function, or an error if it panics.
 fn caught<T>(make: impl FnOnce() -> T) -> Result<T> {
-    catch_unwind(AssertUnwindSafe(make)).map_err(|_| broken("it says what cannot be"))
+    catch_unwind(AssertUnwindSafe(make)).map_err(|_| broken("its metadata contradict each other"))
 }

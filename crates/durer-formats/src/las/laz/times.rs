@@ -100,8 +100,8 @@ impl Times {
     ) -> io::Result<()> {
         let (factor, context) = match symbol {
             0 => (0, 7),
-            ..10 => (symbol, 2),
-            ..FACTOR => (symbol, 3),
+            1..10 => (symbol, 2),
+            10..FACTOR => (symbol, 3),
             FACTOR => (FACTOR, 4),
             _ if FACTOR - symbol > LEAST => (FACTOR - symbol, 5),
             _ => (LEAST, 6),

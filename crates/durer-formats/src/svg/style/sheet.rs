@@ -121,7 +121,7 @@ impl Reader<'_, '_> {
         let prelude = self.pieces.get(at..open).unwrap_or_default();
         let Some(selectors) = selector::list(prelude) else {
             let message = format!(
-                "the rule for `{}` is passed over: such selectors are not understood",
+                "the rule for `{}` is ignored: such selectors are not understood",
                 shown(self.text(at, open))
             );
             return self.tell(at, message);
@@ -136,7 +136,7 @@ impl Reader<'_, '_> {
         let is_block = self.pieces.get(open).is_some_and(|piece| piece.token == Token::Open('{'));
         let close = if is_block { self.pieces[open].mate.min(end) } else { open };
         let prelude = self.pieces.get(at + 1..open).unwrap_or_default();
-        let passed_over = |why: &str| format!("`@{name}` is passed over{why}");
+        let passed_over = |why: &str| format!("`@{name}` is ignored{why}");
         match name {
             "media" if depth < MAX_DEPTH => match self.screen.matches(prelude) {
                 Ok(true) => self.rules(open + 1, close, depth + 1),
@@ -183,10 +183,7 @@ impl Reader<'_, '_> {
             let over = self.find(at, end, if is_custom { &block[..1] } else { &block });
             if self.pieces.get(over).is_some_and(|piece| over < end && piece.token == block[1]) {
                 let within = shown(self.text(at, over));
-                self.tell(
-                    at,
-                    format!("the rule for `{within}` within another rule is passed over"),
-                );
+                self.tell(at, format!("the rule for `{within}` within another rule is ignored"));
                 at = self.pieces.get(over).map_or(end, |piece| piece.mate).min(end) + 1;
                 continue;
             }
@@ -301,7 +298,7 @@ mod tests {
         assert_eq!(sheet.rules.len(), 4, "{:?}", sheet.rules);
         assert_eq!(sheet.rules[0].selectors.len(), 2);
         let told: Vec<_> = sheet.told.iter().map(|(at, message)| (*at, message.as_str())).collect();
-        assert!(told[0].0 == 5 && told[0].1.starts_with("`@import` is passed over"), "{told:?}");
+        assert!(told[0].0 == 5 && told[0].1.starts_with("`@import` is ignored"), "{told:?}");
         assert!(told[1].1.contains("`e:has(f)`") && told[2].1.contains("@font-face"), "{told:?}");
         assert_eq!(told.len(), 3);
     }

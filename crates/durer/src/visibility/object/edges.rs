@@ -202,7 +202,11 @@ mod tests {
     fn edges_of_divided_faces_are_those_that_are_found_anew() {
         let strip = |i: u32| {
             let at = |k: u32| Vec3::new((k / 2) as f32, (k % 2) as f32, 0.0);
-            if i % 2 == 0 { [at(i), at(i + 2), at(i + 1)] } else { [at(i), at(i + 1), at(i + 2)] }
+            if i.is_multiple_of(2) {
+                [at(i), at(i + 2), at(i + 1)]
+            } else {
+                [at(i), at(i + 1), at(i + 2)]
+            }
         };
         let positions = (0..24).flat_map(strip).collect();
         let scene = Scene {

@@ -210,7 +210,7 @@ impl<'a> Occluders<'a> {
     }
 
     /// Calls `f` once, or now and then more often, with each face that may hide a part of the line; in the order of cells
-    /// and depths. In cells in which the line is known to be hidden, the rest is passed over, unless a face there may
+    /// and depths. In cells in which the line is known to be hidden, the rest is ignored, unless a face there may
     /// make up for another.
     pub fn along(
         &self,
