@@ -152,7 +152,7 @@ const ANNOTATIONS: &[&str] = &[
     "\"\"\"",
 ];
 
-/// Parses up to four options with values; an error is told in a text that is not empty.
+/// Parses up to four options with values; an error has a message that is not empty.
 pub fn arguments(bytes: &[u8]) {
     let _ = line(bytes);
 }

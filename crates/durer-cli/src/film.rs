@@ -14,7 +14,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter};
 use std::path::Path;
 
-/// Frames a second, if nothing is said.
+/// Frames per second by default.
 const FRAMES_PER_SECOND: f64 = 24.0;
 
 /// Timing and format of frames in one file.

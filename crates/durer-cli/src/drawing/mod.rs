@@ -65,7 +65,7 @@ pub fn is_wanted(args: &RenderArgs, kind: Kind) -> bool {
     kind.is_vector() || args.drawing.style.is_some() || args.drawing.sheet.is_some()
 }
 
-/// Tells contours from other outlines, and near lines from far ones, if requested.
+/// Gives contours, and lines by their distance, classes of their own, if requested.
 fn weighted(
     args: &RenderArgs,
     scene: &Scene,

@@ -45,7 +45,7 @@ fn needs_whole(args: &RenderArgs) -> bool {
         || asks_for_rays(args).is_some()
 }
 
-/// Adds to what is said of the budget that other pictures need less.
+/// Adds to an error of the budget that other pictures need less.
 pub fn hinted(failure: Failure) -> Failure {
     match failure {
         Failure::Data(message) if message.contains("--max-memory") => Failure::Data(

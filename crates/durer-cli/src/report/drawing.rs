@@ -123,7 +123,7 @@ impl DrawingReport {
         }
     }
 
-    /// Tells that most edges are borders, if that is so: faces that should meet do not.
+    /// Warns if most edges are borders: faces that should meet do not.
     pub fn loose_faces(&self) -> Option<String> {
         let Self { edges, border_edges, .. } = *self;
         (border_edges >= LOOSE && border_edges * 2 > edges).then(|| {

@@ -1,7 +1,7 @@
 //! glTF 2.0, text and binary (Khronos, 2017; ISO/IEC 12113:2022).
 //!
-//! What is read: meshes of all seven primitive modes, as one [`durer::scene::Mesh`] per primitive and one
-//! instance per node and primitive; the nodes of the default scene depth first; sparse, interleaved,
+//! The reader takes meshes of all seven primitive modes, as one [`durer::scene::Mesh`] per primitive and
+//! one instance per node and primitive; the nodes of the default scene depth first; sparse, interleaved,
 //! normalized and quantized accessors; buffer views compressed by meshopt; primitives compressed by Draco
 //! (feature `draco`); materials with their textures, layers and variants; cameras; lights; skins and
 //! morph targets, posed at one moment of an animation; instances by attributes. What is known of

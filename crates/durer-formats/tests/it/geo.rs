@@ -23,7 +23,7 @@ fn written(format: GeoFormat, features: &[Feature]) -> Vec<u8> {
     writer.finish(&[]).expect("memory")
 }
 
-/// Returns the error of reading a text, as it is told.
+/// Returns the message of the error of reading a text.
 fn error(format: GeoFormat, bytes: &[u8]) -> String {
     let mut reader = Reader::new(format, bytes).expect("a reader");
     loop {

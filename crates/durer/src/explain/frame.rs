@@ -45,7 +45,7 @@ pub(super) fn record<S, T>(
     Ok(steps)
 }
 
-/// Makes a frame of each step by a function that is told the step and keeps the state; adds one that says how many
+/// Makes a frame of each step by a function that gets the step and keeps the state; adds one that says how many
 /// steps were dropped.
 pub(super) fn frames<S>(steps: &Recorder<S>, mut show: impl FnMut(&S) -> Shown) -> Vec<Frame> {
     let mut frames: Vec<Frame> = Vec::new();

@@ -51,7 +51,8 @@ pub struct PreparedMaterial<'a> {
     specular: Vec3,
     /// Phong's parameters without textures.
     phong: Colors,
-    /// True if it is a metal, if only in places, or smooth, or has a clear layer or goes through.
+    /// True if it is metal, even in places only, or smooth, or has a clear layer, or transmits
+    /// light.
     mirrors: bool,
     /// Further lobes of the metallic-roughness model.
     lobes: Option<Lobes>,

@@ -13,7 +13,7 @@ use durer::visibility::object::{Faces, Weld};
 /// Parses the text of `--annotations`, for fuzzing.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Description of the fault.
 pub fn parse(text: &str) -> Result<(), String> {
     file::parse(text).map(drop).map_err(|(_, what)| what)
 }

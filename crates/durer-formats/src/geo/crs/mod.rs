@@ -58,7 +58,7 @@ impl Crs {
         codes::crs(code)
     }
 
-    /// Returns a system as it is said on a command line: `EPSG:4326`, `4326`, `CRS84`, `robinson`, or a
+    /// Returns the system of a text from a command line: `EPSG:4326`, `4326`, `CRS84`, `robinson`, or a
     /// definition as well-known text.
     ///
     /// # Errors

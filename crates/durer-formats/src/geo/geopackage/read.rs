@@ -32,7 +32,8 @@ impl Reader {
     /// Reads the contents of the file, and looks for the files beside it.
     ///
     /// # Errors
-    /// What is not a GeoPackage, one whose last changes are in another file, and a layer that there is not.
+    /// An error for files that are not GeoPackages, for one whose last changes are in another file, and for
+    /// a layer that does not exist.
     pub fn new(bytes: Vec<u8>, beside: &Beside<'_>, warnings: &mut Warnings) -> Result<Self> {
         refuse_changes(beside)?;
         let database = Database::new(bytes)?;

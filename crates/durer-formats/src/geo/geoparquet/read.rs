@@ -35,7 +35,7 @@ impl Reader {
     /// Reads what the file says of its columns.
     ///
     /// # Errors
-    /// What is not a Parquet, or has no geometries as well-known binary.
+    /// An error for files that are not Parquet, or have no geometries as well-known binary.
     pub fn new(bytes: Vec<u8>, _: &Beside<'_>, warnings: &mut Warnings) -> Result<Self> {
         super::footer::check(&bytes)?;
         // Of broken files the crate may be of another opinion than its authors.

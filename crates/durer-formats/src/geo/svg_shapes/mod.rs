@@ -4,10 +4,10 @@
 //! them and on the groups around them, and what `use` shows of them elsewhere. Bézier curves become [`path::STEPS`]
 //! edges each, arcs and round corners as many per quarter turn, with all corners on the curve. Closed parts become
 //! polygons, open parts lines, and open parts without length points. Which points the closed parts of a path enclose
-//! is decided by `fill-rule`, as attribute or in `style`, on it or around it; non-zero if nothing is said. What is
-//! not drawn is left out: the content of `defs`, `clipPath` and similar elements, and what `display` or `visibility`
-//! hide. Other styles, style sheets, text, clipping and view boxes of nested documents are ignored. Coordinates are
-//! those of the document turned over, so that y is up, as [`super::svg`] writes them.
+//! is decided by `fill-rule`, as attribute or in `style`, on it or around it; non-zero by default. What is not drawn
+//! is left out: the content of `defs`, `clipPath` and similar elements, and what `display` or `visibility` hide.
+//! Other styles, style sheets, text, clipping and view boxes of nested documents are ignored. Coordinates are those
+//! of the document turned over, so that y is up, as [`super::svg`] writes them.
 
 mod attributes;
 mod path;

@@ -131,7 +131,7 @@ const NOT_DRAWN: [&str; 26] = [
     "text-decoration-color",
 ];
 
-/// Returns the value that a property has if nothing is said, if elements take it from around.
+/// Returns the initial value of a property that elements inherit.
 pub(crate) fn initial(name: &str) -> Option<&'static str> {
     INHERITED.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
 }

@@ -116,7 +116,7 @@ impl Tiling {
     /// Returns a lower bound of the number of tiles, counted up to a limit.
     ///
     /// # Errors
-    /// Of the cuts.
+    /// The errors of the cuts.
     pub fn count(&self, subjects: &[Subject<'_>], limit: u64) -> Result<u64> {
         let boxes = subjects.iter().map(Subject::count_of_box).fold(0, u64::saturating_add);
         let boxes = boxes.min(Tile::WORLD.count_at(self.zoom));
@@ -130,7 +130,7 @@ impl Tiling {
     /// and their indices. Geometry beyond 180 degrees is moved to the other side. See [`walk()`](super::walk()).
     ///
     /// # Errors
-    /// Of the cuts, and what `take` says.
+    /// The errors of the cuts, and those of `take`.
     pub fn visit<R: Send, E: From<crate::Error>>(
         &self,
         subjects: &[Subject<'_>],

@@ -41,7 +41,7 @@ const TAKES: Word = Word::new(
 const FACE: Word = Word::new("face", "Fläche");
 const DEPTH: Word = Word::new("depth", "Tiefe");
 
-/// The most faces that are told apart by letters and colours.
+/// The most faces that get letters and colours of their own.
 const MOST: usize = 200;
 
 /// Examples of all methods.

@@ -7,7 +7,7 @@ use crate::math::{DVec2, DVec3, Vec3};
 use crate::scene::{self, Camera, Mesh, Projection};
 use crate::view::View;
 
-/// The most triangles that are told apart.
+/// The most triangles that get a letter of their own.
 const MOST: u64 = 400;
 
 /// Triangles of the faces, in the scene's order, each with its face and its number there.

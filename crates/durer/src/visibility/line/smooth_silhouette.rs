@@ -219,7 +219,8 @@ impl<'a> Vertices<'a> {
         self.points.len() as u32 - 1
     }
 
-    /// Pushes the parts of a triangle, if it has more than one. What is in the buffers is of no matter.
+    /// Pushes the parts of a triangle, if it has more than one. The previous contents of the buffers
+    /// are ignored.
     fn divide(
         &self,
         item: u32,

@@ -197,8 +197,8 @@ impl<'a> Directions<'a> {
     }
 
     /// Returns whether the flat face that a triangle is a part of bends again, straight across from the edge `ends`, as
-    /// facets of round parts do, by at least `least`. How it bends at its other sides is of no matter: a cylinder is
-    /// round, and the rim where it meets a cone is not.
+    /// facets of round parts do, by at least `least`. Its turns at other sides do not count: a cylinder is round, and
+    /// the rim where it meets a cone is not.
     fn is_facet(&self, ends: [u32; 2], item: u32, least: f64) -> bool {
         let next = self.next_bend(ends, item).1;
         next.is_some_and(|curvature| curvature * curvature >= 2.0 * least)
