@@ -334,16 +334,19 @@ impl State {
         let place =
             |points: &[DVec4]| -> Vec<DVec2> { points.iter().map(|&p| seen(p, axis)).collect() };
         let [start, ring, out] = [&self.start, &self.ring, &self.out].map(|points| place(points));
-        let all =
-            start.iter().chain(&ring).copied().chain([DVec2::new(-1.5, 0.0), DVec2::new(1.5, 1.5)]);
-        let mut picture = Picture::around(all, 0.12);
+        // The same extent for all coordinates: the wedge keeps its size from border to border.
+        let all = (0..3).flat_map(|axis| self.start.iter().map(move |&p| seen(p, axis)));
+        let wedge = [DVec2::new(-1.5, 0.0), DVec2::new(1.5, 1.5)];
+        let mut picture = Picture::around(all.chain(ring.clone()).chain(wedge), 0.12);
         let high = picture.extent[1].y;
         picture.chain([DVec2::new(-high, high), DVec2::ZERO, DVec2::new(high, high)], Look::Window);
         let wide = picture.extent.map(|p| DVec2::new(p.x, 0.0));
         picture.chain(wide, Look::Thin);
         let name = ["x", "y", "z"].get(axis).copied().unwrap_or_default();
-        picture.label(DVec2::new(high * 0.5, high * 0.5), (14.0, 0.0), format!("{name} = w"));
-        picture.label(DVec2::new(-high * 0.5, high * 0.5), (-16.0, 0.0), format!("{name} = −w"));
+        // Beside the tip, where faces are rare.
+        let arm = (high * 0.25).min(picture.extent[1].x).min(-picture.extent[0].x);
+        picture.label(DVec2::new(arm, arm), (22.0, 4.0), format!("{name} = w"));
+        picture.label(DVec2::new(-arm, arm), (-24.0, 4.0), format!("{name} = −w"));
         picture.ring(start, Look::Pale);
         if !self.gone {
             picture.ring(ring.clone(), Look::First);
