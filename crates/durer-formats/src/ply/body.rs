@@ -122,6 +122,34 @@ impl Values for Ascii<'_> {
     }
 }
 
+/// Source of the bytes of binary values.
+pub(super) trait Bytes {
+    /// Returns the bytes of the next value, the lowest first.
+    ///
+    /// # Errors
+    /// The end of the file.
+    fn take<const N: usize>(&mut self) -> Result<[u8; N]>;
+}
+
+/// Returns the next binary value.
+///
+/// # Errors
+/// Those of [`Bytes::take`].
+pub(super) fn number(source: &mut impl Bytes, kind: Type) -> Result<f64> {
+    Ok(match kind {
+        Type::I8 => f64::from(i8::from_le_bytes(source.take()?)),
+        Type::U8 => f64::from(u8::from_le_bytes(source.take()?)),
+        Type::I16 => f64::from(i16::from_le_bytes(source.take()?)),
+        Type::U16 => f64::from(u16::from_le_bytes(source.take()?)),
+        Type::I32 => f64::from(i32::from_le_bytes(source.take()?)),
+        Type::U32 => f64::from(u32::from_le_bytes(source.take()?)),
+        Type::I64 => i64::from_le_bytes(source.take()?) as f64,
+        Type::U64 => u64::from_le_bytes(source.take()?) as f64,
+        Type::F32 => f64::from(f32::from_le_bytes(source.take()?)),
+        Type::F64 => f64::from_le_bytes(source.take()?),
+    })
+}
+
 /// Bytes in little-endian order, or big-endian.
 pub(super) struct Binary<'a, const LITTLE: bool> {
     bytes: &'a [u8],
@@ -137,6 +165,14 @@ impl<'a, const LITTLE: bool> Binary<'a, LITTLE> {
         Self { bytes, at: 0, last: 0, offset, ended: false }
     }
 
+    fn too_short(&mut self) -> Error {
+        self.ended = true;
+        let end = self.offset + self.bytes.len() as u64;
+        Error::byte(end, "the file ends before all elements are there")
+    }
+}
+
+impl<const LITTLE: bool> Bytes for Binary<'_, LITTLE> {
     fn take<const N: usize>(&mut self) -> Result<[u8; N]> {
         self.last = self.at;
         let Some(bytes) = self.bytes.get(self.at..).and_then(|b| b.first_chunk::<N>()) else {
@@ -149,28 +185,11 @@ impl<'a, const LITTLE: bool> Binary<'a, LITTLE> {
         }
         Ok(bytes)
     }
-
-    fn too_short(&mut self) -> Error {
-        self.ended = true;
-        let end = self.offset + self.bytes.len() as u64;
-        Error::byte(end, "the file ends before all elements are there")
-    }
 }
 
 impl<const LITTLE: bool> Values for Binary<'_, LITTLE> {
     fn next(&mut self, kind: Type) -> Result<f64> {
-        Ok(match kind {
-            Type::I8 => f64::from(i8::from_le_bytes(self.take()?)),
-            Type::U8 => f64::from(u8::from_le_bytes(self.take()?)),
-            Type::I16 => f64::from(i16::from_le_bytes(self.take()?)),
-            Type::U16 => f64::from(u16::from_le_bytes(self.take()?)),
-            Type::I32 => f64::from(i32::from_le_bytes(self.take()?)),
-            Type::U32 => f64::from(u32::from_le_bytes(self.take()?)),
-            Type::I64 => i64::from_le_bytes(self.take()?) as f64,
-            Type::U64 => u64::from_le_bytes(self.take()?) as f64,
-            Type::F32 => f64::from(f32::from_le_bytes(self.take()?)),
-            Type::F64 => f64::from_le_bytes(self.take()?),
-        })
+        number(self, kind)
     }
 
     fn skip(&mut self, kind: Type, count: u64) -> Result<()> {

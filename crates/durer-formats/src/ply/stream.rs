@@ -1,6 +1,6 @@
 //! Values of a binary PLY file that is not held.
 
-use super::body::Values;
+use super::body::{Bytes, Values, number};
 use super::header::{Element, Type};
 use crate::{Error, Place, Result};
 use std::io::{Read, Seek, SeekFrom};
@@ -54,22 +54,6 @@ impl<R: Read + Seek> Stream<R> {
         self.start.saturating_add(self.at as u64)
     }
 
-    fn take<const N: usize>(&mut self) -> Result<[u8; N]> {
-        if self.buffer.len() - self.at < N {
-            self.refill()?;
-        }
-        self.last = self.at;
-        let Some(bytes) = self.buffer.get(self.at..).and_then(|b| b.first_chunk::<N>()) else {
-            return Err(self.too_short());
-        };
-        let mut bytes = *bytes;
-        self.at += N;
-        if !self.little {
-            bytes.reverse();
-        }
-        Ok(bytes)
-    }
-
     /// Moves what is left to the front and reads on.
     #[cold]
     fn refill(&mut self) -> Result<()> {
@@ -88,20 +72,27 @@ impl<R: Read + Seek> Stream<R> {
     }
 }
 
+impl<R: Read + Seek> Bytes for Stream<R> {
+    fn take<const N: usize>(&mut self) -> Result<[u8; N]> {
+        if self.buffer.len() - self.at < N {
+            self.refill()?;
+        }
+        self.last = self.at;
+        let Some(bytes) = self.buffer.get(self.at..).and_then(|b| b.first_chunk::<N>()) else {
+            return Err(self.too_short());
+        };
+        let mut bytes = *bytes;
+        self.at += N;
+        if !self.little {
+            bytes.reverse();
+        }
+        Ok(bytes)
+    }
+}
+
 impl<R: Read + Seek> Values for Stream<R> {
     fn next(&mut self, kind: Type) -> Result<f64> {
-        Ok(match kind {
-            Type::I8 => f64::from(i8::from_le_bytes(self.take()?)),
-            Type::U8 => f64::from(u8::from_le_bytes(self.take()?)),
-            Type::I16 => f64::from(i16::from_le_bytes(self.take()?)),
-            Type::U16 => f64::from(u16::from_le_bytes(self.take()?)),
-            Type::I32 => f64::from(i32::from_le_bytes(self.take()?)),
-            Type::U32 => f64::from(u32::from_le_bytes(self.take()?)),
-            Type::I64 => i64::from_le_bytes(self.take()?) as f64,
-            Type::U64 => u64::from_le_bytes(self.take()?) as f64,
-            Type::F32 => f64::from(f32::from_le_bytes(self.take()?)),
-            Type::F64 => f64::from_le_bytes(self.take()?),
-        })
+        number(self, kind)
     }
 
     fn skip(&mut self, kind: Type, count: u64) -> Result<()> {
