@@ -71,7 +71,11 @@ impl Value {
     /// Returns the value as text: numbers short, with the decimal mark of the language.
     pub fn text(&self, language: Language) -> String {
         let tuple = |numbers: &[f64]| {
-            let all: Vec<_> = numbers.iter().map(|&x| number(x, language)).collect();
+            // Beside large coordinates, those that rounding leaves are zero.
+            let most =
+                numbers.iter().filter(|x| x.is_finite()).fold(0.0_f64, |m, x| m.max(x.abs()));
+            let rounded = |x: f64| if x.abs() < 1e-6 * most { 0.0 } else { x };
+            let all: Vec<_> = numbers.iter().map(|&x| number(rounded(x), language)).collect();
             format!("({})", all.join(separator(language)))
         };
         match self {
@@ -88,7 +92,7 @@ impl Value {
     }
 }
 
-/// Returns what stands between two numbers: a comma would be read as a decimal one in German.
+/// Returns the separator of two numbers: a comma would be read as a decimal one in German.
 const fn separator(language: Language) -> &'static str {
     match language {
         Language::English => ", ",
@@ -237,6 +241,10 @@ mod tests {
         let mut caption = CUT.with([("end", end.into()), ("p", DVec2::new(1.5, -2.0).into())]);
         assert_eq!(caption.text(Language::English), "The start moves to (1.5, −2).");
         assert_eq!(caption.text(Language::German), "Der Anfang wandert nach (1,5; −2).");
+        assert_eq!(
+            Value::from(DVec3::new(0.5, -6e-14, 1e-4)).text(Language::English),
+            "(0.5, 0, 1.00e−4)"
+        );
         caption.values.pop();
         assert_eq!(caption.text(Language::English), "The start moves to {p}.");
         assert_eq!(names(CUT.text.en), ["end", "p"]);
