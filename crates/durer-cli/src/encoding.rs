@@ -82,7 +82,7 @@ impl EncodingArgs {
         pixels: &Pixels<[u8; 4]>,
     ) -> Result<bool, Failure> {
         let mut flattened = false;
-        deliver(target, |out| {
+        deliver(target, &pixels.work(), |out| {
             flattened = picture::write(out, format, pixels, &self.encoding())?;
             Ok(())
         })?;

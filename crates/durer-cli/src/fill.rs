@@ -224,7 +224,7 @@ impl Picture {
             (Self::Eight(pixels), _) => encoding.deliver(target, format, pixels)?,
             (Self::Sixteen(pixels, channels), PictureFormat::Png) => {
                 let compression = encoding.compression.into();
-                output::deliver(target, |out| {
+                output::deliver(target, &pixels.work(), |out| {
                     png::write_deep_color(out, pixels, *channels, compression)
                 })?;
                 false

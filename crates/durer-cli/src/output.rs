@@ -5,6 +5,7 @@ use crate::failure::{Failure, in_words};
 use crate::kind::{Kind, Wanted};
 use crate::places::Place;
 use crate::places::is_stream;
+use durer::work::{Charge, Work};
 use durer_formats::told::shown_path;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, OpenOptions};
@@ -247,6 +248,8 @@ impl Pattern {
 pub struct Out {
     sink: Sink,
     written: u64,
+    /// Charge of the memory to the budget.
+    charge: Charge,
 }
 
 enum Sink {
@@ -257,7 +260,11 @@ enum Sink {
 impl Write for Out {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let count = match &mut self.sink {
-            Sink::Memory(memory) => memory.write(bytes)?,
+            Sink::Memory(memory) => {
+                let count = memory.write(bytes)?;
+                self.charge.grow_to(memory.capacity() as u64).map_err(io::Error::other)?;
+                count
+            }
             Sink::File(file) => file.write(bytes)?,
         };
         self.written += count as u64;
@@ -276,6 +283,7 @@ impl Write for Out {
 /// Returns the number of bytes.
 pub fn deliver(
     target: &Target,
+    work: &Work,
     encode: impl FnOnce(&mut Out) -> durer_formats::Result<()>,
 ) -> Result<u64, Failure> {
     let (name, replaced) = match target {
@@ -287,7 +295,8 @@ pub fn deliver(
         Some(path) => Sink::File(BufWriter::new(Beside::create(path).map_err(|e| fail(&e))?)),
         None => Sink::Memory(Vec::new()),
     };
-    let mut out = Out { sink, written: 0 };
+    let charge = work.charge("output to a stream", 0).map_err(|e| Failure::of_file(name, e))?;
+    let mut out = Out { sink, written: 0, charge };
     encode(&mut out).map_err(|e| match &e {
         durer_formats::Error::Io(e) => fail(e),
         _ => Failure::of_file(name, e),
@@ -308,7 +317,7 @@ pub fn deliver(
 
 /// Writes a file of bytes as [`deliver`] does.
 pub fn deliver_bytes(target: &Target, bytes: &[u8]) -> Result<u64, Failure> {
-    deliver(target, |out| Ok(out.write_all(bytes)?))
+    deliver(target, &Work::default(), |out| Ok(out.write_all(bytes)?))
 }
 
 /// Writes to a pipe or device, which cannot be replaced.

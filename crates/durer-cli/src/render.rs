@@ -213,6 +213,9 @@ fn render_model(
     messages.warnings(&name, &model.warnings);
     staging::give_materials(&args.stage, args.look.color, &mut model.scene);
     let assembles = args.drawing.callouts || args.explode.explode.is_some();
+    let copies = bytes_of_copies(args, &model.scene, assembles);
+    let charged = part.charge("copies of the model", copies);
+    let _copies = charged.map_err(|e| Failure::of_library(&e).named(&name))?;
     if let Some(divided) = assembles.then(|| divided(&model.scene)).flatten() {
         model.scene = divided;
     }
@@ -340,6 +343,15 @@ fn with_file(name: &str, failure: Failure) -> Failure {
     }
 }
 
+/// Returns the bytes of the copies that sections and assemblies make of a model.
+fn bytes_of_copies(args: &RenderArgs, scene: &Scene, assembles: bool) -> u64 {
+    let cuts = args.section.section.iter().any(|section| section.letter.is_none());
+    let of_cuts = if cuts { scene.bytes().saturating_add(scene.bytes_of_instances()) } else { 0 };
+    let moved = args.explode.explode.is_some();
+    let times = u64::from(assembles) + u64::from(moved);
+    of_cuts.saturating_add(scene.bytes().saturating_mul(times))
+}
+
 /// Renders one picture and writes its files; returns why nothing of the model is visible, if that is
 /// so.
 fn render_picture(
@@ -351,7 +363,7 @@ fn render_picture(
     let Size { width, height } = args.picture.size;
     let mut report = PictureReport { width, height, ..PictureReport::default() };
     let (mut cells, mut statuses) = (Vec::new(), Vec::new());
-    let staged = staging::staged(&args.stage, scene)?;
+    let staged = staging::staged(&args.stage, scene, &args.running.work)?;
     let model = scene;
     let framed = staged.as_ref().map_or(model, |s| &s.framed);
     let scene = staged.as_ref().map_or(model, |s| &s.whole);
@@ -489,15 +501,17 @@ fn write_planes(
     let mut files = Vec::new();
     let mut done = |target: &Target| files.push(target.to_string());
     if let (Some(target), Some(items)) = (&picture.item, &planes.item) {
-        output::deliver(target, |out| png::write_items(out, items, compression))?;
+        output::deliver(target, &items.work(), |out| png::write_items(out, items, compression))?;
         done(target);
     }
     if let (Some(target), Some(depth)) = (&picture.depth, &planes.depth) {
-        output::deliver(target, |out| png::write_depth(out, depth, compression))?;
+        output::deliver(target, &depth.work(), |out| png::write_depth(out, depth, compression))?;
         done(target);
     }
     if let (Some(target), Some(normals)) = (&picture.normal, &planes.normal) {
-        output::deliver(target, |out| png::write_normals(out, normals, compression))?;
+        output::deliver(target, &normals.work(), |out| {
+            png::write_normals(out, normals, compression)
+        })?;
         done(target);
     }
     Ok(files)

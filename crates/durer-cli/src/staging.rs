@@ -12,6 +12,7 @@ use durer::scene::{AlphaMode, Camera, Material, Scene, ShadingModel};
 use durer::target::Framebuffer;
 use durer::view::fit;
 use durer::view::projection::drawn_bounds;
+use durer::work::{Charge, Work};
 
 /// Distance, as a part of the model's radius, within which things take light from each other.
 const OCCLUSION_RADIUS: f64 = 0.25;
@@ -131,14 +132,18 @@ pub struct Staged {
     pub framed: Scene,
     /// All of it.
     pub whole: Scene,
+    /// Memory of both.
+    _charge: Charge,
 }
 
 /// Returns the scene with what is put around the model; `None` if nothing is.
-pub fn staged(args: &StageArgs, scene: &Scene) -> Result<Option<Staged>, Failure> {
+pub fn staged(args: &StageArgs, scene: &Scene, work: &Work) -> Result<Option<Staged>, Failure> {
     if !(args.has_ground() || args.grid || args.axes) {
         return Ok(None);
     }
     let Some(model) = drawn_bounds(scene) else { return Ok(None) };
+    let charge = work.charge("copies of the model", scene.bytes().saturating_mul(2));
+    let charge = charge.map_err(|e| Failure::of_library(&e))?;
     let mut framed = scene.clone();
     if args.grid {
         add_grid(&mut framed, &model);
@@ -151,7 +156,7 @@ pub fn staged(args: &StageArgs, scene: &Scene) -> Result<Option<Staged>, Failure
         let usage = |e: durer::Error| Failure::of_library(&e);
         add_ground(&mut whole, scene, &model).map_err(usage)?;
     }
-    Ok(Some(Staged { framed, whole }))
+    Ok(Some(Staged { framed, whole, _charge: charge }))
 }
 
 /// Returns what darkens the picture of a model, if anything is to.

@@ -81,9 +81,15 @@ pub enum Error {
     /// The library refused the value.
     #[error(transparent)]
     Library(#[from] durer::Error),
-    /// Reading or writing failed.
+    /// Reading or writing failed. The message is the system's, so the system's error is not a source as well.
     #[error("{}", without_number(.0))]
-    Io(#[from] std::io::Error),
+    Io(std::io::Error),
+}
+
+impl From<std::io::Error> for Error {
+    fn from(error: std::io::Error) -> Self {
+        Self::Io(error)
+    }
 }
 
 /// Returns the system's message without the number that Rust adds.

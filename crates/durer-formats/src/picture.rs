@@ -11,6 +11,7 @@ mod webp;
 use crate::png::{self, Compression};
 use crate::{Error, Result};
 use durer::target::Pixels;
+use durer::work::Charge;
 use std::io::Write;
 
 /// The file formats of pictures.
@@ -95,7 +96,7 @@ impl Default for Encoding {
 ///
 /// # Errors
 /// [`Error::Library`] for a picture without pixels, or with more along a side than the format can say;
-/// [`Error::Io`] where writing fails.
+/// [`Error::Io`] where writing fails, and where the budget that the picture was charged to has no room for its encoder.
 pub fn write<W: Write>(
     out: W,
     format: PictureFormat,
@@ -119,6 +120,12 @@ fn sides(pixels: &Pixels<[u8; 4]>, max: u32, expected: &'static str) -> Result<(
     Ok((width, height))
 }
 
+/// Charges bytes for each pixel of a picture that is encoded to the budget of its plane.
+fn charged(pixels: &Pixels<[u8; 4]>, per_pixel: u64) -> Result<Charge> {
+    let count = u64::from(pixels.width()) * u64::from(pixels.height());
+    Ok(pixels.work().charge("encoded picture", count.saturating_mul(per_pixel))?)
+}
+
 /// Returns whether each pixel is opaque.
 fn is_opaque(pixels: &Pixels<[u8; 4]>) -> bool {
     let rows = (0..pixels.height()).map(|y| pixels.row(y));
@@ -134,6 +141,7 @@ fn refused(_: impl std::fmt::Display) -> Error {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use durer::work::Work;
 
     /// Smooth colours, with a line that is half transparent.
     pub fn shades(width: u32, height: u32) -> Pixels<[u8; 4]> {
@@ -154,6 +162,20 @@ pub(crate) mod tests {
             }
         }
         assert_eq!(PictureFormat::of_suffix("gif"), None);
+    }
+
+    #[test]
+    fn encoders_charge_to_the_budget_of_the_picture() {
+        let bytes = 64 * 64 * 4;
+        let work = Work::with_budget(bytes + 1000, "--max-memory");
+        let pixels = Pixels::within((&work, "picture"), 64, 64, [1, 2, 3, 255]).unwrap();
+        for format in [PictureFormat::Jpeg, PictureFormat::WebP] {
+            let error = write(Vec::new(), format, &pixels, &Encoding::default()).unwrap_err();
+            assert!(error.to_string().starts_with("encoded picture: "), "{error}");
+            assert_eq!(work.used(), bytes);
+        }
+        // A row at a time.
+        write(Vec::new(), PictureFormat::Png, &pixels, &Encoding::default()).unwrap();
     }
 
     #[test]

@@ -40,7 +40,7 @@ use crate::visibility::surface::setup::Filter;
 pub use crate::visibility::surface::z_buffer::survey::{MOST_ITEMS, Seen, Survey};
 pub use crate::visibility::surface::{Background, Cull, Marks, Samples, SurfaceMethod};
 use crate::visibility::surface::{shadow_map, z_buffer};
-use crate::work::Work;
+use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
 /// Source of light.
@@ -255,7 +255,7 @@ pub fn render_into(
     let mut lights = lights(scene, &options.camera, (lighting, surroundings), options.exposure);
     lights.tone.map = options.tone_map;
     let smoothed = with_needed_normals(scene, options)?;
-    let scene = smoothed.as_ref().unwrap_or(scene);
+    let scene = smoothed.as_ref().map_or(scene, |smoothed| &smoothed.0);
     let start = Stopwatch::start();
     if options.shadows == Shadows::Map {
         let map = shadow_map::Options { side: options.shadow_map_side };
@@ -427,17 +427,23 @@ fn from_screen_triangles(
     Ok(z_buffer::Report { counts: input.counts, geometry_seconds, raster_seconds })
 }
 
-/// Interpolating shadings need normals at the vertices: the scene with those that are missing, where
+/// Bytes for each corner of a mesh, about, while its vertices get normals.
+const PER_SMOOTHED: u64 = 48;
+
+/// Interpolating shadings need normals at the vertices: the scene with those that are missing, and its memory, where
 /// such a shading is requested and some are.
-fn with_needed_normals(scene: &Scene, options: &RenderOptions) -> Result<Option<Scene>> {
+fn with_needed_normals(scene: &Scene, options: &RenderOptions) -> Result<Option<(Scene, Charge)>> {
     let interpolates = matches!(options.shading, Some(Shading::Gouraud | Shading::Phong));
     if !interpolates || scene.meshes.iter().all(|m| !m.normals.is_empty()) {
         return Ok(None);
     }
+    let mut charge = options.work.charge("copy of the model", scene.bytes())?;
     let mut scene = scene.clone();
     for mesh in &mut scene.meshes {
         options.work.check()?;
+        // Corners that are sharp are vertices of their own, with all attributes.
+        charge.grow(mesh.index_count() as u64 * PER_SMOOTHED)?;
         *mesh = mesh.with_smooth_normals();
     }
-    Ok(Some(scene))
+    Ok(Some((scene, charge)))
 }

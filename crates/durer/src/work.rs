@@ -115,6 +115,11 @@ impl Shared {
     fn give_back(&self, bytes: u64) {
         self.used.fetch_sub(bytes, Ordering::Relaxed);
     }
+
+    fn stop(&self, why: Error) {
+        lock(&self.why).get_or_insert(why);
+        self.stopped.store(true, Ordering::Relaxed);
+    }
 }
 
 impl Work {
@@ -213,8 +218,7 @@ impl Work {
     /// Stops the work: from here on it fails with this error at its next check. The first reason counts.
     pub fn stop(&self, why: Error) {
         if let Some(scope) = &self.0 {
-            lock(&scope.shared.why).get_or_insert(why);
-            scope.shared.stopped.store(true, Ordering::Relaxed);
+            scope.shared.stop(why);
         }
     }
 
@@ -322,6 +326,11 @@ pub struct Charge {
 }
 
 impl Charge {
+    /// Returns the work whose memory it takes.
+    pub fn work(&self) -> Work {
+        Work(self.scope.clone())
+    }
+
     /// Takes more, for a buffer that grows.
     ///
     /// # Errors
@@ -347,6 +356,16 @@ impl Charge {
             0 => Ok(()),
             more => self.grow(more),
         }
+    }
+
+    /// Grows like [`Self::grow_to`], if an error cannot be returned: exceeding the budget stops the work, so that its next
+    /// check fails. Returns whether it fits.
+    pub fn grow_to_or_stop(&mut self, bytes: u64) -> bool {
+        let Err(error) = self.grow_to(bytes) else { return true };
+        if let Some(scope) = &self.scope {
+            scope.shared.stop(error);
+        }
+        false
     }
 }
 

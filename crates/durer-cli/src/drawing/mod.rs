@@ -163,10 +163,10 @@ pub fn render(
     let (mut shown, mut statuses, mut sources) = (Vec::new(), Vec::new(), Vec::new());
     for shot in shots {
         let (cut, cap_material) = match shot.cut(args, subject.scene, &mut report.notes)? {
-            Some(cut) => (Some(cut.scene), Some(cut.cap_material)),
+            Some((cut, charge)) => (Some((cut.scene, charge)), Some(cut.cap_material)),
             None => (None, subject.cap_material),
         };
-        let scene = cut.as_ref().unwrap_or(subject.scene);
+        let scene = cut.as_ref().map_or(subject.scene, |cut| &cut.0);
         let toned = with_tones(style, args.drawing.hatch);
         let mut options =
             DrawOptions { cap_material, ..draw_options(args, kind, toned, shot.camera) };
@@ -209,7 +209,7 @@ pub fn render(
     let marked = tones::asked(args).is_some();
     if marked {
         for ((view, placed), (cut, options)) in shown.iter_mut().zip(&laid.views).zip(&sources) {
-            let scene = cut.as_ref().unwrap_or(subject.scene);
+            let scene = cut.as_ref().map_or(subject.scene, |cut| &cut.0);
             let marks = tones::marks(args, (scene, options), &view.breaks, placed.factor)?;
             view.drawing = pipeline::with_marks(std::mem::take(&mut view.drawing), marks);
         }
@@ -287,9 +287,12 @@ fn write(
             let start = Instant::now();
             let empty = Drawing::default();
             let drawing = drawings.first().copied().unwrap_or(&empty);
-            let options =
-                FileOptions { dxf: dxf_strokes(args), machine: args.drawing.machine.options() };
-            output::deliver(target, |out| {
+            let options = FileOptions {
+                dxf: dxf_strokes(args),
+                machine: args.drawing.machine.options(),
+                work: args.running.work.clone(),
+            };
+            output::deliver(target, &args.running.work, |out| {
                 durer_formats::drawing::write(out, format, &sheet, drawing, &options)
             })?;
             report.encode_seconds = start.elapsed().as_secs_f64();

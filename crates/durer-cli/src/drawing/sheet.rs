@@ -13,6 +13,7 @@ use durer::view::fit;
 use durer::view::picture_plane::PicturePlane;
 use durer::view::projection::NamedView;
 use durer::view::section::Section;
+use durer::work::Charge;
 use durer_formats::drawing::DrawingFormat;
 
 /// The views of a sheet where none are named.
@@ -82,14 +83,17 @@ impl Shot {
         Self { kind, camera }
     }
 
-    /// Returns the part of a scene that a section leaves, or `None` for other views. Adds warnings to the notes.
+    /// Returns the part of a scene that a section leaves, and its memory, or `None` for other views. Adds warnings to the notes.
     pub fn cut(
         &self,
         args: &RenderArgs,
         scene: &Scene,
         notes: &mut Vec<String>,
-    ) -> Result<Option<Section>, Failure> {
+    ) -> Result<Option<(Section, Charge)>, Failure> {
         let Some(ViewKind::Section { letter, plane }) = &self.kind else { return Ok(None) };
+        let bytes = scene.bytes().saturating_add(scene.bytes_of_instances());
+        let charge = args.running.work.charge("sections of the model", bytes);
+        let charge = charge.map_err(|e| Failure::of_library(&e))?;
         let cut = args.section.cut(scene, &[*plane])?;
         if cut.scene.triangle_count() == 0 {
             notes.push(format!("section {letter} leaves nothing of the model"));
@@ -98,7 +102,7 @@ impl Shot {
             let count = cut.open_cuts;
             notes.push(format!("section {letter}: {count} cuts through open meshes have no cap"));
         }
-        Ok(Some(cut))
+        Ok(Some((cut, charge)))
     }
 }
 

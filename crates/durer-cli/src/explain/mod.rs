@@ -159,5 +159,5 @@ fn write_png(
     let _ = drawing.draw(&mut canvas, DAffine2::from_scale(durer::math::DVec2::splat(2.0)));
     let mut pixels = Pixels::new(w, h, [255; 4]);
     canvas.render(&mut pixels).map_err(|e| Failure::of_library(&e))?;
-    deliver(target, |out| write_color(out, &pixels, Compression::Small)).map(drop)
+    deliver(target, &pixels.work(), |out| write_color(out, &pixels, Compression::Small)).map(drop)
 }

@@ -139,7 +139,7 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
     let mut report = args.json.then(|| Report::new(&surface, &plot, &options, &target));
     let start = Instant::now();
     let mut flattened = false;
-    let bytes = output::deliver(&target, |out| {
+    let bytes = output::deliver(&target, &args.running.work, |out| {
         flattened = write(out, format, plot, args)?;
         Ok(())
     })?;
@@ -369,7 +369,8 @@ fn write(
             if args.machine.orders(Some(format)) {
                 paper::order::sheet(&mut sheet);
             }
-            let options = FileOptions { machine: args.machine.options(), ..FileOptions::default() };
+            let (machine, work) = (args.machine.options(), args.running.work.clone());
+            let options = FileOptions { machine, work, ..FileOptions::default() };
             drawing::write(out, format, &sheet, &Drawing::default(), &options).map(|()| false)
         }
         Format::Picture(format) => {

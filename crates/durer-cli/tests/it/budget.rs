@@ -144,6 +144,33 @@ fn map_data_that_are_held_are_charged() {
 }
 
 #[test]
+fn copies_of_a_model_are_charged() {
+    let folder = Folder::new();
+    let count = 20_000;
+    let corners = 3 * 100;
+    let nodes: Vec<String> =
+        (0..count).map(|i| format!(r#"{{"mesh":0,"translation":[{i},0,0]}}"#)).collect();
+    let all: Vec<String> = (0..count).map(|i| i.to_string()).collect();
+    let positions: Vec<f32> = (0..corners * 3).map(|i| (i * 7 % 11) as f32).collect();
+    folder.write("a.bin", positions.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>());
+    let gltf = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[{}]}}],"nodes":[{}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":{corners},"type":"VEC3"}}],
+        "bufferViews":[{{"buffer":0,"byteLength":{bytes}}}],"buffers":[{{"byteLength":{bytes},"uri":"a.bin"}}]}}"#,
+        all.join(","),
+        nodes.join(","),
+        bytes = corners * 12,
+    );
+    folder.write("copies.gltf", gltf);
+    let cut = "render copies.gltf -o a.png --size 16 --max-memory 60M --section 0,0,1,-3";
+    folder
+        .run(cut)
+        .fails(1, "copies.gltf: copies of the model: ")
+        .fails(1, "--max-memory allows 60 MB");
+}
+
+#[test]
 fn whether_a_large_model_is_closed_may_stay_open() {
     let folder = Folder::new();
     folder.write("many.stl", stl(60_000));

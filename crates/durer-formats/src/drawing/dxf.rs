@@ -8,6 +8,7 @@
 //!
 //! Written from Autodesk's *DXF Reference* (2004).
 
+use super::MADE;
 use super::dxf_dimension::Dimensions;
 use super::dxf_entity::{block, entity};
 use super::dxf_tags::{
@@ -18,6 +19,7 @@ use super::dxf_tags::{
 use crate::Result;
 use durer::math::DVec2;
 use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+use durer::work::Work;
 use std::io::Write;
 
 /// Writes a sheet as an ASCII DXF file, encoded in the ANSI code page with `\U+XXXX` for what is not ASCII.
@@ -25,6 +27,17 @@ use std::io::Write;
 /// # Errors
 /// [`crate::Error::Io`] where writing fails.
 pub fn write(out: &mut impl Write, sheet: &Sheet, strokes: DxfStrokes) -> Result<()> {
+    write_within(out, sheet, strokes, &Work::default())
+}
+
+/// Writes it within a budget: all but the header is made in memory, as the header names the last handle.
+pub(super) fn write_within(
+    out: &mut impl Write,
+    sheet: &Sheet,
+    strokes: DxfStrokes,
+    work: &Work,
+) -> Result<()> {
+    let mut charge = work.charge(MADE, 0)?;
     let mut body = Tags { text: String::new(), next: FIRST, owner: MODEL, line_type: CONTINUOUS };
     let dimensions = Dimensions::of(&mut body, sheet, strokes);
     tables(&mut body, sheet, &dimensions);
@@ -42,6 +55,7 @@ pub fn write(out: &mut impl Write, sheet: &Sheet, strokes: DxfStrokes) -> Result
                 }
                 _ => entity(&mut body, sheet, &name, mark, strokes),
             }
+            charge.grow_to(body.text.capacity() as u64)?;
         }
     }
     body.tag(0, "ENDSEC");

@@ -29,6 +29,7 @@ pub use svg::write as write_svg;
 use crate::{Error, Result};
 use durer::target::drawing::Drawing;
 use durer::target::sheet::Sheet;
+use durer::work::Work;
 use std::io::Write;
 use std::str::FromStr;
 
@@ -109,12 +110,17 @@ pub struct FileOptions {
     pub dxf: DxfStrokes,
     /// For HPGL and G-code.
     pub machine: MachineOptions,
+    /// Budget of what is made in memory: PDF and DXF.
+    pub work: Work,
 }
+
+/// Stage of files that are made in memory.
+const MADE: &str = "file of the drawing";
 
 /// Writes a drawing in one of the formats: the sheet, or for GeoJSON what was laid onto it.
 ///
 /// # Errors
-/// [`Error::Io`] where writing fails; what [`MachineOptions::check`] finds.
+/// [`Error::Io`] where writing fails; [`Error::Library`] where the budget has no room for the file; what [`MachineOptions::check`] finds.
 pub fn write(
     out: &mut impl Write,
     format: DrawingFormat,
@@ -124,8 +130,8 @@ pub fn write(
 ) -> Result<()> {
     match format {
         DrawingFormat::Svg => write_svg(out, sheet),
-        DrawingFormat::Pdf => write_pdf(out, sheet),
-        DrawingFormat::Dxf => write_dxf(out, sheet, options.dxf),
+        DrawingFormat::Pdf => pdf::write_within(out, sheet, &options.work),
+        DrawingFormat::Dxf => dxf::write_within(out, sheet, options.dxf, &options.work),
         DrawingFormat::Hpgl => hpgl::write_for(out, sheet, &options.machine),
         DrawingFormat::Gcode => write_gcode(out, sheet, &options.machine),
         DrawingFormat::GeoJson => write_geojson(out, drawing),

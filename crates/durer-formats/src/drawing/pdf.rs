@@ -1,5 +1,6 @@
 //! Sheets as PDF: one page of vectors, a layer ("optional content group") for each of the sheet's.
 
+use super::MADE;
 use super::number::{push, short};
 use super::pdf_text::{self, Words};
 use crate::Result;
@@ -8,6 +9,7 @@ use durer::math::DVec2;
 use durer::paper::{dashes, dimension_strokes, text_strokes};
 use durer::target::drawing::Anchor;
 use durer::target::sheet::{Mark, Pen, Sheet};
+use durer::work::{Charge, Work};
 use pdf_writer::{Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -38,12 +40,20 @@ const FIRST_LAYER: i32 = 6;
 /// # Errors
 /// [`crate::Error::Io`] where writing fails.
 pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
+    write_within(out, sheet, &Work::default())
+}
+
+/// Writes it within a budget: the page is made in memory.
+pub(super) fn write_within(out: &mut impl Write, sheet: &Sheet, work: &Work) -> Result<()> {
     let longest = sheet.size.max_element() * POINTS;
     let user_unit = (longest / LONGEST).ceil().max(1.0);
     let scale = POINTS / user_unit;
     let mut alphas = BTreeSet::new();
     let mut words = Words::default();
-    let content = content(sheet, scale, &mut alphas, &mut words);
+    let mut charge = work.charge(MADE, 0)?;
+    let content = content(sheet, scale, (&mut alphas, &mut words), &mut charge)?;
+    // Digits and a few letters take half the room at most.
+    charge.grow(content.len() as u64 / 2)?;
     let content = miniz_oxide::deflate::compress_to_vec_zlib(content.as_bytes(), LEVEL);
     let mut pdf = Pdf::new();
     pdf.set_version(1, 5);
@@ -128,7 +138,12 @@ struct State {
 }
 
 /// Returns the page's operators; collects the opacities used.
-fn content(sheet: &Sheet, scale: f64, alphas: &mut BTreeSet<u8>, words: &mut Words) -> String {
+fn content(
+    sheet: &Sheet,
+    scale: f64,
+    (alphas, words): (&mut BTreeSet<u8>, &mut Words),
+    charge: &mut Charge,
+) -> Result<String> {
     let mut text = String::new();
     // Millimetres, y down.
     let [k, height] = [scale, sheet.size.y * scale].map(|v| short(v, 6));
@@ -143,10 +158,11 @@ fn content(sheet: &Sheet, scale: f64, alphas: &mut BTreeSet<u8>, words: &mut Wor
         text += &format!("/OC /L{i} BDC\n");
         for mark in &layer.marks {
             put(&mut text, &mut state, sheet, mark, (&mut *alphas, &mut *words));
+            charge.grow_to(text.capacity() as u64)?;
         }
         text += "EMC\n";
     }
-    text
+    Ok(text)
 }
 
 fn put(

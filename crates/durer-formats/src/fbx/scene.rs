@@ -108,20 +108,35 @@ fn ends_inside(text: &[u8]) -> bool {
     depth > 0
 }
 
-/// Tells what the library repaired.
+/// Warns of what the library repaired.
 fn repairs(scene: &Scene, model: &mut Model) {
     for warning in &scene.metadata.warnings {
-        // That nothing is lost by, or that is none of this reader's files.
-        if matches!(
-            warning.type_,
-            WarningType::DuplicateConnection
-                | WarningType::MissingExternalFile
-                | WarningType::ImplicitMtl
-        ) {
-            continue;
+        if let Some(what) = what_is_repaired(warning.type_) {
+            let count = warning.count;
+            let times = if count > 1 { format!(" ({count} times)") } else { String::new() };
+            model.warn(Place::Whole, format!("{what}{times}"));
         }
-        model.warn(Place::Whole, format!("{} ({} times)", warning.description, warning.count));
     }
+}
+
+/// Returns what the library repaired, for its own words are of its insides; `None` where nothing is lost, or the file is
+/// not one of this reader's.
+fn what_is_repaired(kind: WarningType) -> Option<&'static str> {
+    Some(match kind {
+        WarningType::DuplicateConnection
+        | WarningType::MissingExternalFile
+        | WarningType::ImplicitMtl => return None,
+        WarningType::TruncatedArray => "a list is shorter than it says; the rest of it is zeros",
+        WarningType::MissingGeometryData => "a mesh lacks vertices or faces; it is empty",
+        WarningType::IndexClamped => "an index is beyond its list; it is left out",
+        WarningType::BadUnicode => "a name is not in UTF-8; what is not is replaced",
+        WarningType::BadElementConnectedToRoot => {
+            "an object without a place is a child of the scene itself; it is left out"
+        }
+        WarningType::DuplicateObjectId => "two objects have one number; links lead to one of them",
+        WarningType::EmptyFaceRemoved => "a face has no corners; it is left out",
+        _ => "something is broken, and left out",
+    })
 }
 
 /// Tells of kinds of elements that are not read.

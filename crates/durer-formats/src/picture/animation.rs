@@ -2,7 +2,7 @@
 //!
 //! Each picture is written as it comes, so memory is that of one.
 
-use super::{gif, refused, sides, webp};
+use super::{charged, gif, refused, sides, webp};
 use crate::png::{Compression, encoding};
 use crate::{Error, Result};
 use durer::target::Pixels;
@@ -188,6 +188,8 @@ fn push_png<W: Write>(
     delay: u16,
 ) -> Result<()> {
     writer.set_frame_delay(delay, 1000).map_err(encoding)?;
+    // Colours without alpha, and the frame, which the encoder makes in memory.
+    let _room = charged(pixels, 3 + 4)?;
     if alpha {
         return writer.write_image_data(pixels.data().as_flattened()).map_err(encoding);
     }
@@ -219,6 +221,7 @@ fn three_bytes(number: u32) -> [u8; 3] {
 }
 
 fn push_webp<W: Write>(out: &mut W, pixels: &Pixels<[u8; 4]>, delay: u32) -> Result<()> {
+    let _room = charged(pixels, 4)?;
     let mut still = Vec::new();
     webp::write(&mut still, pixels)?;
     // A still picture is its header and one chunk, which is of an even length.

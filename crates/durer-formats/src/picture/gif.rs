@@ -1,7 +1,7 @@
 //! Frames of a GIF (version 89a), by the crate `gif`, with colours of their own each.
 
 use super::palette::{Indexed, indexed};
-use super::refused;
+use super::{charged, refused};
 use crate::{Error, Result};
 use durer::target::Pixels;
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
@@ -22,6 +22,8 @@ pub fn push<W: Write>(
     (width, height): (u16, u16),
     delay: u16,
 ) -> Result<()> {
+    // Numbers of colours, and the frame, which the encoder makes in memory.
+    let _room = charged(pixels, 1 + 2)?;
     let Indexed { palette, indices, transparent } = indexed(pixels);
     // Through what is transparent the picture before would be seen.
     let dispose = match transparent {

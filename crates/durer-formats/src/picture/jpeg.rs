@@ -1,6 +1,6 @@
 //! JPEG, by the crate `image`: baseline, with colours as fine as brightness.
 
-use super::{Encoding, is_opaque, refused, sides};
+use super::{Encoding, charged, is_opaque, refused, sides};
 use crate::{Error, Result};
 use ::image::codecs::jpeg::JpegEncoder;
 use ::image::{ExtendedColorType, ImageError};
@@ -12,6 +12,8 @@ use std::io::Write;
 pub fn write<W: Write>(out: W, pixels: &Pixels<[u8; 4]>, encoding: &Encoding) -> Result<bool> {
     let expected = "1x1 to 65535x65535 for a JPEG, which has room for no more pixels along a side";
     let sides = sides(pixels, u32::from(u16::MAX), expected)?;
+    // Colours without alpha, and the picture on white.
+    let _room = charged(pixels, if is_opaque(pixels) { 3 } else { 7 })?;
     let colors = on_white(pixels);
     let rgb: Vec<u8> = colors.data().iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
     let mut encoder = JpegEncoder::new_with_quality(out, encoding.quality.clamp(1, 100));

@@ -1,6 +1,6 @@
 //! WebP without loss (VP8L), by the crate `image-webp`.
 
-use super::{is_opaque, refused, sides};
+use super::{charged, is_opaque, refused, sides};
 use crate::{Error, Result};
 use durer::target::Pixels;
 use image_webp::{ColorType, EncodingError, WebPEncoder};
@@ -13,6 +13,8 @@ pub const MAX_SIDE: u32 = 1 << 14;
 pub fn write<W: Write>(out: W, pixels: &Pixels<[u8; 4]>) -> Result<()> {
     let expected = "1x1 to 16384x16384 for a WebP, which has room for no more pixels along a side";
     let (width, height) = sides(pixels, MAX_SIDE, expected)?;
+    // Colours without alpha, what the encoder predicts from them, and the file, which it makes in memory.
+    let _room = charged(pixels, 3 + 4 + 4)?;
     let encoder = WebPEncoder::new(out);
     let written = if is_opaque(pixels) {
         let colors: Vec<[u8; 3]> = pixels.data().iter().map(|&[r, g, b, _]| [r, g, b]).collect();

@@ -9,6 +9,7 @@ use durer::scene::{Camera, Projection, UpAxis};
 use durer::target::drawing::{Anchor, Drawing, Label, Line, LineClass, Region, RegionKind};
 use durer::target::sheet::Mark;
 use durer::view::projection::NamedView;
+use durer::work::Work;
 use durer_formats::drawing::{
     DrawingFormat, DxfStrokes, FileOptions, write, write_dxf, write_geojson, write_hpgl, write_svg,
 };
@@ -577,4 +578,22 @@ fn a_scale_that_does_not_fit_is_refused() {
     let options = Options { page, scale: "10:1".parse().unwrap(), ..Options::default() };
     let error = lay_out(&plate(60.0, 20.0), "", &options).unwrap_err().to_string();
     assert!(error.contains("10:1") && error.contains("1.66:1") && error.contains("1:1"), "{error}");
+}
+
+#[test]
+fn files_made_in_memory_are_charged() {
+    let sheet = laid(Hidden::Dashed).sheet;
+    for (format, is_charged) in [
+        (DrawingFormat::Pdf, true),
+        (DrawingFormat::Dxf, true),
+        (DrawingFormat::Svg, false),
+        (DrawingFormat::Hpgl, false),
+    ] {
+        let work = Work::with_budget(300, "--max-memory");
+        let options = FileOptions { work: work.clone(), ..FileOptions::default() };
+        let written = write(&mut Vec::new(), format, &sheet, &Drawing::default(), &options);
+        let refused = written.err().map(|error| error.to_string());
+        let named = refused.as_ref().is_some_and(|e| e.starts_with("file of the drawing: "));
+        assert_eq!((named, work.used()), (is_charged, 0), "{format}: {refused:?}");
+    }
 }

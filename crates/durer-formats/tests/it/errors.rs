@@ -19,8 +19,25 @@ fn errors_go_where_any_error_goes() {
 #[test]
 fn errors_of_the_system_can_be_told_by_their_kind() {
     let error = Boxed::from(Error::from(io::Error::from(io::ErrorKind::StorageFull)));
-    let source = error.source().and_then(|source| source.downcast_ref::<io::Error>());
-    assert_eq!(source.map(io::Error::kind), Some(io::ErrorKind::StorageFull));
+    let Some(Error::Io(inner)) = error.downcast_ref() else { panic!("{error}") };
+    assert_eq!(inner.kind(), io::ErrorKind::StorageFull);
+}
+
+#[test]
+fn no_error_repeats_the_words_of_its_source() {
+    let of_system = io::Error::from_raw_os_error(28);
+    let errors = [Error::from(of_system), Error::from(durer::Error::Cancelled), Error::whole("a")];
+    for error in errors {
+        let mut said = vec![error.to_string()];
+        let mut source = std::error::Error::source(&error);
+        while let Some(inner) = source {
+            said.push(inner.to_string());
+            source = inner.source();
+        }
+        for (i, words) in said.iter().enumerate() {
+            assert!(!said[..i].iter().any(|before| before.contains(words.as_str())), "{said:?}");
+        }
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use durer_formats::geo::{GeoFormat, Reader};
 use durer_formats::height_map::{self, HeightMapOptions};
-use durer_formats::{NoResources, ReadOptions, read_model, svg};
+use durer_formats::{ModelFormat, NoResources, ReadOptions, read_model, svg};
 
 /// Colours a terminal, and turns the direction of writing.
 const FORGED: &str = "\u{1b}[31mX\u{202e}\u{7}\u{85}";
@@ -228,6 +228,98 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds");
     let files = std::fs::read_dir(folder.join(target)).expect("seeds are part of the repository");
     files.map(|file| std::fs::read(file.expect("a file").path()).expect("a seed")).collect()
+}
+
+/// Returns the file with escapes of the same length in place of one of its words, for some of its words.
+fn with_escapes(file: &[u8]) -> Vec<Vec<u8>> {
+    let mut words = Vec::new();
+    let mut at = 0;
+    for run in file.chunk_by(|a, b| a.is_ascii_alphabetic() == b.is_ascii_alphabetic()) {
+        if run.len() > 2 && run[0].is_ascii_alphabetic() {
+            words.push(at..at + run.len());
+        }
+        at += run.len();
+    }
+    let step = words.len().div_ceil(24).max(1);
+    let replaced = |word: std::ops::Range<usize>| {
+        let mut file = file.to_vec();
+        let escapes = FORGED.bytes().chain("\u{202e}".bytes().cycle());
+        file[word].iter_mut().zip(escapes).for_each(|(byte, escape)| *byte = escape);
+        file
+    };
+    words.into_iter().step_by(step).map(replaced).collect()
+}
+
+/// Returns the fuzz target that has seeds of a format.
+fn target_of_model(format: ModelFormat) -> &'static str {
+    match format {
+        ModelFormat::Gltf => "gltf",
+        ModelFormat::Obj => "obj",
+        ModelFormat::Stl => "stl",
+        ModelFormat::Ply => "ply",
+        ModelFormat::ThreeMf => "threemf",
+        ModelFormat::Collada => "collada",
+        ModelFormat::Fbx => "fbx",
+        ModelFormat::Off => "off",
+        ModelFormat::Las => "las",
+        ModelFormat::E57 => "e57",
+        ModelFormat::Xyz => "xyz",
+    }
+}
+
+/// Returns the same for map data.
+fn target_of_map(format: GeoFormat) -> &'static str {
+    match format {
+        GeoFormat::GeoJson | GeoFormat::GeoJsonSeq | GeoFormat::GeoJsonRs => "geojson",
+        GeoFormat::Wkt => "wkt",
+        GeoFormat::Wkb | GeoFormat::WkbHex => "wkb",
+        GeoFormat::Svg => "svg",
+        GeoFormat::Shapefile => "shapefile",
+        GeoFormat::FlatGeobuf => "flatgeobuf",
+        GeoFormat::GeoPackage => "geopackage",
+        GeoFormat::GeoParquet => "geoparquet",
+        GeoFormat::TopoJson => "topojson",
+        GeoFormat::Csv => "csv",
+        GeoFormat::Kml => "kml",
+        GeoFormat::Gpx => "gpx",
+    }
+}
+
+#[test]
+fn every_reader_quotes_escapes_plainly() {
+    let mut said_at_all = 0;
+    let mut plain = |what: &str, said: Vec<String>| {
+        said_at_all += said.len();
+        said.iter().for_each(|message| assert!(is_plain(message), "{what}: {message:?}"));
+    };
+    for format in ModelFormat::ALL {
+        let name = format!("a.{}", format.suffixes()[0]);
+        for file in seeds(target_of_model(format)).iter().flat_map(|seed| with_escapes(seed)) {
+            plain(&name, said_of_model(&name, &file));
+        }
+    }
+    let reversed = "\u{202e}".repeat(9);
+    let object =
+        format!("<object id='{reversed}' name='{reversed}' pid='{reversed}'><mesh/></object>");
+    let archive =
+        crate::threemf::simple(&reversed, &object, &format!("<item objectid='{reversed}'/>"));
+    plain("3MF", said_of_model("a.3mf", &archive));
+    for format in GeoFormat::ALL {
+        for file in seeds(target_of_map(format)).iter().flat_map(|seed| with_escapes(seed)) {
+            plain(format.name(), said_of_map(format, &file));
+        }
+    }
+    for file in seeds("drawing").iter().flat_map(|seed| with_escapes(seed)) {
+        let read = svg::Drawing::read(&file, &svg::ReadOptions::default());
+        plain("drawing", read.err().map(|error| error.to_string()).into_iter().collect());
+    }
+    for file in seeds("height_map").iter().flat_map(|seed| with_escapes(seed)) {
+        for name in ["a.json", "a.npy", "a.npz", "a.png", "a.asc", "a.csv", "a.xyz"] {
+            let said = height_map::read(&file, name, &HeightMapOptions::default());
+            plain(name, said.err().map(|error| error.to_string()).into_iter().collect());
+        }
+    }
+    assert!(said_at_all > 1000, "{said_at_all}");
 }
 
 #[test]

@@ -97,6 +97,7 @@ pub fn status(scene: &Scene, options: &RenderOptions, picture: &Framebuffer) -> 
     if options.cull != Cull::None && shows(scene, &whole)? {
         return Ok(Status::Invisible(Unseen::Culled));
     }
+    let _copy = options.work.charge("copy of the model", scene.bytes())?;
     let missed = !shows(&made_opaque(scene), &whole)?;
     Ok(Status::Invisible(if missed { Unseen::Missed } else { Unseen::Transparent }))
 }

@@ -75,6 +75,20 @@ impl Mesh {
         Self { positions, ..Self::default() }
     }
 
+    /// Returns the bytes of its attributes, indices, parts and faces.
+    pub fn bytes(&self) -> u64 {
+        let sets: usize = self.tex_coords.iter().map(|set| size_of_val(&set[..])).sum();
+        let bytes = size_of_val(&self.positions[..])
+            + size_of_val(&self.normals[..])
+            + size_of_val(&self.tangents[..])
+            + sets
+            + size_of_val(&self.colors[..])
+            + self.indices.as_ref().map_or(0, |indices| size_of_val(&indices[..]))
+            + size_of_val(&self.parts[..])
+            + size_of_val(&self.faces[..]);
+        bytes as u64
+    }
+
     /// Returns the number of indices, explicit or not.
     pub fn index_count(&self) -> usize {
         self.indices.as_ref().map_or(self.positions.len(), Vec::len)

@@ -150,6 +150,20 @@ impl Scene {
         self.instances.iter().map(of).sum()
     }
 
+    /// Returns the bytes of the scene, about, and of its copies.
+    pub fn bytes(&self) -> u64 {
+        let meshes: u64 = self.meshes.iter().map(|m| m.bytes() + size_of::<Mesh>() as u64).sum();
+        let images: u64 = self.images.iter().map(|i| size_of_val(&i.data[..]) as u64).sum();
+        let lists = size_of_val(&self.instances[..]) + size_of_val(&self.materials[..]);
+        meshes + images + lists as u64
+    }
+
+    /// Returns the bytes that its meshes would take if each instance had one of its own, as in sections.
+    pub fn bytes_of_instances(&self) -> u64 {
+        let of = |i: &Instance| self.meshes.get(i.mesh).map_or(0, Mesh::bytes);
+        self.instances.iter().map(of).fold(0, u64::saturating_add)
+    }
+
     /// Returns the box around all finite vertices that some instance uses, in world space.
     pub fn bounds(&self) -> Option<Aabb> {
         let mut bounds: Option<Aabb> = None;

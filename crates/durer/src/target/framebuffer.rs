@@ -50,6 +50,12 @@ impl<T: Copy> Pixels<T> {
         Ok(Self { charge, ..Self::new(width, height, value) })
     }
 
+    /// Returns the work that the plane was charged to; one without bounds if it was charged to none. Whoever makes something
+    /// of the plane can charge that to the same budget.
+    pub fn work(&self) -> Work {
+        self.charge.work()
+    }
+
     /// Creates a plane from rows laid one after the other.
     ///
     /// # Errors

@@ -5,7 +5,8 @@ use crate::line_scenes::{
     Random, Triangle, city, cuboid, cylinder, placed, quad, random_boxes, soup, view,
 };
 use durer::math::{DMat4, DVec3};
-use durer::target::drawing::{Drawing, LineClass};
+use durer::scene::{Camera, Projection};
+use durer::target::drawing::{Drawing, Line, LineClass};
 use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
 use durer::visibility::line::hidden_line::{Options, Step, draw, replay};
@@ -253,6 +254,38 @@ fn open_sheets_hide_from_both_sides_and_have_borders() {
         assert!(found.lines.iter().all(|l| l.class == LineClass::Border));
         let [visible, hidden] = lengths(&found);
         assert!((visible - (16.0 + 3.0)).abs() < 1e-5 && (hidden - 7.0).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn no_triangle_at_an_edge_of_three_hides_it() {
+    // Borders of all three lie on each other and are divided there; all reach out of the window, and are cut.
+    let triangles: [Triangle; 3] = [
+        [
+            [3.457_031_3, 3.472_656_3, 3.472_656_3],
+            [3.472_656_3, -0.433_593_75, 2.847_656_3],
+            [-0.511_718_75; 3],
+        ],
+        [[-0.507_812_5, -1.773_437_5, -2.242_187_5], [-0.507_812_5; 3], [-2.257_812_5; 3]],
+        [[1.878_906_3; 3], [0.144_531_25, 2.472_656_3, 1.878_906_3], [-1.679_687_5; 3]],
+    ]
+    .map(|t| t.map(DVec3::from));
+    let camera = Camera {
+        eye: DVec3::new(-3.999, -3.998, -3.8095),
+        target: DVec3::splat(-0.3),
+        up: DVec3::new(0.3, 0.5, 0.8),
+        projection: Projection::Orthographic { height: 1.0 },
+        near: 0.05,
+        far: 6.0,
+    };
+    let view = View::new(camera, 80, 60).expect("view");
+    let expected = drawing(&triangles, &view);
+    let of_three = |l: &&Line| l.class == LineClass::NonManifold;
+    assert!(expected.lines.iter().filter(of_three).all(Line::is_visible));
+    assert_eq!(expected.lines.iter().filter(of_three).count(), 1);
+    for [a, b, c] in [[0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+        let found = drawing(&[triangles[a], triangles[b], triangles[c]], &view);
+        assert_eq!(found.lines, expected.lines, "{a} {b} {c}");
     }
 }
 

@@ -124,3 +124,40 @@ fn pictures_and_drawings_count_all_of_their_steps() {
     let Progress { stage, done, of } = work.progress();
     assert!(stage == "lines" && of > 0 && done == of, "{stage}: {done}/{of}");
 }
+
+#[test]
+fn every_method_charges_its_lists_and_gives_them_back() {
+    for &method in SurfaceMethod::ALL {
+        let scene = scenes::soup(300, 7);
+        let mut options = scenes::options(&scene, 20, 15);
+        options.algorithm = method;
+        options.work = Work::with_budget(1 << 30, "--max-memory");
+        let (expected, _) = render(&scene, &options).expect("room for all");
+        drop(expected);
+        assert_eq!(options.work.used(), 0, "{method}");
+        // With less and less room some stage is the first that has none: that of the method among them.
+        let mut stages = std::collections::BTreeSet::new();
+        for budget in (0..60).map(|i| i * 2000) {
+            options.work = Work::with_budget(budget, "--max-memory");
+            match render(&scene, &options) {
+                Err(Error::Memory { stage, .. }) => drop(stages.insert(stage)),
+                other => drop(other.expect("no other error")),
+            }
+            assert_eq!(options.work.used(), 0, "{method} at {budget}");
+        }
+        // The production path has no lists beside what it charges by itself.
+        let own = method != SurfaceMethod::ZBuffer;
+        assert_eq!(stages.contains("lists of the method"), own, "{method}: {stages:?}");
+    }
+}
+
+#[test]
+fn what_grows_beyond_the_budget_stops_the_work() {
+    let work = Work::with_budget(100, "--max-memory");
+    let mut charge = work.charge("a", 50).unwrap();
+    assert!(charge.grow_to_or_stop(100) && !work.is_stopped());
+    assert!(!charge.grow_to_or_stop(101) && work.is_stopped());
+    let error = Error::Memory { stage: "a", need: 101, budget: 100, option: "--max-memory" };
+    assert_eq!(work.check(), Err(error));
+    assert_eq!(charge.work(), work);
+}

@@ -80,7 +80,7 @@ pub fn tone_marks(scene: &Scene, options: &DrawOptions, marks: ToneMarks) -> Res
     let frame = Frame::new(options, size, pixels)?;
     let mut how = frame.picture(options);
     let smoothed = with_needed_normals(scene, &how)?;
-    let scene = smoothed.as_ref().unwrap_or(scene);
+    let scene = smoothed.as_ref().map_or(scene, |smoothed| &smoothed.0);
     how.shading = None;
     let _room = options.work.charge("tones", frame.bytes())?;
     let picture = render(scene, &how)?.0;

@@ -2,8 +2,9 @@
 
 use super::PreparedMaterial;
 use crate::math::Vec3;
-use crate::scene::{Material, Scene, ShadingModel};
+use crate::scene::{Material, MipFilter, Scene, ShadingModel, Texture};
 use crate::shade::slot::Chains;
+use std::collections::BTreeSet;
 
 /// All materials of a scene, ready for shading. Borrows the scene's images.
 #[derive(Debug, Clone)]
@@ -15,6 +16,20 @@ pub struct PreparedMaterials<'a> {
 }
 
 impl<'a> PreparedMaterials<'a> {
+    /// Name of the stage that makes materials ready, in errors.
+    pub(crate) const STAGE: &'static str = "materials";
+
+    /// Returns the bytes that the materials of a scene take, about: their own, and the smaller sizes of their images, a
+    /// third each. An image that is read in two ways is counted once.
+    pub(crate) fn bytes(scene: &Scene) -> u64 {
+        let has_levels = |t: &&Texture| t.sampler.mip != MipFilter::None;
+        let filtered: BTreeSet<usize> =
+            scene.textures.iter().filter(has_levels).map(|t| t.image).collect();
+        let images = filtered.iter().filter_map(|i| scene.images.get(*i));
+        let texels: u64 = images.map(|image| size_of_val(&image.data[..]) as u64).sum();
+        (scene.materials.len() * size_of::<PreparedMaterial<'_>>()) as u64 + texels / 3
+    }
+
     /// Filters the mip chains that the scene's materials use, each once.
     ///
     /// Cost: O(texels) time, a third of the images in memory.

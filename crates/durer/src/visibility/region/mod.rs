@@ -17,7 +17,7 @@ pub use shadow::INFO as SHADOWS;
 use crate::Result;
 use crate::math::Rect;
 use crate::scene::Scene;
-use crate::shade::PreparedLights;
+use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::target::drawing::Drawing;
 use crate::trace::NoTrace;
 use crate::view::View;
@@ -97,6 +97,8 @@ pub fn draw(
     let how = planar_map::Options { cull: options.cull, work: options.work.clone() };
     let more = |frame: &Frame, faces: &[Face]| lamps.edges(frame, faces);
     let map = planar_map::divide(scene, view, &how, more, &mut NoTrace)?;
+    let bytes = PreparedMaterials::bytes(scene);
+    let _materials = options.work.charge(PreparedMaterials::STAGE, bytes)?;
     let paint = Paint::new(scene, view, lights, options, &world, &lamps, &map);
     let patches = merge::patches(&map.map, &paint.labels);
     let half = map.frame.half() * map.frame.unit;

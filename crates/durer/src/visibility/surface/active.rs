@@ -29,6 +29,9 @@ pub struct ActiveList<'a> {
 }
 
 impl<'a> ActiveList<'a> {
+    /// Bytes for each triangle that waits.
+    pub const PER_TRIANGLE: u64 = size_of::<u64>() as u64;
+
     /// Sorts the triangles by their first row on a screen of this size.
     pub fn new(triangles: &'a [ScreenTriangle], width: u32, height: u32) -> Self {
         let mut waiting: Vec<u64> = Vec::with_capacity(triangles.len());
@@ -40,6 +43,11 @@ impl<'a> ActiveList<'a> {
         }
         waiting.sort_unstable();
         Self { triangles, width: i64::from(width), waiting, next: 0, active: Vec::new() }
+    }
+
+    /// Returns the bytes of the active list.
+    pub fn bytes(&self) -> u64 {
+        (self.active.capacity() * size_of::<Active>()) as u64
     }
 
     /// Goes on to row `y`; rows come one after the other from 0.

@@ -30,6 +30,9 @@ pub struct SurfaceInput<'a> {
     pub work: Work,
 }
 
+/// Stage of what a method makes of the triangles.
+pub(crate) const METHOD: &str = "lists of the method";
+
 /// Primitives that are set up between two looks at what they take.
 const STEP: usize = 1 << 18;
 

@@ -8,11 +8,12 @@ use crate::math::Vec4;
 use crate::shade::color::premultiply;
 use crate::target::NO_ITEM;
 use crate::visibility::surface::active::Active;
-use crate::visibility::surface::input::{SurfaceInput, TriangleSet};
+use crate::visibility::surface::input::{METHOD, SurfaceInput, TriangleSet};
 use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::nearest::{DepthRow, Masked, is_nearer};
 use crate::visibility::surface::picture::Picture;
 use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
+use crate::work::Charge;
 
 /// A blended surface at a sample.
 #[derive(Debug, Clone, Copy)]
@@ -37,6 +38,8 @@ pub(crate) struct Layers<'a> {
     blended: TriangleSet,
     opaque: DepthRow,
     layers: Vec<Layer>,
+    /// Memory of the layers.
+    charge: Charge,
 }
 
 /// Writes row `y` to all planes: `row` is what is nearest, blended or not; in the colours blended
@@ -61,8 +64,9 @@ impl<'a> Layers<'a> {
     pub fn of(input: &'a SurfaceInput<'_>) -> Option<Self> {
         let (triangles, blended) = (&input.triangles, input.having(Coverage::Blended));
         let opaque = DepthRow::new(input.view.width());
+        let charge = input.work.charge(METHOD, 0).unwrap_or_default();
         let layers = Vec::new();
-        (!blended.is_empty()).then(|| Self { triangles, blended, opaque, layers })
+        (!blended.is_empty()).then(|| Self { triangles, blended, opaque, layers, charge })
     }
 
     /// Writes the colours of row `y`: what is opaque, and over it what is blended and before it, far
@@ -81,7 +85,7 @@ impl<'a> Layers<'a> {
 
     /// Finds the opaque surface at each pixel, and the layers before it in order.
     fn collect(&mut self, y: i32, active: &[Active], masked: &Masked<'_>, lit: &mut Lit<'_>) {
-        let Self { triangles, blended, opaque, layers } = self;
+        let Self { triangles, blended, opaque, layers, charge } = self;
         opaque.clear();
         layers.clear();
         let blends = |a: &&Active| blended.contains(a.triangle as usize);
@@ -97,6 +101,9 @@ impl<'a> Layers<'a> {
                 if is_nearer(depth, t.item, opaque.depth[i], opaque.item[i]) {
                     layers.push(Layer { place: x as u32, item: t.item, depth });
                 }
+            }
+            if !charge.grow_to_or_stop((layers.capacity() * size_of::<Layer>()) as u64) {
+                return;
             }
         }
         sort_layers(layers);

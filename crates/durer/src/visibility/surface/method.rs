@@ -2,13 +2,15 @@
 
 use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;
-use crate::shade::{PreparedLights, Shading};
+use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::{Level, default_level};
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::a_buffer::Mask;
-use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::active::ActiveList;
+use crate::visibility::surface::input::{METHOD, SurfaceInput};
 use crate::visibility::surface::setup::Filter;
+use crate::visibility::surface::visible::Visible;
 use crate::visibility::surface::{Background, Samples};
 use crate::visibility::surface::{
     a_buffer, depth_sort, picture, ray, scan_line_z, spanning_scan_line, warnock, z_buffer,
@@ -35,6 +37,19 @@ crate::info::family! {
 }
 
 impl SurfaceMethod {
+    /// Returns the bytes that a method takes beside the input, about: for each of its triangles, and for each pixel.
+    fn bytes(self) -> [u64; 2] {
+        match self {
+            // It charges what it makes.
+            Self::ZBuffer => [0, 0],
+            Self::ScanLineZ | Self::SpanningScanLine => [ActiveList::PER_TRIANGLE, 0],
+            Self::ABuffer => [a_buffer::PER_TRIANGLE, 0],
+            Self::DepthSort => [depth_sort::PER_TRIANGLE, Visible::PER_SAMPLE],
+            Self::Warnock => [warnock::PER_TRIANGLE, Visible::PER_SAMPLE],
+            Self::Ray => [ray::PER_TRIANGLE, ray::PER_PIXEL + Visible::PER_SAMPLE],
+        }
+    }
+
     /// Returns the largest distance from pixels' centres at which the method samples, in 1/256
     /// pixel: [`Filter::sample_reach`].
     pub fn sample_reach(self) -> i32 {
@@ -164,7 +179,17 @@ pub fn render_with(
     framebuffer: &mut Framebuffer,
     t: &mut impl Tracer<Step>,
 ) -> crate::Result<()> {
-    input.work.begin("rows", input.view.height().into());
+    let (width, height) = (u64::from(input.view.width()), u64::from(input.view.height()));
+    let [per_triangle, per_pixel] = method.bytes();
+    let triangles = (input.triangles.len() as u64).saturating_mul(per_triangle);
+    let pixels = (width * height).saturating_mul(per_pixel);
+    let _lists = input.work.charge(METHOD, triangles.saturating_add(pixels))?;
+    let materials = match method {
+        SurfaceMethod::ZBuffer => 0,
+        _ => PreparedMaterials::bytes(input.scene),
+    };
+    let _materials = input.work.charge(PreparedMaterials::STAGE, materials)?;
+    input.work.begin("rows", height);
     match method {
         SurfaceMethod::ZBuffer => {
             let z_options = options.z_buffer(input);

@@ -16,7 +16,7 @@ use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::active::ActiveList;
-use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::input::{METHOD, SurfaceInput};
 use crate::visibility::surface::layers::{Layers, write_row};
 use crate::visibility::surface::nearest::{DepthRow, Masked};
 pub use crate::visibility::surface::picture::Options;
@@ -85,6 +85,7 @@ pub fn render(
     let mut list = ActiveList::new(&input.triangles, width, height);
     let mut row = DepthRow::new(width);
     let mut layers = Layers::of(input);
+    let mut charge = input.work.charge(METHOD, 0).unwrap_or_default();
     for y in (0..height as i32).take_while(|_| !input.work.is_stopped()) {
         t.step(|| Step::Row { y });
         input.work.advance(1);
@@ -98,5 +99,6 @@ pub fn render(
             masked.enter(&mut row, span.triangle, [x0, x1], y, &mut picture.lit, wrote);
         }
         write_row(y, &row, active, &mut layers, &masked, &mut picture);
+        charge.grow_to_or_stop(list.bytes());
     }
 }

@@ -23,7 +23,7 @@ use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::active::{Active, ActiveList};
-use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::input::{METHOD, SurfaceInput};
 use crate::visibility::surface::layers::{Layers, write_row};
 use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::nearest::{DepthRow, Masked, is_nearer};
@@ -126,6 +126,7 @@ pub fn render(
         parts: Vec::new(),
     };
     let mut layers = Layers::of(input);
+    let mut charge = input.work.charge(METHOD, 0).unwrap_or_default();
     for y in (0..height as i32).take_while(|_| !input.work.is_stopped()) {
         t.step(|| Step::Row { y });
         input.work.advance(1);
@@ -135,6 +136,7 @@ pub fn render(
         edges.replace(active);
         line.sweep(&edges, &mut picture.lit, t);
         write_row(y, &line.row, active, &mut layers, &line.masked, &mut picture);
+        charge.grow_to_or_stop(list.bytes() + edges.bytes());
     }
 }
 
@@ -148,6 +150,10 @@ struct EdgeList {
 }
 
 impl EdgeList {
+    fn bytes(&self) -> u64 {
+        ((self.entering.capacity() + self.leaving.capacity()) * size_of::<u64>()) as u64
+    }
+
     fn replace(&mut self, active: &[Active]) {
         self.entering.clear();
         self.leaving.clear();

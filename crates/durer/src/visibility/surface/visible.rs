@@ -22,6 +22,9 @@ pub struct Visible {
 }
 
 impl Visible {
+    /// Bytes for each sample.
+    pub const PER_SAMPLE: u64 = size_of::<(u32, f32)>() as u64;
+
     /// Creates an empty window, as far as the far plane.
     pub fn new(window: Window) -> Self {
         let size = |a: i32, b: i32| (b - a).max(0) as usize;

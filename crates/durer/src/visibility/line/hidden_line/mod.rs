@@ -20,23 +20,20 @@
 mod absorb;
 mod cells;
 mod cover;
+mod lines;
 mod met;
 mod occluders;
 mod span;
 
 pub use cover::Cover;
 
+use self::lines::{FeatureLine, Known, Lines, joined};
 use self::met::Met;
 use self::occluders::Occluders;
 use super::arrange::{How, Pieces, SLIVER, arrange, arranged, corners, on_page};
-use super::crease_chain::connected;
-use super::edge_lines::{
-    ClassSet, EdgeLine, Intersections, NO_ITEM, Outside, Rules, material_number, materials,
-};
+use super::edge_lines::{ClassSet, Intersections, NO_ITEM};
 use super::facing::Facing;
-use super::intersection::intersections;
-use super::marks::marks;
-use super::page::{GridPoint, Page, Projected, Vertex};
+use super::page::{GridPoint, Page, Projected};
 use super::piece::Piece;
 use super::planes::Planes;
 use super::roundness::Smooth;
@@ -279,14 +276,6 @@ pub fn draw(
     Ok(Drawing { window, lines, edges: count, ..Drawing::default() })
 }
 
-/// Knowledge about faces and edges besides their looks.
-#[derive(Clone, Copy)]
-struct Known<'a> {
-    whole: Whole<'a>,
-    tangents: Option<&'a Tangents>,
-    steps: Option<&'a Steps>,
-}
-
 /// Finds the visible and the hidden pieces of all lines.
 fn pieces(
     faces: &Faces,
@@ -309,107 +298,6 @@ fn pieces(
     Pieces { all: hide(&lines, &occluders, whole, options, t), corners }
 }
 
-/// All lines, before it is known what of them can be seen. Edges are a third of the size of
-/// [`FeatureLine`], and there may be more of them than faces.
-struct Lines<'a> {
-    faces: &'a Faces,
-    whole: Whole<'a>,
-    projected: &'a Projected,
-    edges: Vec<EdgeLine>,
-    /// Intersections of faces, and the lines and points of the model.
-    loose: Vec<FeatureLine>,
-}
-
-impl<'a> Lines<'a> {
-    fn new(
-        faces: &'a Faces,
-        bodies: &Bodies,
-        edges: Edges,
-        facing: &Facing,
-        options: &Options,
-        (projected, known): (&'a Projected, Known<'a>),
-    ) -> Self {
-        let Known { whole, tangents, steps } = known;
-        let rules = Rules {
-            faces,
-            edges: &edges,
-            facing,
-            bodies,
-            materials: materials(faces),
-            cap: options.cap_material.map(|m| material_number(Some(m))),
-            classes: options.classes,
-            tangents,
-            steps,
-            whole,
-            crease: libm::cos(options.crease) as f32,
-            crease_end: libm::cos(options.crease_end.min(options.crease)) as f32,
-        };
-        let of_edges = connected(edge_lines(&rules), faces.points(), rules.wire());
-        drop(rules);
-        drop(edges);
-        let mut loose = if options.classes.contains(LineClass::Intersection) {
-            meeting_lines(faces, bodies, options.intersections, projected)
-        } else {
-            Vec::new()
-        };
-        if options.classes.contains(LineClass::Mark) {
-            let line = |ends| FeatureLine::new(ends, LineClass::Mark, [NO_ITEM; 2]);
-            loose.extend(marks(faces, projected).filter_map(line));
-        }
-        // The eye may be inside of what is cut.
-        let whole = if projected.any_cut() { Whole(None) } else { whole };
-        Self { faces, whole, projected, edges: of_edges, loose }
-    }
-
-    /// Returns the number of lines, including those that are points in the picture.
-    fn len(&self) -> usize {
-        self.edges.len() + self.loose.len()
-    }
-
-    /// Returns a smooth outline: where along it the surface hides it, and what does not. Which side of an
-    /// open surface is its front is arbitrary, so there nothing is known where it bends the other way.
-    fn smooth(&self, of: &EdgeLine, line: FeatureLine, turned: bool) -> FeatureLine {
-        let mut ends = of.ends;
-        if turned {
-            ends.reverse();
-        }
-        let bends = ends.map(|v| self.whole.bend(v));
-        let sign = if of.outside == Outside::Back { -1.0 } else { 1.0 };
-        let [a, b] = bends.map(|bend| f64::from(bend.radial) * sign);
-        let fold = match (a < 0.0, b < 0.0) {
-            _ if of.outside == Outside::Both => [0.0; 2],
-            (true, true) => [0.0, 1.0],
-            (true, false) => [0.0, a / (a - b)],
-            (false, true) => [a / (a - b), 1.0],
-            (false, false) => [0.0; 2],
-        };
-        let closed = of.outside != Outside::Both;
-        let reach = if closed && a + b < 0.0 { 0.0 } else { bends[0].reach.max(bends[1].reach) };
-        let reach = f64::from(reach) / self.projected.page.step;
-        FeatureLine { smooth: true, fold, reach, ..line }
-    }
-
-    /// Returns those of a range that have an extent in the picture.
-    fn some(&self, range: Range<usize>) -> impl Iterator<Item = FeatureLine> + Clone {
-        let split = self.edges.len();
-        let edges = &self.edges[range.start.min(split)..range.end.min(split)];
-        let loose = &self.loose[range.start.max(split) - split..range.end.max(split) - split];
-        let line = |l: &EdgeLine| {
-            let ends = self.projected.edge(self.faces, l.ends)?;
-            let line = FeatureLine::new(ends, l.class, l.items)?;
-            if !l.smooth {
-                let is_smooth = |item: &u32| self.whole.is_smooth(*item);
-                let any = l.items.iter().any(is_smooth);
-                let vertices = if any { l.ends } else { line.vertices };
-                return Some(FeatureLine { vertices, ..line });
-            }
-            let turned = line.ends[0].at != ends[0].at;
-            Some(self.smooth(l, line, turned))
-        };
-        edges.iter().filter_map(line).chain(loose.iter().copied())
-    }
-}
-
 /// Returns the pieces of all lines.
 fn hide(
     lines: &Lines<'_>,
@@ -423,7 +311,7 @@ fn hide(
     let page = occluders.page();
     let new_met = || Met::new(occluders.count());
     let covers_of = |line: &FeatureLine, met: &mut Met, covers: &mut Vec<Cover>| {
-        covers_of(line, occluders, whole, page.touching, !options.hidden, met, covers);
+        covers_of(line, lines, occluders, page.touching, !options.hidden, met, covers);
     };
     let work = options.work.part();
     work.begin("lines", jobs.len() as u64);
@@ -457,83 +345,15 @@ fn hide(
     pieces
 }
 
-/// Returns all parts in one list of just their size.
-fn joined<T>(parts: Vec<Vec<T>>) -> Vec<T> {
-    let mut all = Vec::with_capacity(parts.iter().map(Vec::len).sum());
-    parts.into_iter().for_each(|part| all.extend(part));
-    all
-}
-
 /// Lines per job.
 const JOB: usize = 2048;
-
-/// A line before it is known what of it can be seen.
-#[derive(Clone, Copy)]
-struct FeatureLine {
-    ends: [Vertex; 2],
-    class: LineClass,
-    /// The faces that it lies on.
-    items: [u32; 2],
-    /// See [`Step::Line`].
-    smooth: bool,
-    /// See [`Step::Line`].
-    fold: [f64; 2],
-    /// Largest distance in front of it of a face of its own body that does not hide it, in steps.
-    reach: f64,
-    /// Its vertices, if it is a sharp outline of smooth faces: those around these lie folded over each other, and
-    /// none hides it.
-    vertices: [u32; 2],
-}
-
-impl FeatureLine {
-    /// `None` for a line that is a point in the picture.
-    fn new(mut ends: [Vertex; 2], class: LineClass, items: [u32; 2]) -> Option<Self> {
-        // One way round whatever the faces' order, so that cuts are rounded alike.
-        ends.sort_unstable_by_key(|v| v.at);
-        let line = Self {
-            ends,
-            class,
-            items,
-            smooth: false,
-            fold: [0.0; 2],
-            reach: 0.0,
-            vertices: [NO_ITEM; 2],
-        };
-        (ends[0].at != ends[1].at).then_some(line)
-    }
-
-    fn piece(&self) -> Piece {
-        let Self { ends, class, smooth, .. } = *self;
-        Piece { ends: ends.map(|v| v.at), class, invisibility: 0, smooth }
-    }
-}
-
-/// Returns lines among the edges of the mesh.
-fn edge_lines(rules: &Rules<'_>) -> Vec<EdgeLine> {
-    let count = rules.faces.points().len() as u32;
-    let jobs: Vec<_> = (0..count).step_by(1 << 15).map(|v| v..(v + (1 << 15)).min(count)).collect();
-    joined(parallel::map(jobs, |vertices| rules.lines(vertices)))
-}
-
-/// Returns lines where faces penetrate each other.
-fn meeting_lines(
-    faces: &Faces,
-    bodies: &Bodies,
-    which: Intersections,
-    projected: &Projected,
-) -> Vec<FeatureLine> {
-    let line = |m: super::intersection::Meeting| {
-        FeatureLine::new(projected.segment(m.ends)?, LineClass::Intersection, m.items)
-    };
-    intersections(faces, bodies, which).into_iter().filter_map(line).collect()
-}
 
 /// Returns the parts of a line that faces hide, by face. `enough` ends the search in places where the
 /// line is known to be hidden.
 fn covers_of(
     line: &FeatureLine,
+    lines: &Lines<'_>,
     occluders: &Occluders<'_>,
-    whole: Whole<'_>,
     touching: f64,
     enough: bool,
     met: &mut Met,
@@ -545,13 +365,13 @@ fn covers_of(
             return;
         }
         let Some(face) = face() else { return };
-        if line.items.contains(&face.item) {
+        if lines.is_at(line, face.item) {
             return;
         }
         let own = line.reach > touching && occluders.same_body(line.items[0], face.item);
         let touching = if own { line.reach } else { touching };
         let Some(cover) = cover::cover(&line.ends, &face, touching) else { return };
-        if does_not_hide(&face, line, occluders, whole) {
+        if does_not_hide(&face, line, occluders, lines.whole) {
             return;
         }
         found.push((id, cover));

@@ -44,6 +44,17 @@ pub struct Active {
 }
 
 impl<'a> Faces<'a> {
+    /// Bytes for each triangle of the input.
+    pub const PER_TRIANGLE: u64 = size_of::<Active>() as u64;
+
+    /// Returns the bytes for the triangles of a row.
+    pub fn bytes(&self) -> u64 {
+        let active = (self.active.capacity() + self.before.capacity()) * size_of::<Active>();
+        let places = self.places.capacity() * size_of::<(ScreenTriangle, Face)>();
+        let order = self.order.capacity() * size_of::<u64>() + self.free.capacity() * 4;
+        (active + places + order + self.starts.len() * size_of::<u32>()) as u64
+    }
+
     pub fn new(input: &'a SurfaceInput<'a>, height: u32) -> Self {
         let first_row = |t: &ScreenTriangle| {
             let [first, last] = touched(&t.y);

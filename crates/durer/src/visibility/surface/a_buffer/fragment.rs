@@ -33,6 +33,9 @@ pub struct Fragment {
     pub blended: bool,
 }
 
+/// Bytes of a fragment and of the number of the one before it.
+pub const PER_FRAGMENT: usize = size_of::<Fragment>() + size_of::<u32>();
+
 /// The fragments of a part of a row.
 pub struct Pool<'a> {
     table: &'a MaskTable,
@@ -60,6 +63,13 @@ impl<'a> Pool<'a> {
             covers: vec![Cover::default(); width as usize],
             max_fragments,
         }
+    }
+
+    /// Returns the bytes of the fragments, and of what is kept for each column.
+    pub fn bytes(&self) -> u64 {
+        let columns = size_of::<u32>() + size_of::<f32>() + size_of::<Cover>();
+        let fragments = self.fragments.capacity() * PER_FRAGMENT;
+        (fragments + self.heads.len() * columns) as u64
     }
 
     /// Forgets the fragments; those of pixels x0 … x1 − 1 are looked for next.

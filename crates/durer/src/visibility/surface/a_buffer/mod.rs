@@ -35,16 +35,17 @@ use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::Background;
 use crate::visibility::surface::active::ActiveList;
-use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::input::{METHOD, SurfaceInput};
 use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::lit::{PointQueue, ShadingPoint};
 use crate::visibility::surface::nearest::{DepthRow, Masked};
 use crate::visibility::surface::picture::{self, Picture};
 use crate::visibility::surface::setup::Coverage;
+use crate::work::Work;
 use faces::Faces;
 use fearless_simd::Simd;
 use fearless_simd_macros::simd;
-use fragment::{Fragment, Pool};
+use fragment::{Fragment, PER_FRAGMENT, Pool};
 use mask::MaskTable;
 use resolve::{Pixel, Place};
 
@@ -82,6 +83,9 @@ impl Mask {
         }
     }
 }
+
+/// Bytes for each triangle of the input.
+pub(super) const PER_TRIANGLE: u64 = Faces::PER_TRIANGLE + ActiveList::PER_TRIANGLE;
 
 /// Options for the planes of the picture.
 #[derive(Debug, Clone, Copy)]
@@ -174,18 +178,25 @@ pub fn render(
         table: &table,
         level,
         faces: Faces::new(input, height),
-        pool: Pool::new(&table, width, options.max_fragments),
+        pool: Pool::new(&table, width, options.max_fragments.min(most_within(&input.work))),
         queue: PointQueue::new(width as usize),
         pixel: Pixel::default(),
     };
+    let mut charge = input.work.charge(METHOD, 0).unwrap_or_default();
     for y in (0..height as i32).take_while(|_| !input.work.is_stopped()) {
         input.work.advance(1);
         rows.faces.advance(y);
         rows.row(y, &mut picture, t);
+        charge.grow_to_or_stop(rows.faces.bytes() + rows.pool.bytes());
         if let Some(centers) = &mut centers {
             centers.row(y, &mut picture);
         }
     }
+}
+
+/// Returns the fragments that an eighth of the budget has room for.
+fn most_within(work: &Work) -> usize {
+    usize::try_from(work.budget() / 8).unwrap_or(usize::MAX) / PER_FRAGMENT
 }
 
 /// Values at the centres of the pixels, for the planes besides colour.

@@ -22,6 +22,9 @@ pub struct Glazed<'a> {
     lit: Lit<'a>,
 }
 
+/// Bytes for each pixel: what is opaque there, the sum over it, and a colour.
+pub const PER_PIXEL: u64 = Visible::PER_SAMPLE + size_of::<(Option<Vec4>, [u8; 4])>() as u64;
+
 impl<'a> Glazed<'a> {
     pub fn new(
         input: &'a SurfaceInput<'a>,

@@ -28,7 +28,7 @@ use crate::shade::PreparedLights;
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::cover::{Cover, SampleGrid};
-use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::input::{METHOD, SurfaceInput};
 use crate::visibility::surface::picture;
 use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 use crate::visibility::surface::visible::{
@@ -67,6 +67,9 @@ pub const INFO: Info = Info {
         "    paint P",
     ],
 };
+
+/// Bytes for each triangle of the input.
+pub(super) const PER_TRIANGLE: u64 = Pieces::PER_TRIANGLE;
 
 /// Options for the planes of the picture.
 #[derive(Debug, Clone, Copy, Default)]
@@ -233,7 +236,9 @@ fn order_within(
     t: &mut impl Tracer<Step>,
 ) -> Result<Vec<ScreenPolygon>> {
     let pieces = Pieces::new(&input.triangles, pixels_of(input.view));
+    let _tiles = input.work.charge(METHOD, Tiles::bytes(&pieces, input.view))?;
     let tiles = Tiles::new(&pieces, input.view);
+    let mut charge = input.work.charge(METHOD, 0)?;
     let turns = turns(input, previous);
     let queue = (0..pieces.len()).map(|i| (turns[i as usize], pieces.key(i))).collect();
     let done = vec![false; pieces.len() as usize];
@@ -254,6 +259,8 @@ fn order_within(
         if sorter.advance(p, t) {
             polygons.push(sorter.pieces.polygon(p));
         }
+        input.work.check()?;
+        charge.grow_to(sorter.pieces.bytes())?;
         let value = sorter.looks / LOOKS_PER_COMPARISON;
         if value > most {
             let what = "comparisons of polygons by depth sort";
@@ -291,7 +298,10 @@ pub fn render(
     with_lighting(input, lights, &options.look, |lighting| {
         let masks = &mut Masks::new(input, lighting);
         let blended = input.having(Coverage::Blended);
+        let pixels = u64::from(framebuffer.width()) * u64::from(framebuffer.height());
+        let mut charge = input.work.charge(METHOD, 0)?;
         if !blended.is_empty() {
+            charge.grow_to(pixels.saturating_mul(glazed::PER_PIXEL))?;
             let mut glazed = Glazed::new(input, blended, lighting, &options.look);
             let visible = paint(input, &polygons, masks, |at, i, depth| glazed.put(at, i, depth));
             write_planes(&visible, lighting, &options.look, framebuffer);
@@ -300,8 +310,8 @@ pub fn render(
             let visible = paint(input, &polygons, masks, |_, _, _| ());
             write(&visible, lighting, &options.look, framebuffer);
         }
-    });
-    Ok(())
+        Ok(())
+    })
 }
 
 /// Paints polygons over each other; `painted` hears of pixel, triangle and depth.

@@ -65,15 +65,24 @@ pub struct Piece {
     pub part: Option<Part>,
 }
 
+/// Bytes of a piece, and of its places in the queue, in the lists of a few tiles and in the result.
+const PER_PIECE: u64 =
+    (size_of::<Piece>() + 8 * size_of::<Key>() + size_of::<ScreenPolygon>()) as u64;
+
 pub struct Pieces<'a> {
     pub triangles: &'a [ScreenTriangle],
     pub covers: Vec<Cover>,
     /// Largest distance of depths at pixels from the triangles' planes.
     pub slack: Vec<f64>,
     list: Vec<Piece>,
+    /// Bytes of the pieces that splits have added, with their places in the order.
+    bytes: u64,
 }
 
 impl<'a> Pieces<'a> {
+    /// Bytes for each triangle, with its places in the order.
+    pub const PER_TRIANGLE: u64 = (size_of::<Cover>() + size_of::<f64>()) as u64 + PER_PIECE;
+
     pub fn new(triangles: &'a [ScreenTriangle], screen: Window) -> Self {
         let covers: Vec<Cover> =
             triangles.iter().map(|t| Cover::new(t, SampleGrid::PIXELS)).collect();
@@ -86,7 +95,12 @@ impl<'a> Pieces<'a> {
         };
         let list = triangles.iter().enumerate().map(whole).collect();
         let slack = triangles.iter().map(slack).collect();
-        Self { triangles, covers, slack, list }
+        Self { triangles, covers, slack, list, bytes: 0 }
+    }
+
+    /// Returns the bytes of the pieces that splits have added.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
     }
 
     pub fn len(&self) -> u32 {
@@ -177,6 +191,8 @@ impl<'a> Pieces<'a> {
         }
         let window = box_of(&spans).unwrap_or(*self.window(of));
         let triangle = self.get(of).triangle;
+        let lists = size_of_val(&spans[..]) + size_of_val(&outline[..]);
+        self.bytes += PER_PIECE + lists as u64;
         let part = Some(Part { outline, spans });
         self.list.push(Piece { triangle, window, nearest, farthest, part });
         self.len() - 1

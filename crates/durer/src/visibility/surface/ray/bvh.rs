@@ -76,6 +76,10 @@ struct Waiting {
 }
 
 impl Bvh {
+    /// Bytes for each box, while the hierarchy is built: leaves have two boxes or more on average.
+    pub const PER_BOX: u64 =
+        (size_of::<Box3>() + size_of::<u32>() + size_of::<Node>() * 3 / 2) as u64;
+
     pub fn new(boxes: &[Box3], likelihood: Likelihood) -> Self {
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut nodes: Vec<Node> = Vec::new();

@@ -22,7 +22,7 @@ use crate::shade::color::encode_premultiplied;
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::Samples;
-use crate::visibility::surface::input::{SurfaceInput, TriangleSet};
+use crate::visibility::surface::input::{METHOD, SurfaceInput, TriangleSet};
 use crate::visibility::surface::layers::mean;
 use crate::visibility::surface::lit::Lighting;
 use crate::visibility::surface::picture;
@@ -30,6 +30,7 @@ use crate::visibility::surface::setup::Coverage;
 use crate::visibility::surface::visible::{
     Visible, background_at, pixels_of, with_lighting, write, write_planes,
 };
+use bvh::Bvh;
 use eye::Eye;
 use primary::ScreenRays;
 use whitted::Whitted;
@@ -49,6 +50,10 @@ pub const INFO: Info = Info {
     limits: "lines and points are seen, but have no shadow and no mirror image",
     pseudocode: &[],
 };
+
+/// Bytes for each triangle of the input, and for each pixel: its hit and its colour, in bands.
+pub(super) const PER_TRIANGLE: u64 = Bvh::PER_BOX;
+pub(super) const PER_PIXEL: u64 = size_of::<([i32; 2], (f32, u32), [u8; 4])>() as u64;
 
 /// Options for the planes of the picture.
 #[derive(Debug, Clone, Copy)]
@@ -134,6 +139,11 @@ pub fn render(
         let lighting = Lighting { reach: options.samples.reach(), ..lighting };
         let rays = ScreenRays::new(&input.triangles, input.view);
         let secondary = options.shadows || options.reflections;
+        let bytes = input.scene.triangle_count().saturating_mul(WorldTriangles::PER_TRIANGLE);
+        let mut charge = input.work.charge(METHOD, 0).unwrap_or_default();
+        if secondary && !charge.grow_to_or_stop(bytes) {
+            return;
+        }
         let world = secondary.then(|| WorldTriangles::new(input));
         // Secondary rays find for themselves what is behind glass.
         let blended = Some(input.having(Coverage::Blended));

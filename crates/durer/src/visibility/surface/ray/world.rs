@@ -37,6 +37,9 @@ pub struct WorldTriangles {
 }
 
 impl WorldTriangles {
+    /// Bytes for each triangle of the scene.
+    pub const PER_TRIANGLE: u64 = size_of::<([Vec3; 3], u32)>() as u64 + Bvh::PER_BOX;
+
     /// Creates all triangles of the input's scene; lines and points have no place in the world.
     pub fn new(input: &SurfaceInput<'_>) -> Self {
         let (mut corners, mut items) = (Vec::new(), Vec::new());

@@ -19,6 +19,11 @@ pub struct Glass {
 }
 
 impl Glass {
+    /// Returns the bytes of the layers.
+    pub fn bytes(&self) -> u64 {
+        (self.layers.capacity() * size_of::<Layer>()) as u64
+    }
+
     /// A layer at a place of the window; what is beyond the far plane is not seen.
     pub fn put(&mut self, place: usize, depth: f32, item: u32) {
         if depth < 1.0 {

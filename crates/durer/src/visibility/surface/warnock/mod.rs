@@ -22,7 +22,7 @@ use crate::shade::color::encode_premultiplied;
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::cover::{Cover, Relation, SampleGrid, Window};
-use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::input::{METHOD, SurfaceInput};
 use crate::visibility::surface::layers::{below_color, mean};
 use crate::visibility::surface::lit::{Lighting, Lit};
 use crate::visibility::surface::picture;
@@ -30,6 +30,7 @@ use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 use crate::visibility::surface::visible::{
     Masks, Visible, background_at, nearer, pixels_of, with_lighting, write, write_planes,
 };
+use crate::work::{Charge, Work};
 use depth::{farthest, hides};
 use glass::Glass;
 
@@ -56,6 +57,9 @@ pub const INFO: Info = Info {
         "begin with the whole picture and all polygons",
     ],
 };
+
+/// Bytes for each triangle of the input.
+pub(super) const PER_TRIANGLE: u64 = (size_of::<Cover>() + 2 * size_of::<Entry>()) as u64;
 
 /// Place at which a window is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -256,6 +260,9 @@ struct Solver<'a> {
     visible: Visible,
     /// Blended surfaces and those before them, if anything blends.
     glass: Option<Glass>,
+    work: &'a Work,
+    /// Memory of the lists of windows, and of the glass.
+    charge: Charge,
 }
 
 impl<'a> Solver<'a> {
@@ -269,7 +276,8 @@ impl<'a> Solver<'a> {
         let triangles = &input.triangles;
         let covers = triangles.iter().map(|t| Cover::new(t, grid)).collect();
         let (masks, visible) = (Masks::new(input, lighting), Visible::new(window));
-        Self { triangles, covers, grid, masks, visible, glass }
+        let charge = input.work.charge(METHOD, 0).unwrap_or_default();
+        Self { triangles, covers, grid, masks, visible, glass, work: &input.work, charge }
     }
 
     /// Begins with an empty window.
@@ -297,6 +305,11 @@ impl<'a> Solver<'a> {
         let mut stack = vec![Waiting { window: whole, first: 0, end: list.len() }];
         let mut entries = Vec::new();
         while let Some(Waiting { window, first, end }) = stack.pop() {
+            let glass = self.glass.as_ref().map_or(0, Glass::bytes);
+            let lists = (list.capacity() + entries.capacity()) * size_of::<Entry>();
+            if self.work.is_stopped() || !self.charge.grow_to_or_stop(lists as u64 + glass) {
+                return;
+            }
             entries.clear();
             entries.extend_from_slice(&list[first..end]);
             list.truncate(first);
@@ -383,7 +396,7 @@ impl<'a> Solver<'a> {
     /// Scan converts one triangle in a window.
     fn draw(&mut self, window: &Window, triangle: usize) {
         let blended = self.is_blended(triangle);
-        let Self { triangles, covers, grid, masks, visible, glass } = self;
+        let Self { triangles, covers, grid, masks, visible, glass, .. } = self;
         let (t, n) = (&triangles[triangle], grid.per_pixel());
         covers[triangle].spans(window, |span| {
             for x in span.x0..span.x1 {

@@ -122,6 +122,8 @@ pub fn render(
     let runs = runs(scene)?;
     let reach = options.samples.reach();
     let filter = Filter { cull: options.cull, sample_reach: reach, marks: options.marks };
+    let bytes = PreparedMaterials::bytes(scene);
+    let _materials = options.work.charge(PreparedMaterials::STAGE, bytes)?;
     let materials = PreparedMaterials::new(scene).with_ink(options.background.ink());
     let lighting = Lighting {
         scene,
