@@ -11,7 +11,7 @@ use clap::{Args, ValueHint};
 use durer::scene::{Aabb, Instance, LightKind, Material, Mesh, Scene, ShadingModel};
 use durer::view::cull::triangle_area;
 use durer::view::topology::written_topology;
-use durer::visibility::object::{Edges, Faces};
+use durer::visibility::object::{Edges, Faces, SceneOrientation};
 use durer::work::Work;
 use durer_formats::told::{cut, escaped};
 use durer_formats::{Facts, Model, ModelFormat, Place};
@@ -72,6 +72,12 @@ struct Info {
     area: Option<f64>,
     /// True if the triangles bound a body; `null` if there are none.
     closed: Option<bool>,
+    /// Number of closed bodies whose faces are turned inwards; `null` if that was not examined.
+    inside_out: Option<u64>,
+    /// Number of faces that are turned against most of their neighbours; `null` if that was not examined.
+    flipped: Option<u64>,
+    #[serde(skip)]
+    all_inside_out: bool,
     up_axis: &'static str,
     materials: Vec<MaterialInfo>,
     textures: Vec<TextureInfo>,
@@ -178,6 +184,10 @@ fn of_model(name: String, model: &Model, work: &Work) -> Result<Info, Failure> {
         warnings.push(format!("whether it is closed is not looked for: {e}"));
         None
     });
+    let orientation = orientation(scene, work).unwrap_or_else(|e| {
+        warnings.push(format!("whether faces are turned inwards is not looked for: {e}"));
+        None
+    });
     work.check().map_err(|e| Failure::Data(format!("{name}: {e}")))?;
     Ok(Info {
         model: name,
@@ -191,6 +201,9 @@ fn of_model(name: String, model: &Model, work: &Work) -> Result<Info, Failure> {
         bounds: scene.bounds().map(told_bounds),
         area: area(scene),
         closed,
+        inside_out: orientation.as_ref().map(|o| o.inside_out),
+        flipped: orientation.as_ref().map(|o| o.flipped),
+        all_inside_out: orientation.is_some_and(|o| o.inside_out == o.closed),
         up_axis: scene.up_axis.name(),
         materials: scene.materials.iter().map(material).collect(),
         textures: textures(scene),
@@ -232,6 +245,9 @@ fn of_pieces(name: String, read: &mut InPieces) -> Result<Info, Failure> {
         bounds: bounds.map(told_bounds),
         area: (triangles > 0).then_some(area),
         closed: None,
+        inside_out: None,
+        flipped: None,
+        all_inside_out: false,
         up_axis: model.scene.up_axis.name(),
         materials: model.scene.materials.iter().map(material).collect(),
         textures: Vec::new(),
@@ -311,6 +327,16 @@ fn closed(scene: &Scene, work: &Work) -> durer::Result<Option<bool>> {
 /// The most triangles whose meshes are examined together: more would take more memory than a picture of them.
 const MOST_TOGETHER: u64 = 1 << 20;
 
+/// Returns the orientation of all faces; `None` if there are none, or more than are examined together.
+fn orientation(scene: &Scene, work: &Work) -> durer::Result<Option<SceneOrientation>> {
+    let triangles = scene.triangle_count();
+    if triangles == 0 || triangles > MOST_TOGETHER {
+        return Ok(None);
+    }
+    let _faces = work.charge("edges of the model", 160 * triangles)?;
+    SceneOrientation::of(scene).map(Some)
+}
+
 /// Returns whether the meshes bound bodies together, as those of files with a mesh for each face do; borders that run along
 /// each other are one.
 fn closed_together(scene: &Scene, work: &Work) -> durer::Result<bool> {
@@ -376,6 +402,19 @@ impl Info {
         }
         if let Some(closed) = self.closed {
             lines.push(("closed", if closed { "yes" } else { "no" }.to_owned()));
+        }
+        let counted = |count: Option<u64>, one: &str, many: &str| match count {
+            None | Some(0) => None,
+            Some(1) => Some(format!("1 {one}")),
+            Some(count) => Some(format!("{count} {many}")),
+        };
+        let inside_out = counted(self.inside_out, "body inside out", "bodies inside out");
+        let inside_out =
+            inside_out.map(|some| if self.all_inside_out { "inside out".to_owned() } else { some });
+        let flipped = counted(self.flipped, "face flipped", "faces flipped");
+        let wrong: Vec<String> = inside_out.into_iter().chain(flipped).collect();
+        if !wrong.is_empty() {
+            lines.push(("faces", wrong.join(", ")));
         }
         lines.push(("up axis", self.up_axis.to_owned()));
         let mut list = |name, items: Vec<String>| {

@@ -30,6 +30,7 @@ use durer::scene::{AlphaMode, Camera, Material, Scene};
 use durer::target::Framebuffer;
 use durer::view::components::components;
 use durer::view::objects::divided;
+use durer::visibility::object::SceneOrientation;
 use durer_formats::{Model, png};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -84,6 +85,23 @@ fn render_all(
         (1.., _) => Err(Failure::Partial),
         _ => Err(Failure::Data("no model could be rendered".to_owned())),
     }
+}
+
+/// Turns faces that are turned inwards, or against their neighbours.
+fn orient(
+    args: &RenderArgs,
+    scene: &mut Scene,
+    name: &str,
+    messages: &Messages,
+) -> Result<(), Failure> {
+    let failed = |e: durer::Error| Failure::Data(format!("{name}: {e}"));
+    let bytes = 160 * scene.triangle_count();
+    let _faces = args.running.work.charge("edges of the model", bytes).map_err(failed)?;
+    let found = SceneOrientation::of(scene).map_err(failed)?;
+    found.apply(scene);
+    let (bodies, faces) = (found.inside_out, found.flipped);
+    messages.detail(|| format!("{name}: {bodies} bodies inside out and {faces} faces turned"));
+    Ok(())
 }
 
 /// Returns the options with both sides of the picture; an open one as in a picture of a given
@@ -218,6 +236,9 @@ fn render_model(
     let _copies = charged.map_err(|e| Failure::of_library(&e).named(&name))?;
     if let Some(divided) = assembles.then(|| divided(&model.scene)).flatten() {
         model.scene = divided;
+    }
+    if args.look.orient {
+        orient(args, &mut model.scene, &name, messages)?;
     }
     // What is cut has no meshes in common any more.
     let components = if args.drawing.callouts { components(&model.scene) } else { Vec::new() };

@@ -42,7 +42,7 @@
 //! | What does a near camera see of this picture with depth? | [`view::warp`]: forward warping |
 //! | What lies behind this point or rectangle of the picture? | [`view::pick`] |
 //! | Where does the label of an area go, and which labels have room? | [`view::interior_point`], [`view::label`] |
-//! | Is this mesh the surface of a body, and are its faces turned outwards? | [`view::topology`] |
+//! | Is this mesh the surface of a body, and are its faces turned outwards? | [`view::topology`], [`visibility::object::orientation`] |
 //! | What is inside, if planes cut it open? | [`view::section`] |
 //!
 //! **Which part of a line lies in the window?** [`clip::line`]
@@ -64,7 +64,7 @@
 //! |---|---|---|
 //! | [Sutherland–Hodgman](clip::polygon::sutherland_hodgman) | any ring, convex window | one ring, bridged |
 //! | [Weiler–Atherton](clip::polygon::weiler_atherton) | polygons with holes | valid polygons |
-//! | [Greiner–Hormann](clip::polygon::greiner_hormann) | polygons with holes | valid polygons |
+//! | [Greiner–Hormann](clip::polygon::greiner_hormann) | polygons with holes; rings that cross | valid polygons; rings that cross |
 //! | [Vatti](clip::polygon::vatti) | anything | valid polygons, swept |
 //! | [Overlay](mod@clip::polygon::overlay) | anything | valid polygons: the robust door |
 //! | [Rectangle](clip::polygon::rectangle) | polygons and polylines, a rectangle | the fast path for map tiles |
@@ -96,13 +96,14 @@
 //! | smooth line | [Wu, Gupta–Sproull](raster::line::anti_aliased) |
 //! | wide line, dashes | [outline of the stroke](raster::line::wide) |
 //! | triangle | [edge functions](raster::triangle::edge_function), [edge walking](raster::triangle::edge_walking), [tiles](raster::triangle::tiles) |
-//! | polygon | [edge table and active edge table](raster::polygon::edge_table), [ordered edge list](raster::polygon::ordered_edge_list), [triangulation](raster::triangulate) |
+//! | polygon | [edge table and active edge table](raster::polygon::edge_table), [ordered edge list](raster::polygon::ordered_edge_list), [edge fill, fence fill](raster::polygon::edge_fill), [edge flags](raster::polygon::edge_flag), [triangulation](raster::triangulate) |
 //! | path, anti-aliased | [exact area coverage](raster::coverage) |
 //! | region around a pixel | [seed fills](raster::seed_fill) |
 //! | layers of all these | [a canvas](raster::paint) |
 //!
 //! [`raster::interpolate`] has barycentric and perspective-correct weights, [`curve`] brings Bézier
-//! curves, B-splines, NURBS and glyphs to chains of lines.
+//! curves, B-splines, NURBS and glyphs to chains of lines; [`curve::knot_insertion`], [`curve::catmull_rom`] and
+//! [`curve::forward_difference`] are the textbooks' ways with them.
 //!
 //! **Which surface is in front?** [`visibility::surface`]: one scene in, the same surfaces found.
 //!
@@ -116,7 +117,7 @@
 //! | [Warnock](visibility::surface::warnock) | dividing the window until it is simple |
 //! | [Rays](visibility::surface::ray) | casting a ray through each sample; shadows, mirrors and refraction too |
 //!
-//! **And as the papers have it?** [`visibility::polygons`]: the z-buffer's loop, the painter, BSP trees, Watkins' tables,
+//! **And as the papers have it?** [`visibility::polygons`]: the z-buffer's loop, Greene's pyramid of depths, the painter, BSP trees, Watkins' tables,
 //! Weiler and Atherton's cuts and Carpenter's shares on plane polygons, a file each, to be read beside the paper;
 //! [`visibility::line::horizon_curves`], [`clip::polygon::scan_beams`] and [`clip::polygon::sutherland_hodgman::by_borders`] likewise.
 //!
@@ -146,7 +147,7 @@
 //! **What happens before a pixel changes?** [`fragment`]: scissor, alpha test, stencil, depth,
 //! blending, dithering, logic operation, write masks; colour indices with a
 //! [palette](fragment::Palette). [`commands`] drives them: the classic pipeline's
-//! state, display lists, evaluators.
+//! state, display lists, evaluators, lights, textures, and rectangles of pixels.
 //!
 //! **How does an algorithm come to its result?** Those that take a [`trace::Tracer`] as their last
 //! argument tell it every step.

@@ -150,9 +150,9 @@ fn algorithm_help() -> String {
     format!(
         "An algorithm by its name [default: what is fast and right]\n\nOne of {}. Those for lines \
          take windows and leave polygons to the default, and the other way round; \
-         sutherland-hodgman takes convex masks and leaves bridges along the border; it, rectangle, \
-         weiler-atherton and greiner-hormann refuse polygons whose rings cross or overlap, rectangle \
-         also some whose rings touch. Of those for polygons, overlay \
+         sutherland-hodgman takes convex masks and leaves bridges along the border; it, rectangle \
+         and weiler-atherton refuse polygons whose rings cross or overlap, greiner-hormann only those of \
+         them that touch the mask in a vertex or along an edge, rectangle also some whose rings touch. Of those for polygons, overlay \
          and vatti follow --grid and --fill-rule, and do --op union and xor.",
         names()
     )

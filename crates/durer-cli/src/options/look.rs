@@ -41,6 +41,12 @@ pub struct LookArgs {
     /// Faces to leave out
     #[arg(long, value_name = "WHICH", default_value = "material")]
     pub cull: Cull,
+    /// Turn faces to the outside before anything is left out or lit
+    ///
+    /// Closed bodies that are inside out are turned as a whole, and faces that run against their neighbours one by one;
+    /// cavities stay. `durer info` reports both. Surfaces that cannot be oriented stay as they are.
+    #[arg(long)]
+    pub orient: bool,
     /// Width of a model's lines in pixels
     #[arg(long, value_name = "PIXELS", allow_hyphen_values = true, default_value = "1.5", value_parser = values::pixels)]
     pub line_width: f64,

@@ -38,6 +38,7 @@ fn needs_whole(args: &RenderArgs) -> bool {
         || args.stage.needs_model()
         || args.picture.turntable.is_some()
         || args.picture.sides.is_open()
+        || args.look.orient
         || args.look.color.is_some_and(|color| color.w < 1.0)
         || !matches!(asked, None | Some(Algorithm::Surfaces(SurfaceMethod::ZBuffer)))
         || algorithm(args) != Algorithm::Surfaces(SurfaceMethod::ZBuffer)

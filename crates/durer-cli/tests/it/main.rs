@@ -24,6 +24,7 @@ mod limits;
 mod looks;
 mod memory;
 mod options;
+mod oriented;
 mod other_formats;
 mod outputs;
 mod pick;

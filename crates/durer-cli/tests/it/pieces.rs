@@ -217,7 +217,9 @@ fn info_is_told_of_models_in_pieces() {
             let why = warnings.pop().unwrap();
             assert!(why.as_str().unwrap().contains("in pieces"), "{why}");
             assert!(pieces["closed"].is_null());
-            pieces["closed"] = whole["closed"].clone();
+            for examined in ["closed", "inside_out", "flipped"] {
+                pieces[examined] = whole[examined].clone();
+            }
         }
         assert_eq!(pieces, whole, "{model}");
     }

@@ -68,6 +68,12 @@ pub enum Borders {
         /// cuts more polygons than need be.
         guard_band: f64,
     },
+    /// The near and the far plane, and the four sides as above: for lines, of which what is left is drawn as part of the
+    /// whole line.
+    Depths {
+        /// As above.
+        guard_band: f64,
+    },
 }
 
 /// Anything that can be interpolated along an edge: attributes of vertices.
@@ -194,7 +200,9 @@ impl Options {
     fn side(&self) -> f64 {
         match self.borders {
             Borders::All => 1.0,
-            Borders::NearOnly { guard_band } => guard_band.max(1.0),
+            Borders::NearOnly { guard_band } | Borders::Depths { guard_band } => {
+                guard_band.max(1.0)
+            }
         }
     }
 
@@ -211,7 +219,7 @@ impl Options {
     fn code(&self, p: DVec4) -> Outcode {
         let code = Outcode::from_inside(self.distances(p).map(|d| d >= 0.0));
         match self.borders {
-            Borders::All => code,
+            Borders::All | Borders::Depths { .. } => code,
             // Straight ahead at infinity (w = 0) there is no place on the screen: cut that off.
             Borders::NearOnly { .. } if p.w <= 0.0 => code,
             Borders::NearOnly { .. } => code & Outcode(!Outcode::FAR.0),

@@ -1,25 +1,51 @@
 //! From vertices to fragments.
 
-use super::{CullFace, Pipeline, Primitive, Vertex};
+use super::brush::{Brush, Look};
+use super::lighting::ShadeModel;
+use super::state::{CullFace, Pipeline, RasterPosition};
+use super::{Primitive, Vertex};
 use crate::clip::volume::{Blend, ClipVertex, Options, clip_polygon, clip_segment};
-use crate::fragment::{Fragment, FragmentState, Scissor, apply};
-use crate::math::{DVec2, DVec3, DVec4, IVec2, Vec4};
+use crate::fragment::{FragmentState, Scissor};
+use crate::math::{DMat3, DMat4, DVec2, DVec3, DVec4, IVec2, Vec4};
 use crate::raster::interpolate::{PerspectivePlane, ScreenPlane};
-use crate::raster::line::{self, bresenham};
+use crate::raster::line::{self, bresenham, projected};
 use crate::raster::triangle::{self, SnappedTriangle, TriangleRasterizer};
 use crate::shade::color::encode_rgba8;
-use crate::target::{Framebuffer, NO_ITEM};
+use crate::target::{Framebuffer, NO_ITEM, Origin};
 use crate::trace::NoTrace;
 use crate::view::window::PixelRect;
 use crate::{Error, Result};
 
-/// Linear colour and colour index.
-type Paint = (DVec4, f64);
+/// Interpolated values: linear colours of both sides, colour index, texture coordinates.
+#[derive(Clone, Copy)]
+struct Paint {
+    front: DVec4,
+    back: DVec4,
+    index: f64,
+    tex_coord: DVec2,
+}
+
+impl Blend for Paint {
+    fn blend(a: &Self, wa: f64, b: &Self, wb: f64, total: f64) -> Self {
+        Self {
+            front: Blend::blend(&a.front, wa, &b.front, wb, total),
+            back: Blend::blend(&a.back, wa, &b.back, wb, total),
+            index: Blend::blend(&a.index, wa, &b.index, wb, total),
+            tex_coord: Blend::blend(&a.tex_coord, wa, &b.tex_coord, wb, total),
+        }
+    }
+}
+
+impl Paint {
+    fn color(&self, front: bool) -> DVec4 {
+        if front { self.front } else { self.back }
+    }
+}
 
 /// Position in clip space, colours beside it.
 type Corner = ClipVertex<Paint>;
 
-/// A corner on the screen: pixels, y down; window depth; 1/w; colours.
+/// A corner on the screen: pixels, rows as in the framebuffer; window depth; 1/w; colours.
 #[derive(Clone, Copy)]
 struct OnScreen {
     at: DVec2,
@@ -28,7 +54,7 @@ struct OnScreen {
     paint: Paint,
 }
 
-pub fn check_viewport(viewport: Option<[u32; 4]>, target: &Framebuffer) -> Result<()> {
+pub(super) fn check_viewport(viewport: Option<[u32; 4]>, target: &Framebuffer) -> Result<()> {
     let Some([x, y, w, h]) = viewport else { return Ok(()) };
     let fits = |first: u32, size: u32, all: u32| {
         size > 0 && first.checked_add(size).is_some_and(|e| e <= all)
@@ -45,7 +71,7 @@ pub fn check_viewport(viewport: Option<[u32; 4]>, target: &Framebuffer) -> Resul
 }
 
 /// Fills planes within the scissor rectangle, through the write masks.
-pub fn clear(
+pub(super) fn clear(
     state: &FragmentState,
     color: Option<Vec4>,
     depth: Option<f32>,
@@ -78,119 +104,192 @@ pub fn clear(
     }
 }
 
-/// Draws primitives; vertices that are not finite make theirs vanish, and so do vertices too few.
-pub fn draw(p: &Pipeline, primitive: Primitive, vertices: &[Vertex], target: &mut Framebuffer) {
-    let clip_from_object = p.projection * p.model_view;
-    let corner = |v: &Vertex| ClipVertex {
-        position: clip_from_object * v.position.extend(1.0),
-        attributes: (v.color.unwrap_or(p.color).as_dvec4(), f64::from(v.index.unwrap_or(p.index))),
-    };
-    let corners: Vec<Corner> = vertices.iter().map(corner).collect();
-    match primitive {
-        Primitive::Points => corners.iter().for_each(|c| point(p, *c, target)),
-        Primitive::Lines => {
-            corners.as_chunks().0.iter().for_each(|ends| segment(p, *ends, target));
-        }
-        Primitive::LineStrip => {
-            corners.windows(2).for_each(|ends| segment(p, [ends[0], ends[1]], target));
-        }
-        Primitive::Triangles => {
-            corners.as_chunks::<3>().0.iter().for_each(|ring| polygon(p, ring, target));
-        }
-        Primitive::Polygon => polygon(p, &corners, target),
+/// The vertex operations of a drawing command.
+struct Vertices<'a> {
+    p: &'a Pipeline,
+    clip_from_object: DMat4,
+    /// Takes normals to eye space.
+    normals: DMat3,
+}
+
+impl<'a> Vertices<'a> {
+    fn new(p: &'a Pipeline) -> Self {
+        let normals = DMat3::from_mat4(p.model_view).inverse().transpose();
+        // A matrix without inverse leaves no direction to be lit from.
+        let normals = if normals.is_finite() { normals } else { DMat3::ZERO };
+        Self { p, clip_from_object: p.projection * p.model_view, normals }
+    }
+
+    fn corner(&self, v: &Vertex) -> Corner {
+        let p = self.p;
+        let color = v.color.unwrap_or(p.color);
+        let [front, back] = if p.lighting.enabled {
+            let normal = self.normals * v.normal.unwrap_or(p.normal);
+            let normal = if p.lighting.normalize { normal.normalize_or_zero() } else { normal };
+            let eye = p.model_view * v.position.extend(1.0);
+            let lit = |front| p.lighting.lit(front, eye, normal, color, &mut NoTrace);
+            let front = lit(true);
+            [front, if p.lighting.model.two_sided { lit(false) } else { front }]
+        } else {
+            [color.as_dvec4(); 2]
+        };
+        let paint = Paint {
+            front,
+            back,
+            index: f64::from(v.index.unwrap_or(p.index)),
+            tex_coord: v.tex_coord.unwrap_or(p.tex_coord),
+        };
+        let position = self.clip_from_object * v.position.extend(1.0);
+        ClipVertex { position, attributes: paint }
     }
 }
 
+/// Returns corners that have the colours of one of them, if shading is flat.
+fn shaded<const N: usize>(p: &Pipeline, mut corners: [Corner; N], from: usize) -> [Corner; N] {
+    if p.lighting.shade_model == ShadeModel::Flat {
+        let Paint { front, back, index, .. } = corners[from].attributes;
+        for corner in &mut corners {
+            let tex_coord = corner.attributes.tex_coord;
+            corner.attributes = Paint { front, back, index, tex_coord };
+        }
+    }
+    corners
+}
+
+/// Draws primitives; vertices that are not finite make theirs vanish, and so do vertices too few.
+pub(super) fn draw(
+    p: &Pipeline,
+    primitive: Primitive,
+    vertices: &[Vertex],
+    target: &mut Framebuffer,
+) {
+    let of = Vertices::new(p);
+    let corners: Vec<Corner> = vertices.iter().map(|v| of.corner(v)).collect();
+    let brush = Brush::new(p);
+    match primitive {
+        Primitive::Points => corners.iter().for_each(|c| point(&brush, *c, target)),
+        Primitive::Lines => {
+            corners.as_chunks().0.iter().for_each(|ends| segment(&brush, *ends, target));
+        }
+        Primitive::LineStrip => {
+            corners.windows(2).for_each(|ends| segment(&brush, [ends[0], ends[1]], target));
+        }
+        Primitive::Triangles => {
+            for ring in corners.as_chunks::<3>().0 {
+                polygon(&brush, &shaded(p, *ring, 2), target);
+            }
+        }
+        Primitive::Polygon => {
+            let Some(&first) = corners.first() else { return };
+            let flat: Vec<Corner> = corners.iter().map(|c| shaded(p, [first, *c], 0)[1]).collect();
+            polygon(&brush, &flat, target);
+        }
+    }
+}
+
+/// Returns the raster position of a vertex; `None` if it is clipped away.
+pub(super) fn raster_position(
+    p: &Pipeline,
+    vertex: &Vertex,
+    target: &Framebuffer,
+) -> Option<RasterPosition> {
+    let corner = Vertices::new(p).corner(vertex);
+    let [corner, _] = clip_segment([corner, corner], &Options::default(), &mut NoTrace)?;
+    let OnScreen { at, depth, paint, .. } = on_screen(p, &corner, target);
+    let color = paint.front.as_vec4();
+    Some(RasterPosition { at, depth, color, index: paint.index as f32, tex_coord: paint.tex_coord })
+}
+
 fn on_screen(p: &Pipeline, v: &Corner, target: &Framebuffer) -> OnScreen {
-    let [x, y, w, h] = p.viewport.unwrap_or([0, 0, target.width(), target.height()]).map(f64::from);
+    let [x, y, w, h] = viewport(p, target).map(f64::from);
     let ndc: DVec3 = v.position.truncate() / v.position.w;
-    let at = DVec2::new(x + (ndc.x + 1.0) * 0.5 * w, y + (1.0 - ndc.y) * 0.5 * h);
+    let down = match target.origin {
+        Origin::TopLeft => 1.0 - ndc.y,
+        Origin::BottomLeft => 1.0 + ndc.y,
+    };
     OnScreen {
-        at,
+        at: DVec2::new(x + (ndc.x + 1.0) * 0.5 * w, y + down * 0.5 * h),
         depth: p.depth_range.window(ndc.z),
         inv_w: v.position.w.recip(),
         paint: v.attributes,
     }
 }
 
-fn put(
-    p: &Pipeline,
-    [x, y]: [i32; 2],
-    depth: f64,
-    (color, index): Paint,
-    front: bool,
-    target: &mut Framebuffer,
-) {
-    let fragment = Fragment {
-        x: x as u32,
-        y: y as u32,
-        depth: p.depth_range.clamp(depth as f32),
-        color: color.clamp(DVec4::ZERO, DVec4::ONE).as_vec4(),
-        index: index as f32,
-        front_facing: front,
-        item: NO_ITEM,
-        normal: [0.0; 3],
-    };
-    if x >= 0 && y >= 0 {
-        apply(&p.fragments, fragment, target);
-    }
+/// Returns the viewport: first column, first row, width, height.
+fn viewport(p: &Pipeline, target: &Framebuffer) -> [u32; 4] {
+    p.viewport.unwrap_or([0, 0, target.width(), target.height()])
 }
 
 /// Returns the pixels of the viewport.
 fn window(p: &Pipeline, target: &Framebuffer) -> [i32; 4] {
-    let [x, y, w, h] = p.viewport.unwrap_or([0, 0, target.width(), target.height()]);
+    let [x, y, w, h] = viewport(p, target);
     [x, y, x.saturating_add(w), y.saturating_add(h)].map(|v| v.min(i32::MAX as u32) as i32)
 }
 
-/// Returns the pixel of a place within the viewport, whose right and lower border belong to its last
-/// pixels.
-fn pixel(p: &Pipeline, at: DVec2, target: &Framebuffer) -> IVec2 {
-    let [x0, y0, x1, y1] = window(p, target);
-    at.floor().as_ivec2().clamp(IVec2::new(x0, y0), IVec2::new((x1 - 1).max(x0), (y1 - 1).max(y0)))
-}
-
-fn point(p: &Pipeline, corner: Corner, target: &mut Framebuffer) {
+fn point(brush: &Brush, corner: Corner, target: &mut Framebuffer) {
+    let p = brush.pipeline();
     let Some([v, _]) = clip_segment([corner, corner], &Options::default(), &mut NoTrace) else {
         return;
     };
     let v = on_screen(p, &v, target);
     let at = pixel(p, v.at, target);
-    put(p, at.to_array(), v.depth, v.paint, true, target);
+    let Paint { front: color, index, tex_coord, .. } = v.paint;
+    let look = Look { color, index, tex_coords: [tex_coord; 3] };
+    brush.put(at.to_array(), v.depth, &look, true, target);
 }
 
-fn segment(p: &Pipeline, ends: [Corner; 2], target: &mut Framebuffer) {
-    let Some(clipped) = clip_segment(ends, &Options::default(), &mut NoTrace) else { return };
-    let [a, b] = [0, 1].map(|i| on_screen(p, &clipped[i], target));
+/// Returns the pixel of a place; the border at which the viewport ends belongs to its last pixels.
+fn pixel(p: &Pipeline, at: DVec2, target: &Framebuffer) -> IVec2 {
+    let [_, _, x1, y1] = window(p, target);
+    projected::pixel(at, DVec2::new(f64::from(x1), f64::from(y1)))
+}
+
+fn segment(brush: &Brush, ends: [Corner; 2], target: &mut Framebuffer) {
+    let p = brush.pipeline();
+    let [x0, y0, x1, y1] = window(p, target);
+    let size = (x1 - x0).max(y1 - y0);
+    let Some(cut) = projected::cut(shaded(p, ends, 1), size as u32) else { return };
+    let [a, b] = [0, 1].map(|i| on_screen(p, &cut[i], target));
     let [from, to] = [a, b].map(|v| pixel(p, v.at, target));
     let way = (to - from).as_dvec2();
     let mut pixels = Vec::new();
-    bresenham::draw(from, to, &line::Options::default(), |p| pixels.push(p), &mut NoTrace);
-    for at in pixels {
-        let length2 = way.length_squared();
-        let t = if length2 > 0.0 { (at - from).as_dvec2().dot(way) / length2 } else { 0.0 };
-        let depth = a.depth + (b.depth - a.depth) * t;
+    let options = line::Options { window: Some((IVec2::new(x0, y0), IVec2::new(x1 - 1, y1 - 1))) };
+    bresenham::draw(from, to, &options, |p| pixels.push(p), &mut NoTrace);
+    let length2 = way.length_squared();
+    let paint = |t: f64| {
         // Linear in space: what is near counts more.
         let (near, far) = (a.inv_w * (1.0 - t), b.inv_w * t);
-        let paint = Blend::blend(&a.paint, near, &b.paint, far, near + far);
-        put(p, at.to_array(), depth, paint, true, target);
+        Blend::blend(&a.paint, near, &b.paint, far, near + far)
+    };
+    for at in pixels {
+        let t = |at: IVec2| {
+            if length2 > 0.0 { (at - from).as_dvec2().dot(way) / length2 } else { 0.0 }
+        };
+        let depth = a.depth + (b.depth - a.depth) * t(at);
+        let Paint { front: color, index, tex_coord, .. } = paint(t(at));
+        let beside = |step: IVec2| paint(t(at + step)).tex_coord;
+        let tex_coords = [tex_coord, beside(IVec2::X), beside(IVec2::Y)];
+        brush.put(at.to_array(), depth, &Look { color, index, tex_coords }, true, target);
     }
 }
 
-fn polygon(p: &Pipeline, ring: &[Corner], target: &mut Framebuffer) {
+fn polygon(brush: &Brush, ring: &[Corner], target: &mut Framebuffer) {
     let clipped = clip_polygon(ring, &Options::default(), &mut NoTrace);
-    let corners: Vec<OnScreen> = clipped.iter().map(|v| on_screen(p, v, target)).collect();
+    let corners: Vec<OnScreen> =
+        clipped.iter().map(|v| on_screen(brush.pipeline(), v, target)).collect();
     for k in 2..corners.len() {
-        triangle(p, [corners[0], corners[k - 1], corners[k]], target);
+        triangle(brush, [corners[0], corners[k - 1], corners[k]], target);
     }
 }
 
-fn triangle(p: &Pipeline, corners: [OnScreen; 3], target: &mut Framebuffer) {
+fn triangle(brush: &Brush, corners: [OnScreen; 3], target: &mut Framebuffer) {
+    let p = brush.pipeline();
     let points = corners.map(|c| c.at);
     let Ok(snapped) = SnappedTriangle::snap(points) else { return };
-    // On the screen y is down: counter-clockwise with y up is negative here.
+    // Counter-clockwise with y up is negative where rows count downwards.
     let front = match snapped.doubled_area() {
         0 => return,
-        area => area < 0,
+        area => (area < 0) == (target.origin == Origin::TopLeft),
     };
     if p.cull == (if front { CullFace::Front } else { CullFace::Back }) {
         return;
@@ -199,12 +298,14 @@ fn triangle(p: &Pipeline, corners: [OnScreen; 3], target: &mut Framebuffer) {
     let Ok(clip) = PixelRect::new(x0, y0, x1, y1) else { return };
     let inv_w = corners.map(|c| c.inv_w);
     let plane = |values| PerspectivePlane::through(points, inv_w, values);
-    let channel = |k: usize| plane(corners.map(|c| c.paint.0[k]));
+    let channel = |k: usize| plane(corners.map(|c| c.paint.color(front)[k]));
+    let coordinate = |k: usize| plane(corners.map(|c| c.paint.tex_coord[k]));
     let depths = corners.map(|c| c.depth);
-    let (Some(depth), [Some(r), Some(g), Some(b), Some(a)], Some(index)) = (
+    let (Some(depth), [Some(r), Some(g), Some(b), Some(a)], Some(index), [Some(u), Some(v)]) = (
         ScreenPlane::through(points, depths),
         [0, 1, 2, 3].map(channel),
-        plane(corners.map(|c| c.paint.1)),
+        plane(corners.map(|c| c.paint.index)),
+        [0, 1].map(coordinate),
     ) else {
         return;
     };
@@ -217,8 +318,13 @@ fn triangle(p: &Pipeline, corners: [OnScreen; 3], target: &mut Framebuffer) {
         for x in span.x0..span.x1 {
             let at = DVec2::new(f64::from(x) + 0.5, f64::from(span.y) + 0.5);
             let z = depth.at(at).clamp(range.0, range.1.max(range.0)) + offset;
-            let color = DVec4::new(r.at(at), g.at(at), b.at(at), a.at(at));
-            put(p, [x, span.y], z, (color, index.at(at)), front, target);
+            let tex_coord = |at| DVec2::new(u.at(at), v.at(at));
+            let look = Look {
+                color: DVec4::new(r.at(at), g.at(at), b.at(at), a.at(at)),
+                index: index.at(at),
+                tex_coords: [at, at + DVec2::X, at + DVec2::Y].map(tex_coord),
+            };
+            brush.put([x, span.y], z, &look, front, target);
         }
     });
 }

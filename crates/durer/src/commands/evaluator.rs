@@ -57,12 +57,27 @@ impl Patch {
         patch(&self.rows, u, v).filter(|p| p.is_finite())
     }
 
+    /// Returns the unit normal at two parameters 0 … 1: that of the derivatives along u and v, ∂S/∂u × ∂S/∂v; `None`
+    /// if they are parallel or not finite.
+    pub fn normal(&self, u: f64, v: f64) -> Option<DVec3> {
+        // The derivative of a Bézier curve has the differences of its control points, times its degree.
+        let along: Vec<Vec<DVec3>> =
+            self.rows.iter().map(|row| row.windows(2).map(|p| p[1] - p[0]).collect()).collect();
+        let across: Vec<Vec<DVec3>> = self
+            .rows
+            .windows(2)
+            .map(|rows| rows[0].iter().zip(&rows[1]).map(|(a, b)| *b - *a).collect())
+            .collect();
+        patch(&along, u, v)?.cross(patch(&across, u, v)?).try_normalize()
+    }
+
     pub(super) fn vertices(&self, [across, down]: [u32; 2]) -> Result<(Primitive, Vec<Vertex>)> {
         check(across)?;
         check(down)?;
         let at = |i: u32, j: u32| {
             let (u, v) = (f64::from(i) / f64::from(across), f64::from(j) / f64::from(down));
-            self.point(u, v).map(Vertex::from).ok_or_else(infinite)
+            let position = self.point(u, v).ok_or_else(infinite)?;
+            Ok(Vertex { normal: self.normal(u, v), ..Vertex::from(position) })
         };
         let mut rows = Vec::new();
         for j in 0..=down {

@@ -1,6 +1,7 @@
 //! Display lists: commands that are recorded once and replayed often, in each other too.
 
-use super::{Command, MAX_STACK, Pipeline, draw};
+use super::lighting::MAX_LIGHTS;
+use super::{Command, MAX_STACK, MaterialFace, Pipeline, draw, pixels};
 use crate::target::Framebuffer;
 use crate::{Error, Result};
 
@@ -58,8 +59,9 @@ fn dangling(list: ListId, count: usize) -> Error {
 /// # Errors
 /// [`Error::Dangling`] for a list that is not there; [`Error::Limit`] for lists nested deeper than
 /// [`MAX_NESTING`], more commands than [`MAX_COMMANDS`], a matrix stack above [`MAX_STACK`];
-/// [`Error::Parameter`] for taking back a matrix that was not kept, a matrix or evaluator that is not
-/// finite, and a viewport beyond the framebuffer.
+/// [`Error::Parameter`] for taking back a matrix that was not kept, a matrix, evaluator, light, material or zoom that is
+/// not finite or out of its range, and a viewport or rectangle beyond the framebuffer; [`Error::Unsupported`] for copying
+/// from a plane that the framebuffer does not have.
 pub fn execute(
     commands: &[Command],
     lists: &DisplayLists,
@@ -127,8 +129,57 @@ fn one(command: &Command, p: &mut Pipeline, target: &mut Framebuffer) -> Result<
             let (primitive, vertices) = patch.vertices(*steps)?;
             draw::draw(p, primitive, &vertices, target);
         }
+        Command::Texture(texture) => p.texture.clone_from(texture),
+        Command::RasterPosition(vertex) => p.raster = draw::raster_position(p, vertex, target),
+        Command::PixelZoom(zoom) if !zoom.is_finite() => {
+            return Err(Error::parameter("pixel zoom", zoom, "finite"));
+        }
+        Command::PixelZoom(zoom) => p.pixel_zoom = *zoom,
+        Command::DrawPixels(block) => pixels::draw(p, block, target),
+        Command::CopyPixels(rectangle, plane) => {
+            let block = pixels::read_pixels(target, *rectangle, *plane)?;
+            pixels::draw(p, &block, target);
+        }
         // Lists are opened by `execute`.
         Command::Call(_) => {}
+        _ => light(command, p)?,
+    }
+    Ok(())
+}
+
+/// Carries out the commands that set normals, lights and materials.
+fn light(command: &Command, p: &mut Pipeline) -> Result<()> {
+    let lighting = &mut p.lighting;
+    match command {
+        Command::Normal(normal) => p.normal = *normal,
+        Command::TexCoord(at) => p.tex_coord = *at,
+        Command::Lighting(enabled) => lighting.enabled = *enabled,
+        Command::Light(number, light) => {
+            let place = lighting.lights.get_mut(*number).ok_or_else(|| Error::Dangling {
+                what: "light",
+                index: *number,
+                count: MAX_LIGHTS,
+            })?;
+            light.as_ref().map_or(Ok(()), super::Light::check)?;
+            *place = light.map(|light| light.transformed(&p.model_view));
+        }
+        Command::LightModel(model) if !model.ambient.is_finite() => {
+            return Err(Error::parameter("ambient light", model.ambient, "finite"));
+        }
+        Command::LightModel(model) => lighting.model = *model,
+        Command::Material(face, material) => {
+            material.check()?;
+            if *face != MaterialFace::Back {
+                lighting.front = *material;
+            }
+            if *face != MaterialFace::Front {
+                lighting.back = *material;
+            }
+        }
+        Command::ColorMaterial(property) => lighting.color_material = *property,
+        Command::Normalize(normalize) => lighting.normalize = *normalize,
+        Command::ShadeModel(model) => lighting.shade_model = *model,
+        _ => {}
     }
     Ok(())
 }

@@ -2,9 +2,14 @@
 //!
 //! M. Segal, K. Akeley, *The OpenGL Graphics System: A Specification*, 1992; display lists as in J. Foley,
 //! A. van Dam, *Fundamentals of Interactive Computer Graphics*, 1982. A [`Command`] changes the
-//! [`Pipeline`] or draws; vertices go through model-view and projection matrix, are clipped, rasterized
-//! and handed to [`crate::fragment::apply`] one fragment at a time. This is the place to see every
+//! [`Pipeline`] or draws; vertices go through the model-view matrix, are lit, go through the projection matrix, are
+//! clipped, rasterized, textured and handed to [`crate::fragment::apply`] one fragment at a time. Beside them is the
+//! path of pixels, which are drawn, copied and read as rectangles. This is the place to see every
 //! fragment operation at work; pictures of scenes are made by [`crate::pipeline`].
+//!
+//! Rows count as in the framebuffer: downwards from the top, or upwards where its
+//! [origin](crate::target::Framebuffer::origin) is at the lower left, as in OpenGL. Lines light exactly the pixels of the
+//! whole line that are within the viewport.
 //!
 //! ```
 //! use durer::commands::{Command, DisplayLists, Pipeline, Primitive, Vertex, execute};
@@ -23,17 +28,27 @@
 //! # Ok::<(), durer::Error>(())
 //! ```
 
+mod brush;
 mod draw;
 mod evaluator;
+mod lighting;
 mod list;
+mod pixels;
 mod state;
+mod texture;
 
 pub use evaluator::{Curve, Patch};
+pub use lighting::{
+    ColorMaterial, Light, LightModel, Lighting, MAX_LIGHTS, Material, MaterialFace, ShadeModel,
+    Step as LightStep,
+};
 pub use list::{DisplayLists, ListId, MAX_COMMANDS, MAX_NESTING, execute};
-pub use state::{CullFace, MAX_STACK, Pipeline};
+pub use pixels::{PixelBlock, PixelPlane, read_pixels};
+pub use state::{CullFace, MAX_STACK, Pipeline, RasterPosition};
+pub use texture::{Texture, TextureFunction};
 
 use crate::fragment::{DepthRange, FragmentState, PolygonOffset};
-use crate::math::{DMat4, DVec3, Vec4};
+use crate::math::{DMat4, DVec2, DVec3, Vec4};
 
 /// Way in which vertices form shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -59,11 +74,15 @@ pub struct Vertex {
     pub color: Option<Vec4>,
     /// Colour index, interpolated like a colour; `None` = the pipeline's index.
     pub index: Option<f32>,
+    /// Normal, for lighting; `None` = the pipeline's normal.
+    pub normal: Option<DVec3>,
+    /// Texture coordinates; `None` = the pipeline's.
+    pub tex_coord: Option<DVec2>,
 }
 
 impl From<DVec3> for Vertex {
     fn from(position: DVec3) -> Self {
-        Self { position, color: None, index: None }
+        Self { position, color: None, index: None, normal: None, tex_coord: None }
     }
 }
 
@@ -98,6 +117,34 @@ pub enum Command {
     Color(Vec4),
     /// Sets the colour index of vertices that have none; drawn in colour-index framebuffers.
     Index(f32),
+    /// Sets the normal of vertices that have none.
+    Normal(DVec3),
+    /// Sets the texture coordinates of vertices that have none.
+    TexCoord(DVec2),
+    /// Turns lighting on or off.
+    Lighting(bool),
+    /// Sets a light, or turns it off; its position and direction are taken through the model-view matrix as it is now.
+    Light(usize, Option<Light>),
+    /// Sets ambient light, viewer and sides.
+    LightModel(LightModel),
+    /// Sets the material of a side.
+    Material(MaterialFace, Material),
+    /// Sets the property of both materials that follows the colour of vertices.
+    ColorMaterial(Option<ColorMaterial>),
+    /// Sets whether normals are made unit length after their transformation.
+    Normalize(bool),
+    /// Sets the interpolation of colours.
+    ShadeModel(ShadeModel),
+    /// Sets the texture of all fragments, or none.
+    Texture(Option<Texture>),
+    /// Sets the place of pixels that are drawn next: a vertex, which goes the way of all vertices.
+    RasterPosition(Vertex),
+    /// Sets the width and height that a drawn pixel gets.
+    PixelZoom(DVec2),
+    /// Draws a rectangle of pixels at the raster position.
+    DrawPixels(PixelBlock),
+    /// Draws a rectangle of the framebuffer at the raster position: first column, first row, width, height.
+    CopyPixels([u32; 4], PixelPlane),
     /// Sets which faces are left out.
     Cull(CullFace),
     /// Sets where near and far lie in window depth.

@@ -1,7 +1,9 @@
 //! The state that commands change.
 
+use super::lighting::Lighting;
+use super::texture::Texture;
 use crate::fragment::{DepthRange, FragmentState, PolygonOffset};
-use crate::math::{DMat4, Vec4};
+use crate::math::{DMat4, DVec2, DVec3, Vec4};
 
 /// Faces to leave out, by the way their corners turn on the screen: counter-clockwise, seen with y up,
 /// is a front face.
@@ -14,6 +16,28 @@ pub enum CullFace {
     Front,
     /// Those seen from behind.
     Back,
+}
+
+/// Place at which pixels are drawn, with what belongs to a vertex there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RasterPosition {
+    /// Pixels of the framebuffer.
+    pub at: DVec2,
+    /// Window depth of fragments that have none of their own.
+    pub depth: f64,
+    /// Linear RGBA of fragments that have no colour of their own, lit where lighting is on.
+    pub color: Vec4,
+    /// Colour index of fragments that have none of their own.
+    pub index: f32,
+    /// Texture coordinates of all fragments.
+    pub tex_coord: DVec2,
+}
+
+impl Default for RasterPosition {
+    /// OpenGL's initial position: the first pixel, at the near plane, white.
+    fn default() -> Self {
+        Self { at: DVec2::ZERO, depth: 0.0, color: Vec4::ONE, index: 1.0, tex_coord: DVec2::ZERO }
+    }
 }
 
 /// Everything that commands set; a value that can be kept, compared and put back.
@@ -31,6 +55,18 @@ pub struct Pipeline {
     pub color: Vec4,
     /// Colour index of vertices without one; at first 1.
     pub index: f32,
+    /// Normal of vertices without one, object space; at first +z.
+    pub normal: DVec3,
+    /// Texture coordinates of vertices without any; at first 0.
+    pub tex_coord: DVec2,
+    /// Lights, materials, and the interpolation of colours; at first off, and smooth.
+    pub lighting: Lighting,
+    /// Texture of all fragments; at first none.
+    pub texture: Option<Texture>,
+    /// Place at which pixels are drawn; `None` if it was clipped away.
+    pub raster: Option<RasterPosition>,
+    /// Width and height that a drawn pixel gets, in pixels; negative to mirror; at first 1.
+    pub pixel_zoom: DVec2,
     /// Faces to leave out; at first none.
     pub cull: CullFace,
     /// Window depths of the near and the far plane; at first 0 and 1.
@@ -55,6 +91,12 @@ impl Default for Pipeline {
             viewport: None,
             color: Vec4::ONE,
             index: 1.0,
+            normal: DVec3::Z,
+            tex_coord: DVec2::ZERO,
+            lighting: Lighting::default(),
+            texture: None,
+            raster: Some(RasterPosition::default()),
+            pixel_zoom: DVec2::ONE,
             cull: CullFace::None,
             depth_range: DepthRange::default(),
             polygon_offset: PolygonOffset::default(),

@@ -90,6 +90,21 @@ impl<P: Point> BSpline<P> {
         Self::new(degree, control, knots)
     }
 
+    /// Returns the degree of its pieces.
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Returns the control points.
+    pub fn control(&self) -> &[P] {
+        &self.control
+    }
+
+    /// Returns the knots, which do not fall.
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
     /// Returns the first and last parameter.
     pub fn domain(&self) -> (f64, f64) {
         (self.knots[self.degree], self.knots[self.control.len()])

@@ -2,8 +2,11 @@
 
 pub mod b_spline;
 pub mod bezier;
+pub mod catmull_rom;
 pub mod fit;
 mod flatten;
+pub mod forward_difference;
+pub mod knot_insertion;
 mod path;
 pub mod pieces;
 pub mod streamlines;

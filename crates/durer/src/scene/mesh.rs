@@ -144,6 +144,21 @@ impl Mesh {
         Some(used)
     }
 
+    /// Adds a copy of a vertex with all its attributes, and returns its number.
+    pub(crate) fn double(&mut self, v: usize) -> usize {
+        fn copy<T: Copy>(values: &mut Vec<T>, v: usize) {
+            if let Some(&value) = values.get(v) {
+                values.push(value);
+            }
+        }
+        copy(&mut self.positions, v);
+        copy(&mut self.normals, v);
+        copy(&mut self.tangents, v);
+        copy(&mut self.colors, v);
+        self.tex_coords.iter_mut().for_each(|set| copy(set, v));
+        self.positions.len() - 1
+    }
+
     /// Checks what algorithms rely on: attribute lengths, index range, parts in order.
     ///
     /// # Errors

@@ -3,7 +3,8 @@
 use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
-/// Row of a picture that comes first in memory.
+/// Row of a picture that comes first in memory. Pictures of scenes have theirs on top; [`crate::commands`] draw in either
+/// order, and [`Framebuffer::with_origin`] takes one to the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Origin {
     /// Row 0 is the top row, as in PNG; y grows downwards.
@@ -120,6 +121,16 @@ impl<T: Copy> Pixels<T> {
         self.data
     }
 
+    /// Turns the order of the rows over.
+    pub fn reverse_rows(&mut self) {
+        let width = (self.width as usize).max(1);
+        let rows = self.data.len() / width;
+        for y in 0..rows / 2 {
+            let (above, below) = self.data.split_at_mut((rows - 1 - y) * width);
+            above[y * width..(y + 1) * width].swap_with_slice(&mut below[..width]);
+        }
+    }
+
     /// Copies `source` with its first pixel at column x, row y; what falls outside is dropped.
     pub fn paste(&mut self, source: &Self, x: u32, y: u32) {
         let columns = source.width.min(self.width.saturating_sub(x)) as usize;
@@ -136,7 +147,8 @@ pub const NO_ITEM: u32 = u32::MAX;
 /// The planes a picture is made in. Colour is always there; the others when requested.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Framebuffer {
-    /// Row that comes first; the algorithms work from the top and a reader may turn it over.
+    /// Row that comes first. [`crate::commands`] draw in either order; [`crate::pipeline`] makes pictures with the top row
+    /// first, which all writers expect.
     pub origin: Origin,
     /// 8-bit sRGB with straight (not premultiplied) alpha.
     pub color: Pixels<[u8; 4]>,
@@ -205,6 +217,29 @@ impl Framebuffer {
     /// Returns the height in pixels.
     pub fn height(&self) -> u32 {
         self.color.height()
+    }
+
+    /// Creates the same picture with another row first: the rows of all planes are turned over unless it has that order.
+    ///
+    /// ```
+    /// use durer::target::{Framebuffer, Origin};
+    ///
+    /// let mut picture = Framebuffer { origin: Origin::BottomLeft, ..Framebuffer::new(1, 2) };
+    /// picture.color.set(0, 0, [9; 4]);
+    /// let picture = picture.with_origin(Origin::TopLeft);
+    /// assert_eq!(picture.color.data(), [[0; 4], [9; 4]]);
+    /// ```
+    pub fn with_origin(mut self, origin: Origin) -> Self {
+        if self.origin != origin {
+            self.origin = origin;
+            self.color.reverse_rows();
+            self.depth.iter_mut().for_each(Pixels::reverse_rows);
+            self.item.iter_mut().for_each(Pixels::reverse_rows);
+            self.normal.iter_mut().for_each(Pixels::reverse_rows);
+            self.stencil.iter_mut().for_each(Pixels::reverse_rows);
+            self.index.iter_mut().for_each(Pixels::reverse_rows);
+        }
+        self
     }
 
     /// Creates the same framebuffer with a depth plane cleared to 1, the far end.

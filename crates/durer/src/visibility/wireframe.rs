@@ -2,16 +2,17 @@
 //!
 //! L. G. Roberts, *Machine Perception of Three-Dimensional Solids*, MIT Lincoln Laboratory TR 315, 1963,
 //! drew solids so before he found out which lines are hidden. Edges are clipped in homogeneous
-//! coordinates and drawn by J. Bresenham's lines; each edge once, though two faces share it. Cost:
+//! coordinates at the near and the far plane and drawn by J. Bresenham's lines, of which exactly the pixels of the
+//! whole line are lit that are in the picture; each edge once, though two faces share it. Cost:
 //! O(edges · log edges + pixels lit); memory O(edges).
 //!
 //! Limits: the picture is ambiguous — front and back cannot be distinguished, which is what the
 //! other algorithms are for. Coherence used: none.
 
-use crate::clip::volume::{self, ClipVertex, clip_segment};
+use crate::clip::volume::ClipVertex;
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec4, IVec2};
-use crate::raster::line::{self, bresenham};
+use crate::raster::line::{self, bresenham, projected};
 use crate::scene::{Mesh, Scene, Topology};
 use crate::target::Pixels;
 use crate::trace::{NoTrace, Tracer};
@@ -49,7 +50,7 @@ impl Default for Options {
 /// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
-    /// An edge, or what the view volume leaves of it, is drawn between two pixels.
+    /// An edge, or what near and far plane leave of it, is drawn between two pixels, which may be outside of the picture.
     Edge {
         /// Index of the instance.
         instance: usize,
@@ -105,7 +106,7 @@ fn edges(mesh: &Mesh) -> Vec<[u32; 2]> {
     edges
 }
 
-/// Returns the pixels at the ends of what is left of an edge within the view volume.
+/// Returns the pixels at the ends of an edge between the near and the far plane; `None` if it is outside of the picture.
 fn pixels_of(
     mesh: &Mesh,
     vertices: [u32; 2],
@@ -118,10 +119,9 @@ fn pixels_of(
         end.position = *clip_from_mesh * p.extend(1.0);
     }
     let size = DVec2::new(f64::from(view.width()), f64::from(view.height()));
-    let clipped = clip_segment(ends, &volume::Options::default(), &mut NoTrace)?;
-    Some(clipped.map(|v| {
+    let cut = projected::cut(ends, view.width().max(view.height()))?;
+    Some(cut.map(|v| {
         let ndc = DVec2::new(v.position.x, -v.position.y) / v.position.w;
-        // The right and lower border belong to the last pixels.
-        ((ndc + 1.0) * 0.5 * size).floor().min(size - 1.0).max(DVec2::ZERO).as_ivec2()
+        projected::pixel((ndc + 1.0) * 0.5 * size, size)
     }))
 }

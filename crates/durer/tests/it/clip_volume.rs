@@ -21,7 +21,11 @@ fn point() -> impl Strategy<Value = DVec4> {
 
 fn options() -> impl Strategy<Value = Options> {
     let depth = prop_oneof![Just(DepthRange::NegativeOneToOne), Just(DepthRange::ZeroToOne)];
-    let borders = prop_oneof![Just(Borders::All), Just(Borders::NearOnly { guard_band: 2.0 })];
+    let borders = prop_oneof![
+        Just(Borders::All),
+        Just(Borders::NearOnly { guard_band: 2.0 }),
+        Just(Borders::Depths { guard_band: 2.0 }),
+    ];
     (depth, borders).prop_map(|(depth, borders)| Options { depth, borders })
 }
 
@@ -30,6 +34,7 @@ fn lies_inside(p: DVec4, options: &Options) -> bool {
     let (g, far) = match options.borders {
         Borders::All => (1.0, true),
         Borders::NearOnly { guard_band } => (guard_band, false),
+        Borders::Depths { guard_band } => (guard_band, true),
     };
     let near = if options.depth == DepthRange::ZeroToOne { p.z >= 0.0 } else { p.z >= -p.w };
     p.x.abs() <= g * p.w && p.y.abs() <= g * p.w && near && (!far || p.z <= p.w)
@@ -212,6 +217,9 @@ fn boundary(p: DVec4, options: &Options) -> f64 {
         Borders::All => d.into_iter().fold(f64::INFINITY, f64::min),
         Borders::NearOnly { guard_band: g } => {
             (g * p.w - p.x.abs()).min(g * p.w - p.y.abs()).min(d[4])
+        }
+        Borders::Depths { guard_band: g } => {
+            (g * p.w - p.x.abs()).min(g * p.w - p.y.abs()).min(d[4]).min(d[5])
         }
     }
 }

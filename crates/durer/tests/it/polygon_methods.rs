@@ -7,7 +7,9 @@ use durer::trace::{NoTrace, Recorder};
 use durer::visibility::back_face::Eye;
 use durer::visibility::polygons::bsp::{self, Tree};
 use durer::visibility::polygons::regions::{self, Region, regions};
-use durer::visibility::polygons::{Face, PolygonMethod, Screen, painter, watkins, z_buffer};
+use durer::visibility::polygons::{
+    Face, PolygonMethod, Screen, hierarchical_z, painter, watkins, z_buffer,
+};
 
 fn screen() -> Screen {
     Screen { width: 32, height: 32, ..Screen::default() }
@@ -121,6 +123,10 @@ fn the_steps_rebuild_the_pictures() {
     let found = bsp::items(&faces, &screen, &how, &mut steps).unwrap();
     assert_eq!(bsp::replay(&screen, steps.steps()).unwrap(), found);
     assert_eq!(bsp::items(&faces, &screen, &how, &mut NoTrace).unwrap(), found);
+    let (how, mut steps) = (hierarchical_z::Options::default(), Recorder::default());
+    let found = hierarchical_z::items(&faces, &screen, &how, &mut steps).unwrap();
+    assert_eq!(hierarchical_z::replay(&screen, steps.steps()).unwrap(), found);
+    assert_eq!(hierarchical_z::items(&faces, &screen, &how, &mut NoTrace).unwrap(), found);
     let mut steps = Recorder::default();
     let how = painter::Options { key: painter::Key::Mean };
     let found = painter::items(&faces, &screen, &how, &mut steps).unwrap();
@@ -310,6 +316,53 @@ fn regions_show_the_nearest_face_everywhere() {
             assert_eq!(shown, nearest.into_iter().collect::<Vec<_>>(), "{p} in round {round}");
         }
     }
+}
+
+/// Behind a wall whole cells are left out, and the numbers of the pyramid are those of the depths.
+#[test]
+fn a_pyramid_of_depths_hides_cells() {
+    use hierarchical_z::{Options, Step, Test};
+    let square = |x: f64, y: f64, side: f64, z: f64| {
+        let corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)];
+        Face::new(&corners.map(|(u, v)| DVec3::new(x + u, y + v, z))).unwrap()
+    };
+    let mut faces: Vec<Face> = (0..64)
+        .map(|k| square(f64::from(k % 8) * 4.0 + 1.0, f64::from(k / 8) * 4.0 + 1.0, 2.0, 50.0))
+        .collect();
+    faces.push(square(0.0, 0.0, 32.0, 5.0));
+    let mut steps = Recorder::default();
+    let found = hierarchical_z::items(&faces, &screen(), &Options::default(), &mut steps).unwrap();
+    assert!(found.data().iter().all(|item| *item == 64));
+    let left_out: usize = (steps.steps().iter())
+        .map(|s| if let Step::LeaveOut { faces, .. } = s { *faces } else { 0 })
+        .sum();
+    let compared = |s: &&Step| matches!(s, Step::Face { face, .. } if *face != 64);
+    assert!(left_out >= 48, "{left_out}");
+    assert!(steps.steps().iter().filter(compared).count() <= 16);
+    // Four pixels, three of them near: the farthest of four stays until the last is near, too.
+    let small = Screen { width: 2, height: 2, ..Screen::default() };
+    let flat = Options { capacity: 9, depth: 0 };
+    let faces =
+        [square(0.0, 0.0, 2.0, 7.0), square(0.0, 0.0, 1.0, 3.0), square(0.0, 0.0, 2.0, 8.0)];
+    let mut steps = Recorder::default();
+    hierarchical_z::items(&faces, &small, &flat, &mut steps).unwrap();
+    let face = |face, nearest, level, farthest| Step::Face {
+        face,
+        test: Test { nearest, level, entry: [0, 0], farthest },
+    };
+    let store = |pixel, face, depth| Step::Store { pixel, face, depth };
+    let expected = [
+        face(0, 7.0, 1, f64::INFINITY),
+        store([0, 0], 0, 7.0),
+        store([1, 0], 0, 7.0),
+        store([0, 1], 0, 7.0),
+        store([1, 1], 0, 7.0),
+        Step::Lower { level: 1, entry: [0, 0], farthest: 7.0 },
+        face(1, 3.0, 0, 7.0),
+        store([0, 0], 1, 3.0),
+        face(2, 8.0, 1, 7.0),
+    ];
+    assert_eq!(steps.steps()[2..], expected);
 }
 
 #[test]

@@ -4,9 +4,12 @@ use crate::raster_coverage::Random;
 use durer::curve::{Contours, Path, flatten};
 use durer::math::DVec2;
 use durer::raster::coverage::FillRule;
-use durer::raster::polygon::{Options, PolygonRasterizer, edge_table, ordered_edge_list};
+use durer::raster::polygon::{
+    Options, PolygonRasterizer, edge_fill, edge_flag, edge_table, ordered_edge_list,
+};
 use durer::raster::span::Span;
 use durer::raster::triangulate::triangulate;
+use durer::target::Pixels;
 use durer::trace::{NoTrace, Recorder};
 
 fn spans(
@@ -166,6 +169,68 @@ fn both_ways_fill_the_same_pixels() {
             assert_eq!(a, b, "round {round} {rule:?}");
         }
     }
+}
+
+/// Complements and flags find the pixels of the even-odd rule, wherever the fence is; steps rebuild them.
+#[test]
+fn complements_and_flags_fill_the_same_pixels() {
+    let mut random = Random(9);
+    let mut plane = Pixels::new(45, 30, true);
+    for round in 0..200_u32 {
+        let on_grid = round % 3 == 0;
+        let (low, high) = [(-10.0, 50.0), (-3e5, 3e5), (5.0, 25.0)][round as usize % 3];
+        let corner = |_| {
+            let p = random.point(low, high);
+            if on_grid { (p * 2.0).round() / 2.0 } else { p }
+        };
+        let contours = Contours::polygon((0..3 + round % 6).map(corner).collect::<Vec<_>>());
+        let mut expected = Pixels::new(45, 30, false);
+        for span in spans(PolygonRasterizer::EdgeTable, &contours, (45, 30), FillRule::EvenOdd) {
+            (span.x0..span.x1).for_each(|x| expected.set(x as u32, span.y as u32, true));
+        }
+        let mut touched = Vec::new();
+        for fence in [None, Some(0), Some(20), Some(99)] {
+            let options = edge_fill::Options { fence };
+            let (mut found, mut steps) = (Pixels::new(45, 30, false), Recorder::default());
+            edge_fill::fill(&contours, &mut found, &options, &mut steps);
+            assert!(found == expected, "round {round} {fence:?}");
+            assert!(edge_fill::replay((45, 30), steps.steps()) == expected);
+            touched.push(steps.steps().iter().map(|step| step.columns().len()).sum::<usize>());
+            // Twice is none.
+            edge_fill::fill(&contours, &mut found, &options, &mut NoTrace);
+            assert!(!found.data().contains(&true));
+        }
+        assert_eq!(touched[0], touched[3], "a fence after the last column is none");
+        let mut steps = Recorder::default();
+        edge_flag::fill(&contours, &mut plane, &mut steps);
+        assert!(plane == expected, "round {round}");
+        assert!(edge_flag::replay((45, 30), steps.steps()) == expected);
+    }
+}
+
+/// A square from column 2 to 6: edge fill touches all to the right of both sides, a fence in its middle only itself.
+#[test]
+fn a_fence_saves_pixels() {
+    let square = [(2.0, 0.0), (6.0, 0.0), (6.0, 1.0), (2.0, 1.0)];
+    let contours = Contours::polygon(square.map(|(x, y)| DVec2::new(x, y)));
+    let runs = |fence| {
+        let (mut plane, mut steps) = (Pixels::new(10, 1, false), Recorder::default());
+        edge_fill::fill(&contours, &mut plane, &edge_fill::Options { fence }, &mut steps);
+        let mut runs: Vec<_> = steps.steps().iter().map(|s| (s.columns(), s.line())).collect();
+        runs.sort_by_key(|(columns, _)| columns.start);
+        runs
+    };
+    assert_eq!(runs(None), [(2..10, 5), (6..10, 5)]);
+    assert_eq!(runs(Some(4)), [(2..4, 5), (4..6, 6)]);
+    let (mut plane, mut steps) = (Pixels::new(10, 1, false), Recorder::default());
+    edge_flag::fill(&contours, &mut plane, &mut steps);
+    let flags = steps.steps().iter().filter_map(|s| match s {
+        edge_flag::Step::Flag { pixel, set } => Some((pixel[0], *set)),
+        edge_flag::Step::Inside(_) => None,
+    });
+    let mut flags: Vec<_> = flags.collect();
+    flags.sort_unstable();
+    assert_eq!(flags, [(2, true), (6, true)]);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::scenes;
 use crate::surface_scenes::{Prepared, of_triangles};
 use durer::math::{IVec2, Vec3};
 use durer::raster::line::{self, bresenham};
-use durer::scene::Scene;
+use durer::scene::{Camera, Projection, Scene};
 use durer::target::Pixels;
 use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
@@ -42,11 +42,9 @@ fn the_picture_is_rebuilt_from_its_steps() {
     let (found, steps) = draw(&scene, &prepared.view);
     let mut rebuilt = Pixels::new(90, 70, [255; 4]);
     for Step::Edge { from, to, .. } in steps {
-        for end in [from, to] {
-            assert!(end.cmpge(IVec2::ZERO).all() && end.x < 90 && end.y < 70, "{end}");
-        }
         let plot = |p: IVec2| rebuilt.set(p.x as u32, p.y as u32, [0, 0, 0, 255]);
-        bresenham::draw(from, to, &line::Options::default(), plot, &mut NoTrace);
+        let window = line::Options { window: Some((IVec2::ZERO, IVec2::new(89, 69))) };
+        bresenham::draw(from, to, &window, plot, &mut NoTrace);
     }
     assert!(rebuilt == found);
     assert!(found.data().iter().filter(|c| c[0] == 0).count() > 800);
@@ -73,4 +71,39 @@ fn soups_around_the_eye_do_no_harm() {
             draw(&scene, &prepared.view);
         }
     }
+}
+
+/// An edge that leaves the picture lights exactly the pixels of the whole edge that are in it.
+#[test]
+fn edges_across_the_border_keep_their_pixels() {
+    let mut seen = 0;
+    for seed in 0..30 {
+        let scene = scenes::soup(12, seed);
+        let camera = Camera {
+            projection: Projection::Orthographic { height: 1.0 },
+            ..Camera::look_at([0.0, 0.0, 20.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+        };
+        let view = View::new(camera, 40, 30).expect("view");
+        let mut steps = Recorder::default();
+        let mut target = Pixels::new(40, 30, [255; 4]);
+        render(&scene, &view, &Options::default(), &mut target, &mut steps);
+        let mut whole = Pixels::new(40, 30, [255; 4]);
+        for Step::Edge { from, to, .. } in steps.steps() {
+            // Without a window, but for lines that nobody can wait for.
+            if (*to - *from).abs().max_element() > 1 << 20 {
+                continue;
+            }
+            let outside = |p: &IVec2| p.cmplt(IVec2::ZERO).any() || p.x >= 40 || p.y >= 30;
+            seen += usize::from(outside(from) || outside(to));
+            let plot = |p: IVec2| {
+                if !outside(&p) {
+                    whole.set(p.x as u32, p.y as u32, [0, 0, 0, 255]);
+                }
+            };
+            bresenham::draw(*from, *to, &line::Options::default(), plot, &mut NoTrace);
+        }
+        let lost = whole.data().iter().zip(target.data()).filter(|(a, b)| a[0] < b[0]).count();
+        assert_eq!(lost, 0, "{seed}");
+    }
+    assert!(seen > 50, "{seen}");
 }

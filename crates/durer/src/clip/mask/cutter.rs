@@ -4,6 +4,7 @@ use super::area::{oriented, pieces};
 use super::segments::by_segments;
 use super::{Area, Mask, Rules};
 use crate::clip::line::LineClipper;
+use crate::clip::polygon::overlay::{self, overlay};
 use crate::clip::polygon::rectangle;
 use crate::clip::polygon::validity::{Touching, is_valid};
 use crate::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, coverage};
@@ -259,8 +260,15 @@ impl<'a> Cutter<'a> {
                 if clipper == PolygonClipper::SutherlandHodgman && !valid(&area.shapes) {
                     return refused("a polygon whose rings cross or overlap by Sutherland–Hodgman");
                 }
+                let mut cut = clipper.clip(&area.shapes, mask, self.op)?;
+                // Rings that cross are divided where they do: a geometry has valid polygons.
+                if clipper == PolygonClipper::GreinerHormann && !valid(&cut) {
+                    let options = overlay::Options::with_rule(FillRule::EvenOdd);
+                    let union = BooleanOp::Union;
+                    cut = overlay(&cut, &Shapes::new(), union, &options, &mut NoTrace)?.shapes;
+                }
                 // Heights and measures are looked for where the new vertices lie.
-                area.cut(clipper.clip(&area.shapes, mask, self.op)?, &[])
+                area.cut(cut, &[])
             }
         })
     }

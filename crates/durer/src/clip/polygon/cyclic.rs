@@ -10,7 +10,7 @@
 //! would have on two sides.
 
 use super::group::{group, is_flat};
-use super::lists::{Lists, NOT_SIMPLE, Start, join};
+use super::lists::{CROSSING_AND_TOUCHING, Lists, NOT_SIMPLE, Start, join};
 use super::near::pairs;
 use super::node;
 use super::point::{Place, locate, on_segment};
@@ -34,6 +34,30 @@ pub(super) struct Linked {
 /// Returns the rings without repeated points and flat rings, outer ones counter-clockwise, holes
 /// clockwise.
 fn tidy(shapes: &Shapes) -> Shapes {
+    group(distinct(shapes).collect())
+}
+
+/// Links two sets of rings that may cross themselves and one another, by the even-odd rule: from where a ring starts,
+/// entries and exits take turns. The rings keep their directions.
+///
+/// # Errors
+/// [`Error::Unsupported`] where a vertex or an edge of one operand touches the other: which of the two borders crosses
+/// there is decided by neighbours, of which rings that cross may have any number.
+pub(super) fn link_crossing(subject: &Shapes, clip: &Shapes) -> Result<Linked> {
+    let rings = [subject, clip].map(|shapes| Shapes::from_rings(distinct(shapes)));
+    let mut linked = Linked { lists: [Lists::new(&rings[0]), Lists::new(&rings[1])], rings };
+    if linked.touches() {
+        return Err(CROSSING_AND_TOUCHING);
+    }
+    linked.locate(&[], false);
+    let crossings = linked.crossings();
+    linked.insert(crossings);
+    linked.lists.iter_mut().for_each(Lists::alternate);
+    Ok(linked)
+}
+
+/// Returns the rings without repeated points, and without those that are flat.
+fn distinct(shapes: &Shapes) -> impl Iterator<Item = Vec<DVec2>> {
     let rings = shapes.rings().map(|ring| {
         let mut ring = ring.to_vec();
         ring.dedup();
@@ -42,7 +66,7 @@ fn tidy(shapes: &Shapes) -> Shapes {
         }
         ring
     });
-    group(rings.filter(|ring| !is_flat(ring)).collect())
+    rings.filter(|ring| !is_flat(ring))
 }
 
 /// Links two sets of rings for an operation.
@@ -101,6 +125,21 @@ impl Linked {
             after = (edge, self.lists[list].insert(start, p));
         }
         if apart { Ok(()) } else { Err(NOT_SIMPLE) }
+    }
+
+    /// Returns whether a vertex of one operand lies on the border of the other; exact.
+    fn touches(&self) -> bool {
+        let count = self.lists[0].vertices.len();
+        let edges: Vec<[DVec2; 2]> = self.lists.iter().flat_map(Lists::edges).collect();
+        let mut touches = false;
+        pairs(&edges, |i, j| {
+            let ([a, b], [c, d]) = (edges[i], edges[j]);
+            let meets = |p: DVec2, [a, b]: [DVec2; 2]| on_segment(a, b, p);
+            touches |= (i < count) != (j < count)
+                && ([a, b].into_iter().any(|p| meets(p, [c, d]))
+                    || [c, d].into_iter().any(|p| meets(p, [a, b])));
+        });
+        touches
     }
 
     /// Returns the pairs of edges that cross inside both, by the vertices where they start.

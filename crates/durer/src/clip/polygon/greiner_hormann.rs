@@ -3,6 +3,10 @@
 //! G. Greiner, K. Hormann, *Efficient clipping of arbitrary polygons*, ACM Transactions on Graphics
 //! 17(2), 1998. Touching vertices and common edges after Foster, Hormann and Popa, 2019; where
 //! several borders pass one point, each pair of them is linked there (`node.rs`).
+//!
+//! Rings may cross themselves and one another, as published: entries and exits take turns along each ring from where it
+//! starts, and the rings of the result, which may cross likewise, enclose it by the even-odd rule. The paper moves
+//! vertices that touch the other polygon by a little; here such input is refused where rings cross.
 
 use super::cyclic::Linked;
 use super::lists::Lists;
@@ -27,7 +31,8 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "O(n log n + p) time for n edges of both and p pairs that are near each other, \
            O(n² + r²) at worst for r rings; O(n + k) memory for k crossings",
-    limits: "polygons whose rings neither cross nor overlap, refused otherwise; they may touch in points. \
+    limits: "polygons whose rings cross or overlap are taken by the even-odd rule where no vertex or edge \
+             touches the other polygon, and give rings that may cross; other polygons may touch in any way. \
              Crossings are rounded to f64: rings nearer than that may come out crossing",
     pseudocode: &[
         "insert the crossings into the lists of both polygons, by their alpha, linked in pairs",
@@ -43,7 +48,8 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// Clips polygons with polygons; both with holes, by the even-odd rule.
+/// Clips polygons with polygons; both with holes, by the even-odd rule. Where rings of an operand cross, the result is
+/// each ring as a polygon of its own, and a point is in it if it is within an odd number of them.
 ///
 /// ```
 /// use durer::clip::polygon::{BooleanOp, Shapes, greiner_hormann::greiner_hormann};
@@ -60,7 +66,7 @@ pub const INFO: Info = Info {
 /// # Errors
 /// [`NonFinite`](crate::Error::NonFinite) for a point with a NaN or infinite coordinate;
 /// [`Unsupported`](crate::Error::Unsupported) where rings of an operand cross or overlap themselves or
-/// one another, or turn back on themselves.
+/// one another, or turn back on themselves, and a vertex of an operand lies on the border of the other.
 pub fn greiner_hormann(
     subject: &Shapes,
     clip: &Shapes,
@@ -68,7 +74,7 @@ pub fn greiner_hormann(
     _options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Result<Shapes> {
-    walk_all([subject, clip], op, t, walk)
+    walk_all([subject, clip], op, true, t, walk)
 }
 
 fn walk(linked: &Linked, op: BooleanOp, t: &mut impl Tracer<Step>) -> Vec<Vec<DVec2>> {
@@ -102,8 +108,8 @@ fn walk(linked: &Linked, op: BooleanOp, t: &mut impl Tracer<Step>) -> Vec<Vec<DV
 
 /// For each vertex that crosses: whether its list enters the other's region there.
 ///
-/// In theory these alternate along a ring, from where it starts. The edges that cross tell it of each one alone, and
-/// exactly, also where rounding has put several crossings in one place.
+/// These alternate along a ring, from where it starts. Of rings that do not cross, the edges tell it of each crossing
+/// alone, and exactly, also where rounding has put several crossings in one place.
 fn entries(lists: &Lists) -> Vec<bool> {
     lists.vertices.iter().map(|vertex| vertex.enters).collect()
 }

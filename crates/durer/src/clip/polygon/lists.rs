@@ -77,6 +77,20 @@ impl Lists {
         v
     }
 
+    /// Makes crossings enter and leave in turn along each ring, as its start is outside or inside.
+    pub fn alternate(&mut self) {
+        for i in 0..self.starts.len() {
+            let Start { vertex, mut inside } = self.starts[i];
+            let ring: Vec<usize> = self.ring(vertex).collect();
+            for v in ring {
+                if self.vertices[v].twin.is_some() {
+                    inside = !inside;
+                    self.vertices[v].enters = inside;
+                }
+            }
+        }
+    }
+
     /// Puts a vertex after another one.
     pub fn insert(&mut self, after: usize, at: DVec2) -> usize {
         let (index, next) = (self.vertices.len(), self.vertices[after].next);
@@ -98,5 +112,12 @@ pub(super) fn join(lists: &mut [Lists; 2], [s, c]: [usize; 2], enters: bool) {
 /// The refusal of rings of one operand that cross or overlap.
 pub(super) const NOT_SIMPLE: Error = Error::Unsupported {
     what: "a polygon whose rings cross or overlap by this algorithm",
+    instead: "choose overlay or vatti",
+};
+
+/// The refusal of rings that cross themselves and touch the other operand.
+pub(super) const CROSSING_AND_TOUCHING: Error = Error::Unsupported {
+    what: "a polygon whose rings cross or overlap, and of which a vertex or edge touches the other \
+           polygon, by this algorithm",
     instead: "choose overlay or vatti",
 };

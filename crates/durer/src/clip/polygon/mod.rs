@@ -61,8 +61,8 @@ impl PolygonClipper {
     /// Runs the algorithm with its default options, by the even-odd rule.
     ///
     /// # Errors
-    /// As [`overlay()`]; all take only finite points. [`Error::Unsupported`] for Weiler–Atherton and
-    /// Greiner–Hormann where rings of one operand cross or overlap; for the rectangle clip and
+    /// As [`overlay()`]; all take only finite points. [`Error::Unsupported`] for Weiler–Atherton where
+    /// rings of one operand cross or overlap, for Greiner–Hormann if they also touch the other; for the rectangle clip and
     /// Sutherland–Hodgman with an operation other than intersection, and where the clip is
     /// not one rectangle, or one ring; [`Error::Parameter`] where that ring is not convex.
     pub fn clip(self, subject: &Shapes, clip: &Shapes, op: BooleanOp) -> Result<Shapes> {

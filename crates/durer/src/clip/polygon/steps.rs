@@ -64,9 +64,13 @@ pub enum Step {
         /// True if it goes on along the subject.
         to_subject: bool,
     },
+    /// Greiner and Hormann: rings of an operand cross themselves or one another. Entries and exits take turns along
+    /// each ring, and rings of the result may cross, too: what they enclose by the even-odd rule is the result.
+    CrossingRings,
     /// A ring of the result is complete.
     Ring {
-        /// Its points, the inside on the left, or on the right where the subject's first ring runs clockwise.
+        /// Its points, the inside on the left, or on the right where the subject's first ring runs clockwise; in either
+        /// direction after [`Self::CrossingRings`].
         points: Vec<DVec2>,
     },
 }
@@ -75,7 +79,7 @@ impl Step {
     /// Returns the line of both algorithms' pseudocode that runs, counted from 1.
     pub fn line(&self) -> usize {
         match self {
-            Self::Listed { .. } => 1,
+            Self::Listed { .. } | Self::CrossingRings => 1,
             Self::Crossing { .. } => 2,
             Self::Start { .. } => 4,
             Self::Turn { to_subject: true, .. } => 5,
@@ -93,5 +97,8 @@ pub fn replay(steps: &[Step]) -> Shapes {
         Step::Ring { points } => Some(points.clone()),
         _ => None,
     });
+    if steps.contains(&Step::CrossingRings) {
+        return Shapes::from_rings(rings);
+    }
     group(rings.collect())
 }

@@ -1,7 +1,8 @@
 //! The code that clippers along linked borders share: a tame frame of coordinates, and xor as two differences.
 
-use super::cyclic::{Linked, link};
-use super::group::group;
+use super::cyclic::{Linked, link, link_crossing};
+use super::group::{group, is_flat};
+use super::lists::NOT_SIMPLE;
 use super::outline::simple_rings;
 use super::steps::Step;
 use super::{BooleanOp, Shapes, signed_area};
@@ -15,9 +16,12 @@ const TAME: std::ops::Range<i32> = -200..200;
 /// Runs a walk that knows all operations but xor, which is both differences side by side, and makes
 /// polygons of what it finds. Where coordinates are huge or tiny, all is done at a power of two of their size,
 /// which changes no digit but of those beside which nobody sees them.
+///
+/// `crossing` allows rings that cross, by the even-odd rule, where the walk follows the marks of the lists alone.
 pub(super) fn walk_all<'t, T: Tracer<Step>>(
     inputs: [&Shapes; 2],
     op: BooleanOp,
+    crossing: bool,
     t: &'t mut T,
     walk: impl FnMut(&Linked, BooleanOp, &mut Scaled<'t, T>) -> Vec<Vec<DVec2>>,
 ) -> Result<Shapes> {
@@ -29,10 +33,10 @@ pub(super) fn walk_all<'t, T: Tracer<Step>>(
     let frame = Frame { shift, mirrored };
     let mut t = Scaled { to: t, frame };
     if !mirrored && shift == 0 {
-        return walk_tame(inputs, op, &mut t, walk);
+        return walk_tame(inputs, op, crossing, &mut t, walk);
     }
     let framed = inputs.map(|shapes| map(shapes, |p| frame.of(p)));
-    let found = walk_tame([&framed[0], &framed[1]], op, &mut t, walk)?;
+    let found = walk_tame([&framed[0], &framed[1]], op, crossing, &mut t, walk)?;
     let found = map(&found, |p| frame.back(p));
     Ok(if mirrored { reversed(&found) } else { found })
 }
@@ -96,6 +100,7 @@ impl<T: Tracer<Step>> Tracer<Step> for Scaled<'_, T> {
             Step::Passed { list, at } => Step::Passed { list, at: place(at) },
             Step::Crossing { at, entry } => Step::Crossing { at: place(at), entry },
             Step::Turn { at, to_subject } => Step::Turn { at: place(at), to_subject },
+            Step::CrossingRings => Step::CrossingRings,
             Step::Ring { points } => Step::Ring { points: points.into_iter().map(place).collect() },
         });
     }
@@ -104,26 +109,39 @@ impl<T: Tracer<Step>> Tracer<Step> for Scaled<'_, T> {
 fn walk_tame<T: Tracer<Step>>(
     [subject, clip]: [&Shapes; 2],
     op: BooleanOp,
+    crossing: bool,
     t: &mut T,
     mut walk: impl FnMut(&Linked, BooleanOp, &mut T) -> Vec<Vec<DVec2>>,
 ) -> Result<Shapes> {
-    let mut once = |subject, clip, op| -> Result<Vec<Vec<DVec2>>> {
-        let linked = link(subject, clip, op)?;
+    // Xor is both differences; linking alone reports no steps.
+    let (first, second) = match op {
+        BooleanOp::Xor => (BooleanOp::Difference, true),
+        _ => (op, false),
+    };
+    let simple = link(subject, clip, first);
+    let crosses = crossing && simple.as_ref().is_err_and(|e| *e == NOT_SIMPLE);
+    if crosses {
+        t.step(|| Step::CrossingRings);
+    }
+    let mut once = |linked: Result<Linked>, op| -> Result<Vec<Vec<DVec2>>> {
+        let linked = linked?;
         linked.tell(t);
         let mut found = walk(&linked, op, t);
         found.extend(linked.whole_rings(op));
         Ok(found)
     };
-    let found = if op == BooleanOp::Xor {
-        let mut found = once(subject, clip, BooleanOp::Difference)?;
-        found.extend(once(clip, subject, BooleanOp::Difference)?);
-        found
+    let linked = |a, b| if crosses { link_crossing(a, b) } else { link(a, b, first) };
+    let mut found = once(if crosses { linked(subject, clip) } else { simple }, first)?;
+    if second {
+        found.extend(once(linked(clip, subject), first)?);
+    }
+    if crosses {
+        found.retain(|ring| !is_flat(ring));
     } else {
-        once(subject, clip, op)?
-    };
-    let rings = simple_rings(&found);
-    for ring in &rings {
+        found = simple_rings(&found);
+    }
+    for ring in &found {
         t.step(|| Step::Ring { points: ring.clone() });
     }
-    Ok(group(rings))
+    Ok(if crosses { Shapes::from_rings(found) } else { group(found) })
 }

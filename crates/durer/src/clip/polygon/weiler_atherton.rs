@@ -68,7 +68,7 @@ pub fn weiler_atherton(
     _options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Result<Shapes> {
-    walk_all([subject, clip], op, t, walk)
+    walk_all([subject, clip], op, false, t, walk)
 }
 
 fn walk(linked: &Linked, op: BooleanOp, t: &mut impl Tracer<Step>) -> Vec<Vec<DVec2>> {

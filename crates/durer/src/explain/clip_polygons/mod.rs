@@ -83,6 +83,14 @@ fn squares() -> Input {
     )
 }
 
+/// Returns a star of five points, which crosses itself, and a square over its right half.
+fn pentagram() -> Input {
+    pair(
+        ring(&[(5.0, 10.0), (8.0, 0.5), (0.0, 6.5), (10.0, 6.5), (2.0, 0.5)]),
+        ring(&[(5.5, 1.0), (11.0, 1.0), (11.0, 9.0), (5.5, 9.0)]),
+    )
+}
+
 /// Returns subject and window of the lecture, clockwise.
 fn lecture() -> Input {
     let subject = [

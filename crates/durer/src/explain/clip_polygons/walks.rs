@@ -1,6 +1,6 @@
 //! Lessons of the walks along linked lists: Weiler–Atherton, and Greiner–Hormann.
 
-use super::{CLIP, Operands, SUBJECT, TAKES, lecture, letter_and_blade, squares};
+use super::{CLIP, Operands, SUBJECT, TAKES, lecture, letter_and_blade, pentagram, squares};
 use crate::clip::polygon::weiler_atherton::{Mark, Operand, Step};
 use crate::clip::polygon::{greiner_hormann, weiler_atherton};
 use crate::explain::frame::{Frame, Shown, frames, record};
@@ -37,8 +37,8 @@ pub(super) const GREINER_HORMANN: Lesson = Lesson {
     name: greiner_hormann::INFO.name,
     info: &greiner_hormann::INFO,
     takes: TAKES,
-    examples: EXAMPLES,
-    templates: &[&LISTED, &LISTED_CROSSING, &ENTRY, &EXIT, &START, &PASSED, &RING],
+    examples: CROSSING_EXAMPLES,
+    templates: &[&CROSSING_RINGS, &LISTED, &LISTED_CROSSING, &ENTRY, &EXIT, &START, &PASSED, &RING],
     unreached: &[],
     make: |_, input, options, cap| {
         let operands = Operands::new(input)?;
@@ -76,6 +76,26 @@ const EXAMPLES: &[Example] = &[
     Example { name: "squares", title: Word::new("two squares", "zwei Quadrate"), input: squares },
 ];
 
+const CROSSING_EXAMPLES: &[Example] = &[
+    EXAMPLES[0],
+    EXAMPLES[1],
+    EXAMPLES[2],
+    Example {
+        name: "pentagram",
+        title: Word::new(
+            "a star that crosses itself and a square: inside is what an odd number of windings encloses",
+            "ein Stern, der sich selbst kreuzt, und ein Quadrat: Innen ist, was ungerade oft umlaufen wird",
+        ),
+        input: pentagram,
+    },
+];
+
+static CROSSING_RINGS: Template = Template::new(
+    "crossing-rings",
+    "A ring crosses itself: entries and exits take turns along it, and the result is meant by the even-odd rule.",
+    "Ein Ring kreuzt sich selbst: Eintritte und Austritte wechseln sich auf ihm ab, und das Ergebnis gilt nach der \
+     Gerade-Ungerade-Regel.",
+);
 static LISTED: Template = Template::new(
     "listed",
     "The list of the {list}: vertex {name} at {at}.",
@@ -175,13 +195,14 @@ impl State {
             | Step::Turn { at, .. } => {
                 picture.dot(*at, Look::Now);
             }
-            Step::Ring { .. } => {}
+            Step::Ring { .. } | Step::CrossingRings => {}
         }
         Shown { line: step.line(), caption, table: self.table(), picture }
     }
 
     fn take(&mut self, step: &Step) -> Caption {
         match step {
+            Step::CrossingRings => CROSSING_RINGS.with([]),
             Step::Listed { list, at, mark } => self.listed(*list, *at, *mark),
             Step::Crossing { at, entry } => {
                 let template = if *entry { &ENTRY } else { &EXIT };

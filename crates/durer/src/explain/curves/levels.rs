@@ -1,8 +1,9 @@
-//! The lessons of de Casteljau's and de Boor's levels of points.
+//! The lessons of levels of points: de Casteljau, de Boor, knot insertion.
 
 use super::{EXAMPLES, TAKES};
 use crate::curve::b_spline::{self, BSpline, de_boor};
 use crate::curve::bezier::{self, de_casteljau};
+use crate::curve::knot_insertion::{self, insert, refine};
 use crate::explain::frame::{Frame, Shown, frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
@@ -30,6 +31,25 @@ pub(super) const DE_BOOR: Lesson = Lesson {
     make: |_, input, _, cap| b_spline(input, cap),
     ..DE_CASTELJAU
 };
+
+pub(super) const BOEHM: Lesson = Lesson {
+    name: knot_insertion::INFO.name,
+    info: &knot_insertion::INFO,
+    templates: &[&INSERTED],
+    make: |_, input, _, cap| boehm(input, cap),
+    ..DE_CASTELJAU
+};
+
+pub(super) const OSLO: Lesson = Lesson {
+    name: knot_insertion::OSLO.name,
+    info: &knot_insertion::OSLO,
+    templates: &[&REFINED, &PLACED],
+    make: |_, input, _, cap| oslo(input, cap),
+    ..DE_CASTELJAU
+};
+
+/// Knots that are inserted, the first one by Boehm's algorithm.
+const NEW: [f64; 2] = [0.4, 0.7];
 
 /// Parameter of the point that is shown.
 const PARAMETER: f64 = 0.4;
@@ -59,6 +79,22 @@ static REACHED: Template = Template::new(
     "point",
     "Level {level}: the share is {t}: between {from} and {to} lies {point}, the point of the curve.",
     "Stufe {level}: Der Anteil ist {t}: Zwischen {from} und {to} liegt {point}, der Punkt der Kurve.",
+);
+
+static INSERTED: Template = Template::new(
+    "point",
+    "New control point {index}: the knots give a share of {t}: between {from} and {to} lies {point}.",
+    "Neuer Kontrollpunkt {index}: Die Knoten geben einen Anteil von {t}: Zwischen {from} und {to} liegt {point}.",
+);
+static REFINED: Template = Template::new(
+    "point",
+    "For new control point {index}, level {level}: a share of {t} between {from} and {to} gives {point}.",
+    "Für den neuen Kontrollpunkt {index}, Stufe {level}: Ein Anteil von {t} zwischen {from} und {to} gibt {point}.",
+);
+static PLACED: Template = Template::new(
+    "point",
+    "Level {level}: a share of {t} between {from} and {to} gives {point}: it is new control point {index}.",
+    "Stufe {level}: Ein Anteil von {t} zwischen {from} und {to} gibt {point}: Das ist der neue Kontrollpunkt {index}.",
 );
 
 /// Control points, the points of all levels, and the curve itself.
@@ -104,9 +140,8 @@ fn bezier(input: &Input, cap: usize) -> Result<Vec<Frame>> {
 }
 
 fn b_spline(input: &Input, cap: usize) -> Result<Vec<Frame>> {
-    let control = control(input)?;
-    let degree = DEGREE.min(control.len() - 1);
-    let spline = BSpline::clamped(degree, control.to_vec())?;
+    let (control, spline) = spline(input)?;
+    let degree = spline.degree();
     let mut state = State::new(control, samples(|t| spline.point(t)));
     let steps = record(cap, |t| {
         de_boor(&spline, PARAMETER, t);
@@ -117,6 +152,46 @@ fn b_spline(input: &Input, cap: usize) -> Result<Vec<Frame>> {
         let mix = Mix { level, index, from: [index.saturating_sub(1), index], share, point };
         state.show(&mix, if level == degree { &REACHED } else { &SHARED }, step.line())
     }))
+}
+
+fn boehm(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+    let (control, spline) = spline(input)?;
+    let mut state = State::new(control, samples(|t| spline.point(t)));
+    let steps = record(cap, |t| insert(&spline, NEW[0], t))?;
+    Ok(frames(&steps, |step| {
+        let knot_insertion::Step { index, share, point } = *step;
+        let mix = Mix { level: 1, index, from: [index.saturating_sub(1), index], share, point };
+        let mut shown = state.show(&mix, &INSERTED, step.line());
+        shown.caption.values.push(("index", index.into()));
+        shown
+    }))
+}
+
+fn oslo(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+    let (control, spline) = spline(input)?;
+    let curve = samples(|t| spline.point(t));
+    let mut state = State::new(control, curve);
+    let steps = record(cap, |t| refine(&spline, &NEW, t))?;
+    let mut of_before = 0;
+    Ok(frames(&steps, |step| {
+        let knot_insertion::OsloStep { of, level, index, share, point } = *step;
+        if std::mem::replace(&mut of_before, of) != of {
+            // The levels begin anew for each new control point.
+            state.levels.truncate(1);
+        }
+        let mix = Mix { level, index, from: [index.saturating_sub(1), index], share, point };
+        let is_last = level == spline.degree();
+        let mut shown = state.show(&mix, if is_last { &PLACED } else { &REFINED }, step.line());
+        shown.caption.values.push(("index", of.into()));
+        shown
+    }))
+}
+
+/// Returns the control points of an input, and a curve with them.
+fn spline(input: &Input) -> Result<(&[DVec2], BSpline<DVec2>)> {
+    let control = control(input)?;
+    let degree = DEGREE.min(control.len() - 1);
+    Ok((control, BSpline::clamped(degree, control.to_vec())?))
 }
 
 /// Returns points of a curve over 0 … 1.

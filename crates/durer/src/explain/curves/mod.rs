@@ -1,5 +1,6 @@
 //! Lessons of curves.
 
+mod cubics;
 mod flatten;
 mod levels;
 
@@ -7,7 +8,8 @@ use super::input::{Figure, Input};
 use super::lesson::{Example, Lesson};
 use super::words::Word;
 
-pub(super) const LESSONS: &[Lesson] = &[levels::DE_CASTELJAU, levels::DE_BOOR, flatten::LESSON];
+pub(super) const LESSONS: &[Lesson] =
+    &[levels::DE_CASTELJAU, levels::DE_BOOR, levels::BOEHM, levels::OSLO, flatten::LESSON];
 
 const TAKES: Word = Word::new("a line of control points", "ein Zug aus Kontrollpunkten");
 

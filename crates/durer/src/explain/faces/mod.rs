@@ -5,7 +5,9 @@ mod back_face;
 mod bsp;
 mod depth;
 mod depth_sort;
+mod hierarchical;
 mod horizon;
+mod orientation;
 mod regions;
 mod triangles;
 mod warnock;
@@ -23,7 +25,9 @@ use crate::{Error, Result};
 
 pub(super) const LESSONS: &[Lesson] = &[
     back_face::LESSON,
+    orientation::LESSON,
     depth::Z_BUFFER,
+    hierarchical::LESSON,
     depth::PAINTER,
     depth_sort::LESSON,
     bsp::LESSON,

@@ -1,5 +1,6 @@
 //! Lessons of filling: polygons by rows, seeds, triangles.
 
+mod complement;
 mod edge_table;
 mod ordered_edge_list;
 mod seeds;
@@ -21,6 +22,9 @@ use crate::{Error, Result};
 pub(super) const LESSONS: &[Lesson] = &[
     edge_table::LESSON,
     ordered_edge_list::LESSON,
+    complement::EDGE_FILL,
+    complement::FENCE_FILL,
+    complement::EDGE_FLAG,
     seeds::NAIVE,
     seeds::SPANS,
     triangles::EDGE_FUNCTION,

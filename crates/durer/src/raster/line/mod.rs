@@ -9,6 +9,7 @@ pub mod dda;
 pub mod equation;
 pub mod pattern;
 mod pieces;
+pub(crate) mod projected;
 pub mod tiled;
 pub mod wide;
 

@@ -5,6 +5,9 @@
 //! if its centre does; a centre on the border belongs to a left and an upper edge (y down), not to a right or
 //! lower one, so faces that share edges light each pixel once.
 //!
+//! [`edge_fill`] (with or without a fence) and [`edge_flag`] find the same pixels by the even-odd rule without any list or
+//! sorting, in a plane of their own.
+//!
 //! ```
 //! use durer::curve::{Path, flatten};
 //! use durer::raster::polygon::{Options, PolygonRasterizer};
@@ -17,8 +20,11 @@
 //! ```
 
 pub(crate) mod crossings;
+pub mod edge_fill;
+pub mod edge_flag;
 pub mod edge_table;
 pub mod ordered_edge_list;
+mod rows;
 
 use std::ops::Range;
 

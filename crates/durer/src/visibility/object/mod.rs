@@ -4,6 +4,7 @@
 pub mod bodies;
 pub mod edges;
 pub mod faces;
+pub mod orientation;
 pub mod round;
 mod stitch;
 pub mod weld;
@@ -11,5 +12,6 @@ pub mod weld;
 pub use bodies::{Bodies, Body};
 pub use edges::{Edges, Side};
 pub use faces::{FaceRun, Faces};
+pub use orientation::SceneOrientation;
 pub use round::{Cylinder, cylinders};
 pub use weld::Weld;

@@ -25,6 +25,7 @@
 pub mod a_buffer;
 pub mod bsp;
 mod face;
+pub mod hierarchical_z;
 pub mod painter;
 pub mod regions;
 pub mod watkins;
@@ -62,6 +63,8 @@ crate::info::family! {
     pub enum PolygonMethod {
         /// [`z_buffer`]
         ZBuffer => z_buffer::INFO,
+        /// [`hierarchical_z`]
+        HierarchicalZ => hierarchical_z::INFO,
         /// [`bsp`]
         Bsp => bsp::INFO,
         /// [`watkins`]
@@ -78,6 +81,9 @@ impl PolygonMethod {
     pub fn items(self, faces: &[Face], screen: &Screen) -> Result<Pixels<u32>> {
         match self {
             Self::ZBuffer => z_buffer::items(faces, screen, &mut NoTrace),
+            Self::HierarchicalZ => {
+                hierarchical_z::items(faces, screen, &Default::default(), &mut NoTrace)
+            }
             Self::Bsp => bsp::items(faces, screen, &Default::default(), &mut NoTrace),
             Self::Watkins => watkins::items(faces, screen, &mut NoTrace),
         }

@@ -8,7 +8,7 @@ use durer::clip::line::{
 };
 use durer::clip::outcode::Outcode;
 use durer::math::{DVec2, DVec3, IVec2, Rect};
-use durer::trace::Recorder;
+use durer::trace::{NoTrace, Recorder};
 
 fn window() -> Rect {
     Rect::new(p(0.0, 0.0), p(10.0, 10.0)).unwrap()
@@ -233,6 +233,39 @@ fn a_factor_of_homogeneous_points_moves_t_but_not_the_place() {
         assert!((seen.start - s).abs().max_element() < 1e-15, "{seen:?}");
         assert_eq!(seen.start.x / seen.start.z, 0.0);
     }
+}
+
+/// In space, with the cube 0 … 1: d1 = x, d2 = w − x, d3 = y, d4 = w − y, d5 = z, d6 = w − z.
+#[test]
+fn a_cube_from_0_to_1_has_six_boundary_coordinates() {
+    use durer::clip::line::ClipBox;
+    use durer::math::DVec4;
+    let cube = ClipBox::new(DVec3::ZERO, DVec3::ONE).unwrap();
+    let q = DVec4::new(1.0, 0.0, 0.0, 1.0);
+    let cases = [
+        (DVec4::new(-1.0, 0.0, 0.0, 1.0), 0.5, DVec4::W),
+        (DVec4::new(-2.0, 0.0, 0.0, 2.0), 2.0 / 3.0, DVec4::W * (4.0 / 3.0)),
+    ];
+    for (p, t, s) in cases {
+        let mut steps = Recorder::default();
+        let line = Segment::new(p, q);
+        let seen = homogeneous::clip_homogeneous_box(&cube, line, &mut steps).unwrap().unwrap();
+        let starts: Vec<f64> = borders(steps.steps()).iter().map(|b| b.2.start).collect();
+        assert_eq!(starts, [p.x, p.w - p.x, p.y, p.w - p.y, p.z, p.w - p.z, p.w]);
+        assert!(near(borders(steps.steps())[0].2.t().unwrap(), t));
+        assert!((seen.start - s).abs().max_element() < 1e-15, "{seen:?}");
+        assert_eq!(homogeneous::replay(line, steps.steps()), Some(seen));
+        let back = Segment::new(q, p);
+        let other = homogeneous::clip_homogeneous_box(&cube, back, &mut NoTrace).unwrap().unwrap();
+        assert_eq!((other.end, other.start), (seen.start, seen.end));
+    }
+    // Beyond the far side, though x and y are right; and a line along a diagonal through the eye.
+    let at = |p: [f64; 4]| DVec4::from(p);
+    let beyond = Segment::new(at([0.5, 0.5, 1.5, 1.0]), at([0.6, 0.5, 1.1, 1.0]));
+    assert_eq!(homogeneous::clip_homogeneous_box(&cube, beyond, &mut NoTrace), Ok(None));
+    let behind = Segment::new(at([0.5, 0.5, 0.5, 1.0]), at([0.5, 0.5, 0.5, -1.0]));
+    let seen = homogeneous::clip_homogeneous_box(&cube, behind, &mut NoTrace).unwrap().unwrap();
+    assert_eq!(seen.end.w, 0.5);
 }
 
 #[test]
