@@ -17,7 +17,7 @@ use crate::trace::{NoTrace, Tracer};
 
 /// The facts.
 pub const INFO: Info = Info {
-    name: "homogeneous",
+    name: "homogeneous-volume",
     title: "Homogeneous clipping",
     authors: "James Blinn, Martin Newell",
     year: 1978,

@@ -15,8 +15,7 @@ use crate::{Error, Result};
 
 pub(super) const LESSONS: &[Lesson] = &[
     Lesson {
-        // The line clipper has the name of the facts.
-        name: "homogeneous-volume",
+        name: volume::INFO.name,
         info: &volume::INFO,
         takes: CLIP_SPACE,
         examples: RINGS,

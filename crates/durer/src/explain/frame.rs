@@ -4,11 +4,13 @@ use super::picture::Picture;
 use super::table::Table;
 use super::words::{Caption, Language, Template};
 use crate::Result;
-use crate::trace::Recorder;
+use crate::trace::{Recorder, Tracer};
 
 /// One step of an algorithm, ready to be shown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
+    /// Number of the step, counted from 1.
+    pub number: usize,
     /// Line of the pseudocode that runs, counted from 1.
     pub line: usize,
     /// Variant of the algorithm's `Step` in kebab case.
@@ -52,11 +54,13 @@ pub(super) fn frames<S>(steps: &Recorder<S>, mut show: impl FnMut(&S) -> Shown) 
     for step in steps.steps() {
         let Shown { line, caption, mut table, picture } = show(step);
         table.mark_changes(frames.last().map(|frame| &frame.table));
-        frames.push(Frame { line, kind: caption.template.kind, caption, table, picture });
+        let (number, kind) = (frames.len() + 1, caption.template.kind);
+        frames.push(Frame { number, line, kind, caption, table, picture });
     }
     if let Some(last) = frames.last().filter(|_| steps.dropped() > 0) {
         let values = [("shown", frames.len().into()), ("dropped", steps.dropped().into())];
-        let mut more = Frame { kind: MORE.kind, caption: MORE.with(values), ..last.clone() };
+        let (number, caption) = (last.number + 1, MORE.with(values));
+        let mut more = Frame { number, kind: MORE.kind, caption, ..last.clone() };
         let cells = more.table.rows.iter_mut().flat_map(|row| &mut row.cells);
         cells.for_each(|cell| cell.changed = false);
         frames.push(more);
@@ -74,4 +78,17 @@ pub(super) struct Shown {
     pub table: Table,
     /// Picture.
     pub picture: Picture,
+}
+
+/// A tracer of several runs that adds the number of the run to each step.
+pub(super) struct Numbered<'a, T> {
+    pub number: usize,
+    pub t: &'a mut T,
+}
+
+impl<S, T: Tracer<(usize, S)>> Tracer<S> for Numbered<'_, T> {
+    fn step(&mut self, make: impl FnOnce() -> S) {
+        let number = self.number;
+        self.t.step(|| (number, make()));
+    }
 }

@@ -9,7 +9,7 @@ use crate::{Error, Result};
 /// Everything that is needed to explain one algorithm.
 #[derive(Debug, Clone, Copy)]
 pub struct Lesson {
-    /// Name by which [`super::run`] finds it: that of the facts, unless two algorithms share it.
+    /// Name by which [`super::run`] finds it: that of the facts, or of a variant.
     pub name: &'static str,
     /// The algorithm's facts.
     pub info: &'static Info,

@@ -22,15 +22,19 @@ mod clip_volume;
 mod curves;
 mod faces;
 mod fills;
+mod fragments;
 mod frame;
 mod grid;
 mod input;
+mod interior;
 mod json;
 mod lesson;
 mod letters;
 mod lines;
 mod picture;
 mod shades;
+mod shadow;
+mod simplify;
 mod svg;
 mod table;
 mod tones;
@@ -56,12 +60,16 @@ const FAMILIES: &[&[Lesson]] = &[
     curves::LESSONS,
     clip_lines::LESSONS,
     clip_polygons::LESSONS,
+    simplify::LESSONS,
     clip_volume::LESSONS,
     viewing::LESSONS,
+    &[interior::LESSON],
     lines::LESSONS,
     fills::LESSONS,
     shades::LESSONS,
+    &[shadow::LESSON],
     tones::LESSONS,
+    &[fragments::LESSON],
     faces::LESSONS,
 ];
 
@@ -159,6 +167,7 @@ pub const ALGORITHMS: &[&Info] = &[
     &raster::polygon::edge_fill::INFO,
     &raster::polygon::edge_fill::FENCE,
     &raster::polygon::edge_flag::INFO,
+    &raster::coverage::cell_sums::INFO,
     &raster::coverage::INFO,
     &raster::coverage::PARTITION,
     &raster::triangulate::INFO,
@@ -172,6 +181,7 @@ pub const ALGORITHMS: &[&Info] = &[
     &shade::phong::INFO,
     &shade::metallic_roughness::INFO,
     &shade::shadow::INFO,
+    &fragment::INFO,
     &fragment::halftone::error_diffusion::INFO,
     &fragment::halftone::clustered_dot::INFO,
     &fragment::fog::INFO,

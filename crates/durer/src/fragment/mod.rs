@@ -20,6 +20,7 @@ mod logic_op;
 mod pixel_mask;
 mod scissor;
 mod stencil;
+mod step;
 mod write_mask;
 
 pub use alpha_test::AlphaTest;
@@ -32,11 +33,13 @@ pub use logic_op::LogicOp;
 pub use pixel_mask::PixelMask;
 pub use scissor::Scissor;
 pub use stencil::{Stencil, StencilFace, StencilOp};
+pub use step::{INFO, Step, replay};
 pub use write_mask::WriteMask;
 
 use crate::math::Vec4;
 use crate::shade::color::{decode_rgba8, encode_rgba8};
 use crate::target::{Framebuffer, Pixels};
+use crate::trace::{NoTrace, Tracer};
 
 /// One candidate for a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -116,33 +119,66 @@ pub enum Outcome {
 /// Takes one fragment through all operations. A plane that the framebuffer does not have passes its
 /// test. Cost: O(1).
 pub fn apply(state: &FragmentState, fragment: Fragment, target: &mut Framebuffer) -> Outcome {
+    apply_traced(state, fragment, target, &mut NoTrace)
+}
+
+/// [`apply`] with a tracer.
+pub fn apply_traced(
+    state: &FragmentState,
+    fragment: Fragment,
+    target: &mut Framebuffer,
+    t: &mut impl Tracer<Step>,
+) -> Outcome {
     let (x, y) = (fragment.x, fragment.y);
-    let Some(stored) = target.color.get(x, y) else { return Outcome::Scissor };
-    if state.scissor.is_some_and(|s| !s.contains(x, y)) {
-        return Outcome::Scissor;
-    }
+    let inside = state.scissor.is_none_or(|s| s.contains(x, y));
+    let stored = target.color.get(x, y).filter(|_| inside);
+    t.step(|| Step::Scissor { fragment, passes: stored.is_some() });
+    let Some(stored) = stored else { return Outcome::Scissor };
     let has_alpha = target.index.is_none();
-    if has_alpha && state.alpha_test.is_some_and(|t| !t.passes(fragment.color.w)) {
-        return Outcome::AlphaTest;
+    if let Some(test) = state.alpha_test.filter(|_| has_alpha) {
+        let (alpha, reference) = (fragment.color.w, test.reference.clamp(0.0, 1.0));
+        let passes = test.passes(alpha);
+        t.step(|| Step::Alpha { alpha, reference, passes });
+        if !passes {
+            return Outcome::AlphaTest;
+        }
     }
     let near = passes_depth(state, &fragment, target);
-    if !passes_stencil(state, &fragment, near, target) {
+    if !passes_stencil(state, &fragment, near, target, t) {
         return Outcome::Stencil;
+    }
+    if state.depth.is_some() {
+        let plane = target.depth.as_ref().and_then(|plane| plane.get(x, y));
+        if let Some(stored) = plane {
+            t.step(|| Step::Depth { depth: fragment.depth, stored, passes: near });
+        }
     }
     if !near {
         return Outcome::Depth;
     }
     write_depth(state, &fragment, target);
+    let (mut color, mut index) = (None, None);
     match &mut target.index {
-        Some(plane) => write_index(state, &fragment, plane),
-        None => target.color.set(x, y, written_color(state, &fragment, stored)),
+        Some(plane) => index = write_index(state, &fragment, plane),
+        None => {
+            let code = written_color(state, &fragment, stored, t);
+            target.color.set(x, y, code);
+            color = Some(code);
+        }
     }
+    let writes_depth = state.write_mask.depth && state.depth.is_some() && target.depth.is_some();
+    t.step(|| Step::Write { color, index, depth: writes_depth.then_some(fragment.depth) });
     Outcome::Drawn
 }
 
 /// Returns the content of the colour plane after a fragment that passed all tests.
-fn written_color(state: &FragmentState, fragment: &Fragment, stored: [u8; 4]) -> [u8; 4] {
-    let color = blended(state, fragment.color, stored);
+fn written_color(
+    state: &FragmentState,
+    fragment: &Fragment,
+    stored: [u8; 4],
+    t: &mut impl Tracer<Step>,
+) -> [u8; 4] {
+    let color = blended(state, fragment.color, stored, t);
     let code = match state.dither {
         Some(dither) => dither.apply(color, fragment.x, fragment.y),
         None => encode_rgba8(color),
@@ -154,7 +190,8 @@ fn written_color(state: &FragmentState, fragment: &Fragment, stored: [u8; 4]) ->
     state.write_mask.color(code, stored)
 }
 
-fn write_index(state: &FragmentState, fragment: &Fragment, plane: &mut Pixels<u8>) {
+/// Writes the index and returns what is now in the plane.
+fn write_index(state: &FragmentState, fragment: &Fragment, plane: &mut Pixels<u8>) -> Option<u8> {
     let (x, y) = (fragment.x, fragment.y);
     let stored = plane.get(x, y).unwrap_or(0);
     let index = match state.dither {
@@ -162,7 +199,9 @@ fn write_index(state: &FragmentState, fragment: &Fragment, plane: &mut Pixels<u8
         None => color_index::rounded(fragment.index),
     };
     let index = state.logic_op.map_or(index, |op| op.apply(index, stored));
-    plane.set(x, y, state.write_mask.index(index, stored));
+    let index = state.write_mask.index(index, stored);
+    plane.set(x, y, index);
+    plane.get(x, y)
 }
 
 /// [`apply`] within a mask, which is asked right after the scissor rectangle.
@@ -193,6 +232,7 @@ fn passes_stencil(
     fragment: &Fragment,
     near: bool,
     target: &mut Framebuffer,
+    t: &mut impl Tracer<Step>,
 ) -> bool {
     let (Some(stencil), Some(plane)) = (state.stencil, target.stencil.as_mut()) else {
         return true;
@@ -203,6 +243,7 @@ fn passes_stencil(
     let new = face.operation(passes, near).apply(stored, face.reference);
     let new = state.write_mask.stencil(fragment.front_facing, new, stored);
     plane.set(fragment.x, fragment.y, new);
+    t.step(|| Step::Stencil { stored, reference: face.reference, passes, new });
     passes
 }
 
@@ -223,9 +264,19 @@ fn write_depth(state: &FragmentState, fragment: &Fragment, target: &mut Framebuf
     put(&mut target.normal, fragment.x, fragment.y, fragment.normal);
 }
 
-fn blended(state: &FragmentState, source: Vec4, stored: [u8; 4]) -> Vec4 {
+fn blended(
+    state: &FragmentState,
+    source: Vec4,
+    stored: [u8; 4],
+    t: &mut impl Tracer<Step>,
+) -> Vec4 {
     match state.blend {
-        Some(blend) if state.logic_op.is_none() => blend.apply(source, decode_rgba8(stored)),
+        Some(blend) if state.logic_op.is_none() => {
+            let stored = decode_rgba8(stored);
+            let result = blend.apply(source, stored);
+            t.step(|| Step::Blend { source, stored, result });
+            result
+        }
         _ => source,
     }
 }

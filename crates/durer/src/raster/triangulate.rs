@@ -25,7 +25,18 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "O(n log n) time on usual input, O(n²) at worst; O(n) memory",
     limits: "contours that cross need a winding rule; without one triangles need not cover the even-odd area",
-    pseudocode: &[],
+    pseudocode: &[
+        "corners ← the points of all rings",
+        "for each hole, from left to right:",
+        "    join it to the ring by a bridge to a corner that it sees",
+        "while the ring has more than three corners:",
+        "    for each corner B between its neighbours A and C:",
+        "        if B is reflex, that is (B − A) × (C − B) ≤ 0: next corner",
+        "        if another corner lies in the triangle A B C: next corner",
+        "        output the triangle A B C, B is an ear",
+        "        remove B from the ring",
+        "output the last three corners",
+    ],
 };
 
 /// Triangles of a polygon.
@@ -53,6 +64,16 @@ pub enum Step {
     Point(DVec2),
     /// An ear is cut off: its corners.
     Triangle([u32; 3]),
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Point(_) => 1,
+            Self::Triangle(_) => 8,
+        }
+    }
 }
 
 /// Triangulates a polygon: the first contour is its border, the others are holes in it.

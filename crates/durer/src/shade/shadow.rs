@@ -13,6 +13,7 @@ use super::lane::{Lane, Vec3Lane};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, Mat4, Vec3};
 use crate::target::Pixels;
+use crate::trace::{NoTrace, Tracer};
 use crate::{Error, Result};
 use std::sync::Arc;
 
@@ -28,8 +29,73 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "one depth picture per map, then O(1) per point and light; 4 bytes a texel",
     limits: "as sharp as the map is fine; blended surfaces, lines and points throw no shadow",
-    pseudocode: &[],
+    pseudocode: &[
+        "for each light: map ← depths of what it meets first, texel by texel",
+        "for each point P of a surface with the normal N, turned to the light:",
+        "    P ← P + N · texel · (1.6 · sin of N and the axis + 0.1)",
+        "    (x, y, d) ← P in the space of the map",
+        "    outside of the map: all light reaches P, next point",
+        "    for each of the four texels around (x, y):",
+        "        it is lit if d ≤ its depth",
+        "    share ← mean of the four, weighted by their distances",
+    ],
 };
+
+/// Step of a look-up in a map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// The point was moved off its surface and is in the map, or not.
+    Moved {
+        /// The point, relative to the lights' origin.
+        position: Vec3,
+        /// The distance by which it was moved along the normal.
+        bias: f32,
+        /// Its place in the map, in texels, and its depth there.
+        place: Vec3,
+        /// True if that is within the map.
+        inside: bool,
+    },
+    /// Its depth was compared with that of a texel.
+    Texel {
+        /// Column and row.
+        texel: [u32; 2],
+        /// The stored depth, 1 where nothing is.
+        stored: f32,
+        /// The depth of the point.
+        depth: f32,
+        /// Weight of the texel in the mean; texels without any are left out.
+        weight: f32,
+        /// True if the point is not behind what the light sees there.
+        lit: bool,
+    },
+    /// The share of the light that reaches the point.
+    Share {
+        /// 0 … 1.
+        share: f32,
+    },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Moved { inside: true, .. } => 4,
+            Self::Moved { inside: false, .. } => 5,
+            Self::Texel { .. } => 7,
+            Self::Share { .. } => 8,
+        }
+    }
+}
+
+/// Returns the share that the steps of one look-up lead to, up to rounding; `None` outside the map.
+pub fn replay(steps: &[Step]) -> Option<f32> {
+    let inside = steps.iter().any(|step| matches!(step, Step::Moved { inside: true, .. }));
+    let lit = |step: &Step| match *step {
+        Step::Texel { weight, lit: true, .. } => weight,
+        _ => 0.0,
+    };
+    inside.then(|| steps.iter().map(lit).sum())
+}
 
 /// Factor of the slope's depth over a texel by which a point is moved: four texels around it are
 /// sampled, whose centres are up to √2 texels away. Less makes surfaces speckled.
@@ -81,7 +147,19 @@ impl ShadowMap {
     /// Returns the share of the light that reaches a point, 0 … 1; `None` outside the map.
     ///
     /// `face` is the unit normal of the surface, turned to the light's side.
+    #[inline]
     pub fn reach(&self, position: Vec3, face: Vec3) -> Option<f32> {
+        self.reach_traced(position, face, &mut NoTrace)
+    }
+
+    /// [`Self::reach`] with a tracer.
+    #[inline]
+    pub fn reach_traced(
+        &self,
+        position: Vec3,
+        face: Vec3,
+        t: &mut impl Tracer<Step>,
+    ) -> Option<f32> {
         let seen = self.map_from_position * position.extend(1.0);
         if seen.w <= 0.0 {
             return None;
@@ -90,26 +168,37 @@ impl ShadowMap {
         // Texels lie side by side across the axis, wherever in the map the point is.
         let cosine = face.dot(self.axis).clamp(-1.0, 1.0);
         let sine = (1.0 - cosine * cosine).sqrt();
-        let moved = position + face * (texel * (SLOPE_BIAS * sine + BIAS));
+        let bias = texel * (SLOPE_BIAS * sine + BIAS);
+        let moved = position + face * bias;
         let p = self.map_from_position * moved.extend(1.0);
         let (x, y, depth) = (p.x / p.w, p.y / p.w, p.z / p.w);
         let (width, height) = (self.depths.width() as f32, self.depths.height() as f32);
         let inside = x >= 0.0 && y >= 0.0 && x < width && y < height && depth >= 0.0;
+        t.step(|| Step::Moved { position, bias, place: Vec3::new(x, y, depth), inside });
         if !inside {
             return None;
         }
-        Some(self.filtered(x - 0.5, y - 0.5, depth))
+        let share = self.filtered(x - 0.5, y - 0.5, depth, t);
+        t.step(|| Step::Share { share });
+        Some(share)
     }
 
     /// Returns the share of the four texels around a place that are not nearer to the light.
-    fn filtered(&self, x: f32, y: f32, depth: f32) -> f32 {
+    #[inline]
+    fn filtered(&self, x: f32, y: f32, depth: f32, t: &mut impl Tracer<Step>) -> f32 {
         let (left, top) = (x.floor(), y.floor());
         let (fx, fy) = (x - left, y - top);
-        let lit = |dx: f32, dy: f32| {
+        let mut lit = |dx: f32, dy: f32| {
             let (i, j) = ((left + dx).max(0.0) as u32, (top + dy).max(0.0) as u32);
             let (i, j) = (i.min(self.depths.width() - 1), j.min(self.depths.height() - 1));
             let nearest = self.depths.get(i, j).unwrap_or(1.0);
-            if nearest >= 1.0 || depth <= nearest { 1.0 } else { 0.0 }
+            let lit = nearest >= 1.0 || depth <= nearest;
+            let weight =
+                (if dx > 0.0 { fx } else { 1.0 - fx }) * (if dy > 0.0 { fy } else { 1.0 - fy });
+            if weight > 0.0 {
+                t.step(|| Step::Texel { texel: [i, j], stored: nearest, depth, weight, lit });
+            }
+            if lit { 1.0 } else { 0.0 }
         };
         let upper = lit(0.0, 0.0) * (1.0 - fx) + lit(1.0, 0.0) * fx;
         let lower = lit(0.0, 1.0) * (1.0 - fx) + lit(1.0, 1.0) * fx;
@@ -198,7 +287,21 @@ mod tests {
     #[test]
     fn equal_depths_are_lit() {
         let map = map(vec![0.5; 4]);
-        assert_eq!((map.filtered(0.0, 0.0, 0.5), map.filtered(0.0, 0.0, 0.6)), (1.0, 0.0));
+        let filtered = |depth| map.filtered(0.0, 0.0, depth, &mut NoTrace);
+        assert_eq!((filtered(0.5), filtered(0.6)), (1.0, 0.0));
+    }
+
+    #[test]
+    fn steps_add_up_to_the_share() {
+        let map = map(vec![1.0, 0.5, 0.5, 1.0, 0.5, 0.5]);
+        for (x, y, z) in [(0.5, 1.0, 1.0), (1.25, 0.8, 1.0), (2.5, 1.3, 6.0), (-0.1, 1.0, 1.0)] {
+            let (position, mut steps) = (Vec3::new(x, y, z), crate::trace::Recorder::default());
+            let share = map.reach_traced(position, Vec3::Z, &mut steps);
+            assert_eq!(share, map.reach(position, Vec3::Z));
+            let rebuilt = replay(steps.steps());
+            assert_eq!(share.is_some(), rebuilt.is_some());
+            assert!(share.zip(rebuilt).is_none_or(|(a, b)| (a - b).abs() < 1e-6));
+        }
     }
 
     #[test]

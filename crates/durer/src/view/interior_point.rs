@@ -40,6 +40,13 @@ pub struct Step {
     pub distance: f64,
 }
 
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        if self.half > 0.0 { 2 } else { 7 }
+    }
+}
+
 /// The facts.
 pub const INFO: Info = Info {
     name: "interior-point",
@@ -52,7 +59,16 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "O(s n): s squares looked at, some tens to hundreds, n vertices",
     limits: "distances in f64",
-    pseudocode: &[],
+    pseudocode: &[
+        "cover the bounding box with squares",
+        "for each square: d ← distance of its centre from the border, negative outside",
+        "    bound ← d + half of its diagonal",
+        "    best ← the centre with the largest d",
+        "while the largest bound is more than best + precision:",
+        "    divide its square in four, with d and bound of each",
+        "if the centre of the largest ring is as far: take it",
+        "else: move the best point to the middle of those as far",
+    ],
 };
 
 /// A point within a polygon.

@@ -6,9 +6,6 @@ use durer::explain::{self, Figure, Frame, Input, Language, Lesson, Options, Temp
 use durer::math::{DVec2, DVec3, Rect};
 use std::collections::BTreeSet;
 
-#[path = "../../examples/step_pictures/lessons.rs"]
-mod pictures;
-
 fn frames(lesson: &Lesson, example: &str) -> Vec<Frame> {
     let input = Input::Example(example.to_owned());
     lesson
@@ -146,17 +143,6 @@ fn drawings_are_well_formed() {
                 assert_eq!(svg.matches("<svg ").count(), svg.matches("</svg>").count());
             }
         }
-    }
-}
-
-/// The documentation shows what the library draws now; `cargo run --example step_pictures` writes it.
-#[test]
-fn pictures_of_the_documentation_are_current() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/algorithms");
-    for &(lesson, example) in pictures::SHEETS {
-        let drawn = pictures::sheet((lesson, example)).unwrap();
-        let shown = std::fs::read_to_string(format!("{folder}/{lesson}.svg")).unwrap();
-        assert!(drawn == shown, "{lesson}: write the step pictures anew");
     }
 }
 

@@ -201,7 +201,14 @@ fn penetrating(count: usize, hidden: bool) -> (Drawing, f64) {
     let found = draw(&soup(&triangles), &v, &options, &mut recorder).expect("drawing");
     assert_eq!(replay(recorder.steps(), &options), found.lines);
     let covers = recorder.steps().iter().filter_map(|step| match step {
-        Step::Line { covers, .. } => Some(covers.len()),
+        Step::Line { tried, covers, .. } => {
+            assert!(tried.is_sorted_by(|a, b| a < b));
+            assert!(covers.iter().all(|cover| tried.contains(&cover.item)));
+            let spans = step.spans();
+            assert!(spans.windows(2).all(|pair| pair[0].to == pair[1].from));
+            assert_eq!((spans[0].from, spans[spans.len() - 1].to), (0.0, 1.0));
+            Some(covers.len())
+        }
         Step::Page(_) => None,
     });
     let (lines, sum) = covers.fold((0, 0), |(lines, sum), covers| (lines + 1, sum + covers));

@@ -5,6 +5,7 @@ mod hidden;
 mod lines;
 mod pixels;
 mod polygons;
+mod surfaces;
 
 use durer::math::DVec2;
 

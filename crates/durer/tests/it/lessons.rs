@@ -96,5 +96,125 @@ fn every_algorithm_has_a_lesson_or_a_reason() {
     let known = |info: &durer::info::Info| explain::ALGORITHMS.contains(&info);
     assert!(explain::WITHOUT_LESSON.iter().all(|(info, why)| known(info) && !why.is_empty()));
     // The list only shrinks.
-    assert!(explain::WITHOUT_LESSON.len() <= 37);
+    assert!(explain::WITHOUT_LESSON.len() <= 26);
+}
+
+#[test]
+fn names_of_algorithms_are_unique() {
+    let mut names: Vec<&str> = explain::ALGORITHMS.iter().map(|info| info.name).collect();
+    let count = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), count);
+}
+
+#[test]
+fn cells_show_cover_and_area_of_the_page() {
+    let frames = frames("cell-sums", "strip");
+    let pieces: Vec<&Frame> = frames.iter().filter(|frame| frame.kind == "piece").collect();
+    let pair = |name| numbers(&[pieces[0].clone(), pieces[2].clone()], name);
+    assert_eq!((pair("cover"), pair("area")), (vec![1.0, -1.0], vec![0.75, -0.5]));
+    let coverage = numbers(&frames, "coverage");
+    assert_eq!(coverage, [191.0, 255.0, 128.0, 191.0, 255.0, 128.0]);
+}
+
+#[test]
+fn areas_of_faces_sum_to_one_where_they_meet() {
+    let frames = frames("partition", "fan");
+    let sums = numbers(&frames, "sum");
+    assert!(sums.iter().all(|sum| (0.0..=1.0).contains(sum)));
+    let full = frames.iter().filter(|frame| frame.text(Language::English).contains("exactly 1"));
+    assert_eq!(full.count(), 2);
+}
+
+#[test]
+fn ears_of_the_page_are_cut_off_in_its_order() {
+    let frames = frames("triangulate", "arrow");
+    assert_eq!(rows(frames.last().unwrap()), ["1: D E A 4", "2: D A B 2", "3: D B C 4"]);
+    assert_eq!(numbers(&frames, "sum"), [10.0]);
+}
+
+#[test]
+fn patterns_go_on_round_corners() {
+    let frames = frames("line-pattern", "corner");
+    let bits = numbers(&frames, "bit");
+    // Eleven steps to the corner, which is the last pixel of the one line and the first of the other.
+    let expected: Vec<f64> = (0..=11).chain(11..=17).map(|step| f64::from(step % 16)).collect();
+    assert_eq!(bits, expected);
+}
+
+#[test]
+fn strokes_show_miters_beyond_the_limit_as_bevels() {
+    let joins = |example: &str| {
+        let frames = frames("stroke", example);
+        numbers(&frames, "distance").len()
+    };
+    // One point for the miter, two for the bevel.
+    assert_eq!(joins("sharp"), 2);
+    assert!(joins("joins") > 4);
+}
+
+#[test]
+fn rows_of_depths_hold_the_nearest_triangle() {
+    let frames = frames("scan-line-z", "near-first");
+    let depths = numbers(&frames, "z");
+    assert!(!depths.is_empty() && depths.iter().all(|z| *z == 1.0 || *z == 3.0), "{depths:?}");
+    let last = frames.iter().rfind(|frame| frame.kind == "write").unwrap();
+    assert!(last.text(Language::English).starts_with("Pixel 8: z = 3 < ∞"), "{last:?}");
+}
+
+#[test]
+fn rays_show_origin_direction_and_t() {
+    let frames = frames("ray", "shadow");
+    // The middle pixel looks straight ahead, at the plate at depth 3.
+    let middle = frames.iter().find(|frame| numbers(&[(*frame).clone()], "x") == [3.0]).unwrap();
+    let text = middle.text(Language::English);
+    assert!(text.starts_with("Pixel 3: D = (0, 0, −1). The nearest face along O + t · D is B"));
+    assert!(text.ends_with("t = 11.7, at (6.5, 2.5, −3)."), "{text}");
+    let dark =
+        frames.iter().filter(|frame| frame.text(Language::English).contains("in the way at"));
+    assert_eq!(dark.count(), 1);
+}
+
+#[test]
+fn invisibility_changes_where_faces_begin_and_end() {
+    let frames = frames("hidden-line", "strip");
+    let strip = frames[1].text(Language::English);
+    assert!(strip.ends_with("Q changes at t = 0.2 0.4 0.6 0.8 and is 0 1 2 1 0."), "{strip}");
+    let hidden = frames.iter().filter(|f| f.text(Language::English).contains("nothing of it"));
+    assert_eq!(hidden.count(), 4);
+}
+
+#[test]
+fn fragments_are_dropped_by_every_test() {
+    let frames = frames("fragment-operations", "all-tests");
+    let dropped = |kind: &str| {
+        let of_kind = frames.iter().filter(|frame| frame.kind == kind);
+        of_kind.filter(|frame| frame.text(Language::English).ends_with("dropped.")).count()
+    };
+    assert_eq!(["scissor", "alpha", "stencil", "depth"].map(dropped), [1, 3, 2, 2]);
+    // Half of what is there, half of the plate, in linear light.
+    assert!(frames.iter().any(|frame| frame.kind == "blend"));
+}
+
+#[test]
+fn simplification_shows_distances_and_triangles() {
+    let kept = frames("douglas-peucker", "spike");
+    let last = kept.iter().rfind(|frame| frame.kind == "kept").unwrap();
+    assert!(last.text(Language::English).contains("so it stays and divides the part"));
+    let sides = numbers(&frames("visvalingam", "coast"), "side");
+    assert!(sides.windows(2).all(|pair| pair[0] <= pair[1]) && sides.len() > 3, "{sides:?}");
+    let shared = numbers(&frames("coverage", "border"), "count");
+    assert!(shared.iter().all(|count| *count == 2.0), "{shared:?}");
+    let island = values(&frames("coverage", "island"), "at");
+    assert!(!island.contains(&Value::Point(DVec2::new(4.2, 3.6))), "{island:?}");
+}
+
+#[test]
+fn squares_without_room_are_dropped() {
+    let found = frames("interior-point", "hook");
+    let last = numbers(&found, "distance").last().copied().unwrap();
+    // The corner at (0, 0) has most room: r + r√2/… of the notch's corner, and no less than 1.75.
+    assert!((1.75..2.5).contains(&last), "{last}");
+    assert!(found.iter().any(|f| f.text(Language::English).contains("can hold no more than")));
 }

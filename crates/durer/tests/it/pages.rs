@@ -1,6 +1,7 @@
-//! The pages of `docs/algorithms`: their pseudocode is that of the algorithms' facts, and their links lead somewhere.
+//! The pages of `docs/algorithms`: their pseudocode is that of the algorithms' facts, their pictures are those of the
+//! lessons, and their links lead somewhere.
 
-use durer::explain::ALGORITHMS;
+use durer::explain::{self, ALGORITHMS, Frame, Input, Language};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -66,5 +67,75 @@ fn links_of_pages_lead_to_files() {
             let found = file.is_empty() || link.contains("://") || folder().join(file).exists();
             assert!(found, "{}: {link}", path.display());
         }
+    }
+}
+
+/// Pictures of pages: the lesson, by which the file is named, its example, and the most steps to show.
+const SHEETS: &[(&str, &str, usize)] = &[
+    ("cohen-sutherland", "all-borders", 100),
+    ("midpoint", "both-ends", 100),
+    ("cyrus-beck", "pentagon", 100),
+    ("nicholl-lee-nicholl", "from-corner", 100),
+    ("sutherland-hodgman", "triangle", 100),
+    ("weiler-atherton", "lecture", 100),
+    ("greiner-hormann", "squares", 12),
+    ("vatti", "letter", 12),
+    ("overlay", "letter", 8),
+    ("de-casteljau", "cubic", 12),
+    ("flatten", "cubic", 8),
+    ("douglas-peucker", "coast", 12),
+    ("visvalingam", "coast", 8),
+    ("bresenham", "lecture", 12),
+    ("wu", "lecture", 8),
+    ("line-pattern", "corner", 12),
+    ("stroke", "joins", 12),
+    ("edge-table", "triangle", 16),
+    ("cell-sums", "triangle", 12),
+    ("partition", "fan", 8),
+    ("naive", "room", 12),
+    ("triangulate", "arrow", 12),
+    ("fragment-operations", "all-tests", 16),
+    ("scan-line-z", "penetration", 12),
+    ("ray", "shadow", 12),
+    ("hidden-line", "strip", 12),
+    ("horizon-curves", "lecture", 12),
+    ("interior-point", "hook", 12),
+];
+
+/// Returns at most so many frames: the first, the last, and those between at equal distances.
+fn chosen(frames: Vec<Frame>, most: usize) -> Vec<Frame> {
+    let last = frames.len().saturating_sub(1);
+    let count = most.min(frames.len());
+    (0..count).map(|i| frames[i * last / (count - 1).max(1)].clone()).collect()
+}
+
+/// Draws some steps of a lesson's example.
+fn sheet((lesson, example, most): (&str, &str, usize)) -> String {
+    let input = Input::Example(example.to_owned());
+    let frames = explain::run(lesson, &input, &explain::Options::default(), 5_000);
+    let frames = frames.unwrap_or_else(|e| panic!("{lesson} {example}: {e}"));
+    explain::sheet(&chosen(frames, most), 4, Language::English)
+}
+
+#[test]
+fn pictures_of_pages_are_those_of_the_lessons() {
+    for &(lesson, example, most) in SHEETS {
+        let path = folder().join(format!("{lesson}.svg"));
+        let drawn = sheet((lesson, example, most));
+        let shown = std::fs::read_to_string(&path).unwrap_or_default();
+        if shown != drawn && std::env::var_os("DURER_BLESS").is_some() {
+            std::fs::write(&path, &drawn).expect("written");
+        } else {
+            assert!(drawn == shown, "{}: run with DURER_BLESS=1", path.display());
+        }
+    }
+}
+
+#[test]
+fn pages_show_every_picture() {
+    let text: String =
+        pages().iter().map(|path| std::fs::read_to_string(path).expect("a page")).collect();
+    for (lesson, ..) in SHEETS {
+        assert!(text.is_empty() || text.contains(&format!("]({lesson}.svg)")), "{lesson}");
     }
 }

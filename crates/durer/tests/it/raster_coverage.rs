@@ -3,7 +3,7 @@
 use durer::curve::Contours;
 use durer::math::DVec2;
 use durer::raster::coverage::{
-    Face, FillRule, Options, Overlap, PartitionStep, Step, fill, fill_partition,
+    Face, FillRule, Options, Overlap, PartitionStep, Step, cell_sums, fill, fill_partition,
 };
 use durer::target::Pixels;
 use durer::trace::{NoTrace, Recorder};
@@ -511,4 +511,26 @@ fn a_partition_is_exactly_full_in_any_order() {
         fill_partition(&faces, &mut white, &mut NoTrace).unwrap();
         assert!(white.data().iter().all(|p| *p == [255; 4]));
     }
+}
+
+#[test]
+fn cells_by_hand_give_the_production_fill() {
+    let mut random = Random(21);
+    for corners in [3, 4, 9, 30] {
+        for rule in RULES {
+            let contours = Contours::polygon((0..corners).map(|_| random.point(-9.0, 40.0)));
+            let mut steps = Recorder::default();
+            let found = cell_sums::fill(&contours, 31, 27, rule, &mut steps).expect("size");
+            let options = Options { rule, overlap: Overlap::Accumulated };
+            let fast = mask_with(&contours, 31, 27, &options);
+            let far = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 1;
+            assert!(!found.data().iter().zip(fast.data()).any(far), "{corners} {rule:?}");
+            let plain = cell_sums::fill(&contours, 31, 27, rule, &mut NoTrace).expect("size");
+            assert_eq!(found, plain);
+            assert_eq!(cell_sums::replay(steps.steps(), 31, 27), found);
+        }
+    }
+    let far = Contours::polygon([(-1e300, 2.0), (1e300, 2.5), (1e300, 1e308)].map(DVec2::from));
+    assert!(cell_sums::fill(&far, 8, 8, FillRule::NonZero, &mut NoTrace).is_ok());
+    assert!(cell_sums::fill(&far, 40_000, 8, FillRule::NonZero, &mut NoTrace).is_err());
 }

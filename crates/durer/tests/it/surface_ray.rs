@@ -2,7 +2,7 @@
 
 use crate::scenes::instance;
 use crate::surface_scenes::{Prepared, assert_same_planes, each, random};
-use durer::math::{DVec3, Vec3, Vec4};
+use durer::math::{DVec2, DVec3, Vec3, Vec4};
 use durer::pipeline::Samples;
 use durer::scene::{AlphaMode, Light, LightKind, Material, Mesh, Part, Scene, ShadingModel};
 use durer::shade::PreparedLights;
@@ -59,7 +59,14 @@ fn rays_can_be_replayed_on_every_number_of_threads() {
     let mut items = vec![NO_ITEM; 50 * 40];
     let mut kinds = std::collections::HashSet::new();
     for step in recorder.steps() {
-        let Step::Ray { x, y, kind, hit, .. } = *step else { continue };
+        let Step::Ray { x, y, kind, origin, direction, hit, t, .. } = *step else { continue };
+        assert!((direction.length() - 1.0).abs() < 1e-5 && hit.is_some() == t.is_finite());
+        if kind == RayKind::Primary {
+            assert_eq!(origin, p.view.camera().eye);
+            let seen = p.view.screen_from_world() * (origin + direction).extend(1.0);
+            let middle = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            assert!((seen.truncate().truncate() / seen.w).distance(middle) < 1e-6);
+        }
         kinds.insert(kind);
         let is_triangle = |i: &u32| u64::from(*i) < scene.triangle_count();
         if let (RayKind::Primary, Some(item)) = (kind, hit.filter(is_triangle)) {

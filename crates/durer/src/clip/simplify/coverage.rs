@@ -35,7 +35,18 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "O(n log n) for n points on usual data",
     limits: "borders are shared where neighbours have the same points; nodes stay",
-    pseudocode: &[],
+    pseudocode: &[
+        "make points at the same place one",
+        "nodes ← places where lines end or meet with other neighbours; they stay",
+        "for each other place: weight ← √area of the triangle with its neighbours",
+        "while there are such places:",
+        "    P ← the place with the smallest weight",
+        "    if its weight > limit: stop",
+        "    if a place lies in its triangle, or its neighbours are joined already:",
+        "        P waits until one of them changes",
+        "    else: remove P from all lines and rings that pass it",
+        "        weights of its two neighbours anew",
+    ],
 };
 
 /// Options for the amount that is left out.
@@ -58,6 +69,15 @@ pub enum Step {
         /// Its weight.
         weight: f64,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Removed { .. } => 9,
+        }
+    }
 }
 
 /// Lines and rings that are simplified together.

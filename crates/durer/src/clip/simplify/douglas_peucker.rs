@@ -31,7 +31,16 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "O(n log n) for n points on usual lines, O(n²) at worst",
     limits: "one line by itself may come to cross itself; a coverage keeps it from that",
-    pseudocode: &[],
+    pseudocode: &[
+        "keep the first and the last point",
+        "parts ← {the whole line}",
+        "while there are parts: take one, from A to B",
+        "    P ← the point between that is farthest from the segment A B",
+        "    if P is farther away than the tolerance:",
+        "        keep P, and add the parts from A to P and from P to B",
+        "    else:",
+        "        leave out all points between A and B",
+    ],
 };
 
 /// Options for the amount that is left out.
@@ -49,12 +58,35 @@ pub enum Step {
     Kept {
         /// Its index.
         point: usize,
+        /// Indices of the ends of its part.
+        part: [usize; 2],
+        /// Its distance from the segment between them; infinite for an end of the line.
+        distance: f64,
     },
+    /// All points between the ends of a part are left out.
+    Straight {
+        /// Indices of the ends.
+        part: [usize; 2],
+        /// The largest distance of a point between them from their segment; 0 if there is none.
+        distance: f64,
+    },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Kept { distance: f64::INFINITY, .. } => 1,
+            Self::Kept { .. } => 6,
+            Self::Straight { .. } => 8,
+        }
+    }
 }
 
 /// Rebuilds the result from the steps.
 pub fn replay(steps: &[Step]) -> Vec<usize> {
-    let mut kept: Vec<usize> = steps.iter().map(|Step::Kept { point }| *point).collect();
+    let point = |step: &Step| if let Step::Kept { point, .. } = step { Some(*point) } else { None };
+    let mut kept: Vec<usize> = steps.iter().filter_map(point).collect();
     kept.sort_unstable();
     kept
 }
@@ -70,17 +102,23 @@ pub fn simplify(
 ) -> Result<Vec<usize>> {
     check(points, options.tolerance)?;
     let mut kept = Vec::new();
-    let mut keep = |point: usize| {
-        t.step(|| Step::Kept { point });
-        kept.push(point);
+    let mut decide = |point: Option<usize>, part: [usize; 2], distance: f64| {
+        t.step(|| match point {
+            Some(point) => Step::Kept { point, part, distance },
+            None => Step::Straight { part, distance },
+        });
+        kept.extend(point);
     };
+    let last = points.len().saturating_sub(1);
     if !points.is_empty() {
-        keep(0);
+        decide(Some(0), [0, last], f64::INFINITY);
     }
     if points.len() > 1 {
-        keep(points.len() - 1);
+        decide(Some(last), [0, last], f64::INFINITY);
     }
-    divide(points, options.tolerance, |point, _| keep(point));
+    divide(points, options.tolerance, |part| {
+        decide(part.farthest.filter(|_| part.is_divided), part.ends, part.distance);
+    });
     kept.sort_unstable();
     Ok(kept)
 }
@@ -97,18 +135,36 @@ pub fn weights(points: &[DVec2]) -> Result<Vec<f64>> {
             *weight = f64::INFINITY;
         }
     }
-    divide(points, 0.0, |point, weight| weights[point] = weight);
+    divide(points, 0.0, |part| {
+        if let Some(at) = part.farthest.filter(|_| part.is_divided) {
+            weights[at] = part.weight;
+        }
+    });
     Ok(weights)
 }
 
-/// Divides a line as long as points are farther away than the tolerance; tells each of them and its weight.
-fn divide(points: &[DVec2], tolerance: f64, mut found: impl FnMut(usize, f64)) {
+/// A part of a line, and the point that decides about it.
+struct Part {
+    ends: [usize; 2],
+    /// The farthest point between the ends.
+    farthest: Option<usize>,
+    distance: f64,
+    /// The distance, or that at which the part began if it is less.
+    weight: f64,
+    is_divided: bool,
+}
+
+/// Divides a line as long as points are farther away than the tolerance; calls `found` with each part.
+fn divide(points: &[DVec2], tolerance: f64, mut found: impl FnMut(Part)) {
     let mut open = vec![(0, points.len().saturating_sub(1), f64::INFINITY)];
     while let Some((from, to, limit)) = open.pop() {
-        let Some((at, squared)) = farthest(points, from, to) else { continue };
-        let weight = squared.sqrt().min(limit);
-        if weight > tolerance {
-            found(at, weight);
+        let best = farthest(points, from, to);
+        let (farthest, distance) =
+            best.map_or((None, 0.0), |(at, squared)| (Some(at), squared.sqrt()));
+        let weight = distance.min(limit);
+        let is_divided = weight > tolerance;
+        found(Part { ends: [from, to], farthest, distance, weight, is_divided });
+        if let Some(at) = farthest.filter(|_| is_divided) {
             open.extend([(from, at, weight), (at, to, weight)]);
         }
     }

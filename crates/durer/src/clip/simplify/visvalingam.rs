@@ -29,7 +29,16 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "O(n log n) for n points",
     limits: "one line by itself may come to cross itself; a coverage keeps it from that",
-    pseudocode: &[],
+    pseudocode: &[
+        "for each inner point: area of the triangle with its two neighbours",
+        "while there are inner points:",
+        "    P ← the point with the smallest area, the first of several",
+        "    side ← √area, but no less than the side of the point before",
+        "    if side > tolerance: stop",
+        "    remove P",
+        "    for each of its two neighbours:",
+        "        area ← that of its new triangle",
+    ],
 };
 
 /// Options for the amount that is left out.
@@ -55,6 +64,16 @@ pub enum Step {
         /// The side of a square as large as its triangle.
         side: f64,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Begin { .. } => 1,
+            Self::Removed { .. } => 6,
+        }
+    }
 }
 
 /// Rebuilds the result from the steps.

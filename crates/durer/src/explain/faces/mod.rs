@@ -5,10 +5,14 @@ mod back_face;
 mod bsp;
 mod depth;
 mod depth_sort;
+mod hidden_line;
 mod hierarchical;
 mod horizon;
 mod orientation;
+mod ray;
 mod regions;
+mod row;
+mod scan_line_z;
 mod triangles;
 mod warnock;
 mod watkins;
@@ -23,6 +27,9 @@ use crate::target::NO_ITEM;
 use crate::visibility::polygons::{Face, Screen};
 use crate::{Error, Result};
 
+pub(super) use row::Row;
+pub(super) use triangles::Triangles;
+
 pub(super) const LESSONS: &[Lesson] = &[
     back_face::LESSON,
     orientation::LESSON,
@@ -32,13 +39,16 @@ pub(super) const LESSONS: &[Lesson] = &[
     depth_sort::LESSON,
     bsp::LESSON,
     warnock::LESSON,
+    scan_line_z::LESSON,
     watkins::LESSON,
     a_buffer::LESSON,
+    ray::LESSON,
     regions::LESSON,
+    hidden_line::LESSON,
     horizon::LESSON,
 ];
 
-const TAKES: Word = Word::new(
+pub(super) const TAKES: Word = Word::new(
     "plane faces of at least three corners, seen from +z",
     "ebene Flächen aus mindestens drei Ecken, von +z gesehen",
 );
@@ -79,7 +89,7 @@ const EXAMPLES: &[Example] = &[
 ];
 
 /// Returns a rectangle whose distance from the eye changes from its left side to its right one.
-fn slab(low: (f64, f64), high: (f64, f64), depths: (f64, f64)) -> Vec<DVec3> {
+pub(super) fn slab(low: (f64, f64), high: (f64, f64), depths: (f64, f64)) -> Vec<DVec3> {
     let corner = |x: f64, y: f64, depth: f64| DVec3::new(x, y, -depth);
     vec![
         corner(low.0, low.1, depths.0),
@@ -102,16 +112,16 @@ fn beams() -> Vec<Vec<DVec3>> {
 }
 
 /// Faces on a grid of pixels, and the item of each pixel.
-struct Scene {
-    raster: Raster,
-    faces: Vec<Face>,
+pub(super) struct Scene {
+    pub raster: Raster,
+    pub faces: Vec<Face>,
     items: Vec<u32>,
 }
 
 impl Scene {
     /// Lays the faces of an input on a grid: z is measured from the eye, which is 1 before the nearest corner unless
     /// all have negative z.
-    fn new(input: &Input) -> Result<Self> {
+    pub fn new(input: &Input) -> Result<Self> {
         let given = input.faces(TAKES)?;
         if given.len() > MOST {
             let (value, limit) = (given.len() as u64, MOST as u64);

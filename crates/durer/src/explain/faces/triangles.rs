@@ -11,7 +11,7 @@ use crate::view::View;
 const MOST: u64 = 400;
 
 /// Triangles of the faces, in the scene's order, each with its face and its number there.
-pub(super) struct Triangles {
+pub(in crate::explain) struct Triangles {
     /// Corners of each, in pixels and depth.
     pub corners: Vec<[DVec3; 3]>,
     owners: Vec<(usize, usize)>,

@@ -1,10 +1,12 @@
 //! Lessons of filling: polygons by rows, seeds, triangles.
 
 mod complement;
+mod coverage;
 mod edge_table;
 mod ordered_edge_list;
 mod seeds;
 mod triangles;
+mod triangulate;
 
 use super::grid::Raster;
 use super::input::{Figure, Input, Options};
@@ -30,6 +32,9 @@ pub(super) const LESSONS: &[Lesson] = &[
     triangles::EDGE_FUNCTION,
     triangles::EDGE_WALKING,
     triangles::TILES,
+    coverage::CELLS,
+    coverage::PARTITION,
+    triangulate::LESSON,
 ];
 
 const TAKES: Word =

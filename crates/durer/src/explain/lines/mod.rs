@@ -1,8 +1,10 @@
 //! Lessons of lines and conics in pixels.
 
 mod conics;
+mod pattern;
 mod smooth;
 mod thin;
+mod wide;
 
 use super::input::{Figure, Input};
 use super::lesson::{Example, Lesson};
@@ -14,6 +16,8 @@ pub(super) const LESSONS: &[Lesson] = &[
     thin::BRESENHAM,
     smooth::WU,
     smooth::GUPTA_SPROULL,
+    pattern::LESSON,
+    wide::LESSON,
     conics::CIRCLE,
     conics::ELLIPSE,
 ];

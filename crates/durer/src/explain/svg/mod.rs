@@ -48,15 +48,13 @@ pub fn sheet(frames: &[Frame], columns: usize, language: Language) -> String {
         .fold(PANEL * 0.8, f64::max);
     let mut body = String::new();
     let mut y = GAP;
-    let mut number = 0;
     for row in frames.chunks(columns) {
         let high =
             row.iter().map(|frame| figure::size(&frame.picture, PANEL).y).fold(0.0, f64::max);
         let mut lines = 0;
         for (i, frame) in row.iter().enumerate() {
             let x = GAP + i as f64 * (wide + GAP);
-            number += 1;
-            let text = format!("{number}. {}", frame.text(language));
+            let text = format!("{}. {}", frame.number, frame.text(language));
             let caption = wrap(&text, TEXT, wide);
             group(&mut body, (x, y), &figure::draw(&frame.picture, PANEL, language));
             text_lines(&mut body, (x, y + high + 4.0), &caption);

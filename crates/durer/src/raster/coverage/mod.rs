@@ -15,6 +15,7 @@
 //! 10⁵ steps at 2048²: 180 ms instead of 15). Where a contour starts and which way it runs changes nothing.
 
 pub(crate) mod band;
+pub mod cell_sums;
 pub(crate) mod cells;
 pub(crate) mod convex;
 pub(crate) mod edge;
@@ -96,7 +97,7 @@ pub struct Step {
 
 /// The facts.
 pub const INFO: Info = Info {
-    name: "coverage",
+    name: "area-coverage",
     title: "Exact area coverage",
     authors: "E. Catmull",
     year: 1978,

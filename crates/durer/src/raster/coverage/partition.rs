@@ -26,7 +26,17 @@ pub const INFO: Info = Info {
     coherence: &[Coherence::ScanLine, Coherence::Span],
     cost: "O(c + p) per face: c pixels crossed by its edges, p pixels covered",
     limits: "faces that do not overlap, of one colour each; sides up to 32,767 pixels",
-    pseudocode: &[],
+    pseudocode: &[
+        "for each pixel: area ← 0, colour ← 0",
+        "for each face:",
+        "    for each pixel that it covers a part of:",
+        "        a ← exact area of the face within the pixel",
+        "        area ← area + a",
+        "        colour ← colour + a · colour of the face",
+        "for each pixel with area > 0:",
+        "    if area > 1: divide area and colour by it, for faces overlap",
+        "    pixel ← colour + (1 − area) · pixel",
+    ],
 };
 
 /// One face of a partition: a simple polygon, perhaps with holes, of one colour.
@@ -60,6 +70,16 @@ pub enum Step {
         /// The faces over what was there.
         color: [u8; 4],
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Area { .. } => 6,
+            Self::Pixel { .. } => 9,
+        }
+    }
 }
 
 /// Paints faces that do not overlap over the target as one shape: their areas and colours are added in

@@ -24,7 +24,16 @@ pub const INFO: Info = Info {
     coherence: &[Coherence::Edge],
     cost: "O(n w), n pixels of the thin line and w of the pen",
     limits: "replicated pixels make diagonals thinner by 1/√2, a square pen makes them thicker by √2",
-    pseudocode: &[],
+    pseudocode: &[
+        "for each pixel p of the thin line, by Bresenham:",
+        "    s ← steps from the first end",
+        "    bit ← ⌊(offset + s) / repeat⌋ mod 16",
+        "    if this bit of the pattern, the lowest first, is 0:",
+        "        the pen is up: next pixel",
+        "    for each pixel of the pen around p:",
+        "        plot it",
+        "the next line goes on at offset + length",
+    ],
 };
 
 /// Shape drawn at each pixel of the thin line.
@@ -73,6 +82,13 @@ pub struct Step {
     pub step: u64,
     /// True if the pen is down.
     pub down: bool,
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        if self.down { 7 } else { 5 }
+    }
 }
 
 /// Returns the pixels that a list of steps leads to, for the line from `from` to `to`.

@@ -21,7 +21,7 @@ use crate::visibility::object::{Bodies, Edges, Faces, Side, Weld};
 
 /// The facts.
 pub const INFO: Info = Info {
-    name: "wireframe",
+    name: "wireframe-lines",
     title: "Wireframe",
     authors: "Timothy Johnson",
     year: 1963,

@@ -34,7 +34,19 @@ pub const INFO: Info = Info {
     coherence: &[Coherence::Edge, Coherence::ScanLine, Coherence::Depth],
     cost: "O(n log n + rows crossed + covered pixels) time, O(n + width) memory, n triangles",
     limits: "one sample per pixel",
-    pseudocode: &[],
+    pseudocode: &[
+        "sort the triangles by their first row",
+        "for each row y from the top:",
+        "    depths of the row ← 1, items ← none",
+        "    remove the triangles that end before y, move the edges of the others",
+        "    add the triangles that begin at y",
+        "    for each active triangle:",
+        "        for each x from its left edge to its right edge:",
+        "            z ← depth of its plane at (x, y)",
+        "            if z < depth[x]:",
+        "                depth[x] ← z, item[x] ← triangle",
+        "    light and write the row",
+    ],
 };
 
 /// Step of the algorithm.
@@ -68,6 +80,18 @@ pub enum Step {
         /// Its depth there.
         depth: f32,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Row { .. } => 3,
+            Self::Enter { .. } => 5,
+            Self::Span { .. } => 7,
+            Self::Write { .. } => 10,
+        }
+    }
 }
 
 /// Renders into the planes that the framebuffer has.

@@ -37,7 +37,18 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "O(n) points for n pieces of the flattened path, more where corners and caps are round",
     limits: "the outline crosses itself: fill it by the non-zero rule",
-    pseudocode: &[],
+    pseudocode: &[
+        "flatten the path, cut it into dashes",
+        "for each contour, there and back:",
+        "    begin a ring; h ← half the width, n ← unit normal to the left of a piece",
+        "    for each piece from P to Q: its side is P + h n … Q + h n",
+        "    at each corner between two pieces:",
+        "        outer side: a join – miter, round or bevel",
+        "        inner side: where the two offset lines meet, if the pieces are long enough",
+        "        else through the corner itself",
+        "    at each end of an open contour: a cap – butt, round or square",
+        "fill the rings by the non-zero rule",
+    ],
 };
 
 /// Shape of a stroke's ends.
@@ -108,6 +119,19 @@ pub enum Step {
         /// Part of the stroke that it belongs to.
         part: Part,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Ring => 3,
+            Self::Point { part: Part::Join, .. } => 6,
+            Self::Point { part: Part::Side, .. } => 7,
+            Self::Point { part: Part::Pivot, .. } => 8,
+            Self::Point { part: Part::Cap, .. } => 9,
+        }
+    }
 }
 
 /// Part of a stroke that a point of its outline belongs to.

@@ -24,16 +24,19 @@ mod lines;
 mod met;
 mod occluders;
 mod span;
+mod step;
 
 pub use cover::Cover;
+pub use span::Span;
+pub use step::{Step, replay};
 
 use self::lines::{FeatureLine, Known, Lines, joined};
 use self::met::Met;
 use self::occluders::Occluders;
-use super::arrange::{How, Pieces, SLIVER, arrange, arranged, corners, on_page};
+use super::arrange::{How, Pieces, SLIVER, arranged, corners, on_page};
 use super::edge_lines::{ClassSet, Intersections, NO_ITEM};
 use super::facing::Facing;
-use super::page::{GridPoint, Page, Projected};
+use super::page::{GridPoint, Projected};
 use super::piece::Piece;
 use super::planes::Planes;
 use super::roundness::Smooth;
@@ -41,9 +44,8 @@ use super::smooth_silhouette::{Whole, divided};
 use super::steps::Steps;
 use super::tangent::Tangents;
 use crate::info::{Class, Coherence, Info, Occluder};
-use crate::math::DVec2;
 use crate::scene::Scene;
-use crate::target::drawing::{Drawing, Line, LineClass};
+use crate::target::drawing::{Drawing, LineClass};
 use crate::trace::Tracer;
 use crate::view::View;
 use crate::view::picture_plane::PicturePlane;
@@ -65,7 +67,20 @@ pub const INFO: Info = Info {
     coherence: &[Coherence::Edge],
     cost: "O(n + k) for n faces and k pairs of a line and a face that overlap in the picture",
     limits: "all faces are opaque; what lies within 2^-23 of the model's extent of a face touches it",
-    pseudocode: &[],
+    pseudocode: &[
+        "project all vertices to a grid of the page",
+        "find the lines: edges by their class, and where faces pierce each other",
+        "for each line from P to Q:",
+        "    Q(0) ← 0, cuts ← ∅",
+        "    for each face whose cells of the grid the line crosses:",
+        "        [t0, t1] ← part of the line within the face's outline, by Cyrus and Beck",
+        "        [t0, t1] ← part of that where the face is nearer",
+        "        if t0 < t1: add +1 at t0 and −1 at t1 to the cuts",
+        "    sort the cuts by t",
+        "    for each cut: output the part before it with its invisibility Q",
+        "        Q ← Q + 1, or Q − 1",
+        "    output the last part",
+    ],
 };
 
 /// Options for the lines of a drawing.
@@ -166,42 +181,6 @@ impl Options {
         let Self { tolerance, beneath, smooth, .. } = *self;
         How { tolerance, stubs, beneath, smooth: smooth != Smooth::Off }
     }
-}
-
-/// Step of the algorithm.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Step {
-    /// The grid was laid.
-    Page(Page),
-    /// One line was held against the faces that overlap it.
-    Line {
-        /// Style of the drawing.
-        class: LineClass,
-        /// True if it is a silhouette across a part of the surface that is not sharp there.
-        smooth: bool,
-        /// Its ends in the plane of the picture.
-        ends: [DVec2; 2],
-        /// Parts that hide it, by item.
-        covers: Vec<Cover>,
-        /// From where to where along it the surface hides its own outline, 0 … 1; nowhere if the same.
-        fold: [f64; 2],
-    },
-}
-
-/// Returns the lines that a list of steps leads to.
-pub fn replay(steps: &[Step], options: &Options) -> Vec<Line> {
-    let Some(Step::Page(page)) = steps.first() else { return Vec::new() };
-    let (mut all, mut spans, mut lines) = (Vec::new(), Vec::new(), Vec::new());
-    for step in steps {
-        if let Step::Line { class, smooth, ends, covers, fold } = step {
-            let ends = ends.map(|p| page.grid_from_plane(p));
-            let like = Piece { ends, class: *class, invisibility: 0, smooth: *smooth };
-            cut(like, covers, *fold, options.hidden, &mut spans, &mut all);
-            lines.push((*class, *smooth, ends));
-        }
-    }
-    let corners = corners(lines.into_iter());
-    arrange(page, Pieces { all, corners }, options.how())
 }
 
 /// Draws the lines of a scene.
@@ -310,9 +289,7 @@ fn hide(
     let jobs: Vec<_> = (0..count).step_by(JOB).map(|i| i..(i + JOB).min(count)).collect();
     let page = occluders.page();
     let new_met = || Met::new(occluders.count());
-    let covers_of = |line: &FeatureLine, met: &mut Met, covers: &mut Vec<Cover>| {
-        covers_of(line, lines, occluders, page.touching, !options.hidden, met, covers);
-    };
+    let how = (page.touching, !options.hidden);
     let work = options.work.part();
     work.begin("lines", jobs.len() as u64);
     let hide = |range: Range<usize>| {
@@ -322,7 +299,7 @@ fn hide(
             if work.is_stopped() {
                 break;
             }
-            covers_of(&line, &mut met, &mut covers);
+            covers_of(&line, lines, occluders, how, (&mut met, &mut covers), |_| {});
             cut(line.piece(), &covers, line.fold, options.hidden, &mut spans, &mut pieces);
         }
         work.advance(1);
@@ -334,12 +311,15 @@ fn hide(
     let mut met = None;
     for line in lines.some(0..count) {
         t.step(|| {
-            let mut covers = Vec::new();
-            covers_of(&line, met.get_or_insert_with(new_met), &mut covers);
+            let (mut covers, mut tried) = (Vec::new(), Vec::new());
+            let into = (met.get_or_insert_with(new_met), &mut covers);
+            covers_of(&line, lines, occluders, how, into, |item| tried.push(whole.item(item)));
             covers.iter_mut().for_each(|c| c.item = whole.item(c.item));
+            tried.sort_unstable();
+            tried.dedup();
             let ends = line.ends.map(|v| page.plane_from_grid(v.at));
             let FeatureLine { class, smooth, fold, .. } = line;
-            Step::Line { class, smooth, ends, covers, fold }
+            Step::Line { class, smooth, ends, tried, covers, fold }
         });
     }
     pieces
@@ -349,15 +329,14 @@ fn hide(
 const JOB: usize = 2048;
 
 /// Returns the parts of a line that faces hide, by face. `enough` ends the search in places where the
-/// line is known to be hidden.
+/// line is known to be hidden. Calls `tried` with the item of each face that is compared, perhaps several times.
 fn covers_of(
     line: &FeatureLine,
     lines: &Lines<'_>,
     occluders: &Occluders<'_>,
-    touching: f64,
-    enough: bool,
-    met: &mut Met,
-    covers: &mut Vec<Cover>,
+    (touching, enough): (f64, bool),
+    (met, covers): (&mut Met, &mut Vec<Cover>),
+    mut tried: impl FnMut(u32),
 ) {
     let mut found: Vec<(u32, Cover)> = Vec::new();
     occluders.along(&line.ends, met, |id, face, met| {
@@ -368,6 +347,7 @@ fn covers_of(
         if lines.is_at(line, face.item) {
             return;
         }
+        tried(face.item);
         let own = line.reach > touching && occluders.same_body(line.items[0], face.item);
         let touching = if own { line.reach } else { touching };
         let Some(cover) = cover::cover(&line.ends, &face, touching) else { return };

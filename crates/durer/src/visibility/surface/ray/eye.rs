@@ -1,7 +1,7 @@
 //! The visible surfaces along rays from the eye: an opaque one, and blended ones before it.
 
 use super::primary::ScreenHit;
-use super::{Caster, RayKind, Step};
+use super::{Caster, Step};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::layers::{Layer, sort_layers};
 use crate::visibility::surface::visible::{Masks, nearer};
@@ -46,10 +46,8 @@ impl<'a> Eye<'a> {
             layers.retain(|l| nearer((l.depth, l.item), (o.depth, o.item)));
         }
         sort_layers(layers);
-        if caster.listens {
-            let kind = if offset == [0; 2] { RayKind::Primary } else { RayKind::Sample };
-            let hit = self.nearest(opaque).map(|(_, item)| item);
-            steps.push(Step::Ray { x, y, kind, generation: 0, hit });
+        if let Some(report) = &caster.report {
+            steps.push(report.from_eye([x, y], offset, self.nearest(opaque)));
         }
         opaque
     }

@@ -13,10 +13,12 @@
 mod bvh;
 mod eye;
 mod primary;
+mod report;
 mod whitted;
 mod world;
 
 use crate::info::{Class, Coherence, Info, Occluder};
+use crate::math::DVec3;
 use crate::shade::PreparedLights;
 use crate::shade::color::encode_premultiplied;
 use crate::target::Framebuffer;
@@ -33,8 +35,9 @@ use crate::visibility::surface::visible::{
 use bvh::Bvh;
 use eye::Eye;
 use primary::ScreenRays;
+use report::Report;
 use whitted::Whitted;
-use world::WorldTriangles;
+use world::{Ray, WorldHit, WorldTriangles};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -48,7 +51,19 @@ pub const INFO: Info = Info {
     coherence: &[Coherence::Object],
     cost: "O(n log n) once, about O(log n) per ray; memory O(n)",
     limits: "lines and points are seen, but have no shadow and no mirror image",
-    pseudocode: &[],
+    pseudocode: &[
+        "colour(pixel) ← trace(ray from the eye through the pixel, 0)",
+        "trace(ray, depth):",
+        "    hit ← nearest surface along O + t · D, t > 0",
+        "    if there is none: return the background",
+        "    colour ← emission and ambient light",
+        "    for each light in front of the surface:",
+        "        if the ray to it meets nothing: add what the surface reflects of it",
+        "    if depth < limit:",
+        "        if the surface mirrors: add share · trace(mirrored ray, depth + 1)",
+        "        if it lets light through: add share · trace(refracted ray, depth + 1)",
+        "    return colour",
+    ],
 };
 
 /// Bytes for each triangle of the input, and for each pixel: its hit and its colour, in bands.
@@ -102,7 +117,7 @@ pub enum RayKind {
 }
 
 /// Step of the algorithm.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// The hierarchies are built; rays follow, pixel by pixel.
     Begin,
@@ -116,9 +131,28 @@ pub enum Step {
         kind: RayKind,
         /// Number of reflections and refractions before it.
         generation: u32,
+        /// Its origin, world space.
+        origin: DVec3,
+        /// Its direction, a unit vector.
+        direction: DVec3,
         /// The item that it hits first; for a shadow ray one that is in the way.
         hit: Option<u32>,
+        /// Distance of the hit from the origin; infinite without one.
+        t: f64,
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Begin => 1,
+            Self::Ray { kind: RayKind::Primary | RayKind::Sample, .. } => 3,
+            Self::Ray { kind: RayKind::Shadow, .. } => 7,
+            Self::Ray { kind: RayKind::Mirror, .. } => 9,
+            Self::Ray { kind: RayKind::Refraction, .. } => 10,
+        }
+    }
 }
 
 /// Renders the input into the planes that the framebuffer has.
@@ -148,7 +182,8 @@ pub fn render(
         // Secondary rays find for themselves what is behind glass.
         let blended = Some(input.having(Coverage::Blended));
         let blended = blended.filter(|set| !secondary && !set.is_empty());
-        let caster = Caster { input, lighting, options, rays: &rays, world, blended, listens };
+        let report = listens.then(|| Report::new(input.view));
+        let caster = Caster { input, lighting, options, rays: &rays, world, blended, report };
         let bands = caster.bands();
         let mut visible = Visible::new(pixels_of(input.view));
         let mut colors = Vec::new();
@@ -194,7 +229,7 @@ impl<'a> PrimaryRays<'a> {
             |lighting| {
                 let (options, blended) = (&options, None);
                 let caster =
-                    Caster { input, lighting, options, rays, world: None, blended, listens: false };
+                    Caster { input, lighting, options, rays, world: None, blended, report: None };
                 caster.bands().into_iter().flat_map(|band| band.hits).collect()
             },
         )
@@ -221,7 +256,8 @@ struct Caster<'a> {
     world: Option<WorldTriangles>,
     /// Surfaces that rays from the eye pass through.
     blended: Option<TriangleSet>,
-    listens: bool,
+    /// Maker of steps, if they are recorded.
+    report: Option<Report>,
 }
 
 impl Caster<'_> {
@@ -262,13 +298,11 @@ impl Caster<'_> {
                     samples.offsets().iter().map(sample).collect()
                 }
             };
-            let [x, y] = at;
-            let mut report = |kind, generation, hit| {
-                if self.listens {
-                    band.steps.push(Step::Ray { x, y, kind, generation, hit });
-                }
+            let mut hear = |kind, generation, ray: &Ray, hit: Option<WorldHit>| {
+                let step = |report: &Report| report.secondary(at, (kind, generation), ray, hit);
+                band.steps.extend(self.report.as_ref().map(step));
             };
-            band.colors.push(self.color(&mut whitted, stacks, at, &mut report));
+            band.colors.push(self.color(&mut whitted, stacks, at, &mut hear));
         }
         band
     }
@@ -279,9 +313,9 @@ impl Caster<'_> {
         whitted: &mut Whitted<'_>,
         mut stacks: Vec<Vec<u32>>,
         at: [i32; 2],
-        report: &mut impl FnMut(RayKind, u32, Option<u32>),
+        hear: &mut impl FnMut(RayKind, u32, &Ray, Option<WorldHit>),
     ) -> [u8; 4] {
         let behind = background_at(&self.options.look, self.input.view.height(), at[1]);
-        encode_premultiplied(mean(&mut stacks, |stack| whitted.at_pixel(stack, at, behind, report)))
+        encode_premultiplied(mean(&mut stacks, |stack| whitted.at_pixel(stack, at, behind, hear)))
     }
 }

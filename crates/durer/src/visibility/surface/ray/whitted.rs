@@ -29,7 +29,7 @@ const MOST_LAYERS: usize = 1024;
 const CLEARANCE: f32 = 1.0 / (1 << 18) as f32;
 
 /// Hears of each ray that is cast.
-type Hear<'h> = &'h mut dyn FnMut(RayKind, u32, Option<u32>);
+type Hear<'h> = &'h mut dyn FnMut(RayKind, u32, &Ray, Option<WorldHit>);
 
 /// One thread's light.
 pub struct Whitted<'a> {
@@ -93,7 +93,7 @@ impl<'a> Whitted<'a> {
         stack: &[u32],
         [x, y]: [i32; 2],
         behind: Vec4,
-        hear: &mut impl FnMut(RayKind, u32, Option<u32>),
+        hear: &mut impl FnMut(RayKind, u32, &Ray, Option<WorldHit>),
     ) -> Vec4 {
         let Some((&item, blended)) = stack.split_first() else { return behind };
         let Some(world) = self.world.filter(|_| u64::from(item) < self.triangle_count()) else {
@@ -177,7 +177,7 @@ impl<'a> Whitted<'a> {
         }
         let ray = leaving(from, direction, f32::MAX);
         let hit = self.cast(world, &ray, false);
-        hear(kind, path.generation, hit.map(|h| h.item));
+        hear(kind, path.generation, &ray, hit);
         let Some(WorldHit { item, weights, .. }) = hit else { return path.behind };
         let seen = Seen::Point { weights, view: -direction };
         let point = self.point(item, seen, weights, -direction);
@@ -196,8 +196,9 @@ impl<'a> Whitted<'a> {
     ) -> Vec4 {
         let (mut color, mut left) = (Vec4::ZERO, 1.0);
         for _ in 0..MOST_LAYERS {
-            let hit = self.cast(world, &leaving(&from, direction, f32::MAX), false);
-            hear(RayKind::Refraction, path.generation, hit.map(|h| h.item));
+            let ray = leaving(&from, direction, f32::MAX);
+            let hit = self.cast(world, &ray, false);
+            hear(RayKind::Refraction, path.generation, &ray, hit);
             let Some(WorldHit { item, weights, .. }) = hit else { break };
             let seen = Seen::Point { weights, view: -direction };
             from = self.point(item, seen, weights, -direction);
@@ -267,8 +268,9 @@ impl<'a> Whitted<'a> {
         if direction.dot(p.face_normal) <= 0.0 {
             return false;
         }
-        let hit = self.cast(world, &leaving(p, direction, reach), true);
-        hear(RayKind::Shadow, generation, hit.map(|h| h.item));
+        let ray = leaving(p, direction, reach);
+        let hit = self.cast(world, &ray, true);
+        hear(RayKind::Shadow, generation, &ray, hit);
         hit.is_some()
     }
 

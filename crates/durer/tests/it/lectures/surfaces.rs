@@ -1,0 +1,131 @@
+//! Space and surfaces: codes in space, the order of tests, the order of fragments, and the classification.
+
+use super::p;
+use durer::clip::outcode::{DepthRange, Outcode};
+use durer::explain::{self, ALGORITHMS, Frame, Input, Options};
+use durer::fragment::{
+    AlphaTest, Blend, Compare, Fragment, FragmentState, Outcome, Scissor, Stencil, StencilFace,
+    StencilOp, Step, apply, apply_traced, replay,
+};
+use durer::info::{Coherence, Occluder};
+use durer::math::{DVec4, Rect, Vec4};
+use durer::target::Framebuffer;
+use durer::trace::Recorder;
+use durer::visibility::surface::depth_sort::Test;
+use std::collections::BTreeSet;
+
+fn frames(name: &str, example: &str) -> Vec<Frame> {
+    explain::run(name, &Input::Example(example.to_owned()), &Options::default(), 5_000).unwrap()
+}
+
+#[test]
+fn space_has_twenty_seven_regions_of_six_bits() {
+    let sides = [-2.0, 0.0, 2.0];
+    let mut codes = BTreeSet::new();
+    for k in 0..27 {
+        let [x, y, z] = [sides[k % 3], sides[k / 3 % 3], sides[k / 9]];
+        let code = Outcode::of_homogeneous(DVec4::new(x, y, z, 1.0), DepthRange::default());
+        let outside = [x, y, z].iter().filter(|side| **side != 0.0).count();
+        assert_eq!(code.0.count_ones() as usize, outside);
+        codes.insert(code.0);
+    }
+    assert_eq!(codes.len(), 27);
+    assert!(codes.iter().all(|code| *code < 64));
+}
+
+#[test]
+fn the_and_of_all_codes_rejects_any_polygon() {
+    let window = Rect::new(p(0.0, 0.0), p(4.0, 4.0)).unwrap();
+    let and = |ring: &[(f64, f64)]| {
+        let codes = ring.iter().map(|&(x, y)| Outcode::of_point_2d(&window, p(x, y)).0);
+        codes.fold(0b1111, |all, code| all & code)
+    };
+    // All above; above and to the right; around the window, where the test decides nothing.
+    assert_eq!(and(&[(1.0, 5.0), (3.0, 6.0), (-2.0, 7.0)]), 0b1000);
+    assert_eq!(and(&[(5.0, 5.0), (9.0, 6.0), (5.0, 7.0)]), 0b1010);
+    assert_eq!(and(&[(-1.0, -1.0), (9.0, -1.0), (2.0, 9.0)]), 0);
+}
+
+/// Far to near; of the tests 1 and 2a to 2d the first that holds decides, and the cycle is broken by splits.
+#[test]
+fn three_beams_are_split() {
+    let frames = frames("depth-sort", "cyclic");
+    assert!(frames.iter().any(|frame| frame.kind == "split"));
+    let tests =
+        [Test::Depths, Test::Boxes, Test::InFrontOfPlane, Test::BehindPlane, Test::Projections];
+    assert!(tests.is_sorted());
+    assert_eq!(tests.map(Test::number), ["1", "2a", "2b", "2c", "2d"]);
+    let split = frames.iter().position(|frame| frame.kind == "split").unwrap();
+    let moved = frames[..split].iter().any(|frame| frame.kind == "move");
+    assert!(moved, "only what was marked is split");
+}
+
+fn fragment(depth: f32, alpha: f32) -> Fragment {
+    Fragment {
+        x: 0,
+        y: 0,
+        depth,
+        color: Vec4::new(1.0, 0.0, 0.0, alpha),
+        index: 0.0,
+        front_facing: true,
+        item: 1,
+        normal: [0.0, 0.0, 1.0],
+    }
+}
+
+/// Scissor, alpha, stencil, depth, blending, in this order, each with its numbers.
+#[test]
+fn fragments_go_from_test_to_test() {
+    let counting = StencilFace { pass: StencilOp::Increment, ..StencilFace::default() };
+    let state = FragmentState {
+        scissor: Some(Scissor { x0: 0, y0: 0, x1: 1, y1: 1 }),
+        alpha_test: Some(AlphaTest { compare: Compare::Greater, reference: 0.1 }),
+        stencil: Some(Stencil::both(counting)),
+        blend: Some(Blend::Over),
+        ..FragmentState::default()
+    };
+    let target = || {
+        let mut target = Framebuffer::new(2, 1).with_depth().with_stencil();
+        target.color.data_mut().fill([255; 4]);
+        target
+    };
+    let all = [fragment(0.4, 0.5), fragment(0.45, 1.0), fragment(0.3, 0.05)];
+    let outside = Fragment { x: 1, ..fragment(0.1, 1.0) };
+    let (mut traced, mut plain, mut steps) = (target(), target(), Recorder::default());
+    let outcomes = all.into_iter().chain([outside]).map(|fragment| {
+        let outcome = apply_traced(&state, fragment, &mut traced, &mut steps);
+        assert_eq!(apply(&state, fragment, &mut plain), outcome);
+        outcome
+    });
+    let outcomes: Vec<Outcome> = outcomes.collect();
+    let expected = [Outcome::Drawn, Outcome::Depth, Outcome::AlphaTest, Outcome::Scissor];
+    assert_eq!(outcomes, expected);
+    assert!(traced == plain);
+    let mut rebuilt = target();
+    replay(steps.steps(), &mut rebuilt);
+    assert!(rebuilt == traced);
+    // ½ red over white, in linear light, with the depth of the fragment; the next one is behind it.
+    let half = |step: &Step| matches!(step, Step::Blend { result, .. } if (result.y - 0.5).abs() < 1e-6 && result.x == 1.0);
+    let lines: Vec<usize> = steps.steps().iter().map(Step::line).collect();
+    assert_eq!(lines, [2, 3, 5, 7, 9, 12, 2, 3, 5, 7, 2, 3, 2]);
+    assert!(half(&steps.steps()[4]));
+    let depth =
+        |step: &Step| matches!(step, Step::Depth { depth: 0.45, stored: 0.4, passes: false });
+    assert!(depth(&steps.steps()[9]));
+}
+
+#[test]
+fn the_classification_is_printed_from_data() {
+    let facts = |name: &str| {
+        let info = ALGORITHMS.iter().find(|info| info.name == name).unwrap();
+        (info.class.name(), info.occluder)
+    };
+    assert_eq!(facts("z-buffer").1, Occluder::Point);
+    assert_eq!(facts("ray"), ("image", Occluder::Point));
+    assert_eq!(facts("spanning-scan-line").1, Occluder::Line);
+    assert_eq!(facts("warnock"), ("image", Occluder::Area));
+    assert_eq!(facts("depth-sort"), ("list-priority", Occluder::Area));
+    assert_eq!(facts("hidden-line"), ("object", Occluder::Area));
+    let scan = ALGORITHMS.iter().find(|info| info.name == "scan-line-z").unwrap();
+    assert!(scan.coherence.contains(&Coherence::ScanLine));
+}
