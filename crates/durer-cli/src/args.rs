@@ -74,6 +74,9 @@ pub enum Command {
     /// Explain an algorithm step by step: a sheet of pictures, a page with buttons, or data
     #[command(after_long_help = crate::explain::EXAMPLES, after_help = "--help shows more, and examples.")]
     Explain(Box<crate::explain::ExplainArgs>),
+    /// Show the explorer, all algorithms step by step on your own input, in the browser
+    #[command(after_long_help = crate::explore::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Explore(crate::explore::ExploreArgs),
     /// Write the file that lets file managers show thumbnails of models
     #[command(after_help = crate::thumbnailer::HELP)]
     Thumbnailer(crate::thumbnailer::ThumbnailerArgs),

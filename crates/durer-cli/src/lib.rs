@@ -14,6 +14,7 @@ mod encoding;
 mod environment;
 mod explain;
 mod explode;
+mod explore;
 mod failure;
 mod fill;
 mod film;
@@ -143,6 +144,7 @@ fn running(command: &mut Command) -> Option<&mut RunningArgs> {
         Command::Plot(args) => &mut args.running,
         Command::Explain(args) => &mut args.running,
         Command::Algorithms(_)
+        | Command::Explore(_)
         | Command::Thumbnailer(_)
         | Command::Completions { .. }
         | Command::Man => return None,
@@ -195,6 +197,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Plot(args) => on_threads(&args.running, || plot::run(&args)),
         Command::Algorithms(args) => algorithms::run(&args),
         Command::Explain(args) => on_threads(&args.running, || explain::run(&args)),
+        Command::Explore(args) => explore::run(&args),
         Command::Thumbnailer(args) => thumbnailer::run(&args),
         Command::Completions { shell } => completions(shell),
         Command::Man => manual(),

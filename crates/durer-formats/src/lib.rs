@@ -26,6 +26,7 @@ pub mod height_map;
 pub mod image;
 pub mod las;
 mod last_digit;
+pub mod lesson;
 mod model;
 mod mtl;
 mod number;

@@ -48,11 +48,7 @@ pub fn bytes(path: &Path) -> Result<Box<dyn BufRead>, Failure> {
 
 /// Returns the format that a name speaks for, or that its first bytes do.
 pub fn format_of(path: &Path, head: &[u8]) -> Option<GeoFormat> {
-    GeoFormat::of_content(head).or_else(|| {
-        // What is known to be something else is not what its name says.
-        let by_name = GeoFormat::of_name(&path.to_string_lossy());
-        by_name.filter(|_| !GeoFormat::foreign(head).starts_with("this is"))
-    })
+    GeoFormat::of_file(&path.to_string_lossy(), head)
 }
 
 /// Opens a file, or standard input, and finds its format; it can be read as long as the work goes on.

@@ -101,7 +101,7 @@ fn what_is_wrong_is_told() {
         ("explain cohen-sutherland cube.obj", 2, "a window and a line"),
         ("explain cohen-sutherland a.png --at 7,4", 2, "a picture"),
         ("explain cohen-sutherland a.png --at 8,4", 2, "8x5"),
-        ("explain cohen-sutherland large.png", 1, "2000 pixels"),
+        ("explain cohen-sutherland large.png", 1, "limit of 2000"),
         ("explain cohen-sutherland none.geojson", 1, "none.geojson"),
         ("explain cohen-sutherland -o a.gif", 2, ".html"),
         ("explain cohen-sutherland --step 99", 2, "1 to "),

@@ -14,6 +14,7 @@ mod conformance_models;
 mod draw;
 mod drawings;
 mod explain;
+mod explore;
 mod faults;
 mod fill;
 mod fuzz;

@@ -189,6 +189,14 @@ impl GeoFormat {
         }
     }
 
+    /// Returns the format that a file's first bytes speak for, or that its name does unless they are known to be something
+    /// else.
+    pub fn of_file(name: &str, head: &[u8]) -> Option<Self> {
+        let by_name = || Self::of_name(name);
+        Self::of_content(head)
+            .or_else(|| by_name().filter(|_| !Self::foreign(head).starts_with("this is")))
+    }
+
     /// Returns the format that a file's name speaks for, if it does.
     pub fn of_name(name: &str) -> Option<Self> {
         let (stem, suffix) = name.rsplit_once('.')?;

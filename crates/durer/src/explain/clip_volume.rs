@@ -1,6 +1,6 @@
 //! Lessons of clipping to the view volume: in homogeneous coordinates, and at five places of the pipeline.
 
-use super::frame::{Frame, Shown, frames, record};
+use super::frame::{Frames, Shown, frames, record};
 use super::input::Input;
 use super::lesson::{Example, Lesson};
 use super::picture::{Look, Picture};
@@ -170,7 +170,7 @@ const BORDERS: [Word; 7] = [
     Word::new("eye", "am Auge"),
 ];
 
-fn volume(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn volume(input: &Input, cap: usize) -> Result<Frames> {
     let points = input.clip_space(CLIP_SPACE)?;
     let vertex = |&position: &DVec4| ClipVertex { position, attributes: () };
     let options = volume::Options::default();
@@ -198,7 +198,7 @@ fn projection() -> DMat4 {
     )
 }
 
-fn at_place(lesson: &Lesson, input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn at_place(lesson: &Lesson, input: &Input, cap: usize) -> Result<Frames> {
     let faces = input.faces(FACE)?;
     let missing = || Error::parameter("input", "without a face", FACE.en);
     let corners = faces.iter().find(|face| face.len() > 2).ok_or_else(missing)?;
@@ -225,7 +225,7 @@ struct State {
     gone: bool,
 }
 
-fn show_all(start: Vec<DVec4>, steps: &Recorder<Step>) -> Vec<Frame> {
+fn show_all(start: Vec<DVec4>, steps: &Recorder<Step>) -> Frames {
     let (ring, codes) = (start.clone(), Vec::new());
     let mut state = State { start, ring, out: Vec::new(), codes, border: None, gone: false };
     frames(steps, |step| state.show(step))
@@ -337,6 +337,7 @@ impl State {
         let all = (0..3).flat_map(|axis| self.start.iter().map(move |&p| seen(p, axis)));
         let wedge = [DVec2::new(-1.5, 0.0), DVec2::new(1.5, 1.5)];
         let mut picture = Picture::around(all.chain(ring.clone()).chain(wedge), 0.12);
+        picture.picture_from_input = None;
         let high = picture.extent[1].y;
         picture.chain([DVec2::new(-high, high), DVec2::ZERO, DVec2::new(high, high)], Look::Window);
         let wide = picture.extent.map(|p| DVec2::new(p.x, 0.0));

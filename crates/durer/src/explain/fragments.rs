@@ -1,7 +1,7 @@
 //! The lesson of the fragment operations: the fragments of one row of pixels, from test to test.
 
 use super::faces::Row;
-use super::frame::{Frame, Shown, frames, record};
+use super::frame::{Frames, Shown, frames, record};
 use super::grid::{color, letter};
 use super::input::Input;
 use super::lesson::{Example, Lesson};
@@ -148,7 +148,7 @@ fn planes(columns: u32) -> Framebuffer {
     planes
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let row = Row::new(input)?;
     let tests = state(row.columns());
     let mut target = planes(row.columns());

@@ -3,7 +3,7 @@
 use super::picture::{Look, Picture};
 use super::table::Table;
 use super::words::{Value, Word};
-use crate::math::{DVec2, IVec2, Rect};
+use crate::math::{DAffine2, DVec2, IVec2, Rect};
 
 /// The largest coordinate that is taken as it is: more pixels across cannot be told apart in a picture.
 const LARGEST: f64 = 40.0;
@@ -53,7 +53,17 @@ impl Raster {
 
     /// Returns an empty picture of the grid.
     pub fn picture(&self) -> Picture {
-        upright(self.columns, self.rows)
+        let shift = DAffine2::from_translation(-self.origin);
+        let picture_from_input = Some(DAffine2::from_scale(DVec2::splat(self.scale)) * shift);
+        Picture { picture_from_input, ..upright(self.columns, self.rows) }
+    }
+
+    /// Returns an empty picture of the grid for inputs whose coordinates are those of pixels: a point is in the middle of one.
+    pub fn picture_of_pixels(&self) -> Picture {
+        let mut picture = self.picture();
+        let shift = DAffine2::from_translation(DVec2::splat(0.5));
+        picture.picture_from_input = picture.picture_from_input.map(|map| shift * map);
+        picture
     }
 }
 

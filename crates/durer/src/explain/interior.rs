@@ -1,6 +1,6 @@
 //! The lesson of the pole of inaccessibility, where labels go.
 
-use super::frame::{Frame, Shown, frames, record};
+use super::frame::{Frames, Shown, frames, record};
 use super::grid::log;
 use super::input::{Figure, Input};
 use super::lesson::{Example, Lesson};
@@ -95,7 +95,7 @@ static BALANCED: Template = Template::new(
 /// Part of the area's longer side that the result may miss.
 const PRECISION: f64 = 0.02;
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let figure = input.figure(TAKES)?;
     figure.ring(TAKES)?;
     let rings: Vec<&[DVec2]> = figure.rings.iter().map(Vec::as_slice).collect();

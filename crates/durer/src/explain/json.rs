@@ -1,7 +1,7 @@
 //! Runs as JSON (RFC 8259), written by hand: the library knows no format of files otherwise.
 
-use super::frame::Frame;
 use super::lesson::Lesson;
+use super::packed::Frame;
 use super::picture::{Look, Mark, Picture, Shape};
 use super::table::Table;
 use super::words::{Language, Value};
@@ -69,16 +69,26 @@ fn point(p: DVec2) -> String {
     array(p.to_array().map(number))
 }
 
-fn frame(frame: &Frame, language: Language) -> String {
+/// Returns one frame as a JSON object: its line, kind, caption with values, and table, without the marks of the picture.
+pub fn frame_json(frame: &Frame, language: Language) -> String {
+    object(texts(frame, language))
+}
+
+/// Returns the members of a frame other than its picture.
+fn texts(frame: &Frame, language: Language) -> Vec<String> {
     let values = frame.caption.values.iter().map(|(name, v)| member(name, &value(v, language)));
-    let members = [
+    vec![
         member("line", &frame.line.to_string()),
         member("kind", &string(frame.kind)),
         member("caption", &string(&frame.text(language))),
         member("values", &object(values)),
         member("table", &table(&frame.table, language)),
-        member("picture", &picture(&frame.picture, language)),
-    ];
+    ]
+}
+
+fn frame(frame: &Frame, language: Language) -> String {
+    let mut members = texts(frame, language);
+    members.push(member("picture", &picture(&frame.picture, language)));
     object(members)
 }
 

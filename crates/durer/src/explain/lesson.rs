@@ -1,7 +1,7 @@
 //! Lessons: an algorithm with its examples, its sentences, and the function that makes frames of its steps.
 
-use super::frame::Frame;
 use super::input::{Input, Options};
+use super::packed::{Frame, Frames};
 use super::words::{Template, Word};
 use crate::info::Info;
 use crate::{Error, Result};
@@ -26,7 +26,7 @@ pub struct Lesson {
 }
 
 /// Function that makes the frames of a run of a lesson's algorithm.
-pub(super) type Make = fn(&Lesson, &Input, &Options, usize) -> Result<Vec<Frame>>;
+pub(super) type Make = fn(&Lesson, &Input, &Options, usize) -> Result<Frames>;
 
 /// A given input with a name.
 #[derive(Debug, Clone, Copy)]
@@ -48,6 +48,15 @@ impl Lesson {
     /// does not exist; [`Error::Limit`] for an input of more than [`super::MAX_POINTS`] points;
     /// [`Error::NonFinite`]; and those of the algorithm.
     pub fn run(&self, input: &Input, options: &Options, cap: usize) -> Result<Vec<Frame>> {
+        Ok(self.record(input, options, cap)?.iter().collect())
+    }
+
+    /// Runs the algorithm as [`Lesson::run`] does, and returns frames that are made when they are shown: for runs of many
+    /// steps.
+    ///
+    /// # Errors
+    /// Those of [`Lesson::run`].
+    pub fn record(&self, input: &Input, options: &Options, cap: usize) -> Result<Frames> {
         if let Input::Example(name) = input {
             let input = self.example(name)?;
             return (self.make)(self, &input, options, cap);
@@ -57,7 +66,10 @@ impl Lesson {
     }
 
     /// Returns the example of a name, the first one for an empty name.
-    fn example(&self, name: &str) -> Result<Input> {
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] for an example that does not exist.
+    pub fn example(&self, name: &str) -> Result<Input> {
         let found = self.examples.iter().find(|example| name.is_empty() || example.name == name);
         let names = || self.examples.iter().map(|example| example.name);
         found.map(|example| (example.input)()).ok_or_else(|| unknown("example", name, names()))

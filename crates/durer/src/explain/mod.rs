@@ -31,6 +31,7 @@ mod json;
 mod lesson;
 mod letters;
 mod lines;
+mod packed;
 mod picture;
 mod shades;
 mod shadow;
@@ -42,12 +43,12 @@ mod viewing;
 mod without;
 mod words;
 
-pub use frame::Frame;
 pub use input::{Figure, Grid, Input, MAX_POINTS, Options};
-pub use json::{json, string as json_string};
+pub use json::{frame_json, json, string as json_string};
 pub use lesson::{Example, Lesson};
+pub use packed::{Frame, Frames};
 pub use picture::{Look, Mark, Picture, Shape};
-pub use svg::{picture, sheet, svg};
+pub use svg::{picture, picture_of_size, sheet, svg};
 pub use table::{Cell, Row, Table};
 pub use without::WITHOUT_LESSON;
 pub use words::{Caption, Language, Template, Value, Word};
@@ -55,27 +56,40 @@ pub use words::{Caption, Language, Template, Value, Word};
 use crate::info::Info;
 use crate::{Result, clip, curve, fragment, raster, shade, view, visibility};
 
+/// Lessons of one family with their title.
+#[derive(Debug, Clone, Copy)]
+pub struct Family {
+    /// Title.
+    pub title: Word,
+    /// Lessons, the simplest first.
+    pub lessons: &'static [Lesson],
+}
+
+const fn family(en: &'static str, de: &'static str, lessons: &'static [Lesson]) -> Family {
+    Family { title: Word::new(en, de), lessons }
+}
+
 /// Lessons by families, in the order of the pipeline.
-const FAMILIES: &[&[Lesson]] = &[
-    curves::LESSONS,
-    clip_lines::LESSONS,
-    clip_polygons::LESSONS,
-    simplify::LESSONS,
-    clip_volume::LESSONS,
-    viewing::LESSONS,
-    &[interior::LESSON],
-    lines::LESSONS,
-    fills::LESSONS,
-    shades::LESSONS,
-    &[shadow::LESSON],
-    tones::LESSONS,
-    &[fragments::LESSON],
-    faces::LESSONS,
+pub const FAMILIES: &[Family] = &[
+    family("Curves", "Kurven", curves::LESSONS),
+    family("Clipping lines", "Linien clippen", clip_lines::LESSONS),
+    family("Clipping polygons", "Polygone clippen", clip_polygons::LESSONS),
+    family("Simplifying borders", "Grenzen vereinfachen", simplify::LESSONS),
+    family("Clipping in space", "Clippen im Raum", clip_volume::LESSONS),
+    family("Window and viewport", "Fenster und Viewport", viewing::LESSONS),
+    family("Points for labels", "Punkte für Beschriftungen", &[interior::LESSON]),
+    family("Lines and circles", "Linien und Kreise", lines::LESSONS),
+    family("Filling areas", "Flächen füllen", fills::LESSONS),
+    family("Shading", "Schattierung", shades::LESSONS),
+    family("Shadows", "Schatten", &[shadow::LESSON]),
+    family("Halftones", "Halbtöne", tones::LESSONS),
+    family("Fragments", "Fragmente", &[fragments::LESSON]),
+    family("Hidden surfaces", "Verdeckte Flächen", faces::LESSONS),
 ];
 
 /// Returns every lesson, in the order of the pipeline.
 pub fn lessons() -> impl Iterator<Item = &'static Lesson> {
-    FAMILIES.iter().copied().flatten()
+    FAMILIES.iter().flat_map(|family| family.lessons)
 }
 
 /// Returns the lesson of an algorithm.

@@ -1,7 +1,7 @@
 //! Pictures of steps: a few kinds of marks in a small set of looks.
 
 use super::words::Value;
-use crate::math::{DVec2, Rect};
+use crate::math::{DAffine2, DVec2, Rect};
 
 /// Part that a mark plays in a picture; drawings choose colour, width and hatching by it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -76,6 +76,9 @@ pub struct Picture {
     pub down: bool,
     /// Columns and rows of a grid of unit cells from the origin.
     pub grid: Option<[u32; 2]>,
+    /// Map from the points of the input, for faces their x and y, to their places in the picture; `None` if it shows them
+    /// in another way, or not at all.
+    pub picture_from_input: Option<DAffine2>,
     /// Marks from the lowest to the uppermost.
     pub marks: Vec<Mark>,
 }
@@ -83,7 +86,8 @@ pub struct Picture {
 impl Picture {
     /// Creates an empty picture with y upwards.
     pub fn new(extent: [DVec2; 2]) -> Self {
-        Self { extent, down: false, grid: None, marks: Vec::new() }
+        let picture_from_input = Some(DAffine2::IDENTITY);
+        Self { extent, down: false, grid: None, picture_from_input, marks: Vec::new() }
     }
 
     /// Creates an empty picture around points, with a margin in parts of its size; around the unit square where no
@@ -100,7 +104,7 @@ impl Picture {
     pub fn pixels(columns: u32, rows: u32) -> Self {
         let size = DVec2::new(columns.into(), rows.into());
         let extent = [DVec2::splat(-0.2), size + 0.2];
-        Self { extent, down: true, grid: Some([columns, rows]), marks: Vec::new() }
+        Self { down: true, grid: Some([columns, rows]), ..Self::new(extent) }
     }
 
     /// Adds a mark on top.

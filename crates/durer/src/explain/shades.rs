@@ -1,6 +1,6 @@
 //! Lessons of shading by interpolation: Gouraud, Phong, perspective-correct values.
 
-use super::frame::{Frame, Shown, frames, record};
+use super::frame::{Frames, Shown, frames, record};
 use super::grid::{NO_HEAD, Raster, grey};
 use super::input::Input;
 use super::lesson::{Example, Lesson};
@@ -150,7 +150,7 @@ struct State {
     pixels: Vec<(IVec2, f64)>,
 }
 
-fn make(kind: Kind, input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(kind: Kind, input: &Input, cap: usize) -> Result<Frames> {
     let faces = input.faces(TAKES)?;
     let Some(&[a, b, c]) = faces.first().map(Vec::as_slice) else {
         return Err(Error::parameter("input", "without a face of three points", TAKES.en));

@@ -1,7 +1,7 @@
 //! The lesson of shadow maps: points of one row, and the depths that a light above them has stored.
 
 use super::faces::{Scene, TAKES, Triangles, slab};
-use super::frame::{Frame, Numbered, Shown, frames, record};
+use super::frame::{Frames, Numbered, Shown, frames, record};
 use super::grid::letter;
 use super::input::Input;
 use super::lesson::{Example, Lesson};
@@ -121,7 +121,7 @@ struct State {
     place: Option<DVec2>,
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let scene = Scene::new(input)?;
     let triangles = Triangles::new(&scene)?;
     let (model, view) = triangles.prepared(&scene)?;

@@ -1,6 +1,6 @@
 //! Lessons of simplification: points that lines and borders can do without.
 
-use super::frame::{Frame, Shown, frames, record};
+use super::frame::{Frames, Shown, frames, record};
 use super::input::{Figure, Input};
 use super::lesson::{Example, Lesson};
 use super::picture::{Look, Picture};
@@ -184,7 +184,7 @@ fn number_all(picture: &mut Picture, all: &[DVec2]) {
     }
 }
 
-fn by_distance(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn by_distance(input: &Input, cap: usize) -> Result<Frames> {
     use douglas_peucker::{Options, Step, simplify};
     let all = points(input)?;
     let tolerance = tolerance(&all);
@@ -238,7 +238,7 @@ fn by_distance(input: &Input, cap: usize) -> Result<Vec<Frame>> {
     }))
 }
 
-fn by_area(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn by_area(input: &Input, cap: usize) -> Result<Frames> {
     use visvalingam::{Options, Step, simplify};
     let all = points(input)?;
     let tolerance = tolerance(&all);
@@ -276,7 +276,7 @@ fn by_area(input: &Input, cap: usize) -> Result<Vec<Frame>> {
     }))
 }
 
-fn together(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn together(input: &Input, cap: usize) -> Result<Frames> {
     use coverage::{Options, Step};
     let figure = input.figure(TAKES_RINGS)?;
     figure.ring(TAKES_RINGS)?;

@@ -1,6 +1,6 @@
 //! Lessons of halftones: error diffusion and clustered dots.
 
-use super::frame::{Frame, Shown, frames, record};
+use super::frame::{Frames, Shown, frames, record};
 use super::grid::{NO_HEAD, grey};
 use super::input::{Grid, Input};
 use super::lesson::{Example, Lesson};
@@ -81,7 +81,7 @@ fn shown([x, y]: [u32; 2]) -> Value {
     crate::math::DVec2::new(x.into(), y.into()).into()
 }
 
-fn by_errors(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn by_errors(input: &Input, cap: usize) -> Result<Frames> {
     let grid = input.grid(TAKES)?;
     let image = light(grid)?;
     let steps = record(cap, |t| {
@@ -128,7 +128,7 @@ fn by_errors(input: &Input, cap: usize) -> Result<Vec<Frame>> {
     }))
 }
 
-fn by_screen(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn by_screen(input: &Input, cap: usize) -> Result<Frames> {
     let grid = input.grid(TAKES)?;
     let image = light(grid)?;
     let steps = record(cap, |t| {

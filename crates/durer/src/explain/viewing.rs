@@ -1,13 +1,13 @@
 //! The lesson of windows and viewports.
 
-use super::frame::{Frame, Shown, frames, record};
+use super::frame::{Frames, Shown, frames, record};
 use super::input::{Figure, Input, Options};
 use super::lesson::{Example, Lesson};
 use super::picture::{Look, Picture};
 use super::table::Table;
 use super::words::{Caption, Template, Value, Word};
 use crate::Result;
-use crate::math::{DVec2, Rect};
+use crate::math::{DAffine2, DVec2, Rect};
 use crate::view::mapping::{self, INFO, Step, map};
 use crate::view::window::{PixelRect, Viewport, Window, YAxis};
 
@@ -77,7 +77,7 @@ struct State {
     done: Vec<[DVec2; 2]>,
 }
 
-fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Vec<Frame>> {
+fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let figure = input.figure(TAKES)?.clone();
     let rect = figure.window(TAKES)?;
     let window = Window::new(rect.min().x, rect.max().x, rect.min().y, rect.max().y)?;
@@ -143,6 +143,8 @@ impl State {
     fn picture(&self) -> Picture {
         let mut picture = Picture::new([DVec2::new(-0.1, -0.35), DVec2::new(2.4, 1.15)]);
         let (low, size) = (self.window.min(), self.window.size());
+        picture.picture_from_input =
+            Some(DAffine2::from_scale(1.0 / size) * DAffine2::from_translation(-low));
         let world = |p: DVec2| (p - low) / size;
         let [x0, y0, x1, y1] = VIEWPORT.map(f64::from);
         let screen = |p: DVec2| {

@@ -5,7 +5,7 @@ use crate::Result;
 use crate::clip::line::End;
 use crate::clip::line::cohen_sutherland::{INFO, Step, clip};
 use crate::clip::outcode::Outcode;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -84,7 +84,7 @@ struct State {
     codes: [Outcode; 2],
 }
 
-fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Vec<Frame>> {
+fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let cutting = Cutting::new(input)?;
     let steps = record(cap, |t| clip(&cutting.window, cutting.whole, t))?;
     let mut state = State { cutting, codes: [Outcode::INSIDE; 2] };

@@ -4,13 +4,13 @@ use super::{CODE, Cutting, END, NO_HEAD, START, end_name, figure};
 use crate::clip::line::Segment;
 use crate::clip::line::midpoint::{INFO, PixelWindow, Step, clip};
 use crate::clip::outcode::Outcode;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
-use crate::math::{DVec2, IVec2, Rect};
+use crate::math::{DAffine2, DVec2, IVec2, Rect};
 use crate::{Error, Result};
 
 const TAKES: Word = Word::new(
@@ -90,7 +90,7 @@ struct State {
     code_of_middle: Value,
 }
 
-fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Vec<Frame>> {
+fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let cutting = Cutting::new(input)?;
     let (min, max) = (cutting.window.min(), cutting.window.max());
     let ends = [cutting.whole.start, cutting.whole.end];
@@ -178,6 +178,8 @@ impl State {
         let [columns, rows] = self.size;
         let mut picture = Picture::pixels(columns, rows);
         picture.down = false;
+        let shift = DVec2::splat(0.5);
+        picture.picture_from_input = Some(DAffine2::from_translation(shift));
         let window = &self.cutting.window;
         if let Ok(frame) = Rect::new(window.min(), window.max() + 1.0) {
             picture.frame(&frame, Look::Window);

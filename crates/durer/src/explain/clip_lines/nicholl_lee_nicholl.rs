@@ -4,7 +4,7 @@ use super::{BORDERS, Cutting, NO_HEAD, TAKES, end_name, figure, p};
 use crate::Result;
 use crate::clip::line::nicholl_lee_nicholl::{INFO, Step, clip};
 use crate::clip::outcode::Outcode;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -78,7 +78,7 @@ struct State {
     cuts: usize,
 }
 
-fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Vec<Frame>> {
+fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let cutting = Cutting::new(input)?;
     let steps = record(cap, |t| clip(&cutting.window, cutting.whole, t))?;
     // It begins at the end with the smaller x, or with the smaller y above one another.

@@ -7,7 +7,7 @@ use crate::clip::line::cyrus_beck::{Numbers, Step};
 use crate::clip::line::{
     ConvexPolygon, End, Relation, Segment, cyrus_beck, homogeneous, liang_barsky,
 };
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::{Figure, Input};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture, corners};
@@ -136,7 +136,7 @@ static REJECTED: Template = Template::new(
     "Zwischen den Schranken {lower} und {upper} liegt nichts, oder alles jenseits eines Rands: abgelehnt.",
 );
 
-fn cyrus_beck(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn cyrus_beck(input: &Input, cap: usize) -> Result<Frames> {
     let figure = input.figure(CYRUS_BECK.takes)?;
     let Some(ring) = figure.clip.first() else {
         let cutting = Cutting::new(input)?;
@@ -152,14 +152,14 @@ fn cyrus_beck(input: &Input, cap: usize) -> Result<Vec<Frame>> {
     Ok(frames(&steps, |step| state.show(step)))
 }
 
-fn liang_barsky(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn liang_barsky(input: &Input, cap: usize) -> Result<Frames> {
     let cutting = Cutting::new(input)?;
     let steps = record(cap, |t| liang_barsky::clip(&cutting.window, cutting.whole, t))?;
     let mut state = State::of_rectangle(cutting.whole, corners(&cutting.window));
     Ok(frames(&steps, |step| state.show(step)))
 }
 
-fn homogeneous(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn homogeneous(input: &Input, cap: usize) -> Result<Frames> {
     let cutting = Cutting::new(input)?;
     let steps = record(cap, |t| homogeneous::clip(&cutting.window, cutting.whole, t))?;
     let mut state = State::of_rectangle(cutting.whole, corners(&cutting.window));

@@ -4,7 +4,7 @@ use super::{NO_HEAD, p};
 use crate::Result;
 use crate::clip::polygon::Shapes;
 use crate::clip::polyline::{self, INFO, Step, clip};
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::{Figure, Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -53,7 +53,7 @@ static OUTSIDE: Template = Template::new(
     "Das Stück von {start} bis {end}: Seine Mitte {middle} liegt außen, es fällt weg.",
 );
 
-fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Vec<Frame>> {
+fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let figure = input.figure(TAKES)?;
     figure.segment(TAKES)?;
     let rings = if figure.rings.is_empty() {

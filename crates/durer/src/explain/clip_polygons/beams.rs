@@ -3,7 +3,7 @@
 use super::{Operands, TAKES, letter_and_blade, pair, ring, squares, yes_or_no};
 use crate::Result;
 use crate::clip::polygon::scan_beams::{self, INFO, Step, Trapezoid, scan_beams};
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -92,7 +92,7 @@ struct State {
     parts: Vec<Trapezoid>,
 }
 
-fn make(_: &Lesson, input: &Input, options: &Options, cap: usize) -> Result<Vec<Frame>> {
+fn make(_: &Lesson, input: &Input, options: &Options, cap: usize) -> Result<Frames> {
     let operands = Operands::new(input)?;
     let [subject, clip] = operands.shapes();
     let rules = scan_beams::Options {

@@ -3,7 +3,7 @@
 use super::{TAKES_WINDOW, before, letter, ring, ring_and_window, windowed};
 use crate::Result;
 use crate::clip::polygon::liang_barsky::{INFO, Step, clip};
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -73,7 +73,7 @@ struct State {
     out: Vec<DVec2>,
 }
 
-fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Vec<Frame>> {
+fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let (ring, window) = ring_and_window(input)?;
     let steps = record(cap, |t| clip(&window, &ring, t))?;
     let mut state =

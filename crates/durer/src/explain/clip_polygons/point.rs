@@ -2,7 +2,7 @@
 
 use super::{letter, ring, yes_or_no};
 use crate::clip::polygon::point::{INFO, Step, winding_number};
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::{Figure, Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -78,7 +78,7 @@ static BORDER: Template = Template::new(
     "Der Punkt liegt auf der Kante {from} → {to}: auf dem Rand.",
 );
 
-fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Vec<Frame>> {
+fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let figure = input.figure(TAKES)?;
     figure.ring(TAKES)?;
     let missing = || Error::parameter("input", "without a point", TAKES.en);

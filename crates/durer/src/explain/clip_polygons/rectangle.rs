@@ -4,7 +4,7 @@ use super::{TAKES_WINDOW, letter, ring, windowed};
 use crate::Result;
 use crate::clip::polygon::Shapes;
 use crate::clip::polygon::rectangle::{self, INFO, Step, clip};
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::{Figure, Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture, corners};
@@ -94,7 +94,7 @@ struct State<'a> {
     rings: Vec<Vec<DVec2>>,
 }
 
-fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Vec<Frame>> {
+fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let figure = input.figure(TAKES_WINDOW)?;
     figure.ring(TAKES_WINDOW)?;
     let window = figure.window(TAKES_WINDOW)?;

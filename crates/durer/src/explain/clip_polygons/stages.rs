@@ -5,7 +5,7 @@ use crate::Result;
 use crate::clip::line::HalfPlane;
 use crate::clip::polygon::sutherland_hodgman::INFO;
 use crate::clip::polygon::sutherland_hodgman::by_borders::{Rule, Step, clip};
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -99,7 +99,7 @@ struct State {
     lists: Vec<Vec<DVec2>>,
 }
 
-fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Vec<Frame>> {
+fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let (ring, window) = ring_and_window(input)?;
     let [left, right, bottom, top] = HalfPlane::of_rect(&window);
     let steps = record(cap, |t| clip(&[top, right, bottom, left], &ring, t))?;

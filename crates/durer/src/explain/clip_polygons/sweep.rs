@@ -3,7 +3,7 @@
 use super::{Operands, TAKES, letter_and_blade, pair, ring};
 use crate::clip::polygon::overlay::{self, Step};
 use crate::clip::polygon::vatti;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::{Figure, Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -113,7 +113,7 @@ struct State {
     rings: Vec<Vec<DVec2>>,
 }
 
-fn show_all(operands: Operands, steps: &Recorder<Step>) -> Vec<Frame> {
+fn show_all(operands: Operands, steps: &Recorder<Step>) -> Frames {
     let (crossings, passed, rings) = (Vec::new(), Vec::new(), Vec::new());
     let mut state = State { operands, crossings, passed, active: 0, rings };
     frames(steps, |step| state.show(step))

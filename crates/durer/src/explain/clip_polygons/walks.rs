@@ -3,7 +3,7 @@
 use super::{CLIP, Operands, SUBJECT, TAKES, lecture, letter_and_blade, pentagram, squares};
 use crate::clip::polygon::weiler_atherton::{Mark, Operand, Step};
 use crate::clip::polygon::{greiner_hormann, weiler_atherton};
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
@@ -149,7 +149,7 @@ struct State {
     rings: Vec<Vec<DVec2>>,
 }
 
-fn show_all(operands: Operands, steps: &crate::trace::Recorder<Step>) -> Vec<Frame> {
+fn show_all(operands: Operands, steps: &crate::trace::Recorder<Step>) -> Frames {
     let lists = [Vec::new(), Vec::new()];
     // Crossings are named as they are met round the clip.
     let met = |step: &Step| match *step {

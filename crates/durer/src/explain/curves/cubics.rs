@@ -3,7 +3,7 @@
 use super::{EXAMPLES, TAKES};
 use crate::curve::bezier::de_casteljau;
 use crate::curve::{catmull_rom, forward_difference};
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -75,7 +75,7 @@ fn curve(control: &[DVec2; 4]) -> Vec<DVec2> {
     (0..=30).map(at).collect()
 }
 
-fn through(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn through(input: &Input, cap: usize) -> Result<Frames> {
     use catmull_rom::Step;
     let control = line(input, 2)?;
     let options = catmull_rom::Options::default();
@@ -118,7 +118,7 @@ fn through(input: &Input, cap: usize) -> Result<Vec<Frame>> {
     }))
 }
 
-fn forward(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn forward(input: &Input, cap: usize) -> Result<Frames> {
     let given = line(input, 4)?;
     let control = [given[0], given[1], given[2], given[3]];
     let steps = record(cap, |t| {

@@ -5,7 +5,7 @@ use crate::Error;
 use crate::Result;
 use crate::curve::bezier::de_casteljau;
 use crate::curve::{FLATTEN, FlattenStep as Step, Path, PathElement, flatten_traced};
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -40,7 +40,7 @@ static END: Template = Template::new(
 /// Part of the picture's size that chords may be away from the curve.
 const TOLERANCE: f64 = 0.02;
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let line = input.figure(TAKES)?.lines.first().filter(|line| line.len() > 2);
     let control =
         line.ok_or_else(|| Error::parameter("input", "without three control points", TAKES.en))?;

@@ -4,7 +4,7 @@ use super::{EXAMPLES, TAKES};
 use crate::curve::b_spline::{self, BSpline, de_boor};
 use crate::curve::bezier::{self, de_casteljau};
 use crate::curve::knot_insertion::{self, insert, refine};
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -123,7 +123,7 @@ fn control(input: &Input) -> Result<&[DVec2]> {
     Ok(line)
 }
 
-fn bezier(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn bezier(input: &Input, cap: usize) -> Result<Frames> {
     let control = control(input)?;
     let at = |t: f64| de_casteljau(control, t, &mut NoTrace).unwrap_or_default();
     let mut state = State::new(control, samples(at));
@@ -139,7 +139,7 @@ fn bezier(input: &Input, cap: usize) -> Result<Vec<Frame>> {
     }))
 }
 
-fn b_spline(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn b_spline(input: &Input, cap: usize) -> Result<Frames> {
     let (control, spline) = spline(input)?;
     let degree = spline.degree();
     let mut state = State::new(control, samples(|t| spline.point(t)));
@@ -154,7 +154,7 @@ fn b_spline(input: &Input, cap: usize) -> Result<Vec<Frame>> {
     }))
 }
 
-fn boehm(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn boehm(input: &Input, cap: usize) -> Result<Frames> {
     let (control, spline) = spline(input)?;
     let mut state = State::new(control, samples(|t| spline.point(t)));
     let steps = record(cap, |t| insert(&spline, NEW[0], t))?;
@@ -167,7 +167,7 @@ fn boehm(input: &Input, cap: usize) -> Result<Vec<Frame>> {
     }))
 }
 
-fn oslo(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn oslo(input: &Input, cap: usize) -> Result<Frames> {
     let (control, spline) = spline(input)?;
     let curve = samples(|t| spline.point(t));
     let mut state = State::new(control, curve);

@@ -2,7 +2,7 @@
 
 use super::{DEPTH, Scene, TAKES, middle, name, slab};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::{color, upright};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
@@ -80,7 +80,7 @@ struct State {
     weights: Vec<Option<f64>>,
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let fragments = fragments(&Scene::new(input)?);
     let steps = record(cap, |t| {
         weights(&fragments, t);
@@ -159,6 +159,7 @@ impl State {
 
     fn picture(&self, step: &Step, now: u16) -> Picture {
         let mut picture = upright(SUBPIXELS, SUBPIXELS);
+        picture.picture_from_input = None;
         let owner = match *step {
             Step::Look { fragment, .. } | Step::Overlap { fragments: [fragment, _], .. } => {
                 Some(fragment)

@@ -2,7 +2,7 @@
 
 use super::{TAKES, name};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::letter;
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
@@ -76,7 +76,7 @@ fn pyramid() -> Vec<Vec<DVec3>> {
     faces
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let faces = input.faces(TAKES)?;
     let eye = Eye::Along(DVec3::NEG_Z);
     let rings = faces.iter().map(Vec::as_slice);
@@ -122,6 +122,7 @@ fn table(tested: &[(DVec3, Face)]) -> Table {
 fn picture(faces: &[Vec<DVec3>], tested: &[(DVec3, Face)]) -> Picture {
     let flat = |p: DVec3| DVec2::new(p.x - 0.45 * p.z, p.y - 0.3 * p.z);
     let mut picture = Picture::around(faces.iter().flatten().map(|&p| flat(p)), 0.3);
+    picture.picture_from_input = None;
     for ring in faces {
         let closed = ring.iter().chain(ring.first()).map(|&p| flat(p));
         picture.chain(closed.collect::<Vec<_>>(), Look::Pale);

@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, Scene, TAKES, name};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -71,7 +71,7 @@ struct State {
     now: u32,
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let scene = Scene::new(input)?;
     let options = Options::default();
     let steps = record(cap, |t| items(&scene.faces, &scene.screen(), &options, t))?;

@@ -2,7 +2,7 @@
 
 use super::{DEPTH, EXAMPLES, FACE, Scene, TAKES, middle, name};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::color;
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
@@ -73,7 +73,7 @@ struct Buffer {
     face: u32,
 }
 
-fn by_pixels(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn by_pixels(input: &Input, cap: usize) -> Result<Frames> {
     let scene = Scene::new(input)?;
     let steps = record(cap, |t| z_buffer::items(&scene.faces, &scene.screen(), t))?;
     let depths = vec![None; scene.items.len()];
@@ -146,7 +146,7 @@ impl Buffer {
     }
 }
 
-fn by_order(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn by_order(input: &Input, cap: usize) -> Result<Frames> {
     let mut scene = Scene::new(input)?;
     let options = painter::Options::default();
     let steps = record(cap, |t| painter::items(&scene.faces, &scene.screen(), &options, t))?;

@@ -2,7 +2,7 @@
 
 use super::{DEPTH, EXAMPLES, Scene, TAKES, beams, name, slab};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -94,7 +94,7 @@ struct State {
     tests: Vec<(String, Test)>,
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let scene = Scene::new(input)?;
     let options = Options { capacity: 1, depth: 3 };
     let steps = record(cap, |t| items(&scene.faces, &scene.screen(), &options, t))?;

@@ -1,7 +1,7 @@
 //! The lesson of the floating horizon, curve by curve.
 
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::letter;
 use crate::explain::input::{Figure, Input};
 use crate::explain::lesson::{Example, Lesson};
@@ -100,7 +100,7 @@ struct State {
     drawn: Vec<Piece>,
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let curves = laid(input.figure(TAKES)?)?;
     let last = |curve: &Curve| curve.first + curve.heights.len();
     let columns = curves.iter().map(last).max().unwrap_or_default();

@@ -2,7 +2,7 @@
 
 use super::{TAKES, name};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -123,7 +123,7 @@ fn shared(faces: &[Vec<DVec3>]) -> (Vec<DVec3>, Vec<Vec<usize>>) {
     (points, rings)
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let faces = input.faces(TAKES)?;
     let (points, rings) = shared(faces);
     let steps = record(cap, |t| orient(&points, &rings, &Options::default(), t))?;

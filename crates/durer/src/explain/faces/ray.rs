@@ -3,7 +3,7 @@
 use super::triangles::Triangles;
 use super::{EXAMPLES, Scene, TAKES, slab};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -114,7 +114,7 @@ struct Ray {
     t: f64,
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let scene = Scene::new(input)?;
     let triangles = Triangles::new(&scene)?;
     let (mut model, _) = triangles.prepared(&scene)?;

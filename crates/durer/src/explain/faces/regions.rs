@@ -3,7 +3,7 @@
 use super::{EXAMPLES, Scene, TAKES, name};
 use crate::Result;
 use crate::clip::polygon::Shapes;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -56,7 +56,7 @@ struct State {
     cut: Option<[Shapes; 2]>,
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let scene = Scene::new(input)?;
     let steps = record(cap, |t| regions(&scene.faces, &Default::default(), t))?;
     let mut state = State { scene, seen: Vec::new(), by: 0, cut: None };

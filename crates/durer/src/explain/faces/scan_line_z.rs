@@ -3,7 +3,7 @@
 use super::triangles::Triangles;
 use super::{EXAMPLES, Scene, TAKES};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -66,7 +66,7 @@ struct State {
     y: i32,
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let scene = Scene::new(input)?;
     let triangles = Triangles::new(&scene)?;
     let (model, view) = triangles.prepared(&scene)?;

@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, Scene, TAKES, name};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::NO_HEAD;
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
@@ -78,7 +78,7 @@ struct State {
     row: i32,
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let scene = Scene::new(input)?;
     let steps = record(cap, |t| items(&scene.faces, &scene.screen(), t))?;
     let (waiting, active, inside) = (Vec::new(), Vec::new(), Vec::new());

@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, Filling, ROW, TAKES, X, add_row, on_row};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -86,7 +86,7 @@ impl Plane {
     }
 }
 
-fn complements(input: &Input, fenced: bool, cap: usize) -> Result<Vec<Frame>> {
+fn complements(input: &Input, fenced: bool, cap: usize) -> Result<Frames> {
     let mut plane = Plane::new(input)?;
     let contours = plane.filling.contours();
     let fence = fenced.then_some(plane.pixels.width() / 2);
@@ -125,7 +125,7 @@ fn complements(input: &Input, fenced: bool, cap: usize) -> Result<Vec<Frame>> {
     }))
 }
 
-fn flags(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn flags(input: &Input, cap: usize) -> Result<Frames> {
     use edge_flag::Step;
     let mut plane = Plane::new(input)?;
     let contours = plane.filling.contours();

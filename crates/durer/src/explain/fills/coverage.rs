@@ -3,7 +3,7 @@
 use super::{EXAMPLES, Filling, ring};
 use crate::Result;
 use crate::curve::Contours;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::{color, grey, letter};
 use crate::explain::input::{Figure, Input, Options};
 use crate::explain::lesson::{Example, Lesson};
@@ -125,7 +125,7 @@ struct Cells {
     pixels: Vec<([u32; 2], u8)>,
 }
 
-fn by_cells(input: &Input, options: &Options, cap: usize) -> Result<Vec<Frame>> {
+fn by_cells(input: &Input, options: &Options, cap: usize) -> Result<Frames> {
     let filling = Filling::new(input)?;
     let rule = Filling::options(options)?.rule;
     let [width, height] = [filling.raster.columns, filling.raster.rows];
@@ -256,7 +256,7 @@ fn around([x, y]: [u32; 2], end: u32) -> [DVec2; 5] {
 /// Areas of one pixel: those of the faces, and their sum.
 type Areas = Vec<(usize, f64)>;
 
-fn by_faces(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn by_faces(input: &Input, cap: usize) -> Result<Frames> {
     let filling = Filling::new(input)?;
     let face = |(number, ring): (usize, &Vec<DVec2>)| {
         let [r, g, b] = color(number);

@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, Filling, TAKES, X, add_row, on_row};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::{NO_HEAD, letter};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::Lesson;
@@ -59,7 +59,7 @@ struct State {
     told: usize,
 }
 
-fn make(_: &Lesson, input: &Input, options: &Options, cap: usize) -> Result<Vec<Frame>> {
+fn make(_: &Lesson, input: &Input, options: &Options, cap: usize) -> Result<Frames> {
     let filling = Filling::new(input)?;
     let (contours, how) = (filling.contours(), Filling::options(options)?);
     let (columns, rows) = (filling.raster.columns, filling.raster.rows);

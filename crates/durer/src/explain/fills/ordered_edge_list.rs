@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, Filling, ROW, TAKES, X, add_row, on_row};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -37,7 +37,7 @@ const DOWN: Word = Word::new("down", "hinab");
 /// Entries of the list: row, x, and change of the winding number.
 type Entry = (i32, i32, i32);
 
-fn make(_: &Lesson, input: &Input, options: &Options, cap: usize) -> Result<Vec<Frame>> {
+fn make(_: &Lesson, input: &Input, options: &Options, cap: usize) -> Result<Frames> {
     let mut filling = Filling::new(input)?;
     let (contours, how) = (filling.contours(), Filling::options(options)?);
     let (columns, rows) = (filling.raster.columns, filling.raster.rows);

@@ -1,7 +1,7 @@
 //! The lessons of seed fills: with a stack of pixels, and by runs.
 
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::{NO_HEAD, center};
 use crate::explain::input::{Grid, Input};
 use crate::explain::lesson::{Example, Lesson};
@@ -112,7 +112,7 @@ struct State {
     stack: Vec<Run>,
 }
 
-fn make(method: SeedFill, input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(method: SeedFill, input: &Input, cap: usize) -> Result<Frames> {
     let grid = input.grid(TAKES)?.clone();
     let cells = grid.cells.iter().map(|&cell| u16::from(cell)).collect();
     let mut image = Pixels::from_data(grid.columns, grid.rows(), cells)?;

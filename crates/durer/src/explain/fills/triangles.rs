@@ -1,7 +1,7 @@
 //! The lessons of triangles in pixels: edge functions, edge walking, tiles.
 
 use super::ring;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::{NO_HEAD, Raster, center};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
@@ -167,7 +167,7 @@ impl Work {
     }
 }
 
-fn by_functions(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn by_functions(input: &Input, cap: usize) -> Result<Frames> {
     let mut work = Work::new(input)?;
     let (triangle, options) = (work.triangle, work.options());
     let steps = record(cap, |t| {
@@ -205,7 +205,7 @@ fn functions(values: [Value; 3]) -> Table {
     table
 }
 
-fn by_walking(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn by_walking(input: &Input, cap: usize) -> Result<Frames> {
     use edge_walking::Step;
     let mut work = Work::new(input)?;
     let (triangle, options) = (work.triangle, work.options());
@@ -252,7 +252,7 @@ fn walked(step: &edge_walking::Step) -> (Caption, i32) {
     }
 }
 
-fn by_tiles(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn by_tiles(input: &Input, cap: usize) -> Result<Frames> {
     let mut work = Work::new(input)?;
     let (triangle, options) = (work.triangle, work.options());
     let steps = record(cap, |t| {

@@ -3,7 +3,7 @@
 use super::{EXAMPLES, TAKES, ring};
 use crate::Result;
 use crate::curve::Contours;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::letter;
 use crate::explain::input::{Figure, Input};
 use crate::explain::lesson::{Example, Lesson};
@@ -67,7 +67,7 @@ struct State {
     count: usize,
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let figure = input.figure(TAKES)?;
     figure.ring(TAKES)?;
     let rings: Vec<Vec<DVec2>> =

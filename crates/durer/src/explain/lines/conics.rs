@@ -2,13 +2,13 @@
 
 use super::{STEP, line};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::{center, log, shown, upright};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
 use crate::explain::words::{Caption, Template, Value, Word};
-use crate::math::IVec2;
+use crate::math::{DAffine2, IVec2};
 use crate::raster::conic::{self, Region, Step, replay};
 
 pub(super) const CIRCLE: Lesson = Lesson {
@@ -109,8 +109,17 @@ fn radii(circle: bool, input: &Input) -> Result<[u32; 2]> {
     Ok(if circle { [whole(size); 2] } else { way.to_array().map(whole) })
 }
 
-fn make(circle: bool, input: &Input, cap: usize) -> Result<Vec<Frame>> {
+/// Returns the map that takes the input's centre to that of the picture, if radii are drawn as they are.
+fn placed(input: &Input, [a, b]: [u32; 2]) -> Result<Option<DAffine2>> {
+    let [middle, point] = input.figure(TAKES)?.segment(TAKES)?;
+    let scaled = (point - middle).abs().max_element() > LARGEST;
+    let shift = center(IVec2::new(a as i32, b as i32)) - middle;
+    Ok((!scaled).then(|| DAffine2::from_translation(shift)))
+}
+
+fn make(circle: bool, input: &Input, cap: usize) -> Result<Frames> {
     let radii = radii(circle, input)?;
+    let picture_from_input = placed(input, radii)?;
     let steps = record(cap, |t| match circle {
         true => conic::circle(IVec2::ZERO, radii[0], |_| {}, t),
         false => conic::ellipse(IVec2::ZERO, radii, |_| {}, t),
@@ -122,12 +131,8 @@ fn make(circle: bool, input: &Input, cap: usize) -> Result<Vec<Frame>> {
         rows.push([shown(step.pixel), d.clone()]);
         let heads = [STEP, Word::new("pixel", "Pixel"), Word::new("d", "d")];
         let table = log(heads, &rows);
-        Shown {
-            line: step.line(),
-            caption: caption(step, d),
-            table,
-            picture: picture(radii, &done),
-        }
+        let picture = Picture { picture_from_input, ..picture(radii, &done) };
+        Shown { line: step.line(), caption: caption(step, d), table, picture }
     }))
 }
 

@@ -1,7 +1,7 @@
 //! The lesson of thick and stippled lines on pixels.
 
 use super::{PIXEL, STEP};
-use crate::explain::frame::{Frame, Numbered, Shown, frames, record};
+use crate::explain::frame::{Frames, Numbered, Shown, frames, record};
 use crate::explain::grid::{Raster, center, log, shown};
 use crate::explain::input::{Figure, Input};
 use crate::explain::lesson::{Example, Lesson};
@@ -77,7 +77,7 @@ struct Piece {
     steps: Vec<Step>,
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let given = &input.figure(TAKES)?.lines;
     let points = || given.iter().filter(|line| line.len() > 1);
     if points().next().is_none() {

@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, PIXEL, STEP, TAKES};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::{Raster, center, grey, log, shown};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
@@ -43,7 +43,7 @@ static FILTERED: Template = Template::new(
 const DISTANCE: Word = Word::new("distance", "Abstand");
 const LIGHT: Word = Word::new("of 255", "von 255");
 
-fn make(method: SmoothLine, input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(method: SmoothLine, input: &Input, cap: usize) -> Result<Frames> {
     let ends = input.figure(TAKES)?.segment(TAKES)?;
     let raster = Raster::around(ends);
     let ends @ [from, to] = ends.map(|end| raster.pixel(end));
@@ -70,7 +70,7 @@ fn make(method: SmoothLine, input: &Input, cap: usize) -> Result<Vec<Frame>> {
 }
 
 fn picture(raster: &Raster, ends: [IVec2; 2], done: &[Step]) -> Picture {
-    let mut picture = raster.picture();
+    let mut picture = raster.picture_of_pixels();
     for step in done.iter().filter(|step| step.pixel.min_element() >= 0) {
         let color = grey(f64::from(step.intensity) / 255.0);
         picture.colored(step.pixel.to_array(), color, "");

@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, PIXEL, STEP, TAKES};
 use crate::Result;
-use crate::explain::frame::{Frame, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::{Raster, add_pixels, center, log, shown};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
@@ -73,7 +73,7 @@ struct State<'a> {
     rows: Vec<[Value; 3]>,
 }
 
-fn make(method: LineRasterizer, input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(method: LineRasterizer, input: &Input, cap: usize) -> Result<Frames> {
     let ends = input.figure(TAKES)?.segment(TAKES)?;
     let raster = Raster::around(ends);
     let ends @ [from, to] = ends.map(|end| raster.pixel(end));
@@ -152,7 +152,7 @@ impl State<'_> {
     }
 
     fn picture(&self, step: &Step, next: Option<IVec2>) -> Picture {
-        let mut picture = self.raster.picture();
+        let mut picture = self.raster.picture_of_pixels();
         add_pixels(&mut picture, &self.pixels);
         picture.chain(self.ends.map(center), Look::Second);
         let across = step.across + 0.5;

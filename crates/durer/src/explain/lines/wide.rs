@@ -1,7 +1,7 @@
 //! The lesson of outlines of strokes.
 
 use crate::curve::Path;
-use crate::explain::frame::{Frame, Numbered, Shown, frames, record};
+use crate::explain::frame::{Frames, Numbered, Shown, frames, record};
 use crate::explain::grid::log;
 use crate::explain::input::{Figure, Input};
 use crate::explain::lesson::{Example, Lesson};
@@ -115,7 +115,7 @@ struct State {
     rows: Vec<[Value; 3]>,
 }
 
-fn make(input: &Input, cap: usize) -> Result<Vec<Frame>> {
+fn make(input: &Input, cap: usize) -> Result<Frames> {
     let given = &input.figure(TAKES)?.lines;
     let lines: Vec<Vec<DVec2>> = given.iter().filter(|line| line.len() > 1).cloned().collect();
     if lines.is_empty() {

@@ -4,8 +4,8 @@ mod figure;
 mod hatch;
 mod state;
 
-use super::frame::Frame;
 use super::letters::{width, wrap};
+use super::packed::Frame;
 use super::picture::Picture;
 use super::words::Language;
 use std::fmt::Write;
@@ -67,9 +67,15 @@ pub fn sheet(frames: &[Frame], columns: usize, language: Language) -> String {
 
 /// Draws a picture alone, for pages that show the rest themselves.
 pub fn picture(picture: &Picture, language: Language) -> String {
-    let size = figure::size(picture, ALONE);
+    picture_of_size(picture, ALONE, language)
+}
+
+/// Draws a picture alone whose longer side is given in pixels, from 1 to 10,000; texts and lines keep their size.
+pub fn picture_of_size(picture: &Picture, longest: f64, language: Language) -> String {
+    let longest = if longest.is_finite() { longest.clamp(1.0, 10_000.0) } else { ALONE };
+    let size = figure::size(picture, longest);
     let mut out = opening(size.x, size.y);
-    out += &figure::draw(picture, ALONE, language);
+    out += &figure::draw(picture, longest, language);
     out + "</svg>\n"
 }
 

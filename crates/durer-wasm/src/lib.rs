@@ -1,0 +1,31 @@
+//! The library behind requests: a JSON text in, a JSON text or bytes out. Compiled to WebAssembly it is the engine of the
+//! explorer; compiled for this machine it answers with the same bytes, which tests compare.
+//!
+//! [`answer`] is all of it. A request is an object whose `do` names what to do:
+//!
+//! | `do` | members | answer |
+//! |---|---|---|
+//! | `lessons` | – | families of lessons with facts, pseudocode, examples and sentences |
+//! | `run` | `name`, `input`, `operation`, `rule`, `cap` | `handle` of the run, and line and template of each step |
+//! | `frame` | `handle`, `step`, `language`, `longest` | caption, table, drawing, and the place of the input in it |
+//! | `captions` | `handle`, `first`, `count`, `language` | captions of a range of steps |
+//! | `tikz` | `handle`, `step`, `language` | the drawing for LaTeX |
+//! | `drop` | `handle` | nothing; the run's memory is free again |
+//! | `read` | `name`, `window`; the file after a zero byte | the file as an input |
+//! | `methods` | – | names of methods for visible surfaces |
+//! | `render` | `name`, `method`, …; the model after a zero byte | a PNG |
+//!
+//! ```json
+//! {"do": "run", "name": "cohen-sutherland", "input": {"example": "line-eh"}, "cap": 1000}
+//! ```
+
+mod answer;
+mod door;
+#[cfg(feature = "files")]
+mod files;
+mod input;
+mod lessons;
+mod runs;
+mod tikz;
+
+pub use answer::{Answer, Engine};

@@ -1,0 +1,140 @@
+//! Runs by number, and their frames.
+
+use crate::answer::{Failure, FrameRequest, RunRequest};
+use crate::input::InputData;
+use durer::clip::polygon::{BooleanOp, FillRule};
+use durer::explain::{
+    self, Frame, Frames, Input, Language, Lesson, Options, Picture, json_string, picture_of_size,
+};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// The most runs that are kept: a page compares three, and has some in flight.
+const MOST_RUNS: usize = 16;
+
+/// The most steps of a run.
+const MOST_STEPS: usize = 100_000;
+
+/// The most captions in an answer.
+const MOST_CAPTIONS: usize = 2_000;
+
+/// Steps by which choices are compared.
+const COMPARED: usize = 400;
+
+/// Runs that requests may refer to.
+#[derive(Debug, Default)]
+pub(crate) struct Runs {
+    next: u32,
+    all: BTreeMap<u32, Frames>,
+}
+
+impl Runs {
+    /// Runs an algorithm and keeps its frames.
+    pub fn start(&mut self, request: RunRequest) -> Result<Value, Failure> {
+        let words = |e: durer::Error| e.to_string();
+        let lesson = explain::lesson(&request.name).map_err(words)?;
+        let input = match request.input.into_input()? {
+            Input::Example(name) => lesson.example(&name).map_err(words)?,
+            own => own,
+        };
+        let options = options(&request.operation, &request.rule)?;
+        let cap = request.cap.min(MOST_STEPS);
+        let run = lesson.record(&input, &options, cap).map_err(words)?;
+        let mut answer = json!({
+            "handle": self.next,
+            "steps": run.len(),
+            "lines": run.captions().map(|(line, _)| line).collect::<Vec<_>>(),
+            "templates": run.captions().map(|(_, caption)| place(lesson, caption)).collect::<Vec<_>>(),
+            "input": InputData::of_input(&input),
+        });
+        if request.choices {
+            answer["choices"] = choices(lesson, &input);
+        }
+        while self.all.len() >= MOST_RUNS {
+            self.all.pop_first();
+        }
+        self.all.insert(self.next, run);
+        self.next = self.next.wrapping_add(1);
+        Ok(answer)
+    }
+
+    /// Returns a run by its number.
+    pub fn of(&self, handle: u32) -> Result<&Frames, Failure> {
+        self.all.get(&handle).ok_or_else(|| {
+            format!("run {handle} does not exist; only the last {MOST_RUNS} are kept")
+        })
+    }
+
+    /// Forgets a run.
+    pub fn drop(&mut self, handle: u32) {
+        self.all.remove(&handle);
+    }
+}
+
+/// Returns the number of a caption's template in the lesson; −1 for one that is of no step.
+fn place(lesson: &Lesson, caption: &explain::Caption) -> i64 {
+    let found = lesson.templates.iter().position(|own| *own == caption.template);
+    found.map_or(-1, |place| place as i64)
+}
+
+/// Returns options by the names of operation and rule.
+fn options(operation: &str, rule: &str) -> Result<Options, Failure> {
+    let mut options = Options::default();
+    if !operation.is_empty() {
+        options.operation = operation.parse().map_err(|e: durer::Error| e.to_string())?;
+    }
+    if !rule.is_empty() {
+        options.rule = rule.parse().map_err(|e: durer::Error| e.to_string())?;
+    }
+    Ok(options)
+}
+
+/// Returns the operations and the rules with which the lesson runs, if they change what happens.
+fn choices(lesson: &Lesson, input: &Input) -> Value {
+    let captions = |options: Options| {
+        let run = lesson.record(input, &options, COMPARED).ok()?;
+        Some(run.captions().map(|(_, caption)| caption.clone()).collect::<Vec<_>>())
+    };
+    let default = Options::default();
+    let distinct = |all: Vec<(&'static str, Options)>| {
+        let runs: Vec<_> = all.into_iter().map(|(name, o)| (name, captions(o))).collect();
+        let good: Vec<_> = runs.iter().filter(|(_, run)| run.is_some()).collect();
+        let differ = good.windows(2).any(|pair| pair[0].1 != pair[1].1);
+        let names = good.iter().map(|(name, _)| *name);
+        if differ { names.collect::<Vec<_>>() } else { Vec::new() }
+    };
+    let operations = BooleanOp::ALL.iter().map(|&op| (op.name(), Options { operation: op, ..default }));
+    let rules = FillRule::ALL.iter().map(|&rule| (rule.name(), Options { rule, ..default }));
+    json!({ "operations": distinct(operations.collect()), "rules": distinct(rules.collect()) })
+}
+
+/// Makes a frame.
+pub(crate) fn made(run: &Frames, step: usize) -> Result<Frame, Failure> {
+    run.frame(step).ok_or_else(|| format!("step {step}: the run has {} steps", run.len()))
+}
+
+/// Returns a frame as JSON: its texts and table, the drawing, and where the input is in it.
+pub(crate) fn frame(run: &Frames, request: &FrameRequest) -> Result<String, Failure> {
+    let frame = made(run, request.step)?;
+    let language = request.language.into();
+    let drawing = picture_of_size(&frame.picture, request.longest, language);
+    Ok(format!(
+        "{{\"frame\":{},\"svg\":{},\"map\":{}}}",
+        explain::frame_json(&frame, language),
+        json_string(&drawing),
+        map(&frame.picture)
+    ))
+}
+
+/// Returns the part of the plane that a picture shows, and the map that takes points of the input there.
+fn map(picture: &Picture) -> Value {
+    let [min, max] = picture.extent.map(|p| p.to_array());
+    let matrix = picture.picture_from_input.map(|map| map.to_cols_array());
+    json!({ "min": min, "max": max, "down": picture.down, "input": matrix })
+}
+
+/// Returns captions in one language.
+pub(crate) fn captions(run: &Frames, first: usize, count: usize, language: Language) -> Value {
+    let all = run.captions().skip(first).take(count.min(MOST_CAPTIONS));
+    json!({ "captions": all.map(|(_, caption)| caption.text(language)).collect::<Vec<_>>() })
+}

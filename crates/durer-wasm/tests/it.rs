@@ -1,0 +1,146 @@
+//! Requests as a page makes them, answered by this machine's build.
+
+use durer_wasm::{Answer, Engine};
+use serde_json::{Value, json};
+
+fn asked(engine: &mut Engine, request: &Value) -> Value {
+    match engine.answer(request.to_string().as_bytes()) {
+        Answer::Json(text) => serde_json::from_str(&text).expect("JSON"),
+        other => panic!("{request}: {other:?}"),
+    }
+}
+
+fn refused(engine: &mut Engine, request: &str) -> String {
+    match engine.answer(request.as_bytes()) {
+        Answer::Error(text) => {
+            let value: Value = serde_json::from_str(&text).expect("JSON");
+            value["error"].as_str().expect("words").to_owned()
+        }
+        other => panic!("{request}: {other:?}"),
+    }
+}
+
+#[test]
+fn every_lesson_is_listed_and_has_the_parts_of_a_page() {
+    let list = asked(&mut Engine::default(), &json!({ "do": "lessons" }));
+    let families = list["families"].as_array().unwrap();
+    let lessons: Vec<&Value> =
+        families.iter().flat_map(|family| family["lessons"].as_array().unwrap()).collect();
+    assert_eq!(lessons.len(), durer::explain::lessons().count());
+    for family in families {
+        assert!(family["title"]["en"] != family["title"]["de"], "{}", family["title"]);
+    }
+    for lesson in lessons {
+        let name = &lesson["name"];
+        for part in ["title", "authors", "source", "cost", "limits"] {
+            assert!(!lesson[part].as_str().unwrap().is_empty(), "{name}: {part}");
+        }
+        for part in ["pseudocode", "examples", "templates"] {
+            assert!(lesson[part].as_array().unwrap().len() > 1 || part == "templates", "{name}: {part}");
+        }
+        for template in lesson["templates"].as_array().unwrap() {
+            assert!(!template["text"]["de"].as_str().unwrap().is_empty(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_run_is_stepped_through() {
+    let mut engine = Engine::default();
+    let request = json!({ "do": "run", "name": "cohen-sutherland", "input": { "example": "line-eh" }, "cap": 100 });
+    let run = asked(&mut engine, &request);
+    assert_eq!(run["steps"], 4);
+    assert_eq!(run["input"]["figure"]["window"], json!([0.0, 0.0, 10.0, 6.0]));
+    let kinds = run["templates"].as_array().unwrap();
+    assert_eq!(kinds, json!([0, 1, 1, 2]).as_array().unwrap());
+    let request = json!({ "do": "frame", "handle": run["handle"], "step": 1, "language": "de", "longest": 500 });
+    let frame = asked(&mut engine, &request);
+    assert!(frame["svg"].as_str().unwrap().starts_with("<svg"));
+    assert!(frame["frame"]["caption"].as_str().unwrap().contains("wandert nach (0; "));
+    assert_eq!(frame["map"]["input"], json!([1.0, 0.0, 0.0, 1.0, 0.0, 0.0]));
+    assert_eq!(frame["frame"]["table"]["rows"][0]["cells"][0]["changed"], true);
+    let request = json!({ "do": "captions", "handle": run["handle"], "first": 2, "count": 9, "language": "en" });
+    assert_eq!(asked(&mut engine, &request)["captions"].as_array().unwrap().len(), 2);
+    asked(&mut engine, &json!({ "do": "drop", "handle": run["handle"] }));
+    assert!(refused(&mut engine, &request.to_string()).contains("does not exist"));
+}
+
+#[test]
+fn own_inputs_come_back_as_they_went_in() {
+    let mut engine = Engine::default();
+    let inputs = [
+        ("sutherland-hodgman", json!({ "figure": { "window": [0.0, 0.0, 4.0, 4.0], "rings": [[[1.0, 1.0], [9.0, 2.0], [3.0, 7.0]]] } })),
+        ("naive", json!({ "grid": { "columns": 3, "cells": [0, 0, 1, 0, 1, 0], "seed": [0, 1] } })),
+        ("z-buffer-loop", json!({ "faces": [[[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 2.0]]] })),
+    ];
+    for (name, input) in inputs {
+        let request = json!({ "do": "run", "name": name, "input": input, "cap": 50 });
+        let run = asked(&mut engine, &request);
+        assert_eq!(run["input"], input, "{name}");
+        assert!(run["steps"].as_u64().unwrap() > 2, "{name}");
+    }
+}
+
+#[test]
+fn choices_are_those_that_change_the_run() {
+    let mut engine = Engine::default();
+    let mut choices = |name: &str, example: &str| {
+        let input = json!({ "example": example });
+        let request = json!({ "do": "run", "name": name, "input": input, "cap": 9, "choices": true });
+        asked(&mut engine, &request)["choices"].clone()
+    };
+    let overlay = choices("weiler-atherton", "");
+    assert_eq!(overlay["operations"].as_array().unwrap().len(), 4, "{overlay}");
+    let plain = choices("cohen-sutherland", "");
+    assert_eq!(plain, json!({ "operations": [], "rules": [] }));
+    let star = choices("edge-table", "star");
+    assert_eq!(star["rules"], json!(["even-odd", "non-zero"]));
+}
+
+#[test]
+fn wrong_requests_are_refused_in_words() {
+    let mut engine = Engine::default();
+    let run = |name: &str, input: Value| {
+        json!({ "do": "run", "name": name, "input": input, "cap": 10 }).to_string()
+    };
+    let cases = [
+        ("{", "EOF"),
+        (r#"{"do":"dance"}"#, "dance"),
+        (&run("cohen", json!({ "example": "" })), "cohen-sutherland"),
+        (&run("bresenham", json!({ "example": "x" })), "lecture"),
+        (&run("bresenham", json!({ "faces": [] })), "faces in space"),
+        (&run("bresenham", json!({ "figure": { "circles": [] } })), "circles"),
+        (r#"{"do":"frame","handle":77,"step":0,"language":"en"}"#, "77"),
+    ];
+    for (request, wanted) in cases {
+        let words = refused(&mut engine, request);
+        assert!(words.contains(wanted), "{request}: {words}");
+    }
+    assert!(refused(&mut engine, "\0\0").contains("EOF"));
+}
+
+#[test]
+fn many_steps_are_kept_and_found() {
+    let mut engine = Engine::default();
+    let ring: Vec<[f64; 2]> = vec![[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]];
+    let face: Vec<[f64; 3]> = ring.iter().map(|[x, y]| [*x, *y, 1.0]).collect();
+    let faces = vec![face; 3];
+    let request = json!({ "do": "run", "name": "z-buffer-loop", "input": { "faces": faces }, "cap": 100_000 });
+    let run = asked(&mut engine, &request);
+    let steps = run["steps"].as_u64().unwrap();
+    assert!(steps > 1_000, "{steps}");
+    for step in [0, steps / 2, steps - 1] {
+        let request = json!({ "do": "frame", "handle": run["handle"], "step": step, "language": "en" });
+        assert!(asked(&mut engine, &request)["svg"].as_str().unwrap().len() > 1_000);
+    }
+}
+
+#[test]
+fn old_runs_make_room() {
+    let mut engine = Engine::default();
+    let request = json!({ "do": "run", "name": "bresenham", "input": { "example": "" }, "cap": 10 });
+    let first = asked(&mut engine, &request)["handle"].clone();
+    (0..16).for_each(|_| drop(asked(&mut engine, &request)));
+    let frame = json!({ "do": "frame", "handle": first, "step": 0, "language": "en" });
+    assert!(refused(&mut engine, &frame.to_string()).contains("only the last 16"));
+}

@@ -1,0 +1,110 @@
+// The engine as the pages see it: promises of answers. A trap starts a new engine, and whoever has a run starts it again.
+
+import type { Family, Frame, Input, Language, Run, RunRequest } from "./types";
+import EngineWorker from "./worker?worker";
+
+/** A request that the engine refused, in its words. */
+export class Refused extends Error {}
+/** A request that stopped the engine. */
+export class Trapped extends Error {}
+
+interface Waiting {
+  resolve(value: unknown): void;
+  reject(reason: Error): void;
+}
+
+interface Reply {
+  id: number;
+  value?: unknown;
+  bytes?: Uint8Array;
+  refused?: boolean;
+  trapped?: string;
+  failed?: string;
+}
+
+export class Engine {
+  private worker: Worker | undefined;
+  private waiting = new Map<number, Waiting>();
+  private next = 1;
+  /** Counts engines, so that runs of one that is gone are known. */
+  generation = 0;
+  /** Is called when an engine was started anew. */
+  onrestart: (() => void) | undefined;
+
+  constructor(private module: string) {}
+
+  private start(): Worker {
+    const worker = new EngineWorker();
+    worker.onmessage = (event: MessageEvent<Reply>) => this.take(event.data);
+    worker.onerror = (event) => this.restart(event.message || "the engine could not be loaded");
+    worker.postMessage({ url: new URL(this.module, document.baseURI).href });
+    return worker;
+  }
+
+  private take(reply: Reply): void {
+    if (reply.failed !== undefined) return this.restart(reply.failed);
+    const waiting = this.waiting.get(reply.id);
+    this.waiting.delete(reply.id);
+    if (reply.trapped !== undefined) {
+      waiting?.reject(new Trapped(reply.trapped));
+      return this.restart(reply.trapped);
+    }
+    if (reply.refused) waiting?.reject(new Refused((reply.value as { error: string }).error));
+    else waiting?.resolve(reply.bytes ?? reply.value);
+  }
+
+  private restart(reason: string): void {
+    this.worker?.terminate();
+    this.worker = undefined;
+    this.generation += 1;
+    const all = [...this.waiting.values()];
+    this.waiting.clear();
+    all.forEach((waiting) => waiting.reject(new Trapped(reason)));
+    this.onrestart?.();
+  }
+
+  ask<T>(request: object, file?: ArrayBuffer): Promise<T> {
+    this.worker ??= this.start();
+    const id = this.next++;
+    const answer = new Promise<T>((resolve, reject) => {
+      this.waiting.set(id, { resolve: resolve as (value: unknown) => void, reject });
+    });
+    this.worker.postMessage({ id, request, file }, file ? [file] : []);
+    return answer;
+  }
+
+  async lessons(): Promise<Family[]> {
+    return (await this.ask<{ families: Family[] }>({ do: "lessons" })).families;
+  }
+
+  run(request: RunRequest): Promise<Run> {
+    return this.ask({ do: "run", ...request });
+  }
+
+  async frame(handle: number, step: number, language: Language, longest: number): Promise<Frame> {
+    return { ...(await this.ask<Frame>({ do: "frame", handle, step, language, longest })), longest };
+  }
+
+  async captions(handle: number, first: number, count: number, language: Language): Promise<string[]> {
+    return (await this.ask<{ captions: string[] }>({ do: "captions", handle, first, count, language })).captions;
+  }
+
+  async tikz(handle: number, step: number, language: Language): Promise<string> {
+    return (await this.ask<{ tikz: string }>({ do: "tikz", handle, step, language })).tikz;
+  }
+
+  drop(handle: number): void {
+    void this.ask({ do: "drop", handle }).catch(() => undefined);
+  }
+}
+
+/** The engine of all lessons. */
+export const engine = new Engine("durer.wasm");
+/** The engine that reads files and renders models; it is larger, and loaded when it is asked for the first time. */
+export const files = new Engine("durer-files.wasm");
+
+/** A file as an input, and what was left out of it. */
+export interface Opened {
+  input: Input;
+  warnings: string[];
+}

@@ -1,0 +1,253 @@
+// The page of one algorithm.
+
+import { Compare } from "./compare";
+import { h } from "./dom";
+import { format, pack, type Address } from "./link";
+import { inputPanel } from "./inputs";
+import { Code, stateTable, textOfRun } from "./panes";
+import { Player, type Setup } from "./player";
+import { exercises, Quiz } from "./quiz";
+import { sharePanel } from "./share";
+import { Stage } from "./stage";
+import { trackBar } from "./tracks";
+import { Transport } from "./transport";
+import type { Family, Lesson } from "./types";
+import { KEYS, language, named, t, type WordName } from "./words";
+
+/** A page that is shown until another one takes its place. */
+export interface Page {
+  element: HTMLElement;
+  title: string;
+  key?(event: KeyboardEvent): boolean;
+  close(): void;
+}
+
+/** Addresses are written no more often than this, in milliseconds. */
+const SETTLED = 250;
+
+function facts(lesson: Lesson): HTMLElement {
+  const row = (name: WordName, value: string): HTMLElement[] => [h("dt", {}, t(name)), h("dd", {}, value)];
+  return h(
+    "details",
+    { class: "facts" },
+    h("summary", {}, t("facts")),
+    h(
+      "dl",
+      {},
+      ...row("source", lesson.source),
+      ...row("decides", named(lesson.class)),
+      ...row("cost", lesson.cost),
+      ...row("limits", lesson.limits),
+    ),
+  );
+}
+
+/** Panels below the picture, one at a time. */
+function tabs(panels: [WordName, HTMLElement][]): HTMLElement {
+  const buttons = panels.map(([name, panel], index) =>
+    h("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}`, tabindex: index === 0 ? 0 : -1, onclick: () => select(index) }, t(name), panel.dataset.badge ?? ""),
+  );
+  panels.forEach(([name, panel]) => {
+    panel.id = `panel-${name}`;
+    panel.setAttribute("role", "tabpanel");
+    panel.setAttribute("aria-labelledby", `tab-${name}`);
+  });
+  function select(chosen: number, focus = false): void {
+    panels.forEach(([, panel], index) => (panel.hidden = index !== chosen));
+    buttons.forEach((button, index) => {
+      button.setAttribute("aria-selected", String(index === chosen));
+      button.tabIndex = index === chosen ? 0 : -1;
+    });
+    if (focus) buttons[chosen]!.focus();
+  }
+  const list = h(
+    "div",
+    {
+      role: "tablist",
+      class: "tabs",
+      onkeydown: (event: KeyboardEvent) => {
+        const way = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
+        if (way === 0) return;
+        event.preventDefault();
+        event.stopPropagation();
+        const now = buttons.findIndex((button) => button.tabIndex === 0);
+        select((now + way + buttons.length) % buttons.length, true);
+      },
+    },
+    ...buttons,
+  );
+  select(0);
+  return h("section", { class: "lower" }, list, ...panels.map(([, panel]) => panel));
+}
+
+export function lessonPage(
+  lesson: Lesson,
+  families: Family[],
+  start: { setup: Setup; address: Address; notice?: string },
+  go: (address: Address) => void,
+): Page {
+  const { address } = start;
+  const embedded = address.embed === true;
+  const player = new Player(lesson, start.setup, (address.step ?? 1) - 1);
+  const stage = new Stage(player);
+  const code = new Code(player);
+  const transport = new Transport(player);
+  const compare = new Compare(player, families);
+  const caption = h("p", { class: "caption", "aria-live": "polite" });
+  const notice = h("p", { class: "notice", role: "status", "aria-live": "polite", hidden: true });
+  const codePane = h("div", { class: "scroll" }, code.element);
+  const quiz = new Quiz(player, transport, code, (hidden) => codePane.classList.toggle("veiled", hidden));
+  let noticeTimer: number | undefined;
+
+  function say(text: string, lasting = false): void {
+    notice.textContent = text;
+    notice.hidden = text === "";
+    clearTimeout(noticeTimer);
+    if (!lasting && text !== "") noticeTimer = window.setTimeout(() => say(""), 5000);
+  }
+
+  async function current(): Promise<Address> {
+    const { input, operation, rule } = player.setup;
+    const isExample = "example" in input;
+    return {
+      a: lesson.name,
+      ex: isExample && input.example !== "" ? input.example : undefined,
+      in: isExample ? undefined : await pack(input),
+      op: operation || undefined,
+      rule: rule || undefined,
+      step: player.step + 1,
+      with: compare.names.length > 0 ? compare.names : undefined,
+      track: address.track,
+      at: address.at,
+      lang: language(),
+      embed: embedded || undefined,
+    };
+  }
+
+  let timer: number | undefined;
+  let closed = false;
+  function settle(): void {
+    clearTimeout(timer);
+    timer = window.setTimeout(async () => {
+      const text = format(await current());
+      if (!closed) history.replaceState(null, "", text);
+    }, SETTLED);
+  }
+
+  transport.allow = (to) => quiz.allow(to);
+  transport.onnotice = (text) => say(text);
+  compare.onchange = settle;
+  code.online = (line) => {
+    if (quiz.line(line)) return;
+    const runs = (step: number): boolean => player.run?.lines[step] === line;
+    let found = player.find(1, runs);
+    // From the end it begins anew.
+    if (found < 0) found = player.run?.lines.indexOf(line) ?? -1;
+    if (found >= 0) transport.seek(found);
+    else say(t("noLine"));
+  };
+  let suited: string | undefined;
+  let pending = start.notice ?? "";
+  player.addEventListener("run", () => {
+    say(pending, true);
+    pending = "";
+    const { input } = player.setup;
+    const origin = "example" in input ? input.example : "own";
+    if (origin !== suited) stage.suit();
+    suited = origin;
+    settle();
+  });
+  player.addEventListener("error", () => say(player.error, true));
+  player.addEventListener("frame", () => {
+    caption.textContent = player.frame?.frame.caption ?? "";
+    settle();
+    if (embedded && parent !== window) {
+      parent.postMessage({ step: player.step + 1, of: player.steps, algorithm: lesson.name }, "*");
+    }
+  });
+  function message(event: MessageEvent<unknown>): void {
+    const { data } = event;
+    if (typeof data === "object" && data !== null && "goto" in data) transport.seek(Number(data.goto) - 1);
+  }
+  if (embedded) window.addEventListener("message", message);
+
+  const help = keysDialog();
+  const head = h(
+    "header",
+    { class: "head" },
+    h("p", { class: "crumb" }, h("a", { href: format({ lang: language() }) }, t("overview"))),
+    h("h1", {}, lesson.title),
+    h("p", { class: "by" }, `${lesson.authors}, ${lesson.year}`, " · ", h("span", { class: "class" }, named(lesson.class))),
+    facts(lesson),
+  );
+  const title = (name: WordName): HTMLElement => h("h2", { class: "pane-title" }, t(name));
+  const main = h(
+    "main",
+    { id: "content", class: embedded ? "lesson embedded" : "lesson", tabindex: -1 },
+    embedded ? null : trackBar(address, families, go),
+    embedded ? h("h1", { class: "visually-hidden" }, lesson.title) : head,
+    h(
+      "div",
+      { class: "board" },
+      h("section", { class: "pane picture-pane", "aria-label": t("picture") }, stage.element, caption, notice, transport.element),
+      embedded
+        ? h("a", { class: "full", href: format({ ...address, embed: undefined }), target: "_blank", rel: "noopener" }, t("seeFull"))
+        : h(
+            "div",
+            { class: "side" },
+            h("section", { class: "pane code-pane" }, title("code"), codePane),
+            h("section", { class: "pane state-pane" }, title("state"), h("div", { class: "scroll", tabindex: 0, role: "group", "aria-label": t("state") }, stateTable(player))),
+          ),
+    ),
+    embedded
+      ? null
+      : tabs([
+          ["input", inputPanel(player, stage, (text) => say(text))],
+          ["quiz", quiz.element],
+          ["exercises", exercises(player)],
+          ["compare", compare.element],
+          ["share", sharePanel(player, current, (text) => say(text))],
+        ]),
+    embedded ? null : textOfRun(player),
+    help,
+  );
+
+  function key(event: KeyboardEvent): boolean {
+    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") {
+      if (event.shiftKey) player.redo();
+      else player.undo();
+      return true;
+    }
+    if (event.key === "?") {
+      help.showModal();
+      return true;
+    }
+    if (event.key.toLowerCase() === "r" && !event.ctrlKey && !event.metaKey) {
+      player.change({ input: { example: "" }, operation: "", rule: "" }, player.setup, 0);
+      return true;
+    }
+    return transport.key(event);
+  }
+
+  void player.start(start.setup, player.step).then(() => compare.restore(address.with ?? []));
+  return {
+    element: main,
+    title: lesson.title,
+    key,
+    close() {
+      closed = true;
+      clearTimeout(timer);
+      window.removeEventListener("message", message);
+      transport.close();
+      stage.close();
+      compare.close();
+      player.close();
+    },
+  };
+}
+
+function keysDialog(): HTMLDialogElement {
+  const rows = KEYS.map(({ keys, text }) => [h("dt", {}, ...keys.split(" ").map((key) => h("kbd", {}, key))), h("dd", {}, text[language()])]).flat();
+  const dialog = h("dialog", { class: "keys", "aria-label": t("help") }, h("h2", {}, t("help")), h("dl", {}, ...rows), h("button", { type: "button", onclick: () => dialog.close() }, t("close")));
+  return dialog;
+}

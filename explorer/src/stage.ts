@@ -1,0 +1,315 @@
+// The picture of a step, with the vertices of the input as handles.
+
+import { h, s } from "./dom";
+import { added, gridOf, moved, nearest, removed, toggled, vertices, type Ref, type Vertex } from "./edit";
+import type { Player } from "./player";
+import type { Input, Place, Point } from "./types";
+import { t } from "./words";
+
+/** Drawings are made this much smaller than they are shown, so that their letters can be read. */
+const ENLARGED = 1.3;
+/** Distance within which a double click adds a vertex to an edge, in pixels of the drawing. */
+const NEAR = 30;
+
+/** Way between points of the input and pixels of a drawing. */
+class View {
+  readonly scale: number;
+  readonly size: Point;
+
+  constructor(
+    readonly place: Place,
+    longest: number,
+  ) {
+    const wide = place.max[0] - place.min[0];
+    const high = place.max[1] - place.min[1];
+    this.scale = longest / Math.max(wide, high);
+    this.size = [Math.max(1, wide * this.scale), Math.max(1, high * this.scale)];
+  }
+
+  /** Returns a point's place in the drawing. */
+  at([x, y]: Point): Point {
+    const [a, b, c, d, e, f] = this.place.input!;
+    const u = (a * x + c * y + e - this.place.min[0]) * this.scale;
+    const v = (b * x + d * y + f - this.place.min[1]) * this.scale;
+    return [u, this.place.down ? v : this.size[1] - v];
+  }
+
+  /** Returns the point of the input at a place in the drawing. */
+  from([u, v]: Point): Point {
+    const [a, b, c, d, e, f] = this.place.input!;
+    const x = u / this.scale + this.place.min[0] - e;
+    const y = (this.place.down ? v : this.size[1] - v) / this.scale + this.place.min[1] - f;
+    const size = a * d - b * c;
+    return [(d * x - c * y) / size, (a * y - b * x) / size];
+  }
+
+  /** Returns the rectangle of another drawing in this one, so that equal coordinates coincide. */
+  of(other: View): { x: number; y: number; width: number; height: number } {
+    const k = this.scale / other.scale;
+    const x = (other.place.min[0] - this.place.min[0]) * this.scale;
+    const low = (other.place.min[1] - this.place.min[1]) * this.scale;
+    const height = other.size[1] * k;
+    return { x, y: this.place.down ? low : this.size[1] - low - height, width: other.size[0] * k, height };
+  }
+}
+
+function same(a: Ref | undefined, b: Ref | undefined): boolean {
+  return a?.part === b?.part && a?.list === b?.list && a?.index === b?.index;
+}
+
+function nameOf({ ref, at }: Vertex): string {
+  const part = {
+    window: t("corner"),
+    lines: t("ofLine"),
+    rings: t("ofRing"),
+    clip: t("ofClip"),
+    points: t("point"),
+    faces: t("ofFace"),
+    seed: t("seed"),
+  }[ref.part];
+  const [x, y] = at.map((value) => Number(value.toFixed(3)));
+  return `${part} ${ref.list + 1}, ${t("vertex")} ${ref.index + 1}: (${x}; ${y})`;
+}
+
+export class Stage {
+  readonly element: HTMLElement;
+  /** Distance of the grid that vertices snap to; 0 for none. */
+  snap = 1;
+  /** The vertex that was chosen last. */
+  chosen: Ref | undefined;
+  onchoose: (() => void) | undefined;
+  editable = true;
+
+  private svg = s("svg", { class: "drawing", role: "group" });
+  private view: View | undefined;
+  /** The view when a drag began, until it ends. */
+  private held: { view: View; before: Player["setup"] } | undefined;
+  private observer: ResizeObserver;
+
+  constructor(private player: Player) {
+    this.element = h("div", { class: "stage" }, this.svg);
+    this.svg.addEventListener("dblclick", (event) => this.double(event));
+    this.svg.addEventListener("click", (event) => this.click(event));
+    player.addEventListener("frame", () => this.draw());
+    this.observer = new ResizeObserver(() => this.resize());
+    this.observer.observe(this.element);
+  }
+
+  close(): void {
+    this.observer.disconnect();
+  }
+
+  /** Returns the input that is shown, with its numbers. */
+  private get input(): Input | undefined {
+    return this.player.run?.input;
+  }
+
+  /** Has drawings made in the size in which they are shown. */
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.element;
+    if (clientWidth === 0 || !this.view || this.held) return;
+    const [wide, high] = this.view.size;
+    const fit = Math.min(clientWidth / wide, clientHeight / high);
+    const longest = Math.round((Math.max(wide, high) * fit) / ENLARGED);
+    const bounded = Math.max(240, Math.min(900, longest));
+    if (Math.abs(bounded - this.player.longest) > 0.08 * bounded) {
+      this.player.longest = bounded;
+      this.player.refresh();
+    }
+  }
+
+  private draw(): void {
+    const { frame } = this.player;
+    if (!frame) return;
+    const own = new View(frame.map, frame.longest);
+    const view = this.held?.view ?? own;
+    this.view = view;
+    const picture = new DOMParser().parseFromString(frame.svg, "image/svg+xml").documentElement;
+    const place = view.of(own);
+    const [wide, high] = own.size;
+    picture.setAttribute("viewBox", `0 0 ${wide} ${high}`);
+    for (const [name, value] of Object.entries(place)) picture.setAttribute(name, String(value));
+    picture.setAttribute("overflow", "visible");
+    picture.setAttribute("aria-hidden", "true");
+    const focused = (document.activeElement as SVGElement | null)?.dataset?.ref;
+    this.svg.setAttribute("viewBox", `0 0 ${view.size[0]} ${view.size[1]}`);
+    this.svg.setAttribute("aria-label", frame.frame.caption);
+    if (this.held) {
+      // The handle that is dragged has to stay: only the picture behind it is replaced.
+      this.svg.firstElementChild?.replaceWith(picture);
+      this.place();
+    } else {
+      this.svg.replaceChildren(picture, ...this.handles());
+      if (focused) this.svg.querySelector<SVGElement>(`[data-ref="${focused}"]`)?.focus();
+      this.resize();
+    }
+  }
+
+  private handles(): SVGElement[] {
+    const { input, view } = this;
+    if (!input || !view?.place.input || !this.editable) return [];
+    return vertices(input).map((vertex) => this.handle(vertex, view));
+  }
+
+  private handle(vertex: Vertex, view: View): SVGElement {
+    const { ref } = vertex;
+    const [x, y] = view.at(vertex.at);
+    const group = s(
+      "g",
+      {
+        class: `handle ${ref.part}${same(ref, this.chosen) ? " chosen" : ""}`,
+        transform: `translate(${x} ${y})`,
+        tabindex: 0,
+        role: "button",
+        "aria-label": nameOf(vertex),
+        "data-ref": `${ref.part}-${ref.list}-${ref.index}`,
+        onpointerdown: (event: PointerEvent) => this.grab(event, ref, group),
+        onkeydown: (event: KeyboardEvent) => this.key(event, vertex),
+        onfocus: () => this.choose(ref),
+      },
+      s("circle", { r: 14, class: "reach" }),
+      ref.part === "window" ? s("rect", { x: -5, y: -5, width: 10, height: 10, class: "ring" }) : s("circle", { r: 6, class: "ring" }),
+    );
+    return group;
+  }
+
+  /** Puts the handles where the vertices are now. */
+  private place(): void {
+    const { input, view } = this;
+    if (!input || !view?.place.input) return;
+    for (const vertex of vertices(input)) {
+      const [x, y] = view.at(vertex.at);
+      const { part, list, index } = vertex.ref;
+      const handle = this.svg.querySelector(`[data-ref="${part}-${list}-${index}"]`);
+      handle?.setAttribute("transform", `translate(${x} ${y})`);
+    }
+  }
+
+  choose(ref: Ref): void {
+    this.chosen = ref;
+    const name = `${ref.part}-${ref.list}-${ref.index}`;
+    this.svg.querySelectorAll<SVGElement>(".handle").forEach((handle) => {
+      handle.classList.toggle("chosen", handle.dataset.ref === name);
+    });
+    this.onchoose?.();
+  }
+
+  private snapped([x, y]: Point, ref: Ref): Point {
+    if (ref.part === "seed" || this.snap === 0) return [x, y];
+    const to = (value: number): number => Number((Math.round(value / this.snap) * this.snap).toPrecision(12));
+    return [to(x), to(y)];
+  }
+
+  /** Returns where a pointer is in the drawing. */
+  private pointer(event: MouseEvent): Point {
+    const matrix = this.svg.getScreenCTM();
+    if (!matrix) return [0, 0];
+    const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix.inverse());
+    return [x, y];
+  }
+
+  private grab(event: PointerEvent, ref: Ref, handle: SVGElement): void {
+    const { view, player } = this;
+    if (!view || event.button !== 0) return;
+    event.preventDefault();
+    handle.focus();
+    handle.setPointerCapture(event.pointerId);
+    this.held = { view, before: player.setup };
+    let last = "";
+    const move = (event: PointerEvent): void => {
+      const { input } = this;
+      if (!input) return;
+      const at = this.snapped(view.from(this.pointer(event)), ref);
+      if (String(at) === last) return;
+      last = String(at);
+      const [x, y] = view.at(ref.part === "seed" ? [Math.floor(at[0]) + 0.5, Math.floor(at[1]) + 0.5] : at);
+      handle.setAttribute("transform", `translate(${x} ${y})`);
+      void player.start({ ...player.setup, input: moved(input, ref, at) });
+    };
+    const end = (): void => {
+      handle.removeEventListener("pointermove", move);
+      const before = this.held?.before;
+      this.held = undefined;
+      if (before && last !== "") player.change(player.setup, before);
+      else this.draw();
+    };
+    handle.addEventListener("pointermove", move);
+    handle.addEventListener("lostpointercapture", end, { once: true });
+  }
+
+  private key(event: KeyboardEvent, { ref, at }: Vertex): void {
+    const ways: Record<string, Point> = {
+      ArrowLeft: [-1, 0],
+      ArrowRight: [1, 0],
+      ArrowUp: [0, 1],
+      ArrowDown: [0, -1],
+    };
+    const way = ways[event.key];
+    if (way && !event.ctrlKey && !event.metaKey && !event.altKey) {
+      event.preventDefault();
+      event.stopPropagation();
+      const size = ref.part === "seed" ? 1 : this.snap || 0.1;
+      const up = this.view?.place.down ? -1 : 1;
+      this.change((input) => moved(input, ref, [at[0] + way[0] * size, at[1] + way[1] * size * up]));
+    } else if (event.key === "Delete" || event.key === "Backspace") {
+      event.preventDefault();
+      event.stopPropagation();
+      this.removeChosen();
+    }
+  }
+
+  private change(how: (input: Input) => Input | undefined): void {
+    const { input, player } = this;
+    const changed = input && how(input);
+    if (changed) player.change({ ...player.setup, input: changed });
+  }
+
+  removeChosen(): void {
+    const { chosen } = this;
+    if (chosen) this.change((input) => removed(input, chosen));
+  }
+
+  /** Adds a vertex halfway from the chosen one to the next, or on the first edge. */
+  addVertex(): void {
+    this.change((input) => {
+      const all = vertices(input);
+      const at = all.find(({ ref }) => same(ref, this.chosen) && ref.part !== "window") ?? all[0];
+      if (!at || at.ref.part === "seed" || at.ref.part === "window") return undefined;
+      const inList = all.filter(({ ref }) => ref.part === at.ref.part && ref.list === at.ref.list);
+      const next = inList[at.ref.index + 1] ?? inList[0] ?? at;
+      // Behind the end of a line comes nothing: the vertex is put before it.
+      const isEnd = at.ref.part === "lines" && at.ref.index + 1 === inList.length;
+      const [from, to] = isEnd ? [inList[at.ref.index - 1]!, at] : [at, next];
+      const middle: Point = [(from.at[0] + to.at[0]) / 2, (from.at[1] + to.at[1]) / 2];
+      return added(input, from.ref, this.snapped(middle, from.ref));
+    });
+  }
+
+  private double(event: MouseEvent): void {
+    const { view, input } = this;
+    if (!view?.place.input || !input || "grid" in input || !this.editable) return;
+    const at = view.from(this.pointer(event));
+    const found = nearest(input, at);
+    const scale = Math.hypot(view.place.input[0], view.place.input[1]) * view.scale;
+    if (!found || found.distance * scale > NEAR) return;
+    event.preventDefault();
+    const { ref } = found.edge;
+    this.chosen = { ...ref, index: ref.index + 1 };
+    this.change((input) => added(input, ref, this.snapped(found.at, ref)));
+  }
+
+  private click(event: MouseEvent): void {
+    const { view, input } = this;
+    const onHandle = (event.target as Element).closest(".handle");
+    if (!view?.place.input || !input || !("grid" in input) || onHandle || !this.editable) return;
+    const [x, y] = view.from(this.pointer(event));
+    const [column, row] = [Math.floor(x), Math.floor(y)];
+    if (column < 0 || row < 0 || column >= input.grid.columns) return;
+    this.change((input) => toggled(input, column, row));
+  }
+
+  /** Chooses a grid that suits the input. */
+  suit(): void {
+    if (this.input) this.snap = gridOf(this.input);
+  }
+}

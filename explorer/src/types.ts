@@ -1,0 +1,105 @@
+// Data that the engine answers with; crates/durer-wasm makes them.
+
+export type Language = "en" | "de";
+export type Words = Record<Language, string>;
+
+export interface Example {
+  name: string;
+  title: Words;
+}
+
+export interface Template {
+  kind: string;
+  text: Words;
+}
+
+export interface Lesson {
+  name: string;
+  title: string;
+  authors: string;
+  year: number;
+  source: string;
+  class: string;
+  occluder: string;
+  coherence: string[];
+  cost: string;
+  limits: string;
+  pseudocode: string[];
+  takes: Words;
+  examples: Example[];
+  templates: Template[];
+}
+
+export interface Family {
+  title: Words;
+  lessons: Lesson[];
+}
+
+export type Point = [number, number];
+
+export interface Figure {
+  window?: [number, number, number, number];
+  lines?: Point[][];
+  rings?: Point[][];
+  clip?: Point[][];
+  points?: Point[];
+}
+
+export interface Grid {
+  columns: number;
+  cells: number[];
+  seed: [number, number];
+}
+
+export type Input =
+  | { example: string }
+  | { figure: Figure }
+  | { faces: [number, number, number][][] }
+  | { clip: [number, number, number, number][] }
+  | { grid: Grid };
+
+export interface Run {
+  handle: number;
+  steps: number;
+  /** Line of the pseudocode of each step, counted from 1. */
+  lines: number[];
+  /** Number of each step's template in the lesson; −1 for the last one of a run that was cut off. */
+  templates: number[];
+  input: Input;
+  choices?: { operations: string[]; rules: string[] };
+}
+
+export interface Cell {
+  text: string;
+  changed: boolean;
+}
+
+export interface Table {
+  heads: string[];
+  rows: { name: string; cells: Cell[] }[];
+}
+
+export interface Place {
+  min: Point;
+  max: Point;
+  down: boolean;
+  /** Columns of the map from points of the input to the picture. */
+  input: [number, number, number, number, number, number] | null;
+}
+
+export interface Frame {
+  frame: { line: number; kind: string; caption: string; table: Table };
+  svg: string;
+  map: Place;
+  /** Longer side of the drawing in pixels. */
+  longest: number;
+}
+
+export interface RunRequest {
+  name: string;
+  input: Input;
+  operation?: string;
+  rule?: string;
+  cap: number;
+  choices?: boolean;
+}

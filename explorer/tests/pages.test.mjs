@@ -1,0 +1,228 @@
+// The pages in a browser.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { after, before, test } from "node:test";
+import { atStep, browser, open, serve } from "./browser.mjs";
+import { load } from "./engine.mjs";
+
+const AXE = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
+let server;
+let chromium;
+let lessons;
+
+before(async () => {
+  server = await serve();
+  chromium = await browser();
+  const answer = await load(new URL("../dist/durer.wasm", import.meta.url));
+  const { bytes } = answer(JSON.stringify({ do: "lessons" }));
+  lessons = JSON.parse(new TextDecoder().decode(bytes)).families.flatMap((family) => family.lessons);
+});
+
+after(async () => {
+  await chromium?.close();
+  server?.close();
+});
+
+async function accessible(page, name) {
+  await page.addScriptTag({ path: AXE });
+  const { violations } = await page.evaluate(() => globalThis.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa", "best-practice"] }));
+  assert.deepEqual(violations.map(({ id, nodes }) => `${name} ${id}: ${nodes[0].html}`), []);
+}
+
+const caption = (page) => page.textContent(".picture-pane .caption");
+const drawing = (page) => page.evaluate(() => document.querySelector(".drawing svg").outerHTML);
+
+test("the list has every algorithm, finds them, and is accessible", async () => {
+  const { page, faults, close } = await open(chromium, `${server.url}#lang=en`);
+  await page.waitForSelector(".family li");
+  assert.equal(await page.locator(".family li").count(), lessons.length);
+  await page.fill("#find", "weiler");
+  assert.equal(await page.locator(".family li:visible").count() > 0, true);
+  assert.equal(await page.locator(".family li:visible").count() < 5, true);
+  await accessible(page, "list");
+  assert.deepEqual(faults, []);
+  await close();
+});
+
+test("every lesson opens, steps to the end and back to the same picture", async () => {
+  const { page, faults, close } = await open(chromium, `${server.url}#lang=en`);
+  await page.waitForSelector(".family li");
+  for (const { name } of lessons) {
+    await page.evaluate((name) => (location.hash = `#a=${name}&lang=en`), name);
+    await page.waitForFunction((title) => document.title.startsWith(title), lessons.find((own) => own.name === name).title);
+    await atStep(page, 1);
+    const first = await drawing(page);
+    await page.keyboard.press("End");
+    const steps = await page.evaluate(() => Number(document.querySelector(".place").textContent.split("/")[1]));
+    await atStep(page, steps);
+    assert.notEqual(await caption(page), "", name);
+    await page.keyboard.press("Home");
+    await atStep(page, 1);
+    assert.equal(await drawing(page), first, name);
+    assert.equal(await page.locator(".line.runs").count(), 1, name);
+  }
+  assert.deepEqual(faults, []);
+  await close();
+});
+
+test("keys step, and the quiz asks before it shows", async () => {
+  const { page, faults, close } = await open(chromium, `${server.url}#a=cohen-sutherland&ex=line-eh&lang=en`);
+  await atStep(page, 1);
+  await page.keyboard.press("ArrowRight");
+  await atStep(page, 2);
+  await page.keyboard.press("Shift+ArrowRight");
+  await atStep(page, 3);
+  await page.keyboard.press("ArrowLeft");
+  await atStep(page, 2);
+  await page.keyboard.press("Home");
+  await atStep(page, 1);
+  await page.click("#tab-quiz");
+  await page.click(".quiz .primary");
+  await page.click(".step.next");
+  await page.waitForTimeout(100);
+  assert.match(await page.textContent(".place"), /^1 /, "the quiz hides the next step");
+  // After the codes of EH comes a cut.
+  await page.click(".answers button[data-template='1']");
+  await atStep(page, 2);
+  assert.match(await page.textContent(".verdict"), /Right/);
+  await page.click(".answers button:not([data-template='1'])");
+  await atStep(page, 3);
+  assert.match(await page.textContent(".verdict"), /No/);
+  assert.match(await page.textContent(".score"), /1 \/ 2/);
+  assert.deepEqual(faults, []);
+  await close();
+});
+
+test("a dragged vertex changes the run, and a link holds it", async () => {
+  const { page, faults, close } = await open(chromium, `${server.url}#a=sutherland-hodgman&lang=de`);
+  await atStep(page, 1);
+  const before = await caption(page);
+  const handle = page.locator(".handle.rings").first();
+  const box = await handle.boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 60, y + 20, { steps: 6 });
+  await page.mouse.up();
+  await page.waitForFunction((before) => document.querySelector(".picture-pane .caption").textContent !== before, before);
+  const after = await caption(page);
+  await page.waitForFunction(() => location.hash.includes("in="));
+  await page.waitForTimeout(400);
+  const other = await open(chromium, page.url());
+  await atStep(other.page, 1);
+  assert.equal(await caption(other.page), after);
+  await other.close();
+  // Keys move, add and delete vertices, and undo takes all back.
+  const count = () => page.locator(".handle.rings").count();
+  const vertices = await count();
+  await page.click("#tab-input");
+  await page.getByRole("button", { name: "Ecke hinzufügen" }).click();
+  await page.waitForFunction((n) => document.querySelectorAll(".handle.rings").length === n, vertices + 1);
+  await page.locator(".handle.rings").first().focus();
+  await page.keyboard.press("Delete");
+  await page.waitForFunction((n) => document.querySelectorAll(".handle.rings").length === n, vertices);
+  for (let k = 0; k < 3; k++) await page.getByRole("button", { name: "Rückgängig" }).click();
+  await page.waitForFunction((before) => document.querySelector(".picture-pane .caption").textContent === before, before);
+  assert.deepEqual(faults, []);
+  await close();
+});
+
+test("languages, themes and narrow screens keep everything readable", async () => {
+  for (const [width, colorScheme, lang] of [[1280, "light", "en"], [375, "dark", "de"], [320, "light", "de"]]) {
+    const { page, faults, close } = await open(chromium, `${server.url}#a=weiler-atherton&lang=${lang}`, { viewport: { width, height: 800 }, colorScheme });
+    await atStep(page, 1);
+    await accessible(page, `${width} ${colorScheme}`);
+    const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    assert.ok(overflow <= 0, `${width}: ${overflow} pixels wider than the screen`);
+    assert.equal(await page.getAttribute("html", "lang"), lang);
+    for (const tab of ["quiz", "exercises", "compare", "share"]) {
+      await page.click(`#tab-${tab}`);
+      await accessible(page, `${width} ${tab}`);
+    }
+    assert.deepEqual(faults, []);
+    await close();
+  }
+});
+
+test("algorithms are compared on one input by one scrubber", async () => {
+  const { page, faults, close } = await open(chromium, `${server.url}#a=cohen-sutherland&ex=line-eh&lang=en&with=liang-barsky`);
+  await atStep(page, 1);
+  await page.click("#tab-compare");
+  await page.waitForSelector(".card .drawing svg");
+  await page.keyboard.press("End");
+  await atStep(page, 4);
+  await page.waitForFunction(() => /^(\d+) \/ \1 /.test(document.querySelector(".card .caption").textContent));
+  assert.match(await page.textContent("#panel-compare table"), /Liang/);
+  assert.deepEqual(faults, []);
+  await close();
+});
+
+test("wrong addresses and inputs are answered in words", async () => {
+  const { page, faults, close } = await open(chromium, `${server.url}#a=none&lang=en`);
+  await page.waitForSelector(".notice");
+  assert.match(await page.textContent(".notice"), /no such algorithm: none/);
+  await page.evaluate(() => (location.hash = "#a=bresenham&in=%%%&step=99999&lang=en"));
+  await page.waitForSelector(".drawing svg");
+  assert.match(await page.textContent(".picture-pane .notice"), /cannot be read/);
+  await page.click("#tab-input");
+  await page.click(".panel details summary");
+  await page.fill("#numbers", '{"faces": []}');
+  await page.getByRole("button", { name: "Apply" }).click();
+  await page.waitForFunction(() => /faces in space/.test(document.querySelector(".picture-pane .notice").textContent));
+  assert.deepEqual(faults, []);
+  await close();
+});
+
+test("a frame in another page reports its step and goes where it is sent", async () => {
+  const { page, faults, close } = await open(chromium, `${server.url}icon.svg`);
+  await page.setContent(`<iframe src="${server.url}#a=bresenham&lang=en&embed=1" width="640" height="560"></iframe>`);
+  await page.evaluate(() => {
+    window.told = [];
+    addEventListener("message", (event) => window.told.push(event.data));
+  });
+  await page.waitForFunction(() => window.told.some(({ step, algorithm }) => step === 1 && algorithm === "bresenham"));
+  await page.evaluate(() => document.querySelector("iframe").contentWindow.postMessage({ goto: 3 }, "*"));
+  await page.waitForFunction(() => window.told.some(({ step }) => step === 3));
+  assert.deepEqual(faults.filter((fault) => !fault.includes("favicon")), []);
+  await close();
+});
+
+test("tracks lead through pages that exist", async () => {
+  const { page, faults, close } = await open(chromium, `${server.url}#page=tracks&lang=en`);
+  await page.waitForSelector(".track-list");
+  assert.equal(await page.locator(".track-list").count(), 5);
+  const links = await page.locator(".track-list a").evaluateAll((all) => all.map((link) => link.hash));
+  const known = new Map(lessons.map((lesson) => [lesson.name, lesson.examples.map((example) => example.name)]));
+  for (const link of links) {
+    const values = new URLSearchParams(link.slice(1));
+    const examples = known.get(values.get("a"));
+    assert.ok(examples, link);
+    assert.ok(!values.has("ex") || examples.includes(values.get("ex")), link);
+  }
+  await page.locator(".track-list a").first().click();
+  await atStep(page, 1);
+  await page.click(".track-bar .nextPage");
+  await page.waitForFunction(() => location.hash.includes("at=2"));
+  await accessible(page, "track");
+  await page.evaluate(() => (location.hash = "#page=teachers&lang=de"));
+  await page.waitForSelector(".text-page h2");
+  await accessible(page, "teachers");
+  assert.deepEqual(faults, []);
+  await close();
+});
+
+test("a trap starts the engine anew", async () => {
+  const { page, close } = await open(chromium, `${server.url}#a=bresenham&lang=en`);
+  await atStep(page, 1);
+  // The engine's file as a module that traps at once.
+  const module = Buffer.from(readFileSync(new URL("./trap.wasm.b64", import.meta.url), "utf8"), "base64");
+  await page.route("**/durer.wasm", (route) => route.fulfill({ body: module, contentType: "application/wasm" }));
+  await page.reload();
+  await page.waitForSelector("[role=alert]");
+  await page.unroute("**/durer.wasm");
+  await page.getByRole("button").click();
+  await atStep(page, 1);
+  await close();
+});
