@@ -1,17 +1,21 @@
 //! The subcommands.
 
 use crate::config::ConfigArgs;
+use crate::encoding::EncodingArgs;
+use crate::given::is_by_hand;
 use crate::info::InfoArgs;
+use crate::options::RunningArgs;
 use crate::pick::PickArgs;
 use crate::render_args::RenderArgs;
-use clap::{Parser, Subcommand};
+use crate::watch;
+use clap::{ArgMatches, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
 
 const ABOUT: &str = "Renders 3D models to pictures and drawings, on the CPU";
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage; 3 partly done \
-(several models with --skip-failures).";
+(several models with --skip-failures, rows of a batch).";
 
 /// Renders 3D models to pictures, on the CPU.
 #[derive(Debug, Parser)]
@@ -77,6 +81,13 @@ pub enum Command {
     /// Show the explorer, all algorithms step by step on your own input, in the browser
     #[command(after_long_help = crate::explore::EXAMPLES, after_help = "--help shows more, and examples.")]
     Explore(crate::explore::ExploreArgs),
+    /// Run the rows of a table, each in a process that may fail: renderings, clips, drawings by the million, also on many
+    /// machines
+    #[command(after_long_help = crate::batch_args::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Batch(Box<crate::batch_args::BatchArgs>),
+    /// Run the rows that `durer batch` writes to standard input
+    #[command(hide = true)]
+    BatchWorker,
     /// Write the file that lets file managers show thumbnails of models
     #[command(after_help = crate::thumbnailer::HELP)]
     Thumbnailer(crate::thumbnailer::ThumbnailerArgs),
@@ -87,4 +98,63 @@ pub enum Command {
     },
     /// Write the manual page to standard output, in roff
     Man,
+}
+
+impl Command {
+    /// Returns the command of a parsed line, with its budget; what was given by hand is noted where that matters.
+    pub fn of(matches: &ArgMatches) -> clap::error::Result<Self> {
+        let mut command = Cli::from_arg_matches(matches)?.command;
+        let Some((_, given)) = matches.subcommand() else { return Ok(command) };
+        let names: Vec<String> =
+            given.ids().filter(|id| is_by_hand(given, id)).map(ToString::to_string).collect();
+        if let Some(encoding) = command.encoding() {
+            encoding.quality_given = names.iter().any(|name| name == "quality");
+        }
+        if let Self::Render(args) = &mut command {
+            args.given = names;
+        }
+        if let Some(running) = command.running() {
+            running.work = watch::work(running);
+        }
+        Ok(command)
+    }
+
+    /// Returns the options about threads, limits and messages, where it has them.
+    pub fn running(&mut self) -> Option<&mut RunningArgs> {
+        Some(match self {
+            Self::Render(args) => &mut args.running,
+            Self::Info(args) => &mut args.running,
+            Self::Clip(args) => &mut args.running,
+            Self::Buffer(args) => &mut args.files.running,
+            Self::Dissolve(args) => &mut args.files.running,
+            Self::Fix(args) => &mut args.files.running,
+            Self::Check(args) => &mut args.running,
+            Self::Tiles(args) => &mut args.running,
+            Self::Simplify(args) => &mut args.files.running,
+            Self::Warp(args) => &mut args.running,
+            Self::Draw(args) => &mut args.running,
+            Self::Fill(args) => &mut args.running,
+            Self::Pick(args) => &mut args.running,
+            Self::Plot(args) => &mut args.running,
+            Self::Explain(args) => &mut args.running,
+            Self::Algorithms(_)
+            | Self::Thumbnailer(_)
+            | Self::Batch(_)
+            | Self::BatchWorker
+            | Self::Completions { .. }
+            | Self::Man => return None,
+        })
+    }
+
+    /// Returns the encoding options, where it makes pictures.
+    fn encoding(&mut self) -> Option<&mut EncodingArgs> {
+        match self {
+            Self::Render(args) => Some(&mut args.picture.encoding),
+            Self::Draw(args) => Some(&mut args.picture.file.encoding),
+            Self::Fill(args) => Some(&mut args.file.encoding),
+            Self::Warp(args) => Some(&mut args.file.encoding),
+            Self::Plot(args) => Some(&mut args.look.encoding),
+            _ => None,
+        }
+    }
 }

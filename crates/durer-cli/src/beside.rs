@@ -7,10 +7,21 @@ use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// The files that are being written now, for interruptions of the process.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+/// The folder of all files that are not whole, where they are to be apart from the whole ones, and safe on the disk before
+/// they take their place.
+static APART: OnceLock<PathBuf> = OnceLock::new();
+
+/// Has files be written in a folder of their own, on the disk that they are to be on, and safe there before they take their
+/// place.
+pub fn keep_apart(folder: PathBuf) {
+    // The first one stays: it has files.
+    let _ = APART.set(folder);
+}
 
 /// A new file in the folder of another one, which it replaces when it is whole. Dropped before that,
 /// it is removed.
@@ -28,10 +39,16 @@ impl Beside {
         if fs::metadata(&place).is_ok_and(|m| m.permissions().readonly()) {
             return Err(io::Error::other("the file is read-only"));
         }
-        stale::remove_beside(&place);
+        let apart = APART.get().filter(|folder| on_one_disk(folder, &place));
+        if apart.is_none() {
+            stale::remove_beside(&place);
+        }
         for attempt in 0u32.. {
             let name = format!(".durer-{}-{attempt}.tmp", std::process::id());
-            let path = place.with_file_name(name);
+            let path = match apart {
+                Some(folder) => folder.join(name),
+                None => place.with_file_name(name),
+            };
             let mut unfinished = unfinished();
             match OpenOptions::new().write(true).create_new(true).open(&path) {
                 Err(e) if e.kind() == io::ErrorKind::AlreadyExists && attempt < 1000 => {}
@@ -54,6 +71,9 @@ impl Beside {
     pub fn commit(mut self) -> io::Result<()> {
         if let Ok(old) = fs::metadata(&self.place) {
             self.file.set_permissions(old.permissions())?;
+        }
+        if APART.get().is_some() {
+            self.file.sync_all()?;
         }
         let mut unfinished = unfinished();
         fs::rename(&self.path, &self.place)?;
@@ -87,6 +107,19 @@ impl Drop for Beside {
             unfinished().remove(&self.path);
         }
     }
+}
+
+/// Returns whether a file in a folder can be renamed to a place.
+#[cfg(unix)]
+fn on_one_disk(folder: &Path, place: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let disk = |path: Option<&Path>| fs::metadata(path?).ok().map(|metadata| metadata.dev());
+    disk(Some(folder)) == disk(place.parent())
+}
+
+#[cfg(not(unix))]
+fn on_one_disk(_: &Path, _: &Path) -> bool {
+    true
 }
 
 fn unfinished() -> std::sync::MutexGuard<'static, BTreeSet<PathBuf>> {

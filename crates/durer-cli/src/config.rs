@@ -5,10 +5,10 @@ mod settings;
 
 use crate::draw;
 use crate::failure::Failure;
+use crate::given::{Given, is_by_hand};
 use crate::input;
 use clap::builder::Resettable;
-use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, Args, Command, ValueHint};
+use clap::{ArgMatches, Args, Command, Id, ValueHint};
 use settings::{Setting, read};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -69,10 +69,12 @@ pub fn configured(command: Command, line: Vec<OsString>) -> Result<Configured, F
         return Ok(Configured { command, line, file: None });
     };
     check_pairs(&file, &settings, sub)?;
-    let by_hand: Vec<&Arg> = sub.get_arguments().filter(|a| is_given(&given, a)).collect();
-    let settings = settings.into_iter().filter(|s| !by_hand.iter().any(|a| excluded(sub, s, a)));
+    let by_hand: Vec<&Id> =
+        sub.get_arguments().map(clap::Arg::get_id).filter(|id| is_by_hand(&given, id)).collect();
+    let excluded = |s: &Setting| by_hand.iter().any(|id| s.given.is_excluded_by(id, sub));
+    let settings = settings.into_iter().filter(|s| !excluded(s));
     let (words, defaults): (Vec<_>, Vec<_>) =
-        settings.partition(|s| name == "draw" && draw::is_style(&s.id));
+        settings.partition(|s| name == "draw" && draw::is_style(&s.given.id));
     let line = with_words(line, &name, &words);
     let command = command.mut_subcommand(&name, |sub| defaults.into_iter().fold(sub, with_default));
     Ok(Configured { command, line, file: Some(file) })
@@ -92,28 +94,13 @@ fn text(file: &Path) -> Result<String, Failure> {
     String::from_utf8(bytes).map_err(|_| Failure::of_file(file, "the text is not UTF-8"))
 }
 
-fn is_given(given: &ArgMatches, arg: &Arg) -> bool {
-    let id = arg.get_id().as_str();
-    let known = given.ids().any(|i| i == id);
-    known && given.value_source(id) == Some(ValueSource::CommandLine)
-}
-
-/// Returns whether an option that was given takes the place of a setting.
-fn excluded(sub: &Command, setting: &Setting, given: &Arg) -> bool {
-    let excludes = |a: &Arg, id: &clap::Id| {
-        sub.get_arg_conflicts_with(a).iter().any(|other| other.get_id() == id)
-    };
-    let of_setting = sub.get_arguments().find(|a| *a.get_id() == setting.id);
-    excludes(given, &setting.id) || of_setting.is_some_and(|a| excludes(a, given.get_id()))
-}
-
 /// Refuses two settings that exclude each other.
 fn check_pairs(file: &Path, settings: &[Setting], sub: &Command) -> Result<(), Failure> {
     for (i, setting) in settings.iter().enumerate() {
         for earlier in &settings[..i] {
-            let arg = sub.get_arguments().find(|a| *a.get_id() == earlier.id);
-            if arg.is_some_and(|a| excluded(sub, setting, a)) {
-                let message = format!("`{}` and `{}` exclude each other", earlier.key, setting.key);
+            if setting.given.is_excluded_by(&earlier.given.id, sub) {
+                let (one, other) = (&earlier.given.key, &setting.given.key);
+                let message = format!("`{one}` and `{other}` exclude each other");
                 return Err(setting.wrong(file, &message));
             }
         }
@@ -123,7 +110,7 @@ fn check_pairs(file: &Path, settings: &[Setting], sub: &Command) -> Result<(), F
 
 /// Returns the command line with settings right behind the command's name.
 fn with_words(mut line: Vec<OsString>, name: &str, settings: &[Setting]) -> Vec<OsString> {
-    let words = settings.iter().flat_map(Setting::words).map(OsString::from);
+    let words = settings.iter().flat_map(|s| s.given.words()).map(OsString::from);
     // The name is the first word that is not an option, nor the file of --config.
     let mut after_config = false;
     let place = line.iter().skip(1).position(|word| {
@@ -139,7 +126,7 @@ fn with_words(mut line: Vec<OsString>, name: &str, settings: &[Setting]) -> Vec<
 }
 
 fn with_default(sub: Command, setting: Setting) -> Command {
-    let Setting { id, values, .. } = setting;
+    let Given { id, values, .. } = setting.given;
     sub.mut_arg(id, |arg| {
         arg.required(false).required_unless_present(Resettable::Reset).default_values(values)
     })

@@ -123,10 +123,7 @@ struct Fill {
 /// Fills a picture.
 pub fn run(args: &FillArgs) -> Result<(), Failure> {
     let start = Instant::now();
-    let names: Vec<Name> = output::stems(std::slice::from_ref(&args.image))
-        .into_iter()
-        .map(|stem| Name { stem, frame: None })
-        .collect();
+    let names = [Name { input: args.image.clone(), frame: None }];
     let wanted = Wanted::picture(&args.output, args.file.format);
     args.file.encoding.check(wanted.kind)?;
     let target = output::plan("--output", &args.output, &names, &wanted)?.into_iter().next();

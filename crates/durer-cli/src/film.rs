@@ -12,7 +12,7 @@ use durer_formats::picture::PictureFormat;
 use durer_formats::picture::animation::{Animation, AnimationFormat, Options};
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Frames per second by default.
 const FRAMES_PER_SECOND: f64 = 24.0;
@@ -126,12 +126,12 @@ fn seconds(
 /// Returns one target for each model, as often as it has frames.
 pub fn targets(
     path: &Path,
-    stems: &[String],
+    models: &[PathBuf],
     frames: usize,
     wanted: &Wanted,
 ) -> Result<Vec<Target>, Failure> {
-    let name = |stem: &String| Name { stem: stem.clone(), frame: None };
-    let names: Vec<Name> = stems.iter().map(name).collect();
+    let name = |model: &PathBuf| Name { input: model.clone(), frame: None };
+    let names: Vec<Name> = models.iter().map(name).collect();
     let targets = output::plan("--output", path, &names, wanted)?;
     if targets.contains(&Target::Stdout) {
         let message = "--output -: an animation is written to a file; name one";

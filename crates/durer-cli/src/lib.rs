@@ -2,6 +2,8 @@
 
 mod algorithms;
 mod args;
+mod batch;
+mod batch_args;
 mod beside;
 mod camera;
 mod clip;
@@ -20,6 +22,7 @@ mod fill;
 mod film;
 #[doc(hidden)]
 pub mod fuzzing;
+mod given;
 mod info;
 mod input;
 mod kind;
@@ -27,6 +30,7 @@ mod layer;
 mod lights;
 mod memory;
 mod messages;
+mod names;
 mod options;
 mod output;
 mod panics;
@@ -53,11 +57,9 @@ mod warp;
 mod watch;
 
 use args::{Cli, Command};
-use clap::parser::ValueSource;
-use clap::{CommandFactory, FromArgMatches};
+use clap::CommandFactory;
 use config::Configured;
 use durer_formats::told::shown_path;
-use encoding::EncodingArgs;
 use failure::Failure;
 use options::RunningArgs;
 use std::io::Write;
@@ -102,65 +104,15 @@ fn parse() -> Result<(Command, Option<PathBuf>), Failure> {
     let Configured { command, line, file } =
         config::configured(Cli::command(), std::env::args_os().collect())?;
     let matches = command.try_get_matches_from(line).map_err(answered)?;
-    let mut cli = Cli::from_arg_matches(&matches).map_err(answered)?;
-    let Some((name, given)) = matches.subcommand() else { return Ok((cli.command, file)) };
-    let by_hand =
-        |id: &&clap::Id| given.value_source(id.as_str()) == Some(ValueSource::CommandLine);
-    let names: Vec<String> = given.ids().filter(by_hand).map(ToString::to_string).collect();
-    if let Some(encoding) = encoding(&mut cli.command) {
-        encoding.quality_given = names.iter().any(|name| name == "quality");
-    }
+    let command = Command::of(&matches).map_err(answered)?;
+    let Some((name, given)) = matches.subcommand() else { return Ok((command, file)) };
     places::settle(name, given)?;
     if let Some(file) = file.as_ref().filter(|_| is_verbose(given)) {
         let message = format!("durer: options are taken from {} too", shown_path(file));
         // As for errors: nobody is there to be told that it failed.
         let _ = writeln!(std::io::stderr().lock(), "{message}");
     }
-    if let Command::Render(args) = &mut cli.command {
-        args.given = names;
-    }
-    if let Some(running) = running(&mut cli.command) {
-        running.work = watch::work(running);
-    }
-    Ok((cli.command, file))
-}
-
-/// Returns the options about threads, limits and messages of a command that has them.
-fn running(command: &mut Command) -> Option<&mut RunningArgs> {
-    Some(match command {
-        Command::Render(args) => &mut args.running,
-        Command::Info(args) => &mut args.running,
-        Command::Clip(args) => &mut args.running,
-        Command::Buffer(args) => &mut args.files.running,
-        Command::Dissolve(args) => &mut args.files.running,
-        Command::Fix(args) => &mut args.files.running,
-        Command::Check(args) => &mut args.running,
-        Command::Tiles(args) => &mut args.running,
-        Command::Simplify(args) => &mut args.files.running,
-        Command::Warp(args) => &mut args.running,
-        Command::Draw(args) => &mut args.running,
-        Command::Fill(args) => &mut args.running,
-        Command::Pick(args) => &mut args.running,
-        Command::Plot(args) => &mut args.running,
-        Command::Explain(args) => &mut args.running,
-        Command::Algorithms(_)
-        | Command::Explore(_)
-        | Command::Thumbnailer(_)
-        | Command::Completions { .. }
-        | Command::Man => return None,
-    })
-}
-
-/// Returns the encoding options of a command that makes pictures.
-fn encoding(command: &mut Command) -> Option<&mut EncodingArgs> {
-    match command {
-        Command::Render(args) => Some(&mut args.picture.encoding),
-        Command::Draw(args) => Some(&mut args.picture.file.encoding),
-        Command::Fill(args) => Some(&mut args.file.encoding),
-        Command::Warp(args) => Some(&mut args.file.encoding),
-        Command::Plot(args) => Some(&mut args.look.encoding),
-        _ => None,
-    }
+    Ok((command, file))
 }
 
 fn is_verbose(given: &clap::ArgMatches) -> bool {
@@ -195,6 +147,8 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Fill(args) => on_threads(&args.running, || fill::run(&args)),
         Command::Pick(args) => on_threads(&args.running, || pick::run(&args)),
         Command::Plot(args) => on_threads(&args.running, || plot::run(&args)),
+        Command::Batch(args) => batch::run(&args),
+        Command::BatchWorker => batch::work(),
         Command::Algorithms(args) => algorithms::run(&args),
         Command::Explain(args) => on_threads(&args.running, || explain::run(&args)),
         Command::Explore(args) => explore::run(&args),
@@ -231,7 +185,8 @@ fn manual() -> Result<(), Failure> {
     let render =
         |c: &clap::Command, out: &mut Vec<u8>| clap_mangen::Man::new(c.clone()).render(out);
     render(&command, &mut page).map_err(|e| Failure::of_stdout(&e))?;
-    for sub in command.get_subcommands().filter(|c| c.get_name() != "help") {
+    let shown = |c: &&clap::Command| c.get_name() != "help" && !c.is_hide_set();
+    for sub in command.get_subcommands().filter(shown) {
         render(sub, &mut page).map_err(|e| Failure::of_stdout(&e))?;
     }
     report::print_text(&String::from_utf8_lossy(&page))

@@ -9,13 +9,18 @@ const MOST: u64 = 4 << 30;
 /// Returns the budget if none is given: half of what the machine, its control group or the limits of the
 /// process allow.
 pub fn usual_budget() -> u64 {
+    usual_budget_of(1)
+}
+
+/// Returns the budget of one of several processes that share what there is.
+pub fn usual_budget_of(processes: u64) -> u64 {
     let read = |path: &str| fs::read_to_string(path).ok();
     let machine = read("/proc/meminfo").and_then(|text| kilobytes(&text, "MemTotal:"));
     let process = read("/proc/self/limits").and_then(|text| address_space(&text));
     let groups = read("/proc/self/cgroup").map_or(Vec::new(), |text| group_files(&text));
     let groups = groups.iter().filter_map(|path| read(path)?.trim().parse().ok());
     let least = machine.into_iter().chain(process).chain(groups).min();
-    least.map_or(MOST, |bytes| (bytes / 2).min(MOST))
+    least.map_or(MOST, |bytes| (bytes / 2 / processes.max(1)).min(MOST))
 }
 
 /// Bytes of memory that the process holds for itself now.

@@ -4,9 +4,18 @@ use crate::options::RunningArgs;
 use crate::progress::Progress;
 use durer_formats::Warning;
 use durer_formats::told;
+use std::sync::{Mutex, PoisonError};
 
 /// Warnings of one model that are printed without `--verbose`; the others are counted.
 const WARNINGS: usize = 5;
+
+/// Warnings that are kept instead of being printed, where that is wanted.
+static KEPT: Mutex<Option<Vec<String>>> = Mutex::new(None);
+
+/// Has warnings be kept from now on, and returns those that were kept.
+pub fn keep() -> Vec<String> {
+    KEPT.lock().unwrap_or_else(PoisonError::into_inner).replace(Vec::new()).unwrap_or_default()
+}
 
 /// Errors, warnings and progress, as much as is wanted.
 #[derive(Debug)]
@@ -32,8 +41,17 @@ impl Messages {
     /// A warning about a file that is not of its reader.
     pub fn warning(&self, file: &str, message: impl std::fmt::Display) {
         if !self.quiet {
-            self.progress.tell(&told::message(&format!("durer: warning: {file}: {message}")));
+            self.warn(&format!("{file}: {message}"));
         }
+    }
+
+    /// Prints a warning, or keeps it.
+    fn warn(&self, text: &str) {
+        if let Some(kept) = &mut *KEPT.lock().unwrap_or_else(PoisonError::into_inner) {
+            kept.push(told::message(text).into_owned());
+            return;
+        }
+        self.progress.tell(&told::message(&format!("durer: warning: {text}")));
     }
 
     /// The warnings of a model.
@@ -43,12 +61,11 @@ impl Messages {
         }
         let told = if self.verbose { warnings.len() } else { warnings.len().min(WARNINGS) };
         for warning in &warnings[..told] {
-            self.progress.tell(&told::message(&format!("durer: warning: {file}: {warning}")));
+            self.warn(&format!("{file}: {warning}"));
         }
         let rest = warnings.len() - told;
         if rest > 0 {
-            let message = format!("durer: warning: {file}: and {rest} more; --verbose prints all");
-            self.progress.tell(&message);
+            self.warn(&format!("{file}: and {rest} more; --verbose prints all"));
         }
     }
 

@@ -3,11 +3,11 @@
 use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
 use crate::kind::{Kind, Wanted};
-use crate::places::Place;
-use crate::places::is_stream;
+use crate::names;
+use crate::places::{Place, is_stream};
 use durer::work::{Charge, Work};
 use durer_formats::told::shown_path;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -40,11 +40,11 @@ impl std::fmt::Display for Target {
     }
 }
 
-/// Name of a picture if there are several.
+/// Source of a picture's name if there are several.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Name {
-    /// The model's name without its suffix.
-    pub stem: String,
+    /// The model.
+    pub input: PathBuf,
     /// Its number among the frames of a turntable.
     pub frame: Option<u32>,
 }
@@ -64,9 +64,13 @@ pub fn plan(
             stdout_target(option).map(|t| vec![t])
         };
     }
+    if names::is_pattern(path) {
+        return expanded(option, path, names, wanted);
+    }
     if let Some(pattern) = Pattern::of(path).filter(|_| names.iter().any(|n| n.frame.is_some())) {
-        if names.iter().any(|n| n.stem != names[0].stem) {
-            return Err(usage(option, path, "frames of several models need a folder"));
+        if names.iter().any(|n| n.input != names[0].input) {
+            let what = "frames of several models need a folder, or {stem} in the name";
+            return Err(usage(option, path, what));
         }
         wanted.check_name(option, path)?;
         make_folder(path.parent().unwrap_or(Path::new("")))?;
@@ -88,6 +92,31 @@ pub fn plan(
         return Err(usage(option, path, &format!("several pictures need a folder{hint}")));
     }
     single(option, path, wanted).map(|t| vec![t])
+}
+
+/// Returns the targets of a name with placeholders; creates their folders.
+fn expanded(
+    option: &str,
+    path: &Path,
+    names: &[Name],
+    wanted: &Wanted,
+) -> Result<Vec<Target>, Failure> {
+    let pattern = path.to_string_lossy();
+    let target = |name: &Name| {
+        let path = PathBuf::from(names::expand(&pattern, &name.input));
+        let path = match (name.frame, Pattern::of(&path)) {
+            (None, _) => path,
+            (Some(frame), Some(pattern)) => pattern.path(frame),
+            (Some(_), None) => {
+                let what = "frames need a place for their number, such as {stem}_%04d.png";
+                return Err(usage(option, &path, what));
+            }
+        };
+        wanted.check_name(option, &path)?;
+        make_folder(path.parent().unwrap_or(Path::new("")))?;
+        Ok(Target::File(path))
+    };
+    names.iter().map(target).collect()
 }
 
 /// Refuses two pictures in one place, however it is spelled.
@@ -185,37 +214,12 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
 impl Name {
     /// `NAME.png`, or `NAME_0001.png` for a frame.
     fn file_name(&self, kind: Kind) -> String {
-        let suffix = kind.suffix();
+        let (stem, suffix) = (names::stem(&self.input), kind.suffix());
         match self.frame {
-            Some(frame) => format!("{}_{frame:04}.{suffix}", self.stem),
-            None => format!("{}.{suffix}", self.stem),
+            Some(frame) => format!("{stem}_{frame:04}.{suffix}"),
+            None => format!("{stem}.{suffix}"),
         }
     }
-}
-
-/// Returns names without folder and suffix, made different if they are not: by the suffix, then by
-/// number.
-pub fn stems(models: &[impl AsRef<Path>]) -> Vec<String> {
-    let part = |p: Option<&std::ffi::OsStr>| p.unwrap_or_default().to_string_lossy().into_owned();
-    let stem = |m: &Path| if is_stream(m) { "stdin".to_owned() } else { part(m.file_stem()) };
-    let stems: Vec<String> = models.iter().map(|m| stem(m.as_ref())).collect();
-    let mut counts = BTreeMap::new();
-    stems.iter().for_each(|stem| *counts.entry(stem).or_insert(0) += 1);
-    let mut taken = BTreeSet::new();
-    // By the name, the number to try next: many may share one.
-    let mut numbers = BTreeMap::new();
-    let mut result = Vec::new();
-    for (model, stem) in models.iter().zip(&stems) {
-        let base = if counts[stem] > 1 { part(model.as_ref().file_name()) } else { stem.clone() };
-        let number = numbers.entry(base.clone()).or_insert(2);
-        let mut name = base.clone();
-        while !taken.insert(name.clone()) {
-            name = format!("{base}-{number}");
-            *number += 1;
-        }
-        result.push(name);
-    }
-    result
 }
 
 /// A file name with one place for a number, such as `frame_%04d.png`.
@@ -345,13 +349,6 @@ mod tests {
         for none in ["frame.png", "%.png", "%xd.png", "100%.png", "%99d.png", "%d/a.png"] {
             assert_eq!(Pattern::of(Path::new(none)), None, "{none}");
         }
-    }
-
-    #[test]
-    fn stems_differ_where_names_do_not() {
-        assert_eq!(stems(&["x/a.obj", "b.stl"]), ["a", "b"]);
-        assert_eq!(stems(&["a.obj", "a.stl", "-"]), ["a.obj", "a.stl", "stdin"]);
-        assert_eq!(stems(&["x/a.obj", "y/a.obj"]), ["a.obj", "a.obj-2"]);
     }
 
     #[test]

@@ -26,3 +26,9 @@ pub fn told_at_the_end<T>(work: impl FnOnce() -> T) -> T {
         resume_unwind(payload)
     })
 }
+
+/// Does the work; returns message and place of its panic instead of a result.
+pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(work))
+        .map_err(|_| LAST.lock().unwrap_or_else(|e| e.into_inner()).clone())
+}

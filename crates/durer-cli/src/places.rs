@@ -80,7 +80,7 @@ pub fn settle(name: &str, given: &ArgMatches) -> Result<(), Failure> {
 }
 
 /// Returns the paths that a command reads and those that it writes.
-fn named(command: &str, given: &ArgMatches) -> (Vec<PathBuf>, Vec<PathBuf>) {
+pub fn named(command: &str, given: &ArgMatches) -> (Vec<PathBuf>, Vec<PathBuf>) {
     let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
     for id in given.ids().map(clap::Id::as_str) {
         let list = match OUTPUTS.contains(&id) && (command, id) != (WARP, "depth") {

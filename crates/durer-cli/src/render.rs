@@ -13,6 +13,7 @@ use crate::film::{self, Film, Sink};
 use crate::input;
 use crate::kind::Wanted;
 use crate::messages::Messages;
+use crate::names;
 use crate::options::Samples;
 use crate::output::{self, Name, Target};
 use crate::render_args::RenderArgs;
@@ -156,10 +157,10 @@ fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
         Some(count) => (0..count).map(Some).collect(),
         None => vec![None],
     };
-    let stems = output::stems(&args.models);
-    let names: Vec<Name> = stems
+    let names: Vec<Name> = args
+        .models
         .iter()
-        .flat_map(|stem| frames.iter().map(move |&frame| Name { stem: stem.clone(), frame }))
+        .flat_map(|model| frames.iter().map(|&frame| Name { input: model.clone(), frame }))
         .collect();
     let optional = |option: &str, path: &Option<PathBuf>| match path {
         Some(path) => {
@@ -170,7 +171,7 @@ fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
     };
     let film = film::wanted(args, wanted(args).kind)?;
     let color = match film {
-        Some(_) => film::targets(&args.output, &stems, frames.len(), &wanted(args))?,
+        Some(_) => film::targets(&args.output, &args.models, frames.len(), &wanted(args))?,
         None => output::plan("--output", &args.output, &names, &wanted(args))?,
     };
     let item = optional("--item", &args.planes.item)?;
@@ -184,21 +185,33 @@ fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
     let jobs: Vec<Job> = args
         .models
         .iter()
-        .zip(stems)
-        .map(|(model, stem)| Job {
+        .map(|model| Job {
             model,
-            stem,
+            stem: names::stem(model),
             film,
             pictures: pictures.by_ref().take(frames.len()).collect(),
         })
         .collect();
     let targets = || jobs.iter().flat_map(Job::targets);
-    output::check_distinct(targets())?;
+    output::check_distinct(targets()).map_err(|failure| with_advice(args, failure))?;
     if args.json && targets().any(|t| *t == Target::Stdout) {
         let message = "--json: the report goes to standard output, where the picture goes too";
         return Err(Failure::Usage(message.to_owned()));
     }
     Ok(jobs)
+}
+
+/// Adds how pictures of models with the same name get different names.
+fn with_advice(args: &RenderArgs, failure: Failure) -> Failure {
+    match failure {
+        Failure::Usage(message) if args.models.len() > 1 => {
+            let suffix = wanted(args).kind.suffix();
+            Failure::Usage(format!(
+                "{message}; -o 'DIR/{{folder}}/{{name}}.{suffix}' keeps the folders and suffixes of the models"
+            ))
+        }
+        other => other,
+    }
 }
 
 /// Reads a model and makes its pictures.

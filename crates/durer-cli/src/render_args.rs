@@ -22,6 +22,7 @@ Examples:
   durer render part.stl -o turn.webp --turntable 72 --duration 4
   durer render part.stl -o frames/part_%03d.png --turntable 72
   durer render *.stl -o thumbnails/ --size 256x256 --skip-failures
+  durer render a/*.stl b/*.stl -o 'thumbnails/{folder}/{stem}.png' --size 256x256
   durer render bunny.obj -o compare.png --algorithm all
   durer render bunny.obj -o bunny.png --light directional:-1,-2,-1:white:3 --shadows map
   durer render bunny.obj -o bunny.png --item items.png --depth depth.png --normal normals.png
@@ -43,7 +44,9 @@ pub struct RenderArgs {
     /// File to write the picture to
     ///
     /// A .png, .jpg or .webp file, or a drawing as .svg, .pdf, .dxf, .hpgl, .gcode or .geojson; `-` for standard
-    /// output; a folder (existing, or ending in `/`) for NAME.png of each model. A --turntable goes into one .png,
+    /// output; a folder (existing, or ending in `/`) for NAME.png of each model. The file's name may have {stem} (the model's
+    /// name without its suffix), {name} (with it) and {folder} (its folder): two pictures with one name are an error, and
+    /// 'out/{folder}/{name}.png' keeps them apart. A --turntable goes into one .png,
     /// .webp or .gif, which is animated; or into a file for each frame: in a folder, or by a name with a place for
     /// the frame's number, e.g. `frame_%04d.png`. A missing folder for several pictures is created. A file is only
     /// ever replaced by a complete picture.

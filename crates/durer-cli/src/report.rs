@@ -10,6 +10,7 @@ use durer::pipeline::{self, Status, Unseen};
 use durer::scene::{Camera, Projection};
 use durer_formats::told;
 use serde::Serialize;
+use std::sync::{Mutex, PoisonError};
 
 /// A model that could be read.
 #[derive(Debug, Serialize)]
@@ -184,9 +185,21 @@ pub fn print(value: &impl Serialize) -> Result<(), crate::failure::Failure> {
     print_text(&told::json(&text))
 }
 
-/// Writes text to standard output.
+/// Text that is kept instead of going to standard output, where that is wanted.
+static KEPT: Mutex<Option<String>> = Mutex::new(None);
+
+/// Has text be kept from now on, and returns what was kept.
+pub fn keep() -> String {
+    KEPT.lock().unwrap_or_else(PoisonError::into_inner).replace(String::new()).unwrap_or_default()
+}
+
+/// Writes text to standard output, or keeps it.
 pub fn print_text(text: &str) -> Result<(), crate::failure::Failure> {
     use std::io::Write;
+    if let Some(kept) = &mut *KEPT.lock().unwrap_or_else(PoisonError::into_inner) {
+        kept.push_str(text);
+        return Ok(());
+    }
     let mut out = std::io::stdout().lock();
     out.write_all(text.as_bytes())
         .and_then(|()| out.flush())

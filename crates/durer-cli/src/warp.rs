@@ -119,7 +119,7 @@ struct Loaded {
 
 /// Makes the new view and writes it.
 pub fn run(args: &WarpArgs) -> Result<(), Failure> {
-    let name = Name { stem: "warped".to_owned(), frame: None };
+    let name = Name { input: "warped".into(), frame: None };
     let wanted = Wanted::picture(&args.output, args.file.format);
     args.file.encoding.check(wanted.kind)?;
     let targets = output::plan("--output", &args.output, std::slice::from_ref(&name), &wanted)?;

@@ -10,7 +10,7 @@ use durer::Error;
 use durer::work::Work;
 use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -67,66 +67,111 @@ pub fn work(args: &RunningArgs) -> Work {
     Work::with_budget(budget, "--max-memory")
 }
 
-/// Watches the command from now on. Where there is no thread to be had, signals end it as they do without.
-pub fn start(args: &RunningArgs) {
-    let watch = Watch {
-        work: args.work.clone(),
-        timeout: args.timeout,
-        start: Instant::now(),
-        stopped: None,
-    };
-    // It ends with the process.
-    let _ = thread::Builder::new().name("watch".to_owned()).spawn(move || {
-        watch_signals();
-        watch.run();
-    });
-}
-
-/// Takes note of signals from now on, in place of their ending the process.
-fn watch_signals() {
-    use signal_hook::consts::{SIGINT, SIGTERM};
-    let signal = SIGNAL.get_or_init(Arc::default);
-    #[cfg(unix)]
-    let signals = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
-    #[cfg(not(unix))]
-    let signals = [SIGINT, SIGTERM];
-    for number in signals {
-        // One that cannot be noted ends the process at once.
-        let _ = signal_hook::flag::register_usize(number, signal.clone(), number as usize);
-    }
-}
-
-struct Watch {
+/// Work that is watched, with its limits.
+struct Watched {
     work: Work,
     timeout: Option<f64>,
+    /// Name of the option for the time.
+    option: &'static str,
     start: Instant,
     /// Time at which the work was stopped because of its memory.
     stopped: Option<Instant>,
 }
 
-impl Watch {
-    fn run(mut self) {
-        let mut end_at = None;
-        loop {
-            if let Some(code) = interrupted() {
-                self.work.stop(Error::Cancelled);
-                let end = *end_at.get_or_insert_with(|| Instant::now() + GRACE_OF_SIGNALS);
-                if Instant::now() >= end {
-                    end_with(None, code.into());
-                }
-            }
-            self.look_at_clock();
-            let wait = self.look_at_memory();
-            thread::sleep(wait);
-        }
-    }
+/// The work that is watched now.
+static WATCHED: Mutex<Option<Watched>> = Mutex::new(None);
 
+fn watched() -> MutexGuard<'static, Option<Watched>> {
+    WATCHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Watches the command from now on. Where there is no thread to be had, signals end it as they do without.
+pub fn start(args: &RunningArgs) {
+    begin(&args.work, args.timeout, "--timeout");
+    spawn(note_signals);
+}
+
+/// Watches rows from now on, one after the other; signals are left to the process that started this one.
+pub fn start_rows() {
+    for number in signals() {
+        let _ = signal_hook::flag::register(number, Arc::default());
+    }
+    spawn(|| ());
+}
+
+/// Watches this work in place of other work, for a time that begins now.
+pub fn begin(work: &Work, timeout: Option<f64>, option: &'static str) {
+    let (work, start) = (work.clone(), Instant::now());
+    *watched() = Some(Watched { work, timeout, option, start, stopped: None });
+}
+
+/// Ends the watch over the current work.
+pub fn over() {
+    *watched() = None;
+}
+
+/// Starts the thread that watches; it ends with the process.
+fn spawn(first: impl FnOnce() + Send + 'static) {
+    let _ = thread::Builder::new().name("watch".to_owned()).spawn(move || {
+        first();
+        watch();
+    });
+}
+
+fn signals() -> impl Iterator<Item = i32> {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    #[cfg(unix)]
+    let signals = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
+    #[cfg(not(unix))]
+    let signals = [SIGINT, SIGTERM];
+    signals.into_iter()
+}
+
+/// Takes note of signals from now on, in place of their ending the process.
+pub fn note_signals() {
+    let signal = SIGNAL.get_or_init(Arc::default);
+    for number in signals() {
+        // One that cannot be noted ends the process at once.
+        let _ = signal_hook::flag::register_usize(number, signal.clone(), number as usize);
+    }
+}
+
+/// Returns whether a signal came since this was called last.
+pub fn take_signal() -> bool {
+    SIGNAL.get().is_some_and(|signal| signal.swap(0, Ordering::Relaxed) > 0)
+}
+
+fn watch() {
+    let mut end_at = None;
+    loop {
+        // What is watched may be over while it is examined: it is kept until then.
+        let mut guard = watched();
+        let wait = match &mut *guard {
+            None => OFTEN,
+            Some(watched) => {
+                if let Some(code) = interrupted() {
+                    watched.work.stop(Error::Cancelled);
+                    let end = *end_at.get_or_insert_with(|| Instant::now() + GRACE_OF_SIGNALS);
+                    if Instant::now() >= end {
+                        end_with(None, code.into());
+                    }
+                }
+                watched.look_at_clock();
+                watched.look_at_memory()
+            }
+        };
+        drop(guard);
+        thread::sleep(wait);
+    }
+}
+
+impl Watched {
     fn look_at_clock(&self) {
         let Some(seconds) = self.timeout else { return };
         let (allowed, taken) = (Duration::try_from_secs_f64(seconds), self.start.elapsed());
         let allowed = allowed.unwrap_or(Duration::MAX);
         if taken >= allowed {
-            let error = Error::TimedOut { seconds, option: "--timeout" };
+            let error = Error::TimedOut { seconds, option: self.option };
             self.work.stop(error.clone());
             if taken >= allowed.saturating_add(GRACE) {
                 end(&error);

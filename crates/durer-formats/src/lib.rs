@@ -56,3 +56,4 @@ pub use error::{Error, Place, Result, Warning};
 pub use model::{Found, Limits, Model, NoResources, Pose, ReadOptions, Resources};
 pub use pieces::{Facts, Pieces, Visit};
 pub use sniff::{ModelFormat, read_model};
+pub use uri::data_uri;

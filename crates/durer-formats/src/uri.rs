@@ -14,6 +14,22 @@ pub(crate) fn load(uri: &str, at: &str, resources: &dyn Resources, limit: u64) -
     resources.find(&path, limit).map_err(|message| refused(uri, at, &message))
 }
 
+/// Returns the bytes in a data URI (RFC 2397): base64, or percent-encoded.
+///
+/// # Errors
+/// [`Error::Decode`] where it is broken, or another URI.
+///
+/// ```
+/// assert_eq!(durer_formats::data_uri("data:text/plain;base64,aGk=")?, b"hi");
+/// assert!(durer_formats::data_uri("a.obj").is_err());
+/// # Ok::<_, durer_formats::Error>(())
+/// ```
+pub fn data_uri(uri: &str) -> Result<Vec<u8>> {
+    let at = "data URI";
+    let data = strip_data_scheme(uri).ok_or_else(|| Error::path(at, "it begins with `data:`"))?;
+    decode_data(data, at)
+}
+
 /// Checks a data URI without decoding it; others are for [`load`].
 ///
 /// # Errors

@@ -1,9 +1,10 @@
 //! Keys and values of the file, each checked by the parser of its option.
 
 use crate::failure::Failure;
+use crate::given::{self, Given, first_paragraph, is_called, is_flag};
 use crate::toml_words::fault;
 use clap::error::ErrorKind;
-use clap::{Arg, ArgAction, Command, ValueHint};
+use clap::{Arg, Command, ValueHint};
 use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -14,35 +15,16 @@ const NOT_IN_FILES: &[&str] = &["config", "no_config", "help", "version"];
 /// An option as the file has it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Setting {
-    /// Key as written in the file.
-    pub key: String,
+    /// The option and its values.
+    pub given: Given,
     /// Line in the file, counted from 1.
     line: usize,
-    /// Identifier of the option in the parser.
-    pub id: clap::Id,
-    /// Its values, as on the command line; `true` or `false` of a flag.
-    pub values: Vec<String>,
-    /// True if it takes no value, and whether it takes several at once.
-    flag: bool,
-    several: bool,
 }
 
 impl Setting {
     /// Returns a failure at its place.
     pub fn wrong(&self, file: &Path, what: &str) -> Failure {
         wrong(file, self.line, what)
-    }
-
-    /// Returns the arguments as they would be written on the command line.
-    pub fn words(&self) -> Vec<String> {
-        let option = format!("--{}", self.key);
-        match &self.values[..] {
-            [value] if self.flag => (value == "true").then_some(option).into_iter().collect(),
-            values if self.several => {
-                std::iter::once(option).chain(values.iter().cloned()).collect()
-            }
-            values => values.iter().map(|value| format!("{option}={value}")).collect(),
-        }
     }
 }
 
@@ -99,8 +81,9 @@ fn settings(source: &Source, sub: &Command, keys: &DeTable) -> Result<Vec<Settin
     let mut settings: Vec<Setting> = Vec::new();
     for (key, value) in keys {
         let setting = setting(source, sub, key, value)?;
-        if settings.iter().any(|s| s.id == setting.id) {
-            let what = format!("`{}`: the option is there under another name, too", setting.key);
+        if settings.iter().any(|s| s.given.id == setting.given.id) {
+            let what =
+                format!("`{}`: the option is there under another name, too", setting.given.key);
             return Err(setting.wrong(source.file, &what));
         }
         settings.push(setting);
@@ -117,44 +100,35 @@ fn setting<S: AsRef<str>>(
 ) -> Result<Setting, Failure> {
     let name = key.get_ref().as_ref();
     let fail = |what: &str| source.wrong(key.span().start, &format!("`{name}`: {what}"));
-    let arg = sub.get_arguments().find(|a| is_called(a, name)).ok_or_else(|| {
-        let command = sub.get_name();
-        fail(&format!("there is no such option; `durer {command} --help` lists them"))
-    })?;
+    let in_files = |a: &&Arg| !NOT_IN_FILES.contains(&a.get_id().as_str());
+    let arg =
+        sub.get_arguments().filter(in_files).find(|a| is_called(a, name)).ok_or_else(|| {
+            let command = sub.get_name();
+            fail(&format!("there is no such option; `durer {command} --help` lists them"))
+        })?;
     let values = values(arg, value.get_ref()).map_err(|e| fail(&e))?;
-    let flag = !arg.get_action().takes_values();
-    let several = arg.get_num_args().is_some_and(|n| n.max_values() > 1);
-    let (line, id) = (source.line(key.span().start), arg.get_id().clone());
-    let mut setting = Setting { key: name.to_owned(), line, id, values, flag, several };
+    let line = source.line(key.span().start);
+    let mut setting = Setting { given: Given::new(arg, name, values), line };
     check(sub, &setting).map_err(|e| fail(&e))?;
     if is_path(arg) {
         let folder = source.file.parent().unwrap_or(Path::new(""));
-        setting.values.iter_mut().for_each(|value| *value = beside(folder, value));
+        setting.given.values.iter_mut().for_each(|value| *value = beside(folder, value));
     }
     Ok(setting)
 }
 
-fn is_called(arg: &Arg, name: &str) -> bool {
-    let aliases = arg.get_all_aliases().unwrap_or_default();
-    let in_files = !NOT_IN_FILES.contains(&arg.get_id().as_str());
-    in_files && (arg.get_long() == Some(name) || aliases.contains(&name))
-}
-
 /// Returns the values as on the command line.
 fn values(arg: &Arg, value: &DeValue) -> Result<Vec<String>, String> {
-    let flag = !arg.get_action().takes_values();
     match value {
-        DeValue::Boolean(is) if flag => Ok(vec![is.to_string()]),
-        _ if flag => Err("it is a flag: true or false".to_owned()),
+        DeValue::Boolean(is) if is_flag(arg) => Ok(vec![is.to_string()]),
+        _ if is_flag(arg) => Err("it is a flag: true or false".to_owned()),
         DeValue::Array(array) => {
             let items: Vec<String> =
                 array.iter().map(|item| word(item.get_ref())).collect::<Result<_, _>>()?;
-            let each = matches!(arg.get_action(), ArgAction::Append);
-            let several = arg.get_num_args().is_some_and(|n| n.max_values() > 1);
             if items.is_empty() {
                 return Err("the array is empty; leave the key out".to_owned());
             }
-            Ok(if each || several { items } else { vec![items.join(",")] })
+            Ok(given::list(arg, items))
         }
         one => word(one).map(|word| vec![word]),
     }
@@ -172,20 +146,13 @@ fn word(value: &DeValue) -> Result<String, String> {
 
 /// Returns the parser's objection to a value.
 fn check(sub: &Command, setting: &Setting) -> Result<(), String> {
-    let line = std::iter::once(sub.get_name().to_owned()).chain(setting.words());
+    let line = std::iter::once(sub.get_name().to_owned()).chain(setting.given.words());
     let Err(error) = sub.clone().try_get_matches_from(line) else { return Ok(()) };
     match error.kind() {
         // What else is needed can be on the command line.
         ErrorKind::MissingRequiredArgument | ErrorKind::ArgumentConflict => Ok(()),
         _ => Err(first_paragraph(&error.to_string())),
     }
-}
-
-/// Returns the parser's message without its hints at the command line.
-fn first_paragraph(message: &str) -> String {
-    let lines = message.lines().map(str::trim).take_while(|line| !line.is_empty());
-    let text = lines.collect::<Vec<_>>().join(" ");
-    text.strip_prefix("error: ").unwrap_or(&text).to_owned()
 }
 
 fn is_path(arg: &Arg) -> bool {

@@ -66,8 +66,8 @@ pub fn run(args: &DrawArgs) -> Result<(), Failure> {
 fn check(args: &DrawArgs) -> Result<Target, Failure> {
     let inputs: Vec<_> = args.layers.0.iter().map(|l| &l.input).collect();
     input::check_streams(&inputs)?;
-    let names = output::stems(&inputs).into_iter().take(1);
-    let names: Vec<Name> = names.map(|stem| Name { stem, frame: None }).collect();
+    let first = inputs.first().map(|&input| Name { input: input.clone(), frame: None });
+    let names: Vec<Name> = first.into_iter().collect();
     args.picture.file.encoding.check(wanted(args).kind)?;
     let target = output::plan("--output", &args.output, &names, &wanted(args))?;
     let Some(target) = target.into_iter().next() else {

@@ -5,13 +5,13 @@ use crate::failure::Failure;
 use crate::input::display_name;
 use crate::layer::{Fields, keep, open, words};
 use crate::messages::Messages;
-use crate::output;
+use crate::names;
 use durer::clip::tiles::{self, Placed};
 use durer_formats::geo::{Feature, GeoFormat};
 use durer_formats::tiles::{Dictionary, Field, LayerInfo, Value};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 /// A layer.
 #[derive(Debug, Default)]
@@ -83,7 +83,7 @@ const BATCH: usize = 4096;
 /// Reads all files.
 pub fn read(args: &TilesArgs, messages: &Messages) -> Result<Layers, Failure> {
     let mut all = Layers::default();
-    let names = names(args)?;
+    let names = layer_names(args)?;
     let mut fields = Fields::new(&args.fields);
     for (path, name) in args.inputs.iter().zip(names) {
         let layer = all.layers.iter().position(|layer| layer.name == name).unwrap_or_else(|| {
@@ -161,9 +161,9 @@ fn tell(message: String, name: &str, messages: &Messages, warnings: &mut Vec<Str
 }
 
 /// Returns the layer of each file.
-fn names(args: &TilesArgs) -> Result<Vec<String>, Failure> {
+fn layer_names(args: &TilesArgs) -> Result<Vec<String>, Failure> {
     match (args.layer.len(), args.inputs.len()) {
-        (0, _) => Ok(output::stems(&args.inputs)),
+        (0, _) => Ok(stems(&args.inputs)),
         (1, count) => Ok(vec![args.layer[0].clone(); count]),
         (names, count) if names == count => Ok(args.layer.clone()),
         (names, count) => {
@@ -172,6 +172,29 @@ fn names(args: &TilesArgs) -> Result<Vec<String>, Failure> {
             Err(Failure::Usage(message))
         }
     }
+}
+
+/// Returns the names of the files without folder and suffix; where several are the same, with the suffix, then with a
+/// number.
+fn stems(inputs: &[PathBuf]) -> Vec<String> {
+    let stems: Vec<String> = inputs.iter().map(|input| names::stem(input)).collect();
+    let mut counts = BTreeMap::new();
+    stems.iter().for_each(|stem| *counts.entry(stem).or_insert(0) += 1);
+    let mut taken = BTreeSet::new();
+    // By the name, the number to try next: many may share one.
+    let mut numbers = BTreeMap::new();
+    let mut result = Vec::new();
+    for (input, stem) in inputs.iter().zip(&stems) {
+        let base = if counts[stem] > 1 { names::expand("{name}", input) } else { stem.clone() };
+        let number = numbers.entry(base.clone()).or_insert(2);
+        let mut name = base.clone();
+        while !taken.insert(name.clone()) {
+            name = format!("{base}-{number}");
+            *number += 1;
+        }
+        result.push(name);
+    }
+    result
 }
 
 impl Doubts {
@@ -272,4 +295,17 @@ fn typed(value: serde_json::Value) -> Option<(Value, Field)> {
 fn whole_number(json: &str) -> Option<u64> {
     let text = json.strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or(json);
     text.parse().ok().filter(|number: &u64| number.to_string() == text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layers_differ_where_names_of_files_do_not() {
+        let of = |paths: &[&str]| stems(&paths.iter().map(PathBuf::from).collect::<Vec<_>>());
+        assert_eq!(of(&["x/a.geojson", "b.wkt"]), ["a", "b"]);
+        assert_eq!(of(&["a.wkt", "a.wkb", "-"]), ["a.wkt", "a.wkb", "stdin"]);
+        assert_eq!(of(&["x/a.wkt", "y/a.wkt"]), ["a.wkt", "a.wkt-2"]);
+    }
 }

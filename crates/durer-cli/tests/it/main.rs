@@ -2,6 +2,7 @@
 
 mod algorithms;
 mod annotations;
+mod batch;
 mod budget;
 mod clip;
 mod clip_cells;

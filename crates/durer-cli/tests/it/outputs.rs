@@ -105,13 +105,34 @@ fn several_models_make_one_picture_each() {
     fs::create_dir(folder.path("sub")).unwrap();
     fs::copy(folder.path("cube.obj"), folder.path("sub/cube.obj")).unwrap();
     fs::copy(folder.path("cube.obj"), folder.path("b.obj")).unwrap();
-    folder.must("render cube.obj b.obj sub/cube.obj -o new/pictures --size 8x8");
-    let mut names: Vec<_> = fs::read_dir(folder.path("new/pictures")).unwrap().collect();
-    names.sort_by_key(|e| e.as_ref().unwrap().file_name());
-    let names: Vec<_> = names.into_iter().map(|e| e.unwrap().file_name()).collect();
-    assert_eq!(names, ["b.png", "cube.obj-2.png", "cube.obj.png"]);
+    folder.must("render cube.obj b.obj -o new/pictures --size 8x8");
+    assert!(folder.path("new/pictures/cube.png").is_file());
+    assert!(folder.path("new/pictures/b.png").is_file());
     folder.must("render cube.obj -o new --size 8x8");
     assert!(folder.path("new/cube.png").is_file());
+}
+
+#[test]
+fn names_of_pictures_depend_on_their_own_model_alone() {
+    let folder = Folder::with_models();
+    fs::create_dir(folder.path("sub")).unwrap();
+    fs::copy(folder.path("cube.obj"), folder.path("sub/cube.obj")).unwrap();
+    let run = |output: &str| {
+        folder.run(&format!("render cube.obj sub/cube.obj ./sub/../b.obj {output} --size 8x8"))
+    };
+    fs::copy(folder.path("cube.obj"), folder.path("b.obj")).unwrap();
+    run("-o out").fails(2, "two pictures would go there; -o 'DIR/{folder}/{name}.png' keeps");
+    run("-o out/{stem}.jpg").fails(2, "{name}.jpg' keeps");
+    assert!(!folder.path("out/b.png").exists(), "nothing was rendered");
+    let ended = run("-o out/{folder}/{name}.png --depth out/d-{folder}/{stem}.png");
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    for name in ["cube.obj.png", "sub/cube.obj.png", "sub/b.obj.png", "d-/b.png", "d-sub/cube.png"]
+    {
+        assert!(folder.path("out").join(name).is_file() == (name != "d-/b.png"), "{name}");
+    }
+    run("-o out/{folder}/{stem}.jpg --turntable 2").fails(2, "such as {stem}_%04d.png");
+    assert_eq!(run("-o f/{folder}/{stem}_%d.png --turntable 2").code, 0);
+    assert!(folder.path("f/sub/cube_1.png").is_file() && folder.path("f/cube_0.png").is_file());
 }
 
 #[test]

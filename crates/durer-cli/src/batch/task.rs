@@ -1,0 +1,59 @@
+//! What a process of `durer batch` and its workers write to each other: lines of JSON.
+
+use super::entry::Entry;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// The first line to a worker: what all of its rows have in common.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Setup {
+    /// Folder of the outputs.
+    pub out: PathBuf,
+    /// Folder for files that are not whole.
+    pub temporary: PathBuf,
+    /// Threads of the worker.
+    pub threads: u16,
+    /// Bytes of memory for a row.
+    pub max_memory: u64,
+    /// Seconds for a row.
+    pub timeout: Option<f64>,
+}
+
+/// The first line of a worker.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Ready {
+    /// Its version of durer.
+    pub version: String,
+}
+
+/// A row to run.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Task {
+    /// Name of the row.
+    pub id: String,
+    /// Name of the command.
+    pub command: String,
+    /// Options, by their names; each as words of the command line.
+    pub options: Vec<(String, Vec<String>)>,
+    /// Paths or data URIs.
+    pub inputs: Vec<String>,
+    /// Name of the output in its folder.
+    pub output: String,
+    /// Options that name further outputs, with the names.
+    pub planes: Vec<(String, String)>,
+    /// Hash that the input must have.
+    pub sha256: Option<String>,
+    /// Key with which there is an entry in the journal that counts.
+    pub known: Option<String>,
+}
+
+/// A line that answers a row.
+#[derive(Debug, Serialize, Deserialize)]
+pub enum Answer {
+    /// The row has the known key, and was not run.
+    Same,
+    /// The row has this key, and is run now; another answer follows.
+    Runs(String),
+    /// The row was run.
+    Ran(Box<Entry>),
+}
