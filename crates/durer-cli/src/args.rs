@@ -138,6 +138,7 @@ impl Command {
             Self::Plot(args) => &mut args.running,
             Self::Explain(args) => &mut args.running,
             Self::Algorithms(_)
+            | Self::Explore(_)
             | Self::Thumbnailer(_)
             | Self::Batch(_)
             | Self::BatchWorker

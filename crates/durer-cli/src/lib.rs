@@ -12,6 +12,8 @@ mod compare;
 mod config;
 mod draw;
 mod drawing;
+#[doc(hidden)]
+pub mod embedded;
 mod encoding;
 mod environment;
 mod explain;
@@ -62,14 +64,20 @@ use config::Configured;
 use durer_formats::told::shown_path;
 use failure::Failure;
 use options::RunningArgs;
+use std::ffi::OsString;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Runs the command with the arguments of the process, and returns its exit code.
 pub fn main() -> ExitCode {
+    main_with(std::env::args_os().collect())
+}
+
+/// Runs the command with its name and arguments, and returns its exit code; once in a process.
+pub fn main_with(line: Vec<OsString>) -> ExitCode {
     failure::tell_of_large_files();
-    let result = panics::told_at_the_end(parse_and_run);
+    let result = panics::told_at_the_end(|| parse_and_run(line));
     if let Some(code) = watch::interrupted() {
         return ExitCode::from(code);
     }
@@ -88,8 +96,8 @@ pub fn main() -> ExitCode {
 
 /// Parses the arguments and runs the command; for a wrong option that comes from the file of
 /// options, the error names that file.
-fn parse_and_run() -> Result<(), Failure> {
-    let (command, file) = parse()?;
+fn parse_and_run(line: Vec<OsString>) -> Result<(), Failure> {
+    let (command, file) = parse(line)?;
     run(command).map_err(|failure| match (failure, file) {
         (Failure::Usage(what), Some(file)) => {
             Failure::Usage(format!("{what} (options of {} count, too)", shown_path(&file)))
@@ -100,9 +108,8 @@ fn parse_and_run() -> Result<(), Failure> {
 
 /// Returns the command line, with the options of a file; what was given by hand is noted where that
 /// matters.
-fn parse() -> Result<(Command, Option<PathBuf>), Failure> {
-    let Configured { command, line, file } =
-        config::configured(Cli::command(), std::env::args_os().collect())?;
+fn parse(line: Vec<OsString>) -> Result<(Command, Option<PathBuf>), Failure> {
+    let Configured { command, line, file } = config::configured(Cli::command(), line)?;
     let matches = command.try_get_matches_from(line).map_err(answered)?;
     let command = Command::of(&matches).map_err(answered)?;
     let Some((name, given)) = matches.subcommand() else { return Ok((command, file)) };

@@ -23,15 +23,18 @@ use crate::section;
 use crate::staging;
 use crate::values::{Algorithm, Size};
 use crate::watch;
-use cells::{Cell, assemble, shots};
-use check::{algorithm, asks_for_rays, check, check_size, wanted};
+use cells::shots;
+pub use cells::{Cell, assemble};
+pub use check::check;
+use check::{algorithm, asks_for_rays, check_size, wanted};
 use durer::math::{DVec2, Vec4};
 use durer::pipeline::{self, Lighting, Marks, Mask, RenderOptions, SurfaceMethod};
 use durer::scene::{AlphaMode, Camera, Material, Scene};
 use durer::target::Framebuffer;
-use durer::view::components::components;
+use durer::view::components::{Component, components};
 use durer::view::objects::divided;
 use durer::visibility::object::SceneOrientation;
+use durer::work::{Charge, Work};
 use durer_formats::{Model, png};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -235,28 +238,8 @@ fn render_model(
     let model = input::read(job.model, &reading);
     let mut model = if has_pieces { model.map_err(streamed::hinted)? } else { model? };
     let read_seconds = start.elapsed().as_secs_f64();
-    if let Some(axis) = args.view.up_axis {
-        model.scene.up_axis = axis.into();
-    }
-    if let Some(color) = args.look.color {
-        model.scene.give_material(colored(color));
-    }
     messages.warnings(&name, &model.warnings);
-    staging::give_materials(&args.stage, args.look.color, &mut model.scene);
-    let assembles = args.drawing.callouts || args.explode.explode.is_some();
-    let copies = bytes_of_copies(args, &model.scene, assembles);
-    let charged = part.charge("copies of the model", copies);
-    let _copies = charged.map_err(|e| Failure::of_library(&e).named(&name))?;
-    if let Some(divided) = assembles.then(|| divided(&model.scene)).flatten() {
-        model.scene = divided;
-    }
-    if args.look.orient {
-        orient(args, &mut model.scene, &name, messages)?;
-    }
-    // What is cut has no meshes in common any more.
-    let components = if args.drawing.callouts { components(&model.scene) } else { Vec::new() };
-    let cap_material = section::apply(&args.section, &mut model.scene, &name, messages)?;
-    explode::apply(&args.explode, &mut model.scene).map_err(|f| with_file(&name, f))?;
+    let prepared = prepare(args, &mut model.scene, &name, &part, messages)?;
     messages.detail(|| {
         format!(
             "{name}: {}, {} triangles, read in {read_seconds:.3} s",
@@ -264,15 +247,8 @@ fn render_model(
             model.scene.triangle_count()
         )
     });
-    let found;
-    let args = if args.picture.sides.is_open() {
-        let shape = drawing::shape(args, &model.scene);
-        found = sized(args, shape.map_err(|f| input::blamed(&name, &model.scene, f))?);
-        check_size(&found)?;
-        &found
-    } else {
-        args
-    };
+    let found = with_open_side(args, &name, &model.scene)?;
+    let args = found.as_ref().unwrap_or(args);
     let mut noticed = Noticed::default();
     let mut film = job.film();
     let kind = wanted(args).kind;
@@ -286,8 +262,8 @@ fn render_model(
         scene: &model.scene,
         name: &job.stem,
         format: &model.format,
-        cap_material,
-        components,
+        cap_material: prepared.cap_material,
+        components: prepared.components,
         annotated,
     };
     for picture in &job.pictures {
@@ -306,6 +282,69 @@ fn render_model(
     noticed.tell(&name, &mut model, messages);
     tell_model(job, model, read_seconds, told);
     Ok(())
+}
+
+/// Returns the options with the side of the picture that was left open; `None` if none was.
+pub fn with_open_side(
+    args: &RenderArgs,
+    name: &str,
+    scene: &Scene,
+) -> Result<Option<RenderArgs>, Failure> {
+    if !args.picture.sides.is_open() {
+        return Ok(None);
+    }
+    let shape = drawing::shape(args, scene);
+    let found = sized(args, shape.map_err(|f| input::blamed(name, scene, f))?);
+    check_size(&found)?;
+    Ok(Some(found))
+}
+
+/// What is known of a scene after the options have changed it.
+pub struct Prepared {
+    /// The kinds of its parts, where they are to be numbered.
+    pub components: Vec<Component>,
+    /// The material of the caps, where it was cut.
+    pub cap_material: Option<usize>,
+    /// Memory of copies that were made.
+    _copies: Option<Charge>,
+}
+
+impl Prepared {
+    /// Returns what is known of a scene that no option changes.
+    pub fn unchanged() -> Self {
+        Self { components: Vec::new(), cap_material: None, _copies: None }
+    }
+}
+
+/// Gives a scene the axis, materials, directions, cuts and places that the options ask for.
+pub fn prepare(
+    args: &RenderArgs,
+    scene: &mut Scene,
+    name: &str,
+    work: &Work,
+    messages: &Messages,
+) -> Result<Prepared, Failure> {
+    if let Some(axis) = args.view.up_axis {
+        scene.up_axis = axis.into();
+    }
+    if let Some(color) = args.look.color {
+        scene.give_material(colored(color));
+    }
+    staging::give_materials(&args.stage, args.look.color, scene);
+    let assembles = args.drawing.callouts || args.explode.explode.is_some();
+    let charged = work.charge("copies of the model", bytes_of_copies(args, scene, assembles));
+    let copies = charged.map_err(|e| Failure::of_library(&e).named(name))?;
+    if let Some(divided) = assembles.then(|| divided(scene)).flatten() {
+        *scene = divided;
+    }
+    if args.look.orient {
+        orient(args, scene, name, messages)?;
+    }
+    // What is cut has no meshes in common any more.
+    let components = if args.drawing.callouts { components(scene) } else { Vec::new() };
+    let cap_material = section::apply(&args.section, scene, name, messages)?;
+    explode::apply(&args.explode, scene).map_err(|f| with_file(name, f))?;
+    Ok(Prepared { components, cap_material, _copies: Some(copies) })
 }
 
 /// Tells of a picture, and why nothing of the model is seen in it, if that is so.
@@ -396,15 +435,38 @@ fn render_picture(
 ) -> Result<(PictureReport, Option<String>), Failure> {
     let Size { width, height } = args.picture.size;
     let mut report = PictureReport { width, height, ..PictureReport::default() };
-    let (mut cells, mut statuses) = (Vec::new(), Vec::new());
+    let Shown { cells, unseen, .. } = render_cells(args, scene, picture.frame, &mut report)?;
+    deliver(args, picture, cells, algorithm(args), &mut report, sink)?;
+    Ok((report, unseen))
+}
+
+/// The cells of a picture, rendered.
+pub struct Shown {
+    /// Parts of the picture with their pixels.
+    pub cells: Vec<(Cell, Framebuffer)>,
+    /// The camera of each cell.
+    pub cameras: Vec<Camera>,
+    /// Reason why nothing of the model is visible, if that is so.
+    pub unseen: Option<String>,
+}
+
+/// Renders the cells of one picture.
+pub fn render_cells(
+    args: &RenderArgs,
+    scene: &Scene,
+    frame: Option<u32>,
+    report: &mut PictureReport,
+) -> Result<Shown, Failure> {
+    let (mut cells, mut statuses, mut cameras) = (Vec::new(), Vec::new(), Vec::new());
     let staged = staging::staged(&args.stage, scene, &args.running.work)?;
     let model = scene;
     let framed = staged.as_ref().map_or(model, |s| &s.framed);
     let scene = staged.as_ref().map_or(model, |s| &s.whole);
     let algorithm = algorithm(args);
-    for cell in shots(args, picture.frame)? {
-        let options = render_options(args, [model, framed, scene], picture, &cell.shot, algorithm)?;
+    for cell in shots(args, frame)? {
+        let options = render_options(args, [model, framed, scene], &cell.shot, algorithm)?;
         report.cameras.push((&options.camera).into());
+        cameras.push(options.camera);
         let mut framebuffer = match algorithm {
             Algorithm::Surfaces(_) => {
                 let (framebuffer, stages) = pipeline::render(scene, &options).map_err(usage)?;
@@ -412,7 +474,7 @@ fn render_picture(
                 framebuffer
             }
             Algorithm::Wireframe => compare::wireframe(scene, &options).map_err(usage)?,
-            Algorithm::All => compare::sheet(scene, &options, &mut report)?,
+            Algorithm::All => compare::sheet(scene, &options, report)?,
         };
         // A sheet has labels, and a floor is seen where the model is not.
         let shows_more = algorithm == Algorithm::All || staged.is_some();
@@ -427,8 +489,7 @@ fn render_picture(
         cells.push((cell, framebuffer));
     }
     let unseen = report.set_status(&statuses);
-    deliver(args, picture, cells, algorithm, &mut report, sink)?;
-    Ok((report, unseen))
+    Ok(Shown { cells, cameras, unseen })
 }
 
 /// Puts the cells of a picture together and writes its files.
@@ -467,7 +528,6 @@ fn usage(e: durer::Error) -> Failure {
 fn render_options(
     args: &RenderArgs,
     [model, framed, scene]: [&Scene; 3],
-    picture: &Picture,
     shot: &Shot,
     algorithm: Algorithm,
 ) -> Result<RenderOptions, Failure> {
@@ -477,7 +537,7 @@ fn render_options(
         false => staging::with_depths(&args.view, &camera, scene),
     };
     let ambient_occlusion = staging::occlusion(&args.stage, model);
-    let options = picture_options(args, camera, picture, shot, algorithm);
+    let options = picture_options(args, camera, shot, algorithm);
     Ok(RenderOptions { ambient_occlusion, ..options })
 }
 
@@ -485,7 +545,6 @@ fn render_options(
 fn picture_options(
     args: &RenderArgs,
     camera: Camera,
-    picture: &Picture,
     shot: &Shot,
     algorithm: Algorithm,
 ) -> RenderOptions {
@@ -516,9 +575,9 @@ fn picture_options(
         shadows: args.look.shadows.into(),
         shadow_map_side: args.look.shadow_map,
         bounces: args.look.bounces,
-        depth: picture.depth.is_some(),
-        item: picture.item.is_some(),
-        normal: picture.normal.is_some(),
+        depth: args.planes.depth.is_some(),
+        item: args.planes.item.is_some(),
+        normal: args.planes.normal.is_some(),
         max_pixels: args.picture.max_pixels,
         work: args.running.work.clone(),
         ..RenderOptions::new(camera)

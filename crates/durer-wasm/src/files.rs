@@ -77,8 +77,8 @@ pub(crate) fn render(request: &RenderRequest, file: &[u8]) -> Result<Vec<u8>, Fa
     let scene = model.map_err(|e| format!("{}: {e}", request.name))?.scene;
     let (width, height) = (request.width.max(1), request.height.max(1));
     let aspect = f64::from(width) / f64::from(height);
-    let direction =
-        ViewDirection::from_angles(request.azimuth, request.elevation, scene.up_axis).map_err(words)?;
+    let direction = ViewDirection::from_angles(request.azimuth, request.elevation, scene.up_axis)
+        .map_err(words)?;
     let options = FitOptions { aspect, margin: MARGIN, ..FitOptions::default() };
     let camera = fit_scene(&scene, &direction, &options).map_err(words)?;
     let options = RenderOptions {

@@ -62,7 +62,10 @@ impl InputData {
             Self::Example(name) => Input::Example(name),
             Self::Figure(figure) => {
                 let rect = |[x0, y0, x1, y1]: [f64; 4]| {
-                    Rect::new(DVec2::new(x0.min(x1), y0.min(y1)), DVec2::new(x0.max(x1), y0.max(y1)))
+                    Rect::new(
+                        DVec2::new(x0.min(x1), y0.min(y1)),
+                        DVec2::new(x0.max(x1), y0.max(y1)),
+                    )
                 };
                 let window = figure.window.map(rect).transpose().map_err(|e| e.to_string())?;
                 let [lines, rings, clip] = [figure.lines, figure.rings, figure.clip].map(to_lists);

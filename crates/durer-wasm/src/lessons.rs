@@ -19,12 +19,8 @@ fn word(word: Word) -> Value {
 
 fn lesson(lesson: &Lesson) -> Value {
     let info = lesson.info;
-    let example = |example: &durer::explain::Example| {
-        json!({ "name": example.name, "title": word(example.title) })
-    };
-    let template = |template: &&durer::explain::Template| {
-        json!({ "kind": template.kind, "text": word(template.text) })
-    };
+    let example = |example: &durer::explain::Example| json!({ "name": example.name, "title": word(example.title) });
+    let template = |template: &&durer::explain::Template| json!({ "kind": template.kind, "text": word(template.text) });
     json!({
         "name": lesson.name,
         "title": info.title,

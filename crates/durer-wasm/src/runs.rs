@@ -103,7 +103,8 @@ fn choices(lesson: &Lesson, input: &Input) -> Value {
         let names = good.iter().map(|(name, _)| *name);
         if differ { names.collect::<Vec<_>>() } else { Vec::new() }
     };
-    let operations = BooleanOp::ALL.iter().map(|&op| (op.name(), Options { operation: op, ..default }));
+    let operations =
+        BooleanOp::ALL.iter().map(|&op| (op.name(), Options { operation: op, ..default }));
     let rules = FillRule::ALL.iter().map(|&rule| (rule.name(), Options { rule, ..default }));
     json!({ "operations": distinct(operations.collect()), "rules": distinct(rules.collect()) })
 }

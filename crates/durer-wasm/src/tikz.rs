@@ -106,7 +106,11 @@ impl Pen<'_> {
     /// Draws the marks of one layer.
     fn marks(&mut self, layer: usize) {
         let picture = self.picture;
-        picture.marks.iter().filter(|mark| layer_of(&mark.shape) == layer).for_each(|m| self.mark(m));
+        picture
+            .marks
+            .iter()
+            .filter(|mark| layer_of(&mark.shape) == layer)
+            .for_each(|m| self.mark(m));
     }
 
     fn mark(&mut self, Mark { shape, look }: &Mark) {
@@ -114,7 +118,9 @@ impl Pen<'_> {
             Shape::Chain(points) if points.len() < 2 => return,
             Shape::Chain(points) => format!("\\draw[{}] {};", stroke(*look), self.path(points)),
             Shape::Rings(rings) => self.area(rings, *look),
-            Shape::Dot(p) => format!("\\fill[durer-{}] {} circle (1.5pt);", look.name(), self.at(*p)),
+            Shape::Dot(p) => {
+                format!("\\fill[durer-{}] {} circle (1.5pt);", look.name(), self.at(*p))
+            }
             Shape::Arrow(ends) => {
                 format!("\\draw[{},-{{Stealth}}] {};", stroke(*look), self.path(ends))
             }
@@ -123,7 +129,9 @@ impl Pen<'_> {
                 let (x, y) = (by.x, -by.y);
                 format!("\\node[shift={{({x}pt,{y}pt)}}] at {} {{{text}}};", self.at(*at))
             }
-            Shape::Cell { at, color, text } => self.cell(*at, *color, *look, &text.text(self.language)),
+            Shape::Cell { at, color, text } => {
+                self.cell(*at, *color, *look, &text.text(self.language))
+            }
         };
         self.line(&format!("  {text}"));
     }
@@ -147,7 +155,11 @@ impl Pen<'_> {
             Some([r, g, b]) => format!("fill={{rgb,255:red,{r};green,{g};blue,{b}}}"),
             None => format!("fill=durer-{}!40", look.name()),
         };
-        let text = if text.is_empty() { String::new() } else { format!(" \\node at {middle} {{{}}};", escaped(text)) };
+        let text = if text.is_empty() {
+            String::new()
+        } else {
+            format!(" \\node at {middle} {{{}}};", escaped(text))
+        };
         format!("\\fill[{fill}] {a} rectangle {b};{text}")
     }
 }
@@ -192,7 +204,9 @@ mod tests {
             let frames = run(name, &Input::Example(String::new()), &Default::default(), 5).unwrap();
             let text = tikz(&frames[3], Language::English);
             assert!(text.starts_with("% ") && text.ends_with("\\end{tikzpicture}\n"), "{text}");
-            assert!(!text.contains("NaN") && text.matches('{').count() == text.matches('}').count());
+            assert!(
+                !text.contains("NaN") && text.matches('{').count() == text.matches('}').count()
+            );
         }
         assert_eq!(escaped("50 % of {x}_1 −2"), "50 \\% of \\{x\\}\\_1 $-$2");
     }

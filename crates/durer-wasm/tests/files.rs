@@ -28,13 +28,13 @@ fn files_become_inputs() {
 
 #[test]
 fn models_are_rendered() {
-    let request = |method: &str| {
-        json!({ "do": "render", "name": "a.obj", "method": method, "width": 40, "height": 30, "azimuth": 30.0, "elevation": 20.0 })
-    };
+    let request = |method: &str| json!({ "do": "render", "name": "a.obj", "method": method, "width": 40, "height": 30, "azimuth": 30.0, "elevation": 20.0 });
     let teapot = include_bytes!("../../../samples/teapot.obj");
     for method in ["z-buffer", "scan-line-z"] {
         let answer = asked(&request(method), teapot);
-        assert!(matches!(answer, Answer::Bytes(png) if png.starts_with(b"\x89PNG") && png.len() > 500));
+        assert!(
+            matches!(answer, Answer::Bytes(png) if png.starts_with(b"\x89PNG") && png.len() > 500)
+        );
     }
     let wrong = asked(&request("guess"), teapot);
     assert!(matches!(wrong, Answer::Error(text) if text.contains("guess")));

@@ -36,7 +36,10 @@ fn every_lesson_is_listed_and_has_the_parts_of_a_page() {
             assert!(!lesson[part].as_str().unwrap().is_empty(), "{name}: {part}");
         }
         for part in ["pseudocode", "examples", "templates"] {
-            assert!(lesson[part].as_array().unwrap().len() > 1 || part == "templates", "{name}: {part}");
+            assert!(
+                lesson[part].as_array().unwrap().len() > 1 || part == "templates",
+                "{name}: {part}"
+            );
         }
         for template in lesson["templates"].as_array().unwrap() {
             assert!(!template["text"]["de"].as_str().unwrap().is_empty(), "{name}");
@@ -69,9 +72,15 @@ fn a_run_is_stepped_through() {
 fn own_inputs_come_back_as_they_went_in() {
     let mut engine = Engine::default();
     let inputs = [
-        ("sutherland-hodgman", json!({ "figure": { "window": [0.0, 0.0, 4.0, 4.0], "rings": [[[1.0, 1.0], [9.0, 2.0], [3.0, 7.0]]] } })),
+        (
+            "sutherland-hodgman",
+            json!({ "figure": { "window": [0.0, 0.0, 4.0, 4.0], "rings": [[[1.0, 1.0], [9.0, 2.0], [3.0, 7.0]]] } }),
+        ),
         ("naive", json!({ "grid": { "columns": 3, "cells": [0, 0, 1, 0, 1, 0], "seed": [0, 1] } })),
-        ("z-buffer-loop", json!({ "faces": [[[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 2.0]]] })),
+        (
+            "z-buffer-loop",
+            json!({ "faces": [[[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 2.0]]] }),
+        ),
     ];
     for (name, input) in inputs {
         let request = json!({ "do": "run", "name": name, "input": input, "cap": 50 });
@@ -86,7 +95,8 @@ fn choices_are_those_that_change_the_run() {
     let mut engine = Engine::default();
     let mut choices = |name: &str, example: &str| {
         let input = json!({ "example": example });
-        let request = json!({ "do": "run", "name": name, "input": input, "cap": 9, "choices": true });
+        let request =
+            json!({ "do": "run", "name": name, "input": input, "cap": 9, "choices": true });
         asked(&mut engine, &request)["choices"].clone()
     };
     let overlay = choices("weiler-atherton", "");
@@ -130,7 +140,8 @@ fn many_steps_are_kept_and_found() {
     let steps = run["steps"].as_u64().unwrap();
     assert!(steps > 1_000, "{steps}");
     for step in [0, steps / 2, steps - 1] {
-        let request = json!({ "do": "frame", "handle": run["handle"], "step": step, "language": "en" });
+        let request =
+            json!({ "do": "frame", "handle": run["handle"], "step": step, "language": "en" });
         assert!(asked(&mut engine, &request)["svg"].as_str().unwrap().len() > 1_000);
     }
 }
@@ -138,7 +149,8 @@ fn many_steps_are_kept_and_found() {
 #[test]
 fn old_runs_make_room() {
     let mut engine = Engine::default();
-    let request = json!({ "do": "run", "name": "bresenham", "input": { "example": "" }, "cap": 10 });
+    let request =
+        json!({ "do": "run", "name": "bresenham", "input": { "example": "" }, "cap": 10 });
     let first = asked(&mut engine, &request)["handle"].clone();
     (0..16).for_each(|_| drop(asked(&mut engine, &request)));
     let frame = json!({ "do": "frame", "handle": first, "step": 0, "language": "en" });

@@ -7,6 +7,7 @@ use super::entry::{Entry, Status};
 use super::journal;
 use crate::failure::Failure;
 use crate::output::{self, Target};
+use durer::work::Work;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
@@ -47,7 +48,7 @@ fn write_lines<'a>(
     target: &Target,
     entries: impl Iterator<Item = &'a Entry>,
 ) -> Result<(), Failure> {
-    let written = output::deliver(target, |out| {
+    let written = output::deliver(target, &Work::default(), |out| {
         for entry in entries {
             let text = serde_json::to_string(entry).map_err(std::io::Error::from)?;
             writeln!(out, "{}", durer_formats::told::json(&text))?;
@@ -58,7 +59,7 @@ fn write_lines<'a>(
 }
 
 fn write_csv<'a>(target: &Target, entries: impl Iterator<Item = &'a Entry>) -> Result<(), Failure> {
-    let written = output::deliver(target, |out| {
+    let written = output::deliver(target, &Work::default(), |out| {
         let mut table = csv::Writer::from_writer(out);
         table.write_record(COLUMNS).map_err(std::io::Error::from)?;
         for entry in entries {

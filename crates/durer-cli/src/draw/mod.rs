@@ -46,7 +46,11 @@ pub fn run(args: &DrawArgs) -> Result<(), Failure> {
         ..Report::default()
     };
     let mut job = Job { args, messages: &messages, report: &mut report };
-    let picture = job.draw()?;
+    let mut given = Vec::new();
+    for layer in &args.layers.0 {
+        given.push(job.read(layer)?);
+    }
+    let picture = job.draw(given)?;
     messages.progress.stage(|| format!("writing {target}"));
     let encode = Instant::now();
     let format = wanted(args).kind.picture();
@@ -60,6 +64,18 @@ pub fn run(args: &DrawArgs) -> Result<(), Failure> {
     report.total_seconds = start.elapsed().as_secs_f64();
     report.peak_memory_bytes = crate::report::peak_memory();
     if args.json { crate::report::print(&report) } else { Ok(()) }
+}
+
+/// Draws layers whose bytes are in memory, one for each input that the options name.
+pub fn pixels(args: &DrawArgs, layers: Vec<Vec<u8>>) -> Result<Pixels<[u8; 4]>, Failure> {
+    let messages = Messages::new(&args.running, 1);
+    let mut report = Report::default();
+    let mut job = Job { args, messages: &messages, report: &mut report };
+    let mut given = Vec::new();
+    for (layer, bytes) in args.layers.0.iter().zip(layers) {
+        given.push(job.given(layer, bytes)?);
+    }
+    job.draw(given)
 }
 
 /// Checks options that the parser cannot check; returns the target of the picture.
@@ -106,13 +122,10 @@ impl Job<'_> {
         self.report.warnings.extend(warnings.iter().map(ToString::to_string));
     }
 
-    fn draw(&mut self) -> Result<Pixels<[u8; 4]>, Failure> {
-        let start = Instant::now();
+    /// Draws layers that are in memory.
+    fn draw(&mut self, given: Vec<Given<'_>>) -> Result<Pixels<[u8; 4]>, Failure> {
+        let (start, read_before) = (Instant::now(), self.report.read_seconds);
         let args = self.args;
-        let mut given = Vec::new();
-        for layer in &args.layers.0 {
-            given.push(self.read(layer)?);
-        }
         let drawing = given.iter().find(|g| g.format == GeoFormat::Svg);
         let canvas = match (drawing, &given[..]) {
             (Some(_), [one]) => self.drawing(one)?,
@@ -132,7 +145,8 @@ impl Job<'_> {
         let picture = Pixels::within(stage, canvas.width(), canvas.height(), [0; 4]);
         let mut picture = picture.map_err(fail)?;
         canvas.render(&mut picture).map_err(fail)?;
-        self.report.draw_seconds = start.elapsed().as_secs_f64() - self.report.read_seconds;
+        self.report.draw_seconds =
+            start.elapsed().as_secs_f64() - (self.report.read_seconds - read_before);
         (self.report.width, self.report.height) = (picture.width(), picture.height());
         Ok(picture)
     }
@@ -145,6 +159,12 @@ impl Job<'_> {
         let bytes = unzipped(input::bytes_within(&layer.input, &limits)?, self.args.max_bytes);
         let bytes = bytes.map_err(|e| Failure::Data(format!("{name}: {e}")))?;
         self.report.read_seconds += start.elapsed().as_secs_f64();
+        self.given(layer, bytes)
+    }
+
+    /// Finds the format of a layer.
+    fn given<'a>(&mut self, layer: &'a Layer, bytes: Vec<u8>) -> Result<Given<'a>, Failure> {
+        let name = display_name(&layer.input);
         let svg = GeoFormat::of_content(&bytes) == Some(GeoFormat::Svg);
         let told = self.args.from.filter(|_| !svg);
         let format = told.or_else(|| crate::layer::format_of(&layer.input, &bytes));

@@ -28,6 +28,7 @@ use durer::math::{DVec2, Vec4};
 use durer::paper::{self, Page, Scale, SheetView, ViewBreaks, ViewKind};
 use durer::pipeline::{self, Background, DrawOptions, DrawStyle, Lighting};
 use durer::scene::{Camera, Scene};
+use durer::target::Pixels;
 use durer::target::drawing::Drawing;
 use durer::target::sheet::Sheet;
 use durer::view::components::Component;
@@ -138,6 +139,20 @@ impl Shown {
     }
 }
 
+/// A drawing on its sheet.
+pub struct Made {
+    /// Marks on paper.
+    pub sheet: Sheet,
+    /// Lines and regions of each view.
+    pub drawings: Vec<Drawing>,
+    /// Report on the work.
+    pub report: PictureReport,
+    /// Reason why nothing of the model is visible, if that is so.
+    pub unseen: Option<String>,
+    /// Time at which the drawing was put on its sheet.
+    start: Instant,
+}
+
 /// Draws one picture of a model and writes its file; returns why nothing of the model is visible, if
 /// that is so.
 pub fn render(
@@ -147,6 +162,19 @@ pub fn render(
     sink: &mut Sink,
     kind: Kind,
 ) -> Result<(PictureReport, Option<String>), Failure> {
+    let Made { sheet, drawings, mut report, unseen, start } = make(args, subject, frame, kind)?;
+    write(args, kind, sink, sheet, &drawings, &mut report, start)?;
+    report.files = vec![sink.name()];
+    Ok((report, unseen))
+}
+
+/// Draws one picture of a model.
+pub fn make(
+    args: &RenderArgs,
+    subject: &Subject,
+    frame: Option<u32>,
+    kind: Kind,
+) -> Result<Made, Failure> {
     let start = Instant::now();
     let style = args.drawing.style.unwrap_or_default();
     let mut report = PictureReport::default();
@@ -231,9 +259,8 @@ pub fn render(
     let told_scale = told_scale(args, kind, subject, &laid);
     let drawing = DrawingReport::new(style.name(), &all, &laid, features);
     report.drawing = Some(DrawingReport { told_scale, ..drawing });
-    write(args, kind, sink, laid.sheet, &all, &mut report, start)?;
-    report.files = vec![sink.name()];
-    Ok((report, unseen))
+    let drawings = shown.into_iter().map(|s| s.drawing).collect();
+    Ok(Made { sheet: laid.sheet, drawings, report, unseen, start })
 }
 
 fn look(args: &RenderArgs, subject: &Subject) -> Look {
@@ -264,17 +291,14 @@ fn write(
     kind: Kind,
     sink: &mut Sink,
     sheet: Sheet,
-    drawings: &[&Drawing],
+    drawings: &[Drawing],
     report: &mut PictureReport,
     start: Instant,
 ) -> Result<(), Failure> {
     match (kind, sink) {
         (Kind::Picture(_) | Kind::Gif, sink) => {
-            let Size { width, height } = args.picture.size;
-            (report.width, report.height) = (width, height);
-            let beside = background(args, kind)?.unwrap_or([0; 4]);
-            let pixels = paper::paint(sheet, width, height, beside)
-                .map_err(|e| Failure::Usage(e.to_string()))?;
+            let pixels = paint(args, kind, sheet)?;
+            (report.width, report.height) = (pixels.width(), pixels.height());
             report.raster_seconds = start.elapsed().as_secs_f64();
             let start = Instant::now();
             let format = kind.picture();
@@ -285,20 +309,38 @@ fn write(
         (Kind::Drawing(format), Sink::File(target)) => {
             report.raster_seconds = start.elapsed().as_secs_f64();
             let start = Instant::now();
-            let empty = Drawing::default();
-            let drawing = drawings.first().copied().unwrap_or(&empty);
-            let options = FileOptions {
-                dxf: dxf_strokes(args),
-                machine: args.drawing.machine.options(),
-                work: args.running.work.clone(),
-            };
             output::deliver(target, &args.running.work, |out| {
-                durer_formats::drawing::write(out, format, &sheet, drawing, &options)
+                encode(args, out, format, &sheet, drawings)
             })?;
             report.encode_seconds = start.elapsed().as_secs_f64();
         }
     }
     Ok(())
+}
+
+/// Paints a sheet as pixels.
+pub fn paint(args: &RenderArgs, kind: Kind, sheet: Sheet) -> Result<Pixels<[u8; 4]>, Failure> {
+    let Size { width, height } = args.picture.size;
+    let beside = background(args, kind)?.unwrap_or([0; 4]);
+    paper::paint(sheet, width, height, beside).map_err(|e| Failure::Usage(e.to_string()))
+}
+
+/// Writes a sheet as vectors, or of GeoJSON the first of its drawings.
+pub fn encode(
+    args: &RenderArgs,
+    out: &mut impl std::io::Write,
+    format: DrawingFormat,
+    sheet: &Sheet,
+    drawings: &[Drawing],
+) -> durer_formats::Result<()> {
+    let empty = Drawing::default();
+    let drawing = drawings.first().unwrap_or(&empty);
+    let options = FileOptions {
+        dxf: dxf_strokes(args),
+        machine: args.drawing.machine.options(),
+        work: args.running.work.clone(),
+    };
+    durer_formats::drawing::write(out, format, sheet, drawing, &options)
 }
 
 /// Returns the largest distance between fitted curves and lines, in millimetres on paper.

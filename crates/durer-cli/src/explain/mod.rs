@@ -5,6 +5,7 @@ mod page;
 mod source;
 
 pub use args::{EXAMPLES, ExplainArgs};
+pub use page::page;
 
 use crate::draw::built_in_fonts;
 use crate::failure::Failure;
@@ -54,7 +55,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
             deliver_bytes(&target, explain::json(lesson, &frames, language).as_bytes()).map(drop)
         }
         Format::Html => {
-            deliver_bytes(&target, page::page(lesson, &frames, language).as_bytes()).map(drop)
+            deliver_bytes(&target, page(lesson, &frames, language).as_bytes()).map(drop)
         }
         Format::Text => deliver_bytes(&target, captions(&frames, language).as_bytes()).map(drop),
     }

@@ -19,13 +19,14 @@ use durer::paper::{self, Page};
 use durer::plot::{self, Axes, Plot};
 use durer::scene::{HeightField, UpAxis};
 use durer::shade::color::encode_rgba8;
+use durer::target::Pixels;
 use durer::target::drawing::Drawing;
 use durer::view::projection::{Lens, ViewDirection};
 use durer::visibility::line::floating_horizon;
 use durer_formats::Limits;
 use durer_formats::drawing::{self, DrawingFormat, FileOptions};
 use durer_formats::formula::Formula;
-use durer_formats::height_map::{self, HeightMapOptions};
+use durer_formats::height_map::{self, HeightMap, HeightMapOptions};
 use durer_formats::picture::{self, PictureFormat};
 use report::Report;
 use std::path::Path;
@@ -128,11 +129,7 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
     let read_seconds = start.elapsed().as_secs_f64();
     messages.progress.stage(|| "drawing".to_owned());
     let start = Instant::now();
-    let options = options(args, &surface)?;
-    let plot = plot::surface(&surface.field, &options).map_err(|e| match options.eye {
-        Some(_) => Failure::Usage(format!("--{e}")),
-        None => Failure::Data(format!("{}: {e}", surface.name)),
-    })?;
+    let (plot, options) = plot_of(args, &surface)?;
     let draw_seconds = start.elapsed().as_secs_f64();
     messages.progress.stage(|| "writing".to_owned());
     let lines = plot.drawing.lines.len();
@@ -154,6 +151,16 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
         reports::print(report)?;
     }
     Ok(())
+}
+
+/// Plots a surface as the options ask for.
+pub fn plot_of(args: &PlotArgs, surface: &Surface) -> Result<(Plot, plot::Options), Failure> {
+    let options = options(args, surface)?;
+    let plot = plot::surface(&surface.field, &options).map_err(|e| match options.eye {
+        Some(_) => Failure::Usage(format!("--{e}")),
+        None => Failure::Data(format!("{}: {e}", surface.name)),
+    })?;
+    Ok((plot, options))
 }
 
 fn format_of(args: &PlotArgs) -> Result<Format, Failure> {
@@ -239,6 +246,11 @@ impl Surface {
         let map = height_map::read(&bytes, &file_name, &options)
             .map_err(|e| Failure::Data(format!("{name}: {e}")))?;
         messages.warnings(&name, &map.warnings);
+        Self::of_map(map, name, args)
+    }
+
+    /// Returns the surface of a height map, with the ranges and as many lines as the options ask for.
+    pub fn of_map(map: HeightMap, name: String, args: &PlotArgs) -> Result<Self, Failure> {
         let (x, z) = (args.surface.x, args.surface.z);
         let on_map = map.on_map && z.is_none();
         let (old_x, old_z) = (map.field.x_range(), map.field.z_range());
@@ -353,9 +365,9 @@ fn paper_size(page: Page) -> DVec2 {
     }
 }
 
-/// Returns whether the picture had to be laid onto white.
-fn write(
-    out: &mut output::Out,
+/// Writes a plot; returns whether the picture had to be laid onto white.
+pub fn write(
+    out: &mut impl std::io::Write,
     format: Format,
     plot: Plot,
     args: &PlotArgs,
@@ -374,11 +386,16 @@ fn write(
             drawing::write(out, format, &sheet, &Drawing::default(), &options).map(|()| false)
         }
         Format::Picture(format) => {
-            let sheet = plot.into_sheet();
-            let background = sheet.background.unwrap_or([0; 4]);
-            let Size { width, height } = args.look.size.of_shape(sheet.size);
-            let pixels = paper::paint(sheet, width, height, background)?;
+            let pixels = paint(plot, args)?;
             picture::write(out, format, &pixels, &args.look.encoding.encoding())
         }
     }
+}
+
+/// Paints a plot as pixels.
+pub fn paint(plot: Plot, args: &PlotArgs) -> durer::Result<Pixels<[u8; 4]>> {
+    let sheet = plot.into_sheet();
+    let background = sheet.background.unwrap_or([0; 4]);
+    let Size { width, height } = args.look.size.of_shape(sheet.size);
+    paper::paint(sheet, width, height, background)
 }

@@ -71,7 +71,7 @@ pub fn suits(args: &RenderArgs, job: &Job, pieces: &dyn Pieces) -> bool {
     let method = Algorithm::Surfaces(SurfaceMethod::ZBuffer);
     let of_pieces = job.pictures.iter().all(|picture| {
         let shot = Shot::of(&args.picture, picture.frame);
-        let options = picture_options(args, camera, picture, &shot, method);
+        let options = picture_options(args, camera, &shot, method);
         pipeline::check_pieces(&options, pieces.has_normals()).is_ok()
     });
     of_pieces && !needs_whole(args)
@@ -138,7 +138,7 @@ impl Streamed<'_> {
         for cell in shots(args, picture.frame)? {
             let camera = camera::camera_by(&args.view, self, &cell.shot)?;
             report.cameras.push((&camera).into());
-            let options = picture_options(args, camera, picture, &cell.shot, method);
+            let options = picture_options(args, camera, &cell.shot, method);
             let seen = self.survey(&options, &mut report)?;
             let (framebuffer, status) = self.render_seen(&seen, &options, &mut report)?;
             statuses.push(status);

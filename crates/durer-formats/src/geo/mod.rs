@@ -55,6 +55,7 @@ pub use gzip::unzipped;
 pub use reader::{Reader, read_all};
 pub use schema::{Field, FieldKind, Schema};
 pub use system::System;
+pub use wkb::{from_wkb, to_wkb};
 pub use writer::{Finished, Writer};
 
 /// Geometries and values may be nested so deep, at most.

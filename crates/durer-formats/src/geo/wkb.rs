@@ -378,6 +378,44 @@ impl<'a> Reader<'a> {
     }
 }
 
+/// Returns the geometry of well-known binary, with the number of its coordinate system in EWKB.
+///
+/// ```
+/// use durer_formats::geo::{Geometry, from_wkb, to_wkb};
+/// use durer::geometry::Points;
+/// use durer::math::DVec2;
+///
+/// let point = Geometry::Point(Points::flat(vec![DVec2::new(1.0, 2.0)]));
+/// let mut bytes = Vec::new();
+/// to_wkb(&mut bytes, &point, None)?;
+/// assert_eq!(from_wkb(&bytes)?.0, point);
+/// # Ok::<(), durer_formats::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Decode`] with the byte, also for what follows the geometry; [`Error::Unsupported`] for geometries that durer
+/// does not know.
+pub fn from_wkb(bytes: &[u8]) -> Result<(Geometry, Option<i32>)> {
+    let mut reader = Reader::new(bytes);
+    let header = reader.header()?;
+    let geometry = reader.geometry(&header, 0)?;
+    if reader.at < bytes.len() {
+        return Err(
+            reader.error_at(reader.at, "bytes follow the geometry; it must be the only one")
+        );
+    }
+    Ok((geometry, header.srid))
+}
+
+/// Writes a geometry as well-known binary, little-endian: as EWKB where it has the number of a coordinate system, as ISO
+/// else.
+///
+/// # Errors
+/// [`Error::Io`] where writing fails.
+pub fn to_wkb(out: &mut impl Write, geometry: &Geometry, srid: Option<i32>) -> Result<()> {
+    Ok(write_geometry(out, geometry, srid)?)
+}
+
 /// Writes a feature's geometry, little-endian: as EWKB where it has an SRID, as ISO else.
 pub fn write_feature(out: &mut impl Write, feature: &Feature) -> io::Result<()> {
     match &feature.geometry {

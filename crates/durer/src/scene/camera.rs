@@ -5,6 +5,7 @@ use crate::{Error, Result};
 
 /// Projection of the view space.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Projection {
     /// Lines through the eye.
     Perspective {
@@ -20,6 +21,7 @@ pub enum Projection {
 
 /// An eye that looks from one point to another; right-handed, looks down −z of its own space.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Camera {
     /// Position of the eye, world space.
     pub eye: DVec3,
@@ -37,6 +39,7 @@ pub struct Camera {
 
 /// A camera of a file.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NamedCamera {
     /// Its name; readers make names unique, and give `camera0`, `camera1` … if there is none.
     pub name: String,

@@ -4,6 +4,7 @@ use crate::math::{DVec3, Vec3};
 
 /// The kind of a light, in world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum LightKind {
     /// The same from everywhere.
     Ambient,
@@ -36,6 +37,7 @@ pub enum LightKind {
 
 /// A light.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Light {
     /// Kind and place.
     pub kind: LightKind,

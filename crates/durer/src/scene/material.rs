@@ -4,6 +4,7 @@ use crate::math::{DMat3, Vec3, Vec4};
 
 /// A texture and how it is laid on.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TextureRef {
     /// Index into [`super::Scene::textures`].
     pub texture: usize,
@@ -15,6 +16,7 @@ pub struct TextureRef {
 
 /// Use of a surface's alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum AlphaMode {
     /// Alpha is ignored: the surface is opaque.
     #[default]
@@ -30,6 +32,7 @@ pub enum AlphaMode {
 
 /// Formula that a material was written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ShadingModel {
     /// glTF's metallic-roughness model.
     MetallicRoughness,
@@ -42,6 +45,7 @@ pub enum ShadingModel {
 
 /// Colours are linear; factors multiply their textures.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Material {
     /// Name in the file.
     pub name: String,

@@ -6,6 +6,7 @@ use std::ops::Range;
 
 /// Shapes that consecutive indices form. Strips, fans and loops become lists when they are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Topology {
     /// Each index is a point.
     Points,
@@ -18,6 +19,7 @@ pub enum Topology {
 
 /// A run of primitives of a mesh that share a material.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Part {
     /// Primitives (triangles, lines or points), as a range of their indices.
     pub range: Range<u32>,
@@ -33,6 +35,7 @@ pub struct Part {
 /// with double precision keep coordinates exact to 24 bits of the model's own extent by moving a
 /// far-off model to its middle and the offset into the instance's matrix.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mesh {
     /// Name in the file, empty if it has none.
     pub name: String,

@@ -23,6 +23,7 @@ use crate::{Error, Result};
 
 /// Axis of the file that points up in the model's own world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum UpAxis {
     /// y up: glTF, most OBJ and PLY files.
     #[default]
@@ -90,6 +91,7 @@ impl UpAxis {
 
 /// A mesh placed in the world.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Instance {
     /// Index into [`Scene::meshes`].
     pub mesh: usize,
@@ -117,6 +119,7 @@ impl From<Mesh> for Scene {
 ///
 /// The item index of a triangle is its place in the sequence of all triangles of all instances.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Scene {
     /// Shared geometry.
     pub meshes: Vec<Mesh>,

@@ -4,6 +4,7 @@
 ///
 /// Whether its colours are sRGB or linear is decided by the material slot that uses it.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Image {
     /// Name or URI in the file.
     pub name: String,
@@ -17,6 +18,7 @@ pub struct Image {
 
 /// Filter within one image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Filter {
     /// The texel whose area holds the point.
     Nearest,
@@ -27,6 +29,7 @@ pub enum Filter {
 
 /// Filter between the levels of the mip chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MipFilter {
     /// Always the full image.
     None,
@@ -39,6 +42,7 @@ pub enum MipFilter {
 
 /// Extension outside 0…1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Wrap {
     /// The image again.
     #[default]
@@ -51,6 +55,7 @@ pub enum Wrap {
 
 /// Options for sampling a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sampler {
     /// Filter if a texel is larger than a pixel.
     pub mag: Filter,
@@ -66,6 +71,7 @@ pub struct Sampler {
 
 /// An image with a sampler.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Texture {
     /// Index into [`super::Scene::images`].
     pub image: usize,

@@ -9,7 +9,6 @@ use ::parquet::errors::ParquetError;
 use ::parquet::file::properties::WriterProperties;
 use ::parquet::file::writer::SerializedFileWriter;
 use ::parquet::schema::parser::parse_message_type;
-use std::io::Write;
 use std::sync::Arc;
 
 /// Writes a table of one row group.
@@ -17,7 +16,7 @@ pub fn write<'a>(target: &Target, entries: impl Iterator<Item = &'a Entry>) -> R
     let entries: Vec<&Entry> = entries.collect();
     let failed = |e: ParquetError| Failure::Data(format!("--output {target}: {e}"));
     let content = table(&entries).map_err(failed)?;
-    output::deliver(target, |out| Ok(out.write_all(&content)?)).map(drop)
+    output::deliver_bytes(target, &content).map(drop)
 }
 
 fn table(entries: &[&Entry]) -> Result<Vec<u8>, ParquetError> {

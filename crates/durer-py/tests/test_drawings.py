@@ -1,0 +1,130 @@
+"""Lines, drawings, plots, maps and steps."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+
+import numpy as np
+import pytest
+
+import durer
+
+
+def test_hidden_lines_of_a_cube(cube):
+    lines = durer.hidden_lines(cube)
+    assert lines.coords.dtype == np.float64 and lines.offsets.dtype == np.int64
+    assert lines.cls.dtype == np.uint8 and lines.invisibility.dtype == np.uint32 and lines.closed.dtype == bool
+    assert lines.offsets[0] == 0 and lines.offsets[-1] == len(lines.coords)
+    length = {True: 0.0, False: 0.0}
+    for chain, hidden in zip(lines.chains(), lines.invisibility > 0, strict=True):
+        length[bool(hidden)] += np.linalg.norm(np.diff(chain, axis=0), axis=1).sum()
+    # Nine edges of a cube are seen from a corner, three are hidden.
+    assert abs(length[False] / length[True] - 3.0) < 1e-6
+    visible = durer.hidden_lines(cube, hidden=False)
+    assert (visible.invisibility == 0).all() and 0 < len(visible) < len(lines)
+    names = {durer.LINE_CLASSES[c] for c in lines.cls}
+    assert names <= {"silhouette", "crease", "contour"}
+    only = durer.hidden_lines(cube, classes=["crease"])
+    assert {durer.LINE_CLASSES[c] for c in only.cls} == {"crease"}
+    with pytest.raises(ValueError, match="lines"):
+        durer.hidden_lines(cube, classes=["creases"])
+
+
+def test_lines_as_shapely(cube):
+    pytest.importorskip("shapely")
+    made = durer.hidden_lines(cube).to_shapely()
+    assert all(line.geom_type == "LineString" for line in made)
+
+
+@pytest.mark.parametrize("suffix", ["svg", "pdf", "dxf", "hpgl", "geojson"])
+def test_files_are_those_of_the_command(suffix, samples, command, tmp_path):
+    path = samples / "bracket.stl"
+    out, own = tmp_path / f"a.{suffix}", tmp_path / f"b.{suffix}"
+    words = ["--style=hidden-line", "--view=front", "--hidden=dashed", "--size=1024x1024"]
+    subprocess.run([*command, "render", str(path), "-o", str(out), "--quiet", *words], check=True)
+    durer.drawing(durer.read(path), view="front", hidden="dashed").save(own)
+    assert own.read_bytes() == out.read_bytes()
+    assert sorted(p.name for p in tmp_path.iterdir()) == [out.name, own.name]
+
+
+def test_drawings(cube, tmp_path):
+    for style in ("hidden-line", "wireframe", "regions", "regions+lines", "shadows"):
+        assert "<svg" in durer.drawing(cube, style).to_svg()
+    page = durer.drawing(cube, page=(120, 80)).to_svg()
+    assert 'width="120mm"' in page
+    sheet = durer.drawing(cube, sheet="third-angle", page="A4")
+    sheet.save(tmp_path / "sheet.png")
+    assert sheet._repr_svg_() == sheet.to_svg()
+    with pytest.raises(ValueError, match="style"):
+        durer.drawing(cube, "sketch")
+    with pytest.raises(ValueError, match="bmp"):
+        durer.drawing(cube).save(tmp_path / "a.bmp")
+
+
+def test_plot(command, tmp_path):
+    z, x = np.mgrid[-4:4:21j, -4:4:21j]
+    heights = np.sin(x) * np.cos(z)
+    np.save(tmp_path / "z.npy", heights)
+    words = ["--x=-4,4", "--z=-4,4", "--title=Waves"]
+    subprocess.run([*command, "plot", str(tmp_path / "z.npy"), "-o", str(tmp_path / "a.svg"), "--quiet", *words], check=True)
+    plot = durer.plot(heights, x=(-4, 4), z=(-4, 4), title="Waves")
+    assert plot.to_svg() == (tmp_path / "a.svg").read_text()
+    assert plot.image((80, 60)).pixels.shape == (60, 80, 4)
+    for suffix in ("pdf", "png", "dxf"):
+        plot.save(tmp_path / f"b.{suffix}")
+    with pytest.raises(TypeError, match="rows, columns"):
+        durer.plot(np.zeros(4))
+    with pytest.raises(ValueError, match="2 rows"):
+        durer.plot(np.zeros((1, 4)))
+    with pytest.raises(TypeError, match="unexpected keyword argument 'tilt'"):
+        durer.plot(heights, tilt=4)
+
+
+def test_draw(samples, command, tmp_path):
+    countries = samples / "countries.geojson"
+    out = tmp_path / "a.png"
+    style = {"fill": "#f2ead8", "stroke": "none", "label": "name"}
+    words = [str(countries), *(f"--{k}={v}" for k, v in style.items()), "--size=200x", "--background=#d3e4ef"]
+    subprocess.run([*command, "draw", *words, "-o", str(out), "--quiet"], check=True)
+    for layer in (countries, countries.read_bytes(), countries.read_text(), json.loads(countries.read_text())):
+        picture = durer.draw([(layer, style)], (200, None), background="#d3e4ef")
+        assert picture.png() == out.read_bytes()
+    svg = durer.draw(samples / "perspective.svg", (64, None))
+    assert svg.width == 64
+    square = {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]]}
+    assert durer.draw([(square, {"fill": "red", "stroke": "none"})], (9, 9)).pixels[4, 4].tolist() == [255, 0, 0, 255]
+    with pytest.raises(ValueError, match="one at least"):
+        durer.draw([])
+    with pytest.raises(ValueError):
+        durer.draw(b"no map")
+
+
+def test_tiles(samples, tmp_path):
+    durer.tiles(samples / "countries.geojson", tmp_path / "a.pmtiles", zoom=(0, 2))
+    assert (tmp_path / "a.pmtiles").read_bytes().startswith(b"PMTiles")
+    square = {"type": "Polygon", "coordinates": [[[0, 0], [9, 0], [9, 9], [0, 9], [0, 0]]]}
+    durer.tiles([square], tmp_path / "tiles", zoom=1, names=["land"])
+    assert (tmp_path / "tiles" / "1" / "1" / "0.mvt").exists()
+    with pytest.raises(ValueError, match="zoom"):
+        durer.tiles([square], tmp_path / "b.pmtiles", zoom=30)
+
+
+def test_trace():
+    steps = durer.trace("cohen-sutherland", [[-1, 1], [5, 3]], window=(0, 0, 4, 4))
+    assert steps and {"line", "kind", "caption", "values"} <= set(steps[0])
+    assert steps.facts["pseudocode"]
+    assert len(durer.trace("cohen-sutherland", [[-1, 1], [5, 3]], window=(0, 0, 4, 4), cap=2)) <= 2
+    page = steps.explore()
+    assert "<script" in page.html and page._repr_html_().startswith("<iframe")
+    assert durer.trace("bresenham", language="de")[0]["caption"] != durer.trace("bresenham")[0]["caption"]
+    square, other = [[0, 0], [2, 0], [2, 2], [0, 2], [0, 0]], [[1, 1], [3, 1], [3, 3], [1, 3]]
+    assert durer.trace("weiler-atherton", square, clip=other)
+    assert durer.trace("spans", np.zeros((4, 4), np.uint8), seed=(1, 1))
+    for name, examples in list(durer.lessons().items())[:5]:
+        assert durer.trace(name, example=examples[0])
+    with pytest.raises(ValueError, match="nearest"):
+        durer.trace("cohen-southerland")
+    with pytest.raises(TypeError, match="example"):
+        durer.trace("bresenham", [[0, 0], [1, 1]], example="steep")
+    assert len(durer.algorithms()) > 80
