@@ -24,6 +24,7 @@ mod crease_steps;
 mod curve_fit;
 mod curve_path;
 mod curve_stroke_font;
+mod curve_textbook;
 mod data;
 mod determinism;
 mod errors;

@@ -363,6 +363,11 @@ fn a_pyramid_of_depths_hides_cells() {
         face(2, 8.0, 1, 7.0),
     ];
     assert_eq!(steps.steps()[2..], expected);
+    // A face of a child comes after those of the root; as near as they are, the first of all is seen.
+    let tied = [square(0.0, 0.0, 1.0, 5.0), square(0.0, 0.0, 2.0, 5.0)];
+    let divided = Options { capacity: 0, depth: 1 };
+    let found = hierarchical_z::items(&tied, &small, &divided, &mut NoTrace).unwrap();
+    assert_eq!(found.data(), [0, 1, 1, 1]);
 }
 
 #[test]

@@ -33,12 +33,13 @@ pub(super) fn walk_all<'t, T: Tracer<Step>>(
     let frame = Frame { shift, mirrored };
     let mut t = Scaled { to: t, frame };
     if !mirrored && shift == 0 {
-        return walk_tame(inputs, op, crossing, &mut t, walk);
+        return Ok(walk_tame(inputs, op, crossing, &mut t, walk)?.0);
     }
     let framed = inputs.map(|shapes| map(shapes, |p| frame.of(p)));
-    let found = walk_tame([&framed[0], &framed[1]], op, crossing, &mut t, walk)?;
+    let (found, crosses) = walk_tame([&framed[0], &framed[1]], op, crossing, &mut t, walk)?;
     let found = map(&found, |p| frame.back(p));
-    Ok(if mirrored { reversed(&found) } else { found })
+    // Rings that cross have no side on which the inside is.
+    Ok(if mirrored && !crosses { reversed(&found) } else { found })
 }
 
 /// Coordinate frame of the walk: scaled by a power of two, and mirrored if the subject runs
@@ -106,13 +107,14 @@ impl<T: Tracer<Step>> Tracer<Step> for Scaled<'_, T> {
     }
 }
 
+/// Returns the result, and whether rings of an operand cross.
 fn walk_tame<T: Tracer<Step>>(
     [subject, clip]: [&Shapes; 2],
     op: BooleanOp,
     crossing: bool,
     t: &mut T,
     mut walk: impl FnMut(&Linked, BooleanOp, &mut T) -> Vec<Vec<DVec2>>,
-) -> Result<Shapes> {
+) -> Result<(Shapes, bool)> {
     // Xor is both differences; linking alone reports no steps.
     let (first, second) = match op {
         BooleanOp::Xor => (BooleanOp::Difference, true),
@@ -143,5 +145,5 @@ fn walk_tame<T: Tracer<Step>>(
     for ring in &found {
         t.step(|| Step::Ring { points: ring.clone() });
     }
-    Ok(if crosses { Shapes::from_rings(found) } else { group(found) })
+    Ok((if crosses { Shapes::from_rings(found) } else { group(found) }, crosses))
 }

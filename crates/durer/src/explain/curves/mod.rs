@@ -8,8 +8,15 @@ use super::input::{Figure, Input};
 use super::lesson::{Example, Lesson};
 use super::words::Word;
 
-pub(super) const LESSONS: &[Lesson] =
-    &[levels::DE_CASTELJAU, levels::DE_BOOR, levels::BOEHM, levels::OSLO, flatten::LESSON];
+pub(super) const LESSONS: &[Lesson] = &[
+    levels::DE_CASTELJAU,
+    levels::DE_BOOR,
+    levels::BOEHM,
+    levels::OSLO,
+    cubics::CATMULL_ROM,
+    cubics::FORWARD,
+    flatten::LESSON,
+];
 
 const TAKES: Word = Word::new("a line of control points", "ein Zug aus Kontrollpunkten");
 

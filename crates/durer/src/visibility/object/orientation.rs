@@ -34,7 +34,6 @@ use crate::math::DVec3;
 use crate::trace::Tracer;
 use crate::view::cull::newell_area;
 use crate::{Error, Result};
-use std::collections::VecDeque;
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -186,17 +185,18 @@ pub fn orient<F: AsRef<[usize]>>(
         return Err(Error::Dangling { what: "corner", index, count: points.len() });
     }
     let mut found = propagate(faces, t);
-    for piece in 0..found.pieces.len() {
-        let members: Vec<usize> = (0..faces.len()).filter(|f| found.piece[*f] == piece).collect();
+    let mut members = vec![Vec::new(); found.pieces.len()];
+    found.piece.iter().enumerate().for_each(|(face, piece)| members[*piece].push(face));
+    for (piece, members) in members.iter().enumerate() {
         match options.outward {
             Outward::SignedVolume if found.pieces[piece].closed => {
-                by_volume(points, faces, &members, &mut found, t);
+                by_volume(points, faces, members, &mut found, t);
             }
             Outward::SignedVolume => {}
-            Outward::Centroid => by_centroid(points, faces, &members, &mut found, t),
+            Outward::Centroid => by_centroid(points, faces, members, &mut found, t),
         }
         let known = found.pieces[piece].closed || options.outward == Outward::Centroid;
-        found.count(&members, known);
+        found.count(members, known);
     }
     Ok(found)
 }
@@ -215,7 +215,8 @@ fn propagate<F: AsRef<[usize]>>(faces: &[F], t: &mut impl Tracer<Step>) -> Orien
     let of_edge = |a: usize, b: usize| {
         let key = (a.min(b), a.max(b));
         let first = edges.partition_point(|e| (e.0, e.1) < key);
-        let count = edges[first..].iter().take_while(|e| (e.0, e.1) == key).count();
+        // Of three and more faces it does not matter how many there are.
+        let count = edges[first..].iter().take(3).take_while(|e| (e.0, e.1) == key).count();
         &edges[first..first + count]
     };
     let none = usize::MAX;
@@ -229,8 +230,8 @@ fn propagate<F: AsRef<[usize]>>(faces: &[F], t: &mut impl Tracer<Step>) -> Orien
         t.step(|| Step::Begin { face: first, piece: number });
         found.piece[first] = number;
         let mut piece = Piece { closed: true, orientable: true, ..Piece::default() };
-        let mut waiting = VecDeque::from([first]);
-        while let Some(from) = waiting.pop_front() {
+        let mut reached = vec![first];
+        while let Some(&from) = reached.get(piece.faces) {
             piece.faces += 1;
             piece.closed &= sides(from).next().is_some();
             for (a, b) in sides(from) {
@@ -246,7 +247,7 @@ fn propagate<F: AsRef<[usize]>>(faces: &[F], t: &mut impl Tracer<Step>) -> Orien
                 if found.piece[face] == none {
                     (found.piece[face], found.turned[face]) = (number, same);
                     t.step(|| Step::Reached { from, face, edge, turned: same });
-                    waiting.push_back(face);
+                    reached.push(face);
                 } else if same != found.turned[face] && face != from {
                     piece.orientable = false;
                     t.step(|| Step::Torn { faces: [from, face], edge });
@@ -255,8 +256,7 @@ fn propagate<F: AsRef<[usize]>>(faces: &[F], t: &mut impl Tracer<Step>) -> Orien
         }
         if !piece.orientable {
             piece.closed = false;
-            let members = found.piece.iter().zip(&mut found.turned);
-            members.filter(|(p, _)| **p == number).for_each(|(_, turned)| *turned = false);
+            reached.iter().for_each(|face| found.turned[*face] = false);
         }
         found.pieces.push(piece);
     }

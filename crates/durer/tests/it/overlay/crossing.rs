@@ -82,7 +82,8 @@ fn rings_that_cross_and_touch_are_refused() {
 /// Rings of few points on two lattices that have no point and no line in common.
 fn ring(shift: f64) -> impl Strategy<Value = Vec<DVec2>> {
     let at = move |(x, y): (i32, i32)| DVec2::new(f64::from(x) + shift, f64::from(y) + shift * 0.7);
-    prop::collection::vec((0..12, 0..12), 3..9).prop_map(move |ring| ring.into_iter().map(at).collect())
+    prop::collection::vec((0..12, 0..12), 3..9)
+        .prop_map(move |ring| ring.into_iter().map(at).collect())
 }
 
 proptest! {

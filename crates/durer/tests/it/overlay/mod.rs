@@ -2,6 +2,7 @@
 
 mod agreement;
 pub mod cases;
+mod crossing;
 pub mod distance;
 mod hard;
 mod laws;

@@ -21,7 +21,8 @@ pub struct SceneOrientation {
     turned: Vec<bool>,
 }
 
-/// The most triangles that are examined for whether pieces are within others; what is left then counts as cavities.
+/// The most boxes and triangles that are examined for whether pieces are within others; what is left then counts as
+/// cavities.
 const MOST_TESTS: u64 = 1 << 26;
 
 impl SceneOrientation {
@@ -156,14 +157,15 @@ impl<'a> Pieces<'a> {
         let Some([corner, ..]) = corner else { return false };
         let mut around = 0;
         for (other, outer) in self.boxes.iter().enumerate() {
+            *tests += 1;
+            if *tests > MOST_TESTS {
+                return true;
+            }
             let holds = |b: &Aabb| b.min.cmple(own.min).all() && b.max.cmpge(own.max).all();
             if other == piece || !outer.as_ref().is_some_and(holds) {
                 continue;
             }
             *tests += self.items[other].len() as u64;
-            if *tests > MOST_TESTS {
-                return true;
-            }
             around += u64::from(self.winds_around(other, corner));
         }
         around % 2 == 1
