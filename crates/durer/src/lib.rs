@@ -97,12 +97,12 @@
 //! | wide line, dashes | [outline of the stroke](raster::line::wide) |
 //! | triangle | [edge functions](raster::triangle::edge_function), [edge walking](raster::triangle::edge_walking), [tiles](raster::triangle::tiles) |
 //! | polygon | [edge table and active edge table](raster::polygon::edge_table), [ordered edge list](raster::polygon::ordered_edge_list), [edge fill, fence fill](raster::polygon::edge_fill), [edge flags](raster::polygon::edge_flag), [triangulation](raster::triangulate) |
-//! | path, anti-aliased | [exact area coverage](raster::coverage) |
+//! | path, anti-aliased | [exact area coverage](raster::coverage), [cover and area in cells](raster::coverage::cell_sums) |
 //! | region around a pixel | [seed fills](raster::seed_fill) |
 //! | layers of all these | [a canvas](raster::paint) |
 //!
 //! [`raster::interpolate`] has barycentric and perspective-correct weights, [`curve`] brings Bézier
-//! curves, B-splines, NURBS and glyphs to chains of lines; [`curve::knot_insertion`], [`curve::catmull_rom`] and
+//! curves, [patches](curve::evaluator), B-splines, NURBS and glyphs to chains of lines; [`curve::knot_insertion`], [`curve::catmull_rom`] and
 //! [`curve::forward_difference`] are the textbooks' ways with them.
 //!
 //! **Which surface is in front?** [`visibility::surface`]: one scene in, the same surfaces found.

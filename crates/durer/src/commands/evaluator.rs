@@ -2,7 +2,8 @@
 
 use super::{Primitive, Vertex};
 use crate::curve::b_spline::BSpline;
-use crate::curve::bezier::{de_casteljau, patch};
+use crate::curve::bezier::de_casteljau;
+use crate::curve::evaluator::patch;
 use crate::math::{DVec3, DVec4};
 use crate::trace::NoTrace;
 use crate::{Error, Result};
@@ -54,7 +55,7 @@ impl Patch {
     /// Returns the point at two parameters 0 … 1; `None` without control points and if it is not
     /// finite.
     pub fn point(&self, u: f64, v: f64) -> Option<DVec3> {
-        patch(&self.rows, u, v).filter(|p| p.is_finite())
+        patch(&self.rows, [u, v], &mut NoTrace).filter(|p| p.is_finite())
     }
 
     /// Returns the unit normal at two parameters 0 … 1: that of the derivatives along u and v, ∂S/∂u × ∂S/∂v; `None`

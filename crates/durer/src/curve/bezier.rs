@@ -123,14 +123,6 @@ pub(crate) fn project(p: DVec3) -> Option<DVec2> {
     (p.z != 0.0).then(|| p.truncate() / p.z)
 }
 
-/// Returns the point of a patch at (u, v): `rows` of control points, u along each row, v across the
-/// rows.
-pub fn patch<P: Point>(rows: &[impl AsRef<[P]>], u: f64, v: f64) -> Option<P> {
-    let t = &mut crate::trace::NoTrace;
-    let across: Option<Vec<P>> = rows.iter().map(|r| de_casteljau(r.as_ref(), u, t)).collect();
-    de_casteljau(&across?, v, t)
-}
-
 /// Point, and the derivatives along u and v, of a bicubic patch; the normal is their cross product.
 pub fn bicubic(control: &[[DVec3; 4]; 4], u: f64, v: f64) -> (DVec3, DVec3, DVec3) {
     let (bu, du) = (bernstein(u), bernstein_derivative(u));
@@ -203,7 +195,9 @@ mod tests {
         }
         let (h, (u, v)) = (1e-6, (0.3, 0.8));
         let (p, du, dv) = bicubic(&control, u, v);
-        assert!(p.distance(patch(&control, u, v).unwrap()) < 1e-12);
+        let along = |row: &[DVec3; 4]| de_casteljau(row, u, &mut NoTrace).unwrap();
+        let point = de_casteljau(&control.each_ref().map(along), v, &mut NoTrace).unwrap();
+        assert!(p.distance(point) < 1e-12);
         assert!(((bicubic(&control, u + h, v).0 - p) / h).distance(du) < 1e-4);
         assert!(((bicubic(&control, u, v + h).0 - p) / h).distance(dv) < 1e-4);
     }

@@ -3,6 +3,7 @@
 pub mod b_spline;
 pub mod bezier;
 pub mod catmull_rom;
+pub mod evaluator;
 pub mod fit;
 mod flatten;
 pub mod forward_difference;

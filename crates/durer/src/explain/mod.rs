@@ -32,6 +32,7 @@ mod lesson;
 mod letters;
 mod lines;
 mod packed;
+mod picking;
 mod picture;
 mod shades;
 mod shadow;
@@ -40,6 +41,7 @@ mod svg;
 mod table;
 mod tones;
 mod viewing;
+mod warping;
 mod without;
 mod words;
 
@@ -78,6 +80,7 @@ pub const FAMILIES: &[Family] = &[
     family("Clipping in space", "Clippen im Raum", clip_volume::LESSONS),
     family("Window and viewport", "Fenster und Viewport", viewing::LESSONS),
     family("Points for labels", "Punkte für Beschriftungen", &[interior::LESSON]),
+    family("Picking and warping", "Picking und Warping", &[picking::LESSON, warping::LESSON]),
     family("Lines and circles", "Linien und Kreise", lines::LESSONS),
     family("Filling areas", "Flächen füllen", fills::LESSONS),
     family("Shading", "Schattierung", shades::LESSONS),
@@ -127,6 +130,7 @@ pub const ALGORITHMS: &[&Info] = &[
     &curve::catmull_rom::INFO,
     &curve::forward_difference::INFO,
     &curve::FLATTEN,
+    &curve::evaluator::INFO,
     &clip::line::cohen_sutherland::INFO,
     &clip::line::midpoint::INFO,
     &clip::line::cyrus_beck::INFO,

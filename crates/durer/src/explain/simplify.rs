@@ -144,8 +144,8 @@ static REMOVED: Template = Template::new(
 );
 static SHARED: Template = Template::new(
     "removed",
-    "The place {at}, weight {weight} ≤ {tolerance}, is left out of {count} rings at once.",
-    "Der Ort {at}, Gewicht {weight} ≤ {tolerance}, fällt aus {count} Ringen zugleich weg.",
+    "The place {at}, weight {weight} ≤ {tolerance}, is left out; number of rings that pass it: {count}.",
+    "Der Ort {at}, Gewicht {weight} ≤ {tolerance}, fällt weg; Zahl der Ringe durch ihn: {count}.",
 );
 
 /// Parts of the picture's longer side that may be lost.

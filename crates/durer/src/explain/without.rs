@@ -7,7 +7,6 @@ const PRODUCTION: &str = "a fast form of an algorithm that has a lesson, with th
 const FORMULA: &str = "one formula: there are no steps to show";
 const COARSE: &str = "its steps are too coarse to be drawn one by one";
 const UNTRACED: &str = "it reports no steps";
-const UNWRITTEN: &str = "it reports its steps; the lesson is not written yet";
 
 /// Algorithms without a lesson and why, in the order of [`super::ALGORITHMS`]; whoever writes one takes the entry out.
 pub const WITHOUT_LESSON: &[(&Info, &str)] = &[
@@ -15,10 +14,8 @@ pub const WITHOUT_LESSON: &[(&Info, &str)] = &[
     (&clip::polygon::validity::INFO, UNTRACED),
     (&clip::polygon::mismatch::INFO, UNTRACED),
     (&view::cull::INFO, UNTRACED),
-    (&view::pick::INFO, UNTRACED),
     (&view::section::INFO, UNTRACED),
     (&view::label::INFO, UNTRACED),
-    (&view::warp::INFO, UNWRITTEN),
     (&raster::line::wide::buffer::INFO, UNTRACED),
     (&raster::line::tiled::INFO, PRODUCTION),
     (&raster::coverage::INFO, PRODUCTION),

@@ -12,7 +12,7 @@ use crate::clip::volume::{ClipVertex, Options, clip_polygon, clip_segment};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, DVec4, Rect};
 use crate::scene::{Aabb, Mesh, Scene, Topology};
-use crate::trace::NoTrace;
+use crate::trace::{NoTrace, Tracer};
 use crate::view::View;
 use crate::view::cull::{Containment, ConvexVolume};
 
@@ -28,7 +28,16 @@ pub const INFO: Info = Info {
     coherence: &[Coherence::Object],
     cost: "O(t): t triangles of the instances whose boxes are met",
     limits: "what is transparent is met like all else",
-    pseudocode: &[],
+    pseudocode: &[
+        "hits ← ∅",
+        "for each object:",
+        "    if its bounding box is outside of the pick volume: next object",
+        "    for each triangle of the object:",
+        "        if an edge function has the wrong sign at the point: next triangle",
+        "        z ← depth of the triangle's plane at the point",
+        "        hits ← hits ∪ {(z, object, triangle)}",
+        "sort the hits by z, the nearest first",
+    ],
 };
 
 /// Largest distance of a model's lines and points from a picked point, in pixels.
@@ -72,10 +81,65 @@ pub struct Object {
     pub primitives: usize,
 }
 
+/// Step of picking.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// The box of an instance was held against the pick volume.
+    Object {
+        /// Index into [`Scene::instances`].
+        instance: usize,
+        /// True if some of it is inside, so that its triangles, lines and points are tested.
+        inside: bool,
+    },
+    /// A triangle, a line or a point was tested.
+    Tested {
+        /// Its item.
+        item: u32,
+        /// Its hit, if it is one.
+        hit: Option<Hit>,
+    },
+    /// The hits are in order.
+    Sorted {
+        /// Number of hits.
+        hits: usize,
+    },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Object { inside: false, .. } => 3,
+            Self::Object { inside: true, .. } => 4,
+            Self::Tested { hit: None, .. } => 5,
+            Self::Tested { hit: Some(_), .. } => 7,
+            Self::Sorted { .. } => 8,
+        }
+    }
+}
+
+/// Returns the hits that a list of steps leads to.
+pub fn replay(steps: &[Step]) -> Vec<Hit> {
+    let hit = |step: &Step| if let Step::Tested { hit, .. } = *step { hit } else { None };
+    let mut hits: Vec<Hit> = steps.iter().filter_map(hit).collect();
+    sort(&mut hits);
+    hits
+}
+
+/// Sorts hits by depth, equally near ones by item.
+fn sort(hits: &mut [Hit]) {
+    hits.sort_by(|a, b| a.depth.total_cmp(&b.depth).then(a.item.cmp(&b.item)));
+}
+
 /// Returns the triangles, lines and points behind an area of the screen, whether others hide them or
 /// not, from either side; nearest first, of equally near ones the lower item. Triangles that are seen
 /// edge on under a point are not picked.
 pub fn pick(scene: &Scene, view: &View, area: Area) -> Vec<Hit> {
+    pick_traced(scene, view, area, &mut NoTrace)
+}
+
+/// [`pick`] with a tracer.
+pub fn pick_traced(scene: &Scene, view: &View, area: Area, t: &mut impl Tracer<Step>) -> Vec<Hit> {
     let Some(around) = window(area) else { return Vec::new() };
     let pick_from_world = pick_from_screen(&around) * view.screen_from_world();
     let boxes: Vec<Option<Aabb>> = scene
@@ -92,7 +156,9 @@ pub fn pick(scene: &Scene, view: &View, area: Area) -> Vec<Hit> {
         let frustum =
             ConvexVolume::frustum(&(pick_from_world * placed.world_from_mesh), Default::default());
         let inside = |b: &Aabb| frustum.contains_box(b) != Containment::Outside;
-        if !boxes[placed.mesh].as_ref().is_some_and(inside) {
+        let is_inside = boxes[placed.mesh].as_ref().is_some_and(inside);
+        t.step(|| Step::Object { instance, inside: is_inside });
+        if !is_inside {
             continue;
         }
         let screen_from_mesh = view.screen_from_world() * placed.world_from_mesh;
@@ -114,14 +180,17 @@ pub fn pick(scene: &Scene, view: &View, area: Area) -> Vec<Hit> {
                     Area::Rect(_) => mark_in_window(&ends, &pick_from_mesh),
                 }
             };
-            if let Some((depth, position)) = found {
+            let hit = found.map(|(depth, position)| {
                 let position = placed.world_from_mesh.transform_point3(position);
                 let topology = mesh.topology;
-                hits.push(Hit { instance, topology, primitive, item, depth, position });
-            }
+                Hit { instance, topology, primitive, item, depth, position }
+            });
+            t.step(|| Step::Tested { item, hit });
+            hits.extend(hit);
         }
     }
-    hits.sort_by(|a, b| a.depth.total_cmp(&b.depth).then(a.item.cmp(&b.item)));
+    sort(&mut hits);
+    t.step(|| Step::Sorted { hits: hits.len() });
     hits
 }
 

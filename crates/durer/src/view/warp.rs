@@ -35,7 +35,16 @@ pub const INFO: Info = Info {
     coherence: &[Coherence::Frame],
     cost: "O(pixels of the pictures + pixels lit) time, O(pixels of the new picture) memory",
     limits: "what no picture shows is a hole; pixels that become very large are left out",
-    pseudocode: &[],
+    pseudocode: &[
+        "for each picture, for each of its pixels (x, y) with the depth z:",
+        "    slope ← change of depth to the neighbours whose depth is nearest",
+        "    (x', y', z') ← N · M⁻¹ · (x, y, z, 1), divided by w'",
+        "    square ← the pixel's square with its slope, moved likewise",
+        "    for each pixel of the new picture whose centre lies in it:",
+        "        if z' is nearer than what this picture has put there: keep it",
+        "pixels that the first picture does not show: take the next one's",
+        "pixels that no picture shows are holes",
+    ],
 };
 
 /// Pixels on a side that a pixel may cover in the new picture. A near camera does not need more, and
@@ -95,6 +104,16 @@ pub enum Step {
         /// Column and row.
         at: [u32; 2],
     },
+}
+
+impl Step {
+    /// Returns the line of the pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Move { .. } => 3,
+            Self::Write { .. } => 6,
+        }
+    }
 }
 
 /// A new view.

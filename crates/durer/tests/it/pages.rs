@@ -100,6 +100,10 @@ const SHEETS: &[(&str, &str, usize)] = &[
     ("hidden-line", "strip", 12),
     ("horizon-curves", "lecture", 12),
     ("interior-point", "hook", 12),
+    ("shadow-map", "plate", 12),
+    ("evaluator", "saddle", 12),
+    ("pick", "stack", 12),
+    ("forward-warp", "hole", 12),
 ];
 
 /// Returns at most so many frames: the first, the last, and those between at equal distances.

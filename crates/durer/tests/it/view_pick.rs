@@ -5,7 +5,8 @@ use crate::surface_scenes::{Prepared, of_triangles, random, three_beams};
 use durer::math::{DMat4, DVec2, DVec3, Rect};
 use durer::scene::{Instance, Scene};
 use durer::target::NO_ITEM;
-use durer::view::pick::{Area, objects, pick};
+use durer::trace::Recorder;
+use durer::view::pick::{Area, objects, pick, pick_traced, replay};
 
 fn center(x: u32, y: u32) -> DVec2 {
     DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)
@@ -21,6 +22,11 @@ fn the_first_triangle_under_a_pixel_is_the_visible_one() {
         let items = framebuffer.item.expect("items");
         for (x, y) in (0..30).flat_map(|y| (0..40).map(move |x| (x, y))) {
             let hits = pick(&scene, &p.view, Area::Point(center(x, y)));
+            if x % 9 == 0 {
+                let (at, mut steps) = (Area::Point(center(x, y)), Recorder::default());
+                assert_eq!(pick_traced(&scene, &p.view, at, &mut steps), hits);
+                assert_eq!(replay(steps.steps()), hits);
+            }
             let first = hits.first().map_or(NO_ITEM, |h| h.item);
             pixels += 1;
             // The z-buffer snaps vertices to 1/256 pixel; picking does not.

@@ -1,6 +1,7 @@
 //! Lessons of curves.
 
 mod cubics;
+mod evaluator;
 mod flatten;
 mod levels;
 
@@ -16,6 +17,7 @@ pub(super) const LESSONS: &[Lesson] = &[
     cubics::CATMULL_ROM,
     cubics::FORWARD,
     flatten::LESSON,
+    evaluator::LESSON,
 ];
 
 const TAKES: Word = Word::new("a line of control points", "ein Zug aus Kontrollpunkten");

@@ -27,7 +27,7 @@ use crate::target::NO_ITEM;
 use crate::visibility::polygons::{Face, Screen};
 use crate::{Error, Result};
 
-pub(super) use row::Row;
+pub(super) use row::{Row, row_camera};
 pub(super) use triangles::Triangles;
 
 pub(super) const LESSONS: &[Lesson] = &[
@@ -162,7 +162,7 @@ impl Scene {
     }
 
     /// Adds the outline of a face and its letter.
-    fn outline(&self, picture: &mut Picture, face: usize, look: Look) {
+    pub fn outline(&self, picture: &mut Picture, face: usize, look: Look) {
         let Some(own) = self.faces.get(face) else { return };
         let outline = own.outline();
         let Some(&first) = outline.first() else { return };

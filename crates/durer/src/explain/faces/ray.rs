@@ -1,5 +1,6 @@
 //! The lesson of ray tracing: the rays of one row of pixels, in a view from above.
 
+use super::row::row_camera;
 use super::triangles::Triangles;
 use super::{EXAMPLES, Scene, TAKES, slab};
 use crate::Result;
@@ -10,7 +11,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3, Vec3};
-use crate::scene::{Camera, Light, LightKind, Material, Part, Projection, ShadingModel};
+use crate::scene::{Camera, Light, LightKind, Material, Part, ShadingModel};
 use crate::shade::PreparedLights;
 use crate::target::Framebuffer;
 use crate::view::View;
@@ -118,25 +119,10 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let scene = Scene::new(input)?;
     let triangles = Triangles::new(&scene)?;
     let (mut model, _) = triangles.prepared(&scene)?;
-    let [width, height] = [scene.raster.columns, scene.raster.rows].map(f64::from);
-    let depths = || triangles.corners.iter().flatten().map(|corner| corner.z);
-    let (nearest, farthest) =
-        (depths().fold(f64::INFINITY, f64::min), depths().fold(0.0, f64::max));
-    // In front of the middle, with the nearest corners just within sight.
-    let middle = DVec3::new(width / 2.0, height / 2.0, 0.0);
-    let back = if nearest.is_finite() { width * 0.9 - nearest } else { width };
-    let eye = middle.with_z(back.max(0.5));
-    let light = middle + DVec3::new(width * 0.45, 0.0, back.max(0.5) * 0.6);
-    let across = width * 0.5 / (eye.z + nearest.min(farthest)).max(0.5);
-    let fov_y = 2.0 * libm::atan(across / f64::from(PIXELS));
-    let camera = Camera {
-        eye,
-        target: middle.with_z(-farthest),
-        up: DVec3::Y,
-        projection: Projection::Perspective { fov_y },
-        near: (eye.z + nearest.min(farthest)) * 0.5,
-        far: eye.z + farthest + 1.0,
-    };
+    let camera = row_camera(&scene, &triangles, PIXELS);
+    let Camera { eye, .. } = camera;
+    let aside = f64::from(scene.raster.columns) * 0.45;
+    let light = DVec3::new(eye.x + aside, eye.y, eye.z * 0.6);
     let kind = LightKind::Point { position: light, range: None };
     model.lights = vec![Light { kind, color: Vec3::splat(50.0) }];
     mirrors(&mut model);
@@ -149,7 +135,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
         render(&surfaces, &lights, &options, &mut target, t);
         Ok(())
     })?;
-    let cuts = cuts(&triangles, middle.y);
+    let cuts = cuts(&triangles, eye.y);
     let mut state = State { triangles, cuts, eye, light, rays: Vec::new() };
     Ok(frames(&steps, |step| state.show(step)))
 }

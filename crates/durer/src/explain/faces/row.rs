@@ -4,8 +4,9 @@ use super::Scene;
 use super::triangles::Triangles;
 use crate::Result;
 use crate::explain::input::Input;
-use crate::math::DVec2;
+use crate::math::{DVec2, DVec3};
 use crate::raster::interpolate::{barycentric_2d, blend};
+use crate::scene::{Camera, Projection};
 
 /// Points of faces behind the centres of a row's pixels.
 pub(in crate::explain) struct Row {
@@ -53,5 +54,26 @@ impl Row {
     /// Returns face, column and depth of each point, face by face.
     pub fn points(&self) -> impl Iterator<Item = (usize, u32, f64)> + '_ {
         self.points.iter().copied()
+    }
+}
+
+/// Returns a camera before the middle of a scene that sees a single row of this many pixels, the nearest corners just
+/// within sight.
+pub(in crate::explain) fn row_camera(scene: &Scene, triangles: &Triangles, pixels: u32) -> Camera {
+    let [width, height] = [scene.raster.columns, scene.raster.rows].map(f64::from);
+    let depths = || triangles.corners.iter().flatten().map(|corner| corner.z);
+    let farthest = depths().fold(0.0, f64::max);
+    let nearest = depths().fold(f64::INFINITY, f64::min).min(farthest);
+    let middle = DVec3::new(width / 2.0, height / 2.0, 0.0);
+    let eye = middle.with_z((width * 0.9 - nearest).max(0.5));
+    let across = width * 0.5 / (eye.z + nearest).max(0.5);
+    let fov_y = 2.0 * libm::atan(across / f64::from(pixels));
+    Camera {
+        eye,
+        target: middle.with_z(-farthest),
+        up: DVec3::Y,
+        projection: Projection::Perspective { fov_y },
+        near: (eye.z + nearest) * 0.5,
+        far: eye.z + farthest + 1.0,
     }
 }

@@ -60,7 +60,7 @@ pub enum Step {
         pixel: [u32; 2],
         /// Start and end of the piece, in pixels.
         ends: [DVec2; 2],
-        /// What the piece adds.
+        /// Contribution of the piece.
         adds: Cell,
         /// The cell's sums with it.
         cell: Cell,
