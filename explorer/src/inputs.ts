@@ -29,6 +29,8 @@ export function inputPanel(player: Player, stage: Stage, notice: (text: string) 
   const numbers = h("textarea", { id: "numbers", rows: 6, spellcheck: "false", "aria-label": t("numbers") });
   const apply = h("button", { type: "button", onclick: () => take(numbers.value) }, t("apply"));
 
+  const byNumbers = h("details", {}, h("summary", {}, t("numbers")), numbers, apply);
+
   function take(text: string): void {
     try {
       const value = JSON.parse(text) as Input;
@@ -94,6 +96,7 @@ export function inputPanel(player: Player, stage: Stage, notice: (text: string) 
   function frame(): void {
     const input = player.run?.input;
     const seen = player.frame?.map.input != null;
+    if (!seen && hint.textContent === "") byNumbers.open = true;
     hint.textContent = !seen ? t("numbersHint") : input && "grid" in input ? t("gridHint") : t("dragHint");
     const known = [...snap.options].some((option) => Number(option.value) === stage.snap);
     if (!known) snap.append(h("option", { value: stage.snap }, String(stage.snap)));
@@ -115,7 +118,7 @@ export function inputPanel(player: Player, stage: Stage, notice: (text: string) 
     tools,
     hint,
     h("div", { class: "file" }, h("label", { for: "file", class: "button" }, t("open")), picker, h("span", { class: "hint" }, t("openHint"))),
-    h("details", {}, h("summary", {}, t("numbers")), numbers, apply),
+    byNumbers,
   );
 }
 

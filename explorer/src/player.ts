@@ -4,8 +4,9 @@ import { engine, Refused, Trapped } from "./engine";
 import type { Frame, Input, Lesson, Run } from "./types";
 import { language, t } from "./words";
 
-/** The most steps that a page asks for. */
+/** The most steps that a page asks for, and while a vertex is dragged. */
 const CAP = 100_000;
+const DRAGGED = 2_000;
 /** Frames that are kept, and those that are made ahead. */
 const KEPT = 400;
 const AHEAD = 3;
@@ -31,7 +32,7 @@ export class Player extends EventTarget {
   private generation = 0;
   private wanted = 0;
   private running = false;
-  private later: { setup: Setup; step: number } | undefined;
+  private later: { setup: Setup; step: number; cap: number } | undefined;
   private undos: Setup[] = [];
   private redos: Setup[] = [];
 
@@ -62,28 +63,28 @@ export class Player extends EventTarget {
   }
 
   /** Runs the algorithm; while one run is on its way only the latest further one is kept. */
-  async start(setup: Setup, step = this.step): Promise<void> {
+  async start(setup: Setup, step = this.step, cap = CAP): Promise<void> {
     this.setup = setup;
     if (this.running) {
-      this.later = { setup, step };
+      this.later = { setup, step, cap };
       return;
     }
     this.running = true;
     try {
-      await this.take(setup, step);
+      await this.take(setup, step, cap);
     } finally {
       this.running = false;
       const { later } = this;
       this.later = undefined;
-      if (later) await this.start(later.setup, later.step);
+      if (later) await this.start(later.setup, later.step, later.cap);
     }
   }
 
-  private async take(setup: Setup, step: number): Promise<void> {
+  private async take(setup: Setup, step: number, cap: number): Promise<void> {
     const { input, operation, rule } = setup;
     try {
       const choices = this.run === undefined;
-      const run = await engine.run({ name: this.lesson.name, input, operation, rule, cap: CAP, choices });
+      const run = await engine.run({ name: this.lesson.name, input, operation, rule, cap, choices });
       if (run.steps === 0) throw new Refused(t("noState"));
       const old = this.run;
       const [before, after] = [this.generation, engine.generation];
@@ -148,6 +149,11 @@ export class Player extends EventTarget {
       this.frames.set(step, frame);
     }
     return frame;
+  }
+
+  /** Runs on an input that is still being dragged: fewer steps, at once. */
+  preview(input: Input): void {
+    void this.start({ ...this.setup, input }, Math.min(this.step, DRAGGED - 1), DRAGGED);
   }
 
   /** Changes the input, so that it can be undone. */

@@ -70,18 +70,36 @@ function rustInput(input: Input): string {
   return `Input::Example("${input.example}".into())`;
 }
 
+/** Returns a name in kebab case as Rust writes variants. */
+function variant(name: string): string {
+  return name.replace(/(?:^|-)([a-z])/g, (_, letter: string) => letter.toUpperCase());
+}
+
 function rust(player: Player): string {
   const { lesson, setup } = player;
-  const own = "example" in setup.input ? setup.input : player.run!.input;
-  const names = ["Figure", "Grid"].filter((name) => rustInput(own).includes(`${name} {`));
+  const given: Input = "example" in setup.input ? { example: setup.input.example || lesson.examples[0]!.name } : player.run!.input;
+  const input = rustInput(given);
+  const chosen = [
+    setup.operation ? `operation: BooleanOp::${variant(setup.operation)}` : "",
+    setup.rule ? `rule: FillRule::${variant(setup.rule)}` : "",
+  ].filter((part) => part !== "");
+  const options = chosen.length > 0 ? `Options { ${chosen.join(", ")}, ..Default::default() }` : "Default::default()";
+  const text = `${input} ${options}`;
+  const used = (path: string, names: string[]): string => {
+    const found = names.filter((name) => new RegExp(`\\b${name}\\b`).test(text) || name === "Language");
+    return found.length > 0 ? `use durer::${path}::{${found.join(", ")}};` : "";
+  };
   return [
-    `use durer::explain::{${["Input", "Language", ...names].join(", ")}};`,
-    ...(/DVec|Rect/.test(rustInput(own)) ? [`use durer::math::{${["DVec2", "DVec3", "DVec4", "Rect"].filter((name) => rustInput(own).includes(name)).join(", ")}};`] : []),
+    used("clip::polygon", ["BooleanOp", "FillRule"]),
+    used("explain", ["Figure", "Grid", "Input", "Language", "Options"]),
+    used("math", ["DVec2", "DVec3", "DVec4", "Rect"]),
     "",
-    `let input = ${rustInput(own)};`,
-    `let frames = durer::explain::run("${lesson.name}", &input, &Default::default(), 1_000)?;`,
+    `let input = ${input};`,
+    `let frames = durer::explain::run("${lesson.name}", &input, &${options}, 1_000)?;`,
     `println!("{}", frames[${player.step}].text(Language::${language() === "de" ? "German" : "English"}));`,
-  ].join("\n");
+  ]
+    .filter((line, index) => line !== "" || index === 3)
+    .join("\n");
 }
 
 export function sharePanel(player: Player, address: () => Promise<Address>, notice: (text: string) => void): HTMLElement {

@@ -224,7 +224,7 @@ export class Stage {
       last = String(at);
       const [x, y] = view.at(ref.part === "seed" ? [Math.floor(at[0]) + 0.5, Math.floor(at[1]) + 0.5] : at);
       handle.setAttribute("transform", `translate(${x} ${y})`);
-      void player.start({ ...player.setup, input: moved(input, ref, at) });
+      player.preview(moved(input, ref, at));
     };
     const end = (): void => {
       handle.removeEventListener("pointermove", move);

@@ -57,6 +57,7 @@ const WORDS = {
   rule: { en: "Inside by", de: "Innen nach" },
   "even-odd": { en: "even-odd", de: "gerade-ungerade" },
   "non-zero": { en: "non-zero", de: "nicht null" },
+  "abs-geq-two": { en: "twice or more", de: "mindestens zweimal" },
   positive: { en: "positive", de: "positiv" },
   negative: { en: "negative", de: "negativ" },
   intersection: { en: "intersection", de: "Durchschnitt" },
@@ -71,12 +72,12 @@ const WORDS = {
   snap: { en: "Grid", de: "Raster" },
   off: { en: "off", de: "aus" },
   dragHint: {
-    en: "Drag the rings in the picture. Double click near an edge adds a vertex; Delete removes the chosen one; arrow keys move it.",
-    de: "Die Ringe im Bild lassen sich ziehen. Ein Doppelklick an einer Kante fügt eine Ecke hinzu, Entf löscht die gewählte, Pfeiltasten bewegen sie.",
+    en: "Drag the handles in the picture. A double click near an edge adds a vertex; Delete removes the chosen one; arrow keys move it.",
+    de: "Die Griffe im Bild lassen sich ziehen. Ein Doppelklick an einer Kante fügt eine Ecke hinzu, Entf löscht die gewählte, Pfeiltasten bewegen sie.",
   },
   gridHint: {
-    en: "Click pixels to change them; drag the ring to move the seed.",
-    de: "Ein Klick ändert Pixel; der Ring versetzt den Startpunkt.",
+    en: "Click pixels to change them; drag the handle to move the seed.",
+    de: "Ein Klick ändert Pixel; der Griff versetzt den Startpunkt.",
   },
   numbersHint: {
     en: "This picture shows the input in another way; change its numbers here.",

@@ -26,6 +26,9 @@ Exit codes: 0 done; 1 the port cannot be used; 2 wrong usage, or no pages.";
 /// Time that a browser has to send its request or take the answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 
+/// Time until the next try after a connection that could not be served.
+const PAUSE: Duration = Duration::from_millis(50);
+
 /// The options of `durer explore`.
 #[derive(Debug, Args)]
 pub struct ExploreArgs {
@@ -52,10 +55,15 @@ pub fn run(args: &ExploreArgs) -> Result<(), Failure> {
     if !args.no_open {
         open(&url);
     }
-    for stream in listener.incoming().flatten() {
+    for stream in listener.incoming() {
         let pages = pages.clone();
         // A browser asks for several files at once, and keeps connections that say nothing.
-        std::thread::spawn(move || serve(stream, &pages));
+        let answered = stream
+            .and_then(|stream| std::thread::Builder::new().spawn(move || serve(stream, &pages)));
+        if answered.is_err() {
+            // There are too many of them: some end soon.
+            std::thread::sleep(PAUSE);
+        }
     }
     Ok(())
 }

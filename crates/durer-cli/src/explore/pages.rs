@@ -31,7 +31,6 @@ impl Pages {
     }
 
     #[cfg(feature = "explorer")]
-    #[allow(clippy::unnecessary_wraps)]
     fn built() -> Result<Self, Failure> {
         Ok(Self::Built)
     }

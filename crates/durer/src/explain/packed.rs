@@ -72,17 +72,15 @@ struct Change<T> {
     last: usize,
 }
 
-impl<T: PartialEq> Change<T> {
+impl<T: Clone + PartialEq> Change<T> {
     /// Returns what leads from one list to the other.
-    fn new(from: &[T], mut to: Vec<T>) -> Self {
+    fn new(from: &[T], to: &[T]) -> Self {
         let same = |pair: &(&T, &T)| pair.0 == pair.1;
-        let first = from.iter().zip(&to).take_while(same).count();
+        let first = from.iter().zip(to).take_while(same).count();
         let (rest, ends) = (from.iter().skip(first).rev(), to.iter().skip(first).rev());
         let last = rest.zip(ends).take_while(same).count();
-        to.truncate(to.len() - last);
-        to.drain(..first);
-        to.shrink_to_fit();
-        Self { first, items: to, last }
+        let items = to.get(first..to.len() - last).unwrap_or_default().to_vec();
+        Self { first, items, last }
     }
 
     /// Applies the change.
@@ -109,11 +107,11 @@ impl Packer {
         if self.frames.steps.len().is_multiple_of(WHOLE) {
             self.before = Default::default();
         }
-        let now = (heads.clone(), rows.clone(), marks.clone());
-        let before = std::mem::replace(&mut self.before, now);
-        let heads = Change::new(&before.0, heads);
-        let rows = Change::new(&before.1, rows);
-        let marks = Change::new(&before.2, marks);
+        let now = (heads, rows, marks);
+        let heads = Change::new(&self.before.0, &now.0);
+        let rows = Change::new(&self.before.1, &now.1);
+        let marks = Change::new(&self.before.2, &now.2);
+        self.before = now;
         self.frames.steps.push(Packed { line, caption, heads, rows, marks, empty });
     }
 
@@ -222,13 +220,13 @@ mod tests {
         let lists: [&[u8]; 7] = [b"", b"abc", b"abxc", b"abxc", b"bxc", b"aaaa", b"aa"];
         for from in lists {
             for to in lists {
-                let change = Change::new(from, to.to_vec());
+                let change = Change::new(from, to);
                 let mut list: Vec<&u8> = from.iter().collect();
                 change.apply(&mut list);
                 assert!(list.into_iter().eq(to), "{from:?} {to:?}");
             }
         }
-        assert_eq!(Change::new(b"abc", b"abxc".to_vec()).items, b"x");
+        assert_eq!(Change::new(b"abc", b"abxc").items, b"x");
     }
 
     /// A frame by itself is the one that all frames in their order have in its place, on both sides of those kept whole.
