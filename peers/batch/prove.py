@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Kills `durer batch` at random moments, and checks that what it makes after --resume is what an undisturbed run makes.
 
-    prove.py DURER SAMPLES FOLDER [--rows 10000] [--kills 50] [--jobs 2] [--seed 1] [--disk]
+    prove.py DURER SAMPLES FOLDER [--rows 10000] [--kills 50] [--jobs 2] [--seed 1] [--kinds 3] [--disk]
 
-FOLDER is created; it must not exist. --disk also fills a small disk, which needs the right to mount a tmpfs. Linux only.
+--kinds 1 renders cubes only, for builds without optimization. FOLDER is created; it must not exist. --disk also fills a small disk, which needs the right to mount a tmpfs. Linux only.
 Prints a line per check and ends with 0 if all hold.
 """
 
@@ -34,12 +34,12 @@ def check(holds, what):
 check.wrong = 0
 
 
-def manifest(folder, samples, rows):
+def manifest(folder, samples, rows, kinds):
     (folder / "cube.obj").write_text(CUBE)
-    models = [folder / "cube.obj", samples / "bracket.stl", samples / "crate.glb"]
+    models = [folder / "cube.obj", samples / "bracket.stl", samples / "crate.glb"][:kinds]
     lines = ["id,input,azimuth,elevation"]
     for i in range(rows):
-        lines.append(f"{i % 100:02}/row-{i},{models[i % 3]},{i % 360},{i * 7 % 120 - 60}")
+        lines.append(f"{i % 100:02}/row-{i},{models[i % kinds]},{i % 360},{i * 7 % 120 - 60}")
     (folder / "rows.csv").write_text("\n".join(lines) + "\n")
 
 
@@ -161,7 +161,7 @@ def compare(args, out, expected, most_again, what):
 def full_disk(args, expected):
     disk = args.folder / "disk"
     disk.mkdir()
-    subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "none", disk], check=True)
+    subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={args.rows}k", "none", disk], check=True)
     try:
         code, told = finish(start(args, disk / "out"))
         check(code in (1, 3) and "No space left" in told, f"full disk: ends with {code}, and says why")
@@ -180,13 +180,13 @@ def main():
     parser.add_argument("durer", type=lambda p: pathlib.Path(p).resolve())
     parser.add_argument("samples", type=lambda p: pathlib.Path(p).resolve())
     parser.add_argument("folder", type=lambda p: pathlib.Path(p).resolve())
-    for name, default in [("rows", 10000), ("kills", 50), ("jobs", 2), ("seed", 1)]:
+    for name, default in [("rows", 10000), ("kills", 50), ("jobs", 2), ("seed", 1), ("kinds", 3)]:
         parser.add_argument(f"--{name}", type=int, default=default)
     parser.add_argument("--disk", action="store_true")
     args = parser.parse_args()
     chance = random.Random(args.seed)
     args.folder.mkdir(parents=True)
-    manifest(args.folder, args.samples, args.rows)
+    manifest(args.folder, args.samples, args.rows, args.kinds)
 
     begun = time.monotonic()
     code, told = finish(start(args, args.folder / "base"))

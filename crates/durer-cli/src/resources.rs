@@ -2,12 +2,27 @@
 
 use crate::failure::in_words;
 use durer_formats::{Found, Resources};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
+
+/// Files that were looked for, whether they are there or not, where that is noted.
+static NOTED: Mutex<Option<BTreeSet<PathBuf>>> = Mutex::new(None);
+
+/// Has files be noted that are looked for from now on, and returns those that were noted.
+pub fn note() -> BTreeSet<PathBuf> {
+    let mut noted = NOTED.lock().unwrap_or_else(PoisonError::into_inner);
+    noted.replace(BTreeSet::new()).unwrap_or_default()
+}
+
+fn add_note(path: &Path) {
+    if let Some(noted) = &mut *NOTED.lock().unwrap_or_else(PoisonError::into_inner) {
+        noted.insert(path.to_owned());
+    }
+}
 
 /// The names in a folder by their lower case; of several the first by bytes.
 type Names = BTreeMap<String, OsString>;
@@ -178,7 +193,8 @@ impl Resources for Folder {
     }
 
     fn find(&self, path: &str, limit: u64) -> Result<Found, String> {
-        let (full, note) = self.place(path)?;
+        let (full, note) = self.place(path).inspect_err(|_| add_note(&self.base.join(path)))?;
+        add_note(&full);
         // What is checked is what was opened: paths may lead elsewhere a moment later.
         let file = open(&full).map_err(|e| in_words(&e))?;
         if !self.allows(&place_of(&file, &full)) {

@@ -33,7 +33,7 @@ pub struct Worker {
     telling: Option<JoinHandle<()>>,
 }
 
-/// What became of a row in a worker.
+/// Outcome of a row in a worker.
 pub enum Outcome {
     /// The worker answered.
     Answered(Answer),

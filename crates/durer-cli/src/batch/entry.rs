@@ -1,6 +1,7 @@
 //! The lines of a journal: what became of a row.
 
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// Report on a row, as a line of the journal has it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -9,7 +10,7 @@ pub struct Entry {
     pub id: String,
     /// Hash of all that the output depends on; missing where the input could not be read.
     pub key: Option<String>,
-    /// Whether there is an output.
+    /// Outcome.
     pub status: Status,
     /// Name of the output in its folder.
     pub output: String,
@@ -20,6 +21,9 @@ pub struct Entry {
     /// Further outputs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub planes: Vec<Written>,
+    /// Files that the input refers to.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub read: Vec<Reference>,
     /// Time that the row took.
     pub seconds: f64,
     /// Time at which it ended, in milliseconds since 1970.
@@ -50,6 +54,15 @@ pub struct Written {
     pub sha256: String,
     /// Size.
     pub bytes: u64,
+}
+
+/// A file that an input refers to, such as a texture.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Reference {
+    /// Path as from the folder of the input.
+    pub path: PathBuf,
+    /// Hash of the content; missing where there is no such file.
+    pub sha256: Option<String>,
 }
 
 /// Failure of a row.
@@ -120,6 +133,7 @@ impl Entry {
             sha256: None,
             bytes: None,
             planes: Vec::new(),
+            read: Vec::new(),
             seconds,
             ended: now(),
             warnings: Vec::new(),

@@ -104,6 +104,6 @@ mod tests {
         assert_ne!(key, of_row(&task, &file("a.obj", "1"), &file("m.json", "1")));
         // Of the input counts what is in it, not where it lies.
         assert_eq!(key, other(|t| t.inputs = vec!["y/a.obj".to_owned()]));
-        assert_eq!(key, other(|t| t.known = Some("1".to_owned())));
+        assert_eq!(key, other(|t| t.sha256 = Some("1".to_owned())));
     }
 }

@@ -122,7 +122,8 @@ fn known(args: &BatchArgs, out: &Path, rows: &Rows) -> Result<Known, Failure> {
         (Status::Failed, None) => false,
     };
     let known = last.into_values().flatten().filter(counts);
-    Ok(known.filter_map(|e| Some((e.id, (e.key?, e.status)))).collect())
+    let of = |e: Entry| Some((e.id, (task::Known { key: e.key?, read: e.read }, e.status)));
+    Ok(known.filter_map(of).collect())
 }
 
 /// Describes what became of the rows.

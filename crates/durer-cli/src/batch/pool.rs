@@ -4,7 +4,7 @@ use super::child::{Outcome, Worker};
 use super::entry::{Entry, Kind, RowError, Status};
 use super::journal::Journal;
 use super::rows::{Row, Rows};
-use super::task::{Answer, Setup, Task};
+use super::task::{self, Answer, Setup, Task};
 use super::worker::TIMEOUT;
 use crate::batch_args::{BatchArgs, OnError};
 use crate::failure::Failure;
@@ -34,7 +34,7 @@ const LIVES: u32 = 2;
 const STARTS: u32 = 3;
 
 /// Results of a journal that count.
-pub type Known = HashMap<String, (String, Status)>;
+pub type Known = HashMap<String, (task::Known, Status)>;
 
 /// Numbers of rows.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
@@ -142,7 +142,7 @@ impl<'a> Pool<'a> {
         let mut worker = None;
         while let Some(row) = self.next() {
             let known = self.known.get(&row.id);
-            let task = self.rows.task(row, known.map(|(key, _)| key.clone()));
+            let task = self.rows.task(row, known.map(|(known, _)| known.clone()));
             let served = match self.run_row(&mut worker, &task) {
                 Ok(Some(Answer::Ran(entry))) => self.note(&entry),
                 Ok(Some(Answer::Same)) => {

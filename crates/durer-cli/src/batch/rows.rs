@@ -4,7 +4,7 @@ use super::journal;
 use super::manifest::{self, Record};
 use super::options::{self, Common, Parser};
 use super::shard::Shard;
-use super::task::Task;
+use super::task::{Known, Task};
 use crate::batch_args::BatchArgs;
 use crate::failure::Failure;
 use crate::given::Given;
@@ -78,7 +78,7 @@ impl Rows {
     }
 
     /// Returns the row as a worker takes it.
-    pub fn task(&self, row: &Row, known: Option<String>) -> Task {
+    pub fn task(&self, row: &Row, known: Option<Known>) -> Task {
         let joined = self.parser.joined(&self.common, row.command, row.options.clone());
         let (_, options) = options::planes(row.command, joined);
         Task {

@@ -1,6 +1,6 @@
-//! What a process of `durer batch` and its workers write to each other: lines of JSON.
+//! Messages between a process of `durer batch` and its workers: lines of JSON.
 
-use super::entry::Entry;
+use super::entry::{Entry, Reference};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -43,8 +43,17 @@ pub struct Task {
     pub planes: Vec<(String, String)>,
     /// Hash that the input must have.
     pub sha256: Option<String>,
-    /// Key with which there is an entry in the journal that counts.
-    pub known: Option<String>,
+    /// An entry in the journal that counts.
+    pub known: Option<Known>,
+}
+
+/// Facts on which the output of a row depended when it was run.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Known {
+    /// Its key.
+    pub key: String,
+    /// Files that the input referred to.
+    pub read: Vec<Reference>,
 }
 
 /// A line that answers a row.

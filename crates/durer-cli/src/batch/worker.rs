@@ -1,15 +1,15 @@
 //! The process that runs rows: it reads them from standard input and answers on standard output, until the input ends.
 
-use super::entry::{Entry, Kind, RowError, Status, Written, now};
+use super::entry::{Entry, Kind, Reference, RowError, Status, Written, now};
 use super::key::{self, Hashes};
 use super::rows::DATA;
-use super::task::{Answer, Ready, Setup, Task};
+use super::task::{Answer, Known, Ready, Setup, Task};
 use crate::args::{Cli, Command};
 use crate::failure::{Failure, in_words};
 use crate::given::first_paragraph;
 use crate::options::RunningArgs;
 use crate::output::{self, Target};
-use crate::{beside, messages, panics, places, report, threads, watch};
+use crate::{beside, messages, panics, places, report, resources, threads, watch};
 use crate::{clip, draw, info, plot, render, tiles};
 use clap::CommandFactory;
 use durer::Error;
@@ -95,6 +95,7 @@ impl Worker {
             RowError::new(Kind::Fault, &format!("this is a fault of durer: {panic}"), &[])
         };
         let seconds = start.elapsed().as_secs_f64();
+        let read = self.read(task);
         let warnings = messages::keep();
         let entry = match ran.map_err(fault).and_then(|ran| ran) {
             Ok(None) => return Answer::Same,
@@ -108,6 +109,7 @@ impl Worker {
                     sha256: Some(main.sha256),
                     bytes: Some(main.bytes),
                     planes: files,
+                    read,
                     seconds,
                     ended: now(),
                     warnings,
@@ -116,7 +118,7 @@ impl Worker {
             }
             Err(error) => {
                 let failed = Entry::failed(&task.id, &task.output, seconds, error);
-                Entry { key, warnings, ..failed }
+                Entry { key, read, warnings, ..failed }
             }
         };
         Answer::Ran(Box::new(entry))
@@ -134,9 +136,10 @@ impl Worker {
         let work = command.running().map(|running| running.work.clone()).unwrap_or_default();
         watch::begin(&work, self.setup.timeout, TIMEOUT);
         *key = Some(self.key(task, &inputs, &read)?);
-        if key.is_some() && *key == task.known {
+        if task.known.as_ref().is_some_and(|known| self.is_same(known, key.as_deref(), &inputs)) {
             return Ok(None);
         }
+        resources::note();
         // Nobody waits for the row if that fails.
         let _ = key.clone().map(|key| say(&Answer::Runs(key)));
         let outputs = std::iter::once(&task.output).chain(task.planes.iter().map(|p| &p.1));
@@ -164,6 +167,25 @@ impl Worker {
             Ok(Written { output: (*name).clone(), sha256, bytes })
         };
         outputs.iter().map(written).collect::<Result<_, _>>().map(Some)
+    }
+
+    /// Returns whether a row is as it was.
+    fn is_same(&mut self, known: &Known, key: Option<&str>, inputs: &[PathBuf]) -> bool {
+        let folder = folder(inputs.first());
+        let mut same = |r: &Reference| self.hashes.of(&folder.join(&r.path)).ok() == r.sha256;
+        key == Some(&known.key) && known.read.iter().all(&mut same)
+    }
+
+    /// Returns the files that the inputs of the row that was run refer to.
+    fn read(&mut self, task: &Task) -> Vec<Reference> {
+        let noted = resources::note();
+        let folder = folder(task.inputs.first().map(PathBuf::from).as_ref());
+        let reference = |path: PathBuf| {
+            let sha256 = self.hashes.of(&path).ok();
+            let path = path.strip_prefix(&folder).map(Path::to_owned).unwrap_or(path);
+            Reference { path, sha256 }
+        };
+        noted.into_iter().map(reference).collect()
     }
 
     /// Returns the paths of the inputs; bytes of data URIs are put into files.
@@ -245,6 +267,12 @@ impl Worker {
         }
         line
     }
+}
+
+/// Returns the folder of an input, without links.
+fn folder(input: Option<&PathBuf>) -> PathBuf {
+    let full = input.and_then(|input| std::fs::canonicalize(input).ok());
+    full.and_then(|full| full.parent().map(Path::to_owned)).unwrap_or_default()
 }
 
 /// Runs the command of a row.

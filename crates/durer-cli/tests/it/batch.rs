@@ -215,6 +215,25 @@ fn resuming_runs_what_changed_and_nothing_else() {
 }
 
 #[test]
+fn files_that_inputs_refer_to_count() {
+    let folder = cubes("a,x/cube.obj\n");
+    fs::create_dir(folder.path("x")).unwrap();
+    folder.write("x/cube.obj", format!("mtllib cube.mtl\nusemtl one\n{CUBE}"));
+    let run = || batch(&folder, "--jobs 1 --resume").err;
+    assert!(run().contains("1 rows done"));
+    assert_eq!(
+        journal(&folder)[0]["read"],
+        serde_json::json!([{"path": "cube.mtl", "sha256": null}])
+    );
+    assert!(run().contains("1 done before"));
+    folder.write("x/cube.mtl", "newmtl one\nKd 1 0 0\n");
+    assert!(run().contains("1 rows done"));
+    assert!(run().contains("1 done before"));
+    folder.write("x/cube.mtl", "newmtl one\nKd 0 0.5 0\n");
+    assert!(run().contains("1 rows done"));
+}
+
+#[test]
 fn torn_lines_are_rows_that_were_not_run() {
     let folder = cubes("a,cube.obj\nb,cube.obj\n");
     batch(&folder, "--jobs 1");

@@ -146,6 +146,8 @@ fn links_lead_to_files() {
         "docs/draw.md",
         "docs/explain.md",
         "docs/plot.md",
+        "docs/batch.md",
+        "docs/server.md",
         "samples/README.md",
         "peers/render/README.md",
     ];
