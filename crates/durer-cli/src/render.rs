@@ -299,7 +299,7 @@ pub fn with_open_side(
     Ok(Some(found))
 }
 
-/// What is known of a scene after the options have changed it.
+/// Facts about a scene after the options have changed it.
 pub struct Prepared {
     /// The kinds of its parts, where they are to be numbered.
     pub components: Vec<Component>,

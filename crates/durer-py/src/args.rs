@@ -2,7 +2,9 @@
 
 use durer::math::DVec2;
 use durer::target::Pixels;
-use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use numpy::{
+    Element, IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyUntypedArrayMethods,
+};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
@@ -51,7 +53,7 @@ pub fn pixels<const N: usize>(
     array: &numpy::PyReadonlyArray3<'_, u8>,
     name: &str,
 ) -> PyResult<Pixels<[u8; N]>> {
-    let [rows, columns, channels] = *numpy::PyUntypedArrayMethods::shape(array) else {
+    let [rows, columns, channels] = *array.shape() else {
         return Err(PyTypeError::new_err(format!("{name} must have three dimensions")));
     };
     if channels != N {

@@ -18,7 +18,7 @@ type Shapes<'py> = (
     Option<PyReadonlyArray2<'py, f64>>,
 );
 
-/// What a lesson is run on.
+/// Input of a lesson.
 #[derive(FromPyObject)]
 enum Given<'py> {
     Example(String),

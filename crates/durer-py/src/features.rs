@@ -48,7 +48,7 @@ impl Region {
     }
 }
 
-/// What is done with each feature.
+/// Work to do with each feature.
 enum Task<'a> {
     Clip(&'a Mask),
     Overlay(BooleanOp),
@@ -106,7 +106,10 @@ type Made<T> = Vec<Option<Result<T, String>>>;
 type Errors = Vec<(usize, String)>;
 
 /// Does something for each row, in parallel.
-fn each<T: Send>(count: usize, row: impl Fn(usize) -> Option<Result<T, String>> + Sync) -> Made<T> {
+fn each<T: Send>(
+    count: usize,
+    row: impl Fn(usize) -> Option<Result<T, String>> + Send + Sync,
+) -> Made<T> {
     (0..count).into_par_iter().with_min_len(LEAST).map(row).collect()
 }
 

@@ -48,7 +48,7 @@ impl Kind {
 /// Geometries of one kind as arrays.
 #[derive(Debug, Clone)]
 pub struct Ragged<'a> {
-    /// What they are.
+    /// Kind of all of them.
     pub kind: Kind,
     /// Two or three numbers for each position.
     pub coords: &'a [f64],
@@ -153,7 +153,7 @@ impl Ragged<'_> {
 /// Arrays of geometries that are put together one by one.
 #[derive(Debug)]
 pub struct RaggedOut {
-    /// What they are.
+    /// Kind of all of them.
     pub kind: Kind,
     /// Two or three numbers for each position.
     pub coords: Vec<f64>,

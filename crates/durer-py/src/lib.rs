@@ -18,11 +18,17 @@ mod threads;
 mod view;
 
 use pyo3::prelude::*;
+use std::io::Write;
 
 /// Runs the command with its name and arguments, and returns its exit code.
 #[pyfunction]
 fn command(py: Python<'_>, line: Vec<std::ffi::OsString>) -> u8 {
-    let code = py.detach(|| durer_cli::main_with(line));
+    let code = py.detach(|| {
+        let code = durer_cli::main_with(line);
+        // At the end of an interpreter nothing else does; a closed standard output leaves nobody to tell.
+        let _ = std::io::stdout().flush();
+        code
+    });
     // A code of exit hides its number; there are only these.
     let is = |number: u8| code == std::process::ExitCode::from(number);
     (0..=u8::MAX).find(|&number| is(number)).unwrap_or(1)

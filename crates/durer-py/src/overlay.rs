@@ -5,7 +5,7 @@ use durer::clip::polygon::{BooleanOp, FillRule};
 use durer::geometry::Geometry;
 use durer::work::Work;
 
-/// Operation of one geometry with another, by its name in shapely.
+/// Returns an operation of one geometry with another, by its name in shapely.
 pub fn op(name: &str) -> Result<BooleanOp, String> {
     match name {
         "intersection" => Ok(BooleanOp::Intersection),

@@ -19,7 +19,7 @@ use pyo3::pybacked::PyBackedBytes;
 /// Largest side of a grid.
 const MOST: u32 = 32_767;
 
-/// How pixels of areas are chosen.
+/// Rule that chooses the pixels of areas.
 #[derive(Clone, Copy, PartialEq)]
 enum Mode {
     /// Those whose centre is inside.

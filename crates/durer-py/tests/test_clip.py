@@ -212,7 +212,7 @@ def test_geopandas(polygons):
 
 
 def test_the_lock_is_released(polygons):
-    many = np.repeat(polygons, 20)
+    many = np.repeat(polygons, 3)
     rows = list(shapely.to_wkb(many))
     seen = []
     thread = threading.Thread(target=lambda: seen.append(durer.clip_by_rect(rows, *RECT)))
@@ -229,6 +229,9 @@ def test_rasterize():
     north_up = (0.5, 0, 0, 0, -0.5, 2)
     up = durer.rasterize([(shapely.box(0, 0, 0.5, 0.5), 300)], (4, 4), north_up, fill=-1)
     assert up.dtype == np.int16 and up[3].tolist() == [300, -1, -1, -1] and (up[:3] == -1).all()
+    moved = durer.rasterize([shapely.Point(103, 207.5)], (5, 6), (1, 0.5, 100, -0.5, 2, 205))
+    column, row = np.linalg.solve([[1, 0.5], [-0.5, 2]], [3, 2.5])
+    assert moved.sum() == 1 and moved[int(row), int(column)] == 1
     half = durer.rasterize([shapely.box(0.5, 0, 2, 1)], (1, 3), mode="coverage")
     assert half.dtype == np.float32 and np.allclose(half, [[0.5, 1, 0]], atol=1 / 255)
     hole = shapely.box(0, 0, 5, 5).difference(shapely.box(1, 1, 4, 4))

@@ -19,7 +19,7 @@ def examples():
             yield pytest.param(match[1], id=f"{page.name}:{line}")
 
 
-@pytest.mark.parametrize("code", examples())
+@pytest.mark.parametrize("code", list(examples()))
 def test_example(code, tmp_path, monkeypatch):
     for library in ("trimesh", "geopandas", "pyarrow", "shapely"):
         if library in code:

@@ -125,6 +125,9 @@ def test_trimesh(samples):
     assert red[0] > 240 and red[1] == 0
     box.visual = trimesh.visual.ColorVisuals(box, vertex_colors=np.tile([0, 255, 0, 255], (8, 1)))
     assert durer.render(box, (32, 32), shading="unlit").pixels[16, 16, 1] > 240
+    from durer._scene import _bytes
+
+    assert _bytes([[1.0, 0.5, 0.0]]).tolist() == [[255, 128, 0, 255]]
     scene = trimesh.Scene()
     scene.add_geometry(box)
     scene.add_geometry(box, transform=trimesh.transformations.translation_matrix([3, 0, 0]))

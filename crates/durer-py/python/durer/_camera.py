@@ -121,7 +121,7 @@ class Camera:
         return camera
 
     @classmethod
-    def _of_native(cls, native: _durer.CameraNumbers, size: tuple[int, int]) -> Camera:
+    def _of_native(cls, native: _durer._CameraNumbers, size: tuple[int, int]) -> Camera:
         eye, target, up, fov, height, near, far = native
         degrees = None if fov is None else math.degrees(fov)
         vectors = (_vector(eye, "eye"), _vector(target, "target"), _vector(up, "up"))
@@ -264,7 +264,7 @@ class Camera:
         p[0, 0], p[1, 1] = s * height / width, s
         return p
 
-    def _native(self) -> _durer.CameraNumbers:
+    def _native(self) -> _durer._CameraNumbers:
         n = self._n
         if n.up is None or n.near is None or n.far is None:
             raise ValueError("the camera must have up, near and far; Camera.fit and Image.camera do")

@@ -7,6 +7,43 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = [
+    "__version__",
+    "command",
+    "Model",
+    "read",
+    "scene_of",
+    "linear_of_srgb",
+    "render",
+    "fit",
+    "draw",
+    "lines",
+    "line_classes",
+    "picked",
+    "encode",
+    "deliver",
+    "fill",
+    "warped",
+    "plot",
+    "plot_pixels",
+    "draw_layers",
+    "tiles",
+    "css_color",
+    "clip_arrays",
+    "clip_segments",
+    "clip_segments_to_ring",
+    "clip_wkb",
+    "overlay_wkb",
+    "clip_column",
+    "clip_ragged",
+    "overlay_ragged",
+    "rasterize",
+    "trace",
+    "trace_page",
+    "algorithms",
+    "lessons",
+]
+
 __version__: str
 
 _F64 = NDArray[np.float64]
@@ -16,7 +53,7 @@ _F32 = NDArray[np.float32]
 _U32 = NDArray[np.uint32]
 _Bool = NDArray[np.bool_]
 _Vector = tuple[float, float, float] | Sequence[float]
-CameraNumbers = tuple[_Vector, _Vector, _Vector, float | None, float | None, float, float]
+_CameraNumbers = tuple[_Vector, _Vector, _Vector, float | None, float | None, float, float]
 _Region = tuple[float, float, float, float] | list[bytes]
 _Errors = list[tuple[int, str]]
 _Ragged = tuple[int, _F64, list[_I64]]
@@ -55,13 +92,13 @@ def render(
     planes: tuple[bool, bool, bool],
     linear: bool,
     threads: int,
-) -> tuple[_U8, _F32 | None, _U32 | None, _F32 | None, CameraNumbers | None, str | None]: ...
-def fit(model: Model, options: Sequence[str], threads: int) -> tuple[CameraNumbers, tuple[int, int]]: ...
+) -> tuple[_U8, _F32 | None, _U32 | None, _F32 | None, _CameraNumbers | None, str | None]: ...
+def fit(model: Model, options: Sequence[str], threads: int) -> tuple[_CameraNumbers, tuple[int, int]]: ...
 def draw(model: Model, options: Sequence[str], suffix: str, threads: int) -> bytes: ...
 def lines(model: Model, options: Sequence[str], threads: int) -> tuple[_F64, _I64, _U8, _U32, _Bool]: ...
 def line_classes() -> list[str]: ...
 def picked(
-    model: Model, seen_by: CameraNumbers, size: tuple[int, int], at: tuple[float, float]
+    model: Model, seen_by: _CameraNumbers, size: tuple[int, int], at: tuple[float, float]
 ) -> list[tuple[str, int, int, int, float, list[float]]]: ...
 def encode(picture: _U8, suffix: str, quality: int, small: bool) -> bytes: ...
 def deliver(path: str | os.PathLike[str], bytes: bytes) -> None: ...
@@ -74,8 +111,8 @@ def fill(
     eight: bool,
 ) -> tuple[_U8, list[int]]: ...
 def warped(
-    sources: Sequence[tuple[_U8, _F32, CameraNumbers]],
-    to: CameraNumbers,
+    sources: Sequence[tuple[_U8, _F32, _CameraNumbers]],
+    to: _CameraNumbers,
     size: tuple[int, int],
     hole: tuple[int, int, int, int],
     threads: int,
@@ -84,7 +121,7 @@ def plot(heights: _F64, ranges: _Ranges, options: Sequence[str], suffix: str, th
 def plot_pixels(heights: _F64, ranges: _Ranges, options: Sequence[str], threads: int) -> _U8: ...
 def draw_layers(words: Sequence[str], layers: Sequence[bytes], threads: int) -> _U8: ...
 def tiles(words: Sequence[str], threads: int) -> None: ...
-def css_color(text: str) -> tuple[int, int, int, int]: ...
+def css_color(text: str) -> bytes: ...
 def clip_arrays(
     arrays: tuple[_F64, _F64, _F64, _F64], rect: tuple[float, float, float, float], threads: int
 ) -> tuple[list[_F64], _Bool]: ...

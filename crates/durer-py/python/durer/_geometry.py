@@ -317,7 +317,7 @@ def clip(
     >>> import numpy as np
     >>> square = np.array([[0.0, 0], [4, 0], [4, 4], [0, 4], [0, 0]])
     >>> clip((square, ([0, 5], [0, 1])), (3, 3, 9, 9))[0].tolist()
-    [[3.0, 3.0], [4.0, 3.0], [4.0, 4.0], [3.0, 4.0], [3.0, 3.0]]
+    [[4.0, 3.0], [4.0, 4.0], [3.0, 4.0], [3.0, 3.0], [4.0, 3.0]]
     """
     tabular = _is_frame(geometry) or _is_series(geometry)
     if tabular and (_is_frame(mask) or _is_series(mask)) and geometry.crs != mask.crs:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from . import _durer
 from ._camera import Camera
-from ._options import call, words
+from ._options import call, size_text, words
 from ._options import threads as count
 from ._picture import Image, scene_words
 from ._scene import Scene
@@ -26,10 +26,10 @@ PICTURES = ("png", "jpg", "jpeg", "webp")
 class Drawing:
     """A drawing of a scene, laid out for the format that it is written in."""
 
-    __slots__ = ("_arguments", "_scene", "_svg", "_threads")
+    __slots__ = ("_arguments", "_scene", "_size", "_svg", "_threads")
 
-    def __init__(self, scene: Scene, arguments: list[str], threads: int) -> None:
-        self._scene, self._arguments, self._threads = scene, arguments, threads
+    def __init__(self, scene: Scene, arguments: list[str], size: Any, threads: int) -> None:
+        self._scene, self._arguments, self._size, self._threads = scene, arguments, size, threads
         self._svg: bytes | None = None
 
     def encode(self, format: str = "svg") -> bytes:
@@ -47,7 +47,7 @@ class Drawing:
 
     def image(self) -> Image:
         """Returns the drawing painted as pixels, of the size that was given."""
-        given = self._arguments
+        given = [f"--size={size_text(self._size)}", *self._arguments]
         if not any(word.startswith(("--style", "--sheet")) for word in given):
             given = [*given, "--style=hidden-line"]
         planes = (False, False, False)
@@ -164,7 +164,7 @@ def hidden_lines(
     chosen = {} if classes is None else {"lines": ",".join(classes)}
     lens = {} if ortho is not False or camera is not None else {"fov": options.pop("fov", 30.0)}
     height = False if camera is not None or ortho is False else ortho
-    given = scene_words(made, size, camera, view, azimuth, elevation, height, {**lens, **creased, **chosen, **options})
+    given = scene_words(made, None, camera, view, azimuth, elevation, height, {**lens, **creased, **chosen, **options})
     native = count(threads)
     coords, offsets, cls, invisibility, closed = call("hidden_lines", _durer.lines, made._model, given, native)
     if not hidden:
@@ -173,7 +173,7 @@ def hidden_lines(
         coords = coords[np.repeat(kept, lengths)]
         offsets = np.concatenate([[0], np.cumsum(lengths[kept])]).astype(np.int64)
         cls, invisibility, closed = cls[kept], invisibility[kept], closed[kept]
-    drawn = Drawing(made, [*given, "--hidden=dashed" if hidden else "--hidden=drop"], native)
+    drawn = Drawing(made, [*given, "--hidden=dashed" if hidden else "--hidden=drop"], size, native)
     return Lines(coords, offsets, cls, invisibility, closed, drawn)
 
 
@@ -197,14 +197,14 @@ def drawing(
     ``durer render``: ``hidden="dashed"``, ``scale="1:2"``, ``sheet="third-angle"``, ``hatch="shade"``, ``dimension`` …
 
     >>> drawing(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), page="A5").to_svg()[:5]
-    '<?xml'
+    '<svg '
     """
     made = of(scene)
     paper = page if page is None or isinstance(page, str) else "x".join(f"{float(side):g}" for side in page)
     on_sheet = options.get("sheet") is not None
     seen = None if on_sheet and view == "iso" else view
     named = {"style": style, "page": paper, **options}
-    given = scene_words(made, size, camera, seen, azimuth, elevation, ortho, named)
-    drawn = Drawing(made, given, count(threads))
+    given = scene_words(made, None, camera, seen, azimuth, elevation, ortho, named)
+    drawn = Drawing(made, given, size, count(threads))
     drawn.encode("svg")
     return drawn

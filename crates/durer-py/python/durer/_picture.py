@@ -153,7 +153,8 @@ def scene_words(
     """Returns the words of a picture of a scene."""
     own = camera is None and azimuth is None and elevation is None and view == "iso"
     eye = scene._camera if own and scene._camera is not None else camera
-    return words({"size": size_text(size)}) + view_words(eye, view, azimuth, elevation, ortho) + words(options)
+    sized = words({"size": None if size is None else size_text(size)})
+    return sized + view_words(eye, view, azimuth, elevation, ortho) + words(options)
 
 
 def render(
@@ -188,8 +189,9 @@ def render(
     named = {
         "light": [lights] if isinstance(lights, str) else lights,
         "shading": shading,
-        "aa": samples,
-        "background": background,
+        # Drawings refuse samples, and what is given by hand.
+        "aa": None if samples == 4 else samples,
+        "background": None if background == "white" else background,
         "cull": cull,
         "algorithm": algorithm,
         "shadows": shadows,
@@ -200,7 +202,7 @@ def render(
     return Image(color, camera=_seen_from(eye, color), unseen=unseen)
 
 
-def _seen_from(eye: _durer.CameraNumbers | None, color: U8) -> Camera | None:
+def _seen_from(eye: _durer._CameraNumbers | None, color: U8) -> Camera | None:
     return None if eye is None else Camera._of_native(eye, (int(color.shape[1]), int(color.shape[0])))
 
 
@@ -335,7 +337,7 @@ def plot(
     ``azimuth``, ``elevation``, ``fill=True``, ``color_map="viridis"``, ``title``, ``labels=("x", "y", "z")`` …
 
     >>> plot([[0, 1, 0], [1, 2, 1], [0, 1, 0]], title="a hill").to_svg()[:5]
-    '<?xml'
+    '<svg '
     """
     array = np.ascontiguousarray(heights, dtype=np.float64)
     if array.ndim != 2:
@@ -354,7 +356,8 @@ def color_bytes(color: Any) -> tuple[int, int, int, int]:
     ((255, 0, 0, 255), (1, 2, 3, 255))
     """
     if isinstance(color, str):
-        return _durer.css_color(color)
+        r, g, b, a = _durer.css_color(color)
+        return (r, g, b, a)
     parts = [int(c) for c in color]
     if len(parts) not in (3, 4) or not all(0 <= c <= 255 for c in parts):
         raise ValueError(f"color is {color!r}; it must be a colour of CSS, or three or four numbers 0 to 255")
@@ -423,7 +426,7 @@ def warp(
     ``fill`` is a second picture with its depths and camera, which fills holes.
 
     >>> triangle = ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
-    >>> color, depth, *_, camera = render_planes(triangle, (32, 32))
+    >>> color, depth, *_, camera = render_planes(triangle, (32, 32), samples=1)
     >>> bool((warp(color, depth, camera, camera).pixels == color).all())
     True
     """

@@ -88,7 +88,7 @@ def trace(
 
     ``input`` is one picture of bytes (rows, columns) for fills from a ``seed``, arrays (n, 3) for faces, or arrays (n, 2):
     those that end where they begin are rings of the subject, others lines. ``clip`` is a ring or a list of them,
-    ``window`` a rectangle. At most ``cap`` steps are made.
+    ``window`` a rectangle. At most ``cap`` steps are made; where there are more, a last one of kind ``more`` counts them.
 
     >>> steps = trace("cohen-sutherland", [[-1, 1], [5, 3]], window=(0, 0, 4, 4))
     >>> steps[0]["line"], steps.facts["year"]

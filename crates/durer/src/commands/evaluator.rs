@@ -69,7 +69,9 @@ impl Patch {
             .windows(2)
             .map(|rows| rows[0].iter().zip(&rows[1]).map(|(a, b)| *b - *a).collect())
             .collect();
-        patch(&along, u, v)?.cross(patch(&across, u, v)?).try_normalize()
+        patch(&along, [u, v], &mut NoTrace)?
+            .cross(patch(&across, [u, v], &mut NoTrace)?)
+            .try_normalize()
     }
 
     pub(super) fn vertices(&self, [across, down]: [u32; 2]) -> Result<(Primitive, Vec<Vertex>)> {
