@@ -82,7 +82,7 @@ impl<'a> Lines<'a> {
         Self { faces, whole, projected, edges: of_edges, loose, crowded }
     }
 
-    /// Returns whether a triangle is one of those at the edge that a line is, so that it does not hide it.
+    /// Returns whether a triangle has the edge of a line: it does not hide that line.
     pub fn is_at(&self, line: &FeatureLine, item: u32) -> bool {
         line.items.contains(&item)
             || (!self.crowded.is_empty() && self.crowded.binary_search(&(line.edge, item)).is_ok())
