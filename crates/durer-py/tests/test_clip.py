@@ -105,6 +105,7 @@ def test_ragged_arrays_are_as_geometries(polygons):
     ragged = shapely.to_ragged_array(polygons)
     kind, coords, offsets = durer.clip_by_rect(ragged, *RECT)
     again = shapely.from_ragged_array(kind, coords, offsets)
+    assert (coords[offsets[0][:-1]] == coords[offsets[0][1:] - 1]).all()
     made = durer.clip_by_rect(polygons, *RECT)
     assert np.allclose(shapely.area(again), shapely.area(made), atol=1e-15)
     lines = shapely.linestrings(np.random.default_rng(2).uniform(0, 1, (50, 9, 2)))
