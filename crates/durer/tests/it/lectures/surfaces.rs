@@ -110,6 +110,7 @@ fn fragments_go_from_test_to_test() {
     let half = |step: &Step| matches!(step, Step::Blend { result, .. } if (result.y - 0.5).abs() < 1e-6 && result.x == 1.0);
     let lines: Vec<usize> = steps.steps().iter().map(Step::line).collect();
     assert_eq!(lines, [2, 3, 5, 7, 9, 12, 2, 3, 5, 7, 2, 3, 2]);
+    assert!(matches!(steps.steps()[2], Step::Stencil { stored: 0, new: 1, passes: true, .. }));
     assert!(half(&steps.steps()[4]));
     let depth =
         |step: &Step| matches!(step, Step::Depth { depth: 0.45, stored: 0.4, passes: false });
