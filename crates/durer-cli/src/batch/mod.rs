@@ -18,6 +18,8 @@ pub use worker::work;
 use crate::batch_args::BatchArgs;
 use crate::failure::{Failure, in_words};
 use crate::memory;
+use crate::places::is_stream;
+use crate::watch;
 use entry::{Entry, Status};
 use journal::Journal;
 use pool::{Counts, Known, Pool};
@@ -47,7 +49,15 @@ pub fn run(args: &BatchArgs) -> Result<(), Failure> {
         Some(text) => Shard::parse(text, |name| std::env::var(name).ok())?,
         None => Shard::ALL,
     };
+    // A signal ends the wait for a manifest that somebody writes, and is noted while one is read from a file.
+    let waits = is_stream(manifest);
+    if !waits {
+        watch::note_signals();
+    }
     let rows = Rows::read(args, manifest, shard)?;
+    if waits {
+        watch::note_signals();
+    }
     let out = folder(&args.output)?;
     let mut journal = Journal::open(&out, shard)?;
     if args.restart {

@@ -99,7 +99,6 @@ impl<'a> Pool<'a> {
 
     /// Runs all rows, as many at a time as there are jobs.
     pub fn run(self, jobs: usize) -> Result<Counts, Failure> {
-        watch::note_signals();
         std::thread::scope(|scope| {
             let serving: Vec<_> = (0..jobs).map(|_| scope.spawn(|| self.serve())).collect();
             let (mut end_at, mut shown) = (None, Instant::now());
