@@ -62,7 +62,7 @@ fn line(input: &Input, least: usize) -> Result<&[DVec2]> {
 
 /// Returns an empty picture around control points, with these.
 fn before(control: &[DVec2]) -> Picture {
-    let mut picture = Picture::around(control.iter().copied(), 0.2);
+    let mut picture = Picture::around(control.iter().copied(), 0.4);
     picture.chain(control.to_vec(), Look::Pale);
     for (number, &p) in control.iter().enumerate() {
         picture.named(p, format!("P{number}"), Look::Window);

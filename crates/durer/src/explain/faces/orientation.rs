@@ -82,7 +82,7 @@ static COMPARED: Template = Template::new(
 /// Returns the faces of a pyramid, some of them turned.
 fn pyramid(turned: &[usize]) -> Vec<Vec<DVec3>> {
     let base = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
-    let tip = DVec3::new(2.0, 1.0, 3.0);
+    let tip = DVec3::new(2.5, 2.5, 3.0);
     let side = |k: usize| vec![base[k], base[(k + 1) % 4], tip];
     let mut faces: Vec<Vec<DVec3>> = (0..4).map(side).collect();
     faces.push(base.iter().rev().copied().collect());
