@@ -34,7 +34,7 @@ impl<S> Tracer<S> for NoTrace {
     fn step(&mut self, _make: impl FnOnce() -> S) {}
 }
 
-/// Keeps the steps, up to a cap, and counts what it had to drop.
+/// Keeps the steps up to a cap, and counts those that it dropped.
 #[derive(Debug, Clone)]
 pub struct Recorder<S> {
     steps: Vec<S>,

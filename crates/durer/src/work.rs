@@ -30,7 +30,7 @@ const LARGE: u64 = 16 << 20;
 #[derive(Debug, Clone, Default)]
 pub struct Work(Option<Arc<Scope>>);
 
-/// A part of the work, with what is kept for it.
+/// A part of the work, and the memory that is kept for it.
 #[derive(Debug)]
 struct Scope {
     shared: Arc<Shared>,

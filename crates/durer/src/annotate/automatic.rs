@@ -1,4 +1,4 @@
-//! Sizes of the whole, and diameters of what is round.
+//! Sizes of the whole, and diameters of round parts.
 
 use super::board::Board;
 use super::center;
@@ -162,7 +162,7 @@ pub(super) fn circles(view: &Seen, rest: &mut Vec<&Feature>) -> Option<(Vec<Targ
         value.get_or_insert(2.0 * f.cylinder.radius);
         false
     });
-    // What lies behind a circle that has its dimension needs none.
+    // Parts behind a circle that has its dimension need none.
     rest.retain(|f| {
         let hidden = view.sight(f.cylinder.axis()) == Sight::EndOn;
         !(hidden && targets.iter().any(|t| t.center.distance(view.point(f.middle())) < 0.05))

@@ -53,8 +53,8 @@ fn stroke(points: Vec<DVec2>, pen: usize) -> Mark {
 }
 
 impl Board<'_> {
-    /// Returns a dimension line with its extension lines, arrows and text. What is too short for arrows has
-    /// them outside, and the text beside them if it is too long.
+    /// Returns a dimension line with its extension lines, arrows and text. Distances too short for arrows
+    /// have them outside, and the text beside them if it is too long.
     pub fn linear(&mut self, l: &Linear, said: &Said) -> Draft {
         let (style, thin, letters) = (self.style, self.thin(), self.letters());
         let along = reading(l.along);

@@ -80,7 +80,7 @@ fn lane_at(bounds: Rect, ends: [DVec2; 2], along: DVec2, side: Side, distance: f
     }
 }
 
-/// Returns the sides on which a dimension may stand, the nearest to what it measures first; only `wanted`,
+/// Returns the sides on which a dimension may be, the nearest to the measured part first; only `wanted`,
 /// where given.
 pub(super) fn sides(
     view: &Seen,

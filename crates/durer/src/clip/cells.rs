@@ -48,13 +48,13 @@ struct Cell {
 pub struct Piece {
     /// Number of the cell.
     pub cell: usize,
-    /// The part, and what was done to it.
+    /// The part, and the changes made to it.
     pub cut: Cut,
 }
 
 impl Cells {
-    /// Makes cells ready, each of valid polygons, as [`Rules::clean`] gives them. Nothing lies in a cell that encloses
-    /// nothing.
+    /// Makes cells ready, each of valid polygons, as [`Rules::clean`] gives them. A cell that encloses no area has no
+    /// contents.
     ///
     /// # Errors
     /// As [`Mask::polygons`].

@@ -86,7 +86,7 @@ pub struct Options {
     pub fit_areas: bool,
     /// Colour of the paper.
     pub background: Option<[u8; 4]>,
-    /// Room around each view for what is written beside it, millimetres, on top of the margin.
+    /// Room around each view for the text beside it, millimetres, on top of the margin.
     pub around: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The frame of a sheet and the block in its lower right corner that says what is drawn.
+//! The frame of a sheet and the title block in its lower right corner.
 
 use super::{Angle, Options, pen_index, scale_text, text_pen};
 use crate::curve::stroke_font;
@@ -26,7 +26,7 @@ const SCALE: f64 = 24.0;
 const UNIT: f64 = 18.0;
 const DATE: f64 = 28.0;
 const SYMBOL: f64 = 26.0;
-/// Height of the letters that say what a cell has, and of what it has.
+/// Height of the letters of a cell's label, and of its contents.
 const CAPTION: f64 = 1.8;
 const TEXT: f64 = 3.5;
 /// Space between a cell's border and its text.

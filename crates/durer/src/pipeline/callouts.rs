@@ -12,7 +12,7 @@ use crate::visibility::surface::setup::runs;
 /// Rows of the picture in which parts are looked for: what is narrower than a thousandth of it is not found.
 const ROWS: u32 = 1000;
 
-/// Marks what belongs to no part.
+/// Marks triangles that belong to no part.
 const NONE: u32 = u32::MAX;
 
 /// Finds for each kind of part a place where one of it is seen, as far from what is around it as can be, in plane

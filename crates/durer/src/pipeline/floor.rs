@@ -23,8 +23,8 @@ const TEXELS: u32 = 512;
 /// The darkest shadow.
 const DARKEST: f32 = 0.8;
 
-/// Shadows of what is up to so high over the floor, as parts of the reach, with their shares. What is
-/// higher throws a softer one.
+/// Shadows of parts up to these heights over the floor, as fractions of the reach, with their shares.
+/// Higher parts throw softer ones.
 const LEVELS: [(f64, f32); 4] = [(0.06, 0.3), (0.15, 0.3), (0.4, 0.25), (1.0, 0.15)];
 
 /// About how many cells a grid has along the larger side of a model.
@@ -100,7 +100,7 @@ pub fn add_axes(scene: &mut Scene, model: &Aabb) {
     }
 }
 
-/// 1, 2 or 5 times a power of ten, at most the length; `None` for what is not a length.
+/// 1, 2 or 5 times a power of ten, at most the length; `None` for a word that is not a length.
 fn round_length(length: f64) -> Option<f64> {
     if !(length.is_finite() && length > 0.0) {
         return None;

@@ -3,7 +3,7 @@
 use crate::math::DVec2;
 use crate::target::drawing::Line;
 
-/// A straight piece of a line, and what is known of it.
+/// A straight piece of a line, and its properties.
 pub type Known<K> = (K, [DVec2; 2]);
 
 /// Returns the runs of a line whose pieces, in their order, have the same key. A closed line whose last run

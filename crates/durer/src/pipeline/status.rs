@@ -135,7 +135,7 @@ fn other_color(background: Background) -> Vec4 {
     Vec4::new(ink.x, 0.5, 1.0 - ink.z, 1.0)
 }
 
-/// Returns what the places of the vertices tell; `None` if some may be seen.
+/// Returns the findings from the vertices' positions; `None` if some may be seen.
 fn status_of_vertices(scene: &Scene, view: &View) -> Option<Status> {
     let mut places = Places::new(view);
     places.add(scene);

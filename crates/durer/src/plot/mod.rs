@@ -116,7 +116,7 @@ struct Ink {
     color: [u8; 4],
 }
 
-/// A line with what it is drawn in.
+/// A line with its pen.
 type Inked = (Line, Ink);
 
 /// Plots a surface.

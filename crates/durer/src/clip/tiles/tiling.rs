@@ -80,7 +80,7 @@ pub struct Subject<'a> {
 pub enum Reach {
     /// All of it lies where tiles are, or in a neighbouring world.
     Within,
-    /// Some of it, or all, lies nearer to a pole than the tiles.
+    /// Some or all of it is nearer to a pole than the tiles reach.
     BeyondLatitudes,
     /// More than four worlds away.
     TooFar,

@@ -4,7 +4,7 @@ use super::Tile;
 use crate::Result;
 use crate::parallel;
 
-/// Something that lies in tiles, or a part of it.
+/// A feature that lies in tiles, or a part of it.
 pub trait Content: Send + Sync + Sized {
     /// Returns the parts in some tiles, which lie in the tile where this part comes from; `None` if
     /// nothing is.

@@ -167,7 +167,7 @@ impl State {
         table
     }
 
-    /// Draws the list that goes in, the border as it is drawn through, and what came out.
+    /// Draws the list that goes in, the whole line of the border, and the list that comes out.
     fn picture(&self) -> Picture {
         let mut picture = before(&self.ring, &self.window);
         picture.ring(self.list.clone(), Look::First);

@@ -74,7 +74,7 @@ static BACKGROUND: Template = Template::new(
 
 const SUBPIXELS: u32 = 4;
 
-/// Fragments of the pixel, and what each has got.
+/// Fragments of the pixel, and the share that each has got.
 struct State {
     fragments: Vec<Fragment>,
     weights: Vec<Option<f64>>,

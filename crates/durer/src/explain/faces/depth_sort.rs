@@ -189,7 +189,7 @@ impl Sorting {
     }
 }
 
-/// Returns what a test has found.
+/// Returns the finding of a test.
 fn why(test: Test) -> Word {
     match test {
         Test::Depths => Word::new("their depths are apart", "die Tiefen sind getrennt"),

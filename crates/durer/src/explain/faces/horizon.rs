@@ -93,7 +93,7 @@ static HORIZON: Template = Template::new(
     "In Spalte {column} liegen die Horizonte jetzt bei {lower} und {upper}.",
 );
 
-/// The curves, the two arrays, and what is drawn.
+/// The curves, the two arrays, and the drawn pieces.
 struct State {
     curves: Vec<Curve>,
     horizons: Vec<[f64; 2]>,

@@ -72,7 +72,7 @@ static DIVIDE: Template = Template::new(
     "No rule holds: the window is divided in four at {at}.",
     "Keine Regel gilt: Das Fenster wird bei {at} in vier geteilt.",
 );
-/// Windows that wait, and what is decided.
+/// Windows that wait, and the decisions so far.
 struct Windows {
     scene: Scene,
     triangles: Triangles,

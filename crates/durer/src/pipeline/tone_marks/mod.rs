@@ -1,8 +1,8 @@
 //! Tones of a drawing by marks that follow the surfaces: lines along their curvature, or dots.
 //!
-//! What is seen, how it is turned and how light it is comes from a picture by the z-buffer, a few pixels for each
-//! mark, so marks end within a fraction of a pen's width of where surfaces do. O(pixels), and what
-//! [`crate::curve::streamlines`] and [`crate::raster::stipple`] take.
+//! Visibility, direction and lightness come from a picture by the z-buffer, a few pixels for each mark, so marks
+//! end within a fraction of a pen's width of where surfaces do. O(pixels), and what [`crate::curve::streamlines`]
+//! and [`crate::raster::stipple`] take.
 
 mod bent;
 mod branches;

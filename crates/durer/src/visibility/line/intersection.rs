@@ -300,7 +300,7 @@ fn spread(v: u32) -> u32 {
     (v | v << 2) & 0x0924_9249
 }
 
-/// On which side of the plane of a, b, c the point lies; its sign is exact.
+/// The side of the plane of a, b, c on which the point lies; its sign is exact.
 fn side([a, b, c]: &[DVec3; 3], p: DVec3) -> f64 {
     let coord = |p: &DVec3| robust::Coord3D { x: p.x, y: p.y, z: p.z };
     robust::orient3d(coord(a), coord(b), coord(c), coord(&p))

@@ -3,7 +3,7 @@
 use super::page::{GridPoint, Projected, Vertex};
 use crate::visibility::object::Faces;
 
-/// Half the length of a cross's arms, as a part of the larger side of what the view shows.
+/// Half the length of a cross's arms, as a part of the view's larger side.
 const ARM: f64 = 0.0025;
 
 /// The longest arm in steps, so that crosses stay where coordinates are exact.

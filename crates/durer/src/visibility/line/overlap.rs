@@ -140,8 +140,8 @@ fn under(piece: &Piece, other: &Piece, how: Near<'_>) -> Option<Gone> {
     lies.then_some(common)
 }
 
-/// Adds the parts of a piece outside the sorted parts. It ends at the ends of what it lay on, if that turns it
-/// by little.
+/// Adds the parts of a piece outside the sorted parts. It ends at the ends of the lines that it lay on, if
+/// that turns it by little.
 fn rest(piece: &Piece, gone: &[Gone], sliver: f64, kept: &mut Vec<Piece>) {
     let length = piece.length();
     let at = |s: f64| {
@@ -204,7 +204,7 @@ mod tests {
             let how = Near { beneath: 200.0, corners: &corners, ..near(2.0, 64.0) };
             drawn_once(vec![line(ends, 1), seen], how)[1..].to_vec()
         };
-        // Beside it, and a little longer; from it to what lies beside it; and what is longer by more.
+        // Beside it, and a little longer; from it to what lies beside it; and longer ones by more.
         assert_eq!(left([[100, 150], [10_100, 150]]), []);
         assert_eq!(left([[3000, 0], [3000, 180]]), []);
         assert_eq!(left([[100, 150], [12_000, 150]]), [line([[10_000, 150], [12_000, 150]], 1)]);

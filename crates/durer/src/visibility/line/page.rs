@@ -54,7 +54,7 @@ pub struct Page {
     pub(super) step: f64,
     /// The middle of the page, in steps.
     pub(super) origin: DVec2,
-    /// The larger side of what is drawn, in steps.
+    /// The larger side of the drawing, in steps.
     pub(super) extent: f64,
     /// Depths closer than this are one, in steps.
     pub(super) touching: f64,

@@ -153,7 +153,7 @@ impl Turns {
         self.sharp.iter().for_each(|v| closed[*v as usize] = true);
         for turn in &self.coarse {
             let [a, b] = turn.ends.map(|v| lines.first(v));
-            // What is joined already is a loop.
+            // Ends that are joined already make a loop.
             let shut = a == b || closed[a as usize] || closed[b as usize];
             lines.0[a.max(b) as usize] = a.min(b);
             closed[a.min(b) as usize] = shut;

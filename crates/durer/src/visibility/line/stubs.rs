@@ -460,7 +460,7 @@ mod tests {
         // Side by side, both from the left, they are two.
         let beside = vec![pieces[0], smooth([1000, 60_000], [498_000, 1500])];
         assert_eq!(chains_of(&without_stubs(beside, 10_000.0, 10.0)), 2);
-        // What is short is not a line that goes on.
+        // A short piece is not a line that goes on.
         let short = piece([507_000, 1900], [498_000, 1500], false);
         let sharp = vec![piece([0, 0], [500_000, 0], false), short];
         assert_eq!(chains_of(&without_stubs(sharp, 10_000.0, 10.0)), 2);

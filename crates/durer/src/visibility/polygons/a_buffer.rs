@@ -161,7 +161,7 @@ pub fn weights(fragments: &[Fragment], t: &mut impl Tracer<Step>) -> (Vec<f64>, 
     let mut order: Vec<usize> = (0..fragments.len()).collect();
     order.sort_by(|&i, &j| fragments[i].z[0].total_cmp(&fragments[j].z[0]).then(i.cmp(&j)));
     let mut weights = vec![0.0; fragments.len()];
-    // What each sub-pixel still has to give away.
+    // The share that each sub-pixel still has to give away.
     let mut left = [1.0_f64; 16];
     for (place, &fragment) in order.iter().enumerate() {
         let own = &fragments[fragment];

@@ -65,7 +65,7 @@ impl Default for Options {
     }
 }
 
-/// On which side of a node's plane a polygon lies.
+/// The side of a node's plane on which a polygon lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Side {
     /// Side that the normal points to.
@@ -119,7 +119,7 @@ pub enum Step {
         /// The eye's side.
         eye: Side,
     },
-    /// A piece is painted over what is there.
+    /// A piece is painted over the pixels there.
     Paint {
         /// The piece.
         piece: u32,

@@ -206,7 +206,7 @@ impl Row<'_> {
         }
     }
 
-    /// Finds what is seen where the same polygons are in.
+    /// Finds the visible polygon where the same polygons are active.
     fn span(
         &self,
         inside: &[u32],

@@ -44,7 +44,7 @@ pub enum Step {
         /// Its index.
         face: u32,
     },
-    /// A pixel that the face covers: its depth is compared with what is stored.
+    /// A pixel that the face covers: its depth is compared with the stored one.
     Compare {
         /// Column and row.
         pixel: [u32; 2],

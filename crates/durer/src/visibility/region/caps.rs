@@ -107,7 +107,7 @@ struct Cap {
     /// At least one.
     faces: Vec<Face>,
     plane: Plane,
-    /// True if it is seen from the side on which the model lies.
+    /// True if it is seen from the model's side.
     from_within: bool,
 }
 

@@ -28,7 +28,7 @@ struct Key {
     color: [u8; 4],
 }
 
-/// The labels of a map's faces, and what they stand for.
+/// The labels of a map's faces, and their meaning.
 pub struct Paint {
     shown: Vec<Option<Shown>>,
     /// For each face of the map an index into `keys`, or [`NOTHING`].

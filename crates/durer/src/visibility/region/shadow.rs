@@ -109,7 +109,7 @@ fn is_above(plane: &Plane, from: From) -> bool {
     }
 }
 
-/// A light, and what it sees.
+/// A light, and the faces that it sees.
 struct Lamp {
     from: From,
     /// One picture, or six around a light among the faces.

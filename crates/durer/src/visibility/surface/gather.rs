@@ -22,7 +22,7 @@ impl Gathered {
         self.0[lane % 16] = [v.x, v.y, v.z, 0.0];
     }
 
-    /// Sets the vector of a point to what it is elsewhere.
+    /// Sets the vector of a point to its value elsewhere.
     #[inline(always)]
     pub fn copy(&mut self, lane: usize, from: &Self) {
         self.0[lane % 16] = from.0[lane % 16];

@@ -33,7 +33,7 @@ pub struct SurfaceInput<'a> {
 /// Stage of what a method makes of the triangles.
 pub(crate) const METHOD: &str = "lists of the method";
 
-/// Primitives that are set up between two looks at what they take.
+/// Primitives that are set up between two checks of their memory.
 const STEP: usize = 1 << 18;
 
 impl<'a> SurfaceInput<'a> {

@@ -130,13 +130,13 @@ pub(crate) fn mean<T: Ord>(samples: &mut [T], mut color: impl FnMut(&T) -> Vec4)
     parts.fold(Vec4::ZERO, |sum, same| sum + color(&same[0]) * (same.len() as f32 * share))
 }
 
-/// Returns the linear, premultiplied colour of what is opaque at a pixel; `behind` where nothing
-/// is.
+/// Returns the linear, premultiplied colour of the opaque surface at a pixel; `behind` where
+/// nothing is.
 pub(crate) fn below_color(lit: &mut Lit<'_>, item: u32, behind: Vec4, [x, y]: [i32; 2]) -> Vec4 {
     if item == NO_ITEM { behind } else { lit.color(item, x, y).truncate().extend(1.0) }
 }
 
-/// Returns an item over what is there; linear, premultiplied.
+/// Returns an item laid over the colour there; linear, premultiplied.
 pub(crate) fn over(lit: &mut Lit<'_>, item: u32, under: Vec4, [x, y]: [i32; 2]) -> Vec4 {
     let over = premultiply(lit.color(item, x, y));
     over + under * (1.0 - over.w)

@@ -139,7 +139,7 @@ pub enum Background {
 
 impl Background {
     /// Returns the linear colour in which lines and points without a material are seen against it:
-    /// dark on light, light on dark. What is transparent is taken to be light.
+    /// dark on light, light on dark. Transparent parts count as light.
     pub fn ink(&self) -> Vec3 {
         let mean = match *self {
             Self::Color(color) => color,
@@ -154,5 +154,5 @@ impl Background {
 /// sRGB (38, 41, 48).
 const DARK_INK: Vec3 = Vec3::new(0.0194, 0.0222, 0.0296);
 
-/// sRGB (231, 231, 231): what a surface without a material has.
+/// sRGB (231, 231, 231): the look of a surface without a material.
 const LIGHT_INK: Vec3 = Vec3::splat(0.8);

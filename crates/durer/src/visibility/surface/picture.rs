@@ -112,7 +112,7 @@ impl<'a> Picture<'a> {
     /// Writes row `y` of the colour plane from linear, premultiplied colours.
     pub fn write_sums(&mut self, y: u32, sums: &[Vec4]) {
         let row = self.framebuffer.color.row_mut(y);
-        // Neighbours are often alike: the background, what one colour fills.
+        // Neighbours are often alike: the background, if one colour fills it.
         let (mut last, mut code) = (Vec4::ZERO, encode_premultiplied(Vec4::ZERO));
         for (to, &sum) in row.iter_mut().zip(sums) {
             if sum != last {

@@ -47,7 +47,7 @@ impl Sight {
         [x as f32 + 0.5 - self.middle[0], y as f32 + 0.5 - self.middle[1]]
     }
 
-    /// Towards the eye from what is seen at a pixel's centre, world axes.
+    /// Towards the eye from the point seen at a pixel's centre, world axes.
     #[inline(always)]
     pub fn towards_eye(&self, pixel: [i32; 2]) -> Vec3 {
         let [x, y] = self.place(pixel);

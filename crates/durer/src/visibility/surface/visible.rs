@@ -59,7 +59,7 @@ impl Visible {
         (first..).zip(rows).map(|(y, (items, depths))| (y, items, depths))
     }
 
-    /// Writes a sample, whatever was there; what is beyond the far plane is not seen.
+    /// Writes a sample, whatever was there; parts beyond the far plane are not seen.
     #[inline]
     pub fn put(&mut self, x: i32, y: i32, depth: f32, item: u32) {
         if depth < 1.0 {
@@ -125,7 +125,7 @@ pub fn with_lighting<R>(
     })
 }
 
-/// Lights what is visible at the pixels' centres into all planes that the framebuffer has.
+/// Lights the surfaces visible at the pixels' centres into all planes that the framebuffer has.
 pub fn write(
     visible: &Visible,
     lighting: Lighting<'_>,

@@ -164,7 +164,7 @@ impl Touches {
         });
     }
 
-    /// Looks whether the first point of either edge lies on the other one.
+    /// Checks whether the first point of either edge lies on the other one.
     #[inline]
     fn look(&mut self, ours: &Edge, theirs: &Edge, lines: &[[DVec2; 2]]) {
         let ([p, q], [a, b]) = (ours.ends, theirs.ends);

@@ -255,8 +255,8 @@ fn where_any(count: u32, is: impl Fn(u32) -> bool) -> Vec<bool> {
     if (0..count).any(&is) { (0..count).map(is).collect() } else { Vec::new() }
 }
 
-/// Returns which faces hide what is behind them. Of a closed body seen from outside those that show
-/// their front do, for whatever lies behind a back lies behind a front too; of others all.
+/// Returns the faces that hide others behind them. Of a closed body seen from outside those that
+/// show their front do, for whatever lies behind a back lies behind a front too; of others all.
 fn hiding(faces: &Faces, bodies: &Bodies, facing: &Facing, projected: &Projected) -> Vec<bool> {
     let mut front_only: Vec<bool> = bodies.all().iter().map(|b| b.closed).collect();
     if projected.any_cut() {

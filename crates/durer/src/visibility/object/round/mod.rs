@@ -108,7 +108,7 @@ fn normals(faces: &Faces, bodies: &Bodies, extent: f64) -> Vec<DVec3> {
     (0..faces.len() as u32).map(|item| of(item).unwrap_or(DVec3::ZERO)).collect()
 }
 
-/// The search, with what it has found.
+/// The search and its findings.
 struct Finder<'a> {
     faces: &'a Faces,
     /// Unit normals; 0 for triangles that are too thin to have one.

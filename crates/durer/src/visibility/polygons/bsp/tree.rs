@@ -28,7 +28,7 @@ struct Cut {
     before: Option<u32>,
 }
 
-/// A plane, what is in it, and the halves.
+/// A plane, the polygons in it, and the halves.
 #[derive(Debug, Clone)]
 struct Node {
     plane: Plane,
@@ -134,7 +134,7 @@ impl Tree {
         node
     }
 
-    /// Shares a list out to both sides of a node's plane; what is in it stays there.
+    /// Shares a list out to both sides of a node's plane; polygons in it stay there.
     fn divide(
         &mut self,
         node: u32,

@@ -4,7 +4,7 @@ use super::faces::{Place, float};
 use super::planar::{Planar, cycles, walk};
 use crate::clip::polygon::overlay::lattice::cross;
 
-/// The label of what is not to be shown.
+/// The label of faces that are not shown.
 pub const NOTHING: u32 = u32::MAX;
 
 /// Joined faces of the planar map.

@@ -32,7 +32,7 @@ pub struct Planar {
 }
 
 impl Planar {
-    /// Nodes the segments and finds what they bound.
+    /// Nodes the segments and finds the faces that they bound.
     ///
     /// # Errors
     /// Those of the work.

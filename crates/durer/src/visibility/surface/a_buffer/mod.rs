@@ -4,9 +4,9 @@
 //! look-up as in E. Fiume, A. Fournier, L. Rudolph, *A Parallel Scan Conversion Algorithm with
 //! Anti-Aliasing*, SIGGRAPH 1983. Image space. Every triangle leaves in each pixel that it touches a
 //! fragment: the mask of the sub-pixels it covers, the exact area, the smallest and the largest
-//! depth. A pixel's fragments are sorted front to back; masks tell what is seen of each. Where the
-//! depths of two overlap within the pixel, a priority mask gives the sub-pixels at which one is in
-//! front of the other, so penetrating faces meet in a clean line. Blended surfaces need no order.
+//! depth. A pixel's fragments are sorted front to back; masks give the visible part of each. Where
+//! the depths of two overlap within the pixel, a priority mask gives the sub-pixels at which one is
+//! in front of the other, so penetrating faces meet in a clean line. Blended surfaces need no order.
 //!
 //! Deviations: opaque fragments weigh by their exact area, masks only tell what part of it is hidden;
 //! pixels with blended fragments are composed at each sub-pixel. The picture is made row by row.
@@ -145,7 +145,7 @@ pub enum Step {
         /// 0 … 1; with its alpha.
         share: f32,
     },
-    /// The background gets what is left of a pixel.
+    /// The background gets the rest of a pixel.
     Background {
         /// The column.
         x: i32,

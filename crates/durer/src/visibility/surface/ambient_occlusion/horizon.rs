@@ -109,7 +109,7 @@ impl<S: Simd> Vec3x16<S> {
     }
 }
 
-/// Sixteen pixels of one phase of a row, and what they show.
+/// Sixteen pixels of one phase of a row, and their items.
 #[derive(Clone, Copy)]
 struct Points<S: Simd> {
     x: i32,
@@ -268,7 +268,7 @@ fn highest<S: Simd>(
     let mut highest = low;
     for [dx, dy] in pixels {
         let (x, y) = (points.x + dx, points.y + dy);
-        // What is below 0 is far above the height.
+        // Numbers below 0 become larger than the height.
         if y as u32 >= planes.height {
             continue;
         }

@@ -53,9 +53,9 @@ pub struct Options {
     pub strength: f32,
 }
 
-/// Darkens a picture by the occlusion of what it shows. `depth` is its window depth, 1 where nothing is,
-/// `normal` the unit normals in the world, both at the pixels' centres. Light is taken away by the square of what gets
-/// there, as painters do: where things touch it is dark, and open surfaces stay as they are.
+/// Darkens a picture by the occlusion of its surfaces. `depth` is its window depth, 1 where nothing is, `normal` the
+/// unit normals in the world, both at the pixels' centres. Light is taken away by the square of what gets there, as
+/// painters do: where things touch it is dark, and open surfaces stay as they are.
 ///
 /// The same bytes at every SIMD level and for any number of threads.
 pub fn apply(

@@ -9,7 +9,7 @@ use crate::view::View;
 /// The side of the pattern by which slices are turned, in pixels.
 pub const PATTERN: usize = 4;
 
-/// Looks farther than this many pixels away would miss what is near.
+/// Samples farther than this many pixels away would miss near surfaces.
 pub const FARTHEST: u32 = 256;
 
 /// Pixels that are worked on together.

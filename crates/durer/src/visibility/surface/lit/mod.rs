@@ -30,7 +30,7 @@ use lighting::{LookedUp, RunInfo};
 /// Sets of texture coordinates that are examined.
 const TEX_COORD_SETS: usize = 4;
 
-/// From where a point of an item is seen.
+/// The viewpoint of an item's point.
 #[derive(Debug, Clone, Copy)]
 pub enum Seen {
     /// From the eye, at a pixel's centre.
@@ -44,7 +44,7 @@ pub enum Seen {
     },
 }
 
-/// One thread's way from items to colours.
+/// Lights items, on one thread.
 pub struct Lit<'a> {
     shared: Lighting<'a>,
     triangles: Triangles<'a>,
@@ -79,7 +79,7 @@ impl<'a> Lit<'a> {
         Self { shared, triangles, part, latest: None, parallel_view, sight, reflected: None }
     }
 
-    /// Returns the run of an item, and what it is made of.
+    /// Returns the run of an item and its material.
     #[inline(always)]
     fn run_info(&mut self, item: u32) -> RunInfo<'a> {
         match self.latest {
@@ -95,8 +95,8 @@ impl<'a> Lit<'a> {
         info
     }
 
-    /// Has the triangle of an item made ready that will be requested after [`Self::make_ready`]; several at a
-    /// time is faster than each when it is needed.
+    /// Requests the triangle of an item, which [`Self::make_ready`] then sets up with all others that were
+    /// requested: several at a time are faster than each alone.
     #[inline(always)]
     pub fn expect(&mut self, item: u32) {
         let (plain, run) = match &self.latest {
@@ -112,7 +112,7 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// Makes ready what is expected.
+    /// Makes the expected triangles ready.
     pub fn make_ready(&mut self) {
         self.triangles.make_ready();
     }

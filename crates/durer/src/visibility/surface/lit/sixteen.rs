@@ -168,7 +168,7 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// Returns whether lights ask where points lie.
+    /// Returns whether lights need the positions of points.
     #[inline(always)]
     pub(super) fn with_positions(&self) -> bool {
         self.with_shadows() || !self.shared.lights.points.is_empty()

@@ -205,7 +205,7 @@ pub fn render(
     });
 }
 
-/// The rays from the eye alone: what is seen, without light.
+/// The rays from the eye alone: the visible surfaces, without light.
 pub struct PrimaryRays<'a> {
     input: &'a SurfaceInput<'a>,
     rays: ScreenRays<'a>,
@@ -241,7 +241,7 @@ const BAND: i32 = 16;
 
 /// The rows that one thread has worked on.
 struct Band {
-    /// Depth and item of what is nearest at pixels' centres.
+    /// Depth and item of the nearest surface at pixels' centres.
     hits: Vec<([i32; 2], (f32, u32))>,
     /// Empty if rays are only cast to find what is visible.
     colors: Vec<[u8; 4]>,

@@ -1,4 +1,4 @@
-//! Light on what a ray hits: shadows, mirror images, refraction.
+//! Light on the surface that a ray hits: shadows, mirror images, refraction.
 //!
 //! T. Whitted, *An Improved Illumination Model for Shaded Display*, CACM 1980. How much is reflected:
 //! C. Schlick, *An Inexpensive BRDF Model for Physically-based Rendering*, Eurographics 1994.

@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Source of a surface's fragments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Coverage {
-    /// Every fragment hides what is behind it.
+    /// Every fragment hides those behind it.
     Opaque,
     /// A fragment is there or not, by its alpha.
     Masked,

@@ -49,7 +49,7 @@ pub enum Behind {
     Negative,
 }
 
-/// Takes mesh space to homogeneous screen space, and says what is outside.
+/// Transforms mesh space to homogeneous screen space, and computes outcodes.
 #[derive(Debug, Clone, Copy)]
 pub struct Transform {
     pub clip_from_mesh: DMat4,
@@ -135,7 +135,7 @@ fn transform_eight<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 8], to: &mut [Sc
     let far = !hz.simd_le(hw).to_bitmask();
     let guard = simd.splat_f64x8(GUARD_BAND);
     let outside_guard = !(x.abs().simd_lt(guard) & y.abs().simd_lt(guard)).to_bitmask();
-    // Zero times what is not finite is NaN.
+    // Zero times an infinity is NaN.
     let sum = (hx + hy + hz + hw) * 0.0;
     let non_finite = !sum.simd_eq(zero).to_bitmask();
     let snap_scale = f64::from(SUBPIXELS);

@@ -7,7 +7,7 @@
 //! Coherence used: areas.
 //!
 //! Deviations: windows consist of whole samples, so their corners are samples and all relations are
-//! decided exactly, with the z-buffer's own coverage and depth. What a surrounding triangle hides is
+//! decided exactly, with the z-buffer's own coverage and depth. Triangles behind a surrounding one are
 //! dropped before a window is divided. Blended surfaces hide nothing: where they are, windows are divided
 //! until all that is left surrounds them, and a sample keeps a list of them, front to back until opaque.
 
@@ -342,7 +342,7 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Drops what is behind a surrounding triangle: the one whose farthest corner is nearest.
+    /// Drops triangles behind a surrounding one: the one whose farthest corner is nearest.
     fn drop_hidden(&self, window: &Window, entries: &mut Vec<Entry>) {
         let surrounding = entries.iter().filter(|e| e.surrounds);
         let mut best: Option<(f32, u32, u32)> = None;
@@ -417,7 +417,7 @@ impl<'a> Solver<'a> {
     /// Decides one sample by depth.
     fn decide(&mut self, entries: &[Entry], [x, y]: [i32; 2], t: &mut impl Tracer<Step>) {
         let n = self.grid.per_pixel();
-        // What is nearest of what is opaque, and of all.
+        // The nearest of the opaque surfaces, and of all.
         let [mut best, mut front]: [Option<(f32, u32, u32)>; 2] = [None, None];
         let place = self.visible.index(x, y);
         let first = self.glass.as_ref().map_or(0, |glass| glass.layers.len());

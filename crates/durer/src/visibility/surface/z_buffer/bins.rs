@@ -200,7 +200,7 @@ impl Sink for Sorter<'_> {
     }
 }
 
-/// Returns whether there is anything in each tile of the screen.
+/// Returns, for each tile of the screen, whether it has triangles.
 pub fn occupied(bins: &[Bins], fragments: &[Fragments], view: &View) -> Vec<bool> {
     let tiles = 0..TileGrid::new(view.width(), view.height()).count();
     let has_fragments = |tile: u32| !fragments.iter().all(|of_thread| of_thread.nothing_in(tile));

@@ -270,7 +270,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Draws what is in a tile of triangles that were sampled at once; gives whether there is anything.
+    /// Draws a tile's part of the triangles that were sampled at once; gives whether there is anything.
     fn draw_fragments(
         &self,
         planes: &mut [SamplePlane],

@@ -140,7 +140,7 @@ fn resolve_opaque<S: Simd>(
     }
 }
 
-/// Makes what a column of eight pixels shows ready to be lit.
+/// Makes the items that a column of eight pixels shows ready to be lit.
 #[inline(always)]
 fn expect_column<S: Simd>(
     simd: S,
@@ -297,7 +297,7 @@ fn add_mixed<S: Simd>(simd: S, row: &Row<'_>, queue: &mut PointQueue, lit: &mut 
     }
 }
 
-/// Adds what each item, and the background, has of the samples of a pixel.
+/// Adds the share of each item, and of the background, in the samples of a pixel.
 #[inline(always)]
 fn add_shares<S: Simd, const N: usize>(
     simd: S,

@@ -201,7 +201,7 @@ impl Survey {
         Ok(Binned { triangles, touching, counts: assembler.counts, _charge })
     }
 
-    /// Tells what is seen of all pieces.
+    /// Returns the visible triangles of all pieces.
     ///
     /// # Errors
     /// [`Error::Memory`] where the budget has no room for the list.

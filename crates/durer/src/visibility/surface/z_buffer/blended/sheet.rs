@@ -11,7 +11,7 @@ use fearless_simd::{Simd, u32x16};
 
 /// The item of each sample of a tile that a triangle covers and nothing opaque hides.
 ///
-/// What is covered twice keeps its first item.
+/// Pixels covered twice keep their first item.
 pub struct Sheet {
     /// Laid out as [`super::super::tile::SamplePlane::item`], plane after plane.
     items: Vec<u32>,

@@ -200,7 +200,7 @@ pub struct Fragments {
 }
 
 impl Fragments {
-    /// Makes room for what is in this many tiles, of pixels with one or four samples.
+    /// Makes room for this many tiles, of pixels with one or four samples.
     pub fn have(&mut self, tiles: usize, samples: usize) {
         if samples == 1 { self.one.have(tiles) } else { self.four.have(tiles) }
     }

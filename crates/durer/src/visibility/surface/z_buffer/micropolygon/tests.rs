@@ -59,7 +59,7 @@ fn nearest(
         Fragments::draw(simd, fragments, &mut planes[0], None, tile);
         rasterize(simd, &mut planes, [at, size], bins.of_tile(tile), None::<&mut AllPass>);
     });
-    // What is beyond the border means nothing.
+    // Values beyond the border mean nothing.
     let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (y * TILE + x) as usize));
     let count = samples.offsets().len();
     let samples = pixels.flat_map(|pixel| count * pixel..count * (pixel + 1));

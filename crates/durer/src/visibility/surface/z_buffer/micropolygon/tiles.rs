@@ -59,7 +59,7 @@ impl<T> Tiles<T> {
         (self.room * size_of::<T>() + self.by_tile.capacity() * size_of::<Blocks<T>>()) as u64
     }
 
-    /// Returns what is in a tile, block by block, with the upper bits of its items.
+    /// Returns the items in a tile, block by block, with their upper bits.
     pub fn of(&self, tile: u32) -> impl Iterator<Item = (u32, &[T])> + '_ {
         self.by_tile.get(tile as usize).into_iter().flat_map(|Blocks { full, open, upper }| {
             let full = full.iter().map(|(upper, block)| (*upper, block.as_slice()));
