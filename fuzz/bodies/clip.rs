@@ -4,7 +4,7 @@
 use arbitrary::{Result, Unstructured};
 use durer::clip::line::{LineClipper, Segment, batch};
 use durer::clip::polygon::overlay::{Options, overlay};
-use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, vatti};
+use durer::clip::polygon::{BooleanOp, PolygonClipper, Shapes, WindingRule, vatti};
 use durer::math::{DVec2, Rect};
 use durer::trace::NoTrace;
 
@@ -122,7 +122,7 @@ fn any_overlay(
 ) -> Result<()> {
     let kind = kind(u)?;
     let grid = if u.ratio(1, 4)? { Some(number(u, kind)?.abs()) } else { None };
-    let rules = [*u.choose(FillRule::ALL)?, *u.choose(FillRule::ALL)?];
+    let rules = [*u.choose(WindingRule::ALL)?, *u.choose(WindingRule::ALL)?];
     let options =
         Options { subject_rule: rules[0], clip_rule: rules[1], grid, ..Options::default() };
     let (a, b) = (shapes(u, kind)?, shapes(u, kind)?);

@@ -4,7 +4,7 @@
 
 use super::surfaces::{Bytes, camera, scene};
 use durer::annotate::{self, Along, Annotations, Place, Request, Shown, Side, Thread, What};
-use durer::clip::polygon::{FillRule, Shapes};
+use durer::clip::polygon::{Shapes, WindingRule};
 use durer::clip::simplify::{Coverage, LineSimplifier, coverage};
 use durer::clip::tiles::{Body, Feature, Options as TileOptions, Pyramid};
 use durer::curve::b_spline::Nurbs;
@@ -247,7 +247,7 @@ pub fn maps(data: &[u8]) {
     let mut areas = Shapes::new();
     areas.push_ring(scaled(&ring));
     let bodies = [Body::Points(scaled(&line)), Body::Areas(areas)];
-    let features = bodies.map(|body| Feature { layer: 0, body, fill: FillRule::EvenOdd });
+    let features = bodies.map(|body| Feature { layer: 0, body, fill: WindingRule::EvenOdd });
     let buffer = u32::from(bytes.next() % 64);
     let options = TileOptions { zooms: 0..=LAST, extent: 64, buffer, ..TileOptions::default() };
     let Ok(pyramid) = Pyramid::new(features.into(), options) else { return };

@@ -1,7 +1,7 @@
 //! Geometries one by one: clipped to a mask, or overlaid with another.
 
 use durer::clip::mask::{Cutter, Mask, Rules, Union};
-use durer::clip::polygon::{BooleanOp, FillRule};
+use durer::clip::polygon::{BooleanOp, WindingRule};
 use durer::geometry::Geometry;
 use durer::work::Work;
 
@@ -111,7 +111,7 @@ fn areas(
     let clean = |g: &Geometry| rules.clean(g).map(|made| made.area);
     let overlaid = clean(a).and_then(|a| {
         let b = clean(b)?;
-        rules.overlay(&a, &b.shapes, op, FillRule::EvenOdd)
+        rules.overlay(&a, &b.shapes, op, WindingRule::EvenOdd)
     });
     overlaid.map(|made| made.area.into_geometry()).map_err(|e| e.to_string())
 }

@@ -2,7 +2,7 @@
 
 use crate::answer::{Failure, FrameRequest, RunRequest};
 use crate::input::InputData;
-use durer::clip::polygon::{BooleanOp, FillRule};
+use durer::clip::polygon::{BooleanOp, WindingRule};
 use durer::explain::{
     self, Frame, Frames, Input, Language, Lesson, Options, Picture, json_string, picture_of_size,
 };
@@ -105,7 +105,7 @@ fn choices(lesson: &Lesson, input: &Input) -> Value {
     };
     let operations =
         BooleanOp::ALL.iter().map(|&op| (op.name(), Options { operation: op, ..default }));
-    let rules = FillRule::ALL.iter().map(|&rule| (rule.name(), Options { rule, ..default }));
+    let rules = WindingRule::ALL.iter().map(|&rule| (rule.name(), Options { rule, ..default }));
     json!({ "operations": distinct(operations.collect()), "rules": distinct(rules.collect()) })
 }
 

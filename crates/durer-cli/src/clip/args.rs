@@ -6,7 +6,7 @@ use crate::options::{RunningArgs, TileCoordinates};
 use crate::values;
 use clap::{Args, ValueHint};
 use durer::clip::mask::Algorithm;
-use durer::clip::polygon::{BooleanOp, FillRule};
+use durer::clip::polygon::{BooleanOp, WindingRule};
 use durer_formats::geo::GeoFormat;
 use std::path::PathBuf;
 
@@ -124,7 +124,7 @@ pub struct CuttingArgs {
     /// Fill rule that decides which points the polygons of IN and FILE enclose: even-odd, non-zero, positive (rings counter-clockwise),
     /// negative or abs-geq-two (two rings at least) [default: even-odd; of an SVG, the rule of its paths]
     #[arg(long, value_name = "RULE")]
-    pub fill_rule: Option<FillRule>,
+    pub fill_rule: Option<WindingRule>,
     /// Name of an algorithm [default: a fast one that is exact for the input]
     #[arg(long, value_name = "NAME", long_help = algorithm_help(), value_parser = algorithm)]
     pub algorithm: Option<Algorithm>,

@@ -10,7 +10,7 @@ use crate::layer::{open, words};
 use crate::messages::Messages;
 use durer::clip::cells::{self, Piece};
 use durer::clip::mask::Rules;
-use durer::clip::polygon::{FillRule, Shapes};
+use durer::clip::polygon::{Shapes, WindingRule};
 use durer_formats::geo::{Feature, Member};
 use rayon::prelude::*;
 use std::path::Path;
@@ -107,7 +107,7 @@ impl Job<'_> {
                 for Piece { cell, cut } in pieces {
                     if cut.geometry.is_some() {
                         let mut piece = Feature { geometry: cut.geometry, ..feature.clone() };
-                        piece.fill_rule = FillRule::EvenOdd;
+                        piece.fill_rule = WindingRule::EvenOdd;
                         piece.set_fields(&with_fields(feature.fields(), &cells.fields[cell]));
                         self.put(&mut writer, &mut piece)?;
                     }

@@ -8,7 +8,7 @@ use crate::input::display_name;
 use crate::layer::{open, words};
 use crate::messages::Messages;
 use durer::clip::mask::{Algorithm, Area, Mask, Rules};
-use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
+use durer::clip::polygon::{BooleanOp, Shapes, WindingRule};
 use durer_formats::geo::GeoFormat;
 use std::path::Path;
 
@@ -38,7 +38,7 @@ pub fn read(
     }
     messages.warnings(&display_name(path), reader.warnings());
     let rules = Rules {
-        fill: FillRule::Positive,
+        fill: WindingRule::Positive,
         grid: args.cutting.grid,
         work: args.running.work.clone(),
     };

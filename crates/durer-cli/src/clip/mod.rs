@@ -18,7 +18,7 @@ use crate::layer::{self, Fields, Shift, Sink, Source, failure, named_format, wor
 use crate::messages::Messages;
 use crate::places::is_stream;
 use durer::clip::mask::{Algorithm, Area, Cutter, Made, Mask, Rules};
-use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes};
+use durer::clip::polygon::{BooleanOp, PolygonClipper, Shapes, WindingRule};
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, System, Writer};
 use rayon::prelude::*;
 use report::Report;
@@ -147,7 +147,7 @@ fn check(args: &ClipArgs) -> Result<(), Failure> {
         return Err(Failure::Usage(format!("--algorithm {name} keeps the inside only")));
     }
     let ruled = args.cutting.grid.is_some()
-        || args.cutting.fill_rule.is_some_and(|rule| rule != FillRule::EvenOdd);
+        || args.cutting.fill_rule.is_some_and(|rule| rule != WindingRule::EvenOdd);
     if ruled && !algorithm.takes_rules() {
         let message =
             "takes polygons as they are; --grid and --fill-rule go with overlay and vatti";
@@ -446,7 +446,7 @@ impl Job<'_> {
                 self.report.add([&cut]);
                 if cut.geometry.is_some() {
                     feature.geometry = cut.geometry;
-                    feature.fill_rule = FillRule::EvenOdd;
+                    feature.fill_rule = WindingRule::EvenOdd;
                     self.put(&mut writer, &mut feature)?;
                 }
             }
@@ -478,7 +478,7 @@ impl Job<'_> {
             }
         }
         let op = self.args.cutting.op;
-        let rule = if op == BooleanOp::Xor { FillRule::EvenOdd } else { FillRule::Positive };
+        let rule = if op == BooleanOp::Xor { WindingRule::EvenOdd } else { WindingRule::Positive };
         let none = Shapes::new();
         let mask = mask.map_or(&none, Mask::shapes);
         let rules = Rules {

@@ -3,7 +3,7 @@
 use crate::options::RunningArgs;
 use crate::values;
 use clap::{Args, ValueEnum, ValueHint};
-use durer::clip::polygon::{BooleanOp, FillRule};
+use durer::clip::polygon::{BooleanOp, WindingRule};
 use durer::explain::Language;
 use durer::math::{DVec2, Rect};
 use std::path::PathBuf;
@@ -70,7 +70,7 @@ pub struct ExplainArgs {
     pub operation: BooleanOp,
     /// Rule for the inside of rings: even-odd or non-zero
     #[arg(long, value_name = "RULE", default_value = "even-odd", value_parser = rule)]
-    pub fill_rule: FillRule,
+    pub fill_rule: WindingRule,
     /// Threads and messages.
     #[command(flatten)]
     pub running: RunningArgs,
@@ -119,10 +119,10 @@ fn operation(name: &str) -> Result<BooleanOp, String> {
     }
 }
 
-fn rule(name: &str) -> Result<FillRule, String> {
+fn rule(name: &str) -> Result<WindingRule, String> {
     match name {
-        "even-odd" => Ok(FillRule::EvenOdd),
-        "non-zero" => Ok(FillRule::NonZero),
+        "even-odd" => Ok(WindingRule::EvenOdd),
+        "non-zero" => Ok(WindingRule::NonZero),
         _ => Err("it must be even-odd or non-zero".to_owned()),
     }
 }

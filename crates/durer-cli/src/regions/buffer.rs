@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::values;
 use clap::{Args, ValueEnum};
 use durer::clip::mask::Area;
-use durer::clip::polygon::{FillRule, Shapes};
+use durer::clip::polygon::{Shapes, WindingRule};
 use durer::raster::line::wide::buffer::{self, Options};
 use durer::raster::line::wide::{Cap, Join};
 use durer_formats::geo::crs::Crs;
@@ -106,7 +106,7 @@ pub fn run(args: &BufferArgs) -> Result<(), Failure> {
     };
     if !args.dissolve {
         let geometry = |f: &Feature, g: &Geometry| Ok((Area::flat(one(f, g)?).into_geometry(), ()));
-        return job.each(geometry, |_, feature, _, ()| feature.fill_rule = FillRule::EvenOdd);
+        return job.each(geometry, |_, feature, _, ()| feature.fill_rule = WindingRule::EvenOdd);
     }
     let mut all = Shapes::new();
     loop {

@@ -4,7 +4,7 @@ use super::{BATCH, FilesArgs, Job, Report};
 use crate::failure::Failure;
 use clap::Args;
 use durer::clip::mask::{Rules, match_points};
-use durer::clip::polygon::FillRule;
+use durer::clip::polygon::WindingRule;
 use durer_formats::geo::{Feature, Geometry};
 use rayon::prelude::*;
 
@@ -26,7 +26,7 @@ pub struct FixArgs {
     /// Fill rule that decides which points crossing rings enclose: even-odd, non-zero, positive (rings counter-clockwise), negative or
     /// abs-geq-two (two rings at least) [default: even-odd; of an SVG, the rule of its paths]
     #[arg(long, value_name = "RULE")]
-    pub rule: Option<FillRule>,
+    pub rule: Option<WindingRule>,
     /// Give neighbours the same points on shared borders: a point that only one of them has is added to the other if it
     /// is on the border up to the rounding of its coordinates
     ///
@@ -63,7 +63,7 @@ fn made(
 
 /// Takes note of a feature that is valid now.
 fn note(report: &mut Report, feature: &mut Feature, number: u64, changed: bool) {
-    feature.fill_rule = FillRule::EvenOdd;
+    feature.fill_rule = WindingRule::EvenOdd;
     if changed {
         let count = report.repaired.get_or_insert(0);
         *count += 1;

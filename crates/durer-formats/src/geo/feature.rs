@@ -1,6 +1,6 @@
 //! Features, as all formats of geodata share them.
 
-use durer::clip::polygon::FillRule;
+use durer::clip::polygon::WindingRule;
 use durer::geometry::Geometry;
 
 /// A member of a JSON object: its name and its value as the file writes them.
@@ -29,7 +29,7 @@ pub struct Feature {
     /// The number of the coordinate system, of EWKT, EWKB and files that tell it for all features.
     pub srid: Option<i32>,
     /// Fill rule of its polygons: even-odd, except for paths of an SVG.
-    pub fill_rule: FillRule,
+    pub fill_rule: WindingRule,
 }
 
 impl Feature {

@@ -1,7 +1,7 @@
 //! Features as SVG: what a plain viewer shows as a map.
 
 use super::{Feature, Geometry, Points, number};
-use durer::clip::polygon::FillRule;
+use durer::clip::polygon::WindingRule;
 use durer::math::{DVec2, Rect};
 use std::io::{self, Write};
 
@@ -64,7 +64,7 @@ fn write_feature(out: &mut impl Write, feature: &Feature, geometry: &Geometry) -
     if let Some(id) = id {
         write!(out, " id=\"{}\"", quick_xml::escape::escape(&id))?;
     }
-    if feature.fill_rule == FillRule::NonZero {
+    if feature.fill_rule == WindingRule::NonZero {
         out.write_all(b" fill-rule=\"nonzero\"")?;
     }
     out.write_all(b">")?;

@@ -2,7 +2,7 @@
 
 use super::Budget;
 use durer::clip::polygon::overlay::{self, EdgeId, Origin};
-use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
+use durer::clip::polygon::{BooleanOp, Shapes, WindingRule};
 use durer::curve::Contours;
 use durer::math::{DVec2, Orientation, orient2d};
 use durer::raster::triangulate;
@@ -71,7 +71,7 @@ pub(super) struct Resolved {
 pub(super) fn resolve(points: &[DVec2], budget: &mut Budget) -> Option<Resolved> {
     budget.spend(100 * points.len())?;
     let outline = Shapes::from_rings([points]);
-    let rule = overlay::Options::with_rule(FillRule::NonZero);
+    let rule = overlay::Options::with_rule(WindingRule::NonZero);
     let options = overlay::Options { origins: true, drop_collinear: true, ..rule };
     let union = BooleanOp::Union;
     let out = overlay::overlay(&outline, &Shapes::new(), union, &options, &mut NoTrace).ok()?;

@@ -1,6 +1,6 @@
 //! Geodata: all formats give back what they were given, and errors say where.
 
-use durer::clip::polygon::FillRule;
+use durer::clip::polygon::WindingRule;
 use durer::math::{DVec2, Rect};
 use durer_formats::geo::{
     Dimensions, Feature, GeoFormat, Geometry, Points, Reader, Writer, read_all,
@@ -305,9 +305,9 @@ fn fill_rules_of_svg_are_read_where_they_stand() {
          <path {path} fill-rule='nonzero' style='fill: red; fill-rule : evenodd'/><g><path {path}/></g>\
          <path {path} style='fill-rule:inherit'/></g><path {path} fill-rule='evenodd'/></svg>"
     );
-    let found: Vec<FillRule> =
+    let found: Vec<WindingRule> =
         read_all(text.as_bytes(), "").expect("read").0.iter().map(|f| f.fill_rule).collect();
-    let (odd, not) = (FillRule::EvenOdd, FillRule::NonZero);
+    let (odd, not) = (WindingRule::EvenOdd, WindingRule::NonZero);
     assert_eq!(found, [not, odd, not, odd, odd, odd, odd]);
 }
 
@@ -379,7 +379,7 @@ fn uses_of_svg_show_shapes_elsewhere() {
     let text = format!(
         "<svg fill-rule='nonzero'><defs>{shape}</defs><use href='#r' fill-rule='evenodd'/></svg>"
     );
-    assert_eq!(read_all(text.as_bytes(), "").expect("read").0[0].fill_rule, FillRule::EvenOdd);
+    assert_eq!(read_all(text.as_bytes(), "").expect("read").0[0].fill_rule, WindingRule::EvenOdd);
 }
 
 #[test]
@@ -444,7 +444,7 @@ fn declarations_of_svg_follow_css() {
         let (all, warnings) = read_all(text.as_bytes(), "").expect("read");
         (all[0].fill_rule, warnings.len())
     };
-    let (odd, not) = (FillRule::EvenOdd, FillRule::NonZero);
+    let (odd, not) = (WindingRule::EvenOdd, WindingRule::NonZero);
     for (style, expected) in [
         ("style='fill:red/*;*/;fill-rule:/**/evenodd'", (odd, 0)),
         ("style='fill-rule:evenodd ! important;fill-rule:nonzero'", (odd, 0)),

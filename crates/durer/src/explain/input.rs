@@ -1,7 +1,7 @@
 //! Inputs that algorithms are explained on: an example by name, or data of one's own.
 
 use super::words::Word;
-use crate::clip::polygon::{BooleanOp, FillRule};
+use crate::clip::polygon::{BooleanOp, WindingRule};
 use crate::math::{DVec2, DVec3, DVec4, Rect};
 use crate::{Error, Result};
 
@@ -55,7 +55,7 @@ pub struct Options {
     /// Operation on two regions.
     pub operation: BooleanOp,
     /// Rule that decides what is inside rings.
-    pub rule: FillRule,
+    pub rule: WindingRule,
 }
 
 impl Input {

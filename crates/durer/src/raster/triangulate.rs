@@ -7,7 +7,7 @@
 use earcut::Earcut;
 
 use crate::Result;
-use crate::clip::polygon::{BooleanOp, FillRule, Shapes, overlay};
+use crate::clip::polygon::{BooleanOp, Shapes, WindingRule, overlay};
 use crate::curve::Contours;
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
@@ -111,7 +111,7 @@ pub fn triangulate(polygon: &Contours, t: &mut impl Tracer<Step>) -> Triangulati
 /// polygons are triangulated one after the other.
 ///
 /// ```
-/// use durer::clip::polygon::FillRule;
+/// use durer::clip::polygon::WindingRule;
 /// use durer::curve::Contours;
 /// use durer::math::DVec2;
 /// use durer::raster::triangulate::triangulate_by_rule;
@@ -122,9 +122,9 @@ pub fn triangulate(polygon: &Contours, t: &mut impl Tracer<Step>) -> Triangulati
 /// let mut contours = Contours::polygon(square(0.0));
 /// contours.push(square(1.0), true);
 /// let area = |rule| triangulate_by_rule(&contours, rule, &mut NoTrace).map(|triangles| triangles.area());
-/// assert_eq!(area(FillRule::EvenOdd)?, 2.0);
-/// assert_eq!(area(FillRule::NonZero)?, 3.0);
-/// assert_eq!(area(FillRule::AbsGeqTwo)?, 1.0);
+/// assert_eq!(area(WindingRule::EvenOdd)?, 2.0);
+/// assert_eq!(area(WindingRule::NonZero)?, 3.0);
+/// assert_eq!(area(WindingRule::AbsGeqTwo)?, 1.0);
 /// # Ok::<(), durer::Error>(())
 /// ```
 ///
@@ -132,7 +132,7 @@ pub fn triangulate(polygon: &Contours, t: &mut impl Tracer<Step>) -> Triangulati
 /// As [`overlay()`]: for points that are not finite, or are too many.
 pub fn triangulate_by_rule(
     contours: &Contours,
-    rule: FillRule,
+    rule: WindingRule,
     t: &mut impl Tracer<Step>,
 ) -> Result<Triangulation> {
     let mut rings = Shapes::new();

@@ -2,13 +2,13 @@
 
 use crate::scenes::{options, soup};
 use durer::Error;
-use durer::clip::polygon::{BooleanOp, FillRule, Shapes, overlay};
+use durer::clip::polygon::{BooleanOp, Shapes, WindingRule, overlay};
 use durer::curve::{Path, PathElement};
 use durer::math::DVec2;
 use durer::pipeline::{
     DrawOptions, DrawStyle, RenderOptions, Shadows, SurfaceMethod, draw, render,
 };
-use durer::raster::coverage::FillRule as Filled;
+use durer::raster::coverage::FillRule;
 use durer::raster::line::wide::{Cap, Stroke, buffer};
 use durer::raster::paint::{Canvas, Options, Paint};
 use durer::scene::Scene;
@@ -220,7 +220,7 @@ fn overlays_and_buffers_refuse_crossings_that_do_not_fit() {
     }
     let work = Work::with_budget(1 << 20, "the budget");
     let options = buffer::Options { distance: 1e5, work, ..Default::default() };
-    let error = buffer::of_polygons(&ring, FillRule::EvenOdd, &options).unwrap_err();
+    let error = buffer::of_polygons(&ring, WindingRule::EvenOdd, &options).unwrap_err();
     assert!(stage(&error).contains("of the overlay"), "{error}");
 }
 
@@ -233,9 +233,9 @@ fn layers_of_groups_and_clips_are_refused_where_they_do_not_fit() {
         let circle = Path::circle(DVec2::new(100.0, 32.0), 40.0);
         let paint = Paint::Color([9, 9, 9, 255]);
         for _ in 0..200 {
-            if clips { canvas.push_clip(&circle, Filled::NonZero) } else { canvas.push_group() }
+            if clips { canvas.push_clip(&circle, FillRule::NonZero) } else { canvas.push_group() }
         }
-        canvas.fill(&circle, Filled::NonZero, &paint, 1.0);
+        canvas.fill(&circle, FillRule::NonZero, &paint, 1.0);
         let mut target = Pixels::new(200, 64, [0; 4]);
         let error = canvas.render(&mut target).unwrap_err();
         assert_eq!(stage(&error), "layers of groups and clip paths");

@@ -2,7 +2,7 @@
 
 use durer::clip::cells::Cells;
 use durer::clip::mask::{Rules, Union, is_valid, match_points};
-use durer::clip::polygon::{FillRule, Shapes};
+use durer::clip::polygon::{Shapes, WindingRule};
 use durer::clip::simplify::{Amount, Dropped, LineSimplifier, simplify};
 use durer::clip::tiles::{
     Body, Coordinates, Feature, Reach, Shape, Subject, Tile, Tiling, extent, place,
@@ -91,7 +91,7 @@ fn polygons_are_made_valid_once() {
     assert!(!again.changed && again.geometry == fixed.geometry);
     // By another rule the rings of what is valid may mean something else.
     let clockwise = polygon(&[(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)]);
-    let positive = Rules { fill: FillRule::Positive, ..Rules::default() };
+    let positive = Rules { fill: WindingRule::Positive, ..Rules::default() };
     let gone = positive.fix(&clockwise).expect("finite");
     assert_eq!((gone.geometry, gone.changed), (None, false));
 }
@@ -155,7 +155,7 @@ fn buffers_reach_a_distance_around_all_parts() {
     let options =
         |distance| Options { distance, join: Join::Miter, cap: Cap::Square, ..Options::default() };
     let buffer = |g: &Geometry, distance| {
-        of_geometry(g, FillRule::EvenOdd, &options(distance)).expect("finite").area()
+        of_geometry(g, WindingRule::EvenOdd, &options(distance)).expect("finite").area()
     };
     let post = Geometry::Point(points(&[(10.0, 10.0)]));
     let yard = polygon(&square((0.0, 0.0), 2.0));
@@ -188,7 +188,7 @@ fn extents_are_those_within_the_world() {
     let of = |at: &[At]| {
         let place = |&p: &At| durer::clip::tiles::mercator::project(p.into());
         let body = Body::Points(at.iter().map(place).collect());
-        let found = extent(&[Feature { layer: 0, body, fill: FillRule::EvenOdd }]);
+        let found = extent(&[Feature { layer: 0, body, fill: WindingRule::EvenOdd }]);
         found.map(|e| e.map(|v| v.round()))
     };
     assert_eq!(of(&[(-10.0, 20.0), (30.0, -40.0)]), Some([-10.0, -40.0, 30.0, 20.0]));
@@ -232,7 +232,7 @@ fn tiles_cut_geometries_as_they_are() {
 fn places_go_to_the_nearest_cells_halves_up() {
     let body = Body::Points([(0.5, -0.5), (1.4, -1.5), (0.49, 2.0)].map(DVec2::from).into());
     let cells = [(1, 0), (1, -1), (0, 2)].map(|(x, y)| I64Vec2::new(x, y));
-    let snapped = |origin| body.snapped(origin, FillRule::EvenOdd);
+    let snapped = |origin| body.snapped(origin, WindingRule::EvenOdd);
     assert_eq!(snapped(I64Vec2::ZERO), Ok(Shape::Points(cells.into())));
     let moved = cells.map(|cell| cell - I64Vec2::new(3, -1));
     assert_eq!(snapped(I64Vec2::new(3, -1)), Ok(Shape::Points(moved.into())));

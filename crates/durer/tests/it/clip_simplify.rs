@@ -1,6 +1,6 @@
 //! Coverages stay coverages when they are simplified.
 
-use durer::clip::polygon::{BooleanOp, FillRule, Shapes, overlay, signed_area};
+use durer::clip::polygon::{BooleanOp, Shapes, WindingRule, overlay, signed_area};
 use durer::clip::simplify::coverage::{Options, Step};
 use durer::clip::simplify::{Coverage, LineSimplifier, tolerance_for_share};
 use durer::math::{DVec2, Orientation, orient2d};
@@ -24,7 +24,7 @@ fn areas(labels: &[u8], moved: &[(i8, i8)]) -> Vec<Shapes> {
             });
             let options = overlay::Options {
                 grid: Some(1.0),
-                ..overlay::Options::with_rule(FillRule::NonZero)
+                ..overlay::Options::with_rule(WindingRule::NonZero)
             };
             let cells = Shapes::from_rings(cells);
             let joined =
@@ -121,7 +121,7 @@ fn check(areas: &[Shapes], left: &[Shapes]) -> Result<(), TestCaseError> {
     // So fine that no edge passes a point of the others within half a cell, at which the overlay would lead it through that.
     let options = overlay::Options {
         grid: Some(1.0 / f64::from(512 << 16)),
-        ..overlay::Options::with_rule(FillRule::Positive)
+        ..overlay::Options::with_rule(WindingRule::Positive)
     };
     let union = overlay(&all, &Shapes::new(), BooleanOp::Union, &options, &mut NoTrace).unwrap();
     prop_assert_eq!(union.shapes.ring_count(), 1);

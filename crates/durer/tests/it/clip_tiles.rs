@@ -1,7 +1,7 @@
 //! Features in tiles: valid on the grid, within their windows, the same on any number of threads.
 
 use durer::clip::polygon::validity::flaws;
-use durer::clip::polygon::{FillRule, Shapes};
+use durer::clip::polygon::{Shapes, WindingRule};
 use durer::clip::tiles::{Body, Feature, Options, Piece, Pyramid, Shape, Tile};
 use durer::math::{DVec2, I64Vec2};
 use durer::{Error, Result};
@@ -48,7 +48,7 @@ fn features() -> impl Strategy<Value = Vec<Feature>> {
     let feature = (0..2usize, body).prop_map(|(layer, body)| Feature {
         layer,
         body,
-        fill: FillRule::EvenOdd,
+        fill: WindingRule::EvenOdd,
     });
     prop::collection::vec(feature, 0..6)
 }
@@ -92,7 +92,11 @@ proptest! {
 fn square(x: f64, y: f64, side: f64) -> Feature {
     let corners =
         [(0., 0.), (side, 0.), (side, side), (0., side)].map(|(u, v)| DVec2::new(x + u, y + v));
-    Feature { layer: 0, body: Body::Areas(Shapes::from_rings([corners])), fill: FillRule::EvenOdd }
+    Feature {
+        layer: 0,
+        body: Body::Areas(Shapes::from_rings([corners])),
+        fill: WindingRule::EvenOdd,
+    }
 }
 
 #[test]

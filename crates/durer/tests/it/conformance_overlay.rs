@@ -1,7 +1,7 @@
 //! `overlay()` on the published suites.
 
 use durer::clip::polygon::overlay::{Options, Output, overlay};
-use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
+use durer::clip::polygon::{BooleanOp, Shapes, WindingRule};
 use durer::clip::polyline::{self, Part};
 use durer::math::DVec2;
 use durer::trace::NoTrace;
@@ -177,7 +177,7 @@ fn clipper2_polytree_hole_owner_as_a_tree() {
 
 /// Returns the region of simple-feature polygons: each outer ring without its holes, all together.
 fn region(shapes: &Shapes) -> Shapes {
-    let nonzero = Options::with_rule(FillRule::NonZero);
+    let nonzero = Options::with_rule(WindingRule::NonZero);
     let mut all = Shapes::new();
     for polygon in shapes.polygons() {
         let (outer, holes) =
@@ -289,7 +289,7 @@ fn i_overlay_fixtures() {
                     .collect::<Vec<_>>()
             }))
         };
-        for rule in FillRule::ALL {
+        for rule in WindingRule::ALL {
             identities(&path, &paths("subjPaths"), &paths("clipPaths"), &Options::with_rule(*rule));
         }
     }
@@ -500,7 +500,7 @@ fn natural_earth_agrees_with_geos() {
             features
                 .iter()
                 .for_each(|f| all.append(&run(f, &none, BooleanOp::Union, &options).shapes));
-            let rule = Options { subject_rule: FillRule::NonZero, ..options.clone() };
+            let rule = Options { subject_rule: WindingRule::NonZero, ..options.clone() };
             (features, run(&all, &none, BooleanOp::Union, &rule).shapes)
         });
         let ours = match kind {

@@ -2,7 +2,7 @@
 
 use durer::clip::polygon::rectangle::Prepared;
 use durer::clip::polygon::validity::{Touching, is_valid};
-use durer::clip::polygon::{BooleanOp, FillRule, Shapes, coverage};
+use durer::clip::polygon::{BooleanOp, Shapes, WindingRule, coverage};
 use durer::clip::polyline;
 use durer::math::{DVec2, orient2d_value};
 use durer::trace::NoTrace;
@@ -229,7 +229,7 @@ fn check(case: &Case) -> Result<(), TestCaseError> {
     let none = Shapes::new();
     let mut whole = Shapes::new();
     cells.iter().for_each(|cell| whole.append(cell));
-    let options = coverage::Options { rule: FillRule::NonZero, ..Default::default() };
+    let options = coverage::Options { rule: WindingRule::NonZero, ..Default::default() };
     let union = coverage::join(&whole, &none, BooleanOp::Union, &options).unwrap().shapes;
     let both = cut(&union, &mask, BooleanOp::Intersection).shapes.area();
     prop_assert!((both - areas[0]).abs() <= slack, "{both} {areas:?}");

@@ -4,7 +4,7 @@
 use std::f64::consts::SQRT_2;
 
 use crate::raster_coverage::Random;
-use durer::clip::polygon::{BooleanOp, FillRule, Shapes, overlay};
+use durer::clip::polygon::{BooleanOp, Shapes, WindingRule, overlay};
 use durer::curve::{Contours, Path, PathElement, flatten};
 use durer::math::DVec2;
 use durer::raster::coverage::fill;
@@ -117,7 +117,7 @@ fn strokes_are_the_union_of_their_pieces() {
         let outline = outline(&path, &stroke, FINE, &mut NoTrace).expect("style");
         let own = Shapes::from_rings(outline.iter().map(|(points, _)| points));
         let pieces = Shapes::from_rings(pieces(&path, &stroke));
-        let options = overlay::Options::with_rule(FillRule::NonZero);
+        let options = overlay::Options::with_rule(WindingRule::NonZero);
         let both = overlay::overlay(&own, &pieces, BooleanOp::Xor, &options, &mut NoTrace);
         let area = both.expect("finite").shapes.area();
         // Corners that are nearly straight may have a tip of the tolerance.

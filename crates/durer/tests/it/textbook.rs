@@ -2,7 +2,7 @@
 
 use crate::raster_coverage::Random;
 use durer::clip::polygon::point::{self, Place, locate, winding_number};
-use durer::clip::polygon::{FillRule, liang_barsky, signed_area, sutherland_hodgman};
+use durer::clip::polygon::{WindingRule, liang_barsky, signed_area, sutherland_hodgman};
 use durer::curve::Contours;
 use durer::fragment::fog::Fog;
 use durer::fragment::halftone::{as_light, clustered_dot, error_diffusion};
@@ -239,13 +239,13 @@ fn a_point_is_located_by_every_rule() {
     let mut steps = Recorder::default();
     assert_eq!(winding_number([&star[..]], DVec2::ZERO, &mut steps), Some(2));
     assert_eq!(point::replay(steps.steps()), Some(2));
-    let middle = FillRule::ALL.iter().map(|rule| locate([&star[..]], DVec2::ZERO, *rule));
+    let middle = WindingRule::ALL.iter().map(|rule| locate([&star[..]], DVec2::ZERO, *rule));
     let inside = |place| place == Place::Inside;
     assert_eq!(middle.map(inside).collect::<Vec<_>>(), [false, true, true, false, true]);
     let at_tip = DVec2::new(7.0, 0.0);
-    let tips = FillRule::ALL.iter().map(|rule| locate([&star[..]], at_tip, *rule));
+    let tips = WindingRule::ALL.iter().map(|rule| locate([&star[..]], at_tip, *rule));
     assert_eq!(tips.map(inside).collect::<Vec<_>>(), [true, true, true, false, false]);
-    for rule in FillRule::ALL {
+    for rule in WindingRule::ALL {
         assert_eq!(locate([&star[..]], star[0], *rule), Place::Border);
         assert_eq!(locate([&star[..]], DVec2::new(-8.0, 1.0), *rule), Place::Outside);
         assert_eq!(locate([&[][..]], DVec2::ZERO, *rule), Place::Outside);
@@ -262,7 +262,7 @@ fn five_winding_rules_triangulate_a_pentagram() {
         assert_eq!(steps.steps().len(), found.points.len() + found.triangles.len());
         found.area()
     };
-    let [odd, all, positive, negative, twice] = [0, 1, 2, 3, 4].map(|k| area(FillRule::ALL[k]));
+    let [odd, all, positive, negative, twice] = [0, 1, 2, 3, 4].map(|k| area(WindingRule::ALL[k]));
     assert!((odd + twice - all).abs() < 1e-6 && (positive - all).abs() < 1e-9);
     assert_eq!(negative, 0.0);
     // The pentagon in the middle, by its radius.
@@ -367,7 +367,7 @@ fn scan_beams_find_the_areas_that_the_overlay_finds() {
         let subject = Shapes::from_rings([ring(3 + round % 5), ring(4)]);
         let clip = Shapes::from_rings([ring(3 + round % 4)]);
         for (&op, &rule) in
-            BooleanOp::ALL.iter().flat_map(|op| FillRule::ALL.iter().map(move |r| (op, r)))
+            BooleanOp::ALL.iter().flat_map(|op| WindingRule::ALL.iter().map(move |r| (op, r)))
         {
             let how = Options { subject_rule: rule, clip_rule: rule, ..Options::default() };
             let mut steps = Recorder::default();

@@ -2,7 +2,7 @@
 
 use crate::scenes::{Numbers, instance, soup};
 use crate::surface_scenes::{Prepared, each, of_triangles};
-use durer::clip::polygon::{BooleanOp, FillRule, Shapes, overlay};
+use durer::clip::polygon::{BooleanOp, Shapes, WindingRule, overlay};
 use durer::math::{DMat4, DVec2, DVec3, Vec3};
 use durer::scene::{Camera, Light, LightKind, Projection, Scene};
 use durer::shade::PreparedLights;
@@ -181,7 +181,7 @@ fn visible_regions_fill_the_silhouette() {
             if (b - a).perp_dot(c - a) < 0.0 { [a, c, b] } else { [a, b, c] }
         });
         let shapes = Shapes::from_rings(shadows);
-        let options = overlay::Options::with_rule(FillRule::NonZero);
+        let options = overlay::Options::with_rule(WindingRule::NonZero);
         let union = overlay(&shapes, &Shapes::new(), BooleanOp::Union, &options, &mut NoTrace)
             .expect("union");
         let expected = union.shapes.area();

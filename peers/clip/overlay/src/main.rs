@@ -33,7 +33,7 @@ impl Instant {
 }
 
 use durer::clip::polygon::overlay::{Options, overlay};
-use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
+use durer::clip::polygon::{BooleanOp, WindingRule, Shapes};
 use durer::math::DVec2;
 use durer::trace::NoTrace;
 use shapes::{Pair, Rings};
@@ -83,7 +83,7 @@ impl Peers {
     }
 
     fn run_ours(&self) -> (f64, f64) {
-        let options = Options::with_rule(FillRule::NonZero);
+        let options = Options::with_rule(WindingRule::NonZero);
         let start = Instant::now();
         let out =
             overlay(&self.ours.0, &self.ours.1, self.op, &options, &mut NoTrace).expect("finite");
@@ -91,7 +91,7 @@ impl Peers {
     }
 
     fn run_i_overlay(&self) -> (f64, f64) {
-        use i_overlay::core::{fill_rule::FillRule, overlay::Overlay, overlay_rule::OverlayRule};
+        use i_overlay::core::{fill_rule::WindingRule, overlay::Overlay, overlay_rule::OverlayRule};
         let rule = match self.op {
             BooleanOp::Intersection => OverlayRule::Intersect,
             BooleanOp::Union => OverlayRule::Union,
@@ -100,7 +100,7 @@ impl Peers {
         };
         let start = Instant::now();
         let out = Overlay::from_subj_and_clip(&self.i_overlay.0, &self.i_overlay.1)
-            .overlay(rule, FillRule::NonZero);
+            .overlay(rule, WindingRule::NonZero);
         let time = start.elapsed().as_secs_f64();
         let area = out.iter().flatten().map(|r| {
             let p: Vec<DVec2> =
@@ -111,7 +111,7 @@ impl Peers {
     }
 
     fn run_clipper(&self) -> (f64, f64) {
-        use clipper2::FillRule::NonZero;
+        use clipper2::WindingRule::NonZero;
         let start = Instant::now();
         let c = clipper2::Clipper::new()
             .add_subject(self.clipper.0.clone())

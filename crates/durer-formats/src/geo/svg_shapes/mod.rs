@@ -16,7 +16,7 @@ use super::{Feature, Geometry, MAX_DEPTH, Warnings};
 use crate::foreign;
 use crate::{Error, Place, Result};
 use attributes::{Matrix, UPRIGHT, attribute, compose, length, property, reference, transforms};
-use durer::clip::polygon::FillRule;
+use durer::clip::polygon::WindingRule;
 use durer::math::DVec2;
 use path::Path;
 use quick_xml::events::{BytesStart, Event};
@@ -58,7 +58,7 @@ struct Level {
     id: Option<Arc<str>>,
     /// True if ids within give way to this one: they are those of what a `use` shows.
     keeps_id: bool,
-    fill_rule: FillRule,
+    fill_rule: WindingRule,
     /// True if what is in it is drawn at all.
     drawn: bool,
     /// True if it is seen; what is in it may say otherwise.
@@ -79,7 +79,7 @@ const OUTERMOST: Level = Level {
     matrix: UPRIGHT,
     id: None,
     keeps_id: false,
-    fill_rule: FillRule::NonZero,
+    fill_rule: WindingRule::NonZero,
     drawn: true,
     visible: true,
 };
@@ -417,7 +417,7 @@ fn enter(
     if !outer.keeps_id {
         level.id = attribute(element, "id")?.map(Arc::from).or(level.id);
     }
-    let rules = [("nonzero", FillRule::NonZero), ("evenodd", FillRule::EvenOdd)];
+    let rules = [("nonzero", WindingRule::NonZero), ("evenodd", WindingRule::EvenOdd)];
     level.fill_rule = property(element, "fill-rule", &rules, notes)?.unwrap_or(level.fill_rule);
     let seen = [("visible", true), ("hidden", false), ("collapse", false)];
     level.visible = property(element, "visibility", &seen, notes)?.unwrap_or(level.visible);

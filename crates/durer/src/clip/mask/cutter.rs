@@ -7,7 +7,7 @@ use crate::clip::line::LineClipper;
 use crate::clip::polygon::overlay::{self, overlay};
 use crate::clip::polygon::rectangle;
 use crate::clip::polygon::validity::{Touching, is_valid};
-use crate::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, coverage};
+use crate::clip::polygon::{BooleanOp, PolygonClipper, Shapes, WindingRule, coverage};
 use crate::clip::polyline::{self, Part};
 use crate::geometry::{Geometry, Points};
 use crate::math::{DVec2, Rect};
@@ -193,7 +193,7 @@ impl<'a> Cutter<'a> {
             Some(Algorithm::Polygon(clipper)) => {
                 // What an SVG says of its paths, for algorithms that take polygons as they are.
                 let as_they_are = !Algorithm::Polygon(clipper).takes_rules();
-                let ruled = as_they_are && self.rules.fill != FillRule::EvenOdd;
+                let ruled = as_they_are && self.rules.fill != WindingRule::EvenOdd;
                 let area = if ruled { self.rules.clean(geometry)?.area } else { area };
                 Ok(Cut::of(self.by_name(clipper, &area)?.into_geometry().map(oriented)))
             }
@@ -217,7 +217,7 @@ impl<'a> Cutter<'a> {
             let cut = clip_area(&window, area)?.into_geometry();
             return Ok(Cut::of(cut.map(oriented)));
         }
-        let repaired = self.rules.fill == FillRule::EvenOdd
+        let repaired = self.rules.fill == WindingRule::EvenOdd
             && !apart
             && !is_valid(&area.shapes, Touching::AtPoints);
         if self.rules.grid.is_some() {
@@ -263,7 +263,7 @@ impl<'a> Cutter<'a> {
                 let mut cut = clipper.clip(&area.shapes, mask, self.op)?;
                 // Rings that cross are divided where they do: a geometry has valid polygons.
                 if clipper == PolygonClipper::GreinerHormann && !valid(&cut) {
-                    let options = overlay::Options::with_rule(FillRule::EvenOdd);
+                    let options = overlay::Options::with_rule(WindingRule::EvenOdd);
                     let union = BooleanOp::Union;
                     cut = overlay(&cut, &Shapes::new(), union, &options, &mut NoTrace)?.shapes;
                 }
@@ -375,7 +375,7 @@ mod tests {
                 &Rect::new(DVec2::splat(5.0), DVec2::splat(6.0)).unwrap(),
             );
             for op in BooleanOp::ALL {
-                let cut = Rules::default().overlay(&area, &far, *op, FillRule::EvenOdd);
+                let cut = Rules::default().overlay(&area, &far, *op, WindingRule::EvenOdd);
                 let cut = cut.expect("finite").area.shapes;
                 assert!(edges_are_apart(&cut, Touching::AtVertices), "{op}: {cut:?}");
             }

@@ -4,7 +4,7 @@ use super::{Area, Rules};
 use crate::Result;
 use crate::clip::polygon::coverage::matched;
 use crate::clip::polygon::validity::{self, Touching};
-use crate::clip::polygon::{FillRule, Shapes};
+use crate::clip::polygon::{Shapes, WindingRule};
 use crate::geometry::Geometry;
 
 /// A geometry whose polygons are valid.
@@ -53,7 +53,7 @@ impl Rules {
         match geometry {
             Geometry::Polygon(_) | Geometry::MultiPolygon(_) => {
                 let valid = is_valid(geometry);
-                if self.fill == FillRule::EvenOdd && valid {
+                if self.fill == WindingRule::EvenOdd && valid {
                     return Ok(Some(geometry.clone()));
                 }
                 *changed |= !valid;

@@ -5,7 +5,7 @@ use super::area::oriented;
 use crate::Result;
 use crate::clip::polygon::overlay::{self, overlay};
 use crate::clip::polygon::validity::{Touching, is_valid};
-use crate::clip::polygon::{BooleanOp, FillRule, Shapes, coverage, vatti};
+use crate::clip::polygon::{BooleanOp, Shapes, WindingRule, coverage, vatti};
 use crate::geometry::Geometry;
 use crate::math::{DVec2, Rect};
 use crate::trace::NoTrace;
@@ -15,7 +15,7 @@ use crate::work::Work;
 #[derive(Debug, Clone, Default)]
 pub struct Rules {
     /// Rule that decides which points crossing rings enclose.
-    pub fill: FillRule,
+    pub fill: WindingRule,
     /// Size of a cell of the grid on which vertices are placed, in units of the coordinates; `None` computes
     /// exactly.
     pub grid: Option<f64>,
@@ -38,10 +38,10 @@ impl Rules {
     /// Returns whether valid polygons keep the area that they enclose by the even-odd rule, and their position.
     pub(super) fn keep_valid(&self, shapes: &Shapes) -> bool {
         let as_even_odd = match self.fill {
-            FillRule::EvenOdd => true,
+            WindingRule::EvenOdd => true,
             // Holes may run the same way as the rings around them.
-            FillRule::NonZero => shapes.polygons().all(|p| p.holes().len() == 0),
-            FillRule::Positive | FillRule::Negative | FillRule::AbsGeqTwo => false,
+            WindingRule::NonZero => shapes.polygons().all(|p| p.holes().len() == 0),
+            WindingRule::Positive | WindingRule::Negative | WindingRule::AbsGeqTwo => false,
         };
         as_even_odd && self.grid.is_none()
     }
@@ -54,11 +54,11 @@ impl Rules {
     }
 
     /// Returns the overlay's options: the finest grid that it takes, unless one is given.
-    fn options(&self, area: &Area, clip: &Shapes, subject_rule: FillRule) -> overlay::Options {
+    fn options(&self, area: &Area, clip: &Shapes, subject_rule: WindingRule) -> overlay::Options {
         let fit = || coverage::finest_grid([area.shapes.bounds(), clip.bounds()]);
         overlay::Options {
             subject_rule,
-            clip_rule: FillRule::EvenOdd,
+            clip_rule: WindingRule::EvenOdd,
             grid: self.grid.or_else(fit),
             origins: true,
             drop_collinear: false,
@@ -75,7 +75,7 @@ impl Rules {
         area: &Area,
         clip: &Shapes,
         op: BooleanOp,
-        subject_rule: FillRule,
+        subject_rule: WindingRule,
     ) -> Result<Made> {
         self.join(area, clip, op, subject_rule, false)
     }
@@ -85,7 +85,7 @@ impl Rules {
         area: &Area,
         clip: &Shapes,
         op: BooleanOp,
-        subject_rule: FillRule,
+        subject_rule: WindingRule,
         mend: bool,
     ) -> Result<Made> {
         if self.grid.is_some() {
@@ -105,7 +105,7 @@ impl Rules {
         area: &Area,
         clip: &Shapes,
         op: BooleanOp,
-        subject_rule: FillRule,
+        subject_rule: WindingRule,
     ) -> Result<Area> {
         let options = self.options(area, clip, subject_rule);
         Ok(area.overlaid(&overlay(&area.shapes, clip, op, &options, &mut NoTrace)?))
@@ -120,7 +120,7 @@ impl Rules {
         area: &Area,
         clip: &Shapes,
         op: BooleanOp,
-        subject_rule: FillRule,
+        subject_rule: WindingRule,
     ) -> Result<Area> {
         let options = self.options(area, clip, subject_rule);
         let output = vatti::vatti(&area.shapes, clip, op, &options, &mut NoTrace)?;
@@ -142,7 +142,7 @@ impl Rules {
             all.snapped += made.snapped;
         }
         if all.area.shapes.polygon_count() > 1 {
-            let rule = FillRule::Positive;
+            let rule = WindingRule::Positive;
             let joined = self.overlay(&all.area, &Shapes::new(), BooleanOp::Union, rule)?;
             (all.area, all.snapped) = (joined.area, all.snapped + joined.snapped);
         }
@@ -157,7 +157,7 @@ impl Rules {
             return Ok(Made { area, ..Made::default() });
         }
         let repaired =
-            self.fill == FillRule::EvenOdd && !is_valid(&area.shapes, Touching::AtPoints);
+            self.fill == WindingRule::EvenOdd && !is_valid(&area.shapes, Touching::AtPoints);
         let made = self.join(&area, &Shapes::new(), BooleanOp::Union, self.fill, true)?;
         Ok(Made { repaired, ..made })
     }

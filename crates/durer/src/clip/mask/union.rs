@@ -2,7 +2,7 @@
 
 use super::{Area, Rules};
 use crate::Result;
-use crate::clip::polygon::{BooleanOp, FillRule, Shapes};
+use crate::clip::polygon::{BooleanOp, Shapes, WindingRule};
 use crate::geometry::{Geometry, Points};
 use crate::work::Work;
 
@@ -13,8 +13,8 @@ impl Area {
     /// # Errors
     /// As [`Rules::overlay`].
     pub fn union(&self, work: &Work) -> Result<Self> {
-        let rules = Rules { fill: FillRule::Positive, grid: None, work: work.clone() };
-        Ok(rules.overlay(self, &Shapes::new(), BooleanOp::Union, FillRule::Positive)?.area)
+        let rules = Rules { fill: WindingRule::Positive, grid: None, work: work.clone() };
+        Ok(rules.overlay(self, &Shapes::new(), BooleanOp::Union, WindingRule::Positive)?.area)
     }
 }
 

@@ -15,7 +15,7 @@ use super::near::pairs;
 use super::node;
 use super::point::{Place, locate, on_segment};
 use super::steps::{Mark, Operand, Step};
-use super::{BooleanOp, FillRule, Shapes};
+use super::{BooleanOp, Shapes, WindingRule};
 use crate::clip::exact;
 use crate::math::{DVec2, Orientation, orient2d};
 use crate::trace::Tracer;
@@ -168,7 +168,7 @@ impl Linked {
                 let inside = node.ok().and_then(|i| nodes[i].inside(k, v, grown));
                 inside.unwrap_or_else(|| {
                     let (rings, p) = (self.rings[1 - k].rings(), self.lists[k].vertices[v].at);
-                    locate(rings, p, FillRule::EvenOdd) == Place::Inside
+                    locate(rings, p, WindingRule::EvenOdd) == Place::Inside
                 })
             };
             let inside: Vec<bool> = self.lists[k].starts.iter().map(tell).collect();

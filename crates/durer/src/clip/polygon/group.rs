@@ -1,7 +1,7 @@
 //! Rings grouped into polygons by how they nest: exact, by examining every edge.
 
 use super::point::{Place, locate};
-use super::{FillRule, Ring, Shapes, signed_area};
+use super::{Ring, Shapes, WindingRule, signed_area};
 use crate::math::{DVec2, Orientation, Rect, orient2d};
 
 /// Returns whether `inner` lies within `outer`, for rings that touch at most in points or along
@@ -10,7 +10,7 @@ fn within(inner: &Ring, outer: &Ring) -> bool {
     let next = |i: usize| inner.get(i + 1).or(inner.first()).copied().unwrap_or_default();
     let middles = inner.iter().enumerate().map(|(i, &p)| (p + next(i)) * 0.5);
     let places =
-        inner.iter().copied().chain(middles).map(|p| locate([outer], p, FillRule::EvenOdd));
+        inner.iter().copied().chain(middles).map(|p| locate([outer], p, WindingRule::EvenOdd));
     places.into_iter().find(|&place| place != Place::Border) == Some(Place::Inside)
 }
 

@@ -12,7 +12,7 @@ use super::validity::{
     Edge, Meeting, PAIRS_PER_EDGE, Way, crossing, each_pair, edges_of, meeting, ways,
 };
 use super::{
-    BooleanOp, FillRule, Shapes, overlay, overlay::Options as OverlayOptions, signed_area,
+    BooleanOp, Shapes, WindingRule, overlay, overlay::Options as OverlayOptions, signed_area,
 };
 use crate::clip::touch::{is_on, reach};
 use crate::info::{Class, Info, Occluder};
@@ -294,7 +294,7 @@ impl<'a> Layer<'a> {
             let range = turned.ring_range(ring);
             turned.points_mut()[range].reverse();
         }
-        let rule = OverlayOptions::with_rule(FillRule::Positive);
+        let rule = OverlayOptions::with_rule(WindingRule::Positive);
         let union = overlay(&turned, &Shapes::new(), BooleanOp::Union, &rule, &mut NoTrace)?;
         let corners = self.whole.rings().zip(&self.rings);
         let owner: BTreeMap<[u64; 2], usize> = corners

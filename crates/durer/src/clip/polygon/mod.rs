@@ -129,10 +129,10 @@ fn as_rectangle(shapes: &Shapes) -> Option<Rect> {
     one.then(|| Rect::around([a, c])).flatten()
 }
 
-/// Rule that decides from the winding number w around a point whether a set of closed curves
+/// Winding rule: decides from the winding number w around a point whether a set of closed curves
 /// encloses it: the five rules of OpenGL's tessellator (GLU 1.3, 5.1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum FillRule {
+pub enum WindingRule {
     /// w is odd.
     #[default]
     EvenOdd,
@@ -146,7 +146,7 @@ pub enum FillRule {
     AbsGeqTwo,
 }
 
-impl FillRule {
+impl WindingRule {
     /// Every rule, in the order of the documentation.
     pub const ALL: &'static [Self] =
         &[Self::EvenOdd, Self::NonZero, Self::Positive, Self::Negative, Self::AbsGeqTwo];
@@ -216,7 +216,7 @@ impl BooleanOp {
     }
 }
 
-impl std::fmt::Display for FillRule {
+impl std::fmt::Display for WindingRule {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.name())
     }
@@ -228,7 +228,7 @@ impl std::fmt::Display for BooleanOp {
     }
 }
 
-impl std::str::FromStr for FillRule {
+impl std::str::FromStr for WindingRule {
     type Err = Error;
 
     fn from_str(s: &str) -> Result<Self> {

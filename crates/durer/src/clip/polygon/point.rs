@@ -4,7 +4,7 @@
 //! edges that a ray to the right crosses; counted with their directions they give the winding number. Object space.
 //! Cost: O(n) for n edges. All decisions are exact, and points on the border are reported as such.
 
-use super::{FillRule, Ring};
+use super::{Ring, WindingRule};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Orientation, orient2d};
 use crate::trace::{NoTrace, Tracer};
@@ -129,7 +129,7 @@ pub fn winding_number<'a>(
 }
 
 /// Returns the location of a point relative to the region that rings enclose by a rule; exact.
-pub fn locate<'a>(rings: impl IntoIterator<Item = &'a Ring>, p: DVec2, rule: FillRule) -> Place {
+pub fn locate<'a>(rings: impl IntoIterator<Item = &'a Ring>, p: DVec2, rule: WindingRule) -> Place {
     match winding_number(rings, p, &mut NoTrace) {
         Some(winding) if rule.fills(winding) => Place::Inside,
         Some(_) => Place::Outside,

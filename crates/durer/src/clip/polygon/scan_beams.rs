@@ -10,7 +10,7 @@
 //! contributing edges, which Vatti names as the other form of output; horizontal edges bound beams and are in no list. Crossings are rounded
 //! to f64. It shares nothing with [`super::overlay()`] and serves it as an oracle; for polygons use that, or [`super::vatti`].
 
-use super::{BooleanOp, FillRule, Shapes};
+use super::{BooleanOp, Shapes, WindingRule};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
@@ -45,16 +45,16 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
     /// Fill rule of the subject.
-    pub subject_rule: FillRule,
+    pub subject_rule: WindingRule,
     /// Fill rule of the clip.
-    pub clip_rule: FillRule,
+    pub clip_rule: WindingRule,
     /// The most trapezoids that are made.
     pub max_trapezoids: usize,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        let rule = FillRule::EvenOdd;
+        let rule = WindingRule::EvenOdd;
         Self { subject_rule: rule, clip_rule: rule, max_trapezoids: 1 << 22 }
     }
 }

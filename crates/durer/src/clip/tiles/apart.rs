@@ -5,7 +5,7 @@
 //! edges on the left of its leftmost point. Object space, exact; O(n √n) for n edges of usual data, and what would take
 //! longer is left to the overlay.
 
-use crate::clip::polygon::{FillRule, Shapes, Vertex};
+use crate::clip::polygon::{Shapes, Vertex, WindingRule};
 use crate::math::{I64Vec2, IVec2, Orientation};
 
 /// Coordinates have this many bits at most, so that products of their differences fit 64.
@@ -68,7 +68,7 @@ fn is_idle(a: I64Vec2, b: I64Vec2, c: I64Vec2) -> bool {
 /// between them; `None` if some have, or it takes long to see. Outer rings have positive areas, holes negative ones.
 ///
 /// The rings are [`cleaned`].
-pub fn polygons(rings: &Shapes<I64Vec2>, fill: FillRule) -> Option<Shapes<I64Vec2>> {
+pub fn polygons(rings: &Shapes<I64Vec2>, fill: WindingRule) -> Option<Shapes<I64Vec2>> {
     if rings.is_empty() {
         return Some(Shapes::new());
     }
@@ -274,12 +274,12 @@ impl Nest {
     }
 
     /// Returns whether the inside and the outside of a ring are filled.
-    fn filled(&self, ring: usize, fill: FillRule) -> [bool; 2] {
+    fn filled(&self, ring: usize, fill: WindingRule) -> [bool; 2] {
         let outside: i32 = self.around[ring].iter().map(|&other| self.turns[other as usize]).sum();
         [outside + self.turns[ring], outside].map(|winding| fill.fills(winding))
     }
 
-    fn polygons(&self, rings: &Shapes<I64Vec2>, fill: FillRule) -> Shapes<I64Vec2> {
+    fn polygons(&self, rings: &Shapes<I64Vec2>, fill: WindingRule) -> Shapes<I64Vec2> {
         let count = rings.ring_count();
         let filled: Vec<[bool; 2]> = (0..count).map(|ring| self.filled(ring, fill)).collect();
         let mut holes: Vec<Vec<usize>> = vec![Vec::new(); count];
@@ -358,22 +358,22 @@ mod tests {
             assert!(shapes.polygons().all(|p| p.holes().all(|hole| signed_area(hole) < 0.0)));
             (shapes.polygon_count(), shapes.ring_count(), shapes.area())
         };
-        assert_eq!(counts(FillRule::EvenOdd), (2, 4, 10_000.0 - 2500.0 + 100.0 - 81.0));
-        assert_eq!(counts(FillRule::NonZero), (2, 3, 10_000.0 - 2500.0 + 100.0));
-        assert_eq!(counts(FillRule::Positive), (2, 3, 10_000.0 - 2500.0 + 100.0));
-        assert_eq!(counts(FillRule::Negative), (0, 0, 0.0));
+        assert_eq!(counts(WindingRule::EvenOdd), (2, 4, 10_000.0 - 2500.0 + 100.0 - 81.0));
+        assert_eq!(counts(WindingRule::NonZero), (2, 3, 10_000.0 - 2500.0 + 100.0));
+        assert_eq!(counts(WindingRule::Positive), (2, 3, 10_000.0 - 2500.0 + 100.0));
+        assert_eq!(counts(WindingRule::Negative), (0, 0, 0.0));
     }
 
     #[test]
     fn what_touches_or_is_far_away_is_left_to_the_overlay() {
         let touching = [square(0, 0, 4), square(4, 4, 4)];
-        assert_eq!(polygons(&shapes(&touching), FillRule::EvenOdd), None);
+        assert_eq!(polygons(&shapes(&touching), WindingRule::EvenOdd), None);
         let on_an_edge = [square(0, 0, 4), ring(&[(4, 2), (9, 0), (9, 4)])];
-        assert_eq!(polygons(&shapes(&on_an_edge), FillRule::EvenOdd), None);
+        assert_eq!(polygons(&shapes(&on_an_edge), WindingRule::EvenOdd), None);
         let along = [square(0, 0, 4), square(4, 1, 2)];
-        assert_eq!(polygons(&shapes(&along), FillRule::EvenOdd), None);
-        assert_eq!(polygons(&shapes(&[square(i64::MIN, 0, i64::MAX)]), FillRule::EvenOdd), None);
-        assert_eq!(polygons(&Shapes::new(), FillRule::EvenOdd), Some(Shapes::new()));
+        assert_eq!(polygons(&shapes(&along), WindingRule::EvenOdd), None);
+        assert_eq!(polygons(&shapes(&[square(i64::MIN, 0, i64::MAX)]), WindingRule::EvenOdd), None);
+        assert_eq!(polygons(&Shapes::new(), WindingRule::EvenOdd), Some(Shapes::new()));
     }
 
     /// Returns a set of rings in an order that does not depend on where they begin.
@@ -412,7 +412,7 @@ mod tests {
                 ring
             };
             let rings = shapes(&bases.iter().enumerate().map(ring).collect::<Vec<_>>());
-            let fill = FillRule::ALL[rule];
+            let fill = WindingRule::ALL[rule];
             // The overlay lets edges go through vertices that they pass within half a cell; of larger rings, they do not
             // come so near.
             let large = |shapes: &Shapes<I64Vec2>| {

@@ -6,7 +6,7 @@ use super::piece::{Body, Piece, Shape};
 use super::ready::{Ready, runs};
 use super::walk::Content;
 use crate::Result;
-use crate::clip::polygon::{FillRule, Shapes};
+use crate::clip::polygon::{Shapes, WindingRule};
 use crate::math::{DVec2, I64Vec2, Rect};
 use std::collections::BTreeMap;
 
@@ -194,7 +194,7 @@ impl Part<'_> {
         let side = i64::from(self.level.options.extent);
         let origin = I64Vec2::new(tile.x.into(), tile.y.into()) * side;
         let shape = match &self.cut {
-            Some(cut) => cut.snapped(origin, FillRule::EvenOdd)?,
+            Some(cut) => cut.snapped(origin, WindingRule::EvenOdd)?,
             None => self.on_grid(origin)?,
         };
         Ok((!shape.is_empty()).then_some(Piece { feature: self.feature, shape }))

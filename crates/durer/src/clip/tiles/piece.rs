@@ -2,7 +2,7 @@
 
 use super::{Tile, apart, mercator};
 use crate::Result;
-use crate::clip::polygon::{BooleanOp, FillRule, Shapes, overlay, rectangle};
+use crate::clip::polygon::{BooleanOp, Shapes, WindingRule, overlay, rectangle};
 use crate::geometry::{Geometry, Points};
 use crate::math::{DVec2, I64Vec2, Rect};
 use crate::trace::NoTrace;
@@ -87,7 +87,7 @@ impl Body {
     ///
     /// # Errors
     /// As [`overlay()`].
-    pub fn snapped(&self, origin: I64Vec2, fill: FillRule) -> Result<Shape> {
+    pub fn snapped(&self, origin: I64Vec2, fill: WindingRule) -> Result<Shape> {
         let snap = |p: DVec2| I64Vec2::new(nearest(p.x, origin.x), nearest(p.y, origin.y));
         Ok(match self {
             Self::Points(points) => Shape::Points(points.iter().copied().map(snap).collect()),
@@ -179,7 +179,7 @@ fn nearest(value: f64, origin: i64) -> i64 {
 fn valid(
     shapes: &Shapes,
     snap: impl Fn(DVec2) -> I64Vec2,
-    fill: FillRule,
+    fill: WindingRule,
 ) -> Result<Shapes<I64Vec2>> {
     let mut snapped: Shapes<I64Vec2> = Shapes::new();
     for ring in shapes.rings() {

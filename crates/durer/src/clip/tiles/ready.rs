@@ -1,7 +1,7 @@
 //! Features made ready for all levels of a pyramid.
 
 use super::piece::Body;
-use crate::clip::polygon::{FillRule, Polygon, signed_area};
+use crate::clip::polygon::{Polygon, WindingRule, signed_area};
 use crate::math::{DVec2, Rect};
 use crate::{Error, Result};
 
@@ -13,7 +13,7 @@ pub struct Feature {
     /// Its geometry, within [`WORLDS`].
     pub body: Body,
     /// Fill rule of its areas.
-    pub fill: FillRule,
+    pub fill: WindingRule,
 }
 
 /// Distance from the square that features may reach, in its sides.
@@ -24,7 +24,7 @@ pub const WORLDS: f64 = 4.0;
 pub(super) struct Ready {
     pub layer: usize,
     pub body: Body,
-    pub fill: FillRule,
+    pub fill: WindingRule,
     pub bounds: Rect,
     /// The first level that has each point; empty for points.
     pub levels: Vec<u8>,

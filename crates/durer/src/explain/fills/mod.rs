@@ -124,8 +124,8 @@ impl Filling {
     /// [`Error::Parameter`] for a rule that pixels are not filled by.
     fn options(options: &Options) -> Result<polygon::Options> {
         let rule = match options.rule {
-            clip::FillRule::EvenOdd => FillRule::EvenOdd,
-            clip::FillRule::NonZero => FillRule::NonZero,
+            clip::WindingRule::EvenOdd => FillRule::EvenOdd,
+            clip::WindingRule::NonZero => FillRule::NonZero,
             other => return Err(Error::parameter("rule", other.name(), "even-odd or non-zero")),
         };
         Ok(polygon::Options { rule })

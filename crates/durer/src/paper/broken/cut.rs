@@ -3,7 +3,7 @@
 use super::ViewBreak;
 use crate::Result;
 use crate::clip::polygon::overlay::{self, overlay};
-use crate::clip::polygon::{BooleanOp, FillRule, Shapes};
+use crate::clip::polygon::{BooleanOp, Shapes, WindingRule};
 use crate::math::{DVec2, Rect};
 use crate::paper::parts::parts;
 use crate::target::drawing::{Drawing, Line, LineClass, Region};
@@ -167,7 +167,7 @@ impl<'a> Side<'a> {
         subject.end_polygon();
         half.push_ring(self.half_plane(bounds));
         half.end_polygon();
-        let rule = overlay::Options::with_rule(FillRule::NonZero);
+        let rule = overlay::Options::with_rule(WindingRule::NonZero);
         let cut = overlay(&subject, &half, BooleanOp::Intersection, &rule, &mut NoTrace)?.shapes;
         let ring = |r: &[DVec2]| r.iter().map(|p| self.moved(*p)).collect();
         let rings: Vec<Vec<DVec2>> = cut.rings().map(ring).collect();

@@ -4,7 +4,7 @@ use super::marks::{Annotator, LETTER, circle};
 use super::{SheetView, ViewKind};
 use crate::Result;
 use crate::clip::polygon::overlay::{self, overlay};
-use crate::clip::polygon::{BooleanOp, FillRule, Shapes};
+use crate::clip::polygon::{BooleanOp, Shapes, WindingRule};
 use crate::math::{DVec2, Rect};
 use crate::paper::parts::parts;
 use crate::paper::{PlacedView, standard_scale};
@@ -63,7 +63,7 @@ impl Detail {
         subject.end_polygon();
         disc.push_ring(circle(self.center, self.radius));
         disc.end_polygon();
-        let rule = overlay::Options::with_rule(FillRule::NonZero);
+        let rule = overlay::Options::with_rule(WindingRule::NonZero);
         let cut = overlay(&subject, &disc, BooleanOp::Intersection, &rule, &mut NoTrace)?.shapes;
         let rings: Vec<Vec<DVec2>> = cut.rings().map(<[DVec2]>::to_vec).collect();
         Ok((!rings.is_empty()).then(|| Region { rings, ..region.clone() }))

@@ -12,7 +12,7 @@ use super::planar_map::faces::{Face, Frame, Place, Projector, float, surfaces};
 use super::shadow::{LIT, World};
 use crate::Result;
 use crate::clip::polygon::overlay::{self, overlay};
-use crate::clip::polygon::{BooleanOp, FillRule, Shapes};
+use crate::clip::polygon::{BooleanOp, Shapes, WindingRule};
 use crate::math::{Plane, Rect};
 use crate::scene::Scene;
 use crate::shade::PreparedLights;
@@ -141,7 +141,7 @@ const PARALLEL: f64 = 1.0 - 1e-12;
 
 fn combined(a: &Shapes, b: &Shapes, op: BooleanOp) -> Result<Shapes> {
     // The grid of the faces.
-    let rule = overlay::Options::with_rule(FillRule::NonZero);
+    let rule = overlay::Options::with_rule(WindingRule::NonZero);
     let options = overlay::Options { grid: Some(1.0), drop_collinear: true, ..rule };
     Ok(overlay(a, b, op, &options, &mut NoTrace)?.shapes)
 }

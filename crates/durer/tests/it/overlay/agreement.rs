@@ -2,7 +2,7 @@
 
 use durer::clip::polygon::overlay::{Options, overlay};
 use durer::clip::polygon::{
-    BooleanOp, FillRule, PolygonClipper, Shapes, greiner_hormann, vatti, weiler_atherton,
+    BooleanOp, PolygonClipper, Shapes, WindingRule, greiner_hormann, vatti, weiler_atherton,
 };
 use durer::math::DVec2;
 use durer::trace::{NoTrace, Recorder};
@@ -139,6 +139,6 @@ fn names_are_found() {
     for &clipper in PolygonClipper::ALL {
         assert_eq!(clipper.name().parse(), Ok(clipper));
     }
-    assert_eq!("even-odd".parse(), Ok(FillRule::EvenOdd));
+    assert_eq!("even-odd".parse(), Ok(WindingRule::EvenOdd));
     assert!("nonsense".parse::<BooleanOp>().is_err());
 }

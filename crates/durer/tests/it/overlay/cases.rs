@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
+use durer::clip::polygon::{BooleanOp, Shapes, WindingRule};
 use durer::math::DVec2;
 
 fn data() -> PathBuf {
@@ -28,7 +28,7 @@ pub fn shared(path: &str) -> Option<String> {
 pub struct ClipperCase {
     pub number: usize,
     pub op: BooleanOp,
-    pub rule: FillRule,
+    pub rule: WindingRule,
     pub area: i64,
     pub count: i64,
     pub subject: Shapes,
@@ -55,10 +55,10 @@ impl ClipperCase {
                 case.op = op.to_lowercase().parse().expect("operation");
             } else if let Some(rule) = value("FILLRULE:") {
                 case.rule = match rule {
-                    "EVENODD" => FillRule::EvenOdd,
-                    "NONZERO" => FillRule::NonZero,
-                    "POSITIVE" => FillRule::Positive,
-                    "NEGATIVE" => FillRule::Negative,
+                    "EVENODD" => WindingRule::EvenOdd,
+                    "NONZERO" => WindingRule::NonZero,
+                    "POSITIVE" => WindingRule::Positive,
+                    "NEGATIVE" => WindingRule::Negative,
                     other => panic!("fill rule {other}"),
                 };
             } else if let Some(area) = value("SOL_AREA:") {

@@ -3,7 +3,7 @@
 use durer::clip::polygon::greiner_hormann::{Step, greiner_hormann, replay};
 use durer::clip::polygon::overlay::{Options, overlay};
 use durer::clip::polygon::point::{Place, locate};
-use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
+use durer::clip::polygon::{BooleanOp, Shapes, WindingRule};
 use durer::math::DVec2;
 use durer::trace::{NoTrace, Recorder};
 use proptest::prelude::*;
@@ -22,7 +22,7 @@ fn cut(a: &Shapes, b: &Shapes, op: BooleanOp) -> durer::Result<Shapes> {
 
 /// Returns the area that rings enclose by the even-odd rule.
 fn enclosed(shapes: &Shapes) -> f64 {
-    let options = Options::with_rule(FillRule::EvenOdd);
+    let options = Options::with_rule(WindingRule::EvenOdd);
     let valid = overlay(shapes, &Shapes::new(), BooleanOp::Union, &options, &mut NoTrace);
     valid.expect("finite").shapes.area()
 }
@@ -41,13 +41,13 @@ fn a_pentagram_is_cut_as_by_the_overlay() {
         assert!((enclosed(&found) - expected.area()).abs() < 1e-6, "{op}");
         for (x, y) in (0..24).flat_map(|x| (0..24).map(move |y| (x, y))) {
             let p = DVec2::new(f64::from(x) * 0.503 + 0.07, f64::from(y) * 0.451 + 0.03);
-            let place = |shapes: &Shapes| locate(shapes.rings(), p, FillRule::EvenOdd);
+            let place = |shapes: &Shapes| locate(shapes.rings(), p, WindingRule::EvenOdd);
             assert_eq!(place(&found), place(&expected), "{op} {p}");
         }
     }
     // The centre is outside, as the points around it are not.
     let inside = cut(&star, &right, BooleanOp::Intersection).expect("touches nowhere");
-    let place = |x, y| locate(inside.rings(), DVec2::new(x, y), FillRule::EvenOdd);
+    let place = |x, y| locate(inside.rings(), DVec2::new(x, y), WindingRule::EvenOdd);
     assert_eq!((place(5.6, 4.5), place(8.5, 6.2)), (Place::Outside, Place::Inside));
 }
 

@@ -3,7 +3,9 @@
 use durer::clip::line::{LineClipper, Segment};
 use durer::clip::polygon::overlay::{Options, overlay};
 use durer::clip::polygon::vatti::vatti;
-use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, rectangle, signed_area};
+use durer::clip::polygon::{
+    BooleanOp, PolygonClipper, Shapes, WindingRule, rectangle, signed_area,
+};
 use durer::math::{DVec2, Rect};
 use durer::trace::NoTrace;
 use proptest::prelude::*;
@@ -89,7 +91,7 @@ proptest! {
             with.end_polygon();
         }
         let area = |clip: &Shapes| {
-            let options = Options::with_rule(FillRule::NonZero);
+            let options = Options::with_rule(WindingRule::NonZero);
             let out = overlay(&a, clip, BooleanOp::Union, &options, &mut NoTrace).expect("finite");
             validity::check(&out.shapes, out.cell).expect("valid");
             out.shapes.area()
@@ -186,7 +188,7 @@ fn holes_in_columns_find_what_is_below_all_of_them() {
     rings.extend(places.clone().map(|(x, y)| square(4.0 * x - 4.0 + y % 2.0, 4.0 * y - 6.0, 2.0)));
     let shapes = Shapes::from_rings(rings);
     let none = Shapes::new();
-    for rule in [FillRule::EvenOdd, FillRule::Positive, FillRule::AbsGeqTwo] {
+    for rule in [WindingRule::EvenOdd, WindingRule::Positive, WindingRule::AbsGeqTwo] {
         let swept =
             vatti(&shapes, &none, BooleanOp::Union, &Options::with_rule(rule), &mut NoTrace);
         let options = Options::with_rule(rule);

@@ -1,7 +1,7 @@
 //! Laws that hold for every input, on inputs made to be hard.
 
 use durer::clip::polygon::overlay::{self, Operand, Options, Output, overlay};
-use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
+use durer::clip::polygon::{BooleanOp, Shapes, WindingRule};
 use durer::math::DVec2;
 use durer::trace::{NoTrace, Recorder};
 use proptest::prelude::*;
@@ -36,8 +36,8 @@ pub fn soup(rings: usize, size: usize, grid: i32) -> impl Strategy<Value = Shape
     prop::collection::vec(ring(size, grid), 0..rings).prop_map(Shapes::from_rings)
 }
 
-pub fn rule() -> impl Strategy<Value = FillRule> {
-    prop::sample::select(FillRule::ALL)
+pub fn rule() -> impl Strategy<Value = WindingRule> {
+    prop::sample::select(WindingRule::ALL)
 }
 
 pub fn op() -> impl Strategy<Value = BooleanOp> {
@@ -104,7 +104,7 @@ proptest! {
         let none = Shapes::new();
         let options = Options { grid: Some(1.0 / 1024.0), ..Options::with_rule(rule) };
         let once = run(&a, &none, BooleanOp::Union, &options);
-        let again = Options::with_rule(FillRule::NonZero);
+        let again = Options::with_rule(WindingRule::NonZero);
         let options = Options { grid: options.grid, ..again };
         let twice = run(&once.shapes, &none, BooleanOp::Union, &options);
         prop_assert_eq!(&once.shapes, &twice.shapes);
@@ -187,7 +187,7 @@ proptest! {
 fn stars_take_the_strips_and_stay_valid() {
     for (n, x) in [(300, 0.0), (300, 0.001), (120, 0.4)] {
         let (a, b) = (star(n, 0.0, 0.0), star(n, 0.5, x));
-        let options = Options::with_rule(FillRule::NonZero);
+        let options = Options::with_rule(WindingRule::NonZero);
         let areas = BooleanOp::ALL.iter().map(|&op| {
             let out = run(&a, &b, op, &options);
             validity::check(&out.shapes, out.cell).expect("valid");
@@ -207,7 +207,7 @@ fn threads_change_nothing() {
             .map(|(x, y)| cell(i) + DVec2::new(x, y) * size)
     };
     let many = Shapes::from_rings((0..40_000).map(ring));
-    let options = Options { origins: true, ..Options::with_rule(FillRule::NonZero) };
+    let options = Options { origins: true, ..Options::with_rule(WindingRule::NonZero) };
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("pool");
         pool.install(|| run(&many, &star(2_000, 0.0, 0.0), BooleanOp::Union, &options))
@@ -223,7 +223,7 @@ fn coarse_cells_bend_edges_to_their_centres() {
     let p = |x: f64, y: f64| DVec2::new(x, y);
     let spike = Shapes::from_rings([[p(0.0, 0.0), p(10.0, 1.0), p(0.0, 5.0)]]);
     let tooth = Shapes::from_rings([[p(5.0, 0.0), p(6.0, -3.0), p(4.0, -3.0)]]);
-    let options = Options { grid: Some(1.0), ..Options::with_rule(FillRule::NonZero) };
+    let options = Options { grid: Some(1.0), ..Options::with_rule(WindingRule::NonZero) };
     let out = run(&spike, &tooth, BooleanOp::Union, &options);
     validity::check(&out.shapes, out.cell).expect("valid");
     assert_eq!(out.shapes.polygon_count(), 2);

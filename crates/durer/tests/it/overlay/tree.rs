@@ -1,7 +1,7 @@
 //! The nesting tree beside the plain definition: the smallest ring around a ring is its parent.
 
 use durer::clip::polygon::overlay::{Options, overlay};
-use durer::clip::polygon::{BooleanOp, FillRule, NestingTree, Shapes, Vertex, signed_area};
+use durer::clip::polygon::{BooleanOp, NestingTree, Shapes, Vertex, WindingRule, signed_area};
 use durer::math::{I64Vec2, Orientation};
 use durer::trace::NoTrace;
 use proptest::prelude::*;
@@ -65,7 +65,7 @@ proptest! {
 fn rings_in_rings_nest_as_deep_as_they_go() {
     let square = |r: i64| [(-r, -r), (r, -r), (r, r), (-r, r)].map(I64Vec2::from);
     let rings = Shapes::from_rings((1..=3000).map(square));
-    let options = Options::with_rule(FillRule::EvenOdd);
+    let options = Options::with_rule(WindingRule::EvenOdd);
     let out = overlay(&rings, &Shapes::new(), BooleanOp::Union, &options, &mut NoTrace);
     let tree = out.expect("small").tree();
     assert_eq!((tree.len(), tree.roots().len()), (3000, 1));

@@ -18,7 +18,7 @@ pub use matched::{Matched, matched};
 
 use super::overlay::{self, overlay};
 use super::rectangle::{Near, Prepared};
-use super::{BooleanOp, FillRule, Shapes};
+use super::{BooleanOp, Shapes, WindingRule};
 use crate::Result;
 use crate::clip::attribute::Source;
 use crate::math::Rect;
@@ -30,7 +30,7 @@ use conform::{Mask, Subject};
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Options {
     /// Fill rule of the subject.
-    pub rule: FillRule,
+    pub rule: WindingRule,
     /// True if the subject's own vertices are looked for on its edges too. Of polygons that are not valid some
     /// lie there but for rounding, and would leave slivers.
     pub mend: bool,
@@ -116,7 +116,7 @@ fn solve(subject: &Subject, mask: &Mask, op: BooleanOp, chosen: &Options) -> Res
     let bounds = [subject.shapes().bounds(), mask.near.shapes.bounds()];
     let options = overlay::Options {
         subject_rule: chosen.rule,
-        clip_rule: FillRule::EvenOdd,
+        clip_rule: WindingRule::EvenOdd,
         grid: finest_grid(bounds),
         origins: true,
         drop_collinear: false,

@@ -35,7 +35,7 @@ mod tests;
 mod whole;
 mod winding;
 
-use super::{BooleanOp, FillRule, NestingTree, Shapes, Vertex};
+use super::{BooleanOp, NestingTree, Shapes, Vertex, WindingRule};
 use crate::Result;
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
@@ -78,9 +78,9 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Options {
     /// Fill rule of the subject.
-    pub subject_rule: FillRule,
+    pub subject_rule: WindingRule,
     /// Fill rule of the clip.
-    pub clip_rule: FillRule,
+    pub clip_rule: WindingRule,
     /// The size of a grid cell, in units of the coordinates. `None` takes the smallest power of two
     /// that leaves at most 2³⁰ cells across the input. Sizes that leave up to 2⁴¹ cells across are
     /// possible, at about twice the time. Powers of two are best: other sizes make grid points that
@@ -97,7 +97,7 @@ pub struct Options {
 
 impl Options {
     /// Creates the same fill rule for both.
-    pub fn with_rule(rule: FillRule) -> Self {
+    pub fn with_rule(rule: WindingRule) -> Self {
         Self { subject_rule: rule, clip_rule: rule, ..Self::default() }
     }
 }

@@ -6,12 +6,12 @@ use proptest::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::super::vatti::vatti;
-use super::super::{BooleanOp, FillRule, Shapes};
+use super::super::{BooleanOp, Shapes, WindingRule};
 use super::{Options, Output, overlay};
 use crate::math::DVec2;
 use crate::trace::NoTrace;
 
-fn run(a: &Shapes, b: &Shapes, op: BooleanOp, rule: FillRule) -> Output {
+fn run(a: &Shapes, b: &Shapes, op: BooleanOp, rule: WindingRule) -> Output {
     overlay(a, b, op, &Options::with_rule(rule), &mut NoTrace).expect("finite")
 }
 
@@ -36,8 +36,8 @@ fn soup(grid: i32) -> impl Strategy<Value = Shapes> {
 const OPS: [BooleanOp; 4] =
     [BooleanOp::Intersection, BooleanOp::Union, BooleanOp::Difference, BooleanOp::Xor];
 
-const RULES: [FillRule; 4] =
-    [FillRule::EvenOdd, FillRule::NonZero, FillRule::Positive, FillRule::Negative];
+const RULES: [WindingRule; 4] =
+    [WindingRule::EvenOdd, WindingRule::NonZero, WindingRule::Positive, WindingRule::Negative];
 
 proptest! {
     // A case takes milliseconds in patches so tiny; the laws of tests/it/overlay have more of them.
@@ -72,7 +72,7 @@ proptest! {
             [1, 2].map(|n| ThreadPoolBuilder::new().num_threads(n).build().expect("pool"))
         });
         let with = |count: usize, a: &Shapes, b: &Shapes| {
-            POOLS[count - 1].install(|| run(a, b, OPS[op], FillRule::EvenOdd).shapes)
+            POOLS[count - 1].install(|| run(a, b, OPS[op], WindingRule::EvenOdd).shapes)
         };
         let turned = |shapes: &Shapes| {
             let mut rings: Vec<Vec<DVec2>> = shapes.rings().map(<[DVec2]>::to_vec).collect();
@@ -102,9 +102,9 @@ fn long_rings_keep_their_points() {
     };
     let rings = || [circle(500, 9.0), circle(400, 8.0), circle(300, 1.0)];
     let shapes = Shapes::from_rings(rings());
-    let out = run(&shapes, &Shapes::new(), BooleanOp::Union, FillRule::EvenOdd).shapes;
+    let out = run(&shapes, &Shapes::new(), BooleanOp::Union, WindingRule::EvenOdd).shapes;
     assert_eq!((out.points().len(), out.ring_count(), out.polygon_count()), (1200, 3, 2));
-    let out = run(&shapes, &Shapes::new(), BooleanOp::Union, FillRule::NonZero).shapes;
+    let out = run(&shapes, &Shapes::new(), BooleanOp::Union, WindingRule::NonZero).shapes;
     assert_eq!((out.points().len(), out.ring_count()), (500, 1));
 }
 
@@ -116,7 +116,7 @@ fn many_copies_of_a_ring_are_one_ring() {
     for (ring, count) in [(square, 26), (slanted, 26), (square, 400), (slanted, 400)] {
         let ring = ring.map(DVec2::from);
         let shapes = Shapes::from_rings(std::iter::repeat_n(ring, count));
-        let out = run(&shapes, &Shapes::new(), BooleanOp::Union, FillRule::NonZero).shapes;
+        let out = run(&shapes, &Shapes::new(), BooleanOp::Union, WindingRule::NonZero).shapes;
         assert_eq!((out.points().len(), out.area()), (4, Shapes::from_rings([ring]).area()));
     }
 }

@@ -292,7 +292,7 @@ mod tests {
     use super::*;
     use crate::clip::polygon::point::{Place, locate};
     use crate::clip::polygon::rectangle::{Options, clip};
-    use crate::clip::polygon::{FillRule, overlay};
+    use crate::clip::polygon::{WindingRule, overlay};
     use proptest::prelude::*;
 
     fn p((x, y): (i32, i32)) -> DVec2 {
@@ -317,7 +317,7 @@ mod tests {
 
     /// Returns the same region as valid polygons.
     fn valid(shapes: &Shapes) -> Shapes {
-        let options = overlay::Options::with_rule(FillRule::EvenOdd);
+        let options = overlay::Options::with_rule(WindingRule::EvenOdd);
         let op = crate::clip::polygon::BooleanOp::Union;
         overlay::overlay(shapes, &Shapes::new(), op, &options, &mut NoTrace).unwrap().shapes
     }
@@ -370,7 +370,7 @@ mod tests {
         fn points_lie_where_every_edge_says(shapes in rings(), x in -14i32..=14, y in -14i32..=14) {
             let at = p((x, y)) * 0.5;
             let prepared = Prepared::new(shapes.clone()).unwrap();
-            let place = locate(shapes.rings(), at, FillRule::EvenOdd);
+            let place = locate(shapes.rings(), at, WindingRule::EvenOdd);
             prop_assert_eq!(prepared.contains(at), place != Place::Outside, "{} {:?}", at, shapes);
             prop_assert_eq!(prepared.has_on_border(at), place == Place::Border, "{} {:?}", at, shapes);
         }

@@ -9,7 +9,7 @@
 use super::{Cap, Join, Stroke, outline};
 use crate::clip::mask::Area;
 use crate::clip::polygon::{
-    BooleanOp, FillRule, Shapes, overlay, overlay::Options as OverlayOptions,
+    BooleanOp, Shapes, WindingRule, overlay, overlay::Options as OverlayOptions,
 };
 use crate::curve::{Contours, Path};
 use crate::geometry::Geometry;
@@ -81,22 +81,22 @@ impl Options {
 /// `shapes` may cross, and enclose what `rule` says.
 ///
 /// ```
-/// use durer::clip::polygon::{FillRule, Shapes};
+/// use durer::clip::polygon::{WindingRule, Shapes};
 /// use durer::math::DVec2;
 /// use durer::raster::line::wide::{Join, buffer::{Options, of_polygons}};
 ///
 /// let square = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(DVec2::from);
 /// let square = Shapes::from_rings([square]);
 /// let by = |distance| Options { distance, join: Join::Miter, ..Options::default() };
-/// assert_eq!(of_polygons(&square, FillRule::EvenOdd, &by(1.0))?.area(), 36.0);
-/// assert_eq!(of_polygons(&square, FillRule::EvenOdd, &by(-1.0))?.area(), 4.0);
-/// assert!(of_polygons(&square, FillRule::EvenOdd, &by(-2.0))?.is_empty());
+/// assert_eq!(of_polygons(&square, WindingRule::EvenOdd, &by(1.0))?.area(), 36.0);
+/// assert_eq!(of_polygons(&square, WindingRule::EvenOdd, &by(-1.0))?.area(), 4.0);
+/// assert!(of_polygons(&square, WindingRule::EvenOdd, &by(-2.0))?.is_empty());
 /// # Ok::<(), durer::Error>(())
 /// ```
 ///
 /// # Errors
 /// [`Error::Parameter`] for options out of range; otherwise as [`overlay()`].
-pub fn of_polygons(shapes: &Shapes, rule: FillRule, options: &Options) -> Result<Shapes> {
+pub fn of_polygons(shapes: &Shapes, rule: WindingRule, options: &Options) -> Result<Shapes> {
     let mut border = Path::new();
     for ring in shapes.rings() {
         border.extend(&Path::polygon(ring.iter().copied()));
@@ -122,13 +122,13 @@ pub fn of_lines<'a>(
         let twice = line.iter().chain(line.first().filter(|_| line.len() == 1));
         path.extend(&Path::polyline(twice.copied()));
     }
-    joined(&Shapes::new(), FillRule::EvenOdd, BooleanOp::Union, &path, options)
+    joined(&Shapes::new(), WindingRule::EvenOdd, BooleanOp::Union, &path, options)
 }
 
 /// Returns the polygons within a distance of all parts of a geometry; its own polygons are taken by a fill rule.
 ///
 /// ```
-/// use durer::clip::polygon::FillRule;
+/// use durer::clip::polygon::WindingRule;
 /// use durer::geometry::{Geometry, Points};
 /// use durer::math::DVec2;
 /// use durer::raster::line::wide::Cap;
@@ -136,13 +136,13 @@ pub fn of_lines<'a>(
 ///
 /// let road = Geometry::LineString(Points::flat(vec![DVec2::ZERO, DVec2::new(10.0, 0.0)]));
 /// let options = Options { distance: 1.0, cap: Cap::Butt, ..Options::default() };
-/// assert_eq!(of_geometry(&road, FillRule::EvenOdd, &options)?.area(), 20.0);
+/// assert_eq!(of_geometry(&road, WindingRule::EvenOdd, &options)?.area(), 20.0);
 /// # Ok::<(), durer::Error>(())
 /// ```
 ///
 /// # Errors
 /// As [`of_polygons`].
-pub fn of_geometry(geometry: &Geometry, rule: FillRule, options: &Options) -> Result<Shapes> {
+pub fn of_geometry(geometry: &Geometry, rule: WindingRule, options: &Options) -> Result<Shapes> {
     let mut lines: Vec<Vec<DVec2>> = Vec::new();
     chains(geometry, &mut lines);
     let area = Area::of_geometry(geometry);
@@ -177,7 +177,7 @@ fn chains(geometry: &Geometry, out: &mut Vec<Vec<DVec2>>) {
 /// Joins `shapes` and a stroke along a path, or subtracts the stroke.
 fn joined(
     shapes: &Shapes,
-    rule: FillRule,
+    rule: WindingRule,
     op: BooleanOp,
     path: &Path,
     options: &Options,
@@ -187,7 +187,7 @@ fn joined(
     let outline = rings(&outline(path, &stroke, tolerance, &mut NoTrace)?);
     let rules = OverlayOptions {
         subject_rule: rule,
-        clip_rule: FillRule::NonZero,
+        clip_rule: WindingRule::NonZero,
         drop_collinear: true,
         work: options.work.clone(),
         ..OverlayOptions::default()
@@ -205,7 +205,7 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    const RULE: FillRule = FillRule::EvenOdd;
+    const RULE: WindingRule = WindingRule::EvenOdd;
 
     fn square(low: f64, side: f64) -> Vec<DVec2> {
         let high = low + side;
