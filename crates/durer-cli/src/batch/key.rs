@@ -17,10 +17,11 @@ impl Hashes {
     pub fn of(&mut self, path: &Path) -> io::Result<String> {
         let metadata = std::fs::metadata(path)?;
         let (length, modified) = (metadata.len(), metadata.modified().ok());
-        if let Some((known_length, known_modified, hash)) = self.0.get(path) {
-            if (*known_length, *known_modified) == (length, modified) && modified.is_some() {
-                return Ok(hash.clone());
-            }
+        if let Some((known_length, known_modified, hash)) = self.0.get(path)
+            && (*known_length, *known_modified) == (length, modified)
+            && modified.is_some()
+        {
+            return Ok(hash.clone());
         }
         let (hash, _) = of_file(path)?;
         self.0.insert(path.to_owned(), (length, modified, hash.clone()));

@@ -117,10 +117,10 @@ fn known(args: &BatchArgs, out: &Path, rows: &Rows) -> Result<Known, Failure> {
     let mut last: HashMap<String, Option<Entry>> =
         rows.rows.iter().map(|row| (row.id.clone(), None)).collect();
     journal::read_all(out, |entry| {
-        if let Some(known) = last.get_mut(&entry.id) {
-            if known.as_ref().is_none_or(|known| known.ended <= entry.ended) {
-                *known = Some(entry);
-            }
+        if let Some(known) = last.get_mut(&entry.id)
+            && known.as_ref().is_none_or(|known| known.ended <= entry.ended)
+        {
+            *known = Some(entry);
         }
     })?;
     let is_there = |(name, bytes): (&str, u64)| {

@@ -155,7 +155,7 @@ fn light(command: &Command, p: &mut Pipeline) -> Result<()> {
         Command::TexCoord(at) => p.tex_coord = *at,
         Command::Lighting(enabled) => lighting.enabled = *enabled,
         Command::Light(number, light) => {
-            let place = lighting.lights.get_mut(*number).ok_or_else(|| Error::Dangling {
+            let place = lighting.lights.get_mut(*number).ok_or(Error::Dangling {
                 what: "light",
                 index: *number,
                 count: MAX_LIGHTS,

@@ -263,9 +263,10 @@ fn picks_are_sorted_by_depth() {
 fn near_pixels_move_further_and_open_a_hole() {
     let frames = frames("forward-warp", "hole");
     let moved = |name: &str| -> Vec<f64> {
+        let number = |f: &Frame, name| numbers(std::slice::from_ref(f), name)[0];
         let of =
             frames.iter().filter(|f| f.text(Language::English).contains(&format!(", {name}, ")));
-        of.map(|f| numbers(&[f.clone()], "x")[0] - numbers(&[f.clone()], "to")[0]).collect()
+        of.map(|f| number(f, "x") - number(f, "to")).collect()
     };
     let (wall, plate) = (moved("A"), moved("B"));
     let largest = |all: &[f64]| all.iter().copied().fold(f64::NEG_INFINITY, f64::max);

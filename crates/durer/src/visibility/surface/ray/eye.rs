@@ -47,7 +47,7 @@ impl<'a> Eye<'a> {
         }
         sort_layers(layers);
         if let Some(report) = &caster.report {
-            steps.push(report.from_eye([x, y], offset, self.nearest(opaque)));
+            steps.push(report.primary([x, y], offset, self.nearest(opaque)));
         }
         opaque
     }
