@@ -100,7 +100,7 @@ export class Engine {
 
 /** The engine of all lessons. */
 export const engine = new Engine("durer.wasm");
-/** The engine that reads files and renders models; it is larger, and loaded when it is asked for the first time. */
+/** The engine that reads files and renders models; it is larger, and loaded at its first use. */
 export const files = new Engine("durer-files.wasm");
 
 /** A file as an input, and what was left out of it. */

@@ -20,7 +20,7 @@ export class Quiz {
   private byLine = false;
   private right = 0;
   private asked = 0;
-  /** The step that is asked for; undefined while none is. */
+  /** The step in question; undefined while there is none. */
   private open: number | undefined;
 
   private startButton = h("button", { type: "button", class: "primary", onclick: () => this.toggle() }, t("quizStart"));
@@ -54,7 +54,7 @@ export class Quiz {
     });
   }
 
-  /** Returns whether a step may be shown: while it is asked for, only the answer shows it. */
+  /** Returns whether a step may be shown: while it is in question, only the answer shows it. */
   allow(to: number): boolean {
     return !this.on || this.open === undefined || to < this.open;
   }

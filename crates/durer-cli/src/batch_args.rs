@@ -44,7 +44,7 @@ pub struct BatchArgs {
     /// [default: {id} with the suffix of the format]
     #[arg(long, value_name = "PATTERN")]
     pub name: Option<String>,
-    /// Run only this share of the rows, I of N, counted from 0; or `auto`: as a job array tells by its environment
+    /// Run only this share of the rows, I of N, counted from 0; or `auto`: from the environment of a job array
     ///
     /// A row belongs to a shard by its id alone. `auto` knows Slurm (SLURM_ARRAY_TASK_ID, …_MIN, …_COUNT), AWS Batch
     /// (AWS_BATCH_JOB_ARRAY_INDEX, …_SIZE), Kubernetes (JOB_COMPLETION_INDEX, with DURER_SHARDS for the number of jobs) and Cloud

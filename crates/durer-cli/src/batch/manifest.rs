@@ -1,4 +1,4 @@
-//! Reading manifests: CSV, JSON Lines and Parquet, told apart by their content.
+//! Reading manifests: CSV, JSON Lines and Parquet, distinguished by their content.
 
 #[cfg(feature = "geoparquet")]
 mod parquet;

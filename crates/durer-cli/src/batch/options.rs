@@ -87,7 +87,7 @@ impl Parser {
         let line = ["durer", command].into_iter().chain(options.iter().map(String::as_str));
         let line = line.chain(output).chain(["--", "input"]);
         let matches = match self.0.clone().try_get_matches_from(line) {
-            // The formula of a plot stands for its input.
+            // The formula of a plot is its input.
             Err(_) if command == "plot" => self.0.clone().try_get_matches_from(
                 ["durer", command, "-o", "output"]
                     .into_iter()
@@ -192,7 +192,7 @@ pub fn planes(command: &str, options: Vec<Given>) -> (Vec<Given>, Vec<Given>) {
     options.into_iter().partition(|g| command == "render" && PLANES.contains(&g.id.as_str()))
 }
 
-/// Returns the suffix of an output whose name nothing tells.
+/// Returns the suffix of an output without a name.
 pub fn suffix(command: &str, options: &[Given]) -> String {
     let value = |id: &str| {
         let given = options.iter().find(|given| given.id == id)?;

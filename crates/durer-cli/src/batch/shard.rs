@@ -22,7 +22,7 @@ const ARRAYS: [[&str; 3]; 5] = [
     ["JOB_COMPLETION_INDEX", "", SHARDS],
 ];
 
-/// Variable that tells the number of shards, whatever the job array says: where only some of its jobs run again, or where it
+/// Variable with the number of shards, whatever the job array says: where only some of its jobs run again, or where it
 /// says nothing.
 const SHARDS: &str = "DURER_SHARDS";
 

@@ -66,7 +66,7 @@ def wkb_of_mapping(mapping: Mapping[str, Any]) -> bytes:
 
 
 def _shapely() -> Any:
-    """Returns shapely where somebody has imported it."""
+    """Returns shapely if it has been imported."""
     return sys.modules.get("shapely")
 
 
@@ -311,7 +311,7 @@ def clip(
     """Returns the part of each geometry in a mask: polygons of any kind, or (xmin, ymin, xmax, ymax).
 
     As ``clip_by_rect``; of a GeoDataFrame or GeoSeries rows outside are left out, as by ``geopandas.clip``, index and
-    columns stay, and a warning tells of a mask in another coordinate system. Results never change from areas to lines or
+    columns stay, and a warning reports a mask in another coordinate system. Results never change from areas to lines or
     points, so ``keep_geom_type`` makes no difference but for collections, which it leaves out.
 
     >>> import numpy as np

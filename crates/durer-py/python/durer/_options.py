@@ -48,7 +48,7 @@ def words(options: Mapping[str, object]) -> list[str]:
 
 
 def call(function: str, native: Callable[..., T], *args: object) -> T:
-    """Calls a native function; what is wrong with its words is told in terms of the function's arguments."""
+    """Calls a native function; errors name the function's arguments."""
     try:
         return native(*args)
     except OptionError as error:

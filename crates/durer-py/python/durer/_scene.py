@@ -100,8 +100,8 @@ def read(
     """Reads a model: glTF, OBJ, STL, PLY, 3MF, COLLADA, OFF, and points in LAS, LAZ, E57, XYZ.
 
     ``src`` is a path, bytes, or an open binary file; files that the model refers to are found beside a path only. ``name``
-    tells the format where the content does not. ``pose`` is a time of the first animation, or (name, time).
-    ``limits`` may set ``triangles`` and ``bytes``. Repairs are told as ``ReadWarning`` and kept in ``Scene.warnings``.
+    names the format where the content does not. ``pose`` is a time of the first animation, or (name, time).
+    ``limits`` may set ``triangles`` and ``bytes``. Repairs are reported as ``ReadWarning`` and kept in ``Scene.warnings``.
 
     Raises ``ReadError`` with the place of the fault, ``LimitError``, and ``OSError`` for files.
 

@@ -20,7 +20,7 @@ GIVEN = ("id", "input", "bytes", "name")
 def render_batch(batch: Any, **options: Any) -> Any:
     """Renders each row of a ``pyarrow.RecordBatch`` or ``Table`` to a PNG; never raises for a row.
 
-    A row has ``input``, a path, or ``bytes`` with a ``name`` that tells the format where they do not; ``id``, by default its
+    A row has ``input``, a path, or ``bytes`` with a ``name`` that names the format where they do not; ``id``, by default its
     number; and may have any option of ``durer.render`` as a column, which counts more than the keyword argument.
 
     Returns a table with ``id``, ``png``, ``width``, ``height``, ``sha256`` (of the PNG), ``seconds``, ``warnings``, ``error``.

@@ -106,7 +106,7 @@ const SHEETS: &[(&str, &str, usize)] = &[
     ("forward-warp", "hole", 12),
 ];
 
-/// Returns at most so many frames: the first, the last, and those between at equal distances.
+/// Returns at most this many frames: the first, the last, and those between at equal distances.
 fn chosen(frames: Vec<Frame>, most: usize) -> Vec<Frame> {
     let last = frames.len().saturating_sub(1);
     let count = most.min(frames.len());

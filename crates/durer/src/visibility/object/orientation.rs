@@ -314,7 +314,7 @@ fn by_centroid<F: AsRef<[usize]>>(
 }
 
 impl Orientation {
-    /// Counts the turns of a piece. Where it is not known which way is out, most of its faces are right, or the first
+    /// Counts the turns of a piece. If the outside is not known, most of its faces are right, or the first
     /// one where as many are turned as are not.
     fn count(&mut self, members: &[usize], outward_is_known: bool) {
         let Some(number) = members.first().map(|face| self.piece[*face]) else { return };
