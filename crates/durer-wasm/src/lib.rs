@@ -1,7 +1,7 @@
 //! The library behind requests: a JSON text in, a JSON text or bytes out. Compiled to WebAssembly it is the engine of the
 //! explorer; compiled for this machine it answers with the same bytes, which tests compare.
 //!
-//! [`answer`] is all of it. A request is an object whose `do` names what to do:
+//! [`Engine::answer`] is all of it. A request is an object whose `do` names what to do:
 //!
 //! | `do` | members | answer |
 //! |---|---|---|

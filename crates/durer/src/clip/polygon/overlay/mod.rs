@@ -293,9 +293,10 @@ impl<P: Vertex> Output<P> {
 /// ```
 ///
 /// # Errors
-/// [`Error::NonFinite`] for a coordinate that is not finite, [`Error::Parameter`] for a grid that is
-/// not positive or too fine and for coordinates beyond ±1e300, [`Error::Limit`] for too many points
-/// and for whole numbers too far apart; those of [`Options::work`].
+/// [`NonFinite`](crate::Error::NonFinite) for a coordinate that is not finite,
+/// [`Parameter`](crate::Error::Parameter) for a grid that is not positive or too fine and for coordinates beyond
+/// ±1e300, [`Limit`](crate::Error::Limit) for too many points and for whole numbers too far apart; those of
+/// [`Options::work`].
 pub fn overlay<P: Vertex>(
     subject: &Shapes<P>,
     clip: &Shapes<P>,
