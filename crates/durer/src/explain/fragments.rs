@@ -228,6 +228,7 @@ impl State {
         let at = |x: f64, z: f64| DVec2::new(x, 1.6 + z / self.row.far() * tall);
         let mut picture =
             Picture::new([DVec2::new(-0.6, -0.7), DVec2::new(width + 0.6, tall + 2.0)]);
+        picture.picture_from_input = None;
         picture.grid = Some([columns, 1]);
         for x in 0..columns {
             let [r, g, b, _] = self.planes.color.get(x, 0).unwrap_or_default();

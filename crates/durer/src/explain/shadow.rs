@@ -266,6 +266,7 @@ impl State {
         let at = |x: f64, z: f64| DVec2::new(x, -z * scale);
         let mut picture =
             Picture::new([at(-0.7, deepest + 0.7 / scale), at(columns + 0.7, -0.9 / scale)]);
+        picture.picture_from_input = None;
         let sun = Word::new("light", "Licht");
         picture.arrow(at(columns / 2.0, -0.8 / scale), at(columns / 2.0, 0.0), Look::Thin);
         picture.label(at(columns / 2.0, -0.5 / scale), (24.0, 0.0), sun);

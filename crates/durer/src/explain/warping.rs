@@ -180,6 +180,7 @@ impl State {
     fn picture(&self) -> Picture {
         let width = f64::from(PIXELS);
         let mut picture = Picture::new([DVec2::new(-0.6, -0.9), DVec2::new(width + 0.6, 5.4)]);
+        picture.picture_from_input = None;
         for x in 0..PIXELS {
             let [r, g, b, _] = self.old.get(x, 0).unwrap_or([255; 4]);
             picture.colored([x as i32, 0], [r, g, b], "");

@@ -113,6 +113,7 @@ fn picture(rows: &[Vec<DVec3>], points: &[DVec3], column: &[DVec3], is_point: bo
     let flat = |p: DVec3| DVec2::new(p.x + 0.45 * p.y, 0.4 * p.y + 0.8 * p.z);
     let chain = |points: &[DVec3]| points.iter().map(|&p| flat(p)).collect::<Vec<_>>();
     let mut picture = Picture::around(rows.iter().flatten().map(|&p| flat(p)), 0.12);
+    picture.picture_from_input = None;
     for row in rows {
         picture.chain(chain(row), Look::Thin);
         row.iter().for_each(|&p| picture.dot(flat(p), Look::Pale));

@@ -212,6 +212,7 @@ impl State<'_> {
     fn picture(&self, now: &[usize], step: &Step) -> Picture {
         let flat = |p: DVec3| DVec2::new(p.x - 0.45 * p.z, p.y - 0.3 * p.z);
         let mut picture = Picture::around(self.points.iter().map(|&p| flat(p)), 0.3);
+        picture.picture_from_input = None;
         for (face, ring) in self.faces.iter().enumerate() {
             let look = match self.turned[face] {
                 None => Look::Pale,

@@ -240,6 +240,7 @@ impl State {
 
     fn picture(&self) -> Picture {
         let mut picture = Picture::new(self.extent());
+        picture.picture_from_input = None;
         for (number, (ends, item)) in self.cuts.iter().enumerate() {
             picture.chain(*ends, Look::Window);
             let face = self.triangles.face(*item);

@@ -125,7 +125,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
 }
 
 fn picture(raster: &Raster, pieces: &[Piece], now: IVec2) -> Picture {
-    let mut picture = raster.picture();
+    let mut picture = raster.picture_of_pixels();
     for Piece { ends: [from, to], options, steps } in pieces {
         for pixel in replay(*from, *to, options, steps) {
             picture.cell(pixel.to_array(), "", Look::First);
