@@ -9,6 +9,14 @@ import { named, of, t } from "./words";
 
 const SNAPS = [0, 0.1, 0.25, 0.5, 1];
 
+/** Returns an input with the window and the clip polygon of another one, where it has none: files of map data have only shapes. */
+function withWindow(input: Input, other: Input | undefined): Input {
+  if (!("figure" in input) || !other || !("figure" in other)) return input;
+  const { window, clip } = other.figure;
+  const own = input.figure;
+  return { figure: { ...own, window: own.window ?? window, clip: own.clip?.length ? own.clip : clip } };
+}
+
 export function inputPanel(player: Player, stage: Stage, notice: (text: string) => void): HTMLElement {
   const { lesson } = player;
   const example = (): string | undefined => ("example" in player.setup.input ? player.setup.input.example : undefined);
@@ -46,7 +54,7 @@ export function inputPanel(player: Player, stage: Stage, notice: (text: string) 
     try {
       const read = await files.ask<Opened>({ do: "read", name: file.name }, await file.arrayBuffer());
       if (read.warnings.length > 0) notice(read.warnings.join(" "));
-      player.change({ ...player.setup, input: read.input });
+      player.change({ ...player.setup, input: withWindow(read.input, player.run?.input) });
     } catch (e) {
       if (!(e instanceof Refused || e instanceof Trapped)) throw e;
       notice(e.message);
