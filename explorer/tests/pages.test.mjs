@@ -1,7 +1,7 @@
 // The pages in a browser.
 
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { after, before, test } from "node:test";
 import { atStep, browser, open, serve } from "./browser.mjs";
@@ -208,6 +208,20 @@ test("tracks lead through pages that exist", async () => {
   await page.evaluate(() => (location.hash = "#page=teachers&lang=de"));
   await page.waitForSelector(".text-page h2");
   await accessible(page, "teachers");
+  assert.deepEqual(faults, []);
+  await close();
+});
+
+const READERS = new URL("../dist/durer-files.wasm", import.meta.url);
+
+test("a file becomes the input, in the window of the page", { skip: !existsSync(READERS) && "built without readers of files" }, async () => {
+  const { page, faults, close } = await open(chromium, `${server.url}#a=sutherland-hodgman&lang=en`);
+  await atStep(page, 1);
+  const ring = { type: "Polygon", coordinates: [[[0, 0], [12, 1], [9, 9], [4, 3], [0, 0]]] };
+  await page.setInputFiles("#file", { name: "own.geojson", mimeType: "application/json", buffer: Buffer.from(JSON.stringify(ring)) });
+  await page.waitForFunction(() => document.querySelector(".picture-pane .caption").textContent.includes("edge (4, 3) → (0, 0)"));
+  await page.setInputFiles("#file", { name: "own.geojson", mimeType: "application/json", buffer: Buffer.from("{") });
+  await page.waitForFunction(() => document.querySelector(".picture-pane").textContent.includes("own.geojson"));
   assert.deepEqual(faults, []);
   await close();
 });
