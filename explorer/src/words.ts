@@ -152,8 +152,8 @@ const WORDS = {
   noLine: { en: "No further step runs this line.", de: "Kein weiterer Schritt führt diese Zeile aus." },
   steps1: { en: "{count} steps", de: "{count} Schritte" },
   galleryLead: {
-    en: "One model by every method for visible surfaces. Pixels that differ from the first picture are shown beside it.",
-    de: "Ein Modell nach jedem Verfahren für sichtbare Flächen. Pixel, die vom ersten Bild abweichen, stehen daneben.",
+    en: "One model by every method for visible surfaces. Pixels that differ from the first picture are shown below. The z-buffer smooths edges by four samples a pixel, others may have one, so edges differ.",
+    de: "Ein Modell nach jedem Verfahren für sichtbare Flächen. Pixel, die vom ersten Bild abweichen, sind darunter gezeigt. Der z-Buffer glättet Kanten mit vier Proben je Pixel, andere haben teils nur eine: An Kanten unterscheiden sie sich.",
   },
   teapot: { en: "Render the teapot", de: "Teekanne rendern" },
   azimuth: { en: "Around", de: "Drehung" },

@@ -224,7 +224,7 @@ impl Tree {
     }
 
     /// Returns the pieces from back to front as an eye sees them: each may be painted over those before it.
-    /// Of what is in one plane the faces that come first are painted last.
+    /// Pieces in one plane come in the reverse order of their faces, so that the first face is painted last.
     pub fn back_to_front(&self, eye: Eye, t: &mut impl Tracer<Step>) -> Vec<u32> {
         let mut order = Vec::new();
         // A node that is to be walked through, or whose own pieces are next.
