@@ -89,12 +89,12 @@ fn lay_out(compared: &[Compared], options: &RenderOptions) -> durer::Result<Fram
     let (width, height) =
         (u64::from(columns) * w + u64::from(GAP), u64::from(rows) * h + u64::from(GAP));
     if width * height > options.max_pixels.max(1 << 20) || width > 32_767 || height > 32_767 {
-        let value = width * height;
-        return Err(durer::Error::Limit {
-            what: "pixels of the sheet",
-            value,
-            limit: options.max_pixels,
-        });
+        let expected = "at most 32767 pixels wide and high, and within --max-pixels; a smaller --size makes it smaller";
+        return Err(durer::Error::parameter(
+            "the sheet's size",
+            format!("{width}x{height}"),
+            expected,
+        ));
     }
     let mut sheet = Framebuffer::within(&options.work, width as u32, height as u32)?;
     sheet.color.data_mut().fill(PAPER);

@@ -31,10 +31,12 @@ impl Failure {
         }
     }
 
-    /// Returns the failure for an error of the library: wrong options, or work that costs too much.
+    /// Returns the failure for an error of the library: wrong options, or work that costs too much. Limits of the
+    /// library are limits of data; those of options, as of the picture's size, are checked before the work begins.
     pub fn of_library(error: &durer::Error) -> Self {
         let message = error.to_string();
-        if error.is_of_budget() { Self::Refused(message) } else { Self::Usage(message) }
+        let of_data = error.is_of_budget() || matches!(error, durer::Error::Limit { .. });
+        if of_data { Self::Refused(message) } else { Self::Usage(message) }
     }
 
     /// Returns the failure with the file's name, where that is missing.

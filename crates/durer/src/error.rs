@@ -33,7 +33,7 @@ pub enum Error {
         what: &'static str,
         /// The index that was used.
         index: usize,
-        /// Returns the number of bytes.
+        /// Number of things that exist.
         count: usize,
     },
     /// A name that nothing has.
@@ -46,12 +46,12 @@ pub enum Error {
         /// Names that exist and are like it.
         near: String,
     },
-    /// A size is above a stated limit.
+    /// A size, or a count of steps of the work, is above a stated limit.
     #[error("{what} {value} is above the limit of {limit}")]
     Limit {
         /// Limited quantity, e.g. `"pixels"`.
         what: &'static str,
-        /// Requested amount.
+        /// Amount that the input or the caller requires.
         value: u64,
         /// The limit in force.
         limit: u64,
@@ -59,7 +59,7 @@ pub enum Error {
     /// The combination requested has no meaning, e.g. vector output of an image-space algorithm.
     #[error("{what} is not supported; {instead}")]
     Unsupported {
-        /// Requested amount.
+        /// Combination that was requested.
         what: &'static str,
         /// Alternative to use.
         instead: &'static str,
