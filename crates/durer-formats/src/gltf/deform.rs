@@ -25,18 +25,18 @@ pub fn morph(
             let Some(&accessor) = target.get(name) else { return Ok(Vec::new()) };
             let at = format!("{at}.targets[{t}].{name}");
             let deltas = source.floats::<3>(accessor, &at)?;
-            if deltas.len() == g.positions.len() {
+            if deltas.len() == g.mesh.positions.len() {
                 return Ok(deltas);
             }
             let message =
-                format!("has {} elements for {} vertices", deltas.len(), g.positions.len());
+                format!("has {} elements for {} vertices", deltas.len(), g.mesh.positions.len());
             Err(Error::path(at, message))
         };
         let (positions, normals, tangents) = (read("POSITION")?, read("NORMAL")?, read("TANGENT")?);
         let add = |v: &mut Vec3, delta: [f32; 3]| *v += Vec3::from(delta) * weight;
-        g.positions.iter_mut().zip(positions).for_each(|(p, d)| add(p, d));
-        g.normals.iter_mut().zip(normals).for_each(|(n, d)| add(n, d));
-        for (tangent, delta) in g.tangents.iter_mut().zip(tangents) {
+        g.mesh.positions.iter_mut().zip(positions).for_each(|(p, d)| add(p, d));
+        g.mesh.normals.iter_mut().zip(normals).for_each(|(n, d)| add(n, d));
+        for (tangent, delta) in g.mesh.tangents.iter_mut().zip(tangents) {
             *tangent += (Vec3::from(delta) * weight).extend(0.0);
         }
         morph_sets(source, g, target, weight, &format!("{at}.targets[{t}]"))?;
@@ -52,7 +52,7 @@ fn morph_sets(
     weight: f32,
     at: &str,
 ) -> Result<()> {
-    for (i, set) in g.tex_coords.iter_mut().enumerate() {
+    for (i, set) in g.mesh.tex_coords.iter_mut().enumerate() {
         let name = format!("TEXCOORD_{i}");
         if let Some(&accessor) = target.get(&name) {
             let deltas = source.floats::<2>(accessor, &format!("{at}.{name}"))?;
@@ -62,7 +62,7 @@ fn morph_sets(
             });
         }
     }
-    let Some(&accessor) = target.get("COLOR_0").filter(|_| !g.colors.is_empty()) else {
+    let Some(&accessor) = target.get("COLOR_0").filter(|_| !g.mesh.colors.is_empty()) else {
         return Ok(());
     };
     let alpha = source.root.accessors.get(accessor.index()).is_some_and(|a| a.shape == "VEC4");
@@ -72,7 +72,7 @@ fn morph_sets(
     } else {
         source.floats::<3>(accessor, &at)?.into_iter().map(|[r, g, b]| [r, g, b, 0.0]).collect()
     };
-    let moved = g.colors.iter_mut().zip(deltas);
+    let moved = g.mesh.colors.iter_mut().zip(deltas);
     moved.for_each(|(c, d)| *c += durer::math::Vec4::from(d) * weight);
     Ok(())
 }
@@ -110,18 +110,18 @@ pub fn joint_matrices(source: &Source<'_>, skin: Whole, world: &[DMat4]) -> Resu
 /// # Errors
 /// Where a vertex follows a joint that the skin does not have.
 pub fn skin(g: &mut Geometry, joints: &[DMat4], at: &str) -> Result<()> {
-    for v in 0..g.positions.len() {
+    for v in 0..g.mesh.positions.len() {
         let matrix = blend(g, v, joints, at)?;
-        g.positions[v] = matrix.transform_point3(g.positions[v].as_dvec3()).as_vec3();
+        g.mesh.positions[v] = matrix.transform_point3(g.mesh.positions[v].as_dvec3()).as_vec3();
         let linear = DMat3::from_mat4(matrix);
-        if let Some(normal) = g.normals.get_mut(v) {
+        if let Some(normal) = g.mesh.normals.get_mut(v) {
             // Normals go by the cofactors, which a singular matrix has too.
             let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
             let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
             let turned = cofactors * normal.as_dvec3() * linear.determinant().signum();
             *normal = turned.try_normalize().unwrap_or(DVec3::ZERO).as_vec3();
         }
-        if let Some(tangent) = g.tangents.get_mut(v) {
+        if let Some(tangent) = g.mesh.tangents.get_mut(v) {
             let turned = linear * tangent.truncate().as_dvec3();
             *tangent = turned.normalize_or_zero().as_vec3().extend(tangent.w);
         }
@@ -156,25 +156,29 @@ mod tests {
     use super::*;
     use crate::gltf::geometry::Influences;
     use durer::math::Vec4;
+    use durer::scene::Mesh;
 
     #[test]
     fn normals_stay_perpendicular_under_scale_and_mirror() {
         // A plane through x + y = 0, stretched along x and mirrored along z.
         let mut g = Geometry {
-            positions: vec![Vec3::ZERO, Vec3::new(1.0, -1.0, 0.0), Vec3::Z],
-            normals: vec![Vec3::new(1.0, 1.0, 0.0).normalize(); 3],
-            tangents: vec![Vec4::new(0.0, 0.0, 1.0, -1.0); 3],
+            mesh: Mesh {
+                positions: vec![Vec3::ZERO, Vec3::new(1.0, -1.0, 0.0), Vec3::Z],
+                normals: vec![Vec3::new(1.0, 1.0, 0.0).normalize(); 3],
+                tangents: vec![Vec4::new(0.0, 0.0, 1.0, -1.0); 3],
+                ..Mesh::default()
+            },
             influences: vec![Influences { joints: vec![[0; 4]; 3], weights: vec![[1.0; 4]; 3] }],
             ..Geometry::default()
         };
         let joint = DMat4::from_scale(DVec3::new(3.0, 1.0, -2.0));
         skin(&mut g, &[joint], "here").unwrap();
-        let [a, b, c] = [0, 1, 2].map(|i| g.positions[i]);
+        let [a, b, c] = [0, 1, 2].map(|i| g.mesh.positions[i]);
         assert_eq!([a, b, c], [Vec3::ZERO, Vec3::new(3.0, -1.0, 0.0), Vec3::Z * -2.0]);
-        let normal = g.normals[0];
+        let normal = g.mesh.normals[0];
         assert!(normal.dot(b).abs() < 1e-6 && normal.dot(c).abs() < 1e-6, "{normal}");
         // On the same side as before: where x and y grow.
         assert!((normal.length() - 1.0).abs() < 1e-6 && normal.x > 0.0 && normal.y > 0.0);
-        assert_eq!(g.tangents[0], Vec4::new(0.0, 0.0, -1.0, -1.0));
+        assert_eq!(g.mesh.tangents[0], Vec4::new(0.0, 0.0, -1.0, -1.0));
     }
 }

@@ -321,18 +321,7 @@ impl Builder<'_> {
     fn add(&self, g: Geometry, mesh: usize, p: usize, scene: &mut Scene) -> usize {
         let file_mesh = &self.source.root.meshes[mesh];
         let material = variant::material(&file_mesh.primitives[p], self.variant).map(Whole::index);
-        let mut made = Mesh {
-            name: file_mesh.name.clone().unwrap_or_default(),
-            topology: g.topology,
-            positions: g.positions,
-            normals: g.normals,
-            tangents: g.tangents,
-            tex_coords: g.tex_coords,
-            colors: g.colors,
-            indices: g.indices,
-            parts: Vec::new(),
-            faces: Vec::new(),
-        };
+        let mut made = Mesh { name: file_mesh.name.clone().unwrap_or_default(), ..g.mesh };
         // Below 2³²: the limit on primitives and the width of indices see to it.
         let range = 0..u32::try_from(made.primitive_count()).unwrap_or(u32::MAX);
         made.parts = vec![Part { range, material, name: String::new() }];

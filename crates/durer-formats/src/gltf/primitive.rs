@@ -6,7 +6,7 @@ use super::json::{Primitive, Whole};
 use super::{draco, normals};
 use crate::{Error, Result};
 use durer::math::{Vec3, Vec4};
-use durer::scene::Topology;
+use durer::scene::{Mesh, Topology};
 
 /// Reads a primitive; `None` if it has no positions.
 ///
@@ -15,16 +15,16 @@ use durer::scene::Topology;
 pub fn read(source: &Source<'_>, primitive: &Primitive, at: &str) -> Result<Option<Geometry>> {
     let attributes = Attributes::of(source, primitive, at)?;
     let Some(positions) = attributes.vectors("POSITION")? else { return Ok(None) };
-    let mut g = Geometry { positions, ..Geometry::default() };
-    let count = g.positions.len();
+    let mut g = Geometry { mesh: Mesh { positions, ..Mesh::default() }, ..Geometry::default() };
+    let count = g.mesh.positions.len();
     if u32::try_from(count).is_err() {
         return Err(Error::path(at, format!("{count} vertices are more than 32 bits can number")));
     }
-    g.normals = attributes.vectors("NORMAL")?.unwrap_or_default();
-    g.tangents = attributes.vectors("TANGENT")?.unwrap_or_default();
-    g.colors = attributes.colors()?;
-    while let Some(set) = attributes.vectors(&format!("TEXCOORD_{}", g.tex_coords.len()))? {
-        g.tex_coords.push(set);
+    g.mesh.normals = attributes.vectors("NORMAL")?.unwrap_or_default();
+    g.mesh.tangents = attributes.vectors("TANGENT")?.unwrap_or_default();
+    g.mesh.colors = attributes.colors()?;
+    while let Some(set) = attributes.vectors(&format!("TEXCOORD_{}", g.mesh.tex_coords.len()))? {
+        g.mesh.tex_coords.push(set);
     }
     attributes.influences(&mut g)?;
     g.check_counts(at)?;
@@ -176,13 +176,13 @@ impl Mode {
 impl Geometry {
     /// Checks that each attribute has as many elements as there are positions.
     fn check_counts(&self, at: &str) -> Result<()> {
-        let count = self.positions.len();
+        let count = self.mesh.positions.len();
         let optional = [
-            ("NORMAL".to_owned(), self.normals.len()),
-            ("TANGENT".to_owned(), self.tangents.len()),
-            ("COLOR_0".to_owned(), self.colors.len()),
+            ("NORMAL".to_owned(), self.mesh.normals.len()),
+            ("TANGENT".to_owned(), self.mesh.tangents.len()),
+            ("COLOR_0".to_owned(), self.mesh.colors.len()),
         ];
-        let sets = self.tex_coords.iter().map(Vec::len).enumerate();
+        let sets = self.mesh.tex_coords.iter().map(Vec::len).enumerate();
         let sets = sets.map(|(i, n)| (format!("TEXCOORD_{i}"), n));
         let skin =
             self.influences.iter().enumerate().flat_map(|(i, Influences { joints, weights })| {
@@ -206,16 +206,16 @@ impl Geometry {
         source: &Source<'_>,
         at: &str,
     ) -> Result<()> {
-        let count = indices.as_ref().map_or(self.positions.len(), Vec::len);
+        let count = indices.as_ref().map_or(self.mesh.positions.len(), Vec::len);
         let (primitives, corners) = mode.primitives(count);
         source.budget.primitives(primitives as u64, at)?;
-        self.topology = mode.topology();
+        self.mesh.topology = mode.topology();
         let list = matches!(mode, Mode::Points | Mode::Lines | Mode::Triangles);
         if list && primitives * corners != count {
             let rest = count - primitives * corners;
             self.notes.push(format!("{rest} indices at the end make no primitive; left out"));
         }
-        self.indices = match indices {
+        self.mesh.indices = match indices {
             None if list && primitives * corners == count => None,
             Some(mut indices) if list => {
                 indices.truncate(primitives * corners);
@@ -234,13 +234,13 @@ impl Geometry {
     /// Leaves out primitives with a corner that is not a vertex; `first` is the first of these. Where nothing is
     /// left, that is an error.
     fn leave_out_dangling(&mut self, first: &str, at: &str) -> Result<()> {
-        let (corners, kind) = match self.topology {
+        let (corners, kind) = match self.mesh.topology {
             Topology::Points => (1, "points"),
             Topology::Lines => (2, "lines"),
             Topology::Triangles => (3, "triangles"),
         };
-        let vertices = self.positions.len();
-        let indices = self.indices.get_or_insert_default();
+        let vertices = self.mesh.positions.len();
+        let indices = self.mesh.indices.get_or_insert_default();
         let (count, mut kept) = (indices.len(), 0);
         for one in (0..count / corners).map(|i| i * corners..(i + 1) * corners) {
             if indices[one.clone()].iter().all(|&i| (i as usize) < vertices) {
