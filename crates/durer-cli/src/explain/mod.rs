@@ -44,7 +44,12 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let messages = Messages::new(&args.running, 1);
     let input = source::input(args, &messages)?;
     let options = Options { operation: args.operation, rule: args.fill_rule };
-    let frames = lesson.run(&input, &options, args.max_steps as usize).map_err(usage)?;
+    let of_input = |failure: Failure| match &args.input {
+        Some(path) => failure.named(&crate::input::display_name(path)),
+        None => failure,
+    };
+    let frames = lesson.run(&input, &options, args.max_steps as usize).map_err(usage);
+    let frames = frames.map_err(of_input)?;
     let frames = chosen(args, frames)?;
     match format {
         Format::Png => write_png(args, &target, &frames, language),

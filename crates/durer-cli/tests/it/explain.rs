@@ -111,3 +111,16 @@ fn what_is_wrong_is_told() {
         folder.run(arguments).fails(code, part);
     }
 }
+
+#[test]
+fn more_points_than_can_be_explained_are_an_error_of_the_file() {
+    let folder = Folder::new();
+    let on_circle = |i: i32| f64::from(i) * std::f64::consts::TAU / 2500.0;
+    let points: Vec<String> =
+        (0..2500).map(|i| format!("{:.6} {:.6}", on_circle(i).cos(), on_circle(i).sin())).collect();
+    let ring = points.join(", ");
+    folder.write("ring.wkt", format!("POLYGON (({ring}, {}))", points[0]));
+    let run = folder.run("explain sutherland-hodgman ring.wkt -o steps.svg");
+    run.fails(1, "ring.wkt: points to be explained 2500 is above the limit of 2000");
+    assert!(!folder.names().contains(&"steps.svg".to_owned()));
+}
