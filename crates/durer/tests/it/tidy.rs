@@ -149,6 +149,52 @@ fn doc_comments_begin_with_nouns_and_verbs() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Returns the doc comments of a file's functions: the line and the first word of each, up to the test module.
+fn docs_of_functions(text: &str) -> Vec<(usize, String)> {
+    let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    let (mut found, mut first) = (Vec::new(), None);
+    for (number, line) in text.lines().map(str::trim_start).enumerate() {
+        if let Some(comment) = line.strip_prefix("///") {
+            let word = comment.split_whitespace().next().unwrap_or_default();
+            first.get_or_insert((number + 1, word.to_owned()));
+        } else if !line.starts_with("#[") {
+            let item =
+                line.strip_prefix("pub(").and_then(|l| l.split_once(") ")).map_or(line, |(_, l)| l);
+            let before = ["pub", "const", "async", "unsafe", "extern", "\"C\""];
+            let keyword = item.split(' ').find(|word| !before.contains(word));
+            found.extend(first.take().filter(|_| keyword == Some("fn")));
+        }
+    }
+    found
+}
+
+/// Checks that the docs of functions begin with a verb in the third person: "Returns …", "Clips …".
+#[test]
+fn docs_of_functions_begin_with_a_verb() {
+    // Words that end like verbs, but begin a noun phrase.
+    const NOUNS: &str = "Bits Bytes Cells Colours Columns Coordinates Depths Edges Faces Fragments Indices Items \
+                         Lengths Normals Pixels Points Positions Rows Sides This Weights";
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut files = Vec::new();
+    for name in ["durer", "durer-formats", "durer-cli", "durer-wasm"] {
+        sources(&crates.join(name).join("src"), &mut files);
+    }
+    let mut wrong = Vec::new();
+    for path in
+        files.iter().filter(|path| !path.iter().any(|part| part == "tests" || part == "tests.rs"))
+    {
+        let text = fs::read_to_string(path).expect("source");
+        for (line, word) in docs_of_functions(&text) {
+            let word = word.trim_end_matches([',', '.']);
+            let is_verb = word.starts_with(char::is_uppercase) && word.ends_with('s');
+            if !is_verb || NOUNS.split(' ').any(|noun| noun == word) {
+                wrong.push(format!("{}:{line}: {word}", path.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{} functions:\n{}", wrong.len(), wrong.join("\n"));
+}
+
 /// Files and folders by their paths as modules.
 type Modules = BTreeMap<Vec<String>, PathBuf>;
 
