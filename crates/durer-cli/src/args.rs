@@ -81,8 +81,8 @@ pub enum Command {
     /// Show the explorer, all algorithms step by step on your own input, in the browser
     #[command(after_long_help = crate::explore::EXAMPLES, after_help = "--help shows more, and examples.")]
     Explore(crate::explore::ExploreArgs),
-    /// Run the rows of a table, each in a process that may fail: renderings, clips, drawings by the million, also on many
-    /// machines
+    /// Run the rows of a table, each in a process that may fail: renderings, clips, drawings by the million, also on
+    /// many machines
     #[command(after_long_help = crate::batch_args::EXAMPLES, after_help = "--help shows more, and examples.")]
     Batch(Box<crate::batch_args::BatchArgs>),
     /// Run the rows that `durer batch` writes to standard input

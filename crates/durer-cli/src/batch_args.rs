@@ -33,8 +33,8 @@ pub struct BatchArgs {
     /// Table of rows: CSV, JSON Lines or Parquet, by content; `-` reads standard input
     #[arg(value_name = "MANIFEST", value_hint = ValueHint::FilePath, required_unless_present = "merge")]
     pub manifest: Option<PathBuf>,
-    /// Folder to write to, created if needed; with --merge the report: .csv, .jsonl or .parquet, `-` for CSV on standard
-    /// output
+    /// Folder to write to, created if needed; with --merge the report: .csv, .jsonl or .parquet, `-` for CSV on
+    /// standard output
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
     /// Join what was noted about all rows in this folder to one report, ordered by id
@@ -47,8 +47,8 @@ pub struct BatchArgs {
     /// Run only this share of the rows, I of N, counted from 0; or `auto`: from the environment of a job array
     ///
     /// A row belongs to a shard by its id alone. `auto` knows Slurm (SLURM_ARRAY_TASK_ID, …_MIN, …_COUNT), AWS Batch
-    /// (AWS_BATCH_JOB_ARRAY_INDEX, …_SIZE), Kubernetes (JOB_COMPLETION_INDEX, with DURER_SHARDS for the number of jobs) and Cloud
-    /// Run (CLOUD_RUN_TASK_INDEX, …_COUNT). DURER_SHARD and DURER_SHARDS come first.
+    /// (AWS_BATCH_JOB_ARRAY_INDEX, …_SIZE), Kubernetes (JOB_COMPLETION_INDEX, with DURER_SHARDS for the number of jobs)
+    /// and Cloud Run (CLOUD_RUN_TASK_INDEX, …_COUNT). DURER_SHARD and DURER_SHARDS come first.
     #[arg(long, value_name = "I/N")]
     pub shard: Option<String>,
     /// Continue: leave out rows that are done, or failed, with the same input and options
@@ -75,8 +75,8 @@ pub struct BatchArgs {
     /// End a row after this many seconds, as failed [default: never]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = values::positive)]
     pub timeout_per_row: Option<f64>,
-    /// Memory for each row, in bytes with an optional suffix k, M or G; one that needs more has failed [default: half of the
-    /// machine's, divided by --jobs, at most 4G]
+    /// Memory for each row, in bytes with an optional suffix k, M or G; one that needs more has failed [default: half
+    /// of the machine's, divided by --jobs, at most 4G]
     #[arg(long, value_name = "SIZE", allow_hyphen_values = true, value_parser = values::bytes)]
     pub max_memory: Option<u64>,
     /// Print no progress, and no errors of rows

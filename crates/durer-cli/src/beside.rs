@@ -12,12 +12,12 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 /// The files that are being written now, for interruptions of the process.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// The folder of all files that are not whole, where they are to be apart from the whole ones, and safe on the disk before
-/// they take their place.
+/// The folder of all files that are not whole, where they are to be apart from the whole ones, and safe on the disk
+/// before they take their place.
 static APART: OnceLock<PathBuf> = OnceLock::new();
 
-/// Has files be written in a folder of their own, on the disk that they are to be on, and safe there before they take their
-/// place.
+/// Makes files be written in a folder of their own, on the disk that they are to be on, and safe there before they take
+/// their place.
 pub fn keep_apart(folder: PathBuf) {
     // The first one stays: it has files.
     let _ = APART.set(folder);
@@ -62,7 +62,7 @@ impl Beside {
         Err(io::ErrorKind::AlreadyExists.into())
     }
 
-    /// The file, for who keeps what writes to it: both write at the same place in it.
+    /// Returns another handle of the file, for a writer that keeps it; both write at the same place.
     pub fn file(&self) -> io::Result<File> {
         self.file.try_clone()
     }
@@ -126,8 +126,8 @@ fn unfinished() -> std::sync::MutexGuard<'static, BTreeSet<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes what is unfinished and ends the process with the exit code that `last` gives; nothing is put in its place after
-/// that has begun.
+/// Removes what is unfinished and ends the process with the exit code that `last` gives; nothing is put in its place
+/// after that has begun.
 pub fn end(last: impl FnOnce() -> i32) -> ! {
     let unfinished = unfinished();
     for path in unfinished.iter() {

@@ -14,7 +14,7 @@ pub const FOV: f64 = 30.0;
 /// The part of the picture that a fitted model leaves free at each border.
 const MARGIN: f64 = 0.03;
 
-/// Selection of one picture from those that the options ask for.
+/// Selection of one picture of those that the options request.
 #[derive(Debug, Clone, Copy)]
 pub struct Shot {
     /// The view of a viewport; `None` = the one of the view options.
@@ -35,13 +35,13 @@ impl Shot {
         f64::from(self.size.width) / f64::from(self.size.height)
     }
 
-    /// Returns how far the turntable has turned, in degrees.
+    /// Returns the angle by which the turntable has turned, in degrees.
     fn turned(&self) -> f64 {
         self.turn.map_or(0.0, |(frame, count)| 360.0 * f64::from(frame) / f64::from(count))
     }
 }
 
-/// Option combinations that the parser does not know to be wrong.
+/// Checks option combinations that the parser does not know to be wrong.
 pub fn check(args: &ViewArgs) -> Result<(), Failure> {
     let usage = |text: &str| Err(Failure::Usage(text.to_owned()));
     match (args.eye, args.target) {

@@ -42,7 +42,7 @@ pub struct ConfigArgs {
 
 /// The parser with the defaults of a file, and the command line for it.
 pub struct Configured {
-    /// Knows the defaults.
+    /// Parser that knows the defaults.
     pub command: Command,
     /// Arguments as given, except for values that a file can only write in its own words.
     pub line: Vec<OsString>,

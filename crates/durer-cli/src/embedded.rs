@@ -109,7 +109,7 @@ struct Ready<'a> {
     prepared: Prepared,
 }
 
-/// Changes a scene as the options ask for; copies it only if they do.
+/// Changes a scene by the options; copies it only if they change it.
 fn ready<'a>(model: &InMemory<'a>, args: RenderArgs) -> Result<Ready<'a>, Failure> {
     let messages = Messages::new(&args.running, 1);
     let mut scene = Cow::Borrowed(model.scene);
@@ -138,7 +138,8 @@ fn blamed<T>(model: &InMemory, result: Result<T, Failure>) -> Result<T, Failure>
     result.map_err(|failure| input::blamed(model.name, model.scene, failure))
 }
 
-/// Renders a picture with the options of `durer render`; `planes` are those of depth, item and normal that it gets, too.
+/// Renders a picture with the options of `durer render`; `planes` are those of depth, item and normal that it gets,
+/// too.
 ///
 /// # Errors
 /// [`Failure::Usage`] for options that are wrong, others for a scene that cannot be shown by them.

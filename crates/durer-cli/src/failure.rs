@@ -72,7 +72,7 @@ impl fmt::Display for Failure {
     }
 }
 
-/// Has a write beyond the largest size of a file (`ulimit -f`) fail as others do, where it would end the process.
+/// Makes a write beyond the largest size of a file (`ulimit -f`) fail as others do, where it would end the process.
 pub fn tell_of_large_files() {
     #[cfg(unix)]
     {

@@ -170,7 +170,7 @@ pub fn run(args: &FillArgs) -> Result<(), Failure> {
 /// The picture as viewers show it, in sRGB with straight alpha.
 enum Picture {
     Eight(Pixels<[u8; 4]>),
-    /// With the channels that its file has and its fills need.
+    /// Picture with the channels that its file has and its fills need.
     Sixteen(Pixels<[u16; 4]>, Channels),
 }
 

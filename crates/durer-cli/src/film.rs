@@ -68,7 +68,7 @@ fn open(path: &Path) -> io::Result<(File, Option<Beside>)> {
     Ok((beside.file()?, Some(beside)))
 }
 
-/// Returns the plan for all frames of a turntable in one file, if the options ask for that.
+/// Returns the plan for all frames of a turntable in one file, if the options request that.
 pub fn wanted(args: &RenderArgs, kind: Kind) -> Result<Option<Plan>, Failure> {
     let picture = &args.picture;
     let (gif, one) = (kind == Kind::Gif, output::is_one_file(&args.output));
@@ -142,9 +142,9 @@ pub fn targets(
 
 /// Destination of a frame.
 pub enum Sink<'a, 'f> {
-    /// To a file of its own.
+    /// A file of its own.
     File(&'a Target),
-    /// To the others.
+    /// The film with the other frames.
     Film(&'a mut Film<'f>),
 }
 

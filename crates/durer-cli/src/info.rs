@@ -23,8 +23,8 @@ use std::path::{Path, PathBuf};
 /// The options of `durer info`.
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// Models, or map data: GeoJSON, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB; `-` reads a model
-    /// from standard input
+    /// Models, or map data: GeoJSON, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB; `-` reads a
+    /// model from standard input
     #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub models: Vec<PathBuf>,
     /// Write JSON: one object, or an array of them for several files
@@ -113,7 +113,7 @@ struct TextureInfo {
     height: u32,
 }
 
-/// Tells about all models.
+/// Prints information on all models.
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     input::check_streams(&args.models)?;
     let messages = Messages::new(&args.running, args.models.len() as u64);
@@ -337,8 +337,8 @@ fn orientation(scene: &Scene, work: &Work) -> durer::Result<Option<SceneOrientat
     SceneOrientation::of(scene).map(Some)
 }
 
-/// Returns whether the meshes bound bodies together, as those of files with a mesh for each face do; borders that run along
-/// each other are one.
+/// Returns whether the meshes bound bodies together, as those of files with a mesh for each face do; borders that run
+/// along each other are one.
 fn closed_together(scene: &Scene, work: &Work) -> durer::Result<bool> {
     let value = scene.triangle_count();
     if value > MOST_TOGETHER {

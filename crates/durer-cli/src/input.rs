@@ -44,7 +44,7 @@ pub fn blamed(name: &str, scene: &durer::scene::Scene, failure: Failure) -> Fail
     }
 }
 
-/// At most one model can come from standard input.
+/// Checks that at most one model comes from standard input.
 pub fn check_streams(models: &[impl AsRef<Path>]) -> Result<(), Failure> {
     match models.iter().filter(|m| is_stream(m.as_ref())).count() {
         0 | 1 => Ok(()),
@@ -93,7 +93,7 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Model, Failure> {
     Ok(model)
 }
 
-/// Says which options do nothing for a model of its format.
+/// Warns of options that have no effect for a model of its format.
 fn tell_ignored(model: &mut Model, options: &ReadOptions) {
     // Of a format that has them the reader says so itself.
     if !model.format.starts_with("glTF") {

@@ -41,7 +41,7 @@ impl Kind {
         picture.or_else(|| DrawingFormat::of_suffix(suffix).map(Self::Drawing))
     }
 
-    /// Returns the kind that a file's name asks for, if any.
+    /// Returns the kind by a file's name, if it determines one.
     fn of_path(path: &Path) -> Option<Self> {
         Self::of_suffix(&path.extension().unwrap_or_default().to_string_lossy())
     }
@@ -103,7 +103,7 @@ impl Kind {
     }
 }
 
-/// The kind of file that is wanted under a name, and how that is known.
+/// Kind of the file to write under a name, and the source of that choice.
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted {
     /// The kind.

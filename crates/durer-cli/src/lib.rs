@@ -126,8 +126,8 @@ fn is_verbose(given: &clap::ArgMatches) -> bool {
     given.ids().any(|id| id == "verbose") && given.get_flag("verbose")
 }
 
-/// Ends with what clap has to say: help and version, or what is wrong with the command line. A failure is what keeps it
-/// from being said.
+/// Ends the process with clap's message: help, the version, or an error of the command line. Returns a failure if the
+/// message cannot be printed.
 fn answered(answer: clap::Error) -> Failure {
     if answer.use_stderr() {
         answer.exit();
@@ -184,7 +184,7 @@ fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     report::print_text(&String::from_utf8_lossy(&script))
 }
 
-/// One page: the command, then each subcommand with all of its options.
+/// Prints the manual as one page: the command, then each subcommand with all of its options.
 fn manual() -> Result<(), Failure> {
     let mut page = Vec::new();
     let mut command = Cli::command();

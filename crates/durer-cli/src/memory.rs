@@ -23,7 +23,7 @@ pub fn usual_budget_of(processes: u64) -> u64 {
     least.map_or(MOST, |bytes| (bytes / 2 / processes.max(1)).min(MOST))
 }
 
-/// Bytes of memory that the process holds for itself now.
+/// Returns the bytes of memory that the process holds for itself now.
 pub fn held() -> Option<u64> {
     kilobytes(&fs::read_to_string("/proc/self/status").ok()?, "RssAnon:")
 }

@@ -9,15 +9,15 @@ use std::sync::{Mutex, PoisonError};
 /// Warnings of one model that are printed without `--verbose`; the others are counted.
 const WARNINGS: usize = 5;
 
-/// Warnings that are kept instead of being printed, where that is wanted.
+/// Warnings that are kept instead of being printed, if requested.
 static KEPT: Mutex<Option<Vec<String>>> = Mutex::new(None);
 
-/// Has warnings be kept from now on, and returns those that were kept.
+/// Keeps warnings from now on, and returns those that were kept.
 pub fn keep() -> Vec<String> {
     KEPT.lock().unwrap_or_else(PoisonError::into_inner).replace(Vec::new()).unwrap_or_default()
 }
 
-/// Errors, warnings and progress, as much as is wanted.
+/// Errors, warnings and progress, as far as requested.
 #[derive(Debug)]
 pub struct Messages {
     quiet: bool,
@@ -27,18 +27,18 @@ pub struct Messages {
 }
 
 impl Messages {
-    /// Messages for `count` pictures or models.
+    /// Creates the messages for `count` pictures or models.
     pub fn new(args: &RunningArgs, count: u64) -> Self {
         let progress = Progress::new(&args.work, count, !args.quiet);
         Self { quiet: args.quiet, verbose: args.verbose, progress }
     }
 
-    /// An error; always printed.
+    /// Prints an error, even with `--quiet`.
     pub fn error(&self, message: impl std::fmt::Display) {
         self.progress.tell(&told::message(&format!("durer: {message}")));
     }
 
-    /// A warning about a file that is not of its reader.
+    /// Prints a warning about a file, other than those of its reader.
     pub fn warning(&self, file: &str, message: impl std::fmt::Display) {
         if !self.quiet {
             self.warn(&format!("{file}: {message}"));
@@ -54,7 +54,7 @@ impl Messages {
         self.progress.tell(&told::message(&format!("durer: warning: {text}")));
     }
 
-    /// The warnings of a model.
+    /// Prints the warnings of a model.
     pub fn warnings(&self, file: &str, warnings: &[Warning]) {
         if self.quiet {
             return;

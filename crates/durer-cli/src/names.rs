@@ -1,5 +1,5 @@
-//! Patterns for the names of outputs. A name follows from its own input alone, never from the others of the run, so that
-//! inputs may be added or divided among machines and no name changes.
+//! Patterns for the names of outputs. A name follows from its own input alone, never from the others of the run, so
+//! that inputs may be added or divided among machines and no name changes.
 
 use crate::places::is_stream;
 use std::path::{Component, Path};
@@ -14,8 +14,8 @@ pub fn is_pattern(path: &Path) -> bool {
     ["{stem}", "{name}", "{folder}"].iter().any(|known| text.contains(known))
 }
 
-/// Returns the path with the placeholders replaced by parts of the input's path. The folder has neither a root nor `..`,
-/// so that the result stays below the part of the pattern in front of it.
+/// Returns the path with the placeholders replaced by parts of the input's path. The folder has neither a root nor
+/// `..`, so that the result stays below the part of the pattern in front of it.
 pub fn expand(pattern: &str, input: &Path) -> String {
     let lossy =
         |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();

@@ -212,7 +212,7 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
 }
 
 impl Name {
-    /// `NAME.png`, or `NAME_0001.png` for a frame.
+    /// Returns the file's name: `NAME.png`, or `NAME_0001.png` for a frame.
     fn file_name(&self, kind: Kind) -> String {
         let (stem, suffix) = (names::stem(&self.input), kind.suffix());
         match self.frame {

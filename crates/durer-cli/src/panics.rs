@@ -6,10 +6,10 @@ use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind, set_hook};
 use std::sync::Mutex;
 
-/// Message and place of the last panic, and the calls if `RUST_BACKTRACE` asks for them.
+/// Message and place of the last panic, and the backtrace if `RUST_BACKTRACE` requests it.
 static LAST: Mutex<String> = Mutex::new(String::new());
 
-/// Does the work; if it panics, reports that and continues unwinding.
+/// Runs the work; if it panics, reports that and continues unwinding.
 pub fn told_at_the_end<T>(work: impl FnOnce() -> T) -> T {
     set_hook(Box::new(|panic| {
         let mut told = panic.to_string();
@@ -27,7 +27,7 @@ pub fn told_at_the_end<T>(work: impl FnOnce() -> T) -> T {
     })
 }
 
-/// Does the work; returns message and place of its panic instead of a result.
+/// Runs the work; returns message and place of its panic instead of a result.
 pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work))
         .map_err(|_| LAST.lock().unwrap_or_else(|e| e.into_inner()).clone())

@@ -53,13 +53,13 @@ pub struct PickArgs {
 #[derive(Debug, Serialize)]
 struct Picked {
     model: String,
-    /// Nearest first.
+    /// Objects, nearest first.
     objects: Vec<Object>,
-    /// Nearest first.
+    /// Triangles, nearest first.
     triangles: Vec<Triangle>,
-    /// Nearest first.
+    /// Lines, nearest first.
     lines: Vec<Mark>,
-    /// Nearest first.
+    /// Points, nearest first.
     points: Vec<Mark>,
 }
 
@@ -83,7 +83,7 @@ struct Triangle {
     /// Index in the mesh.
     triangle: usize,
     depth: f64,
-    /// In the world.
+    /// Position in the world.
     position: [f64; 3],
 }
 
@@ -96,7 +96,7 @@ struct Mark {
     /// Index in the mesh.
     index: usize,
     depth: f64,
-    /// In the world.
+    /// Position in the world.
     position: [f64; 3],
 }
 

@@ -31,8 +31,8 @@ pub enum Place {
     Stdout,
     /// A file that is there: the numbers of its device and its inode.
     There(u64, u64),
-    /// The full path of a file that does not exist yet, or of any file where the system has no such numbers; without links and `..`
-    /// where possible.
+    /// The full path of a file that does not exist yet, or of any file where the system has no such numbers; without
+    /// links and `..` where possible.
     At(PathBuf),
 }
 
@@ -68,7 +68,7 @@ fn full(path: &Path) -> PathBuf {
         .unwrap_or_else(|_| path.to_owned())
 }
 
-/// Confines the process to the folders of the files that a command names, where that is wanted. Comes before any other thread.
+/// Confines the process to the folders of the files that a command names, if requested. Comes before any other thread.
 pub fn settle(name: &str, given: &ArgMatches) -> Result<(), Failure> {
     match given.try_get_one::<Sandbox>("sandbox") {
         Ok(Some(&how)) => {

@@ -29,7 +29,7 @@ struct Shown {
 }
 
 impl Progress {
-    /// Progress of the work over `count` pictures; `wanted` is false for `--quiet`.
+    /// Creates the progress of the work over `count` pictures; `wanted` is false for `--quiet`.
     pub fn new(work: &Work, count: u64, wanted: bool) -> Self {
         let work = work.clone();
         if !wanted || !std::io::stderr().is_terminal() {
@@ -61,7 +61,7 @@ impl Progress {
         Self { work, shown }
     }
 
-    /// Says what is being done.
+    /// Shows the current stage of the work.
     pub fn stage(&self, what: impl FnOnce() -> String) {
         let what = what();
         // What was counted before is over.
@@ -72,7 +72,7 @@ impl Progress {
         watch::now(what);
     }
 
-    /// One more picture is done.
+    /// Counts one more picture as done.
     pub fn advance(&self) {
         if let Some(shown) = &self.shown {
             shown.bar.inc(1);

@@ -316,7 +316,7 @@ impl Prepared {
     }
 }
 
-/// Gives a scene the axis, materials, directions, cuts and places that the options ask for.
+/// Applies the axis, materials, directions, cuts and places of the options to a scene.
 pub fn prepare(
     args: &RenderArgs,
     scene: &mut Scene,
@@ -347,7 +347,7 @@ pub fn prepare(
     Ok(Prepared { components, cap_material, _copies: Some(copies) })
 }
 
-/// Tells of a picture, and why nothing of the model is seen in it, if that is so.
+/// Reports a picture, and why nothing of the model is visible in it, if that is so.
 fn tell_picture(
     name: &str,
     (report, unseen): (PictureReport, Option<String>),
@@ -381,7 +381,7 @@ fn colored(color: Vec4) -> Material {
     Material { base_color: color, alpha_mode, ..Material::default() }
 }
 
-/// All algorithms find the same surfaces; where they do not, that is worth a word.
+/// Warns of algorithms that find other surfaces than the z-buffer at some pixels; all should find the same.
 fn tell_differing(name: &str, report: &PictureReport, messages: &Messages) {
     for c in report.compared.iter().filter(|c| c.differing_pixels > 0) {
         let (algorithm, count) = (c.algorithm, c.differing_pixels);
@@ -405,8 +405,8 @@ fn describe(report: &PictureReport) -> String {
     )
 }
 
-/// Data that does not fit the options, such as a camera that the file does not have, is reported
-/// with the file's name.
+/// Adds the file's name to a failure, also where data does not fit the options, such as a camera that the file does
+/// not have.
 fn with_file(name: &str, failure: Failure) -> Failure {
     match failure {
         Failure::Data(message) if message.starts_with("--") => {
@@ -518,7 +518,7 @@ fn deliver(
     Ok(())
 }
 
-/// Options that the renderer refuses.
+/// Returns the failure for options that the renderer refuses.
 fn usage(e: durer::Error) -> Failure {
     Failure::of_library(&e)
 }
@@ -584,7 +584,7 @@ fn picture_options(
     }
 }
 
-/// Writes the planes beside colour that are requested; gives the names of the files.
+/// Writes the planes beside colour that are requested; returns the names of the files.
 fn write_planes(
     args: &RenderArgs,
     picture: &Picture,

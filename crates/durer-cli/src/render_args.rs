@@ -44,12 +44,12 @@ pub struct RenderArgs {
     /// File to write the picture to
     ///
     /// A .png, .jpg or .webp file, or a drawing as .svg, .pdf, .dxf, .hpgl, .gcode or .geojson; `-` for standard
-    /// output; a folder (existing, or ending in `/`) for NAME.png of each model. The file's name may have {stem} (the model's
-    /// name without its suffix), {name} (with it) and {folder} (its folder): two pictures with one name are an error, and
-    /// 'out/{folder}/{name}.png' keeps them apart. A --turntable goes into one .png,
-    /// .webp or .gif, which is animated; or into a file for each frame: in a folder, or by a name with a place for
-    /// the frame's number, e.g. `frame_%04d.png`. A missing folder for several pictures is created. A file is only
-    /// ever replaced by a complete picture.
+    /// output; a folder (existing, or ending in `/`) for NAME.png of each model. The file's name may have {stem} (the
+    /// model's name without its suffix), {name} (with it) and {folder} (its folder): two pictures with one name are an
+    /// error, and 'out/{folder}/{name}.png' keeps them apart. A --turntable goes into one .png, .webp or .gif, which is
+    /// animated; or into a file for each frame: in a folder, or by a name with a place for the frame's number, e.g.
+    /// `frame_%04d.png`. A missing folder for several pictures is created. A file is only ever replaced by a complete
+    /// picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
     /// The format of the output, whatever the suffix of the name [default: by its suffix, else png]

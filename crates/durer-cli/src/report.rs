@@ -15,7 +15,7 @@ use std::sync::{Mutex, PoisonError};
 /// A model that could be read.
 #[derive(Debug, Serialize)]
 pub struct ModelReport {
-    /// Path as given on the command line.
+    /// Path of the model, as given on the command line.
     pub model: String,
     /// The format found.
     pub format: String,
@@ -66,7 +66,7 @@ pub struct PictureReport {
 /// An eye, as the options of `render` and `warp` take it.
 #[derive(Debug, Serialize)]
 pub struct CameraReport {
-    /// In the world.
+    /// Position of the eye in the world.
     pub eye: [f64; 3],
     /// Point that it looks at.
     pub target: [f64; 3],
@@ -126,7 +126,7 @@ pub struct Triangles {
 /// A model that could not be rendered.
 #[derive(Debug, Serialize)]
 pub struct Failed {
-    /// Path as given on the command line.
+    /// Path of the model, as given on the command line.
     pub model: String,
     /// Reason of the failure.
     pub error: String,
@@ -185,10 +185,10 @@ pub fn print(value: &impl Serialize) -> Result<(), crate::failure::Failure> {
     print_text(&told::json(&text))
 }
 
-/// Text that is kept instead of going to standard output, where that is wanted.
+/// Text that is kept instead of going to standard output, if requested.
 static KEPT: Mutex<Option<String>> = Mutex::new(None);
 
-/// Has text be kept from now on, and returns what was kept.
+/// Keeps text from now on, and returns what was kept.
 pub fn keep() -> String {
     KEPT.lock().unwrap_or_else(PoisonError::into_inner).replace(String::new()).unwrap_or_default()
 }

@@ -12,7 +12,7 @@ use std::sync::{Mutex, PoisonError};
 /// Files that were looked for, whether they are there or not, where that is noted.
 static NOTED: Mutex<Option<BTreeSet<PathBuf>>> = Mutex::new(None);
 
-/// Has files be noted that are looked for from now on, and returns those that were noted.
+/// Records the files that are searched for from now on, and returns those that were recorded.
 pub fn note() -> BTreeSet<PathBuf> {
     let mut noted = NOTED.lock().unwrap_or_else(PoisonError::into_inner);
     noted.replace(BTreeSet::new()).unwrap_or_default()
@@ -60,13 +60,13 @@ impl Folder {
         Self { roots: vec![base.clone()], base, hint: "", names: Mutex::default() }
     }
 
-    /// Lets references lead to any file below a further folder.
+    /// Allows references to any file below a further folder.
     pub fn widen(mut self, folder: &Path) -> io::Result<Self> {
         self.roots.push(directory(folder)?);
         Ok(self)
     }
 
-    /// Tells what can be done where a file lies elsewhere.
+    /// Sets the advice for files that lie elsewhere.
     pub fn hint(self, hint: &'static str) -> Self {
         Self { hint, ..self }
     }

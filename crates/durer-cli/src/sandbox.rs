@@ -55,7 +55,7 @@ fn folder(path: &Path) -> Option<PathBuf> {
     })
 }
 
-/// Has the kernel confine the process, by Landlock (M. Salaün, Linux 5.13; truncation from 6.2 on).
+/// Makes the kernel confine the process, by Landlock (M. Salaün, Linux 5.13; truncation from 6.2 on).
 #[cfg(target_os = "linux")]
 fn landlocked(read: &[PathBuf], written: &[PathBuf]) -> Result<(), String> {
     use landlock::{

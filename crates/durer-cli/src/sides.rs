@@ -8,11 +8,11 @@ use durer::math::DVec2;
 pub struct Sides {
     /// Columns.
     pub width: Option<u32>,
-    /// Rows.
+    /// Rows of pixels.
     pub height: Option<u32>,
 }
 
-/// `WxH`, `Wx`, `xH`; a single number makes a square.
+/// Parses `WxH`, `Wx` or `xH`; a single number makes a square.
 pub fn sides(text: &str) -> Result<Sides, String> {
     let wrong = || {
         "a size is WIDTHxHEIGHT in whole pixels from 1, e.g. 1920x1080; one side may be left out, \

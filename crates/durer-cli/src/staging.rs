@@ -17,7 +17,7 @@ use durer::work::{Charge, Work};
 /// Distance, as a part of the model's radius, within which things take light from each other.
 const OCCLUSION_RADIUS: f64 = 0.25;
 
-/// The options.
+/// Options for the stage.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Stage")]
 pub struct StageArgs {
@@ -94,7 +94,7 @@ impl StageArgs {
     }
 }
 
-/// Gives all surfaces the material of the look, if it has one, in its own colour or the one requested.
+/// Assigns the material of the look, if it has one, to all surfaces, in its own colour or the one requested.
 pub fn give_materials(args: &StageArgs, asked: Option<Vec4>, scene: &mut Scene) {
     let (color, roughness) = match args.look {
         Look::Plain | Look::Studio => return,

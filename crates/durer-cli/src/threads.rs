@@ -7,8 +7,8 @@ use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::available_parallelism;
 
-/// Makes as many threads as are requested, the main one among them: one needs none beside it. Where the system gives
-/// fewer, which gives a warning, those that exist do the work; the pictures are the same.
+/// Starts as many threads as are requested, counting the main one: a single thread needs none beside it. Where the
+/// system allows fewer, which is warned of, those that exist do the work; the pictures are the same.
 pub fn start(args: &RunningArgs) -> Result<(), Failure> {
     let wanted = args.threads.map_or_else(usual, usize::from);
     // Threads come first and get their part later: a pool that lacks some of its own would wait for them.

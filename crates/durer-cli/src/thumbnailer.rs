@@ -109,7 +109,8 @@ pub fn run(args: &ThumbnailerArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The desktop puts in the size, the new picture's name, which may end in anything, and the model's.
+/// Returns the desktop entry; the desktop inserts the size, the new picture's name, which may end in anything, and the
+/// model's name.
 fn entry() -> String {
     let types = TYPES.iter().flat_map(|(_, types)| *types);
     let types: String = types.map(|name| format!("{name};")).collect();

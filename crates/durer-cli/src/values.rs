@@ -17,7 +17,7 @@ pub struct Size {
     pub height: u32,
 }
 
-/// `WxH`, e.g. `1920x1080`; a single number makes a square.
+/// Parses `WxH`, e.g. `1920x1080`; a single number makes a square.
 pub fn size(text: &str) -> Result<Size, String> {
     let (width, height) = text.split_once(['x', 'X', '×']).unwrap_or((text, text));
     let side = |side: &str| match side.trim().parse::<u32>() {
@@ -110,7 +110,7 @@ pub fn elevation(text: &str) -> Result<f64, String> {
         .and_then(|n| Some(n).filter(inside).ok_or("it must be between -90 and 90 degrees".into()))
 }
 
-/// `N` finite numbers with commas between them.
+/// Parses `N` finite numbers with commas between them.
 fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>().ok()?;
     numbers.try_into().ok()
@@ -166,13 +166,13 @@ pub fn bytes(text: &str) -> Result<u64, String> {
     count(digits)?.checked_mul(factor).ok_or_else(|| "the number is too large".to_owned())
 }
 
-/// `FROM,TO`, finite, the first the smaller.
+/// Parses `FROM,TO`, both finite, the first the smaller.
 pub fn range(text: &str) -> Result<[f64; 2], String> {
     let wrong = || "a range is FROM,TO, the first the smaller, e.g. -4,4".to_owned();
     numbers(text).filter(|[from, to]| from < to).ok_or_else(wrong)
 }
 
-/// `x,y,z`, all finite.
+/// Parses `x,y,z`, all finite.
 pub fn vector(text: &str) -> Result<DVec3, String> {
     let parts: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
     match parts[..] {
@@ -181,7 +181,7 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// `x,y,z`, finite and not all zero; comes back with unit length.
+/// Parses `x,y,z`, finite and not all zero; returns a vector of unit length.
 pub fn direction(text: &str) -> Result<DVec3, String> {
     vector(text)?
         .try_normalize()

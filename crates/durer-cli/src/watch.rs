@@ -1,8 +1,8 @@
 //! Ends the command where it takes too long or too much memory, and on Ctrl-C and termination.
 //!
-//! A thread looks at the clock, at the memory that the process holds, and for signals. It stops the work ([`Work`]), which
-//! then ends with an error at its next check. Work that does not check, as in a library, is ended after a while: the files
-//! that are not whole are removed, and the process exits.
+//! A thread looks at the clock, at the memory that the process holds, and for signals. It stops the work ([`Work`]),
+//! which then ends with an error at its next check. Work that does not check, as in a library, is ended after a while:
+//! the files that are not whole are removed, and the process exits.
 
 use crate::options::RunningArgs;
 use crate::{beside, memory};
@@ -127,7 +127,7 @@ fn signals() -> impl Iterator<Item = i32> {
     signals.into_iter()
 }
 
-/// Takes note of signals from now on, in place of their ending the process.
+/// Records signals from now on, in place of letting them end the process.
 pub fn note_signals() {
     let signal = SIGNAL.get_or_init(Arc::default);
     for number in signals() {
@@ -179,7 +179,7 @@ impl Watched {
         }
     }
 
-    /// Returns how long nothing can happen.
+    /// Compares the memory in use with the budget, and stops the work above it; returns the time until the next look.
     fn look_at_memory(&mut self) -> Duration {
         let (budget, Some(held)) = (self.work.budget(), memory::held()) else { return SELDOM };
         let above = held.saturating_sub(BESIDES);

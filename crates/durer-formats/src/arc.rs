@@ -11,7 +11,7 @@ pub(crate) struct Ends {
     pub to: DVec2,
     /// Half the axes of the ellipse, of any sign; where they are too small for the way they grow to what just reaches.
     pub radii: DVec2,
-    /// From the x axis to the ellipse's first axis, in radians.
+    /// Angle from the x axis to the ellipse's first axis, in radians.
     pub turned: f64,
     /// True if it is the larger one of two arcs.
     pub large: bool,
@@ -35,7 +35,7 @@ pub(crate) struct Arc {
 }
 
 impl Arc {
-    /// `None` if it is a line: its ends are the same, or a radius is 0.
+    /// Creates the arc between two ends; `None` if it is a line: its ends are the same, or a radius is 0.
     pub fn new(ends: &Ends) -> Option<Self> {
         let mut radii = ends.radii.abs();
         if ends.from == ends.to || radii.min_element() == 0.0 {

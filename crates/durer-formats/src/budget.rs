@@ -21,20 +21,20 @@ impl Budget {
         Self { limits, primitives: 0, bytes: 0, copies: 0 }
     }
 
-    /// Takes this many triangles and lines.
+    /// Charges this many triangles and lines.
     pub fn primitives(&mut self, count: u64, place: impl FnOnce() -> Place) -> Result<()> {
         self.primitives = self.primitives.saturating_add(count);
         let limit = self.limits.primitives.min(u64::from(u32::MAX / 3));
         take("number of triangles and lines", self.primitives, limit, place)
     }
 
-    /// Takes this many triangles and lines of meshes that are the same but for their materials.
+    /// Charges this many triangles and lines of meshes that are the same but for their materials.
     pub fn copied(&mut self, count: u64, place: impl FnOnce() -> Place) -> Result<()> {
         self.copies = self.copies.saturating_add(count);
         take("triangles and lines in all materials", self.copies, self.limits.primitives, place)
     }
 
-    /// Takes this many bytes of numbers.
+    /// Charges this many bytes of numbers.
     pub fn bytes(&mut self, count: u64, place: impl FnOnce() -> Place) -> Result<()> {
         self.bytes = self.bytes.saturating_add(count);
         take("memory for numbers", self.bytes, self.limits.decoded_bytes, place)?;

@@ -14,7 +14,7 @@ pub(crate) struct Cloud {
     pub colors: Vec<Vec4>,
     /// Divisor of colours.
     pub full: f32,
-    /// Strengths of what the scanner got back, in any unit; shown if there are no colours.
+    /// Intensities of the echoes, in any unit; shown if there are no colours.
     pub intensities: Vec<f32>,
     /// Number of points that memory has been taken for.
     pub room: u64,
@@ -31,7 +31,7 @@ const OUTLIERS: usize = 100;
 const DARKEST: f32 = 0.1;
 
 impl Cloud {
-    /// Takes the memory for this many points in all, and refuses more than allowed.
+    /// Charges the memory for this many points in all, and refuses more than allowed.
     ///
     /// # Errors
     /// [`Error::Limit`]; those of the work.
@@ -97,7 +97,7 @@ impl Cloud {
     }
 }
 
-/// Intensities as greys of sRGB: from the least to the greatest, but for outliers.
+/// Returns intensities as greys of sRGB: from the least to the greatest, but for outliers.
 fn greys(intensities: &[f32]) -> Vec<Vec4> {
     let mut sorted: Vec<f32> = intensities.iter().copied().filter(|i| i.is_finite()).collect();
     let outliers = sorted.len() / OUTLIERS;

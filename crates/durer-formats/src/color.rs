@@ -8,12 +8,12 @@ pub(crate) fn linear(srgb: f32) -> f32 {
     if srgb <= 0.04045 { srgb / 12.92 } else { powf((srgb + 0.055) / 1.055, 2.4) }
 }
 
-/// [`linear`] for three channels.
+/// Applies [`linear`] to three channels.
 pub(crate) fn linear3(srgb: [f32; 3]) -> Vec3 {
     Vec3::from_array(srgb.map(linear))
 }
 
-/// [`linear`] of all 256 bytes: for formats that store colours as bytes.
+/// Returns [`linear`] of all 256 bytes, for formats that store colours as bytes.
 pub(crate) fn linear_bytes() -> [f32; 256] {
     std::array::from_fn(|i| linear(i as f32 / 255.0))
 }

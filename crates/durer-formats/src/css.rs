@@ -16,10 +16,10 @@ use std::str::FromStr;
 /// that it does.
 const REBECCA_PURPLE: (&str, &str) = ("rebeccapurple", "#663399");
 
-/// Returns a colour of CSS as sRGB bytes with straight alpha: a name of CSS 4 or `transparent` in letters of
-/// any case, `#rgb`, `#rrggbb` (both also with alpha), `rgb()`, `hsl()`, `hwb()`, `lab()`, `lch()`,
-/// `oklab()`, `oklch()`, `color()`, `color-mix()` or `light-dark()`, of which the light one is taken; `None`
-/// for other text. What lies outside of sRGB is cut off.
+/// Returns a colour of CSS as sRGB bytes with straight alpha: a name of CSS 4 or `transparent` in letters of any case,
+/// `#rgb`, `#rrggbb` (both also with alpha), `rgb()`, `hsl()`, `hwb()`, `lab()`, `lch()`, `oklab()`, `oklch()`,
+/// `color()`, `color-mix()` or `light-dark()`, whose light colour is taken; `None` for other text. Colours outside of
+/// sRGB are clamped.
 ///
 /// ```
 /// use durer_formats::css::color;

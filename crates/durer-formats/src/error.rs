@@ -10,11 +10,11 @@ pub enum Place {
     /// The file as a whole.
     #[default]
     Whole,
-    /// A line of a text file, counted from 1, and a column, counted from 1 in bytes (0: unknown).
+    /// Line of a text file, counted from 1, and column, counted from 1 in bytes (0: unknown).
     Line(u64, u64),
-    /// A byte offset, counted from 0.
+    /// Byte offset, counted from 0.
     Byte(u64),
-    /// A path inside a structured file, e.g. `meshes[0].primitives[1].indices`.
+    /// Path inside a structured file, e.g. `meshes[0].primitives[1].indices`.
     Path(String),
 }
 
@@ -30,25 +30,24 @@ impl std::fmt::Display for Place {
     }
 }
 
-/// Reason why bytes could not be read or written. The caller puts the file's name before the
-/// message.
+/// Error in reading or writing bytes. The caller puts the file's name before the message.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The bytes are not what their format demands.
+    /// The bytes do not conform to their format.
     #[error("{}", crate::told::message(&format!("{place}{message}")))]
     Decode {
         /// Position of the fault.
         place: Place,
-        /// Description of the fault, and what would be right.
+        /// Description of the fault, and of the expected content.
         message: String,
     },
-    /// The file needs something that durer does not have, e.g. a required glTF extension.
+    /// The file needs a feature that durer lacks, e.g. a required glTF extension.
     #[error("{}", unsupported(place, what, hint))]
     Unsupported {
-        /// Position of the fault.
+        /// Position in the file.
         place: Place,
-        /// Name of the missing thing.
+        /// Name of the missing feature.
         what: String,
         /// Advice, or empty.
         hint: String,
@@ -56,16 +55,16 @@ pub enum Error {
     /// A stated limit would be exceeded.
     #[error("{place}{what} of {value} is above the limit of {limit}")]
     Limit {
-        /// Position of the fault.
+        /// Position in the file.
         place: Place,
         /// Limited quantity, e.g. `"decoded size"`.
         what: &'static str,
-        /// Amount that the file asks for.
+        /// Amount that the file needs.
         value: u64,
-        /// The limit in force.
+        /// Limit in force.
         limit: u64,
     },
-    /// Something that the file refers to could not be had.
+    /// A resource that the file refers to could not be read.
     #[error("{}", crate::told::message(&format!("{place}cannot read `{}`: {message}", shown(uri))))]
     Resource {
         /// Position of the reference.
@@ -75,13 +74,13 @@ pub enum Error {
         /// Reason for the refusal.
         message: String,
     },
-    /// The format is not known, by content or by name.
+    /// The format is unknown, by content and by name.
     #[error("{}", crate::told::message(&format!("not a known format: {}", .0)))]
     Unknown(String),
     /// The library refused the value.
     #[error(transparent)]
     Library(#[from] durer::Error),
-    /// Reading or writing failed. The message is the system's, so the system's error is not a source as well.
+    /// Reading or writing failed. The message is the system's; so the system's error is not also a source.
     #[error("{}", without_number(.0))]
     Io(std::io::Error),
 }
@@ -120,7 +119,7 @@ impl Error {
         Self::Decode { place: Place::Path(path.into()), message: message.into() }
     }
 
-    /// Returns the same error at a place that is made of its own.
+    /// Returns the error with its place replaced by a function of it.
     pub(crate) fn at(self, place_of: impl FnOnce(Place) -> Place) -> Self {
         match self {
             Self::Decode { place, message } => Self::Decode { place: place_of(place), message },
@@ -143,12 +142,12 @@ impl Error {
     }
 }
 
-/// Something that was repaired or left out; the result is usable all the same.
+/// Warning of a repair or an omission; the result is usable nevertheless.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
-    /// Position of the fault.
+    /// Position in the file.
     pub place: Place,
-    /// Description of the fault and of its repair.
+    /// Description of the fault and its repair.
     pub message: String,
 }
 

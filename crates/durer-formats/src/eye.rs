@@ -34,8 +34,7 @@ pub(crate) struct Eye {
     pub place: Place,
 }
 
-/// Gives a scene its cameras, in their order, with unique names. Those that cannot see are left out with
-/// a warning.
+/// Adds cameras to a scene, in their order, with unique names. Those that cannot see are left out with a warning.
 pub(crate) fn add_cameras(
     eyes: impl IntoIterator<Item = Eye>,
     scene: &mut Scene,
@@ -58,7 +57,7 @@ pub(crate) fn add_cameras(
     scene.cameras = cameras;
 }
 
-/// Makes names different.
+/// Names so far, for making further ones unique.
 #[derive(Debug, Default)]
 struct Names {
     taken: HashSet<String>,
@@ -96,7 +95,7 @@ fn camera(lens: &Lens, world: DMat4, behind: impl Fn(DVec3) -> f64) -> Result<Na
     Ok(NamedCamera { name: String::new(), camera, aspect })
 }
 
-/// Tells of lights that do not shine, because [`ReadOptions::own_lights`](crate::ReadOptions) asks for none.
+/// Warns of lights that do not shine, because [`ReadOptions::own_lights`](crate::ReadOptions) is off.
 pub(crate) fn tell_dark(count: usize, model: &mut Model) {
     if count > 0 {
         let message =
@@ -148,8 +147,7 @@ pub(crate) fn lights(lamps: &[Lamp], unit: f64, scene: &Scene) -> Vec<Light> {
     if shows { lights } else { Vec::new() }
 }
 
-/// Returns the kind of a lamp at a place, and what its colour is multiplied by, so that it is right at
-/// the scene.
+/// Returns the kind of a lamp at a place, and the factor of its colour that makes it right at the scene.
 fn fit(lamp: &Lamp, position: DVec3, unit: f64, scene: BoundingSphere) -> (LightKind, f64) {
     let way = scene.center - position;
     let distance = way.length().max(scene.radius);

@@ -178,7 +178,7 @@ pub(crate) fn mesh(
     Ok(mesh)
 }
 
-/// Gives meshes with colours, but without material, one that shows them.
+/// Assigns to meshes with colours, but without material, one that shows them.
 pub(crate) fn show_colors(model: &mut Model, meshes: &mut [Mesh]) {
     let number = model.scene.materials.len();
     let plain = meshes.iter_mut().filter(|m| m.parts.is_empty() && !m.colors.is_empty());
@@ -198,7 +198,7 @@ pub(crate) fn whole(mesh: &Mesh, material: usize) -> Part {
     Part { range, material: Some(material), name: String::new() }
 }
 
-/// Takes colours from sRGB to linear; numbers up to 255 that should go up to 1 are scaled.
+/// Converts colours from sRGB to linear; numbers up to 255 that should go up to 1 are scaled.
 pub(crate) fn make_linear(model: &mut Model, colors: &mut [Vec4]) {
     let scale = scale_of(brightest(colors));
     warn_of_scale(model, scale);
@@ -215,14 +215,14 @@ pub(crate) fn scale_of(brightest: f32) -> f32 {
     if brightest > 2.0 { 1.0 / 255.0 } else { 1.0 }
 }
 
-/// Tells where colours are scaled.
+/// Warns of colours that are scaled.
 pub(crate) fn warn_of_scale(model: &mut Model, scale: f32) {
     if scale < 1.0 {
         model.warn(Place::Whole, "colors go up to 255 instead of 1; they were scaled");
     }
 }
 
-/// Takes colours from sRGB to linear, multiplied first.
+/// Converts colours from sRGB to linear, multiplied first.
 pub(crate) fn scaled_to_linear(colors: &mut [Vec4], scale: f32) {
     for c in colors {
         *c = color::linear3((c.truncate() * scale).to_array()).extend(c.w * scale);

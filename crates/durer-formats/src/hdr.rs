@@ -25,9 +25,9 @@ const WIDTHS_BY_CHANNEL: std::ops::Range<usize> = 8..0x8000;
 /// Reads a picture whose rows run from the top and from the left, as all panoramas do.
 ///
 /// # Errors
-/// [`Error::Limit`] where a side is above `limits.image_side` or the pixels above
-/// `limits.decoded_bytes` or 1 GiB, [`Error::Unsupported`] for CIE colours and other orientations,
-/// [`Error::Decode`] for what is no such picture or ends early.
+/// [`Error::Limit`] where a side is above `limits.image_side` or the pixels above `limits.decoded_bytes` or 1 GiB,
+/// [`Error::Unsupported`] for CIE colours and other orientations, [`Error::Decode`] for bytes that are no such picture
+/// or end early.
 pub fn read(bytes: &[u8], limits: &Limits) -> Result<HdrPicture> {
     if !bytes.starts_with(b"#?") {
         return Err(Error::whole("is no Radiance picture: it does not begin with `#?RADIANCE`"));
@@ -44,7 +44,7 @@ pub fn read(bytes: &[u8], limits: &Limits) -> Result<HdrPicture> {
     Ok(HdrPicture { width: width as u32, height: height as u32, pixels })
 }
 
-/// Returns the product of all exposures that were applied to the pixels.
+/// Reads the header; returns the product of all exposures that were applied to the pixels.
 fn header(source: &mut Source<'_>) -> Result<f32> {
     let mut exposure = 1.0;
     loop {
@@ -141,7 +141,7 @@ impl<'a> Source<'a> {
         Ok(line.strip_suffix(b"\r").unwrap_or(line))
     }
 
-    /// The codes of a row.
+    /// Reads the codes of a row.
     fn row(&mut self, row: &mut [[u8; 4]]) -> Result<()> {
         let first = self.code()?;
         let [a, b, high, low] = first.map(usize::from);
@@ -155,7 +155,7 @@ impl<'a> Source<'a> {
         self.codes(first, row)
     }
 
-    /// One channel of a row, in runs and sequences.
+    /// Reads one channel of a row, in runs and sequences.
     fn channel(&mut self, row: &mut [[u8; 4]], channel: usize) -> Result<()> {
         let mut x = 0;
         while x < row.len() {
@@ -173,7 +173,7 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// Whole codes from `first` on; (1, 1, 1, n) repeats the one before n times.
+    /// Reads whole codes from `first` on; (1, 1, 1, n) repeats the one before n times.
     fn codes(&mut self, first: [u8; 4], row: &mut [[u8; 4]]) -> Result<()> {
         let (mut x, mut shift, mut code) = (0_usize, 0_u32, first);
         loop {

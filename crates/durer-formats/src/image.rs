@@ -31,9 +31,9 @@ type Picture = (u32, u32, Vec<[u8; 4]>);
 /// profiles are not applied, nor is the [`Orientation`]. `name` names the picture in the result and in messages.
 ///
 /// # Errors
-/// [`Error::Limit`] where a side is above `limits.image_side` or the pixels above
-/// `limits.decoded_bytes`, [`Error::Unsupported`] for other known picture formats,
-/// [`Error::Decode`] for what is broken. `Place` is the whole: the caller knows the rest.
+/// [`Error::Limit`] where a side is above `limits.image_side` or the pixels above `limits.decoded_bytes`,
+/// [`Error::Unsupported`] for other known picture formats, [`Error::Decode`] for broken contents. `Place` is the whole:
+/// the caller knows the rest.
 pub fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Image> {
     let starts = |magic: &[u8]| bytes.starts_with(magic);
     let (width, height, data) = match () {
@@ -124,7 +124,7 @@ fn check_size(
     Ok(())
 }
 
-/// Pixels of N samples each to RGBA.
+/// Converts pixels of N samples each to RGBA.
 fn pixels_of<S: Copy, T: Copy, const N: usize>(
     samples: &[S],
     value: impl Fn(S) -> T,

@@ -88,7 +88,7 @@ struct Header {
     offset: DVec3,
 }
 
-/// N bytes of a file.
+/// Returns N bytes of a file from an offset on.
 fn take<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..)?.first_chunk().copied()
 }
@@ -147,7 +147,7 @@ impl Header {
         })
     }
 
-    /// Returns the points of a file that is not compressed; how many there are.
+    /// Reads the points of a file that is not compressed; returns how many there are.
     fn points(&self, bytes: &[u8], cloud: &mut Cloud) -> u64 {
         let data = bytes.get(self.data..).unwrap_or_default();
         let records = data.chunks_exact(self.length);

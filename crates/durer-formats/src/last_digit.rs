@@ -51,7 +51,7 @@ enum Digit {
 }
 
 impl Digit {
-    /// `None` for what is not a number.
+    /// Returns the place of a number's last digit; `None` for a word that is not a number.
     fn of(word: &[u8]) -> Option<Self> {
         let (mantissa, exponent) = match word.iter().position(|b| matches!(b, b'e' | b'E')) {
             Some(at) => (&word[..at], Some(&word[at + 1..])),

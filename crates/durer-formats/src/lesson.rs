@@ -49,8 +49,8 @@ pub struct Read {
 /// that is seen obliquely from above. The first polygon is the subject, further ones are the clip.
 ///
 /// # Errors
-/// Those of the readers; [`Error::Limit`] for more points or pixels than can be explained; [`Error::Library`] for a seed
-/// outside the picture.
+/// Those of the readers; [`Error::Limit`] for more points or pixels than can be explained; [`Error::Library`] for a
+/// seed outside the picture.
 pub fn read(
     bytes: &[u8],
     name: &str,

@@ -5,23 +5,22 @@ use durer::math::Vec3;
 use durer::scene::Scene;
 use durer::work::Work;
 
-/// Finds what a file refers to: buffers, images, material libraries.
+/// Source of the files that a file refers to: buffers, images, material libraries.
 ///
-/// The command's implementation looks only below the model's own folder and never at a network
-/// address; data URIs never get here.
+/// The implementation in the command reads only below the model's own folder and never from a network address; data
+/// URIs do not get here.
 pub trait Resources {
-    /// Returns the bytes behind a relative, already percent-decoded path with `/` as separator, at
-    /// most `limit` of them.
+    /// Returns the bytes of a file, at most `limit`; `path` is relative, percent-decoded, and has `/` as separator.
     ///
     /// # Errors
-    /// A sentence that says why not, for the reader to put into [`crate::Error::Resource`].
+    /// A sentence with the reason, for the reader to put into [`crate::Error::Resource`].
     fn read(&self, path: &str, limit: u64) -> std::result::Result<Vec<u8>, String>;
 
-    /// Returns the bytes behind a path as the file writes it, percent-decoded and with `/` as separator;
-    /// it may be absolute, lead out of the folder by `..`, or be a network address. Readers call this.
+    /// Returns the bytes of a file by its path as written in the model, percent-decoded and with `/` as separator. The
+    /// path may be absolute, lead out of the folder by `..`, or be a network address. Readers call this method.
     ///
-    /// As provided it refuses such paths, so that [`Self::read`] never sees one. What replaces it decides
-    /// itself where paths may lead, and may find a file under another spelling.
+    /// The provided implementation refuses such paths, so that [`Self::read`] never gets one. Another implementation
+    /// decides itself which paths it allows, and may find a file under another spelling.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -36,15 +35,14 @@ pub trait Resources {
 pub struct Found {
     /// The file's bytes.
     pub bytes: Vec<u8>,
-    /// A sentence for a warning, where the file is not quite what was requested: one whose name differs in
-    /// upper and lower case.
+    /// A sentence for a warning, if the file is not quite the requested one: its name differs in upper and lower case.
     pub note: Option<String>,
 }
 
 /// Refuses paths that are not relative to the model's folder, or lead out of it.
 ///
 /// # Errors
-/// A sentence that says why.
+/// A sentence with the reason.
 fn check_inside(path: &str) -> std::result::Result<(), &'static str> {
     // A scheme is letters, digits, +, - or . before a colon (RFC 3986); a colon in the first segment of a
     // relative path is not allowed, and on some systems it names a drive or a stream.
@@ -63,7 +61,7 @@ fn check_inside(path: &str) -> std::result::Result<(), &'static str> {
     Ok(())
 }
 
-/// Finds nothing: for files that must stand alone.
+/// Source without any files: for files that must stand alone.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoResources;
 
@@ -73,26 +71,26 @@ impl Resources for NoResources {
     }
 }
 
-/// Limits of readers; exceeding one gives [`crate::Error::Limit`].
+/// Limits of readers; exceeding one is [`crate::Error::Limit`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Limits {
-    /// Triangles, lines and points over all meshes, before instancing.
+    /// Number of triangles, lines and points over all meshes, before instancing.
     pub primitives: u64,
-    /// Instances of meshes, and also nodes of a glTF file.
+    /// Number of instances of meshes, and of nodes of a glTF file.
     pub instances: u64,
-    /// Bytes of all decoded buffers and images together, also after decompression.
+    /// Bytes of all decoded buffers and images together, including decompressed ones.
     pub decoded_bytes: u64,
     /// Width and height of one image, in pixels.
     pub image_side: u32,
     /// Depth of a tree of components.
     pub depth: u32,
-    /// The budget that memory is charged to, which what is read keeps as long as this part of the work is there; and
-    /// what may stop the reading.
+    /// Memory budget and cancellation of the reading. The memory of the model stays charged as long as this part of the
+    /// work exists.
     pub work: Work,
 }
 
 impl Default for Limits {
-    /// 100 million primitives, a million instances, 4 GiB decoded, images of 16,384², depth 512.
+    /// Returns the default: 100 million primitives, a million instances, 4 GiB decoded, images of 16,384², depth 512.
     fn default() -> Self {
         Self {
             primitives: 100_000_000,
@@ -106,7 +104,8 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// Bytes that may still be taken, for libraries that count by themselves.
+    /// Returns the number of bytes that reading may use, by [`Self::decoded_bytes`] and by the rest of the budget; for
+    /// libraries that count by themselves.
     pub fn memory(&self) -> u64 {
         self.decoded_bytes.min(self.work.budget().saturating_sub(self.work.used()))
     }
@@ -115,7 +114,7 @@ impl Limits {
 /// Time of an animation at which a model is posed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Pose {
-    /// Name or number of the animation; `None` = the first, where there is a time.
+    /// Name or number of the animation; `None` = the first, if there is one.
     pub animation: Option<String>,
     /// Seconds from its start; clamped to its end.
     pub time: f64,
@@ -126,22 +125,22 @@ pub struct Pose {
 pub struct ReadOptions {
     /// Limits of sizes.
     pub limits: Limits,
-    /// The moment to pose at; `None` = the rest pose of the file.
+    /// Time of an animation to pose the model at; `None` = the rest pose of the file.
     pub pose: Option<Pose>,
-    /// Name or number of the variant whose materials are shown (KHR_materials_variants); `None` = the
-    /// materials that the file shows by default.
+    /// Name or number of the variant whose materials are shown (KHR_materials_variants); `None` = the default materials
+    /// of the file.
     pub variant: Option<String>,
-    /// Only the objects on this plate, counted from 1, of a project that has plates; `None` = all.
+    /// Number, from 1, of the plate whose objects are read, in a project that has plates; `None` = all.
     pub plate: Option<u32>,
-    /// True if lights of COLLADA and FBX shine. Most are what an exporter has left in every file, of units that
-    /// nobody keeps to, so that models look worse by them than without. Those of glTF always shine.
+    /// True if lights of COLLADA and FBX shine. Most are leftovers of the exporter, in units that hardly any program
+    /// respects, so that models look worse with them than without. Lights of glTF always shine.
     pub own_lights: bool,
 }
 
 /// A model as read.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Model {
-    /// Scene to draw. Passes [`Scene::check`].
+    /// Scene to draw, which passes [`Scene::check`].
     pub scene: Scene,
     /// The format, e.g. `"glTF 2.0 binary"` or `"STL, ascii"`.
     pub format: String,
@@ -149,7 +148,7 @@ pub struct Model {
     pub extensions: Vec<String>,
     /// Names of the animations.
     pub animations: Vec<String>,
-    /// Names of the variants of its materials.
+    /// Names of the variants of the model's materials.
     pub variants: Vec<String>,
     /// Names of the plates of a slicer's project, empty if they have none.
     pub plates: Vec<String>,

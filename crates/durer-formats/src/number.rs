@@ -55,7 +55,7 @@ pub(crate) fn float(text: &[u8]) -> Option<(f64, usize)> {
     text.parse().ok().map(|value| (value, at))
 }
 
-/// `e±digits` at the start of `text`: its value and length; nothing where no digit follows.
+/// Returns value and length of `e±digits` at the start of `text`; zeros where no digit follows.
 fn exponent_part(text: &[u8]) -> (i32, usize) {
     if !matches!(text.first(), Some(b'e' | b'E')) {
         return (0, 0);
@@ -71,7 +71,7 @@ fn exponent_part(text: &[u8]) -> (i32, usize) {
     if at == start { (0, 0) } else { (if negative { -value } else { value }, at) }
 }
 
-/// `nan`, `inf`, `infinity` at the start of `text`.
+/// Returns value and length of `nan`, `inf` or `infinity` at the start of `text`.
 fn word(text: &[u8], negative: bool) -> Option<(f64, usize)> {
     let starts = |w: &[u8]| text.get(..w.len()).is_some_and(|t| t.eq_ignore_ascii_case(w));
     let infinity = if negative { f64::NEG_INFINITY } else { f64::INFINITY };
@@ -85,7 +85,8 @@ fn word(text: &[u8], negative: bool) -> Option<(f64, usize)> {
     Some((if starts(b"nan") { f64::NAN } else { infinity }, length))
 }
 
-/// `#IND`, `#QNAN`, `#SNAN`, `#INF` with the zeros that may follow, after the `1.` before it.
+/// Returns value and length of `#IND`, `#QNAN`, `#SNAN` or `#INF` with the zeros that may follow, after the `1.`
+/// before it.
 fn microsoft(text: &[u8], negative: bool) -> Option<(f64, usize)> {
     let length = text.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(text.len());
     let infinite = text.get(1..4).is_some_and(|t| t.eq_ignore_ascii_case(b"INF"));

@@ -370,7 +370,7 @@ impl Reader {
     }
 }
 
-/// Brings colours of bytes to 0 … 1, by the largest of all; components that are not there become 1.
+/// Scales colours of bytes to 0 … 1, by the largest of all; components that are not there become 1.
 fn to_unit(colors: &mut [Vec4]) {
     let finite = |c: f32| if c.is_finite() { c } else { 0.0 };
     let most = colors.iter().flat_map(|c| c.to_array()).map(finite).fold(0.0, f32::max);

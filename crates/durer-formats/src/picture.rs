@@ -27,7 +27,7 @@ pub enum PictureFormat {
 }
 
 impl PictureFormat {
-    /// All of them.
+    /// All formats.
     pub const ALL: &'static [Self] = &[Self::Png, Self::Jpeg, Self::WebP];
 
     /// Returns the name used on the command line.
@@ -76,7 +76,7 @@ pub struct Encoding {
 }
 
 impl Default for Encoding {
-    /// Fast, and of a quality at which pictures look the same.
+    /// Returns the default: fast, and of a quality at which pictures look the same.
     fn default() -> Self {
         Self { compression: Compression::Fast, quality: 90 }
     }
@@ -143,7 +143,7 @@ pub(crate) mod tests {
     use super::*;
     use durer::work::Work;
 
-    /// Smooth colours, with a line that is half transparent.
+    /// Returns smooth colours, with a line that is half transparent.
     pub fn shades(width: u32, height: u32) -> Pixels<[u8; 4]> {
         let mut pixels = Pixels::new(width, height, [255; 4]);
         for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {

@@ -53,7 +53,7 @@ impl Builder {
         Self { topology, sets, corners, known, indices, faces, runs }
     }
 
-    /// Begins what has another material, by its name.
+    /// Begins a part with another material, by its name.
     pub fn begin(&mut self, symbol: &str) {
         self.runs.push((self.indices.len(), symbol.to_owned()));
     }
@@ -122,7 +122,7 @@ impl Builder {
     }
 }
 
-/// Gives a mesh its parts, and returns what they call their materials.
+/// Adds the parts to a mesh, and returns the names of their materials.
 fn parts(mesh: &mut Mesh, runs: Vec<(usize, String)>, per: usize, count: usize) -> Vec<String> {
     let starts: Vec<usize> = runs.iter().map(|(start, _)| start / per).chain([count]).collect();
     let mut symbols = Vec::new();

@@ -4,25 +4,25 @@ use crate::{Model, Result};
 use durer::scene::{Aabb, Scene, UpAxis};
 use durer::work::Charge;
 
-/// Takes a piece of a model; may change what it is made of.
+/// Receiver of a piece of a model; may change its contents.
 pub type Visit<'a> = &'a mut dyn FnMut(&mut Scene) -> durer::Result<()>;
 
 /// A model of one mesh that is read from its file piece by piece, as often as it is requested.
 ///
-/// Pieces are scenes of one instance, with the materials of the model; their primitives follow each other as in the scene
-/// that the format's `read` gives, and have the same bits.
+/// Pieces are scenes of one instance, with the materials of the model; their primitives follow each other as in the
+/// scene that the format's `read` gives, and have the same bits.
 pub trait Pieces {
     /// Returns the most bytes that the model takes as a whole, with what a picture of it takes.
     fn whole(&self) -> u64;
 
-    /// Axis that points up.
+    /// Returns the axis that points up.
     fn up_axis(&self) -> UpAxis;
 
     /// Returns whether its vertices have normals.
     fn has_normals(&self) -> bool;
 
-    /// Hands over all vertices, and what is drawn with them where that is known: for boxes and cameras. Of vertices that
-    /// nothing is drawn with the coordinates are not numbers. But for the last, pieces have a multiple of
+    /// Visits all vertices, with the primitives that use them where those are known: for boxes and cameras. Vertices
+    /// that no primitive uses have NaN as coordinates. All pieces but the last have a multiple of
     /// [`durer::view::projection::PIECE`] vertices.
     ///
     /// # Errors
@@ -35,19 +35,19 @@ pub trait Pieces {
     /// As [`Self::vertices`].
     fn bounds(&mut self) -> Result<Option<Aabb>>;
 
-    /// Hands over all primitives, without colours.
+    /// Visits all primitives, without colours.
     ///
     /// # Errors
     /// As [`Self::vertices`].
     fn primitives(&mut self, visit: Visit<'_>) -> Result<()>;
 
-    /// Reads the primitives of these numbers alone, which ascend; and gives what they take of the budget.
+    /// Reads only the primitives of these numbers, which ascend; returns them with the charge of their memory.
     ///
     /// # Errors
     /// As [`Self::vertices`]; [`durer::Error::Memory`] where the budget has no room for them.
     fn only(&mut self, numbers: &[u32]) -> Result<(Scene, Charge)>;
 
-    /// Tells what is known of the model as a whole. Reads the file if that has not been done yet.
+    /// Returns facts about the model as a whole. Reads the file if that has not been done yet.
     ///
     /// # Errors
     /// As [`Self::vertices`].

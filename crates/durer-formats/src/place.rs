@@ -12,7 +12,7 @@ pub(crate) fn origin(points: &[DVec3]) -> DVec3 {
     origin_of(Aabb::around(points.iter().copied()))
 }
 
-/// As [`origin`], of points with this box around them.
+/// Returns the [`origin`] for points with this box around them.
 pub(crate) fn origin_of(bounds: Option<Aabb>) -> DVec3 {
     let Some(bounds) = bounds else { return DVec3::ZERO };
     let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
@@ -21,12 +21,12 @@ pub(crate) fn origin_of(bounds: Option<Aabb>) -> DVec3 {
     if farthest > FAR * extent && extent > 0.0 && middle.is_finite() { middle } else { DVec3::ZERO }
 }
 
-/// Single-precision positions relative to `origin`.
+/// Returns single-precision positions relative to `origin`.
 pub(crate) fn narrow(points: &[DVec3], origin: DVec3) -> Vec<Vec3> {
     points.iter().map(|&p| (p - origin).as_vec3()).collect()
 }
 
-/// Takes positions relative to `origin` to the file's coordinates.
+/// Returns the matrix from positions relative to `origin` to the file's coordinates.
 pub(crate) fn matrix(origin: DVec3) -> DMat4 {
     DMat4::from_translation(origin)
 }

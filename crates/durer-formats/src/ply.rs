@@ -77,7 +77,7 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     Ok(model)
 }
 
-/// Tells of lines that were skipped, and of what is missing or left over at the end of the file.
+/// Warns of lines that were skipped, and of what is missing or left over at the end of the file.
 fn warn_of_end(model: &mut Model, header: &Header, end: Option<(Place, String)>) {
     if header.unknown.count > 0 {
         let message =

@@ -29,8 +29,8 @@ pub const DEPTH_BACKGROUND: u16 = u16::MAX;
 /// IDAT chunks of this size: large enough that their headers do not count.
 const CHUNK_BYTES: usize = 256 * 1024;
 
-/// Writes sRGB colours with straight alpha, 8 bits each; without the alpha channel where all of the
-/// picture is opaque. The `sRGB` chunk says what the numbers mean.
+/// Writes sRGB colours with straight alpha, 8 bits each; without the alpha channel where all of the picture is opaque.
+/// The `sRGB` chunk defines the meaning of the numbers.
 ///
 /// ```
 /// use durer::target::Pixels;
@@ -62,7 +62,7 @@ pub fn write_color<W: Write>(
     }
 }
 
-/// The first three bytes of each pixel, of rows of the same length.
+/// Copies the first three bytes of each pixel; both rows have the same length.
 fn without_alpha(row: &[[u8; 4]], bytes: &mut [[u8; 3]]) {
     let Some((last, others)) = row.split_last() else { return };
     let bytes = bytes.as_flattened_mut();
@@ -82,8 +82,8 @@ pub struct Channels {
     pub alpha: bool,
 }
 
-/// Writes sRGB colours with straight alpha, 16 bits each. Of what the file has no channel for, the red one
-/// is taken as grey, and alpha is left out.
+/// Writes sRGB colours with straight alpha, 16 bits each. If the file has no channel for them, the red one is taken as
+/// grey, and alpha is left out.
 ///
 /// # Errors
 /// As [`write_color`].
@@ -111,14 +111,13 @@ pub fn write_deep_color<W: Write>(
     }
 }
 
-/// Numbers of two bytes, the higher one first.
+/// Returns the bytes of two-byte numbers, the higher one first.
 fn big_endian<const N: usize, const BYTES: usize>(samples: [u16; N]) -> [u8; BYTES] {
     let bytes = samples.map(u16::to_be_bytes);
     std::array::from_fn(|i| bytes[i / 2][i % 2])
 }
 
-/// Writes window depths 0…1 as 16-bit grey: depth × 65535, rounded to nearest; what is not a number
-/// becomes [`DEPTH_BACKGROUND`].
+/// Writes window depths 0…1 as 16-bit grey: depth × 65535, rounded to nearest; NaN becomes [`DEPTH_BACKGROUND`].
 ///
 /// # Errors
 /// As [`write_color`].
@@ -138,7 +137,7 @@ pub fn write_depth<W: Write>(out: W, pixels: &Pixels<f32>, compression: Compress
 ///
 /// # Errors
 /// [`Error::Limit`] for more pixels than `limits.decoded_bytes` hold at 4 bytes each or a side above
-/// `limits.image_side`, [`Error::Decode`] for what is broken or no 16-bit grey PNG.
+/// `limits.image_side`, [`Error::Decode`] for bytes that are broken or no 16-bit grey PNG.
 pub fn read_depth(bytes: &[u8], limits: &Limits) -> Result<Pixels<f32>> {
     let wrong =
         |e: png::DecodingError| Error::whole(format!("the depth picture {}", foreign::png(&e)));
@@ -234,7 +233,7 @@ fn write<W: Write, T: Copy, const BYTES: usize>(
     })
 }
 
-/// [`write`] with rows encoded as a whole.
+/// Writes pixels as [`write`] does, with rows encoded as a whole.
 fn write_rows<W: Write, T: Copy, const BYTES: usize>(
     out: W,
     pixels: &Pixels<T>,
@@ -264,7 +263,7 @@ fn write_rows<W: Write, T: Copy, const BYTES: usize>(
     writer.finish().map_err(encoding)
 }
 
-/// Tells an encoder how hard to try.
+/// Sets the effort of an encoder.
 pub(crate) fn set_compression<W: Write>(encoder: &mut Encoder<W>, compression: Compression) {
     match compression {
         Compression::Fast => {
@@ -309,7 +308,7 @@ mod tests {
         assert!(error.contains("16-bit"), "{error}");
     }
 
-    /// Pixels that differ, so that a wrong order shows.
+    /// Returns pixels that differ, so that a wrong order shows.
     fn noise<T: Copy>(width: u32, height: u32, f: impl Fn(u32) -> T) -> Pixels<T> {
         let data = (0..width * height).map(|i| f(i.wrapping_mul(2_654_435_761))).collect();
         Pixels::from_data(width, height, data).unwrap()

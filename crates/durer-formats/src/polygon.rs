@@ -34,7 +34,7 @@ impl Budget {
     /// About a second's work.
     const TESTS: u64 = 1 << 28;
 
-    /// Takes this many tests; `None` if they are used up.
+    /// Spends this many tests; `None` if they are used up.
     fn spend(&mut self, tests: usize) -> Option<()> {
         self.0 = self.0.checked_sub(tests as u64)?;
         Some(())

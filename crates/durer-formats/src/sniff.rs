@@ -112,7 +112,7 @@ impl ModelFormat {
         }
     }
 
-    /// Returns whether a file that begins so is none of the formats that are asked before STL.
+    /// Returns whether a file that begins so has none of the formats that are tested before STL.
     pub(crate) fn may_be_stl(head: &[u8]) -> bool {
         let other: [&[u8]; 5] =
             [b"glTF", b"PK\x03\x04", b"LASF", e57::MAGIC, b"Kaydara FBX Binary"];
@@ -129,7 +129,7 @@ impl ModelFormat {
     }
 }
 
-/// Binary glTF by its magic, text by an object with the key that it must have.
+/// Returns whether the bytes are glTF: binary by its magic, text by an object with the key that it must have.
 fn is_gltf(bytes: &[u8]) -> bool {
     let key = b"\"asset\"";
     bytes.starts_with(b"glTF")
@@ -163,9 +163,9 @@ fn is_obj(bytes: &[u8]) -> bool {
 /// `name`.
 ///
 /// # Errors
-/// [`Error::Unknown`] where neither content nor name tell the format; else those of the reader:
-/// [`obj::read`], [`stl::read`], [`ply::read`], [`threemf::read`], [`collada::read`], [`fbx::read`], [`off::read`],
-/// [`las::read`], [`e57::read`], [`xyz::read`].
+/// [`Error::Unknown`] if neither content nor name determines the format; else those of the reader: [`obj::read`],
+/// [`stl::read`], [`ply::read`], [`threemf::read`], [`collada::read`], [`fbx::read`], [`off::read`], [`las::read`],
+/// [`e57::read`], [`xyz::read`].
 pub fn read_model(
     bytes: &[u8],
     name: &str,

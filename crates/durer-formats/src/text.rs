@@ -79,12 +79,12 @@ pub(crate) fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     }
 }
 
-/// UTF-8 from UTF-16 whose low bytes come first, without a mark.
+/// Converts UTF-16 whose low bytes come first, without a mark, to UTF-8.
 pub(crate) fn utf16_le(bytes: &[u8]) -> Vec<u8> {
     utf16(bytes, u16::from_le_bytes)
 }
 
-/// UTF-8 from UTF-16 whose high bytes come first, without a mark.
+/// Converts UTF-16 whose high bytes come first, without a mark, to UTF-8.
 pub(crate) fn utf16_be(bytes: &[u8]) -> Vec<u8> {
     utf16(bytes, u16::from_be_bytes)
 }
@@ -105,18 +105,18 @@ fn ends_line(byte: u8) -> bool {
 }
 
 impl<'a> Cursor<'a> {
-    /// At the start of a text.
+    /// Creates a cursor at the start of a text.
     pub fn new(bytes: &'a [u8]) -> Self {
         let sloppy = Tally::default();
         Self { bytes, at: 0, line: 1, line_start: 0, word_start: 0, sloppy }
     }
 
-    /// At the start of a text that is the rest of a file, after this many lines.
+    /// Creates a cursor at the start of a text that is the rest of a file; `lines` is the number of its first line.
     pub fn at_line(bytes: &'a [u8], lines: u64) -> Self {
         Self { line: lines, ..Self::new(bytes) }
     }
 
-    /// Bytes after the current place.
+    /// Returns the number of bytes after the current place.
     pub fn bytes_left(&self) -> usize {
         self.bytes.len().saturating_sub(self.at)
     }
@@ -126,7 +126,7 @@ impl<'a> Cursor<'a> {
         self.at >= self.bytes.len()
     }
 
-    /// Bytes before the current place.
+    /// Returns the number of bytes before the current place.
     pub fn offset(&self) -> usize {
         self.at
     }
@@ -260,7 +260,7 @@ impl<'a> Cursor<'a> {
         Ok(Some(value))
     }
 
-    /// Numbers until the line is over or `values` is full; how many there were.
+    /// Reads numbers until the line is over or `values` is full; returns how many there were.
     ///
     /// # Errors
     /// A word that does not begin with a number.

@@ -13,7 +13,7 @@ const MESSAGE: usize = 1000;
 const NUMBER: usize = 20;
 
 /// Returns text of a file, such as a name, for a message: what would steer a terminal, end the line or turn the
-/// direction of writing is written as in Rust (`\n`, `\u{202e}`), and what comes after 120 characters is cut.
+/// direction of writing is written as in Rust (`\n`, `\u{202e}`), and text beyond 120 characters is cut off.
 pub fn shown(text: &str) -> Cow<'_, str> {
     escaped(cut(text))
 }
@@ -40,7 +40,7 @@ pub fn shown_path(path: &std::path::Path) -> String {
 }
 
 /// Returns a text with the characters written out that would steer a terminal, end the line or turn the direction of
-/// writing. What is written out already stays so.
+/// writing. Characters that are written out already stay so.
 pub fn escaped<'a>(text: impl Into<Cow<'a, str>>) -> Cow<'a, str> {
     let text = text.into();
     if !text.chars().any(steers) {

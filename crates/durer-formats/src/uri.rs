@@ -46,7 +46,7 @@ fn refused(uri: &str, at: &str, message: &str) -> Error {
     Error::Resource { place, uri: uri.chars().take(QUOTED).collect(), message: message.to_owned() }
 }
 
-/// Returns whether the data stand in the URI itself.
+/// Returns whether the URI itself contains the data.
 pub(crate) fn is_data(uri: &str) -> bool {
     strip_data_scheme(uri).is_some()
 }
@@ -122,7 +122,7 @@ fn decode_data(data: &str, at: &str) -> Result<Vec<u8>> {
     decode_base64(&bytes).ok_or_else(|| Error::path(at, "the data URI is not valid base64"))
 }
 
-/// Base64 of RFC 4648, also its URL alphabet; padding may be missing.
+/// Decodes Base64 of RFC 4648, also with its URL alphabet; padding may be missing.
 fn decode_base64(text: &[u8]) -> Option<Vec<u8>> {
     let end = text.iter().rposition(|&b| b != b'=').map_or(0, |last| last + 1);
     if text.len() - end > 2 || end % 4 == 1 {
@@ -198,7 +198,7 @@ mod tests {
         assert_eq!(load("a/b", "here", &Everything, 100).unwrap().bytes, b"a/b");
     }
 
-    /// Answers every request with its path.
+    /// Resources that answer every request with its path.
     struct Everything;
 
     impl Resources for Everything {

@@ -130,7 +130,7 @@ impl Table {
         x.max(y).max(z)
     }
 
-    /// Notes what the values of a line are like.
+    /// Records the properties of a line's values.
     fn note(&mut self, values: &[f64; COLUMNS], count: usize) {
         self.count = self.count.min(count);
         for (column, &value) in values.iter().enumerate().take(count).skip(3) {
@@ -140,7 +140,7 @@ impl Table {
         }
     }
 
-    /// A line before the first point that is not a comment.
+    /// Reads a line before the first point that is not a comment.
     fn head(&mut self, line: u64, words: &[u8]) -> Result<()> {
         self.head += 1;
         self.name(words);
@@ -160,7 +160,7 @@ impl Table {
         Ok(())
     }
 
-    /// Takes the names of columns from a line, if it has those of coordinates.
+    /// Reads the names of columns from a line, if it has those of coordinates.
     fn name(&mut self, line: &[u8]) {
         let line = line.to_ascii_lowercase();
         let words = line.split(|&b| separates(b) || matches!(b, b'/' | b'#' | b'"'));

@@ -83,7 +83,7 @@ fn emptied(geometry: &Geometry) -> Geometry {
     }
 }
 
-/// Does the task with one feature, from and to well-known binary.
+/// Runs the task on one feature, from and to well-known binary.
 fn one(
     task: &Task<'_>,
     rules: &Rules,
@@ -105,7 +105,7 @@ type Made<T> = Vec<Option<Result<T, String>>>;
 /// Rows that failed, with the reasons.
 type Errors = Vec<(usize, String)>;
 
-/// Does something for each row, in parallel.
+/// Runs a function for each row, in parallel.
 fn each<T: Send>(
     count: usize,
     row: impl Fn(usize) -> Option<Result<T, String>> + Send + Sync,
@@ -113,7 +113,7 @@ fn each<T: Send>(
     (0..count).into_par_iter().with_min_len(LEAST).map(row).collect()
 }
 
-/// Parts the results from the errors.
+/// Separates the results from the errors.
 fn parted<T>(made: Made<T>) -> (Vec<Option<T>>, Errors) {
     let mut errors = Vec::new();
     let result = |(at, made): (usize, Option<Result<T, String>>)| match made? {

@@ -54,7 +54,7 @@ pub struct Ragged<'a> {
     pub coords: &'a [f64],
     /// 2 or 3.
     pub width: usize,
-    /// From the innermost level to the outermost.
+    /// Offsets, from the innermost level to the outermost.
     pub offsets: Vec<&'a [i64]>,
 }
 
@@ -159,13 +159,13 @@ pub struct RaggedOut {
     pub coords: Vec<f64>,
     /// 2 or 3.
     pub width: usize,
-    /// From the innermost level to the outermost.
+    /// Offsets, from the innermost level to the outermost.
     pub offsets: Vec<Vec<i64>>,
 }
 
 impl RaggedOut {
-    /// Puts geometries into arrays; the kind is that given, or its multiple kind where one has several parts. Of one that
-    /// is missing or empty nothing is in the arrays but its place.
+    /// Puts geometries into arrays; the kind is that given, or its multiple kind where one has several parts. Of one
+    /// that is missing or empty nothing is in the arrays but its place.
     pub fn new(kind: Kind, width: usize, all: &[Option<Geometry>]) -> Result<Self, String> {
         let is_multi = |g: &Geometry| match g {
             Geometry::MultiPoint(points) => points.len() != 1,

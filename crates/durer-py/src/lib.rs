@@ -34,7 +34,7 @@ fn command(py: Python<'_>, line: Vec<std::ffi::OsString>) -> u8 {
     (0..=u8::MAX).find(|&number| is(number)).unwrap_or(1)
 }
 
-/// The functions and classes of the module.
+/// Adds the functions and classes of the module.
 #[pymodule(gil_used = false)]
 fn _durer(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;

@@ -22,9 +22,9 @@ const MOST: u32 = 32_767;
 /// Rule that chooses the pixels of areas.
 #[derive(Clone, Copy, PartialEq)]
 enum Mode {
-    /// Those whose centre is inside.
+    /// Pixels whose centre is inside.
     Centers,
-    /// Those with any point in common.
+    /// Pixels with any point in common.
     Touched,
     /// All, by the share that is inside.
     Coverage,
@@ -178,8 +178,8 @@ impl Grid {
     }
 }
 
-/// Gives the pixels of geometries their values, one geometry after the other; `to_pixels` are the coefficients a, b, c, d,
-/// e, f of column = a·x + b·y + c and row = d·x + e·y + f.
+/// Sets the pixels of geometries to their values, one geometry after the other; `to_pixels` are the coefficients a, b,
+/// c, d, e, f of column = a·x + b·y + c and row = d·x + e·y + f.
 #[pyfunction]
 fn rasterize<'py>(
     py: Python<'py>,

@@ -27,7 +27,7 @@ fn pool(threads: usize) -> Result<Arc<ThreadPool>, String> {
     Ok(built)
 }
 
-/// Does work on a number of threads, 0 for one for each processor, without the interpreter's lock.
+/// Runs work on a number of threads, 0 for one for each processor, without the interpreter's lock.
 pub fn on_threads<T: Send>(
     py: Python<'_>,
     threads: usize,

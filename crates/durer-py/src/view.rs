@@ -25,8 +25,8 @@ type Planes<'py> = (
     Option<String>,
 );
 
-/// Renders a picture; `planes` are those of depth, item and normal, and `linear` has depths be distances along the axis,
-/// 0 where nothing is.
+/// Renders a picture; `planes` are those of depth, item and normal, and `linear` has depths be distances along the
+/// axis, 0 where nothing is.
 #[pyfunction]
 fn render<'py>(
     py: Python<'py>,

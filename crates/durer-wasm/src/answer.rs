@@ -17,7 +17,7 @@ pub enum Answer {
     Error(String),
 }
 
-/// Answers requests, and keeps the runs that they refer to.
+/// Engine that answers requests, and keeps the runs that they refer to.
 #[derive(Debug, Default)]
 pub struct Engine {
     runs: Runs,

@@ -1,8 +1,9 @@
 //! The functions that the module exports. A page writes a request into the buffer that [`durer_request`] returns, calls
 //! [`durer_answer`], and reads the answer from the buffer that [`durer_result`] points to.
 //!
-//! No memory is handed over: both buffers belong to the module, and a page reads or writes them only between calls. So no
-//! function here dereferences a pointer, and the only unsafe thing about them is that their names are exported as they are.
+//! No memory is handed over: both buffers belong to the module, and a page reads or writes them only between calls. So
+//! no function here dereferences a pointer, and the only unsafe thing about them is that their names are exported as
+//! they are.
 
 #![allow(unsafe_code)]
 

@@ -1,5 +1,5 @@
-//! The library behind requests: a JSON text in, a JSON text or bytes out. Compiled to WebAssembly it is the engine of the
-//! explorer; compiled for this machine it answers with the same bytes, which tests compare.
+//! The library behind requests: a JSON text in, a JSON text or bytes out. Compiled to WebAssembly it is the engine of
+//! the explorer; compiled for this machine it answers with the same bytes, which tests compare.
 //!
 //! [`Engine::answer`] is all of it. A request is an object whose `do` names what to do:
 //!

@@ -33,7 +33,7 @@ pub enum Error {
         what: &'static str,
         /// The index that was used.
         index: usize,
-        /// Number of things that exist.
+        /// Number of things of that kind.
         count: usize,
     },
     /// A name that nothing has.
@@ -117,7 +117,8 @@ impl Error {
 /// The library's result.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Returns a number of bytes as people read it, with at most one digit behind the point: `1.2 MB`, `640 MB`; powers of 1024.
+/// Returns a number of bytes as people read it, with at most one digit behind the point: `1.2 MB`, `640 MB`; powers of
+/// 1024.
 pub fn in_words(bytes: u64) -> String {
     let units = ["bytes", "kB", "MB", "GB", "TB", "PB", "EB"];
     let (mut value, mut unit) = (bytes as f64, 0);

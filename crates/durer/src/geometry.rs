@@ -10,11 +10,11 @@ pub enum Dimensions {
     /// x and y only.
     #[default]
     Xy,
-    /// With a height.
+    /// x, y and a height.
     Xyz,
-    /// With a measure.
+    /// x, y and a measure.
     Xym,
-    /// With both.
+    /// x, y, a height and a measure.
     Xyzm,
 }
 
@@ -39,7 +39,7 @@ impl Dimensions {
         matches!(self, Self::Xym | Self::Xyzm)
     }
 
-    /// Returns the ordinates of either.
+    /// Returns the ordinates that either of two dimensions has.
     pub fn with(self, other: Self) -> Self {
         Self::new(self.has_z() || other.has_z(), self.has_m() || other.has_m())
     }
@@ -55,24 +55,24 @@ impl Dimensions {
 pub struct Points {
     /// Ordinates of the positions.
     pub dimensions: Dimensions,
-    /// x and y of each; all are finite.
+    /// x and y of each position; all are finite.
     pub xy: Vec<DVec2>,
-    /// Height and measure of each, 0 for the one that is not there; empty if neither is.
+    /// Height and measure of each position, 0 for an ordinate that the dimensions lack; empty if they have neither.
     pub zm: Vec<[f64; 2]>,
 }
 
 impl Points {
-    /// No position.
+    /// Creates an empty list of positions.
     pub fn new(dimensions: Dimensions) -> Self {
         Self { dimensions, ..Self::default() }
     }
 
-    /// Positions without height and measure.
+    /// Creates positions without height and measure.
     pub fn flat(xy: Vec<DVec2>) -> Self {
         Self { dimensions: Dimensions::Xy, xy, zm: Vec::new() }
     }
 
-    /// Adds a position; height and measure are dropped where the dimensions have neither.
+    /// Adds a position; height and measure are dropped if the dimensions have neither.
     pub fn push(&mut self, xy: DVec2, zm: [f64; 2]) {
         self.xy.push(xy);
         if self.dimensions != Dimensions::Xy {
@@ -80,7 +80,7 @@ impl Points {
         }
     }
 
-    /// Gives all positions the ordinates of other dimensions too, 0 where they had none.
+    /// Adds the ordinates of other dimensions to all positions, 0 where they had none.
     pub fn lift(&mut self, dimensions: Dimensions) {
         self.dimensions = self.dimensions.with(dimensions);
         if self.dimensions != Dimensions::Xy {
@@ -88,7 +88,7 @@ impl Points {
         }
     }
 
-    /// Adds all positions of others, with the ordinates that either has.
+    /// Adds all positions of another list, with the ordinates that either has.
     pub fn append(&mut self, other: &Self) {
         if self.is_empty() {
             self.clone_from(other);
@@ -104,7 +104,7 @@ impl Points {
         self.xy.extend_from_slice(&other.xy);
     }
 
-    /// Takes the last position away.
+    /// Removes the last position.
     pub fn pop(&mut self) {
         self.xy.pop();
         self.zm.pop();
@@ -115,7 +115,7 @@ impl Points {
         self.xy.len()
     }
 
-    /// Returns whether there is none.
+    /// Returns whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.xy.is_empty()
     }
@@ -137,24 +137,23 @@ impl Points {
 /// A geometry of the OGC's Simple Features.
 ///
 /// # Guarantees
-/// From readers, all coordinates are finite, rings have at least three positions and line strings
-/// at least two. Rings are open: the first position is not repeated at the end. Whether rings cross
-/// themselves or one another is ignored.
+/// Readers return finite coordinates, rings of at least three positions and line strings of at least two. Rings are
+/// open: the first position is not repeated at the end. Rings may cross themselves or one another.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Geometry {
-    /// One position, or none.
+    /// Point: one position, or none.
     Point(Points),
-    /// A line, or none.
+    /// Line, or no positions.
     LineString(Points),
-    /// An outer ring, then its holes; or nothing.
+    /// Polygon: an outer ring, then its holes; or no rings.
     Polygon(Vec<Points>),
-    /// Positions.
+    /// Points.
     MultiPoint(Points),
     /// Lines.
     MultiLineString(Vec<Points>),
-    /// Polygons, each as above.
+    /// Polygons, each as in [`Self::Polygon`].
     MultiPolygon(Vec<Vec<Points>>),
-    /// Any geometries.
+    /// Geometries of any types.
     Collection(Vec<Geometry>),
 }
 
@@ -172,7 +171,7 @@ impl Geometry {
         }
     }
 
-    /// Calls for each run of positions: of points, of a line, of a ring.
+    /// Calls `f` for each run of positions: of points, of a line, of a ring.
     pub fn for_each(&self, f: &mut impl FnMut(&Points)) {
         match self {
             Self::Point(points) | Self::LineString(points) | Self::MultiPoint(points) => f(points),
@@ -189,7 +188,7 @@ impl Geometry {
         count
     }
 
-    /// Returns whether there is no position at all.
+    /// Returns whether there are no positions.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -205,7 +204,7 @@ impl Geometry {
         all
     }
 
-    /// Returns the smallest rectangle around it; `None` if it is empty.
+    /// Returns the smallest rectangle around the geometry; `None` if it is empty.
     pub fn bounds(&self) -> Option<Rect> {
         let mut bounds: Option<Rect> = None;
         self.for_each(&mut |points| {

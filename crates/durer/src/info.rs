@@ -1,14 +1,14 @@
 //! The description of an algorithm: its name, its publication, its cost. Each algorithm's file has
 //! one record.
 
-/// In which space an algorithm decides, after Sutherland, Sproull and Schumacker (1974).
+/// Space in which an algorithm decides visibility, after Sutherland, Sproull and Schumacker (1974).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Class {
-    /// Decides with the geometry's own precision; the result does not depend on pixels.
+    /// Object space: decisions with the geometry's own precision; the result does not depend on pixels.
     ObjectSpace,
-    /// Decides per pixel or per scan line.
+    /// Image space: decisions per pixel or per scan line.
     ImageSpace,
-    /// Orders faces in object space, paints them in image space.
+    /// List priority: faces are ordered in object space and painted in image space.
     ListPriority,
 }
 
@@ -26,16 +26,16 @@ impl Class {
     }
 }
 
-/// The part of a surface that is asked whether it hides others.
+/// Part of a surface that is tested for whether it hides others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Occluder {
-    /// Decides no visibility.
+    /// Nothing: the algorithm decides no visibility.
     None,
-    /// Compares single points: pixels, samples, rays.
+    /// Single points: pixels, samples, rays.
     Point,
-    /// Compares lines: the spans of a scan line, the horizon of a plot.
+    /// Lines: the spans of a scan line, the horizon of a plot.
     Line,
-    /// Compares areas: whole faces, or windows of the picture.
+    /// Areas: whole faces, or windows of the picture.
     Area,
 }
 
@@ -118,7 +118,7 @@ pub struct Info {
     pub source: &'static str,
     /// Space in which it decides.
     pub class: Class,
-    /// Part of a surface that is compared with others to find what is hidden.
+    /// Part of a surface that is compared with others to find hidden parts.
     pub occluder: Occluder,
     /// Likenesses of neighbours that save work; none if every element is treated by itself.
     pub coherence: &'static [Coherence],

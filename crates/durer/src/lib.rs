@@ -83,10 +83,10 @@
 //!
 //! **How does a map become tiles?** [`clip::tiles`].
 //!
-//! **And in three dimensions?** [`clip::volume`] clips in homogeneous coordinates, whatever the sign of
-//! w, [many triangles](clip::volume::clip_triangles) at a time; [`clip::outcode`] sorts points by the borders they are beyond; [`clip::place`] clips before the
-//! camera transform, in clip space, after the division, in the viewport or per pixel, with the same
-//! picture.
+//! **And in three dimensions?** [`clip::volume`] clips in homogeneous coordinates, whatever the sign of w, [many
+//! triangles](clip::volume::clip_triangles) at a time; [`clip::outcode`] sorts points by the borders they are beyond;
+//! [`clip::place`] clips before the camera transform, in clip space, after the division, in the viewport or per pixel,
+//! with the same picture.
 //!
 //! **Which pixels does it cover?** [`raster`]
 //!
@@ -101,9 +101,9 @@
 //! | region around a pixel | [seed fills](raster::seed_fill) |
 //! | layers of all these | [a canvas](raster::paint) |
 //!
-//! [`raster::interpolate`] has barycentric and perspective-correct weights, [`curve`] brings Bézier
-//! curves, [patches](curve::evaluator), B-splines, NURBS and glyphs to chains of lines; [`curve::knot_insertion`], [`curve::catmull_rom`] and
-//! [`curve::forward_difference`] are the textbooks' ways with them.
+//! [`raster::interpolate`] has barycentric and perspective-correct weights, [`curve`] brings Bézier curves,
+//! [patches](curve::evaluator), B-splines, NURBS and glyphs to chains of lines; [`curve::knot_insertion`],
+//! [`curve::catmull_rom`] and [`curve::forward_difference`] are the textbooks' ways with them.
 //!
 //! **Which surface is in front?** [`visibility::surface`]: one scene in, the same surfaces found.
 //!
@@ -117,9 +117,10 @@
 //! | [Warnock](visibility::surface::warnock) | dividing the window until it is simple |
 //! | [Rays](visibility::surface::ray) | casting a ray through each sample; shadows, mirrors and refraction too |
 //!
-//! **And as the papers have it?** [`visibility::polygons`]: the z-buffer's loop, Greene's pyramid of depths, the painter, BSP trees, Watkins' tables,
-//! Weiler and Atherton's cuts and Carpenter's shares on plane polygons, a file each, to be read beside the paper;
-//! [`visibility::line::horizon_curves`], [`clip::polygon::scan_beams`] and [`clip::polygon::sutherland_hodgman::by_borders`] likewise.
+//! **And as the papers have it?** [`visibility::polygons`]: the z-buffer's loop, Greene's pyramid of depths, the
+//! painter, BSP trees, Watkins' tables, Weiler and Atherton's cuts and Carpenter's shares on plane polygons, a file
+//! each, to be read beside the paper; [`visibility::line::horizon_curves`], [`clip::polygon::scan_beams`] and
+//! [`clip::polygon::sutherland_hodgman::by_borders`] likewise.
 //!
 //! **Which part of an edge?** [`visibility::line`]: [hidden lines](visibility::line::hidden_line) by
 //! quantitative invisibility, [wireframe](visibility::line::wireframe), as a
@@ -152,8 +153,8 @@
 //! **How does an algorithm come to its result?** Those that take a [`trace::Tracer`] as their last
 //! argument tell it every step.
 //!
-//! **What may it cost?** Options hold a [`work::Work`]: a budget of memory that large buffers are charged to, and a way to
-//! stop what takes too long.
+//! **What may it cost?** Options hold a [`work::Work`]: a budget of memory that large buffers are charged to, and a way
+//! to stop what takes too long.
 //!
 //! # What holds everywhere
 //!

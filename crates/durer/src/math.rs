@@ -5,7 +5,7 @@ pub use glam::{
     UVec2, Vec2, Vec3, Vec4,
 };
 
-/// On which side of a directed line a point lies; decided exactly.
+/// Side of a directed line on which a point is; decided exactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Orientation {
     /// The three points turn to the left (y up): the third lies left of the line first → second.
@@ -73,12 +73,12 @@ impl Plane {
         Self { normal, distance: -normal.dot(point) }
     }
 
-    /// `normal · p + distance`: positive inside, zero on the plane; in units of `normal`'s length.
+    /// Returns `normal · p + distance`: positive inside, zero on the plane; in units of `normal`'s length.
     pub fn evaluate(&self, p: DVec3) -> f64 {
         self.normal.dot(p) + self.distance
     }
 
-    /// Returns the same plane with a normal of unit length; `None` if the normal has no direction.
+    /// Returns the plane with a normal of unit length; `None` if the normal has no direction.
     pub fn normalized(&self) -> Option<Self> {
         let length = self.normal.length();
         (length.is_finite() && length > 0.0)
@@ -155,7 +155,7 @@ pub(crate) fn by_coordinates(a: &DVec3, b: &DVec3) -> std::cmp::Ordering {
     a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
 }
 
-/// `x` to the power `y` for `x ≥ 0`, the same bits on every machine.
+/// Returns `x` to the power `y` for `x ≥ 0`, the same bits on every machine.
 ///
 /// The platform's `powf` differs between C libraries; this one uses only IEEE basic operations.
 /// Relative error below 2e-6 over the range that shading uses (results in 1e-30 … 1e30).

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-/// Applies `f` to each item and gives the results in the order of the items.
+/// Applies `f` to each item and returns the results in the order of the items.
 ///
 /// Runs on the current rayon pool where the feature `parallel` is on, else one after the other.
 pub fn map<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
@@ -22,8 +22,9 @@ pub fn map<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync + Send) ->
     done.filter_map(|(_, result)| result).collect()
 }
 
-/// [`map`] with a state that one thread at a time has and that is used again: what `make` gives, and what the items before
-/// left in it. That must not show in the results, for which item has which state is not foretold.
+/// Applies `f` to each item as [`map`] does, with a state that one thread at a time has and that is used again: it
+/// comes from `make` or as the items before left it. The results must not depend on it, because which item gets which
+/// state is not determined.
 pub fn map_with<S: Send, T: Send, R: Send>(
     items: Vec<T>,
     make: impl Fn() -> S + Sync + Send,
@@ -32,7 +33,8 @@ pub fn map_with<S: Send, T: Send, R: Send>(
     map_and_keep(items, make, f).0
 }
 
-/// [`map_with`], and the states that there are in the end, as many as there were threads at most, in no order that is foretold.
+/// Applies `f` to each item as [`map_with`] does, and also returns the states that exist in the end: at most as many
+/// as there were threads, in no determined order.
 pub fn map_and_keep<S: Send, T: Send, R: Send>(
     items: Vec<T>,
     make: impl Fn() -> S + Sync + Send,

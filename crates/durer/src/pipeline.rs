@@ -1,4 +1,4 @@
-//! The order of the stages; nothing else knows it.
+//! The rendering pipeline: the order of its stages, which no other module knows.
 
 mod callouts;
 mod contour;
@@ -43,30 +43,30 @@ use crate::visibility::surface::{shadow_map, z_buffer};
 use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
-/// Source of light.
+/// Lights of a picture.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Lighting {
-    /// The scene's own lights; if it has none, three points: key, fill and rim light that go with
-    /// the camera, and ambient light.
+    /// The scene's own lights. For a scene without any, unless a panorama lights it, ambient light and three
+    /// directional lights that move with the camera: key, fill and rim light.
     #[default]
     Auto,
-    /// These, in world space.
+    /// The given lights, in world space.
     Given(Vec<Light>),
 }
 
 /// Method for shadows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Shadows {
-    /// There are none.
+    /// No shadows.
     #[default]
     None,
-    /// By shadow maps, for all algorithms: [`crate::shade::shadow`].
+    /// Shadow maps, for all algorithms: [`crate::shade::shadow`].
     Map,
-    /// By rays to the lights, for [`SurfaceMethod::Ray`].
+    /// Rays to the lights, for [`SurfaceMethod::Ray`].
     Rays,
 }
 
-/// Everything about a picture but the scene.
+/// Options of a picture: everything but the scene.
 #[derive(Debug, Clone)]
 pub struct RenderOptions {
     /// Method for visible surfaces.
@@ -75,11 +75,11 @@ pub struct RenderOptions {
     pub width: u32,
     /// Height in pixels, at least 1.
     pub height: u32,
-    /// Options for the camera.
+    /// Camera that sees the picture.
     pub camera: Camera,
-    /// `None` = by material.
+    /// Shading; `None` = by material.
     pub shading: Option<Shading>,
-    /// Source of light.
+    /// Lights that shine on the scene.
     pub lighting: Lighting,
     /// Exposure; `None` = [`Exposure::Auto`] for the scene's own lights and for panoramas, 0 EV for
     /// lights that are given.
@@ -92,20 +92,21 @@ pub struct RenderOptions {
     pub background: Background,
     /// Faces to leave out.
     pub cull: Cull,
-    /// The size of lines and points.
+    /// Size of lines and points on the screen.
     pub marks: Marks,
-    /// Samples per pixel of the colour plane, where the algorithm takes several; the other planes always have one, at the centre.
+    /// Samples per pixel of the colour plane, for algorithms that take several; the other planes always have one
+    /// sample, at the pixel's centre.
     pub samples: Samples,
-    /// Resolution of the A-buffer's masks; it takes no samples.
+    /// Resolution of the A-buffer's masks, which replace its samples.
     pub mask: Mask,
     /// Method that computes shadows.
     pub shadows: Shadows,
     /// Texels along the side of shadow maps.
     pub shadow_map_side: u32,
-    /// Number of times that rays may be reflected by mirrors and refracted by what blends; above 0
-    /// for [`SurfaceMethod::Ray`] only.
+    /// Largest number of reflections by mirrors and refractions by blended surfaces along a ray; above 0 for
+    /// [`SurfaceMethod::Ray`] only.
     pub bounces: u32,
-    /// Ambient occlusion of the surfaces that are seen; `None` = without.
+    /// Ambient occlusion of the visible surfaces; `None` = without.
     pub ambient_occlusion: Option<ambient_occlusion::Options>,
     /// True if the framebuffer gets a depth plane.
     pub depth: bool,
@@ -113,16 +114,16 @@ pub struct RenderOptions {
     pub item: bool,
     /// True if the framebuffer gets a normal plane.
     pub normal: bool,
-    /// Refuse pictures of more pixels than this.
+    /// Limit on the number of pixels; larger pictures are refused.
     pub max_pixels: u64,
-    /// The SIMD level to work at; all give the same bytes.
+    /// SIMD level; all levels produce the same bytes.
     pub level: Level,
-    /// Budget of the work, and its cancellation.
+    /// Memory budget and cancellation of the work.
     pub work: Work,
 }
 
 impl RenderOptions {
-    /// 1024 × 1024, white background, four samples, colour only.
+    /// Creates the options of a picture of 1024 × 1024 pixels: white background, four samples, colour only.
     pub fn new(camera: Camera) -> Self {
         Self {
             algorithm: SurfaceMethod::ZBuffer,
@@ -152,9 +153,11 @@ impl RenderOptions {
         }
     }
 
+    /// Checks the options.
+    ///
     /// # Errors
-    /// [`Error::Parameter`] for a size of zero, [`Error::Limit`] for one above `max_pixels`,
-    /// [`Error::Unsupported`] for secondary rays with an algorithm that casts none.
+    /// [`Error::Parameter`] for a size of zero, [`Error::Limit`] for one above `max_pixels`, [`Error::Unsupported`]
+    /// for secondary rays with an algorithm that casts none.
     pub fn check(&self) -> Result<()> {
         if self.width == 0 || self.height == 0 {
             let size = format!("{}x{}", self.width, self.height);
@@ -182,7 +185,7 @@ impl RenderOptions {
     }
 }
 
-/// Report on the making of a picture.
+/// Report on the rendering of a picture.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Report {
     /// Triangles of the scene, over all instances.
@@ -191,9 +194,9 @@ pub struct Report {
     pub non_finite: u64,
     /// Triangles that were cut by a plane of the view volume.
     pub clipped: u64,
-    /// Triangles left out: outside the view, turned away, or without area.
+    /// Triangles left out because they are outside the view, seen from behind, or without area.
     pub culled: u64,
-    /// Triangles handed to the rasterizer.
+    /// Triangles passed to the rasterizer.
     pub drawn: u64,
     /// Seconds for vertices, clipping, set-up and shadow maps.
     pub geometry_seconds: f64,
@@ -201,13 +204,13 @@ pub struct Report {
     pub raster_seconds: f64,
 }
 
-/// Renders a scene by the algorithm requested; the z-buffer is the production path.
+/// Renders a scene by the requested algorithm; the z-buffer is the production path.
 ///
-/// Meshes without normals are shown with flat faces, unless Gouraud or Phong shading is requested:
-/// then they get smooth normals first ([`crate::scene::Mesh::with_smooth_normals`]).
+/// Meshes without normals have flat faces. If Gouraud or Phong shading is requested, they get smooth normals first
+/// ([`crate::scene::Mesh::with_smooth_normals`]).
 ///
-/// The same input gives the same bytes on every CPU and number of threads. Runs on the current
-/// rayon pool where the feature `parallel` is on.
+/// The same input produces the same bytes on every CPU and number of threads. Runs on the current rayon pool where the
+/// feature `parallel` is on.
 ///
 /// # Errors
 /// The errors of [`RenderOptions::check`] and [`Scene::check`].
@@ -217,9 +220,9 @@ pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Re
     Ok((framebuffer, report))
 }
 
-/// Renders like [`render`], into a framebuffer that may have held another picture: afterwards it has the same
-/// planes and bytes whatever it held. Of pictures one after another of one size the memory is kept, which spares
-/// a tenth of the time of small ones.
+/// Renders like [`render`], into a framebuffer that may contain another picture. Afterwards it has the planes and bytes
+/// that [`render`] returns. For pictures of one size its memory is reused, which saves a tenth of the time of small
+/// ones.
 ///
 /// ```
 /// use durer::pipeline::{RenderOptions, render, render_into};
@@ -241,7 +244,7 @@ pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Re
 /// ```
 ///
 /// # Errors
-/// As [`render`]; what the framebuffer holds then is of no use.
+/// As [`render`]; the contents of the framebuffer are unusable then.
 pub fn render_into(
     scene: &Scene,
     options: &RenderOptions,
@@ -293,7 +296,7 @@ pub fn render_into(
     })
 }
 
-/// Applies ambient occlusion, if requested, and drops the planes that were there for it alone.
+/// Applies ambient occlusion, if requested, and drops the planes that nothing else needs.
 fn darken(view: &View, options: &RenderOptions, framebuffer: &mut Framebuffer) {
     let Some(occlusion) = &options.ambient_occlusion else { return };
     let Framebuffer { color, depth, normal, .. } = framebuffer;
@@ -342,8 +345,8 @@ fn lights(
     lights
 }
 
-/// Gives a framebuffer the planes that are requested. Its colours stay where their number is right, for every method
-/// sets all of them; everything else is as new.
+/// Creates the requested planes of a framebuffer. Colours of the right number are not cleared, for every method sets
+/// all of them; everything else is as new.
 fn make_ready(framebuffer: &mut Framebuffer, options: &RenderOptions) -> Result<()> {
     let Framebuffer { color, .. } = std::mem::replace(framebuffer, Framebuffer::new(0, 0));
     let stays = (color.width(), color.height()) == (options.width, options.height);
@@ -359,16 +362,16 @@ fn make_ready(framebuffer: &mut Framebuffer, options: &RenderOptions) -> Result<
     Ok(())
 }
 
-/// One method's picture beside the z-buffer's.
+/// Picture by one method, compared with the z-buffer's.
 #[derive(Debug, Clone)]
 pub struct Compared {
     /// The method.
     pub method: SurfaceMethod,
     /// Its picture, with an item plane.
     pub picture: Framebuffer,
-    /// Report on the work.
+    /// Counts and times of the run.
     pub report: Report,
-    /// Pixels whose item is not that of the z-buffer; 0 is what all methods here promise.
+    /// Number of pixels whose item differs from the z-buffer's; all methods here promise 0.
     pub differing: u64,
 }
 
@@ -389,7 +392,7 @@ pub fn compare(scene: &Scene, options: &RenderOptions) -> Result<Vec<Compared>> 
     Ok(compared)
 }
 
-/// Returns the number of pixels that show different items; those without an item plane show none.
+/// Returns the number of pixels with different items; 0 if a framebuffer has no item plane.
 fn differing_items(a: &Framebuffer, b: &Framebuffer) -> u64 {
     match (&a.item, &b.item) {
         (Some(a), Some(b)) => a.data().iter().zip(b.data()).filter(|(a, b)| a != b).count() as u64,
@@ -397,8 +400,7 @@ fn differing_items(a: &Framebuffer, b: &Framebuffer) -> u64 {
     }
 }
 
-/// Returns all methods but the production path: first the list of triangles on the screen, then the
-/// method.
+/// Renders by any method but the production path: lists the triangles on the screen, then applies the method.
 fn from_screen_triangles(
     scene: &Scene,
     view: &View,
@@ -427,11 +429,11 @@ fn from_screen_triangles(
     Ok(z_buffer::Report { counts: input.counts, geometry_seconds, raster_seconds })
 }
 
-/// Bytes for each corner of a mesh, about, while its vertices get normals.
+/// Approximate number of bytes for each corner of a mesh while its vertices get normals.
 const PER_SMOOTHED: u64 = 48;
 
-/// Interpolating shadings need normals at the vertices: the scene with those that are missing, and its memory, where
-/// such a shading is requested and some are.
+/// Returns the scene with the missing vertex normals added, and the charge for its memory, if the requested shading
+/// interpolates and some are missing; `None` otherwise.
 fn with_needed_normals(scene: &Scene, options: &RenderOptions) -> Result<Option<(Scene, Charge)>> {
     let interpolates = matches!(options.shading, Some(Shading::Gouraud | Shading::Phong));
     if !interpolates || scene.meshes.iter().all(|m| !m.normals.is_empty()) {

@@ -4,7 +4,7 @@ pub use fearless_simd::Level;
 use fearless_simd::Simd;
 use std::sync::OnceLock;
 
-/// Level of all work that asks for no other.
+/// Level of all work for which no other is requested.
 static DEFAULT: OnceLock<Level> = OnceLock::new();
 
 /// Returns the level that everything works at where no other is requested: the machine's best, or
@@ -13,9 +13,9 @@ pub fn default_level() -> Level {
     *DEFAULT.get_or_init(Level::new)
 }
 
-/// Chooses the level that everything works at from here on, in the whole process: for tests and
-/// measurements, since all levels give the same bits. Gives whether it could be chosen, which it can once, and
-/// only before anything has worked at the machine's best.
+/// Chooses the level that everything works at from here on, in the whole process: for tests and measurements, since all
+/// levels produce the same bits. Returns whether it could be chosen, which it can once, and only before anything has
+/// worked at the machine's best.
 ///
 /// ```standalone_crate
 /// use durer::simd::{default_level, levels, name, set_default_level};
@@ -33,12 +33,12 @@ pub(crate) const fn lanes<S: Simd>() -> usize {
     size_of::<S::i32s>() / size_of::<i32>()
 }
 
-/// Returns every level that this machine can run with code of its own, weakest first; tests render at each of
-/// them. Where every processor of an architecture has registers, as those of x86-64 have SSE2's, `scalar` is among them with the feature
-/// `scalar` only.
+/// Returns every level that this machine can run with code of its own, weakest first; tests render at each of them.
+/// Where every processor of an architecture has registers, as those of x86-64 have SSE2's, `scalar` is among them with
+/// the feature `scalar` only.
 ///
-/// SSE4.2 is not among them: what it adds makes no kernel faster than SSE2 does, so both run the same code, which saves
-/// a quarter of the kernels.
+/// SSE4.2 is not among them: its further instructions make no kernel faster than SSE2 does, so both run the same code,
+/// which saves a quarter of the kernels.
 pub fn levels() -> Vec<Level> {
     let best = Level::new();
     let mut levels = Vec::new();
@@ -55,7 +55,7 @@ pub fn levels() -> Vec<Level> {
     levels
 }
 
-/// Returns the level of a name that [`name`] gives, or the machine's best for `auto`; none if the machine lacks it.
+/// Returns the level of a name as returned by [`name`], or the machine's best for `auto`; none if the machine lacks it.
 ///
 /// ```
 /// use durer::simd::{by_name, levels, name};
@@ -84,8 +84,8 @@ pub(crate) fn with_code(level: Level) -> Level {
     level
 }
 
-/// Works out an expression with the instructions of a level, whose token the pattern gets. It does what the macro of the same name in
-/// `fearless_simd` does, but builds no code for SSE4.2.
+/// Works out an expression with the instructions of a level, whose token the pattern gets. It does what the macro of
+/// the same name in `fearless_simd` does, but builds no code for SSE4.2.
 macro_rules! dispatch {
     (@with $token:expr, $simd:pat => $work:expr) => {{
         let token = $token;
@@ -139,7 +139,7 @@ macro_rules! dispatch {
 }
 pub(crate) use dispatch;
 
-/// Returns what a level is called: `scalar`, `sse2`, `sse4.2`, `avx2`, `avx512`, `neon` or `wasm`.
+/// Returns the name of a level: `scalar`, `sse2`, `sse4.2`, `avx2`, `avx512`, `neon` or `wasm`.
 pub fn name(level: Level) -> &'static str {
     match level {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

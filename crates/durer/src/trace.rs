@@ -21,7 +21,7 @@
 
 /// A tracer for the steps of one algorithm.
 pub trait Tracer<S> {
-    /// Takes note of one step; `make` is called only if steps are recorded.
+    /// Records one step; `make` is called only if steps are recorded.
     fn step(&mut self, make: impl FnOnce() -> S);
 }
 
@@ -34,7 +34,7 @@ impl<S> Tracer<S> for NoTrace {
     fn step(&mut self, _make: impl FnOnce() -> S) {}
 }
 
-/// Keeps the steps up to a cap, and counts those that it dropped.
+/// Tracer that keeps the steps up to a cap, and counts those that it dropped.
 #[derive(Debug, Clone)]
 pub struct Recorder<S> {
     steps: Vec<S>,

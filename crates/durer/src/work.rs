@@ -1,8 +1,8 @@
 //! The cost of work: a budget of memory, and a way to stop it.
 //!
-//! A [`Work`] is a value that options hand down. Large buffers are charged to it before they are made, each as a whole, so
-//! that normal work does not get slower by it; long loops ask it at times whether to go on. Nothing of it is global: two
-//! pictures that are made at the same time have a budget each, or one together, as their caller wants it.
+//! A [`Work`] is a value that options contain. Large buffers are charged to it before they are allocated, each as a
+//! whole, so that the check costs little; long loops check at intervals whether to go on. Nothing of it is global: two
+//! pictures rendered at the same time may have separate budgets or share one.
 //!
 //! ```
 //! use durer::work::Work;
@@ -16,36 +16,38 @@
 //! # Ok::<(), durer::Error>(())
 //! ```
 //!
-//! It also counts progress: see [`Work::progress`].
+//! A [`Work`] also counts progress: see [`Work::progress`].
 
 use crate::{Error, Result};
 use std::mem::size_of;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Planes below this are made without asking whether the system has so much: it has, or all ends anyway.
+/// Size below which buffers are allocated without checking whether the system has so much memory: it has, or the
+/// process ends anyway.
 const LARGE: u64 = 16 << 20;
 
-/// A budget of memory and a flag that stops the work; clones share both. The default has no bound and is never stopped.
+/// Budget of memory, with a flag that stops the work; clones share both. The default has no budget and is never
+/// stopped.
 #[derive(Debug, Clone, Default)]
 pub struct Work(Option<Arc<Scope>>);
 
-/// A part of the work, and the memory that is kept for it.
+/// Part of the work, with the memory that is kept for it.
 #[derive(Debug)]
 struct Scope {
     shared: Arc<Shared>,
-    /// Bytes that are given back with the last handle.
+    /// Bytes that are released with the last handle.
     kept: AtomicU64,
 }
 
-/// State that all parts share.
+/// State that all parts of the work share.
 #[derive(Debug)]
 struct Shared {
-    /// Bytes.
+    /// Budget in bytes.
     budget: u64,
     /// Name of the setting for the budget.
     option: &'static str,
-    /// Bytes that are charged.
+    /// Number of charged bytes.
     used: AtomicU64,
     stopped: AtomicBool,
     why: Mutex<Option<Error>>,
@@ -59,7 +61,7 @@ struct Shared {
 /// Progress of work, as [`Work::progress`] returns it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Progress {
-    /// Current stage: `"rows of tiles"`, `"lines"`, …; empty before the first counted one.
+    /// Name of the current stage: `"rows of tiles"`, `"lines"`, …; empty before the first counted one.
     pub stage: &'static str,
     /// Number of finished steps; at most `of`.
     pub done: u64,
@@ -68,13 +70,13 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Returns the part that is done, 0 to 1; `None` before anything that is counted.
+    /// Returns the finished part, 0 to 1; `None` before the first counted stage.
     pub fn share(&self) -> Option<f64> {
         (self.of > 0).then(|| self.done as f64 / self.of as f64)
     }
 }
 
-/// Two are equal where they are clones of each other, or both have no bound.
+/// Two values are equal if they are clones of each other, or both have no budget.
 impl PartialEq for Work {
     fn eq(&self, other: &Self) -> bool {
         match (&self.0, &other.0) {
@@ -123,7 +125,7 @@ impl Shared {
 }
 
 impl Work {
-    /// Work that may hold `bytes` at a time, in what is charged; `option` is what errors call the budget, such as
+    /// Creates work that may have `bytes` charged at a time; `option` is the name of the budget in errors, such as
     /// `"--max-memory"`.
     pub fn with_budget(bytes: u64, option: &'static str) -> Self {
         let shared = Shared {
@@ -140,13 +142,13 @@ impl Work {
         Self(Some(Arc::new(Scope { shared: Arc::new(shared), kept: AtomicU64::new(0) })))
     }
 
-    /// Work without a budget that can be stopped.
+    /// Creates work without a budget that can be stopped.
     pub fn stoppable() -> Self {
         Self::with_budget(u64::MAX, "the budget")
     }
 
-    /// Returns a part of the work: it shares budget and stop, and what is kept for it is given back when all clones of it
-    /// are gone.
+    /// Returns a part of the work, which shares its budget and its stop; the memory kept for the part is released when
+    /// all its clones are dropped.
     pub fn part(&self) -> Self {
         let part = |scope: &Arc<Scope>| {
             Arc::new(Scope { shared: scope.shared.clone(), kept: AtomicU64::new(0) })
@@ -154,10 +156,10 @@ impl Work {
         Self(self.0.as_ref().map(part))
     }
 
-    /// Takes memory that is given back when the charge is dropped. Once for each buffer, or each thousand elements.
+    /// Charges memory until the returned charge is dropped: once for each buffer, or each thousand elements.
     ///
     /// # Errors
-    /// [`Error::Memory`] where the budget has not so much left; what stopped the work, where something did.
+    /// [`Error::Memory`] if the budget has too little left; the reason of the stop if the work was stopped.
     pub fn charge(&self, stage: &'static str, bytes: u64) -> Result<Charge> {
         let mut charge = Charge { scope: self.0.clone(), stage, bytes: 0 };
         charge.grow(bytes)?;
@@ -172,7 +174,7 @@ impl Work {
         self.charge(stage, count.saturating_mul(size_of::<T>() as u64))
     }
 
-    /// Takes memory for what stays as long as this part of the work, such as a model that is read.
+    /// Charges memory for data that stay as long as this part of the work, such as a model that is read.
     ///
     /// # Errors
     /// As [`Self::charge`].
@@ -185,13 +187,14 @@ impl Work {
         Ok(())
     }
 
-    /// Keeps a charge like [`Self::keep`], if an error cannot be returned: exceeding the budget stops the work, so that its
-    /// next check fails. Returns whether it fits.
+    /// Charges memory like [`Self::keep`] where an error cannot be returned: exceeding the budget stops the work, so
+    /// that its next check fails. Returns whether the memory fits.
     pub fn keep_or_stop(&self, stage: &'static str, bytes: u64) -> bool {
         self.keep(stage, bytes).map_err(|error| self.stop(error)).is_ok()
     }
 
-    /// Returns whether the work shall go on: one load where it shall. For long loops, by the row, tile or thousand steps.
+    /// Checks whether the work shall go on, by a single load if it shall. For long loops: once per row, tile or
+    /// thousand steps.
     ///
     /// # Errors
     /// Reason given to [`Self::stop`].
@@ -215,23 +218,22 @@ impl Work {
         why.flatten().unwrap_or(Error::Cancelled)
     }
 
-    /// Stops the work: from here on it fails with this error at its next check. The first reason counts.
+    /// Stops the work: its next check fails with this error. The first reason counts.
     pub fn stop(&self, why: Error) {
         if let Some(scope) = &self.0 {
             scope.shared.stop(why);
         }
     }
 
-    /// Stops the work, as [`Self::stop`], because it is seen to hold this many bytes, more than its
-    /// budget.
+    /// Stops the work, as [`Self::stop`], because it was found to use this many bytes, more than its budget.
     pub fn stop_at(&self, bytes: u64) {
         if let Some(scope) = &self.0 {
             self.stop(scope.shared.refused(self.stage(), bytes));
         }
     }
 
-    /// Lets work go on that was stopped for its memory, after what needed so much has been dropped. Returns whether it may:
-    /// what was stopped for another reason stays stopped.
+    /// Resumes work that was stopped for lack of memory, after memory has been released. Returns whether the work goes
+    /// on: if it was stopped for another reason, it stays stopped.
     pub fn go_on(&self) -> bool {
         let Some(scope) = &self.0 else { return true };
         let mut why = lock(&scope.shared.why);
@@ -243,20 +245,19 @@ impl Work {
         true
     }
 
-    /// Says which stage the work has come to, for errors that are found from outside. Charges do so, too.
+    /// Sets the current stage of the work, for errors that are found outside of it. Charges set it, too.
     pub fn enter(&self, stage: &'static str) {
         if let Some(scope) = &self.0 {
             *lock(&scope.shared.stage) = stage;
         }
     }
 
-    /// Returns the stage that the work came to last.
+    /// Returns the latest stage of the work.
     pub fn stage(&self) -> &'static str {
         self.0.as_ref().map_or("start", |scope| *lock(&scope.shared.stage))
     }
 
-    /// Begins a stage of this many steps, none of which is done; [`Self::progress`] tells of it from here
-    /// on.
+    /// Begins a stage of this many steps, none of which is done; [`Self::progress`] reports it from now on.
     pub fn begin(&self, stage: &'static str, of: u64) {
         if let Some(scope) = &self.0 {
             let mut counted = lock(&scope.shared.counted);
@@ -266,7 +267,7 @@ impl Work {
         }
     }
 
-    /// Counts steps of the stage that are done: by the row, tile or thousand elements, as [`Self::check`] is asked.
+    /// Counts finished steps of the stage: once per row, tile or thousand elements, where [`Self::check`] is called.
     #[inline]
     pub fn advance(&self, steps: u64) {
         if let Some(scope) = &self.0 {
@@ -274,8 +275,8 @@ impl Work {
         }
     }
 
-    /// Returns how far the work has come in the stage that it is in, from any thread. All parts of one work have it in
-    /// common; stages that run at the same time are counted together.
+    /// Returns the progress of the work in its current stage; from any thread. All parts of the work share it; stages
+    /// that run at the same time are counted together.
     pub fn progress(&self) -> Progress {
         let Some(scope) = &self.0 else { return Progress::default() };
         let stage = *lock(&scope.shared.counted);
@@ -284,7 +285,7 @@ impl Work {
         Progress { stage, done, of }
     }
 
-    /// Bytes that are charged now.
+    /// Returns the number of bytes charged now.
     pub fn used(&self) -> u64 {
         self.0.as_ref().map_or(0, |scope| scope.shared.used.load(Ordering::Relaxed))
     }
@@ -294,11 +295,11 @@ impl Work {
         self.0.as_ref().map_or(u64::MAX, |scope| scope.shared.budget)
     }
 
-    /// Returns whether the system has room for a buffer of this many elements: large ones are requested, and given back
-    /// at once, so that a buffer that cannot be had is an error and does not end the process.
+    /// Checks whether the system has room for a buffer of this many elements. A large one is allocated and freed at
+    /// once, so that a lack of memory is an error and does not end the process.
     ///
     /// # Errors
-    /// [`Error::Memory`] if it has none.
+    /// [`Error::OutOfMemory`] if there is no room.
     pub fn room_for<T>(&self, stage: &'static str, count: u64) -> Result<()> {
         let bytes = count.saturating_mul(size_of::<T>() as u64);
         if bytes < LARGE {
@@ -314,10 +315,10 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Memory that is taken from a budget, and given back on drop.
+/// Memory charged to a budget, and released on drop.
 ///
-/// A clone takes as much again, without being refused: what is copied has to be charged before. All charges are equal, so
-/// that they can lie in values that are compared.
+/// A clone charges as much again and is never refused: memory for a copy has to be charged before. All charges are
+/// equal, so that compared values may contain them.
 #[derive(Debug, Default)]
 pub struct Charge {
     scope: Option<Arc<Scope>>,
@@ -326,15 +327,15 @@ pub struct Charge {
 }
 
 impl Charge {
-    /// Returns the work whose memory it takes.
+    /// Returns the work that the memory is charged to.
     pub fn work(&self) -> Work {
         Work(self.scope.clone())
     }
 
-    /// Takes more, for a buffer that grows.
+    /// Charges more, for a buffer that grows.
     ///
     /// # Errors
-    /// As [`Work::charge`]; what was taken before stays.
+    /// As [`Work::charge`]; the earlier charge stays.
     pub fn grow(&mut self, bytes: u64) -> Result<()> {
         let Some(scope) = &self.scope else { return Ok(()) };
         if scope.shared.stopped.load(Ordering::Relaxed) {
@@ -346,8 +347,7 @@ impl Charge {
         Ok(())
     }
 
-    /// Takes what is missing to this many bytes, or nothing if there are more: for a buffer that has
-    /// grown.
+    /// Raises the charge to this many bytes, or leaves it if it is larger: for a buffer that has grown.
     ///
     /// # Errors
     /// As [`Work::charge`].
@@ -358,8 +358,8 @@ impl Charge {
         }
     }
 
-    /// Grows like [`Self::grow_to`], if an error cannot be returned: exceeding the budget stops the work, so that its next
-    /// check fails. Returns whether it fits.
+    /// Raises the charge like [`Self::grow_to`] where an error cannot be returned: exceeding the budget stops the work,
+    /// so that its next check fails. Returns whether the memory fits.
     pub fn grow_to_or_stop(&mut self, bytes: u64) -> bool {
         let Err(error) = self.grow_to(bytes) else { return true };
         if let Some(scope) = &self.scope {

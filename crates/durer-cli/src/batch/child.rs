@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Time between two looks whether the row is still wanted.
+/// Time between two checks whether the row is still requested.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Time beyond the limit of a row after which a worker is killed that did not end by itself.

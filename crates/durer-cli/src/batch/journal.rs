@@ -88,8 +88,8 @@ fn whole_lines(file: &mut File) -> io::Result<u64> {
     Ok(0)
 }
 
-/// Reads the entries of all journals in a folder, whatever their number of shards. Lines that are not whole are left out: their
-/// rows count as not run.
+/// Reads the entries of all journals in a folder, whatever their number of shards. Lines that are not whole are left
+/// out: their rows count as not run.
 pub fn read_all(out: &Path, mut each: impl FnMut(Entry)) -> Result<(), Failure> {
     let folder = out.join(FOLDER);
     let fail = |path: &Path, e: io::Error| Failure::of_file(path, in_words(&e));

@@ -12,8 +12,7 @@ pub struct Shard {
     count: u64,
 }
 
-/// Variables of the environment that tell the number of a job in an array: that number, the first one, and how many there
-/// are.
+/// Environment variables with the number of a job in an array: that number, the first one, and how many there are.
 const ARRAYS: [[&str; 3]; 5] = [
     ["DURER_SHARD", "", SHARDS],
     ["SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_MIN", "SLURM_ARRAY_TASK_COUNT"],

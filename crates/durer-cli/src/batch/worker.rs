@@ -45,8 +45,8 @@ pub fn work() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the lines of standard input. When it ends, the process that wrote them has ended, and this one ends, too: nobody
-/// waits for its row.
+/// Returns the lines of standard input. When it ends, the process that wrote them has ended, and this one ends, too:
+/// nobody waits for its row.
 fn lines() -> Receiver<String> {
     let (give, take) = channel();
     std::thread::spawn(move || {

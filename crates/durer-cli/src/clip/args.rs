@@ -32,8 +32,8 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 /// The options of `durer clip`.
 #[derive(Debug, Args)]
 pub struct ClipArgs {
-    /// GeoJSON (also one feature per line), TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB or SVG, also
-    /// compressed by gzip; `-` reads standard input
+    /// GeoJSON (also one feature per line), TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB or
+    /// SVG, also compressed by gzip; `-` reads standard input
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     pub input: PathBuf,
     /// File to write the result to
@@ -53,7 +53,7 @@ pub struct ClipArgs {
     /// Options for features and their fields.
     #[command(flatten)]
     pub fields: FieldArgs,
-    /// From which coordinates to which.
+    /// Options for coordinate systems.
     #[command(flatten)]
     pub systems: SystemArgs,
     /// The format of IN [default: by its content, then by its suffix]
@@ -121,8 +121,9 @@ pub struct CuttingArgs {
     /// one and leave out lines and points
     #[arg(long, value_name = "OP", default_value = "intersection", conflicts_with = "tiles")]
     pub op: BooleanOp,
-    /// Fill rule that decides which points the polygons of IN and FILE enclose: even-odd, non-zero, positive (rings counter-clockwise),
-    /// negative or abs-geq-two (two rings at least) [default: even-odd; of an SVG, the rule of its paths]
+    /// Fill rule that decides which points the polygons of IN and FILE enclose: even-odd, non-zero, positive (rings
+    /// counter-clockwise), negative or abs-geq-two (two rings at least) [default: even-odd; of an SVG, the rule of its
+    /// paths]
     #[arg(long, value_name = "RULE")]
     pub fill_rule: Option<WindingRule>,
     /// Name of an algorithm [default: a fast one that is exact for the input]

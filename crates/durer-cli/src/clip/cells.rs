@@ -86,7 +86,7 @@ fn cell(
 }
 
 impl Job<'_> {
-    /// Each feature by each cell.
+    /// Cuts each feature by each cell.
     pub fn cut_by_cells(&mut self, cells: &Cells) -> Result<(), Failure> {
         let args = self.args;
         let cut = |feature: &Feature| match &feature.geometry {

@@ -179,7 +179,7 @@ fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure>
     Ok(format)
 }
 
-/// Warnings of reading and of cutting.
+/// Prints the warnings of reading and of cutting.
 fn tell(
     messages: &Messages,
     args: &ClipArgs,
@@ -364,7 +364,7 @@ impl Job<'_> {
         }
     }
 
-    /// Members of the collection, with the one for the coordinate system if GeoJSON needs it.
+    /// Returns the members of the collection, with the one for the coordinate system if GeoJSON needs it.
     fn members(&self) -> Vec<Member> {
         let mut members = self.reader.members().to_vec();
         if !matches!(self.to, GeoFormat::GeoJson | GeoFormat::TopoJson) {
@@ -404,7 +404,7 @@ impl Job<'_> {
         }
     }
 
-    /// All features as they are.
+    /// Writes all features as they are.
     fn convert(&mut self) -> Result<(), Failure> {
         let mut writer = None;
         loop {
@@ -418,7 +418,7 @@ impl Job<'_> {
         }
     }
 
-    /// Each feature for itself.
+    /// Cuts each feature separately.
     fn cut(&mut self, mask: Mask) -> Result<(), Failure> {
         let outside = self.args.region.outside;
         let op = if outside { BooleanOp::Difference } else { self.args.cutting.op };
@@ -457,7 +457,7 @@ impl Job<'_> {
         self.fail(format!("feature {} (from 1): {error}", index + 1))
     }
 
-    /// All polygons, those of the mask too, to one feature.
+    /// Joins all polygons, those of the mask too, to one feature.
     fn join(&mut self, mask: Option<&Mask>) -> Result<(), Failure> {
         let (args, mut all) = (self.args, Area::default());
         loop {

@@ -12,9 +12,9 @@ use serde::Serialize;
 pub struct Report {
     /// The version of durer.
     pub version: &'static str,
-    /// Path as given on the command line.
+    /// Path of the input, as given on the command line.
     pub input: String,
-    /// Path as given on the command line.
+    /// Path of the output, as given on the command line.
     pub output: String,
     /// The format that was read.
     pub from: &'static str,
@@ -47,7 +47,7 @@ pub struct Report {
     /// The coordinate systems of what was read.
     #[serde(skip)]
     pub srids: Srids,
-    /// Those of the mask.
+    /// SRIDs of the mask.
     #[serde(skip)]
     pub mask_srids: Srids,
     /// Features whose own member was replaced by the name of their tile.
@@ -62,12 +62,12 @@ pub struct Report {
     /// Tiles that are not empty.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tiles: Option<u64>,
-    /// Why not all tiles are there, and the files of those that are.
+    /// Reason why tiles are missing, and the files of those that exist.
     #[serde(flatten)]
     pub broken_off: Option<BrokenOff>,
     /// Repairs and omissions while reading.
     pub warnings: Vec<String>,
-    /// From start to end.
+    /// Seconds from start to end.
     pub total_seconds: f64,
     /// The peak memory of the process, if the system reports it.
     pub peak_memory_bytes: Option<u64>,

@@ -2,7 +2,7 @@
 
 use durer_formats::geo::GeoFormat;
 
-/// Those of the features of a file.
+/// SRIDs of a file's features.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Srids {
     /// The first few of them, in the order in which they came.
@@ -24,7 +24,7 @@ impl Srids {
         }
     }
 
-    /// Returns the one of all features that tell one.
+    /// Returns the number that is common to all features with one.
     pub fn common(&self) -> Option<i32> {
         match self.first[..] {
             [srid] => Some(srid),

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::collections::BTreeSet;
 
 impl Job<'_> {
-    /// Each feature to the tiles that it touches.
+    /// Cuts each feature by the tiles that it touches.
     pub fn tile(&mut self, zoom: u8) -> Result<(), Failure> {
         let tiling = Tiling::new(zoom, self.args.region.tile_coordinates.into());
         if self.to == GeoFormat::GeoJson && !is_stream(&self.args.output) {
@@ -24,7 +24,7 @@ impl Job<'_> {
         self.tile_sequence(&tiling)
     }
 
-    /// Feature after feature, each tile after tile.
+    /// Writes the pieces feature by feature, those of each feature tile by tile.
     fn tile_sequence(&mut self, tiling: &Tiling) -> Result<(), Failure> {
         let (mut writer, mut seen) = (None, BTreeSet::new());
         let limit = self.args.region.max_tiles;
@@ -65,7 +65,7 @@ impl Job<'_> {
         self.end(writer)
     }
 
-    /// Tile after tile, each in its file, `z/x/y.geojson`.
+    /// Writes the pieces tile by tile, each tile to a file of its own, `z/x/y.geojson`.
     fn tile_files(&mut self, tiling: &Tiling) -> Result<(), Failure> {
         let mut features = Vec::new();
         loop {

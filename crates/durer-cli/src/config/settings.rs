@@ -48,7 +48,7 @@ impl Source<'_> {
     }
 }
 
-/// Reads the settings of all commands, and gives those of one.
+/// Reads the settings of all commands, and returns those of one.
 pub fn read(
     file: &Path,
     text: &str,

@@ -21,7 +21,7 @@ pub fn built_in() -> Fonts {
     fonts
 }
 
-/// Returns the fonts given, then those installed if wanted, then the built-in one.
+/// Returns the fonts given, then the installed ones if requested, then the built-in one.
 pub fn load(args: &FontArgs) -> Result<Fonts, Failure> {
     let mut fonts = Fonts::new();
     for path in &args.font {
@@ -49,7 +49,7 @@ pub fn load(args: &FontArgs) -> Result<Fonts, Failure> {
     Ok(fonts)
 }
 
-/// Returns the font files below a folder, sorted; or the file itself.
+/// Finds the font files below a folder, sorted; or adds the file itself.
 fn find(path: &Path, depth: u32, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
     if !fs::metadata(path)?.is_dir() {
         files.push(path.to_owned());

@@ -74,8 +74,8 @@ pub struct Layers(pub Vec<Layer>);
 #[command(next_help_heading = "Style of map layers")]
 #[allow(dead_code)]
 struct LayerArgs {
-    /// SVG; or layers of a map: GeoJSON, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB, also compressed by
-    /// gzip; `-` reads standard input
+    /// SVG; or layers of a map: GeoJSON, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB, also
+    /// compressed by gzip; `-` reads standard input
     #[arg(required = true, value_name = "IN", value_hint = ValueHint::FilePath, help_heading = None)]
     input: Vec<PathBuf>,
     /// The colour of areas and markers, or `none` [default: #e3e7e0]

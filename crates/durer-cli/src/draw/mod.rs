@@ -116,7 +116,7 @@ struct Given<'a> {
 }
 
 impl Job<'_> {
-    /// Warnings, printed and noted.
+    /// Prints warnings and adds them to the report.
     fn warn(&mut self, name: &str, warnings: &[Warning]) {
         self.messages.warnings(name, warnings);
         self.report.warnings.extend(warnings.iter().map(ToString::to_string));

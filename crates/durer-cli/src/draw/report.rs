@@ -8,13 +8,13 @@ use serde::Serialize;
 pub struct Report {
     /// The version of durer.
     pub version: &'static str,
-    /// Path as given on the command line.
+    /// Path of the output, as given on the command line.
     pub output: String,
-    /// In pixels.
+    /// Width in pixels.
     pub width: u32,
-    /// In pixels.
+    /// Height in pixels.
     pub height: u32,
-    /// From the bottom to the top.
+    /// Layers, from the bottom to the top.
     pub layers: Vec<LayerReport>,
     /// Repairs, replacements and omissions.
     pub warnings: Vec<String>,
@@ -24,7 +24,7 @@ pub struct Report {
     pub draw_seconds: f64,
     /// Seconds for making and writing the PNG.
     pub encode_seconds: f64,
-    /// From start to end.
+    /// Seconds from start to end.
     pub total_seconds: f64,
     /// The peak memory of the process, if the system reports it.
     pub peak_memory_bytes: Option<u64>,
@@ -33,7 +33,7 @@ pub struct Report {
 /// One file.
 #[derive(Debug, Default, Serialize)]
 pub struct LayerReport {
-    /// Path as given on the command line.
+    /// Path of the input, as given on the command line.
     pub input: String,
     /// The format found.
     pub format: &'static str,

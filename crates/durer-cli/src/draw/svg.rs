@@ -14,7 +14,7 @@ use durer_formats::svg::{Drawing, ReadOptions};
 use std::time::Instant;
 
 impl Job<'_> {
-    /// Everything that the drawing wants painted.
+    /// Returns everything that the SVG drawing paints.
     pub(super) fn drawing(&mut self, given: &Given<'_>) -> Result<Canvas, Failure> {
         let name = display_name(&given.layer.input);
         let fail = |what: String| Failure::Data(format!("{name}: {what}"));

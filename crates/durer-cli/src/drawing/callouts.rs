@@ -12,15 +12,15 @@ const NAMED: usize = 5;
 /// Numbers and names of parts.
 #[derive(Debug, Default)]
 pub struct Callouts {
-    /// At the isometric view, or the first.
+    /// Callouts at the isometric view, or at the first view.
     pub callouts: Vec<Callout>,
     /// The list.
     pub parts: Vec<PartsListRow>,
 }
 
 impl Callouts {
-    /// Numbers a model's parts and finds where they are seen. `aspect` is that of the views. Parts that are not
-    /// seen are noted.
+    /// Numbers a model's parts and finds where they are seen. `aspect` is that of the views. Notes the parts that are
+    /// not seen.
     pub fn find(
         subject: &Subject,
         shown: &[Shown],

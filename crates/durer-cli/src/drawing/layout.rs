@@ -12,8 +12,8 @@ use durer::paper::{self, Contents, Frame, LaidOut, Page, Scale, SheetView, Title
 use durer::target::drawing::Drawing;
 use durer_formats::drawing::DrawingFormat;
 
-/// The longer side of drawings that are 1:1 where neither page nor scale is given, millimetres: for DXF and G-code as far
-/// as their digits reach, for SVG what a desk or a screen has room for.
+/// The longer side of drawings that are 1:1 where neither page nor scale is given, millimetres: for DXF and G-code as
+/// far as their digits reach, for SVG what a desk or a screen has room for.
 const SMALLEST: f64 = 0.1;
 const LARGEST: f64 = 900_000.0;
 const HANDY: std::ops::RangeInclusive<f64> = 20.0..=420.0;

@@ -61,12 +61,12 @@ const FINEST: f64 = 1e-5;
 /// The shape of a sheet of several views, where no page is given: that of lying ISO paper.
 const SHEET: DVec2 = DVec2::new(297.0, 210.0);
 
-/// Returns whether the options ask for a drawing, rather than for pixels of surfaces.
+/// Returns whether the options request a drawing, rather than for pixels of surfaces.
 pub fn is_wanted(args: &RenderArgs, kind: Kind) -> bool {
     kind.is_vector() || args.drawing.style.is_some() || args.drawing.sheet.is_some()
 }
 
-/// Gives contours, and lines by their distance, classes of their own, if requested.
+/// Assigns contours, and lines by their distance, classes of their own, if requested.
 fn weighted(
     args: &RenderArgs,
     scene: &Scene,
@@ -103,7 +103,7 @@ fn bytes(color: Vec4) -> [u8; 4] {
 
 /// A model with what its drawing's title block says.
 pub struct Subject<'a> {
-    /// Layers to draw.
+    /// Scene of the model.
     pub scene: &'a Scene,
     /// The model's name without folder and suffix.
     pub name: &'a str,
@@ -145,7 +145,7 @@ pub struct Made {
     pub sheet: Sheet,
     /// Lines and regions of each view.
     pub drawings: Vec<Drawing>,
-    /// Report on the work.
+    /// Report on the picture.
     pub report: PictureReport,
     /// Reason why nothing of the model is visible, if that is so.
     pub unseen: Option<String>,
@@ -271,7 +271,8 @@ fn look(args: &RenderArgs, subject: &Subject) -> Look {
     }
 }
 
-/// Whoever wants lines hatched by shade needs to know the areas between them.
+/// Returns the style to draw in: hatching by shade needs the areas between lines, so hidden-line drawings get regions
+/// too.
 fn with_tones(style: DrawStyle, hatch: Option<Hatch>) -> DrawStyle {
     match (style, hatch) {
         (DrawStyle::HiddenLine, Some(Hatch::Shade)) => DrawStyle::RegionsAndLines,
@@ -476,7 +477,7 @@ fn single_camera(args: &RenderArgs, scene: &Scene, frame: Option<u32>) -> Result
     camera::camera(&view(args), scene, &shot)
 }
 
-/// Options that the library refuses.
+/// Returns the failure for options that the library refuses.
 fn usage(e: durer::Error) -> Failure {
     Failure::of_library(&e)
 }

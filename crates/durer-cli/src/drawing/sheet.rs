@@ -83,7 +83,8 @@ impl Shot {
         Self { kind, camera }
     }
 
-    /// Returns the part of a scene that a section leaves, and its memory, or `None` for other views. Adds warnings to the notes.
+    /// Returns the part of a scene that a section leaves, and its memory, or `None` for other views. Adds warnings to
+    /// the notes.
     pub fn cut(
         &self,
         args: &RenderArgs,

@@ -9,7 +9,7 @@ use durer::pipeline::{self, DrawOptions, DrawStyle, ToneMarks};
 use durer::scene::Scene;
 use durer::target::drawing::{Drawing, Line, LineClass};
 
-/// Returns the marks that `--hatch` asks for.
+/// Returns the marks for `--hatch`.
 pub fn asked(args: &RenderArgs) -> Option<Hatch> {
     args.drawing.hatch.filter(|hatch| matches!(hatch, Hatch::Contour | Hatch::Stipple))
 }

@@ -34,8 +34,8 @@ pub struct ExplainArgs {
     pub input: Option<PathBuf>,
     /// File to write; `-` is standard output
     ///
-    /// An SVG or PNG shows all steps side by side; a page (html) has buttons and keys to go from step to step, and needs no
-    /// network; JSON has all values, tables and marks.
+    /// An SVG or PNG shows all steps side by side; a page (html) has buttons and keys to go from step to step, and
+    /// needs no network; JSON has all values, tables and marks.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath, default_value = "-")]
     pub output: PathBuf,
     /// The format of the output [default: by its suffix, else text]

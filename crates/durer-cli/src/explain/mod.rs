@@ -66,7 +66,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     }
 }
 
-/// Returns the format that an option or the name of the output asks for.
+/// Returns the format by an option or by the name of the output.
 fn format(args: &ExplainArgs) -> Result<Format, Failure> {
     if let Some(format) = args.format {
         return Ok(format);
@@ -90,7 +90,7 @@ fn format(args: &ExplainArgs) -> Result<Format, Failure> {
     }
 }
 
-/// Returns the step that is wanted, or all.
+/// Returns the requested step, or all.
 fn chosen(args: &ExplainArgs, mut frames: Vec<Frame>) -> Result<Vec<Frame>, Failure> {
     let count = frames.len();
     if count == 0 {

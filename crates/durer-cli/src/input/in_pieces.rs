@@ -17,8 +17,8 @@ const SHARE: u64 = 8;
 /// The most triangles or points of a piece: more make nothing faster.
 const MOST_AT_ONCE: u64 = 1 << 18;
 
-/// The most that a model takes as a whole, by its file, where that is more than [`FEW`] bytes: of points a picture takes far
-/// more than they do.
+/// The most that a model takes as a whole, by its file, where that is more than [`FEW`] bytes: of points a picture
+/// takes far more than they do.
 const BY_FILE: u64 = 6;
 const FEW: u64 = 512 << 20;
 
@@ -45,8 +45,8 @@ impl InPieces {
     }
 }
 
-/// Opens a model of a format that can be read in pieces, where it would not fit the budget, or would take far more than its
-/// file; `None` for any other.
+/// Opens a model of a format that can be read in pieces, where it would not fit the budget, or would take far more than
+/// its file; `None` for any other.
 pub fn in_pieces(path: &Path, reading: &Reading) -> Option<Result<InPieces, Failure>> {
     let length = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?.len();
     let [most_triangles, most_bytes] = reading.given;

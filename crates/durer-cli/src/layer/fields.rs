@@ -5,7 +5,7 @@ use durer_formats::geo::{Feature, Member};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// The options.
+/// Options for features and their fields.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Fields")]
 pub struct FieldArgs {

@@ -86,7 +86,7 @@ pub fn reader<R: std::io::Read>(
     Reader::with(format, source, &Beside { name: &name, resources: &*folder, layer })
 }
 
-/// Takes the memory of a feature that stays from the budget.
+/// Charges the memory of a feature that stays to the budget.
 pub fn keep(feature: &Feature, work: &Work) -> durer::Result<()> {
     let mut bytes = size_of::<Feature>() + feature.properties.as_ref().map_or(0, String::len);
     if let Some(geometry) = &feature.geometry {

@@ -9,7 +9,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// Takes bytes as they come.
+/// Receiver of bytes as they come.
 pub struct Sink {
     out: Out,
     /// Its name in messages.
@@ -25,7 +25,7 @@ enum Out {
 const CAPACITY: usize = 1 << 16;
 
 impl Sink {
-    /// Standard output.
+    /// Creates a sink for standard output.
     pub fn stdout() -> Self {
         let out = Out::Stdout(BufWriter::with_capacity(CAPACITY, io::stdout()));
         Self { out, name: PathBuf::from("standard output") }

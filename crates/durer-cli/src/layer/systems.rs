@@ -5,7 +5,7 @@ use clap::Args;
 use durer_formats::geo::crs::{Crs, Transform};
 use durer_formats::geo::{Feature, System};
 
-/// The options.
+/// Options for coordinate systems.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Coordinates")]
 pub struct SystemArgs {
@@ -20,13 +20,13 @@ pub struct SystemArgs {
     pub to_crs: Option<Crs>,
 }
 
-/// Brings features to another system.
+/// Conversion of features to another system.
 #[derive(Debug, Clone)]
 pub struct Shift {
     to: Crs,
     /// The way there, where all coordinates come from one system.
     common: Option<Transform>,
-    /// The way there for features that tell the number of their own system: the number of the last one, and its way.
+    /// The way there for features with the number of their own system: the number of the last one, and its way.
     own: Option<(i32, Transform)>,
     /// Reason why nothing is known of the file as a whole.
     unknown: String,
@@ -37,8 +37,8 @@ pub struct Shift {
 }
 
 impl Shift {
-    /// Builds the conversion that options ask for, from the system that the file states; `None` if they
-    /// ask for nothing.
+    /// Builds the conversion that the options request, from the system that the file states; `None` if they request
+    /// none.
     pub fn new(args: &SystemArgs, told: &System) -> Option<Self> {
         let to = args.to_crs.clone()?;
         let from = args.from_crs.clone().map_or_else(|| Crs::of_system(told), Ok);
@@ -70,7 +70,7 @@ impl Shift {
         Ok(&self.own.insert(own).1)
     }
 
-    /// Brings a feature there; false if it has no place there.
+    /// Converts a feature to the system; returns whether it has a place there.
     ///
     /// # Errors
     /// Where the system that it comes from is not known.

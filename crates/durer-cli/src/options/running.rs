@@ -19,8 +19,8 @@ pub struct RunningArgs {
     /// Use at most this much memory, in bytes with an optional suffix k, M or G [default: half of what the machine or
     /// its control group allows, at most 4G]
     ///
-    /// Work that needs more ends with an error that names the stage and the option. The other limits of size count towards
-    /// this one.
+    /// Work that needs more ends with an error that names the stage and the option. The other limits of size count
+    /// towards this one.
     #[arg(long, value_name = "SIZE", allow_hyphen_values = true, value_parser = values::bytes)]
     pub max_memory: Option<u64>,
     /// Stop with an error after this many seconds [default: never]

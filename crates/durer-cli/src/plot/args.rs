@@ -48,7 +48,7 @@ pub struct PlotArgs {
     /// Options for the camera.
     #[command(flatten)]
     pub view: PlotViewArgs,
-    /// Layers to draw.
+    /// Lines and colours of the plot.
     #[command(flatten)]
     pub look: PlotLookArgs,
     /// Pens and what moves them.

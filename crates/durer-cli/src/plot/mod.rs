@@ -62,13 +62,13 @@ pub fn format(text: &str) -> Result<Format, String> {
 /// `--exaggeration`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Exaggeration {
-    /// By the extent of the surface.
+    /// The factor by the extent of the surface.
     Auto,
     /// A factor from the option.
     Factor(f64),
 }
 
-/// `auto` or a factor above 0.
+/// Parses `auto` or a factor above 0.
 pub fn exaggeration(text: &str) -> Result<Exaggeration, String> {
     match text {
         "auto" => Ok(Exaggeration::Auto),
@@ -81,7 +81,7 @@ pub fn exaggeration(text: &str) -> Result<Exaggeration, String> {
 /// `--aspect`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ratio {
-    /// By the extent of the ground.
+    /// The ratio by the extent of the ground.
     Auto,
     /// One scale for x and z.
     Equal,
@@ -89,7 +89,7 @@ pub enum Ratio {
     Of(f64),
 }
 
-/// `auto`, `equal`, or a number above 0.
+/// Parses `auto`, `equal`, or a number above 0.
 pub fn aspect(text: &str) -> Result<Ratio, String> {
     match text {
         "auto" => Ok(Ratio::Auto),
@@ -153,7 +153,7 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Plots a surface as the options ask for.
+/// Plots a surface by the options.
 pub fn plot_of(args: &PlotArgs, surface: &Surface) -> Result<(Plot, plot::Options), Failure> {
     let options = options(args, surface)?;
     let plot = plot::surface(&surface.field, &options).map_err(|e| match options.eye {
@@ -249,7 +249,7 @@ impl Surface {
         Self::of_map(map, name, args)
     }
 
-    /// Returns the surface of a height map, with the ranges and as many lines as the options ask for.
+    /// Returns the surface of a height map, with the ranges and the number of lines of the options.
     pub fn of_map(map: HeightMap, name: String, args: &PlotArgs) -> Result<Self, Failure> {
         let (x, z) = (args.surface.x, args.surface.z);
         let on_map = map.on_map && z.is_none();
@@ -356,7 +356,7 @@ fn options(args: &PlotArgs, surface: &Surface) -> Result<plot::Options, Failure>
     })
 }
 
-/// Paper that may lie either way lies: plots are wider than high.
+/// Returns the size of the paper; paper that may be used either way is wider than high, as plots are.
 fn paper_size(page: Page) -> DVec2 {
     match page {
         Page::Exact(size) => size,

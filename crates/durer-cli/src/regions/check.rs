@@ -33,7 +33,8 @@ Exit codes: 0 nothing is wrong; 1 something is, or the file cannot be read; 2 wr
 /// The options of `durer check`.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// A layer: GeoJSON (also one feature per line), WKT, WKB, Shapefile, FlatGeobuf and others; `-` reads standard input
+    /// A layer: GeoJSON (also one feature per line), WKT, WKB, Shapefile, FlatGeobuf and others; `-` reads standard
+    /// input
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     pub input: PathBuf,
     /// The format of IN [default: by its content, then by its suffix]
@@ -87,7 +88,7 @@ struct Report {
     warnings: Vec<String>,
 }
 
-/// Says what is wrong with a file's features.
+/// Reports the faults of a file's features.
 pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     let messages = Messages::new(&args.running, 1);
     let name = display_name(&args.input);
@@ -145,7 +146,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     if report.valid { Ok(()) } else { Err(Failure::Data(report.sum())) }
 }
 
-/// The polygons of each part of a geometry, the members of collections for themselves.
+/// Collects the polygons of each part of a geometry, the members of collections separately.
 fn each_part(geometry: &Geometry, parts: &mut Vec<Shapes>) {
     match geometry {
         Geometry::Collection(members) => members.iter().for_each(|part| each_part(part, parts)),

@@ -23,8 +23,9 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 /// The options of `durer fix`.
 #[derive(Debug, Args)]
 pub struct FixArgs {
-    /// Fill rule that decides which points crossing rings enclose: even-odd, non-zero, positive (rings counter-clockwise), negative or
-    /// abs-geq-two (two rings at least) [default: even-odd; of an SVG, the rule of its paths]
+    /// Fill rule that decides which points crossing rings enclose: even-odd, non-zero, positive (rings
+    /// counter-clockwise), negative or abs-geq-two (two rings at least) [default: even-odd; of an SVG, the rule of its
+    /// paths]
     #[arg(long, value_name = "RULE")]
     pub rule: Option<WindingRule>,
     /// Give neighbours the same points on shared borders: a point that only one of them has is added to the other if it
@@ -61,7 +62,7 @@ fn made(
     Ok((fixed.geometry, fixed.changed))
 }
 
-/// Takes note of a feature that is valid now.
+/// Counts a feature that is valid now.
 fn note(report: &mut Report, feature: &mut Feature, number: u64, changed: bool) {
     feature.fill_rule = WindingRule::EvenOdd;
     if changed {
@@ -73,7 +74,7 @@ fn note(report: &mut Report, feature: &mut Feature, number: u64, changed: bool) 
     }
 }
 
-/// Makes a file's features valid, and gives neighbours the same points.
+/// Makes a file's features valid, and matches the points of neighbours.
 fn match_all(mut job: Job<'_>, args: &FixArgs) -> Result<(), Failure> {
     let mut all = Vec::new();
     loop {
@@ -105,7 +106,7 @@ fn match_all(mut job: Job<'_>, args: &FixArgs) -> Result<(), Failure> {
     job.write(all)
 }
 
-/// Gives polygons the points that neighbours have on their borders; returns how many features got some.
+/// Adds to polygons the points that neighbours have on their borders; returns how many features got some.
 fn with_matched_points(features: &mut [Feature]) -> usize {
     let mut geometries: Vec<_> = features.iter_mut().map(|f| f.geometry.take()).collect();
     let count = match_points(&mut geometries);

@@ -31,7 +31,8 @@ use std::time::Instant;
 /// Options for input and output.
 #[derive(Debug, Args)]
 pub struct FilesArgs {
-    /// A layer: GeoJSON (also one feature per line), WKT, WKB, Shapefile, FlatGeobuf and others; `-` reads standard input
+    /// A layer: GeoJSON (also one feature per line), WKT, WKB, Shapefile, FlatGeobuf and others; `-` reads standard
+    /// input
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     pub input: PathBuf,
     /// File to write the result to: its suffix selects the format; `-` for standard output, in the format of the input
@@ -139,7 +140,8 @@ impl<'a> Job<'a> {
         Ok(features)
     }
 
-    /// Changes each geometry by itself; features that have none left are left out. `note` gets what `change` says besides.
+    /// Changes each geometry by itself; features that have none left are left out. `note` gets what `change` says
+    /// besides.
     fn each<N: Send>(
         mut self,
         change: impl Fn(&Feature, &Geometry) -> durer::Result<(Option<Geometry>, N)> + Sync,

@@ -200,7 +200,7 @@ impl Streamed<'_> {
         Ok((framebuffer, status))
     }
 
-    /// Hands over all vertices, for the camera.
+    /// Visits all vertices, for the camera.
     fn vertices(&mut self, mut visit: impl FnMut(&Scene)) -> Result<(), Failure> {
         tell_pass(self.messages, self.name, 1, "reading for the view");
         let passed = self.pieces.pieces.vertices(&mut |piece| {
@@ -216,7 +216,7 @@ fn tell_pass(messages: &Messages, name: &str, number: u32, what: &str) {
     messages.progress.stage(|| format!("{name}: pass {number} of 3, {what}"));
 }
 
-/// Gives a scene the materials that are requested.
+/// Assigns the requested materials to a scene.
 fn dress(args: &RenderArgs, scene: &mut Scene) {
     if let Some(color) = args.look.color {
         scene.give_material(colored(color));

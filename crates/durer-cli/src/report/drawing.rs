@@ -26,7 +26,7 @@ pub struct DrawingReport {
     pub region_area: f64,
     /// Edges of the model's faces, over all views, where lines are drawn.
     pub edges: u64,
-    /// Those of one face only.
+    /// Number of edges of one face only.
     pub border_edges: u64,
     /// Lines by class, those that have some.
     pub lines: Vec<ClassReport>,
@@ -43,9 +43,9 @@ pub struct DrawingReport {
 pub struct ClassReport {
     /// Its name.
     pub class: &'static str,
-    /// Those with nothing in front of them.
+    /// Lines with nothing in front of them.
     pub visible: LineReport,
-    /// Those with something in front of them.
+    /// Lines with something in front of them.
     pub hidden: LineReport,
 }
 
@@ -68,7 +68,7 @@ pub struct FeatureReport {
     /// The name of its object; left out if it has none.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub object: String,
-    /// In units of the model.
+    /// Diameter in units of the model.
     pub diameter: f64,
     /// Ends of its axis.
     pub ends: [[f64; 3]; 2],
@@ -134,7 +134,7 @@ impl DrawingReport {
         })
     }
 
-    /// In a few words, for `--verbose`.
+    /// Returns a summary in a few words, for `--verbose`.
     pub fn summary(&self) -> String {
         let polylines: usize =
             self.lines.iter().map(|c| c.visible.polylines + c.hidden.polylines).sum();

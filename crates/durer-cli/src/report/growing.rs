@@ -1,6 +1,6 @@
-//! The report as text that grows while pictures are made. Of a picture its line is all that is kept, in one block with those
-//! of the others: small values of each, held to the end, would lie between the large blocks that pictures need for
-//! a while, and keep an allocator from using those again.
+//! The report as text that grows while pictures are made. Of a picture its line is all that is kept, in one block with
+//! those of the others: small values of each, held to the end, would lie between the large blocks that pictures need
+//! for a while, and keep an allocator from using those again.
 
 use super::{Failed, ModelReport, PictureReport, peak_memory};
 use crate::failure::Failure;
@@ -8,7 +8,7 @@ use durer_formats::told;
 use serde::Serialize;
 use std::io::{self, Write};
 
-/// A report, where one is wanted.
+/// Report, if one is requested.
 pub struct Growing {
     wanted: bool,
     /// Reports of finished models, separated by commas, then the pictures of the current one.
@@ -29,14 +29,14 @@ struct Head {
 /// The JSON after the models.
 #[derive(Serialize)]
 struct Tail {
-    /// From start to end.
+    /// Seconds from start to end.
     total_seconds: f64,
     /// The peak memory of the process, if the system reports it.
     peak_memory_bytes: Option<u64>,
 }
 
 impl Growing {
-    /// Creates an empty report; one that is not wanted stays so.
+    /// Creates an empty report, which stays empty if none is requested.
     pub fn new(wanted: bool) -> Self {
         Self { wanted, models: String::new(), done: 0, failed: String::new() }
     }
@@ -71,7 +71,7 @@ impl Growing {
         }
     }
 
-    /// Writes the report to standard output, where it is wanted.
+    /// Writes the report to standard output, if it is requested.
     pub fn print(&self, total_seconds: f64) -> Result<(), Failure> {
         if !self.wanted {
             return Ok(());

@@ -154,7 +154,7 @@ fn read_file(
     Ok(())
 }
 
-/// Tells a warning now and in the report.
+/// Prints a warning now and adds it to the report.
 fn tell(message: String, name: &str, messages: &Messages, warnings: &mut Vec<String>) {
     messages.warning(name, &message);
     warnings.push(format!("{name}: {message}"));

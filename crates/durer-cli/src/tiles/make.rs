@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Makes tiles, on any thread.
+/// Maker of tiles, usable on any thread.
 pub struct Maker<'a> {
     format: TileFormat,
     extent: u32,

@@ -28,14 +28,14 @@ struct Report {
     output: String,
     to: &'static str,
     features: u64,
-    /// In no tile.
+    /// Number of features in no tile.
     lost: u64,
     tiles: u64,
     /// Size in bytes as written.
     bytes: u64,
     levels: Vec<LevelReport>,
     warnings: Vec<String>,
-    /// Why not all tiles are there, and the files of those that are.
+    /// Reason why tiles are missing, and the files of those that exist.
     #[serde(flatten)]
     broken_off: Option<BrokenOff>,
     read_seconds: f64,
@@ -53,7 +53,7 @@ pub struct BrokenOff {
 }
 
 impl BrokenOff {
-    /// Tells of tiles in files of a suffix.
+    /// Creates the report on the tiles in files of a suffix.
     pub fn new(failure: &Failure, tiles: &[Tile], suffix: &str) -> Self {
         let written = tiles.iter().map(|tile| format!("{tile}.{suffix}")).collect();
         Self { error: failure.to_string(), written }
@@ -154,7 +154,7 @@ fn bounded(args: &TilesArgs, pyramid: &Pyramid) -> Result<(), Failure> {
     too_many(count, args.max_tiles)
 }
 
-/// An error if there are too many tiles; counting stops somewhere above the limit.
+/// Refuses too many tiles; counting stops somewhere above the limit.
 pub fn too_many(count: u64, limit: u64) -> Result<(), Failure> {
     if count <= limit {
         return Ok(());

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 type File = BufWriter<Beside>;
 
-/// Takes tiles one after the other.
+/// Writer that takes tiles one after the other.
 pub enum Out {
     PmTiles(PmTiles<File>, PathBuf),
     MbTiles(MbTiles<File>, PathBuf),

@@ -27,7 +27,7 @@ pub(crate) struct Document<'a> {
 struct Element {
     name: usize,
     attributes: Vec<(usize, String)>,
-    /// Between its start and its end.
+    /// Range between its start and its end.
     content: Range<usize>,
     start: usize,
     first: Option<usize>,
@@ -148,7 +148,7 @@ impl<'a> Document<'a> {
         std::iter::successors(first, |&n| self.elements.get(n)?.next)
     }
 
-    /// Returns those of one name.
+    /// Returns the children of one name.
     pub fn named<'s>(&'s self, element: usize, name: &'s str) -> impl Iterator<Item = usize> + 's {
         self.children(element).filter(move |&n| self.name(n) == name)
     }

@@ -13,8 +13,7 @@ use durer::math::{DMat4, Vec3};
 use durer::scene::{LightKind, Projection};
 use std::f64::consts::FRAC_PI_2;
 
-/// Gives a model the cameras and lights that its nodes hold. `unit` is the length of the file's unit in
-/// metres.
+/// Adds the cameras and lights of a model's nodes to it. `unit` is the length of the file's unit in metres.
 pub(super) fn add(
     model: &mut Model,
     document: &Document<'_>,
@@ -69,7 +68,8 @@ pub(super) fn lens(document: &Document<'_>, camera: usize, unit: f64) -> Result<
     Ok(Lens { projection, near, far, aspect })
 }
 
-/// From angles in degrees: any two of width, height and ratio; of one alone, a square picture.
+/// Returns a perspective projection and its aspect ratio, from any two of width, height (angles in degrees) and ratio;
+/// one angle alone makes a square picture.
 fn perspective(
     x: Option<f64>,
     y: Option<f64>,
@@ -85,7 +85,7 @@ fn perspective(
     Some((Projection::Perspective { fov_y }, aspect))
 }
 
-/// From half the width and the height.
+/// Returns a parallel projection and its aspect ratio, from half the width and half the height.
 fn parallel(
     x: Option<f64>,
     y: Option<f64>,

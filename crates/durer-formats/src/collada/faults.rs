@@ -15,7 +15,7 @@ pub(super) struct Faults {
     pub holes: Tally,
 }
 
-/// Tells what was left out or repaired.
+/// Adds warnings of what was left out or repaired.
 pub(super) fn warn(model: &mut Model, faults: &Faults) {
     for (tally, what) in [
         (&faults.numbers, "numbers of arrays are none or not finite; they are 0"),

@@ -27,13 +27,13 @@ struct Input {
     set: u64,
 }
 
-/// Reads one geometry.
+/// Reader of one geometry.
 struct Reader<'d, 'a> {
     document: &'d Document<'a>,
     budget: &'d mut Budget,
     faults: &'d mut Faults,
     sources: Sources,
-    /// With the source of each slot.
+    /// Builders, with the source of each slot.
     builders: Vec<(Slots, Builder)>,
     /// Numbers of builders by their key.
     numbers: HashMap<(Topology, Slots, Vec<u64>), usize>,
@@ -244,7 +244,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// A polygon with holes, each joined to it by a way there and back.
+    /// Reads a polygon with holes, each joined to it by a way there and back.
     fn with_holes(
         &mut self,
         ph: usize,

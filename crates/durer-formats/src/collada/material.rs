@@ -15,7 +15,7 @@ const MAX_SHININESS: f64 = 10_000.0;
 /// Map from channels of texture coordinates to the mesh's sets.
 pub(super) type Channels<'c> = &'c dyn Fn(&str) -> u32;
 
-/// Makes materials, each once for a choice of sets.
+/// Materials, each made once for a choice of sets.
 pub(super) struct Materials<'d, 'a> {
     document: &'d Document<'a>,
     images: Images<'d>,
@@ -71,7 +71,7 @@ impl<'d, 'a> Materials<'d, 'a> {
         Some(model.scene.materials.len() - 1)
     }
 
-    /// Tells what was left out.
+    /// Adds warnings of what was left out.
     pub fn warn(&self, model: &mut Model) {
         if self.lost.count > 0 {
             let message =
@@ -114,7 +114,7 @@ impl<'d, 'a> Materials<'d, 'a> {
         self.opacity(model, material, (profile, shader), channels);
     }
 
-    /// The colour or picture that a surface shows.
+    /// Sets the colour or picture that a surface shows.
     fn color(
         &mut self,
         model: &mut Model,
@@ -313,7 +313,7 @@ pub(super) fn is_linear(document: &Document<'_>) -> bool {
     })
 }
 
-/// Returns the sides that an effect asks for, in the part that the schema leaves to programs.
+/// Returns the visible sides by an effect, from the part that the schema leaves to programs.
 fn sides(document: &Document<'_>, effect: usize) -> Option<bool> {
     let found = document.inside(effect).find(|&n| document.name(n) == "double_sided")?;
     let text = document.text(found);

@@ -37,7 +37,7 @@ pub(super) struct Placed {
     /// The element that is held.
     pub target: usize,
     pub node: usize,
-    /// From the node's frame.
+    /// Matrix from the node's frame to the world.
     pub world: DMat4,
 }
 
@@ -140,7 +140,7 @@ impl<'d, 'a> Nodes<'d, 'a> {
         Ok(())
     }
 
-    /// Tells what was left out.
+    /// Adds warnings of what was left out.
     pub fn warn(&self, model: &mut Model) {
         faults::warn(model, &self.faults);
         self.materials.warn(model);
@@ -262,7 +262,7 @@ impl<'d, 'a> Nodes<'d, 'a> {
         Ok(made)
     }
 
-    /// Gives the parts of a piece the materials that an instance binds to their symbols.
+    /// Assigns to the parts of a piece the materials that an instance binds to their symbols.
     fn bind(
         &mut self,
         model: &mut Model,
@@ -331,7 +331,7 @@ fn turn(axis: DVec3, degrees: f64) -> DMat4 {
     DMat4::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z), DVec4::W)
 }
 
-/// From the eye's frame, which looks along −z, to its parent's.
+/// Returns the matrix from the eye's frame, which looks along −z, to its parent's.
 fn look_at(v: &[f64; 9]) -> DMat4 {
     let [eye, target, up] = [0, 3, 6].map(|i| DVec3::new(v[i], v[i + 1], v[i + 2]));
     let back = (eye - target).normalize_or_zero();

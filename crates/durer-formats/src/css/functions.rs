@@ -77,8 +77,7 @@ fn split_at<'a, 'b>(pieces: &'b [Piece<'a>], separator: &Token<'_>) -> Vec<&'b [
     parts.collect()
 }
 
-/// Returns the components of a colour as they stand in a function: with commas, or with blanks and a stroke
-/// before alpha.
+/// Returns the components of a colour as in a function: with commas, or with blanks and a stroke before alpha.
 fn of_components(space: Space, inside: &[Piece<'_>]) -> Option<Color> {
     let mut parts = split(inside, ',');
     let alpha: Option<&[Piece<'_>]>;
@@ -136,7 +135,7 @@ fn component_of(part: &[Piece<'_>], space: Space, index: usize) -> Option<f64> {
     number(part, space.whole(index))
 }
 
-/// `color-mix()`.
+/// Evaluates `color-mix()`.
 fn mixed(inside: &[Piece<'_>], current: Option<Color>, depth: u32) -> Option<Color> {
     let parts = split(inside, ',');
     let [method, first, second] = parts.as_slice() else { return None };

@@ -1,7 +1,7 @@
 //! Spaces that colours are given and mixed in.
 //!
-//! Source: *CSS Color Module Level 4*, W3C, § 10 and the sample code of § 17; B. Ottosson, *A perceptual color space for
-//! image processing*, 2020 (Oklab).
+//! Source: *CSS Color Module Level 4*, W3C, § 10 and the sample code of § 17; B. Ottosson, *A perceptual color space
+//! for image processing*, 2020 (Oklab).
 
 use libm::{atan2, cbrt, hypot, pow, sincos};
 
@@ -119,13 +119,13 @@ fn encoded(v: f64) -> f64 {
     if a <= 0.0031308 { v * 12.92 } else { (1.055 * pow(a, 1.0 / 2.4) - 0.055).copysign(v) }
 }
 
-/// From lightness, chroma and hue in degrees to lightness and two axes.
+/// Converts lightness, chroma and hue in degrees to lightness and two axes.
 fn from_polar([l, c, h]: Row) -> Row {
     let (sin, cos) = sincos(h.to_radians());
     [l, c * cos, c * sin]
 }
 
-/// Back; if there is no chroma the hue is not a number.
+/// Converts lightness and two axes to lightness, chroma and hue in degrees; without chroma the hue is not a number.
 fn to_polar([l, a, b]: Row, none: f64) -> Row {
     let chroma = hypot(a, b);
     let hue = if chroma < none { f64::NAN } else { atan2(b, a).to_degrees() };
@@ -145,7 +145,7 @@ fn xyz_to_lab(xyz: Row) -> Row {
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
-/// sRGB from hue in degrees, saturation and lightness in percent.
+/// Converts hue in degrees, saturation and lightness in percent to sRGB.
 fn hsl_to_rgb([h, s, l]: Row) -> Row {
     let (s, l) = (s / 100.0, l / 100.0);
     [0.0, 8.0, 4.0].map(|n| {
@@ -154,7 +154,7 @@ fn hsl_to_rgb([h, s, l]: Row) -> Row {
     })
 }
 
-/// Hue, saturation and lightness.
+/// Converts sRGB to hue in degrees, saturation and lightness in percent.
 fn rgb_to_hsl(rgb: Row) -> Row {
     let [hue, low, high] = hue_and_range(rgb);
     let (l, d) = ((low + high) / 2.0, high - low);
@@ -238,7 +238,7 @@ impl Space {
         }
     }
 
-    /// Returns the colour of components; what goes beyond is kept, but lightness and chroma.
+    /// Returns the colour of components; values beyond their range are kept, except lightness and chroma.
     pub fn color(self, mut components: Row, alpha: f64) -> Color {
         let [first, second, _] = &mut components;
         match self {

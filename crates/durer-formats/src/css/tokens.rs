@@ -1,6 +1,7 @@
 //! Tokens of CSS.
 //!
-//! Source: *CSS Syntax Module Level 3*, W3C, § 4. Any text has tokens; what does not fit is a delimiter of one character.
+//! Source: *CSS Syntax Module Level 3*, W3C, § 4. Any text has tokens; what does not fit is a delimiter of one
+//! character.
 
 use std::borrow::Cow;
 
@@ -106,7 +107,7 @@ fn kind_of(closing: char) -> usize {
 
 struct Lexer<'a> {
     text: &'a str,
-    /// The next byte.
+    /// Index of the next byte.
     at: usize,
 }
 

@@ -35,9 +35,9 @@ pub(crate) enum Whole {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Value {
     Number(f64),
-    /// In pixels.
+    /// A length in pixels.
     Length(f64),
-    /// In degrees.
+    /// An angle in degrees.
     Angle(f64),
 }
 

@@ -1,10 +1,10 @@
 //! Sheets as DXF for CAD: AutoCAD 2004 (AC1018), the first version with colours beyond the palette;
 //! what reads DXF 2000 reads it.
 //!
-//! Model space in millimetres, y up, the origin in the lower left corner of the sheet. Each layer of the
-//! sheet is one with a colour, a line weight and a line type, CONTINUOUS, HIDDEN or CENTER; polylines are
-//! LWPOLYLINE, curves are LINE, ARC, CIRCLE, ELLIPSE and SPLINE, or LWPOLYLINE too, dots are CIRCLE, text is TEXT, dimensions are
-//! DIMENSION with their blocks, areas are HATCH with solid fill.
+//! Model space in millimetres, y up, the origin in the lower left corner of the sheet. Each layer of the sheet is one
+//! with a colour, a line weight and a line type, CONTINUOUS, HIDDEN or CENTER; polylines are LWPOLYLINE, curves are
+//! LINE, ARC, CIRCLE, ELLIPSE and SPLINE, or LWPOLYLINE too, dots are CIRCLE, text is TEXT, dimensions are DIMENSION
+//! with their blocks, areas are HATCH with solid fill.
 //!
 //! Written from Autodesk's *DXF Reference* (2004).
 
@@ -22,7 +22,7 @@ use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use durer::work::Work;
 use std::io::Write;
 
-/// Writes a sheet as an ASCII DXF file, encoded in the ANSI code page with `\U+XXXX` for what is not ASCII.
+/// Writes a sheet as an ASCII DXF file, encoded in the ANSI code page with `\U+XXXX` for characters that are not ASCII.
 ///
 /// # Errors
 /// [`crate::Error::Io`] where writing fails.
@@ -137,7 +137,8 @@ fn viewport(tags: &mut Tags, sheet: &Sheet) {
     tags.tag(0, "ENDTAB");
 }
 
-/// The dashes of HIDDEN and CENTER are those of the sheet's first pens of the kind; CENTER is there where it is used.
+/// Writes the line types. The dashes of HIDDEN and CENTER are those of the sheet's first pens of the kind; CENTER is
+/// written only where it is used.
 fn line_types(tags: &mut Tags, sheet: &Sheet) {
     let first = |name: &str| sheet.pens.iter().find(|p| line_type(Some(p)) == name);
     let hidden: &[f64] = first(HIDDEN).map_or(&[3.0, 1.5], |p| p.dashes.as_slice());

@@ -62,7 +62,7 @@ pub(super) fn turned_up(curve: &Curve, height: f64) -> Curve {
     Curve { start: place(curve.start), pieces, closed: curve.closed }
 }
 
-/// An entity for each arc, for lines in a row and for cubic curves in a row.
+/// Writes an entity for each arc, and one for lines in a row and for cubic curves in a row.
 fn pieces_of(tags: &mut Tags, to: &Target<'_>, curve: &Curve) {
     let all: Vec<(DVec2, &Piece)> = curve.iter().collect();
     for row in all.chunk_by(|a, b| goes_on(a.1, b.1)) {
@@ -94,8 +94,8 @@ pub(super) fn line(tags: &mut Tags, to: &Target<'_>, start: DVec2, end: DVec2) {
 /// A stroke shorter than this part of its width is a dot.
 const DOT: f64 = 0.05;
 
-/// Writes a stroke that is a dot as a circle of the pen's width, and returns whether it is one. The circle's own line is
-/// as thin as can be: it is what the dot covers.
+/// Writes a stroke that is a dot as a circle of the pen's width, and returns whether it is one. The circle's own line
+/// is as thin as can be: it is what the dot covers.
 pub(super) fn dot(tags: &mut Tags, to: &Target<'_>, start: DVec2, end: DVec2) -> bool {
     let Some(pen) = to.pen.filter(|pen| start.distance(end) < DOT * pen.width) else {
         return false;
@@ -120,7 +120,7 @@ pub(super) fn polyline(tags: &mut Tags, to: &Target<'_>, points: &[(DVec2, f64)]
     }
 }
 
-/// A circle, an ellipse or a part of one; parts run counter-clockwise.
+/// Writes a circle, an ellipse or a part of one; parts run counter-clockwise.
 fn arc(tags: &mut Tags, to: &Target<'_>, arc: &Arc) {
     let (start, end) = match arc.turn < 0.0 {
         true => (arc.start + arc.turn, arc.start),
@@ -153,7 +153,7 @@ fn within_turn(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).floor()
 }
 
-/// Cubic Bézier curves in a row, as one spline with knots three times each where they meet.
+/// Writes cubic Bézier curves in a row as one spline, with knots three times each where they meet.
 fn spline(tags: &mut Tags, to: &Target<'_>, row: &[(DVec2, &Piece)]) {
     let Some((start, _)) = row.first() else { return };
     let mut control = vec![*start];

@@ -47,8 +47,8 @@ impl<'a> Dimensions<'a> {
         self.all.iter().enumerate().map(|(i, d)| (block_name(i), d.record))
     }
 
-    /// Writes the variables that stand for a style in programs that know none, as LibreCAD: those of the scale that most
-    /// dimensions have.
+    /// Writes the variables that stand for a style in programs that know none, as LibreCAD: those of the scale that
+    /// most dimensions have.
     pub(super) fn variables(&self, tags: &mut Tags) {
         let count = |style: &(f64, f64)| {
             let own = |d: &Listed| (d.dimension.units_per_millimetre, d.dimension.text.height);
@@ -182,7 +182,7 @@ fn text(tags: &mut Tags, sheet: &Sheet, layer: &str, text: &DimensionText) {
     tags.real(50, degrees(text.along)).int(72, 1).point3(11, at).class("AcDbText");
 }
 
-/// Filled triangles.
+/// Writes filled triangles.
 fn solids(tags: &mut Tags, sheet: &Sheet, layer: &str, rings: &[Vec<DVec2>]) {
     for ring in rings {
         let [a, b, c] = ring[..] else { continue };

@@ -7,7 +7,7 @@ use durer::target::Curve;
 use durer::target::drawing::Anchor;
 use durer::target::sheet::{Mark, Sheet};
 
-/// A block with its entities; names with a star, but for those of the two spaces, are anonymous.
+/// Writes a block with its entities; names with a star, except those of the two spaces, are anonymous.
 pub(super) fn block(tags: &mut Tags, name: &str, record: u32, entities: impl FnOnce(&mut Tags)) {
     let (start, end) = (tags.fresh(), tags.fresh());
     let begin = |tags: &mut Tags, kind: &str, handle: u32| {
@@ -89,7 +89,7 @@ pub(super) fn entity(
     }
 }
 
-/// A solid fill between rings, each as its corners with the bulges of the arcs that begin there.
+/// Writes a solid fill between rings, each as its corners with the bulges of the arcs that begin there.
 fn hatch(tags: &mut Tags, rings: &[Vec<(DVec2, f64)>]) {
     tags.class("AcDbHatch").point3(10, DVec2::ZERO).real(210, 0.0).real(220, 0.0).real(230, 1.0);
     // Solid, not bound to other entities; paths are polylines, areas alternate from ring to ring.

@@ -24,7 +24,7 @@ pub(super) const ROOT: u32 = 0xc;
 pub(super) const GROUPS: u32 = 0xd;
 pub(super) const MODEL: u32 = 0x1f;
 pub(super) const PAPER: u32 = 0x1b;
-/// From here on handles are given out in order.
+/// First of the handles that are given out in order.
 pub(super) const FIRST: u32 = 0x30;
 
 /// Entity type of strokes.
@@ -62,12 +62,12 @@ impl Tags {
         self.tag(code, &format!("{value:X}"))
     }
 
-    /// Returns a real number; micrometres are the last digits.
+    /// Writes a real number with six digits after the point: micrometres are the last.
     pub fn real(&mut self, code: u16, value: f64) -> &mut Self {
         self.precise(code, value, 6)
     }
 
-    /// Returns a real number with this many digits after the point.
+    /// Writes a real number with this many digits after the point.
     pub fn precise(&mut self, code: u16, value: f64, digits: usize) -> &mut Self {
         let mut text = String::new();
         push(&mut text, value, digits);
@@ -107,7 +107,7 @@ impl Tags {
         self.class("AcDbSymbolTable").int(70, count as i64)
     }
 
-    /// Returns the common start of a table's entry.
+    /// Writes the common start of a table's entry.
     pub fn record(&mut self, kind: &str, table: u32, class: &str) -> &mut Self {
         let handle = self.fresh();
         self.tag(0, kind).handle(5, handle).handle(330, table);
@@ -157,7 +157,7 @@ pub(super) fn palette([r, g, b, _]: [u8; 4]) -> i64 {
     COLORS.iter().min_by_key(|(c, _)| apart(c)).map_or(7, |(_, index)| *index)
 }
 
-/// The exact colour, if it is not black: that follows the background.
+/// Writes the exact colour unless it is black, which follows the background.
 pub(super) fn true_color(tags: &mut Tags, [r, g, b, _]: [u8; 4]) {
     if [r, g, b] != [0; 3] {
         tags.int(420, (i64::from(r) << 16) | (i64::from(g) << 8) | i64::from(b));
@@ -170,8 +170,8 @@ pub(super) struct Target<'a> {
     pub pen: Option<&'a Pen>,
 }
 
-/// The common start of an entity. Colour and weight are the layer's; they stand here where a layer
-/// may have marks of several pens.
+/// Writes the common start of an entity. Colour, line type and weight are the layer's; line type and weight are
+/// written here where a layer may have marks of several pens.
 pub(super) fn begin(tags: &mut Tags, kind: &str, layer: &str, pen: Option<&Pen>) {
     let (handle, owner) = (tags.fresh(), tags.owner);
     tags.tag(0, kind).handle(5, handle).handle(330, owner).class("AcDbEntity").tag(8, layer);

@@ -17,8 +17,9 @@ const FLAT: f64 = 0.003;
 /// Writes a sheet in millimetres, absolute, from the lower left corner, y up: pens of one width and colour one
 /// after another, each taken once, layer by layer, and its strokes on a short way.
 ///
-/// Circular arcs are G2 and G3 with I and J, which count from where the arc begins, none further than three eighths of a
-/// turn; ellipses and cubic curves are arcs that stay within 0.01 mm. Without [`MachineOptions::arcs`] all are chords.
+/// Circular arcs are G2 and G3 with I and J, which count from where the arc begins, none further than three eighths of
+/// a turn; ellipses and cubic curves are arcs that stay within 0.01 mm. Without [`MachineOptions::arcs`] all are
+/// chords.
 ///
 /// Between pens the machine goes to the origin and waits (`M0`). Dashes and text are strokes of their own; fills
 /// are drawn as outlines, last.
@@ -76,7 +77,7 @@ struct Head<'a, W> {
 }
 
 impl<W: Write> Head<'_, W> {
-    /// One stroke; a single point is a dot.
+    /// Draws one stroke; a single point is a dot.
     fn draw(&mut self, way: &Way) -> Result<()> {
         self.travel(way.start)?;
         writeln!(self.out, "{}", self.machine.pen_down)?;

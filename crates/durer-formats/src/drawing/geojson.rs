@@ -161,7 +161,7 @@ fn position(out: &mut impl Write, p: DVec2) -> Result<()> {
     Ok(())
 }
 
-/// JSON has no number that is not finite, and −0 says nothing here.
+/// Writes a coordinate; numbers that are not finite, which JSON does not have, become 0, and so does −0.
 fn coordinate(out: &mut impl Write, value: f64) -> Result<()> {
     let value = if value.is_finite() && value != 0.0 { value } else { 0.0 };
     number::write(out, value)?;

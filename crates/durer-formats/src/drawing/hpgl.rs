@@ -15,8 +15,8 @@ const UNITS: f64 = 40.0;
 /// strokes on a short way. The origin is the lower left corner, y up.
 ///
 /// Curves are drawn as chords: ends of arcs, in whole units and degrees, would lie elsewhere. Dashes and text are
-/// strokes of their own, as plotters differ in theirs. Fills are drawn as outlines with the pen after the last: a pen has no
-/// areas.
+/// strokes of their own, as plotters differ in theirs. Fills are drawn as outlines with the pen after the last: a pen
+/// has no areas.
 ///
 /// # Errors
 /// [`crate::Error::Io`] where writing fails.
@@ -24,7 +24,7 @@ pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
     write_for(out, sheet, &MachineOptions::default())
 }
 
-/// The same for a plotter with this many pens.
+/// Writes a sheet as [`write()`] does, for a plotter with the pens of `machine`.
 pub(super) fn write_for(
     out: &mut impl Write,
     sheet: &Sheet,

@@ -25,12 +25,12 @@ pub struct MachineOptions {
     pub arcs: bool,
     /// The lines of G-code that put the pen down.
     pub pen_down: String,
-    /// Those that lift it.
+    /// Commands that lift the pen.
     pub pen_up: String,
 }
 
 impl Default for MachineOptions {
-    /// 1500 mm a minute, and a servo on the spindle's output, as GRBL has it; it gets 0.2 s to turn.
+    /// Returns the default: 1500 mm a minute, and a servo on the spindle's output, as GRBL has it, with 0.2 s to turn.
     fn default() -> Self {
         Self {
             pens: None,
@@ -44,6 +44,8 @@ impl Default for MachineOptions {
 }
 
 impl MachineOptions {
+    /// Checks the options.
+    ///
     /// # Errors
     /// [`Error::Library`] for a speed that is not above 0, no pens, and commands with what machines take for
     /// something else.
@@ -81,7 +83,7 @@ pub struct Pass {
     pub width: Option<f64>,
     /// sRGB with straight alpha.
     pub color: [u8; 4],
-    /// Names of layers and what the pen draws of them.
+    /// Names of layers, and the chains that the pen draws of them.
     pub layers: Vec<(String, Vec<Chain>)>,
 }
 
@@ -110,14 +112,14 @@ impl Pass {
     }
 }
 
-/// The way of a pen: where it begins, and for each arc or line its end and its bulge, the tangent of a quarter of its turn,
-/// above 0 counter-clockwise, 0 for lines.
+/// The way of a pen: where it begins, and for each arc or line its end and its bulge, the tangent of a quarter of its
+/// turn, above 0 counter-clockwise, 0 for lines.
 pub struct Way {
     pub start: DVec2,
     pub steps: Vec<(DVec2, f64)>,
 }
 
-/// Returns what is to be drawn, in an order with short ways in the air from `start` on.
+/// Returns the ways to draw, in an order with short moves of the lifted pen from `start` on.
 pub fn ways(chains: Vec<Chain>, start: DVec2) -> Vec<Way> {
     ordered_chains(chains, start).into_iter().filter_map(way).collect()
 }
@@ -180,7 +182,7 @@ fn with_parts(mark: &Mark) -> impl Iterator<Item = &Mark> {
     std::iter::once(mark).chain(parts)
 }
 
-/// Gives what the least used pens draw to those most like them, until this many are left.
+/// Moves the chains of the least used pens to the pens most like them, until this many are left.
 fn fold(passes: &mut Vec<Pass>, most: usize) {
     while passes.len() > most.max(1) {
         let lengths: Vec<f64> = passes.iter().map(Pass::length).collect();

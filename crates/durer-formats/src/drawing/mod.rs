@@ -51,7 +51,7 @@ pub enum DrawingFormat {
 }
 
 impl DrawingFormat {
-    /// All of them.
+    /// All formats.
     pub const ALL: &'static [Self] =
         &[Self::Svg, Self::Pdf, Self::Dxf, Self::Hpgl, Self::Gcode, Self::GeoJson];
 
@@ -106,21 +106,22 @@ impl FromStr for DrawingFormat {
 /// Options of some of the formats.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FileOptions {
-    /// For DXF.
+    /// Options for DXF.
     pub dxf: DxfStrokes,
-    /// For HPGL and G-code.
+    /// Options for HPGL and G-code.
     pub machine: MachineOptions,
-    /// Budget of what is made in memory: PDF and DXF.
+    /// Budget for files that are made in memory: PDF and DXF.
     pub work: Work,
 }
 
 /// Stage of files that are made in memory.
 const MADE: &str = "file of the drawing";
 
-/// Writes a drawing in one of the formats: the sheet, or for GeoJSON what was laid onto it.
+/// Writes a drawing in one of the formats: the sheet, or for GeoJSON the drawings laid onto it.
 ///
 /// # Errors
-/// [`Error::Io`] where writing fails; [`Error::Library`] where the budget has no room for the file; what [`MachineOptions::check`] finds.
+/// [`Error::Io`] where writing fails; [`Error::Library`] where the budget has no room for the file; what
+/// [`MachineOptions::check`] finds.
 pub fn write(
     out: &mut impl Write,
     format: DrawingFormat,

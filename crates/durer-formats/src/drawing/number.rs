@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-/// Appends a number rounded to this many digits after the point, without trailing zeros and, like
-/// SVG and PDF allow, without the zero before the point. What is not finite becomes 0.
+/// Appends a number rounded to this many digits after the point, without trailing zeros and, like SVG and PDF allow,
+/// without the zero before the point. Numbers that are not finite become 0.
 pub fn push(text: &mut String, value: f64, digits: usize) {
     let start = text.len();
     let value = if value.is_finite() { value } else { 0.0 };

@@ -35,7 +35,7 @@ const FIRST_LAYER: i32 = 6;
 
 /// Writes a sheet as a PDF 1.5 document of one page of the sheet's size, without dates.
 ///
-/// Text is drawn by the single-stroke font; its words stand beneath it, invisible, to be searched and copied.
+/// Text is drawn by the single-stroke font; its words are beneath it, invisible, for searching and copying.
 ///
 /// # Errors
 /// [`crate::Error::Io`] where writing fails.
@@ -301,7 +301,7 @@ fn path(text: &mut String, points: &[DVec2], closed: bool) {
     }
 }
 
-/// Control points have a digit more than ends, which are those of polylines too.
+/// Writes an element of a path. Control points have a digit more than ends, which are those of polylines too.
 fn element(text: &mut String, element: &PathElement) {
     let (points, operator): (&[DVec2], _) = match element {
         PathElement::MoveTo(p) => (&[*p], "m"),

@@ -40,7 +40,7 @@ pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
     Ok(())
 }
 
-/// A layer; the pen of its first stroke is the group's style, so that most strokes need none.
+/// Writes a layer; the pen of its first stroke is the group's style, so that most strokes need none.
 fn write_layer(out: &mut impl Write, sheet: &Sheet, layer: &SheetLayer) -> Result<()> {
     let name = escaped(&layer.name);
     let mut text = format!(
@@ -129,7 +129,7 @@ fn write_mark(text: &mut String, sheet: &Sheet, mark: &Mark, common: Option<usiz
     }
 }
 
-/// A line of text as strokes.
+/// Writes a line of text as strokes.
 fn letters(text: &mut String, words: &str, style: &str, strokes: &[Vec<DVec2>]) {
     *text += &format!("<path aria-label=\"{}\"{style} d=\"", escaped(words));
     strokes.iter().for_each(|stroke| path(text, stroke, false));

@@ -40,7 +40,7 @@ fn line(text: &mut String, last: &mut DVec2, end: DVec2) {
     *last += way;
 }
 
-/// A command with points that are given from the last place; that is then the last of them.
+/// Writes a command with points relative to the last place, which then becomes the last of them.
 fn step(text: &mut String, command: char, last: &mut DVec2, points: &[DVec2]) {
     text.push(command);
     let from = *last;
@@ -77,19 +77,19 @@ fn arcs(text: &mut String, last: &mut DVec2, arc: &Arc, end: DVec2) {
     }
 }
 
-/// In micrometres.
+/// Returns a point in whole micrometres.
 fn rounded(p: DVec2) -> DVec2 {
     (p * 1000.0).round()
 }
 
-/// Two coordinates given in micrometres.
+/// Writes two coordinates given in micrometres.
 pub(super) fn pair(text: &mut String, p: DVec2) {
     push(text, p.x / 1000.0, DIGITS);
     separator(text, p.y);
     push(text, p.y / 1000.0, DIGITS);
 }
 
-/// A blank, unless the sign of the next number parts it from the last.
+/// Writes a blank, unless the sign of the next number separates it from the last.
 pub(super) fn separator(text: &mut String, next: f64) {
     if next >= 0.0 {
         text.push(' ');

@@ -164,7 +164,7 @@ fn place(point: &Point) -> Option<DVec3> {
     }
 }
 
-/// From a scan's coordinates to the file's.
+/// Transformation from a scan's coordinates to the file's.
 struct Pose {
     rotation: DMat3,
     translation: DVec3,

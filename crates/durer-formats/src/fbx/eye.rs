@@ -12,7 +12,7 @@ use ufbx::{ApertureMode, Camera, Light, LightDecay, LightType, Node, ProjectionM
 /// Millimetres per inch, the unit of the size of film.
 const INCH: f64 = 25.4;
 
-/// Gives a model the cameras and lights of its nodes. `unit` is the length of the file's unit in metres.
+/// Adds the cameras and lights of a model's nodes to it. `unit` is the length of the file's unit in metres.
 pub(super) fn add(model: &mut Model, scene: &Scene, frames: &Frames, unit: f64, own_lights: bool) {
     let here = |node: &Node| Place::Path(node.element.name.to_string());
     let eyes = scene.nodes.into_iter().filter_map(|node| {

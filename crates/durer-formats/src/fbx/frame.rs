@@ -18,7 +18,7 @@ pub(super) struct World {
 }
 
 impl World {
-    /// Returns the frame that a file's settings tell.
+    /// Returns the frame by a file's settings.
     pub fn of(scene: &Scene, model: &mut Model) -> Self {
         let unit = Some(scene.settings.unit_meters).filter(|m| m.is_finite() && *m > 0.0);
         let scale = DMat4::from_scale(DVec3::splat(unit.unwrap_or(0.01)));
@@ -106,11 +106,11 @@ impl Local {
 #[derive(Debug, Clone, Copy)]
 struct Frame {
     world: DMat4,
-    /// Without the node's own scale.
+    /// Matrix without the node's own scale.
     unscaled: DMat4,
     /// The scale that those below inherit, where they do so by themselves.
     scale: DVec3,
-    /// From the geometry to the node.
+    /// Matrix from the geometry to the node.
     geometry: DMat4,
 }
 
@@ -123,8 +123,7 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    /// Returns the frames of all nodes of a scene in the world. Parents stand before their
-    /// children.
+    /// Returns the frames of all nodes of a scene in the world. Parents come before their children.
     pub fn of(scene: &Scene, world: DMat4) -> Self {
         let geometry = DMat4::IDENTITY;
         let root = Frame { world, unscaled: world, scale: DVec3::ONE, geometry };
@@ -171,7 +170,8 @@ impl Frames {
         }
     }
 
-    /// T · Roff · Rp · Rpre · R · Rpost⁻¹ · Rp⁻¹ · Soff · Sp · S · Sp⁻¹, from right to left.
+    /// Returns the node's own placement: T · Roff · Rp · Rpre · R · Rpost⁻¹ · Rp⁻¹ · Soff · Sp · S · Sp⁻¹, from right
+    /// to left.
     fn local(&mut self, node: &Node) -> Local {
         let props = &node.element.props;
         let mut zero = |name| self.vector(props, name, DVec3::ZERO);

@@ -13,7 +13,7 @@ use ufbx::{Exporter, MaterialMap, Scene, ShaderType, Texture, WrapMode};
 /// The largest exponent of a highlight: narrower ones fall between pixels.
 const MAX_SHININESS: f32 = 10_000.0;
 
-/// Makes materials, each once for the sets of texture coordinates that a mesh has.
+/// Materials, each made once for the sets of texture coordinates that a mesh has.
 pub(super) struct Materials<'s> {
     images: Images<'s>,
     known: HashMap<(u32, Vec<u32>), usize>,
@@ -64,7 +64,7 @@ impl<'s> Materials<'s> {
         model.scene.materials.len() - 1
     }
 
-    /// Tells what was left out.
+    /// Adds warnings of what was left out.
     pub fn warn(&self, model: &mut Model) {
         for (tally, what) in [
             (&self.layered, "textures have layers or are computed; their first picture is shown"),
@@ -143,7 +143,7 @@ impl<'s> Materials<'s> {
         self.opacity(model, to, opacity, (color, alpha), sets);
     }
 
-    /// Pictures of roughness, or of its opposite, and of metalness, joined.
+    /// Sets roughness and metalness by pictures of roughness, or of its opposite, and of metalness, joined.
     fn roughness(
         &mut self,
         model: &mut Model,
@@ -247,7 +247,7 @@ impl<'s> Materials<'s> {
         }
     }
 
-    /// Normal maps; and bump maps that show normals, as many programs have it.
+    /// Sets the normal texture: a normal map, or a bump map that shows normals, as many programs have it.
     fn normals(
         &mut self,
         model: &mut Model,
@@ -305,14 +305,13 @@ impl<'s> Materials<'s> {
     }
 }
 
-/// Returns the number of the set of texture coordinates that a texture asks for by name, else the
-/// first.
+/// Returns the number of the set of texture coordinates that a texture names, else the first.
 fn set(texture: &Texture, sets: &[&str]) -> u32 {
     let asked: &str = texture.uv_set.as_ref();
     sets.iter().take(SETS).position(|name| *name == asked).unwrap_or(0) as u32
 }
 
-/// From texture coordinates with v downwards to the picture: the way back from where it is laid.
+/// Returns the matrix from texture coordinates with v downwards to the picture: the inverse of the picture's placement.
 fn transform(texture: &Texture) -> DMat3 {
     let vector = |name: &str, none: f64| {
         let found = texture.element.props.find_prop(name).map(|p| p.value_vec4);

@@ -156,7 +156,7 @@ impl<'s> Nodes<'s> {
         })
     }
 
-    /// Tells what was left out.
+    /// Adds warnings of what was left out.
     pub fn warn(&self, model: &mut Model) {
         self.materials.warn(model);
         for (tally, what) in [

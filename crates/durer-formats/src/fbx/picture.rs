@@ -4,8 +4,8 @@ use crate::{Found, Resources};
 use std::collections::BTreeMap;
 use ufbx::{Scene, Texture};
 
-/// Finds pictures: those that the file holds, those where it says, and those of that name beside it, for
-/// many paths are of the machine that wrote the file.
+/// Source of pictures: those that the file contains, those at the paths that it names, and those of the same name
+/// beside it, for many paths are of the machine that wrote the file.
 pub(super) struct Pictures<'s> {
     outside: &'s dyn Resources,
     inside: BTreeMap<String, &'s [u8]>,

@@ -11,8 +11,8 @@ use ufbx::{AllocatorOpts, ErrorType, IndexErrorHandling, LoadOpts, Scene, SceneR
 /// Reads an FBX file.
 ///
 /// # Errors
-/// [`Error::Decode`] where it is broken, [`Error::Limit`] for too much of anything. What is missing or
-/// left out is a warning.
+/// [`Error::Decode`] where it is broken, [`Error::Limit`] for too much of anything. Warnings name missing and omitted
+/// parts.
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let limits = options.limits.clone();
     let scene = load(bytes, &limits)?;
@@ -38,7 +38,7 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     Ok(model)
 }
 
-/// Lets the library read what is in memory, and nothing else.
+/// Reads the scene from memory with the library, and nothing else.
 fn load(bytes: &[u8], limits: &Limits) -> Result<SceneRoot> {
     let memory = usize::try_from(limits.memory()).unwrap_or(usize::MAX);
     let allocator = || AllocatorOpts {
@@ -119,8 +119,8 @@ fn repairs(scene: &Scene, model: &mut Model) {
     }
 }
 
-/// Returns what the library repaired, for its own words are of its insides; `None` where nothing is lost, or the file is
-/// not one of this reader's.
+/// Returns what the library repaired, for its own words are of its insides; `None` where nothing is lost, or the file
+/// is not one of this reader's.
 fn what_is_repaired(kind: WarningType) -> Option<&'static str> {
     Some(match kind {
         WarningType::DuplicateConnection
@@ -139,7 +139,7 @@ fn what_is_repaired(kind: WarningType) -> Option<&'static str> {
     })
 }
 
-/// Tells of kinds of elements that are not read.
+/// Warns of kinds of elements that are not read.
 fn left_out(scene: &Scene, frames: &Frames, model: &mut Model) {
     let levels = scene.meshes.into_iter().filter(|m| m.subdivision_preview_levels > 0).count();
     let blends = scene.blend_channels.count;

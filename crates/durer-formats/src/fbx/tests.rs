@@ -58,7 +58,7 @@ fn node(id: u32, kind: &str, properties: &str) -> String {
     )
 }
 
-/// Properties that are three numbers.
+/// Returns properties that are three numbers.
 fn vectors(all: &[(&str, [f64; 3])]) -> String {
     let one = |(name, [x, y, z]): &(&str, [f64; 3])| {
         format!("P: \"{name}\", \"Vector3D\", \"Vector\", \"\",{x},{y},{z}\n")

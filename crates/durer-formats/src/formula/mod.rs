@@ -16,9 +16,9 @@ const LONGEST: usize = 10_000;
 
 /// A parsed formula in x and z.
 ///
-/// Numbers; `x`, `z`, and `r` for √(x² + z²); `pi`, `tau`, `e`; `+ - * / %` and `^` (or `**`), which binds
-/// tightest and to the right, so −x^2 is −(x²); parentheses; the functions that [`FUNCTIONS`] lists,
-/// angles in radians. `y =` may stand before it. A result that is not a number is a missing point.
+/// Numbers; `x`, `z`, and `r` for √(x² + z²); `pi`, `tau`, `e`; `+ - * / %` and `^` (or `**`), which binds tightest and
+/// to the right, so −x^2 is −(x²); parentheses; the functions that [`FUNCTIONS`] lists, angles in radians. `y =` may
+/// come before it. A result that is not a number is a missing point.
 ///
 /// ```
 /// use durer_formats::formula::Formula;
@@ -105,7 +105,7 @@ impl Formula {
     }
 }
 
-/// The parser leaves as many values as each operation takes.
+/// Pops a value; the parser leaves as many as each operation takes.
 fn pop(stack: &mut Vec<f64>) -> f64 {
     stack.pop().unwrap_or(f64::NAN)
 }

@@ -65,7 +65,7 @@ impl<'a> Parser<'a> {
         Error::path(format!("column {column}"), message)
     }
 
-    /// `y =` or `f(x, z) =`.
+    /// Skips `y =`, `f(x, z) =` or `y(x, z) =`.
     fn skip_left_side(&mut self) {
         let Some((left, _)) = self.text.split_once('=') else { return };
         let left_side: String = left.chars().filter(|c| !c.is_whitespace()).collect();
@@ -74,7 +74,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// One level deeper, within the limit.
+    /// Runs `parse` one level deeper, within the limit.
     fn deeper(&mut self, parse: impl FnOnce(&mut Self) -> Result<()>) -> Result<()> {
         self.level += 1;
         if self.level > DEEPEST {

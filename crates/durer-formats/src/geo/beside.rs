@@ -5,19 +5,19 @@ use crate::{NoResources, Resources};
 /// Files that are held whole may have this many bytes.
 pub(super) const MAX_BYTES: u64 = 4 << 30;
 
-/// See the module: the name of a file, its neighbours, and the layer that is wanted.
+/// Name of a file, access to the files beside it, and the requested layer.
 #[derive(Clone, Copy)]
 pub struct Beside<'a> {
     /// The file's name, without a folder.
     pub name: &'a str,
-    /// Finds the other files of a format that has several, by the file's name with another ending.
+    /// Access to the other files of a format that has several, by the file's name with another ending.
     pub resources: &'a dyn Resources,
     /// The layer that is read of a file with several; all, if none is named.
     pub layer: Option<&'a str>,
 }
 
 impl Beside<'_> {
-    /// An unknown system.
+    /// A file without a name and without other files, all of whose layers are read.
     pub const NOTHING: Beside<'static> = Beside { name: "", resources: &NoResources, layer: None };
 
     /// Returns the file of the same name with another ending; `None` if there is none.

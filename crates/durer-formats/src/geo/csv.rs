@@ -77,7 +77,8 @@ fn keys(row: &[Cow<'_, [u8]>]) -> Vec<String> {
 fn places(keys: &[String]) -> Option<Where> {
     let lower: Vec<String> = keys.iter().map(|key| key.to_lowercase()).collect();
     let index = |name: &&str| lower.iter().position(|key| key == *name);
-    // The last of that name: tables that are written here have the geometry at the end, after any field of the same name.
+    // The last of that name: tables that are written here have the geometry at the end, after any field of the same
+    // name.
     let last = |name: &&str| lower.iter().rposition(|key| key == *name);
     let whole = GEOMETRY.iter().find_map(last);
     let height = HEIGHTS.iter().find_map(index);
@@ -94,7 +95,7 @@ struct Rows {
 }
 
 impl Rows {
-    /// At the first row, which decides what separates values.
+    /// Creates a walk at the first row, which decides what separates values.
     fn new(text: &[u8]) -> Self {
         let mut counts = [0_u32; 4];
         let mut quoted = false;
@@ -175,7 +176,7 @@ impl Rows {
 
 const DELIMITERS: [u8; 4] = [b',', b';', b'\t', b'|'];
 
-/// Gives the rows of a table as features.
+/// Reader of the rows of a table as features.
 #[derive(Debug)]
 pub struct Reader {
     text: Vec<u8>,
@@ -188,7 +189,7 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// Looks at all values for what columns hold.
+    /// Creates a reader; examines all values to find the types of columns.
     ///
     /// # Errors
     /// Where no column is known to hold geometries.

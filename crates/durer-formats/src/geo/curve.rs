@@ -39,7 +39,7 @@ pub fn join(chain: &mut Points, part: &Points) {
     (skipped..part.len()).for_each(|i| chain.push(part.xy[i], part.zm(i)));
 }
 
-/// Takes empty rings away, and all holes of a polygon whose outer ring is empty.
+/// Removes empty rings, and all holes of a polygon whose outer ring is empty.
 pub fn keep_polygon(rings: &mut Vec<Points>) {
     if rings.first().is_some_and(Points::is_empty) {
         rings.clear();

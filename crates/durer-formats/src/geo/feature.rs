@@ -26,7 +26,7 @@ pub struct Feature {
     pub members: Vec<Member>,
     /// Members of its geometry that the format does not define.
     pub geometry_members: Vec<Member>,
-    /// The number of the coordinate system, of EWKT, EWKB and files that tell it for all features.
+    /// The number of the coordinate system, of EWKT, EWKB and files that state it for all features.
     pub srid: Option<i32>,
     /// Fill rule of its polygons: even-odd, except for paths of an SVG.
     pub fill_rule: WindingRule,

@@ -21,7 +21,7 @@ pub enum GeoFormat {
     WkbHex,
     /// SVG.
     Svg,
-    /// Shapefile: the .shp, with what is beside it.
+    /// Shapefile: the .shp, with the files beside it.
     Shapefile,
     /// FlatGeobuf.
     FlatGeobuf,
@@ -189,8 +189,8 @@ impl GeoFormat {
         }
     }
 
-    /// Returns the format that a file's first bytes speak for, or that its name does unless they are known to be something
-    /// else.
+    /// Returns the format that a file's first bytes speak for, or that its name does unless they are known to be
+    /// something else.
     pub fn of_file(name: &str, head: &[u8]) -> Option<Self> {
         let by_name = || Self::of_name(name);
         Self::of_content(head)

@@ -221,7 +221,7 @@ impl Reader<'_> {
     }
 }
 
-/// Positions from the texts of their numbers.
+/// Returns positions from the texts of their numbers.
 fn points<'a>(
     parts: impl Iterator<Item = Vec<&'a str>>,
     wrong: &mut Tally,

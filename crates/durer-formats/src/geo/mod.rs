@@ -81,7 +81,7 @@ impl Warnings {
         self.kept.len() >= MAX_WARNINGS
     }
 
-    /// Takes over what another reader has found.
+    /// Moves the findings of another reader to this one.
     fn append(&mut self, other: &mut Self) {
         for warning in other.kept.drain(..) {
             self.push(warning.place, warning.message);
@@ -91,14 +91,14 @@ impl Warnings {
         self.members.append(std::mem::take(&mut other.members));
     }
 
-    /// Lets all places be others, made of them.
+    /// Replaces all places by the results of a function of them.
     fn relocate(&mut self, place_of: impl Fn(crate::Place) -> crate::Place) {
         let tallies = [&mut self.curves, &mut self.members].map(|tally| &mut tally.first);
         let places = self.kept.iter_mut().map(|warning| &mut warning.place).chain(tallies);
         places.for_each(|place| *place = place_of(std::mem::take(place)));
     }
 
-    /// Tells what was counted.
+    /// Adds warnings of what was counted.
     fn tell(&mut self) {
         for (tally, what) in [
             (

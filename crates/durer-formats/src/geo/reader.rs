@@ -9,7 +9,7 @@ use crate::{Error, Place, Result, Warning};
 use durer::math::Rect;
 use std::io::Read;
 
-/// Gives the features of a file, one after the other.
+/// Reader of the features of a file, one after the other.
 ///
 /// GeoJSON holds one feature at a time in memory; the other formats hold the file.
 pub struct Reader<R> {
@@ -108,9 +108,8 @@ impl<R: Read> Reader<R> {
         told.unwrap_or_else(|| self.system.clone())
     }
 
-    /// Lets features be passed over whose boxes do not meet a window, in the coordinates of the file, where the file
-    /// has an index of places; before the first feature. Features are given that lie outside all the same if it has
-    /// none.
+    /// Skips features whose boxes do not meet a window, in the coordinates of the file, where the file has a spatial
+    /// index; before the first feature. Without an index, features outside of the window are returned as well.
     pub fn choose(&mut self, window: &Rect) {
         if let Source::FlatGeobuf(reader) = &mut self.source {
             reader.choose(window);
@@ -171,8 +170,8 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Members of collections that GeoJSON does not define, as far as they have been read: those
-    /// that stand before the features are known with the first feature.
+    /// Returns the members of collections that GeoJSON does not define, as far as they have been read: those before the
+    /// features are known with the first feature.
     pub fn members(&self) -> &[Member] {
         match &self.source {
             Source::GeoJson(reader) => reader.members(),
@@ -252,7 +251,7 @@ fn markup(source: impl Read) -> Result<String> {
         .unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned()))
 }
 
-/// Returns all features of a file in the format that its content, or else its name, speaks for.
+/// Returns all features of a file in the format of its content, or else of its name.
 ///
 /// # Errors
 /// [`Error::Unknown`] where neither does; else as [`Reader::next_feature`].

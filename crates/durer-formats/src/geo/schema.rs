@@ -100,7 +100,7 @@ impl Schema {
         schema
     }
 
-    /// Adds what a feature has.
+    /// Adds the properties of a feature.
     pub fn add(&mut self, feature: &Feature) {
         members(feature.properties.as_deref().unwrap_or_default())
             .iter()

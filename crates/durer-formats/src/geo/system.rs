@@ -20,7 +20,7 @@ impl System {
         Self { code: Some(code), wkt: None }
     }
 
-    /// Creates a system by its definition, of which the number is looked for.
+    /// Creates a system by its definition, and searches for its number.
     pub fn of_wkt(wkt: &str) -> Self {
         let wkt = wkt.trim();
         let given = (!wkt.is_empty()).then(|| wkt.to_owned());

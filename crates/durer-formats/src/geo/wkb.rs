@@ -56,7 +56,7 @@ fn hex([a, b]: [u8; 2]) -> Option<u8> {
     Some(digit(a)? << 4 | digit(b)?)
 }
 
-/// Type and dimensions of a type code of ISO or EWKB; `None` if it is neither.
+/// Returns type and dimensions of a type code of ISO or EWKB; `None` if it is neither.
 fn kind_of(code: u32) -> Option<(u32, Dimensions)> {
     let plain = code & !(HAS_Z | HAS_M | HAS_SRID);
     let (kind, thousands) = (plain % 1000, plain / 1000);
@@ -80,7 +80,7 @@ pub fn decode_hex(line: &[u8], number: u64) -> Result<Vec<u8>> {
     pairs.iter().enumerate().map(|(i, &pair)| hex(pair).ok_or_else(|| wrong(i))).collect()
 }
 
-/// Reads geometries one after the other.
+/// Reader of geometries, one after the other.
 pub struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -100,7 +100,7 @@ impl<'a> Reader<'a> {
         Self { bytes, at: 0, warnings: Warnings::default() }
     }
 
-    /// Returns the byte after what has been read.
+    /// Returns the index of the next byte to read.
     pub fn offset(&self) -> usize {
         self.at
     }
@@ -251,7 +251,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// The parts of a collection, each with its own header, of one of these kinds; of any if there is none.
+    /// Reads the parts of a collection, each with its own header, of one of `kinds`; of any kind if `kinds` is empty.
     fn parts(
         &mut self,
         header: &Header,
@@ -393,8 +393,8 @@ impl<'a> Reader<'a> {
 /// ```
 ///
 /// # Errors
-/// [`Error::Decode`] with the byte, also for what follows the geometry; [`Error::Unsupported`] for geometries that durer
-/// does not know.
+/// [`Error::Decode`] with the byte, also for what follows the geometry; [`Error::Unsupported`] for geometries that
+/// durer does not know.
 pub fn from_wkb(bytes: &[u8]) -> Result<(Geometry, Option<i32>)> {
     let mut reader = Reader::new(bytes);
     let header = reader.header()?;
@@ -407,8 +407,8 @@ pub fn from_wkb(bytes: &[u8]) -> Result<(Geometry, Option<i32>)> {
     Ok((geometry, header.srid))
 }
 
-/// Writes a geometry as well-known binary, little-endian: as EWKB where it has the number of a coordinate system, as ISO
-/// else.
+/// Writes a geometry as well-known binary, little-endian: as EWKB where it has the number of a coordinate system, as
+/// ISO else.
 ///
 /// # Errors
 /// [`Error::Io`] where writing fails.

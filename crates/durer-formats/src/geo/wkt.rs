@@ -66,7 +66,7 @@ fn tag(word: &str) -> Option<(usize, Option<Dimensions>)> {
 /// Position up to which a text has been read.
 #[derive(Debug, Clone, Copy)]
 pub struct Mark {
-    /// The next byte.
+    /// Index of the next byte.
     at: usize,
     /// The last place that was reported: byte, line, and the start of the line.
     told: (usize, u64, usize),
@@ -78,7 +78,7 @@ impl Default for Mark {
     }
 }
 
-/// Reads geometries one after the other.
+/// Reader of geometries, one after the other.
 pub struct Reader<'a> {
     text: &'a [u8],
     at: usize,
@@ -110,7 +110,7 @@ impl<'a> Reader<'a> {
         found
     }
 
-    /// Line and column of the next byte that is not a blank. Counts on from the last reported place.
+    /// Returns the line and column of the next byte that is not a blank; counts on from the last reported place.
     fn place(&mut self) -> Place {
         self.peek();
         let (from, mut line, mut start) = self.told;
@@ -274,7 +274,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// `( item, item … )`.
+    /// Reads `( item, item … )`.
     fn list(&mut self, mut item: impl FnMut(&mut Self) -> Result<()>) -> Result<()> {
         if !self.take(b'(') {
             return Err(self.expected("`(` or EMPTY"));
@@ -395,7 +395,7 @@ impl<'a> Reader<'a> {
         Ok(rings)
     }
 
-    /// Both `(1 2, 3 4)` and `((1 2), (3 4))` are in use.
+    /// Reads a multipoint; both `(1 2, 3 4)` and `((1 2), (3 4))` are in use.
     fn multi_point(&mut self, dimensions: &mut Option<Dimensions>) -> Result<Points> {
         let mut points = Points::default();
         self.list(|s| {

@@ -8,7 +8,7 @@ use super::{
 use crate::{Error, Place, Result, Warning};
 use std::io::{self, Seek, SeekFrom, Write};
 
-/// Writes features one after the other.
+/// Writer of features, one after the other.
 ///
 /// GeoJSON, WKT and WKB are written as features come, and GeoPackages by [`Writer::seekable`]; the others at the end.
 /// WKT and WKB keep geometry and SRID only; SVG keeps ids too. CSV, FlatGeobuf and Shapefile keep an id as the field
@@ -24,7 +24,7 @@ pub struct Writer<W> {
     system: System,
     layer: String,
     package: Option<Box<geopackage::Writer>>,
-    /// Writes over the first bytes, where the target can.
+    /// Function that writes over the first bytes, where the target can.
     rewrite: Option<Rewrite<W>>,
 }
 
@@ -38,7 +38,7 @@ pub struct Finished<W> {
     pub out: W,
     /// Further files that belong beside it: the endings of their names, and their bytes.
     pub beside: Vec<(&'static str, Vec<u8>)>,
-    /// Warnings about what the format could not keep.
+    /// Warnings about data that the format cannot represent.
     pub warnings: Vec<Warning>,
 }
 
@@ -63,7 +63,7 @@ impl<W: Write> Writer<W> {
         Self { format, out, members, count: 0, held, line, system, layer, package, rewrite }
     }
 
-    /// Says what the layer is called, for GeoPackages; before the end.
+    /// Sets the name of the layer, for GeoPackages; before the end.
     pub fn set_layer(&mut self, name: &str) {
         name.clone_into(&mut self.layer);
     }
@@ -94,12 +94,12 @@ impl<W: Write> Writer<W> {
         Ok(warnings)
     }
 
-    /// Says which coordinate system all coordinates are in, for formats that tell it; before the first feature.
+    /// Sets the coordinate system of all coordinates, for formats that state it; before the first feature.
     pub fn set_system(&mut self, system: System) {
         self.system = system;
     }
 
-    /// Members for the head of a GeoJSON collection; taken until the first feature is written.
+    /// Sets the members for the head of a GeoJSON collection; taken until the first feature is written.
     pub fn head(&mut self, members: &[Member]) {
         if self.count == 0 {
             self.members = members.to_vec();
@@ -162,8 +162,8 @@ impl<W: Write> Writer<W> {
         Ok(())
     }
 
-    /// Ends the document, with all members of the collection: those that were not in the head come
-    /// after the features. Gives the target back.
+    /// Ends the document with all members of the collection: those that were not in the head come after the features.
+    /// Returns the target.
     ///
     /// # Errors
     /// [`crate::Error::Io`].
@@ -171,7 +171,7 @@ impl<W: Write> Writer<W> {
         self.finish_all(members).map(|finished| finished.out)
     }
 
-    /// Ends the document as [`Self::finish`], and gives further files and warnings too.
+    /// Ends the document as [`Self::finish`] does; returns further files and warnings too.
     ///
     /// # Errors
     /// [`crate::Error::Io`]; [`crate::Error::Unsupported`] where the format cannot hold the features.

@@ -24,7 +24,7 @@ pub enum Component {
 }
 
 impl Component {
-    /// By its number in the file, which is OpenGL's.
+    /// Returns the component type for its number in the file, which is OpenGL's.
     pub fn of(number: Whole) -> Option<Self> {
         Some(match number.0 {
             5120 => Self::I8,
@@ -37,7 +37,7 @@ impl Component {
         })
     }
 
-    /// In bytes.
+    /// Returns the size in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -103,7 +103,7 @@ fn shape(name: &str) -> Option<(usize, usize)> {
 }
 
 impl Layout {
-    /// Bytes of an element without gaps.
+    /// Returns the size of an element without gaps, in bytes.
     pub fn element(&self) -> usize {
         self.component.size() * self.lanes
     }
@@ -221,7 +221,7 @@ impl Source<'_> {
         Layout::of(self.root, index.index())
     }
 
-    /// Hands over an accessor's elements in order, in pieces, with the bytes from one element to the next.
+    /// Passes on an accessor's elements in order, in pieces, with the bytes from one element to the next.
     fn elements(
         &self,
         index: Whole,
@@ -258,7 +258,7 @@ impl Source<'_> {
         Err(Error::path(at, message))
     }
 
-    /// Elements without gaps, sparse values put in.
+    /// Returns the elements without gaps, with sparse values inserted.
     fn packed(&self, index: Whole, layout: &Layout, at: &str) -> Result<Vec<u8>> {
         let accessor = &self.root.accessors[index.index()];
         let mut bytes = match accessor.buffer_view {
@@ -292,7 +292,7 @@ impl Source<'_> {
         Ok(bytes)
     }
 
-    /// Elements of N floats; integers are converted, normalized where the accessor says so.
+    /// Returns elements of N floats; integers are converted, normalized where the accessor says so.
     ///
     /// # Errors
     /// Where the accessor has another shape, or its data are not there.
@@ -300,7 +300,7 @@ impl Source<'_> {
         self.vectors(index, at)
     }
 
-    /// [`Self::floats`] as vectors.
+    /// Returns [`Self::floats`] as vectors.
     ///
     /// # Errors
     /// As [`Self::floats`].
@@ -331,7 +331,7 @@ impl Source<'_> {
         Ok(all)
     }
 
-    /// Elements of N unsigned integers.
+    /// Returns elements of N unsigned integers.
     ///
     /// # Errors
     /// As [`Self::floats`], and for signed or floating numbers.
@@ -379,7 +379,7 @@ fn occupied<'a>(view: &Bytes<'a>, layout: &Layout, at: &str) -> Result<Bytes<'a>
     part.ok_or_else(|| Error::path(at, "its elements are outside of their view"))
 }
 
-/// Elements one after the other, whatever lies between them.
+/// Returns the elements one after the other, without the bytes between them.
 fn gather(view: &Bytes<'_>, layout: &Layout, at: &str) -> Result<Vec<u8>> {
     let (element, stride) = (layout.element(), layout.stride);
     let bytes = occupied(view, layout, at)?.whole()?;

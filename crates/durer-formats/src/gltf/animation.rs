@@ -188,8 +188,8 @@ fn zip(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     a.iter().zip(b).map(|(&a, &b)| f(a, b)).collect()
 }
 
-/// Spherical interpolation along the shorter arc (Shoemake 1985); linear where the two are so close
-/// that the sine of their angle says nothing.
+/// Interpolates spherically along the shorter arc (Shoemake 1985); linearly where the two are so close that the sine
+/// of their angle is of no use.
 fn slerp(a: &[f64], b: &[f64], t: f64) -> Vec<f64> {
     let quaternion = |v: &[f64]| match *v {
         [x, y, z, w] => unit(DQuat::from_xyzw(x, y, z, w)),

@@ -6,15 +6,15 @@ use std::collections::BTreeMap;
 /// Faults of primitives that could not be read.
 #[derive(Default)]
 pub struct Broken {
-    /// By what they have in common, a missing file or being broken: the first error, the primitive it is of,
-    /// and how many there are.
+    /// Errors by their common cause, a missing or a broken file: the first error, the primitive it is of, and how many
+    /// there are.
     kinds: BTreeMap<String, (Error, String, u64)>,
     /// The kind that came first.
     first: Option<String>,
 }
 
 impl Broken {
-    /// Notes an error; one that is not the primitive's own is given back.
+    /// Records an error; returns one that is not the primitive's own.
     pub fn take(&mut self, error: Error, at: String) -> Result<()> {
         let kind = match &error {
             Error::Resource { .. } => error.to_string(),
@@ -26,8 +26,7 @@ impl Broken {
         Ok(())
     }
 
-    /// Warns of what is left out, and of missing buffers; if nothing is left to show, the first of it is an
-    /// error.
+    /// Warns of omissions, and of missing buffers; if nothing is left to show, the first of it is an error.
     pub fn tell(mut self, missing: impl Iterator<Item = Error>, model: &mut Model) -> Result<()> {
         let unasked = missing.filter(|error| !self.kinds.contains_key(&error.to_string()));
         let mut unasked = unasked.collect::<Vec<_>>().into_iter();
@@ -55,7 +54,7 @@ fn warn(error: Error, then: &str, model: &mut Model) {
     model.warn(place, format!("{what}; {then}"));
 }
 
-/// Returns the place of an error, and what it says without it.
+/// Returns the place of an error, and its message without the place.
 pub fn apart(error: Error) -> (Place, String) {
     match error {
         Error::Resource { place, uri, message } => {

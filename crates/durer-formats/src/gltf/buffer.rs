@@ -24,24 +24,24 @@ impl Budget {
         Self { limits, bytes: Cell::new(0), primitives: Cell::new(0), instances: Cell::new(0) }
     }
 
-    /// Returns the limits with only what is left of the decoded bytes.
+    /// Returns the limits with only the rest of the decoded bytes.
     pub fn rest(&self) -> Limits {
         let decoded_bytes = self.limits.decoded_bytes.saturating_sub(self.bytes.get());
         Limits { decoded_bytes, ..self.limits.clone() }
     }
 
-    /// Takes bytes; called before the memory is.
+    /// Charges bytes; called before the memory is allocated.
     pub fn bytes(&self, count: u64, at: &str) -> Result<()> {
         take(&self.bytes, count, self.limits.decoded_bytes, "decoded size", at)?;
         Ok(self.limits.work.keep(MODEL, count)?)
     }
 
-    /// Takes triangles, lines or points.
+    /// Charges triangles, lines or points.
     pub fn primitives(&self, count: u64, at: &str) -> Result<()> {
         take(&self.primitives, count, self.limits.primitives, "number of primitives", at)
     }
 
-    /// Takes instances.
+    /// Charges instances.
     pub fn instances(&self, count: u64, at: &str) -> Result<()> {
         take(&self.instances, count, self.limits.instances, "number of instances", at)
     }
@@ -104,8 +104,8 @@ pub struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// Loads all buffers but the binary chunk, and unpacks compressed views. What needs a buffer that cannot
-    /// be had fails later, when it asks for it.
+    /// Loads all buffers but the binary chunk, and unpacks compressed views. An element that needs an unavailable
+    /// buffer fails later, when it is read.
     ///
     /// # Errors
     /// Where a buffer is shorter than it says, or a view does not unpack.

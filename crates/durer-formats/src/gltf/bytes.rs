@@ -12,7 +12,7 @@ use std::ops::Range;
 /// Bytes of a file that are read at a time: few enough for the cache.
 const AT_ONCE: usize = 64 << 10;
 
-/// A file that is read from wherever it is asked to.
+/// File that is read from any position.
 pub trait ReadAt {
     /// Fills `to` from a place on.
     fn read_at(&self, place: u64, to: &mut [u8]) -> io::Result<()>;
@@ -29,9 +29,9 @@ impl<R: Read + Seek> ReadAt for RefCell<R> {
 /// Bytes one after another.
 #[derive(Clone)]
 pub enum Bytes<'a> {
-    /// At hand.
+    /// Bytes in memory.
     Held(&'a [u8]),
-    /// In a range of an open file, within its length.
+    /// Bytes in a range of an open file, within its length.
     InFile(&'a dyn ReadAt, Range<u64>),
 }
 
@@ -50,7 +50,7 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// Returns those of a range; `None` if it leads out of them.
+    /// Returns the bytes of a range; `None` if it leads out of them.
     pub fn part(&self, range: Range<u64>) -> Option<Self> {
         match self {
             Self::Held(bytes) => {
@@ -81,8 +81,8 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// Hands them over in order, in pieces of a multiple of `unit` bytes, of which only the last may be
-    /// another number; `unit` is at least 1.
+    /// Passes the bytes on in order, in pieces of a multiple of `unit` bytes, except for the last; `unit` is at least
+    /// 1.
     ///
     /// # Errors
     /// As [`Self::whole`].

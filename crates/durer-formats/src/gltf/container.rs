@@ -55,7 +55,7 @@ pub fn split<'a>(file: &Bytes<'a>, warnings: &mut Vec<Warning>) -> Result<Contai
     Ok(container)
 }
 
-/// Little-endian 32-bit number at an offset in a file that ends at `end`.
+/// Returns the little-endian 32-bit number at an offset in a file that ends at `end`.
 fn u32_at(file: &Bytes<'_>, end: u64, at: u64) -> Result<u32> {
     let message = || Error::byte(end, "the file ends in the middle of a header");
     let word = file.part(at..at.saturating_add(4)).filter(|_| at.saturating_add(4) <= end);
@@ -104,7 +104,7 @@ fn split_binary<'a>(file: &Bytes<'a>, warnings: &mut Vec<Warning>) -> Result<Con
     Ok(Container { json, bin, binary: true })
 }
 
-/// Type, bytes and end of the chunk at an offset in a file that ends at `end`.
+/// Returns type, bytes and end of the chunk at an offset in a file that ends at `end`.
 fn chunk<'a>(file: &Bytes<'a>, end: u64, at: u64) -> Result<(u32, Bytes<'a>, u64)> {
     let length = u64::from(u32_at(file, end, at)?);
     let kind = u32_at(file, end, at + 4)?;

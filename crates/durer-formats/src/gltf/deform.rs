@@ -44,7 +44,7 @@ pub fn morph(
     Ok(())
 }
 
-/// The texture coordinates' and colours' part of [`morph`].
+/// Moves texture coordinates and colours, for [`morph`].
 fn morph_sets(
     source: &Source<'_>,
     g: &mut Geometry,
@@ -104,8 +104,8 @@ pub fn joint_matrices(source: &Source<'_>, skin: Whole, world: &[DMat4]) -> Resu
     Ok(skin.joints.iter().map(joint).zip(inverse).map(|(world, inverse)| world * inverse).collect())
 }
 
-/// Takes vertices to the world by the weighted mean of their joints' matrices (linear blend
-/// skinning); weights are divided by their sum, and a vertex without weights follows joint 0.
+/// Transforms vertices to the world by the weighted mean of their joints' matrices (linear blend skinning); weights are
+/// divided by their sum, and a vertex without weights follows joint 0.
 ///
 /// # Errors
 /// Where a vertex follows a joint that the skin does not have.

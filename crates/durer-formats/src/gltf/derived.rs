@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// Share of the light that a clear pane lets through; the rest shows the pane itself.
 const CLEAR: f32 = 0.85;
 
-/// Does all that is to be done.
+/// Runs all jobs.
 ///
 /// # Errors
 /// Where the new images are above the limits.
@@ -183,8 +183,8 @@ impl Maker<'_> {
         (through * self.mean(job.texture, false).x, None)
     }
 
-    /// Alpha is what the surface keeps: all if it does not transmit, and the more the darker its colour is,
-    /// which is what stains the light that goes through.
+    /// Sets alpha to what the surface keeps: all if it does not transmit, and the more the darker its colour is, which
+    /// stains the light that goes through.
     fn glass(&mut self, job: &Job) -> Result<()> {
         let mean = self.mean(job.texture, false).x;
         let (through, mask) = self.clearness(job);

@@ -82,7 +82,7 @@ impl Packed {
 }
 
 impl Attribute<'_> {
-    /// N floats per vertex; integers become −1 … 1 or 0 … 1 where `normalized`.
+    /// Returns N floats per vertex; integers become −1 … 1 or 0 … 1 where `normalized`.
     ///
     /// # Errors
     /// Where the attribute has another number of components.

@@ -46,7 +46,7 @@ fn loss(name: &str) -> &'static str {
     }
 }
 
-/// Refuses files that require what is not read, and warns of each optional extension that is not.
+/// Refuses files that require an unsupported extension, and warns of each optional one.
 ///
 /// # Errors
 /// [`Error::Unsupported`] naming the required extensions.

@@ -11,8 +11,8 @@ use std::f64::consts::PI;
 /// Stronger lights count as this strong, so that all that is made of them stays finite.
 const STRONGEST: f64 = 1e30;
 
-/// The cameras of the scene's nodes, in drawing order, with unique names. A camera without a far
-/// plane gets one behind the scene. Cameras that cannot see are left out with a warning.
+/// Adds the cameras of the scene's nodes, in drawing order, with unique names. A camera without a far plane gets one
+/// behind the scene. Cameras that cannot see are left out with a warning.
 pub fn cameras(
     source: &Source<'_>,
     nodes: &[usize],
@@ -78,7 +78,7 @@ pub fn lights(
     lights
 }
 
-/// Lights shine along −z of their node.
+/// Returns the kind of a light, which shines along −z of its node.
 fn light_kind(light: &json::Light, world: DMat4) -> Option<LightKind> {
     let position = world.w_axis.truncate();
     let direction = (-world.z_axis.truncate()).try_normalize();

@@ -135,7 +135,7 @@ fn decode_image(
     Ok(image)
 }
 
-/// OpenGL's numbers for filters and wraps; what is unknown is the default.
+/// Converts a sampler with OpenGL's numbers for filters and wraps; what is unknown becomes the default.
 fn sampler(sampler: &Sampler) -> SceneSampler {
     let number = |n: Option<Whole>| n.map_or(0, |n| n.0);
     let wrap = |n| match number(n) {

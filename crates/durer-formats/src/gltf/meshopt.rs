@@ -29,7 +29,7 @@ const TOO_SHORT: Refusal = "the compressed data end too early";
 /// Said where bytes are left over.
 const TOO_LONG: Refusal = "there are compressed data left over";
 
-/// Takes packed bytes to `count · stride` plain ones.
+/// Unpacks bytes to `count · stride` plain ones.
 pub fn decode(data: &[u8], packing: Packing<'_>) -> Result<Vec<u8>, Refusal> {
     let Packing { count, stride, mode, filter } = packing;
     if mode != "ATTRIBUTES" && filter != "NONE" {
@@ -50,7 +50,7 @@ pub fn decode(data: &[u8], packing: Packing<'_>) -> Result<Vec<u8>, Refusal> {
     }
 }
 
-/// Indices as little-endian bytes of 2 or 4 each; 16 bits wrap, as the specification says.
+/// Returns indices as little-endian bytes of 2 or 4 each; 16 bits wrap, as the specification says.
 fn narrow(indices: Vec<u32>, stride: usize) -> Result<Vec<u8>, Refusal> {
     match stride {
         2 => Ok(indices.iter().flat_map(|&i| (i as u16).to_le_bytes()).collect()),
@@ -89,7 +89,7 @@ impl<'a> Bytes<'a> {
     }
 }
 
-/// Undoes the zigzag that folds the sign of a difference into its lowest bit.
+/// Reverses the zigzag code that puts the sign of a difference into its lowest bit.
 fn unzigzag(v: u32) -> u32 {
     (v >> 1) ^ (v & 1).wrapping_neg()
 }

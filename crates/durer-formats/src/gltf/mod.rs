@@ -97,8 +97,8 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     read_parts(&Bytes::Held(bytes), resources, options)
 }
 
-/// Reads a model from an open file, of which the binary chunk is never held as a whole, only what is made of it. The
-/// same model as [`read`] gives of the file's bytes.
+/// Reads a model from an open file whose binary chunk is never in memory as a whole, only the model made of it. The
+/// model is that of [`read`] with the file's bytes.
 ///
 /// # Errors
 /// As [`read`]; [`Error::Limit`] for a file of more bytes than may be decoded, [`Error::Io`] where it cannot be read.
@@ -177,7 +177,7 @@ fn tell_missing_scene(root: &Root, nodes: &[usize], model: &mut Model) {
     }
 }
 
-/// Only version 2 is read, and of it 2.0.
+/// Checks the version: only version 2 is read, and of it 2.0.
 fn check_version(root: &Root) -> Result<()> {
     let asset = root.asset.clone().ok_or_else(|| Error::whole("`asset` is missing"))?;
     let version = asset.version.ok_or_else(|| Error::path("asset", "`version` is missing"))?;
@@ -192,7 +192,7 @@ fn check_version(root: &Root) -> Result<()> {
     Err(old::unsupported(Place::Path("asset.version".to_owned()), wanted))
 }
 
-/// Makes the meshes and instances of nodes.
+/// Builder of the meshes and instances of nodes.
 struct Builder<'a> {
     source: &'a Source<'a>,
     world: &'a [DMat4],

@@ -4,11 +4,11 @@ use super::buffer::Source;
 use super::json::{Draco, Whole};
 use crate::Result;
 
-/// Without the feature there is never a decoded mesh: the fallback accessors are read.
+/// Empty type: without the feature there is never a decoded mesh: the fallback accessors are read.
 #[derive(Debug)]
 pub enum Packed {}
 
-/// Without the feature there is none.
+/// Attribute of a decoded mesh; without the feature there is none.
 pub type Attribute<'a> = &'a Packed;
 
 impl Packed {
@@ -17,17 +17,17 @@ impl Packed {
         Ok(None)
     }
 
-    /// Never called.
+    /// Returns the indices; never called.
     pub fn indices(&self) -> Vec<u32> {
         match *self {}
     }
 
-    /// Never called.
+    /// Returns an attribute; never called.
     pub fn attribute(&self, _: Whole) -> Option<Attribute<'_>> {
         match *self {}
     }
 
-    /// Never called.
+    /// Returns the floats of an attribute; never called.
     pub fn floats<const N: usize>(
         &self,
         _: bool,

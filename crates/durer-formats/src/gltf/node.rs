@@ -7,11 +7,11 @@ use durer::math::{DMat4, DQuat, DVec3};
 /// Values that an animation sets for a node.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Override {
-    /// In the parent's space.
+    /// Translation in the parent's space.
     pub translation: Option<DVec3>,
     /// Need not have unit length.
     pub rotation: Option<DQuat>,
-    /// Along the node's axes.
+    /// Scale along the node's axes.
     pub scale: Option<DVec3>,
     /// One per morph target.
     pub weights: Option<Vec<f32>>,
@@ -85,7 +85,7 @@ impl Tree {
         walk(root, tops.into_iter()).collect()
     }
 
-    /// For each node, whether `is` says so of one of its ancestors.
+    /// Returns for each node whether `is` holds for one of its ancestors.
     fn below(&self, is: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut below = vec![false; self.parents.len()];
         for &n in &self.order {
@@ -94,7 +94,7 @@ impl Tree {
         below
     }
 
-    /// For each node, whether KHR_node_visibility lets it be seen: itself and all of its ancestors.
+    /// Returns for each node whether KHR_node_visibility lets it be seen: itself and all of its ancestors.
     pub fn visible(&self, root: &Root) -> Vec<bool> {
         let hidden = |n: usize| {
             let visibility = root.nodes[n].extensions.visibility.as_ref();
@@ -119,8 +119,8 @@ fn parents(root: &Root) -> Result<Vec<Option<usize>>> {
     Ok(parents)
 }
 
-/// Nodes depth first, as in the file. Ends, because no node has two parents and a walk that starts
-/// at a root can come to no cycle.
+/// Visits nodes depth first, as in the file. Ends, because no node has two parents and a walk that starts at a root can
+/// come to no cycle.
 fn walk(root: &Root, roots: impl DoubleEndedIterator<Item = usize>) -> impl Iterator<Item = usize> {
     let mut stack: Vec<usize> = roots.rev().collect();
     std::iter::from_fn(move || {
@@ -142,7 +142,7 @@ fn local_matrix(node: &Node, pose: &Override) -> DMat4 {
     DMat4::from_scale_rotation_translation(scale, unit(rotation), translation)
 }
 
-/// Returns the quaternion at unit length; what has no direction turns nothing.
+/// Returns the quaternion at unit length; one without a direction turns nothing.
 pub fn unit(q: DQuat) -> DQuat {
     let length = q.length();
     if length.is_finite() && length > 1e-12 { q * (1.0 / length) } else { DQuat::IDENTITY }

@@ -5,8 +5,8 @@ use crate::model::count_infinite;
 use durer::math::{Vec3, Vec4};
 use durer::scene::Topology;
 
-/// Gives normals and tangents unit length. A normal without a direction becomes the mean of the
-/// normals of the triangles around its vertex, by area; where these have none either, +z.
+/// Scales normals and tangents to unit length. A normal without a direction becomes the mean of the normals of the
+/// triangles around its vertex, by area; where these have none either, +z.
 pub fn repair(g: &mut Geometry) {
     let positions = count_infinite(&g.mesh.positions);
     if positions > 0 {

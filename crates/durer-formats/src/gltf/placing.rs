@@ -13,7 +13,7 @@ pub struct Placing {
     pub weights: Vec<f32>,
     /// The matrices of the skin, if there is one.
     pub joints: Option<Vec<DMat4>>,
-    /// In the world; one, or those of EXT_mesh_gpu_instancing.
+    /// Matrices to the world; one, or those of EXT_mesh_gpu_instancing.
     pub places: Vec<DMat4>,
 }
 

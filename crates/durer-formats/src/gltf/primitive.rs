@@ -92,7 +92,7 @@ impl<'a> Attributes<'a> {
         Ok(rgb.into_iter().map(|rgb| rgb.extend(1.0)).collect())
     }
 
-    /// All sets of joints that have weights.
+    /// Reads all sets of joints that have weights.
     fn influences(&self, g: &mut Geometry) -> Result<()> {
         for set in 0.. {
             let (joints, weights) = (format!("JOINTS_{set}"), format!("WEIGHTS_{set}"));
@@ -266,7 +266,7 @@ fn read_indices(source: &Source<'_>, primitive: &Primitive, at: &str) -> Result<
     Ok(Some(source.integers::<1>(accessor, &format!("{at}.indices"))?.into_flattened()))
 }
 
-/// Tells the first index that is none of this many vertices, if there is one.
+/// Returns a message on the first index that is none of this many vertices, if there is one.
 fn first_dangling(indices: &[u32], vertices: usize) -> Option<String> {
     // All of them at once, because there is hardly ever one, and it is found sooner than the first.
     let dangling = |i: u32| i as usize >= vertices;

@@ -13,9 +13,9 @@ const DIELECTRIC: f32 = 0.04;
 /// The factors of a material.
 #[derive(Debug, Clone, Copy)]
 pub struct Glossy {
-    /// Linear RGBA of what is scattered.
+    /// Diffuse colour: linear RGBA.
     pub diffuse: Vec4,
-    /// Linear RGB of what is reflected straight on.
+    /// Colour of the reflection at normal incidence: linear RGB.
     pub specular: Vec3,
     /// 1 = mirror, 0 = matte.
     pub glossiness: f32,
@@ -46,7 +46,7 @@ impl Glossy {
         brightness(self.specular) < DIELECTRIC
     }
 
-    /// Multiplied by texels of the diffuse and the specular-glossiness texture, as they are stored.
+    /// Multiplies by texels of the diffuse and the specular-glossiness texture, as they are stored.
     fn textured(self, [diffuse, specular]: [Option<[u8; 4]>; 2]) -> Self {
         let texel = |texel: Option<[u8; 4]>| decode_rgba8(texel.unwrap_or([255; 4]));
         let glossiness = decode_unorm8(specular.map_or(255, |s| s[3]));

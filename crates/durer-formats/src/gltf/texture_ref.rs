@@ -16,9 +16,9 @@ pub fn texture(info: Option<&TextureInfo>) -> Option<TextureRef> {
     })
 }
 
-/// KHR_texture_transform: scale, then rotation, then offset. v points down, so what the extension
-/// calls counter-clockwise has its sine below the diagonal negative; its example (offset 0, 1, a
-/// quarter turn, scale ½: the lower left quadrant) shows the sign.
+/// Returns the matrix of KHR_texture_transform: scale, then rotation, then offset. v points down, so what the
+/// extension calls counter-clockwise has its sine below the diagonal negative; its example (offset 0, 1, a quarter
+/// turn, scale ½: the lower left quadrant) shows the sign.
 fn matrix(transform: &json::TextureTransform) -> DMat3 {
     let (sin, cos) = (libm::sin(transform.rotation), libm::cos(transform.rotation));
     let [su, sv] = transform.scale.unwrap_or([1.0; 2]);

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 /// Something to be done to a material once its images are there.
 pub struct Job {
-    /// Its number.
+    /// Index of the material.
     pub material: usize,
     /// The texture that the scene's material has no place for.
     pub texture: Option<TextureRef>,
@@ -30,21 +30,22 @@ pub enum What {
     },
     /// Make base colour, metalness and roughness of the diffuse and the specular-glossiness texture.
     Glossy(Glossy),
-    /// Make what transmits light blended: its alpha is what it keeps of the light behind it.
+    /// Conversion of a transmitting material to a blended one: its alpha is the part of the light behind it that it
+    /// keeps.
     Glass,
 }
 
 /// Changes to make to materials once their images are loaded, and warnings.
 #[derive(Default)]
 pub struct Todo {
-    /// In this order.
+    /// Changes, in the order of application.
     pub jobs: Vec<Job>,
     /// First material and number of materials for each extension and kind of texture that is not applied.
     left_out: BTreeMap<(&'static str, &'static str), (usize, u64)>,
 }
 
 impl Todo {
-    /// Asks for the mean of a texture, which `set` multiplies to a factor.
+    /// Requests the mean of a texture, by which `set` multiplies a factor.
     pub fn mean(
         &mut self,
         material: usize,
@@ -65,7 +66,7 @@ impl Todo {
         self.left_out.entry((extension, what)).or_insert((material, 0)).1 += 1;
     }
 
-    /// The warnings of what is left out.
+    /// Adds the warnings about textures that are left out.
     pub fn tell(&self, warnings: &mut Vec<Warning>) {
         for ((extension, what), (first, count)) in &self.left_out {
             let of = if *count > 1 { format!(" ({count} textures)") } else { String::new() };

@@ -103,7 +103,7 @@ impl Header {
         Ok(header)
     }
 
-    /// West, east, south and north of the outermost heights.
+    /// Returns west, east, south and north of the outermost heights.
     fn place(&self, columns: u64, rows: u64) -> Option<[f64; 4]> {
         let (dx, dy) = (self.dx?, self.dy?);
         let first = |(at, is_middle): (f64, bool), size: f64| {

@@ -92,7 +92,7 @@ impl HeightMapFormat {
 pub struct HeightMapOptions {
     /// Limits: [`Limits::decoded_bytes`] counts eight bytes per point.
     pub limits: Limits,
-    /// A height that means "missing", beside what the format itself says.
+    /// A height that means "missing", beside that of the format itself.
     pub no_data: Option<f64>,
     /// Array of an NPZ file, or member of a JSON object; `None` takes the only one, or the first.
     pub array: Option<String>,
@@ -127,9 +127,9 @@ struct Grid {
 /// of `name`; text that begins with a number is a table.
 ///
 /// # Errors
-/// [`Error::Unknown`] if neither gives the format; [`Error::Decode`] with line or byte for what is
-/// broken; [`Error::Limit`] above the limits; [`Error::Unsupported`] for known things that are not read;
-/// [`Error::Library`] for a grid that [`HeightField::new`] refuses.
+/// [`Error::Unknown`] if neither gives the format; [`Error::Decode`] with line or byte for broken contents;
+/// [`Error::Limit`] above the limits; [`Error::Unsupported`] for known things that are not read; [`Error::Library`] for
+/// a grid that [`HeightField::new`] refuses.
 pub fn read(bytes: &[u8], name: &str, options: &HeightMapOptions) -> Result<HeightMap> {
     let format = HeightMapFormat::of_content(bytes)
         .or_else(|| HeightMapFormat::of_name(name).filter(|f| *f == HeightMapFormat::Table))

@@ -99,7 +99,7 @@ fn number<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..at.checked_add(N)?)?.try_into().ok()
 }
 
-/// Numbers of N bytes, their order turned to little-endian.
+/// Converts numbers of N bytes with `f`, their order turned to little-endian.
 fn each<const N: usize>(data: &[u8], count: usize, big: bool, f: fn([u8; N]) -> f64) -> Vec<f64> {
     let numbers = data.as_chunks::<N>().0.iter().take(count);
     numbers

@@ -42,7 +42,7 @@ pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
     Ok(Grid { columns, rows, heights, place: None, format, warnings })
 }
 
-/// Heights of pixels that are grey, as red, green, blue and alpha.
+/// Returns the heights of pixels that are grey, as red, green, blue and alpha.
 fn heights<const N: usize>(
     samples: &[u16],
     rgba: impl Fn(&[u16; N]) -> (u16, u16, u16, u16),

@@ -126,7 +126,7 @@ impl HasPosition for Spot {
 const NEEDED: &str =
     "their coordinates must be 0, or between 1.8e-43 and 3.2e60 to either side of it";
 
-/// Points that lie anywhere, on a grid; what is outside of their hull is missing.
+/// Interpolates scattered points on a grid; heights outside of their hull are missing.
 fn scattered(points: &[[f64; 3]], options: &HeightMapOptions) -> Result<Grid> {
     let told = |message: String| Warning { place: Place::Whole, message };
     let whole: Vec<&[f64; 3]> = points.iter().filter(|p| p.iter().all(|v| v.is_finite())).collect();

@@ -107,7 +107,7 @@ fn separator(text: &[u8]) -> Option<u8> {
     [b';', b'\t', b','].into_iter().find(|s| first.contains(s))
 }
 
-/// Cells of a line with the column of each, counted from 1 in bytes.
+/// Returns the cells of a line with the column of each, counted from 1 in bytes.
 fn cells(line: &[u8], separator: Option<u8>) -> impl Iterator<Item = (u64, &[u8])> {
     let parts = line.split(move |b| separator.map_or(b.is_ascii_whitespace(), |s| *b == s));
     let mut at = 0u64;

@@ -149,7 +149,7 @@ fn row_pixels(header: &Header, row: &[u8]) -> Vec<[u8; 4]> {
     indices.take(width).map(|i| header.color(i)).collect()
 }
 
-/// Returns the parts of a pixel that masks tell, each spread over a byte.
+/// Returns the parts of a pixel by masks, each spread over a byte.
 fn fields(value: u32, masks: [u32; 4]) -> [u8; 4] {
     let mut parts = masks.map(|mask| {
         let shift = mask.trailing_zeros().min(31);
@@ -161,7 +161,7 @@ fn fields(value: u32, masks: [u32; 4]) -> [u8; 4] {
     parts
 }
 
-/// Run-length encoded pixels; what is left out is the first colour.
+/// Decodes run-length encoded pixels; those that are left out have the first colour.
 fn runs(header: &Header, data: &[u8]) -> Option<Vec<[u8; 4]>> {
     let (width, height) = (header.width as usize, header.height as usize);
     let mut pixels = vec![header.color(0); width * height];

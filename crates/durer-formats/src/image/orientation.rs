@@ -139,7 +139,7 @@ fn value(exif: &[u8]) -> Option<u16> {
 mod tests {
     use super::*;
 
-    /// Exif data with a tag before the orientation.
+    /// Creates Exif data with a tag before the orientation.
     fn exif(big: bool, orientation: u16) -> Vec<u8> {
         let short = |v: u16| if big { v.to_be_bytes() } else { v.to_le_bytes() };
         let long = |v: u32| if big { v.to_be_bytes() } else { v.to_le_bytes() };

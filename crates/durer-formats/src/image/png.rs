@@ -55,7 +55,7 @@ pub(super) fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Pictur
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct DeepImage {
-    /// RGBA with straight alpha; greys have three channels alike, what is opaque an alpha of 65535.
+    /// RGBA with straight alpha; greys have three channels alike, opaque ones an alpha of 65535.
     pub pixels: Pixels<[u16; 4]>,
     /// Channels of the file.
     pub channels: Channels,
@@ -63,11 +63,11 @@ pub struct DeepImage {
 
 /// Decodes a PNG file of 16 bits per channel without rounding; samples of fewer bits are spread over the same range.
 ///
-/// `name`, limits and what is left out are those of [`super::decode`]; a pixel takes 8 bytes. Whether a file is so deep
-/// tells [`bits_per_sample`].
+/// `name`, limits and omissions are those of [`super::decode`]; a pixel takes 8 bytes. [`bits_per_sample`] returns
+/// whether a file is so deep.
 ///
 /// # Errors
-/// As [`super::decode`]; also [`Decode`](crate::Error::Decode) for what is not a PNG.
+/// As [`super::decode`]; also [`Decode`](crate::Error::Decode) if the bytes are no PNG.
 pub fn decode_deep(bytes: &[u8], name: &str, limits: &Limits) -> Result<DeepImage> {
     if !bytes.starts_with(MAGIC) {
         return Err(broken(name, "is no PNG, the one format with 16 bits per channel"));
@@ -116,7 +116,7 @@ fn png_samples(
     Ok((frame, samples))
 }
 
-/// Samples, each read by `v`, as RGBA; `None` for indices of a palette.
+/// Converts samples, each read by `v`, to RGBA; `None` for indices of a palette.
 fn rgba<S: Copy, T: Copy>(
     samples: &[S],
     color: png::ColorType,

@@ -21,7 +21,7 @@ const CHUNK: usize = 8;
 /// Bytes of a variable length record before its data.
 pub(super) const RECORD_HEADER: usize = 54;
 
-/// Gives all points to `each`; how many could be decompressed.
+/// Passes all points to `each`; returns how many could be decompressed.
 ///
 /// # Errors
 /// A description of the compression that is missing or broken.
@@ -82,8 +82,8 @@ impl<'a> Points<'a> {
     }
 }
 
-/// Returns the layers that points are made of. That of GPS times, whose decompression recurses as deep as a file says, is
-/// not among them.
+/// Returns the layers that points are made of. That of GPS times, whose decompression recurses as deep as a file says,
+/// is not among them.
 fn selection() -> DecompressionSelection {
     DecompressionSelection::xy_returns_channel()
         .decompress_z()
@@ -185,7 +185,7 @@ impl<'a> Guard<'a> {
         Self { bytes, at: data, start: Some(data), layout, next: None }
     }
 
-    /// The first chunk begins here.
+    /// Begins the first chunk here.
     fn begin(&mut self) {
         self.start = None;
         self.next = self.layout.map(|(point, _)| Next::Point(point));

@@ -74,7 +74,7 @@ fn from_bytes(m: &Statements) -> Option<Statements> {
     })
 }
 
-/// `d`; or else `Tr`, of which 1 is opaque to many writers, though transparent to the manual.
+/// Sets alpha from `d`, or else from `Tr`, of which 1 is opaque to many writers, though transparent to the manual.
 fn set_alpha(material: &mut Material, notes: &mut Notes, name: &str, m: &Statements) {
     let alpha = match (m.dissolve, m.transparency) {
         (Some(d), _) => d,
@@ -95,7 +95,7 @@ fn set_alpha(material: &mut Material, notes: &mut Notes, name: &str, m: &Stateme
     }
 }
 
-/// `norm`; or else a bump map that shows normals, as many writers have it.
+/// Sets the normal texture from `norm`, or else from a bump map that shows normals, as many writers have it.
 fn normals(
     model: &mut Model,
     images: &mut Images<'_>,
@@ -114,7 +114,7 @@ fn normals(
     }
 }
 
-/// `map_Kd`, with `map_d` as its alpha.
+/// Sets the base texture from `map_Kd`, with `map_d` as its alpha.
 fn base_texture(
     model: &mut Model,
     images: &mut Images<'_>,
@@ -153,7 +153,7 @@ fn specular(model: &mut Model, images: &mut Images<'_>, material: &mut Material,
     }
 }
 
-/// The statements of the metallic-roughness extension.
+/// Applies the statements of the metallic-roughness extension.
 fn physical(model: &mut Model, images: &mut Images<'_>, material: &mut Material, m: &Statements) {
     let maps = [&m.map_roughness, &m.map_metallic].map(|map| map.as_ref());
     if m.roughness.is_none() && m.metallic.is_none() && maps == [None, None] {

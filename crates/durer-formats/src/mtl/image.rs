@@ -49,8 +49,8 @@ impl<'a> Images<'a> {
         image.is_some_and(|image| image.data.iter().any(|pixel| pixel[3] < 255))
     }
 
-    /// Returns whether a picture shows normals rather than heights; `None` if it cannot be read,
-    /// after a warning. What is grey, or named after heights, is not decoded for it.
+    /// Returns whether a picture shows normals rather than heights; `None` if it cannot be read, after a warning.
+    /// Pictures that are grey, or named after heights, are not decoded for it.
     pub fn shows_normals(&mut self, model: &mut Model, path: &str) -> Option<bool> {
         let name = path.to_ascii_lowercase();
         if ["bump", "height", "disp"].iter().any(|word| name.contains(word)) {

@@ -156,7 +156,7 @@ fn value(cursor: &mut Cursor<'_>) -> Result<f32> {
     }
 }
 
-/// `d alpha` or `d -halo alpha`.
+/// Reads `d alpha` or `d -halo alpha`.
 fn dissolve(cursor: &mut Cursor<'_>) -> Result<f32> {
     let mut ahead = cursor.clone();
     if ahead.word() == Some(b"-halo") {
@@ -165,7 +165,7 @@ fn dissolve(cursor: &mut Cursor<'_>) -> Result<f32> {
     value(cursor)
 }
 
-/// Options and the name of a picture, which may hold blanks.
+/// Reads options and the name of a picture, which may hold blanks.
 fn map(cursor: &mut Cursor<'_>) -> Result<Map> {
     let mut map =
         Map { path: String::new(), clamp: false, scale: [1.0; 2], offset: [0.0; 2], strength: 1.0 };
@@ -200,7 +200,7 @@ fn set(pair: &mut [f64; 2], values: &[f64]) {
     }
 }
 
-/// Up to `most` words that are finite numbers.
+/// Reads up to `most` words that are finite numbers.
 fn numbers(cursor: &mut Cursor<'_>, most: usize) -> Vec<f64> {
     let mut found = Vec::new();
     while found.len() < most {

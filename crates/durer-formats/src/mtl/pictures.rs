@@ -6,8 +6,8 @@ use super::notes::Notes;
 use super::parse::{Map, Statements};
 use crate::{Model, ReadOptions, Resources};
 
-/// Adds a material for each picture, matte and of its colours; whether one of them could be read. Of
-/// those that could not, there is a warning.
+/// Adds a material for each picture, matte and of its colours; returns whether one of them could be read. Of those that
+/// could not, there is a warning.
 pub(crate) fn add_pictures(
     model: &mut Model,
     names: &[String],

@@ -46,8 +46,8 @@ pub(super) fn build(
     Ok(model)
 }
 
-/// Takes materials that no library defines from lines and points, which would hardly be seen in their grey:
-/// without a material they get a colour that goes with the background.
+/// Removes materials that no library defines from lines and points, which would hardly be seen in their grey: without a
+/// material they get a colour that goes with the background.
 fn forget_undefined(model: &Model, mesh: &mut Mesh) {
     let is_default = |m: &Material| *m == Material { name: m.name.clone(), ..Material::default() };
     for part in &mut mesh.parts {
@@ -65,8 +65,8 @@ fn add(model: &mut Model, mesh: Mesh, origin: DVec3) {
     model.scene.instances.push(Instance { mesh: number, world_from_mesh, name });
 }
 
-/// Vertex colors replace the grey of the default material: meshes that have them and name no
-/// material get a white one.
+/// Sets a white material for meshes that have vertex colors and name no material: the colors replace the grey of the
+/// default material.
 fn whiten(model: &mut Model) {
     let number = model.scene.materials.len();
     let mut used = false;

@@ -1,6 +1,6 @@
 //! Corners of faces: which position, texture coordinate and normal each has, stored once per triple.
 
-/// Stands for "none" where an index would be.
+/// Value in place of an index for "none".
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// Triples looked through before one is stored again. Meshes have a handful per position; the

@@ -60,6 +60,8 @@ impl Counts {
         self.triangles as u64 + self.lines as u64 + self.points as u64
     }
 
+    /// Checks the counts against the limits.
+    ///
     /// # Errors
     /// More primitives than allowed, or more vertices than 32 bits can number.
     pub fn check(&self, limits: &Limits) -> Result<()> {
@@ -75,7 +77,7 @@ impl Counts {
         Ok(limits.work.keep(MODEL, self.bytes())?)
     }
 
-    /// About what the numbers take, and the meshes that are made of them.
+    /// Returns about how many bytes the numbers take, and the meshes that are made of them.
     fn bytes(&self) -> u64 {
         let numbers = 3 * (self.positions + self.normals) + 2 * self.tex_coords;
         let corners = 3 * self.triangles + 2 * self.lines + self.points;

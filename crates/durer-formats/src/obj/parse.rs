@@ -22,8 +22,8 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Returns the name of its primitives, which is that of their part: the object in files with several, else the group;
-    /// the other of the two if one is missing.
+    /// Returns the name of its primitives, which is that of their part: the object in files with several, else the
+    /// group; the other of the two if one is missing.
     pub fn name(&self, has_objects: bool) -> &str {
         let (first, second) = match has_objects {
             true => (&self.object, &self.group),
@@ -91,7 +91,7 @@ struct Parser<'a> {
     group: &'a [u8],
     /// Parts and materials for which the last run of triangles, lines and points was begun.
     open: [Option<Part<'a>>; 3],
-    /// The largest color value, to tell 0…1 from 0…255.
+    /// The largest color value, to distinguish 0…1 from 0…255.
     brightest: f32,
     /// Faces with three or more corners so far.
     faces: usize,
@@ -152,7 +152,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Statements that name things, and those that are not known.
+    /// Parses statements that name things, and those that are not known.
     fn naming(&mut self, word: &[u8]) {
         match word {
             b"usemtl" => {
@@ -193,7 +193,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Numbers of a statement that needs `least` of them; NaN where they are none.
+    /// Reads the numbers of a statement that needs `least` of them; NaN where they cannot be read.
     fn numbers<const N: usize>(&mut self, what: &str, least: usize) -> Result<([f64; N], usize)> {
         self.numbers_or_error(what, least).or_else(|error| {
             let repairs = &mut self.out.repairs;
@@ -231,7 +231,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// The color of the last position; white before the first and if there is none.
+    /// Adds the color of the last position; white before the first color and if there is none.
     fn color(&mut self, color: Option<Vec3>) {
         let colors = &mut self.out.colors;
         if colors.is_empty() {
@@ -261,7 +261,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`; `None` if the line is over.
+    /// Reads `v`, `v/vt`, `v//vn` or `v/vt/vn`; `None` if the line is over.
     fn corner(&mut self) -> Result<Option<Corner>> {
         if self.cursor.line_is_over() {
             return Ok(None);

@@ -17,10 +17,10 @@ pub(super) struct Repairs {
     pub no_attributes: Tally,
     /// Vertices with no color, or no finite one, where others have one.
     pub no_color: Tally,
-    /// Faces, lines and points that were left out for a corner, and what was wrong with the first.
+    /// Faces, lines and points that were left out for a corner, and the fault of the first.
     pub bad_corners: Tally,
     pub bad_corner: String,
-    /// Vertices, texture coordinates and normals whose numbers are none, and what was wrong with the first.
+    /// Vertices, texture coordinates and normals with invalid numbers, and the fault of the first.
     pub bad_numbers: Tally,
     pub bad_number: String,
 }

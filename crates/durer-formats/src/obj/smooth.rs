@@ -37,7 +37,7 @@ pub(super) fn fill(model: &mut Model, mesh: &mut Mesh, keys: &[Corner], count: u
     }
 }
 
-/// Per vertex: the sum of twice the vector areas of the faces that it is a corner of.
+/// Returns for each vertex the sum of twice the vector areas of the faces that it is a corner of.
 fn areas(mesh: &Mesh) -> Vec<DVec3> {
     let at = |v: u32| mesh.positions.get(v as usize).copied().unwrap_or_default().as_dvec3();
     let mut areas = vec![DVec3::ZERO; mesh.positions.len()];

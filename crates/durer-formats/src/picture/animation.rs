@@ -200,7 +200,7 @@ fn push_png<W: Write>(
 /// `RIFF`, its length, `WEBP`.
 const RIFF_HEADER: usize = 12;
 
-/// Returns the header with an open length, and what holds for all pictures.
+/// Writes the header with an open length, and the settings of all pictures.
 fn begin_webp<W: Write>(mut out: W, options: &Options) -> Result<W> {
     let (width, height) = options.size;
     out.write_all(b"RIFF\0\0\0\0WEBP")?;

@@ -12,7 +12,7 @@ const SEEN: u8 = 128;
 /// A picture by indices into few colours.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Indexed {
-    /// At most 256 colours.
+    /// Colours, at most 256.
     pub palette: Vec<[u8; 3]>,
     /// Row by row.
     pub indices: Vec<u8>,

@@ -24,7 +24,7 @@ pub(super) trait Values {
     /// Returns the fewest bytes that a value takes.
     fn least_value(&self, kind: Type) -> u64;
 
-    /// Bytes not read yet.
+    /// Returns the number of bytes not read yet.
     fn bytes_left(&self) -> u64;
 
     /// Returns the place of the last value.

@@ -54,7 +54,7 @@ impl Edges {
     }
 }
 
-/// Collects what the file holds.
+/// Builder that collects the contents of the file.
 pub(super) struct Builder {
     pub bounds: Bounds,
     pub vertices: Vertices,
@@ -103,7 +103,7 @@ impl Builder {
         Ok(plan)
     }
 
-    /// Says what is not drawn.
+    /// Warns of elements that are not drawn.
     fn note_unread(&mut self, plan: &Plan, count: u64) {
         let lacks = match plan.role {
             Role::Face | Role::Strip if !plan.has(Use::Indices) => "no list `vertex_indices`",

@@ -83,7 +83,7 @@ impl Faces {
         bounds.check_triangles(self.facets.triangles.indices.len() as u64 / 3, values)
     }
 
-    /// Reads a polygon's vertices; whether all of them exist.
+    /// Reads a polygon's vertices; returns whether all of them exist.
     fn polygon(
         &mut self,
         kind: Type,

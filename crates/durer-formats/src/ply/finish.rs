@@ -73,7 +73,7 @@ fn drop_unfinished(model: &mut Model, builder: &mut Builder) {
     }
 }
 
-/// Tells of faces and edges whose vertices do not exist.
+/// Warns of faces and edges whose vertices do not exist.
 ///
 /// # Errors
 /// Where nothing else is left.
@@ -109,7 +109,7 @@ pub(super) fn warn_infinite(model: &mut Model, infinite: usize) {
     }
 }
 
-/// Tells of faces that were left out or changed.
+/// Warns of faces that were left out or changed.
 pub(super) fn warn_of_faces(model: &mut Model, faces: &Faces) {
     for (tally, message) in faces.warnings() {
         if tally.count > 0 {

@@ -59,7 +59,7 @@ pub(super) struct Header {
 }
 
 impl Type {
-    /// Bytes of a binary value.
+    /// Returns the size of a binary value in bytes.
     pub fn size(self) -> u64 {
         match self {
             Self::I8 | Self::U8 => 1,

@@ -80,7 +80,7 @@ impl Plan {
         Self { role, steps, colored, name: element.name.clone() }
     }
 
-    /// About what a row takes that is kept, bytes.
+    /// Returns about how many bytes a kept row takes.
     pub fn bytes(&self) -> u64 {
         // Wide numbers become narrow ones beside them.
         let of_step = |step: &Step| match step.kind {

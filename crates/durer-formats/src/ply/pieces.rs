@@ -101,8 +101,8 @@ impl<R: Read + Seek> Pieces<R> {
     /// file.
     ///
     /// # Errors
-    /// [`Error::Limit`] for too many vertices, [`Error::Io`], [`durer::Error::Memory`] where the budget has no room for a
-    /// piece.
+    /// [`Error::Limit`] for too many vertices, [`Error::Io`], [`durer::Error::Memory`] where the budget has no room for
+    /// a piece.
     pub fn new(
         mut source: R,
         length: u64,
@@ -261,7 +261,7 @@ impl<R: Read + Seek> Pieces<R> {
         Ok(self.read(numbers.iter().map(|&n| u64::from(n)))?.into_positions(origin))
     }
 
-    /// Looks at all faces, if that has not been done yet.
+    /// Examines all faces, if that has not been done yet.
     fn look_at_faces(&mut self) -> Result<()> {
         if self.faces_seen.is_some() || self.faces.is_none() {
             return Ok(());
@@ -461,7 +461,7 @@ fn check_limit(what: &'static str, value: u64, limit: u64) -> Result<()> {
     Err(Error::Limit { place: Place::Whole, what, value, limit })
 }
 
-/// Numbers from 0 in place of others, in their order, and which others they stand for.
+/// Returns indices renumbered from 0, in their order, and the old index of each new one.
 fn localized(indices: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let (Some(&least), Some(&most)) = (indices.iter().min(), indices.iter().max()) else {
         return (Vec::new(), Vec::new());

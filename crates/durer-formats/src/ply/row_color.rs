@@ -15,7 +15,7 @@ pub(super) struct RowColor {
 }
 
 impl RowColor {
-    /// White, of a row that has a colour or has none.
+    /// Creates a white colour, of a row that has a colour or has none.
     pub fn new(used: bool) -> Self {
         Self { rgba: [1.0; 4], used }
     }

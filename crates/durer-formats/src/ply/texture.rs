@@ -5,8 +5,8 @@ use crate::facets::whole;
 use crate::{Model, Place, ReadOptions, Resources, mtl};
 use durer::scene::{Mesh, Part};
 
-/// Gives a mesh the materials of the pictures that the header names; `numbers` has that of each face,
-/// where faces name one.
+/// Assigns to a mesh the materials of the pictures that the header names; `numbers` has that of each face, where faces
+/// name one.
 pub(super) fn lay_on(
     model: &mut Model,
     mesh: &mut Mesh,
@@ -39,7 +39,7 @@ pub(super) fn lay_on(
     }
 }
 
-/// Runs of faces with the same picture.
+/// Returns the runs of faces with the same picture.
 fn parts(
     model: &mut Model,
     mesh: &Mesh,

@@ -95,7 +95,7 @@ impl Vertices {
         self.present.iter().skip(slot).take(count).all(Option::is_some)
     }
 
-    /// Returns the number of bytes.
+    /// Returns the number of vertices.
     pub fn len(&self) -> usize {
         self.wide.as_ref().map_or(self.all.positions.len(), Vec::len)
     }

@@ -76,7 +76,7 @@ enum Ear {
     No,
 }
 
-/// Corners to be looked at, again whenever something near them changes.
+/// Corners to examine, again whenever something near them changes.
 struct Queue {
     corners: VecDeque<usize>,
     queued: Vec<bool>,
@@ -247,7 +247,7 @@ struct Cells {
 }
 
 impl Cells {
-    /// About one corner to a cell.
+    /// Creates cells for about one corner each.
     fn new(points: &[DVec2], mut chosen: Vec<usize>) -> Self {
         let at = || chosen.iter().map(|&i| points[i]);
         let low = at().fold(DVec2::INFINITY, DVec2::min);

@@ -29,7 +29,7 @@ impl Replaced {
         self.faces.is_empty()
     }
 
-    /// Gives a face triangles of its corners; none are not replacement.
+    /// Replaces a face by triangles of its corners; none are a replacement, too.
     pub fn add(&mut self, face: usize, corners: &[u32], triangles: &[[u32; 3]]) {
         if triangles.is_empty() {
             return;
@@ -39,7 +39,7 @@ impl Replaced {
         self.faces.push((face, self.triangles.len()));
     }
 
-    /// Gives a face triangles whose corners may lie where its edges cross.
+    /// Replaces a face by triangles whose corners may lie where its edges cross.
     pub fn add_resolved(&mut self, face: usize, corners: &[u32], resolved: &Resolved) {
         if resolved.triangles.is_empty() {
             return;

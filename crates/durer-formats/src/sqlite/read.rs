@@ -99,7 +99,7 @@ impl Database {
         Error::byte((u64::from(page).saturating_sub(1)) * self.page as u64, message)
     }
 
-    /// Everything in the database, as its first table lists it.
+    /// Returns everything in the database, as its first table lists it.
     ///
     /// # Errors
     /// Where that table cannot be read.
@@ -307,7 +307,7 @@ impl<'a> Node<'a> {
     }
 }
 
-/// Returns the bytes of a record that stand on the page of its row.
+/// Returns the bytes of a record that are on the page of its row.
 fn local(length: usize, usable: usize) -> usize {
     let most = usable - 35;
     if length <= most {

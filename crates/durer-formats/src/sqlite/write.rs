@@ -44,7 +44,7 @@ impl Database {
         std::mem::take(&mut self.out)
     }
 
-    /// Writes a page and gives its number.
+    /// Writes a page and returns its number.
     fn page(&mut self, bytes: &[u8]) -> Result<u32> {
         if self.pages >= MOST_PAGES {
             let (value, limit) = (u64::from(self.pages) + 1, MOST_PAGES.into());
@@ -61,15 +61,15 @@ impl Database {
         Ok(self.pages)
     }
 
-    /// Takes note of a table or index whose first page is `root`; an index that SQLite makes by itself has no text.
+    /// Registers a table or index whose first page is `root`; an index that SQLite makes by itself has no text.
     pub fn name(&mut self, kind: &str, name: &str, table: &str, root: u32, sql: &str) {
         let sql = if sql.is_empty() { Value::Null } else { Value::from(sql) };
         let [kind, name, table] = [kind, name, table].map(Value::from);
         self.schema.push(record(&[kind, name, table, Value::Integer(root.into()), sql]));
     }
 
-    /// Returns the first page, and what is left of the others; `application` is the number of the
-    /// application, `version` which of its kind it is.
+    /// Returns the first page, and the remaining others; `application` is the number of the application, `version`
+    /// which of its kind it is.
     pub fn finish(mut self, application: u32, version: u32) -> Result<(Vec<u8>, Vec<u8>)> {
         let mut first = Page::new(TABLE_LEAF, HEADER);
         let mut table = Vec::new();
@@ -225,7 +225,7 @@ impl Table {
         Ok(())
     }
 
-    /// Writes what is left, and the pages above; gives the number of the first page.
+    /// Writes the remaining rows, and the pages above; returns the number of the first page.
     pub fn finish(mut self, to: &mut Database) -> Result<u32> {
         self.end_leaf(to)?;
         let mut level = self.leaves;
@@ -261,8 +261,8 @@ fn evenly<T>(list: &[T], most: usize) -> impl Iterator<Item = &[T]> {
     (0..count).map(move |i| &list[i * list.len() / count..(i + 1) * list.len() / count])
 }
 
-/// Writes an index: its records, each of at most 39 bytes, or fewer than four of at most 1000, in their order. Gives the
-/// number of the first page.
+/// Writes an index: its records, each of at most 39 bytes, or fewer than four of at most 1000, in their order. Returns
+/// the number of the first page.
 pub fn index(to: &mut Database, records: &[Vec<u8>]) -> Result<u32> {
     let cell = |record: &[u8]| {
         let mut cell = Vec::new();

@@ -55,7 +55,7 @@ struct Ascii<'a> {
     /// Facets of fewer than three vertices.
     small: Tally,
     decimal_commas: Tally,
-    /// Vertices that are not three numbers, and what is wrong with the first.
+    /// Vertices that are not three numbers, and the fault of the first.
     bad_vertices: Tally,
     bad_vertex: Option<Error>,
     /// True if the facet that is open has such a vertex.
@@ -112,7 +112,7 @@ impl<'a> Ascii<'a> {
         Ok(())
     }
 
-    /// `end loop`, `end facet`, `end solid`: in two words.
+    /// Reads `end loop`, `end facet` or `end solid`, written as two words.
     fn end_of(&mut self, cursor: &mut Cursor<'a>) -> Result<()> {
         let what = cursor.word().unwrap_or_default().to_ascii_lowercase();
         match &what[..] {
@@ -162,7 +162,7 @@ impl<'a> Ascii<'a> {
         Ok(())
     }
 
-    /// Numbers that have something behind them: commas between them, or for decimal points.
+    /// Reads numbers with commas between them, or with commas for decimal points.
     fn with_commas(
         &mut self,
         text: &[u8],
@@ -301,7 +301,8 @@ impl<'a> Ascii<'a> {
         self.solids.iter().map(|s| name(&s.1)).collect()
     }
 
-    /// Each solid is a part, if there are several or the one has a name. Of several, each has a name of its own.
+    /// Returns the parts: each solid is one, if there are several or the one has a name. Of several, each has a name
+    /// of its own.
     fn parts(&self) -> Vec<Part> {
         let count = self.points.len() / 3;
         if self.solids.iter().all(|(_, name)| name.is_empty()) && self.solids.len() < 2 {

@@ -42,7 +42,7 @@ pub fn read_binary_stream(
 /// Bytes for a triangle: its corners, some shared, and their numbers.
 pub(super) const BYTES: u64 = 48;
 
-/// Takes the memory for this many triangles from the budget.
+/// Charges the memory for this many triangles to the budget.
 fn keep(triangles: usize, limits: &Limits) -> Result<()> {
     Ok(limits.work.keep(MODEL, triangles as u64 * BYTES)?)
 }
@@ -112,7 +112,7 @@ pub(super) struct Facets {
 }
 
 impl Facets {
-    /// For a file that begins so and has this many facets.
+    /// Creates the facets of a file that begins with `head` and has `count` of them.
     pub fn new(head: &[u8], count: usize) -> Self {
         let mesh = Mesh { positions: Vec::with_capacity(3 * count), ..Mesh::default() };
         Self { mesh, count, palette: Palette::new(head), infinite: 0 }

@@ -42,8 +42,7 @@ impl Palette {
         Vec4::new(linear(r), linear(g), linear(b), f32::from(a) / 255.0)
     }
 
-    /// Returns the bits of a facet's attributes of which one says that facets have colors of their
-    /// own.
+    /// Returns the bits of a facet's attributes one of which marks facets with colours of their own.
     pub fn telling(&self) -> u16 {
         if self.body.is_some() { u16::MAX } else { PAINTED }
     }

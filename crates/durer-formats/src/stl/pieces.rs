@@ -148,7 +148,7 @@ impl<R: Read + Seek> crate::Pieces for Pieces<R> {
         UpAxis::Z
     }
 
-    /// Those of facets are not used.
+    /// Returns `false`: the normals of facets are not used.
     fn has_normals(&self) -> bool {
         false
     }

@@ -15,7 +15,7 @@ use usvg::{Group, Node};
 /// Groups, clip paths, masks, patterns and drawings within images may be nested so deep, all together.
 const MAX_DEPTH: u32 = 200;
 
-/// Paints nodes onto a canvas.
+/// Painter of nodes onto a canvas.
 pub(super) struct Painter<'a> {
     canvas: &'a mut Canvas,
     limits: &'a Limits,
@@ -72,7 +72,7 @@ impl<'a> Painter<'a> {
         });
     }
 
-    /// A group within its clip path and its mask, with its opacity and blend mode.
+    /// Draws a group within its clip path and its mask, with its opacity and blend mode.
     fn group(&mut self, group: &Group, map: DAffine2) {
         let map = map * paint::affine(group.transform());
         if !group.filters().is_empty() {
@@ -95,7 +95,7 @@ impl<'a> Painter<'a> {
         (0..clips).for_each(|_| self.canvas.pop(1.0));
     }
 
-    /// Puts a clip path in force; gives how many have to be popped.
+    /// Pushes a clip path; returns how many layers have to be popped.
     fn clip(&mut self, clip: &usvg::ClipPath, map: DAffine2) -> u32 {
         let outer = clip.clip_path().map_or(0, |outer| self.clip(outer, map));
         let map = map * paint::affine(clip.transform());
@@ -117,7 +117,7 @@ impl<'a> Painter<'a> {
         outer + 1
     }
 
-    /// Puts a mask in force; gives how many have to be popped.
+    /// Pushes a mask; returns how many layers have to be popped.
     fn mask(&mut self, mask: &usvg::Mask, map: DAffine2) -> u32 {
         let outer = mask.mask().map_or(0, |outer| self.mask(outer, map));
         self.canvas.begin_mask();

@@ -28,12 +28,12 @@ pub(super) struct Later {
 }
 
 impl Later {
-    /// Notes what is said of a transform.
+    /// Records the value of a transform.
     pub fn transform(&mut self, name: &str, value: &str) {
         self.transform.insert(name.to_owned(), value.to_owned());
     }
 
-    /// Notes what an attribute leaves to do.
+    /// Records the work that an attribute requires.
     pub fn note(&mut self, name: &str, value: &str, at: usize) {
         match name {
             "pathLength" => self.has_length = true,
@@ -44,7 +44,7 @@ impl Later {
         }
     }
 
-    /// Notes what to clip by, if it is a shape.
+    /// Records the clip, if it is a shape.
     pub fn clip(&mut self, value: &str, at: usize) {
         let is_shape =
             !value.trim_start().starts_with("url(") && value != "none" && value != "inherit";
@@ -118,7 +118,7 @@ fn set<'a>(
 }
 
 impl<'a, 'i> Pending<'a, 'i> {
-    /// Does what is left to do.
+    /// Does the recorded work.
     pub fn finish(
         &self,
         changes: &mut Changes<'a>,
@@ -274,7 +274,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         set(changes, self.node, "clip-path", Some(format!("url(#{id})")));
     }
 
-    /// Takes filters away that are not there, and elements of whose colours a filter leaves nothing.
+    /// Removes filters that do not exist, and elements of whose colours a filter leaves nothing.
     fn filter(
         &self,
         changes: &mut Changes<'a>,
@@ -301,7 +301,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         }
     }
 
-    /// Places the markers of a path, and takes those away that browsers do not draw.
+    /// Places the markers of a path, and removes those that browsers do not draw.
     fn mark(&self, changes: &mut Changes<'a>, ids: &HashMap<&'a str, Node<'a, 'i>>) {
         const NAMES: [&str; 3] = ["marker-start", "marker-mid", "marker-end"];
         let view = View { changes, ids };
@@ -394,7 +394,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         }
     }
 
-    /// Gives a `use` the size of the symbol that it shows, where it says none itself.
+    /// Sets the size of a `use` to that of the symbol that it shows, where it has none itself.
     fn size(&self, changes: &mut Changes<'a>, ids: &HashMap<&'a str, Node<'a, 'i>>) {
         for side in ["width", "height"] {
             let view = View { changes, ids };

@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use usvg::fontdb::{self, Database, Family, Query, Source};
 use usvg::{FontFamily, FontResolver, FontStretch, FontStyle};
 
-/// Families that may stand for a generic one, the first that is there; if none is, the first of all.
+/// Families that may replace a generic one; the first that is installed is taken, if none is, the first of all.
 const SANS: [&str; 7] =
     ["DejaVu Sans", "Noto Sans", "Liberation Sans", "Arial", "Helvetica", "Roboto", "Open Sans"];
 const SERIF: [&str; 6] = [
@@ -43,12 +43,12 @@ impl Default for Fonts {
 }
 
 impl Fonts {
-    /// No fonts.
+    /// Creates a set without fonts.
     pub const fn new() -> Self {
         Self { database: OnceLock::new() }
     }
 
-    /// Adds the fonts of a file; gives how many there are in it, 0 where the bytes are no font.
+    /// Adds the fonts of a file; returns how many there are in it, 0 where the bytes are no font.
     pub fn add(&mut self, bytes: Vec<u8>) -> usize {
         let mut database = self.database.take().unwrap_or_default();
         let all = Arc::make_mut(&mut database);
@@ -73,7 +73,7 @@ impl Fonts {
         added
     }
 
-    /// Returns whether there is none.
+    /// Returns whether there are no fonts.
     pub fn is_empty(&self) -> bool {
         self.database.get().is_none_or(|d| d.is_empty())
     }

@@ -40,8 +40,7 @@ impl Letters {
         !self.are_apart && self.case == Case::AsWritten
     }
 
-    /// Returns a text as it is to be set; `beside` says whether there are others before it and
-    /// after it.
+    /// Returns a text as it is typeset; `beside` is true for texts before it and after it.
     pub fn set(self, text: &str, beside: [bool; 2]) -> Cow<'_, str> {
         let cased = match self.case {
             Case::AsWritten => Cow::Borrowed(text),

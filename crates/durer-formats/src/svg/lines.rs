@@ -36,7 +36,7 @@ impl<'a> Lines<'a> {
         (line, column)
     }
 
-    /// Returns the same as a place for messages.
+    /// Returns the line and column as a place for messages.
     pub fn place(&self, offset: usize) -> Place {
         let (line, column) = self.at(offset);
         Place::Line(line, column)

@@ -1,7 +1,7 @@
 //! The positions of a path's markers, and their directions.
 //!
-//! Source: *SVG 2*, W3C, § 13.7.4 and § 9.5.1 (directions of vertices); what is not said there as in Chromium. usvg takes each curve that an arc
-//! is made of for a segment, and looks at closed paths as if they were open.
+//! Source: *SVG 2*, W3C, § 13.7.4 and § 9.5.1 (directions of vertices); what is not said there as in Chromium. usvg
+//! takes each curve that an arc is made of for a segment, and looks at closed paths as if they were open.
 
 use super::arcs;
 use crate::arc::Ends;
@@ -168,7 +168,7 @@ fn arc(ends: &Ends) -> Segment {
     }
 }
 
-/// Paths that show nothing but one marker each: at their middle, along the direction of a vertex.
+/// Returns paths that show nothing but one marker each: at their middle, along the direction of a vertex.
 pub(super) fn paths(
     vertices: &[Vertex],
     [start, mid, end]: [Option<&str>; 3],

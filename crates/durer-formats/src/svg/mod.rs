@@ -1,10 +1,9 @@
 //! Drawings in SVG, onto a canvas.
 //!
-//! Style sheets, and values newer than SVG 1.1, are put in attributes that usvg knows, as browsers read them; usvg resolves
-//! units, references and text; what is left — paths with fills and strokes, groups
-//! with clip paths, masks and opacity, images — is painted by [`durer::raster::paint`]. Not painted are
-//! filters, blend modes, and what moves or runs; [`Drawing::read`] and [`Drawing::draw`] say so in
-//! warnings.
+//! Style sheets, and values newer than SVG 1.1, are put in attributes that usvg knows, as browsers read them; usvg
+//! resolves units, references and text; what is left — paths with fills and strokes, groups with clip paths, masks and
+//! opacity, images — is painted by [`durer::raster::paint`]. Not painted are filters, blend modes, and what moves or
+//! runs; [`Drawing::read`] and [`Drawing::draw`] say so in warnings.
 //!
 //! ```
 //! use durer::math::DAffine2;
@@ -80,14 +79,14 @@ const NOT_DRAWN: [&str; 12] = [
 pub struct ReadOptions<'a> {
     /// The fonts for text; without any, text is left out.
     pub fonts: &'a Fonts,
-    /// Finds images that are not part of the file.
+    /// Source of images that are not part of the file.
     pub resources: &'a (dyn Resources + Sync),
     /// Limits of sizes of images, and of all images together.
     pub limits: Limits,
 }
 
 impl Default for ReadOptions<'_> {
-    /// No fonts, no resources, the default limits.
+    /// Returns the default: no fonts, no resources, the default limits.
     fn default() -> Self {
         static NONE: Fonts = Fonts::new();
         Self { fonts: &NONE, resources: &NoResources, limits: Limits::default() }
@@ -133,8 +132,8 @@ impl Drawing {
     /// Reads an SVG document.
     ///
     /// # Errors
-    /// [`Error::Decode`] with line and column for what is not XML, and if there is no `svg` element with a size,
-    /// or coordinates that overflow. Of the last usvg panics; that is caught here, but the panic hook is called.
+    /// [`Error::Decode`] with line and column if the text is not XML, and if there is no `svg` element with a size, or
+    /// coordinates that overflow. Of the last usvg panics; that is caught here, but the panic hook is called.
     pub fn read(bytes: &[u8], options: &ReadOptions<'_>) -> Result<Self> {
         let text = source::text(bytes, &options.limits)?;
         let document = parse(&text)?;
@@ -192,8 +191,8 @@ impl Drawing {
         &self.warnings
     }
 
-    /// Paints the drawing; `pixel_from_drawing` maps the drawing's units, y down, to pixels. Gives what
-    /// cannot be drawn, each kind once. Cost: that of the canvas, and of its own for each tile of a
+    /// Paints the drawing; `pixel_from_drawing` maps the drawing's units, y down, to pixels. Returns warnings of
+    /// elements that cannot be drawn, each kind once. Cost: that of the canvas, and of its own for each tile of a
     /// pattern and each image.
     pub fn draw(&self, canvas: &mut Canvas, pixel_from_drawing: DAffine2) -> Vec<Warning> {
         let mut painter = draw::Painter::new(canvas, &self.limits);
@@ -230,7 +229,7 @@ struct Heard {
     said: BTreeSet<String>,
     letters: BTreeSet<char>,
     pictures: Vec<pictures::Picture>,
-    /// Pictures that have been read, by address and by how deep they stand.
+    /// Pictures that have been read, by address and depth.
     read: pictures::Read,
 }
 
@@ -304,7 +303,7 @@ impl Prepared {
     }
 }
 
-/// Looks at a document with `above` levels of elements around it, and puts it in terms that usvg knows.
+/// Examines a document with `above` levels of elements around it, and puts it in terms that usvg knows.
 ///
 /// # Errors
 /// What usvg would not get through.
@@ -359,8 +358,8 @@ fn not_xml(error: &roxmltree::Error, text: &str) -> Error {
     Error::line(line, column, format!("not well-formed XML: {}", foreign::markup(error)))
 }
 
-/// Returns usvg's tree of a document. If numbers overflow on its way, as coordinates under a transform by 10²⁰ do, it may
-/// panic.
+/// Returns usvg's tree of a document. If numbers overflow on its way, as coordinates under a transform by 10²⁰ do, it
+/// may panic.
 fn resolved(
     tree: impl FnOnce() -> std::result::Result<usvg::Tree, usvg::Error>,
 ) -> Result<usvg::Tree> {
@@ -385,8 +384,8 @@ fn wrong(error: usvg::Error) -> Error {
     }
 }
 
-/// Refuses arcs of paths with numbers beyond this: an arc becomes the more curves the larger it is, and one of
-/// 10³⁸ pixels millions, which take for ever.
+/// Limit on the numbers in arcs of paths; beyond it they are refused. An arc becomes the more curves the larger it is,
+/// and one of 10³⁸ pixels millions, which take for ever.
 const FARTHEST: f64 = 1e15;
 
 /// Checks that arcs can be read in a time that is in proportion to the document.
@@ -422,7 +421,7 @@ fn is_far(segment: std::result::Result<PathSegment, svgtypes::Error>) -> bool {
     largest > FARTHEST
 }
 
-/// Elements that are not drawn, each kind once, with the first place.
+/// Returns warnings of elements that are not drawn, each kind once, with the first place.
 fn passed_over(document: &roxmltree::Document<'_>) -> Vec<Warning> {
     let mut seen = BTreeSet::new();
     let mut warnings = Vec::new();

@@ -231,7 +231,7 @@ pub(super) fn path_length<'a>(
     (length.is_finite() && length > 0.0).then_some(length)
 }
 
-/// Looks for boxes.
+/// Search for boxes.
 pub(super) struct Boxes<'b, A> {
     pub all: &'b A,
     pub around: &'b Around,

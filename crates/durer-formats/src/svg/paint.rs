@@ -69,7 +69,7 @@ pub(super) fn blend(mode: usvg::BlendMode) -> Blend {
     }
 }
 
-/// Colours and gradients; `None` for a pattern.
+/// Converts colours and gradients; `None` for a pattern.
 pub(super) fn plain(paint: &usvg::Paint) -> Option<Paint> {
     let at = |x: f32, y: f32| DVec2::new(x.into(), y.into());
     match paint {
@@ -110,9 +110,9 @@ fn gradient(g: &usvg::BaseGradient, shape: Shape) -> Paint {
 pub(super) struct Tile {
     pub width: u32,
     pub height: u32,
-    /// From the pattern's content to the tile's pixels.
+    /// Map from the pattern's content to the tile's pixels.
     pub pixel_from_content: DAffine2,
-    /// From the tile's pixels to the space of the path.
+    /// Map from the tile's pixels to the space of the path.
     path_from_pixel: DAffine2,
     filter: Filter,
 }

@@ -11,11 +11,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use usvg::ImageKind;
 
-/// Paints by what they are of.
+/// Paints by the kind of their elements.
 #[derive(Debug, Default)]
 pub(super) struct Painted {
     pub tiles: BTreeMap<TileKey, Paint>,
-    /// With their frames; the reasons where they cannot be shown.
+    /// Images with their frames; reasons where they cannot be shown.
     pub images: BTreeMap<ImageKey, Result<(Paint, Path), String>>,
 }
 

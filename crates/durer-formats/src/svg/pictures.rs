@@ -12,7 +12,7 @@ use usvg::{ImageHrefResolver, ImageKind};
 /// Prefix of the addresses of pictures in the list.
 pub(super) const LISTED: &str = "picture:";
 
-/// Pictures of fewer bytes are decoded while reading, to tell with their place if they are broken.
+/// Limit on bytes below which pictures are decoded while reading, so that warnings of broken ones have their place.
 const SMALL: usize = 1 << 16;
 
 /// A picture that a drawing refers to.
@@ -20,7 +20,7 @@ const SMALL: usize = 1 << 16;
 pub(super) struct Picture {
     pub href: String,
     pub place: Place,
-    /// Within a drawing that is a picture itself, and so may not refer to files.
+    /// True within a drawing that is a picture itself, and so may not refer to files.
     pub is_within: bool,
 }
 
@@ -176,8 +176,7 @@ fn as_png(bytes: &[u8], limits: &Limits, told: &Told) -> Result<Vec<u8>> {
     Ok(out)
 }
 
-/// Returns a drawing that is a picture of the drawing, looked at with the same care before usvg goes
-/// into it.
+/// Returns a drawing that is a picture of the drawing, checked with the same care before usvg reads it.
 fn within(
     bytes: &[u8],
     picture: &Picture,

@@ -1,6 +1,6 @@
 //! The references between a drawing's elements: usvg follows patterns, masks, clip paths and filters by recursion, and
-//! without end where three of them, or two of different kinds, form a circle. Such drawings are refused before usvg reads
-//! them.
+//! without end where three of them, or two of different kinds, form a circle. Such drawings are refused before usvg
+//! reads them.
 
 use super::filters::links;
 use crate::{Error, Result};
@@ -20,7 +20,7 @@ const REFERENCE: usize = 8;
 /// Stack that a drawing inside an image takes, in elements.
 pub const IMAGE: usize = 64;
 
-/// Elements that are filled and stroked; `a` and `tref` where they stand in a text.
+/// Elements that are filled and stroked; `a` and `tref` within a text.
 const SHAPES: [&str; 13] = [
     "path", "rect", "circle", "ellipse", "line", "polyline", "polygon", "text", "tspan",
     "textPath", "tref", "a", "use",
@@ -35,7 +35,7 @@ enum Kind {
     Mask,
     Filter,
     Marker,
-    /// By `href`.
+    /// Reference by `href`.
     Href,
 }
 
@@ -66,7 +66,7 @@ const PROPERTIES: [(&str, Kind); 9] = [
     ("marker-end", Kind::Marker),
 ];
 
-/// Those of which only one value counts, in the order of [`Values`].
+/// Kinds of which only one value counts, in the order of [`Values`].
 const CASCADED: [Kind; 5] = [Kind::Fill, Kind::Stroke, Kind::ClipPath, Kind::Mask, Kind::Filter];
 
 /// Returns the kind of reference that a property makes.
@@ -77,9 +77,9 @@ fn property(name: &str) -> Option<Kind> {
 /// Function from elements to their line and column in the file.
 pub type PlaceOf<'p> = &'p dyn Fn(&Node<'_, '_>) -> (u64, u64);
 
-/// Refuses references that go in circles or multiply, and elements that are too deep within one another and within
-/// the `above` levels around the document; gives how many levels there are with those. What style sheets say must stand
-/// in attributes.
+/// Refuses references that go in circles or multiply, and elements that are too deep within one another and within the
+/// `above` levels around the document; returns how many levels there are with those. Properties of style sheets must be
+/// in attributes already.
 ///
 /// # Errors
 /// [`Error::Decode`] with the place of the element where a circle closes, that is too deep, or from where on there are
@@ -105,7 +105,7 @@ struct Walk<'a, 'i, 'p> {
     found: HashMap<(NodeId, Opened, Values<'a>), Found>,
     /// Inherited values around elements that were referred to.
     around: HashMap<NodeId, Values<'a>>,
-    /// Those that are being followed.
+    /// References that are being followed.
     open: Vec<(NodeId, Opened)>,
 }
 
@@ -121,7 +121,7 @@ struct Found {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Opened {
     kind: Kind,
-    /// By a paint that was said outside of what is being followed.
+    /// True for a reference by a paint of an element outside of the one that is being followed.
     is_outside: bool,
 }
 
@@ -268,8 +268,8 @@ impl<'a, 'i> Walk<'a, 'i, '_> {
         around
     }
 
-    /// Returns the inherited values that an element and its descendants can use: clip path, mask and filter only if
-    /// it asks for them.
+    /// Returns the inherited values that an element and its descendants can use: clip path, mask and filter only if it
+    /// states `inherit` for them.
     fn needed(&self, node: Node<'a, 'i>, mut around: Values<'a>) -> Values<'a> {
         let mut values = attributes(node);
         if !values.any(|(name, value)| value == INHERIT && property(name).is_some()) {

@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 pub(super) enum Reference {
     /// The box around the filled shape.
     Fill,
-    /// With what the stroke adds.
+    /// The box, enlarged by the stroke.
     Stroke,
     /// Base of the drawing's own percentages.
     View,
@@ -172,7 +172,7 @@ impl Within<'_> {
         }
     }
 
-    /// Distances of a place to the nearer and the farther side, along both axes.
+    /// Returns the distances of a place to the nearer and the farther side, along both axes.
     fn sides(&self, place: DVec2) -> [[f64; 2]; 2] {
         let (a, b) = ((place - self.low).abs(), (self.low + self.size - place).abs());
         [[a.x.min(b.x), a.x.max(b.x)], [a.y.min(b.y), a.y.max(b.y)]]

@@ -17,8 +17,8 @@ const DECLARATION: usize = 256;
 /// declaration says.
 ///
 /// # Errors
-/// [`Error::Decode`] for broken gzip, and for bytes that are not in the encoding that is said or an encoding that is not known;
-/// [`Error::Limit`] where it is larger than `limits.decoded_bytes`.
+/// [`Error::Decode`] for broken gzip, and for bytes that are not in the encoding that is said or an encoding that is
+/// not known; [`Error::Limit`] where it is larger than `limits.decoded_bytes`.
 pub(super) fn text<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Cow<'a, str>> {
     if !bytes.starts_with(&MAGIC) {
         return decoded(bytes);

@@ -55,7 +55,7 @@ impl Piece {
     }
 }
 
-/// For how many letters an element says where they are.
+/// Returns the number of letters whose places an element states.
 fn placed(node: Node<'_, '_>) -> u64 {
     let listed = |name| {
         let values = node.attribute(name).unwrap_or_default();

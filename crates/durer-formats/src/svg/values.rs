@@ -241,7 +241,7 @@ impl Kind {
     }
 }
 
-/// Returns the effect of a value that cannot be used.
+/// Effect of a value that cannot be used.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Fate {
     PassedOver,
@@ -323,8 +323,7 @@ fn color(value: &str, around: &Around) -> Option<Cow<'static, str>> {
     }))
 }
 
-/// Returns a paint: what it refers to stays, colours and those in place of what is missing are put as usvg
-/// reads them.
+/// Returns a paint: its reference stays; its colour, or fallback colour, is written as usvg reads it.
 fn paint<'v>(value: &'v str, around: &Around) -> Option<Cow<'v, str>> {
     if !value.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("url(")) {
         let lower = value.to_ascii_lowercase();
@@ -355,7 +354,7 @@ pub(super) fn is_elsewhere(link: &str) -> bool {
     !inner.trim_matches(|c: char| c.is_whitespace() || c == '"' || c == '\'').starts_with('#')
 }
 
-/// Lengths in pixels.
+/// Returns lengths in pixels.
 fn lengths(value: &str, whole: f64, units: &Units) -> Option<String> {
     let pieces = css::tokens(value);
     let mut out = String::new();

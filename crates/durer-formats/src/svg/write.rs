@@ -19,7 +19,7 @@ pub(super) struct Changes<'a> {
     pub definitions: String,
     /// Number of elements examined to find boxes.
     pub looked: Cell<u32>,
-    /// Elements that become groups, and what is in these.
+    /// Elements that become groups, and the contents of the groups.
     pub groups: HashMap<NodeId, String>,
     /// Elements whose letters are not set as they are written.
     pub letters: HashMap<NodeId, Letters>,
@@ -38,7 +38,7 @@ impl Changes<'_> {
 #[derive(Debug, Default)]
 pub(super) struct Written {
     pub text: String,
-    /// For each element, in order, the place of its original in the old document.
+    /// Place of each element's original in the old document, in order.
     pub places: Vec<usize>,
 }
 
@@ -62,7 +62,8 @@ pub(super) fn is_of_svg(node: &Node<'_, '_>) -> bool {
     node.tag_name().namespace().is_none_or(|space| space == super::ROOT.0)
 }
 
-/// Writes a document with what becomes other in it. Comments, style sheets and elements that are not of SVG are left out.
+/// Writes a document with what becomes other in it. Comments, style sheets and elements that are not of SVG are left
+/// out.
 pub(super) fn document(document: &Document<'_>, changes: &Changes<'_>) -> Written {
     let mut out =
         Written { text: String::with_capacity(document.input_text().len()), places: Vec::new() };
@@ -99,7 +100,7 @@ fn is_written(node: Node<'_, '_>) -> bool {
     node.is_element() && is_of_svg(&node) && node.tag_name().name() != "style"
 }
 
-/// Writes a text or the beginning of an element; whether what is in it is to be written.
+/// Writes a text or the beginning of an element; returns whether what is in it is to be written.
 fn open(node: Node<'_, '_>, changes: &Changes<'_>, out: &mut Written) -> bool {
     if let Some(text) = node.text().filter(|_| node.is_text()) {
         let letters = node.parent().and_then(|parent| changes.letters.get(&parent.id()));

@@ -104,7 +104,7 @@ impl<'a, 'b> Assembly<'a, 'b> {
         Ok(())
     }
 
-    /// Returns the items that stand on a plate.
+    /// Returns the items on a plate.
     fn on_plate(&self, items: Vec<Use>, plate: Option<u32>) -> Result<Vec<Use>> {
         let Some(number) = plate else { return Ok(items) };
         let plates = &self.settings.plates;
@@ -146,7 +146,7 @@ impl<'a, 'b> Assembly<'a, 'b> {
         format!("{}, object {id}", self.names[part])
     }
 
-    /// Notes where an item's object and its components stand.
+    /// Records the positions of an item's object and its components.
     fn place(&mut self, root: usize, item: &Use, world: DMat4) -> Result<()> {
         let mut inside: HashSet<Id> = HashSet::new();
         let mut stack = Vec::new();
@@ -166,7 +166,7 @@ impl<'a, 'b> Assembly<'a, 'b> {
         Ok(())
     }
 
-    /// Notes the place of an object; the frame is for its components.
+    /// Records the place of an object; the frame is for its components.
     fn enter(
         &mut self,
         from: usize,

@@ -47,7 +47,7 @@ pub(super) struct Ball {
     pub radius: f64,
 }
 
-/// Sides of a prism by the number of beams.
+/// Returns the number of sides of a prism, by the number of beams.
 fn sides(beams: usize) -> usize {
     match beams {
         0..=20_000 => 12,
@@ -133,7 +133,7 @@ fn ball_triangles(sides: usize) -> u64 {
     (2 * sides * (sides / 2 - 1)) as u64
 }
 
-/// Makes triangles of beams and balls.
+/// Builder of triangles for beams and balls.
 struct Builder {
     mesh: Mesh,
     /// Cosines and sines around a whole turn.
@@ -161,7 +161,7 @@ impl Builder {
         }
     }
 
-    /// A prism with flat ends.
+    /// Adds a prism with flat ends.
     fn beam(&mut self, [from, to]: [DVec3; 2], radii: [f64; 2], colors: [Vec4; 2]) {
         let axis = (to - from).normalize_or_zero();
         let (u, v) = frame(axis);
@@ -184,7 +184,7 @@ impl Builder {
         self.end([to, axis], [u, v], radii[1], colors[1]);
     }
 
-    /// A flat end: a fan around its first corner.
+    /// Adds a flat end: a fan around its first corner.
     fn end(&mut self, [center, normal]: [DVec3; 2], [u, v]: [DVec3; 2], radius: f64, color: Vec4) {
         let first = self.mesh.positions.len() as u32;
         for i in 0..self.circle.len() {
@@ -196,7 +196,7 @@ impl Builder {
         }
     }
 
-    /// A ball of rows between two poles.
+    /// Adds a ball of rows between two poles.
     fn ball(&mut self, center: DVec3, radius: f64, color: Vec4) {
         let sides = self.circle.len();
         let rows = sides / 2;
@@ -243,7 +243,7 @@ fn frame(axis: DVec3) -> (DVec3, DVec3) {
 mod tests {
     use super::*;
 
-    /// Six times the volume, and the number of triangles.
+    /// Returns six times the volume, and the number of triangles.
     fn measure(mesh: &Mesh) -> (f64, usize) {
         let point = |v: u32| mesh.positions[v as usize].as_dvec3();
         let six = |i: usize| {

@@ -49,11 +49,11 @@ pub(super) struct Repairs {
     pub paint: u64,
     /// Triangles that are modifiers and similar ones.
     pub hidden: u64,
-    /// True if filaments are painted of which the file has no colour.
+    /// True if filaments are painted whose colour the file lacks.
     pub made_up: bool,
 }
 
-/// Finds materials of the scene, each once.
+/// Materials of the scene, each found once.
 pub(super) struct Materials<'a> {
     pub scene: &'a mut Vec<Material>,
     pub known: &'a mut HashMap<Key, usize>,
@@ -88,8 +88,8 @@ pub(super) struct Texture {
     pub blends: bool,
 }
 
-/// Makes an object's meshes, of triangles and of beams, and says what their positions are relative
-/// to; at most `limit` triangles more than the object has.
+/// Makes an object's meshes, of triangles and of beams, and returns the origins of their positions; at most `limit`
+/// triangles more than the object has.
 ///
 /// # Errors
 /// [`Error::Limit`].
@@ -146,7 +146,7 @@ pub(super) fn meshes(
     Ok((meshes, origin))
 }
 
-/// Gives a mesh one material.
+/// Assigns one material to a mesh.
 fn whole(mesh: &mut Mesh, material: Option<usize>) {
     if material.is_some() {
         let range = 0..mesh.primitive_count() as u32;

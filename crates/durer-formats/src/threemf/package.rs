@@ -41,12 +41,12 @@ impl<'a> Package<'a> {
         self.number(name).is_some()
     }
 
-    /// Bytes that may still be inflated or decoded.
+    /// Returns the number of bytes that may still be inflated or decoded.
     pub fn left(&self) -> u64 {
         self.left
     }
 
-    /// Takes this many of the bytes that may still be decoded.
+    /// Charges this many of the bytes that may still be decoded.
     pub fn charge(&mut self, bytes: u64) {
         self.left = self.left.saturating_sub(bytes);
     }

@@ -44,14 +44,14 @@ pub(super) fn divide(code: &str, corners: Corners, mut piece: impl FnMut(Corners
 struct Digits<'a>(&'a [u8]);
 
 impl Digits<'_> {
-    /// Takes the next digit; `None` at the end, and for what is none.
+    /// Reads the next digit; `None` at the end, and for what is none.
     fn next(&mut self) -> Option<u32> {
         let (&last, rest) = self.0.split_last()?;
         self.0 = rest;
         char::from(last).to_digit(16)
     }
 
-    /// Takes a filament from 3 on.
+    /// Reads the number of a filament from 3 on.
     fn large(&mut self) -> Option<u32> {
         let mut filament = 3u32;
         loop {

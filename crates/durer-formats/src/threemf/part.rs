@@ -102,7 +102,7 @@ pub(super) fn parse(name: &str, xml: &[u8], limit: u64) -> Result<Part> {
     }
 }
 
-/// Reads a part element by element.
+/// Parser of a part, element by element.
 pub(super) struct Parser<'a> {
     pub here: Here<'a>,
     limit: u64,
@@ -207,7 +207,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Takes memory for this many triangles.
+    /// Charges memory for this many triangles.
     pub fn charge(&mut self, triangles: u64) -> Result<()> {
         self.part.triangles = self.part.triangles.saturating_add(triangles);
         let (value, limit) = (self.part.triangles, self.limit);
@@ -261,8 +261,8 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Brings triangles that name vertices which the object has not to a point, so that numbers
-    /// stay, and leaves such beams and balls out.
+    /// Collapses triangles that name vertices which the object lacks to a point, so that numbers stay, and removes such
+    /// beams and balls.
     fn drop_dangling(&mut self, id: u64, object: &mut Object) {
         let count = object.vertices.len();
         let place = || Place::Path(format!("{}, object {id}", self.here.file));
@@ -295,7 +295,7 @@ impl Parser<'_> {
         Ok(Use { path, object, transform: transform.unwrap_or(DMat4::IDENTITY) })
     }
 
-    /// Twelve numbers: the rows of a matrix that row vectors are multiplied by, so its columns here.
+    /// Parses twelve numbers: the rows of a matrix that row vectors are multiplied by, so its columns here.
     fn transform(&self, text: &str) -> Result<DMat4> {
         let words = text.split_ascii_whitespace();
         let numbers: Vec<f64> = words.filter_map(|w| w.parse().ok()).collect();

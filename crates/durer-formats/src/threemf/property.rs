@@ -71,7 +71,7 @@ pub(super) struct Properties {
 }
 
 impl Properties {
-    /// Returns how a property looks; `None` if the part does not have it.
+    /// Returns the look of a property; `None` if the part does not have it.
     pub fn look(&self, group: u64, index: u64) -> Option<Look> {
         match self.groups.get(&group)? {
             Group::Layers(layers, members) => {
@@ -85,7 +85,7 @@ impl Properties {
         }
     }
 
-    /// Returns how a property looks that is not layering.
+    /// Returns the look of a property that is not layering.
     fn single(&self, group: u64, index: u64) -> Option<Look> {
         let at = usize::try_from(index).ok()?;
         match self.groups.get(&group)? {
@@ -121,8 +121,8 @@ impl Properties {
         found.map_or("", |(name, _)| name)
     }
 
-    /// Returns whether a layering has a picture on or under what it cannot be joined with: another
-    /// picture, or a colour that covers or shines through in part.
+    /// Returns whether a layering has a picture on or under a layer that it cannot be joined with: another picture, or
+    /// a colour that covers or shines through in part.
     pub fn is_simplified(&self, layers: &[Layer]) -> bool {
         let pictures = layers
             .iter()

@@ -36,9 +36,9 @@ pub(super) struct Settings {
 pub(super) struct ObjectSettings {
     /// Number of its filament, from 1.
     filament: Option<u32>,
-    /// By the numbers of their first and last triangle, in order (PrusaSlicer).
+    /// Settings of volumes by the numbers of their first and last triangle, in order (PrusaSlicer).
     pub volumes: Vec<(u64, u64, VolumeSettings)>,
-    /// By the ids of the objects that are its components (Bambu Studio).
+    /// Settings of parts by the ids of the objects that are its components (Bambu Studio).
     parts: HashMap<u64, VolumeSettings>,
 }
 
@@ -103,7 +103,7 @@ impl Settings {
         self.filaments.get(at).copied().unwrap_or_else(made_up)
     }
 
-    /// Returns what is said of an object of the build.
+    /// Returns the settings of an object of the build.
     pub fn object(&self, id: u64) -> Option<&ObjectSettings> {
         self.objects.get(&id)
     }
@@ -159,7 +159,7 @@ fn config_filaments(text: &[u8]) -> Vec<String> {
     whole("extruder_colour").or_else(|| whole("filament_colour")).unwrap_or_default()
 }
 
-/// Reads what is said of objects and plates, element by element.
+/// Parser of the settings of objects and plates, element by element.
 struct ObjectParser<'a> {
     settings: &'a mut Settings,
     object: Option<(u64, ObjectSettings)>,

@@ -7,10 +7,10 @@ use durer::clip::tiles::Tile;
 use serde_json::json;
 use std::io::{Seek, SeekFrom, Write};
 
-/// "MPBX", which the specification asks for.
+/// Application number "MPBX" of the specification.
 const APPLICATION: u32 = 0x4d50_4258;
 
-/// Writes tiles.
+/// Writer of tiles to an MBTiles file.
 pub struct MbTiles<W> {
     out: W,
     database: Database,
@@ -42,7 +42,7 @@ impl<W: Write + Seek> MbTiles<W> {
         Ok(self.out.write_all(&self.database.take())?)
     }
 
-    /// Writes what the tiles need to be found, and gives the target back.
+    /// Writes the index of the tiles, and returns the target.
     ///
     /// # Errors
     /// As [`MbTiles::add`].

@@ -21,7 +21,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Returns the same for the same values, and for no others.
+    /// Returns a key that is equal for equal values, and for no others.
     fn key(&self) -> (u8, u64, &str) {
         match self {
             Self::Text(text) => (0, 0, text),
@@ -132,8 +132,8 @@ impl<'a> Layer<'a> {
         Self { name, extent, dictionary, names, values, features: Vec::new() }
     }
 
-    /// Adds a feature with its properties, each a name and a value by their numbers in the dictionary. Shapes are on the
-    /// grid of the tile, y downwards; the signed areas of outer rings are positive.
+    /// Adds a feature with its properties, each a name and a value by their numbers in the dictionary. Shapes are on
+    /// the grid of the tile, y downwards; the signed areas of outer rings are positive.
     pub fn add(&mut self, id: Option<u64>, properties: &[(u32, u32)], shape: &Shape) {
         let mut message = Message::default();
         if let Some(id) = id {

@@ -25,7 +25,7 @@ const REMEMBERED: usize = 1 << 15;
 /// Entries of a directory that the root refers to; more where the root would not fit.
 const LEAF: usize = 4096;
 
-/// Writes tiles.
+/// Writer of tiles to a PMTiles file.
 pub struct PmTiles<W> {
     out: W,
     /// Offset of the tiles in the target.
@@ -94,7 +94,7 @@ impl<W: Write + Seek> PmTiles<W> {
         Ok(())
     }
 
-    /// Writes what the tiles need to be found, and gives the target back.
+    /// Writes the directories of the tiles, and returns the target.
     ///
     /// # Errors
     /// [`Error::Io`].
@@ -131,7 +131,7 @@ impl<W: Write + Seek> PmTiles<W> {
     }
 }
 
-/// Degrees in units of 10^-7.
+/// Encodes degrees in units of 10^-7.
 fn e7(degrees: f64) -> [u8; 4] {
     ((degrees * 1e7).round() as i32).to_le_bytes()
 }

@@ -50,7 +50,7 @@ pub fn varint(out: &mut Vec<u8>, mut value: u64) {
     out.push(value as u8);
 }
 
-/// 0, −1, 1, −2, … as 0, 1, 2, 3, …
+/// Encodes 0, −1, 1, −2, … as 0, 1, 2, 3, …
 pub fn zigzag(value: i64) -> u64 {
     (value << 1 ^ value >> 63) as u64
 }

@@ -90,8 +90,8 @@ fn size(
     place::linear(board, view, ends, way, &side, &said("", value, 1, view, unit))
 }
 
-/// Puts the diameters of the features of one kind: those that are alike have one, with their number. Tells which
-/// have none.
+/// Puts the diameters of the features of one kind: equal ones have one in common, with their number. Notes name those
+/// that have none.
 pub(super) fn diameters(
     board: &mut Board,
     views: &[Seen],
@@ -127,7 +127,7 @@ pub(super) fn diameters(
     }
 }
 
-/// Puts the diameter of the circle that holes stand on, where they do.
+/// Puts the diameter of the pitch circle of holes, if they have one.
 fn pitch(board: &mut Board, view: &Seen, holes: &[Target], unit: f64, notes: &mut Vec<String>) {
     let radius = holes.first().map_or(0.0, |t| t.radius);
     let Some((center, radius)) = center::pitch_of(holes.iter().map(|t| t.center), radius) else {
@@ -170,7 +170,7 @@ pub(super) fn circles(view: &Seen, rest: &mut Vec<&Feature>) -> Option<(Vec<Targ
     value.map(|value| (targets, value))
 }
 
-/// Puts a diameter at one of several circles; whether there was room.
+/// Puts a diameter at one of several circles; returns whether there was room.
 pub(super) fn place_diameter(
     board: &mut Board,
     view: &Seen,

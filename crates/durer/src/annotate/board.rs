@@ -50,7 +50,7 @@ pub(super) struct Draft {
     pub solid: Vec<Quad>,
     /// Its text.
     pub text: Quad,
-    /// The line to what it is about.
+    /// Line to the annotated place.
     pub leader: Option<[DVec2; 2]>,
 }
 
@@ -105,7 +105,7 @@ impl<'a> Board<'a> {
         self.is_free_but_for(solid, &[])
     }
 
-    /// The same where some of what is taken may be written on.
+    /// Returns whether `solid` is within the page and overlaps nothing that is taken, except what is `allowed`.
     pub fn is_free_but_for(&self, solid: &[Quad], allowed: &[Quad]) -> bool {
         let taken = || self.taken.iter().filter(|t| !allowed.contains(t));
         solid.iter().all(|q| q.is_within(&self.page) && !taken().any(|t| t.overlaps(q)))

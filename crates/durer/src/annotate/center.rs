@@ -10,14 +10,15 @@ use crate::math::DVec2;
 use crate::target::sheet::Mark;
 use std::f64::consts::TAU;
 
-/// Crosses whose lines are shorter, millimetres, are solid: there is no room for three dashes with dots between them.
+/// Length of lines, in millimetres, below which a cross is solid: there is no room for three dashes with dots between
+/// them.
 const SOLID: f64 = 24.0;
 
 /// Centres nearer than this are one, millimetres.
 const SAME: f64 = 0.05;
 
-/// An axis as seen: what those in line have in common, where it begins and ends along them, its way, and how far off the
-/// origin it lies.
+/// An axis as seen: what those in line have in common, where it begins and ends along them, its way, and how far off
+/// the origin it lies.
 type Axis = ([i64; 3], (f64, f64), DVec2, f64);
 
 /// A circle that is seen in its true shape.
@@ -95,7 +96,7 @@ fn axis_lines(axes: &[(DVec2, [DVec2; 2])]) -> Vec<[DVec2; 2]> {
     lines.into_iter().map(|(_, (a, b), way, o)| [ends(way, o, a), ends(way, o, b)]).collect()
 }
 
-/// Crosses, or pitch circles with ticks where holes that are alike stand on one.
+/// Crosses, or pitch circles with ticks for equal holes on one circle.
 fn center_marks(circles: &[Circle]) -> (Vec<[DVec2; 2]>, Vec<Circle>) {
     let mut circles = concentric(circles);
     circles.sort_by(|a, b| a.radius.total_cmp(&b.radius));
@@ -131,7 +132,7 @@ fn concentric(circles: &[Circle]) -> Vec<Circle> {
     sorted
 }
 
-/// Returns the circle that the centres of at least three circles stand on, evenly.
+/// Returns the circle on which the centres of at least three circles are evenly spaced.
 fn pitch_circle(circles: &[Circle]) -> Option<Circle> {
     let count = circles.len();
     if count < 3 {
@@ -153,7 +154,7 @@ fn pitch_circle(circles: &[Circle]) -> Option<Circle> {
     (even && (count != 4 || !is_square_to_page(&angles))).then_some(Circle { center, radius })
 }
 
-/// Returns the same of circles of one radius, given by their centres: the centre and the radius.
+/// Returns the pitch circle of circles of one radius, given by their centres: the centre and the radius.
 pub(super) fn pitch_of(centers: impl Iterator<Item = DVec2>, radius: f64) -> Option<(DVec2, f64)> {
     let circles: Vec<Circle> = centers.map(|center| Circle { center, radius }).collect();
     pitch_circle(&circles).map(|c| (c.center, c.radius))

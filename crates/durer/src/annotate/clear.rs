@@ -20,7 +20,7 @@ pub(super) fn clear(sheet: &mut Sheet, quads: &[Quad]) {
     }
 }
 
-/// Layers that stay as they are: nothing is written across the frame, and areas are not lines.
+/// Returns whether a layer stays as it is: nothing is written across the frame, and areas are not lines.
 fn is_whole(layer: &str) -> bool {
     matches!(layer, "frame" | "title-block" | "regions")
 }

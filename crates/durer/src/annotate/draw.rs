@@ -15,7 +15,7 @@ pub(super) struct Said {
     pub text: String,
     /// True if it is just the value with its sign.
     pub is_plain: bool,
-    /// In units of the model, or radians.
+    /// Value in units of the model, or radians.
     pub value: f64,
     /// Units of the model per millimetre.
     pub scale: f64,
@@ -99,8 +99,8 @@ impl Board<'_> {
         )
     }
 
-    /// Returns a leader from a point: it goes to an elbow and on below its text. `measure` is what is
-    /// measured, or nothing for a note.
+    /// Returns a leader from a point: it goes to an elbow and on below its text. `measure` is the measured quantity,
+    /// `None` for a note.
     pub fn leader(
         &mut self,
         tip: DVec2,

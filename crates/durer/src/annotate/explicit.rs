@@ -52,7 +52,7 @@ const fn name(what: &What) -> &'static str {
     }
 }
 
-/// Lengths by their size, then all else.
+/// Returns the rank of a request: lengths by their size, then all else.
 fn rank(model: &Model, request: &Request) -> Result<f64> {
     match &request.what {
         What::Linear { from, to, along } => model.distance(from, to, *along).map(|d| d.2),
@@ -60,7 +60,7 @@ fn rank(model: &Model, request: &Request) -> Result<f64> {
     }
 }
 
-/// Returns the views that a request may stand in.
+/// Returns the views in which a request may be shown.
 fn views_of<'a, 'b>(views: &'a [Seen<'b>], request: &Request) -> Result<Vec<&'a Seen<'b>>> {
     let Some(name) = &request.view else { return Ok(views.iter().collect()) };
     let found: Vec<&Seen> = views.iter().filter(|v| v.placed.name == *name).collect();
@@ -110,7 +110,7 @@ impl Model<'_> {
     }
 }
 
-/// Puts one request; whether there was room.
+/// Puts one request; returns whether there was room.
 fn one(board: &mut Board, views: &[&Seen], model: &Model, request: &Request) -> Result<bool> {
     match &request.what {
         What::Linear { from, to, along } => {

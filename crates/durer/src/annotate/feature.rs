@@ -52,7 +52,7 @@ pub struct Feature {
     pub object: String,
     /// Kind of the feature.
     pub kind: FeatureKind,
-    /// Position of the feature.
+    /// Surface of the feature.
     pub cylinder: Cylinder,
 }
 

@@ -28,8 +28,8 @@ const REACH: f64 = 20.0;
 /// Curves are examined as chords this near to them, millimetres.
 const NEAR: f64 = 0.05;
 
-/// Moves each letter that lies on an annotation to the nearest place where it lies on nothing, if there is one near by; the
-/// places of all letters.
+/// Moves each letter that lies on an annotation to the nearest place where it lies on nothing, if there is one near by;
+/// the places of all letters.
 pub(super) fn make_room(sheet: &mut Sheet, views: &[Rect], page: &Rect) -> Vec<Quad> {
     let mut places = Vec::new();
     for (name, outside) in MOVED {

@@ -29,7 +29,7 @@ impl Annotations {
 /// A dimension or a note.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
-    /// Subject of the text.
+    /// Subject of the request.
     pub what: What,
     /// The name of its view; `None` for the first that shows it.
     pub view: Option<String>,
@@ -44,11 +44,11 @@ pub struct Request {
 pub enum What {
     /// The distance of two places.
     Linear {
-        /// The one.
+        /// One end of the distance.
         from: Place,
-        /// The other.
+        /// The other end.
         to: Place,
-        /// In which direction.
+        /// Direction of the distance.
         along: Along,
     },
     /// The diameter of a feature by its name.
@@ -57,11 +57,11 @@ pub enum What {
     Radius(String),
     /// The angle at a place between two others.
     Angle {
-        /// The place.
+        /// The vertex of the angle.
         vertex: Place,
-        /// The one.
+        /// A place on the first side.
         from: Place,
-        /// The other.
+        /// A place on the second side.
         to: Place,
     },
     /// Words for a place.
@@ -77,17 +77,17 @@ pub enum Place {
     Feature(String),
 }
 
-/// In which direction a distance is measured.
+/// Direction in which a distance is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Along {
-    /// From one to the other; between axes, at right angles to them.
+    /// The straight way from one to the other; between axes, at right angles to them.
     #[default]
     Straight,
-    /// Along the world's x axis.
+    /// The world's x axis.
     X,
-    /// Along its y axis.
+    /// The world's y axis.
     Y,
-    /// Along its z axis.
+    /// The world's z axis.
     Z,
 }
 
@@ -130,7 +130,7 @@ pub struct Thread {
 pub struct ThreadSize {
     /// The outer diameter of the screw, millimetres.
     pub major: f64,
-    /// From turn to turn, millimetres.
+    /// Distance from turn to turn, millimetres.
     pub pitch: f64,
     /// Name on drawings: `M8×1.25`.
     pub text: String,
@@ -173,7 +173,7 @@ impl ThreadSize {
 impl std::str::FromStr for ThreadSize {
     type Err = crate::Error;
 
-    /// `M8x1.25`, or `M8` for the coarse pitch.
+    /// Parses `M8x1.25`, or `M8` for the coarse pitch.
     fn from_str(text: &str) -> crate::Result<Self> {
         let wrong = || {
             let expected = "M and a diameter, for sizes that ISO 261 has no coarse pitch for with x and the pitch, \

@@ -12,7 +12,7 @@ const STRAIGHT: f64 = 3.5e-3;
 /// A parallel view.
 pub(super) struct Seen<'a> {
     pub placed: &'a PlacedView,
-    /// To the right, up, and away from the eye, of unit length.
+    /// Directions to the right, up, and away from the eye, of unit length.
     axes: [DVec3; 3],
     /// The points of the lines that are drawn, millimetres, sorted by x.
     points: Vec<DVec2>,
@@ -57,7 +57,7 @@ impl<'a> Seen<'a> {
         self.bounds
     }
 
-    /// Millimetres of the sheet per unit of the model.
+    /// Returns the millimetres of the sheet per unit of the model.
     pub fn factor(&self) -> f64 {
         self.placed.factor
     }

@@ -15,7 +15,7 @@ pub(super) struct Style {
 
 /// Width of thin lines.
 pub(super) const THIN: f64 = 0.25;
-/// Between what is measured and its extension line, and between a line and the text over it.
+/// Gap between the measured part and its extension line, and between a line and the text over it.
 pub(super) const GAP: f64 = 1.0;
 /// Length of extension lines beyond the dimension line.
 pub(super) const OVER: f64 = 2.0;
@@ -25,7 +25,7 @@ pub(super) const BEYOND: f64 = 2.5;
 pub(super) const CENTER: [f64; 4] = [6.0, 1.0, 0.05, 1.0];
 /// Space around text within which no line is drawn.
 pub(super) const HALO: f64 = 0.5;
-/// From a view to its first dimension line, and from one to the next.
+/// Distance from a view to its first dimension line, and from one to the next.
 pub(super) const FIRST: f64 = 9.0;
 pub(super) const STEP: f64 = 8.0;
 
@@ -33,7 +33,7 @@ pub(super) const STEP: f64 = 8.0;
 const SMALL: f64 = 290.0;
 
 impl Style {
-    /// For a sheet of a size.
+    /// Creates the style for a sheet of the given size.
     pub fn of_sheet(size: DVec2, color: [u8; 4]) -> Self {
         let text = if size.max_element() < SMALL { 2.5 } else { 3.5 };
         Self { text, arrow: text * 6.0 / 7.0, color }

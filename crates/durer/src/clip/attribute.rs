@@ -44,19 +44,19 @@ impl Source {
 
 /// A tracer for the sources of output vertices: `Vec<Source>`, or [`NoSources`].
 pub trait Provenance: Default {
-    /// The source of the next vertex.
+    /// Adds the source of the next vertex.
     fn push(&mut self, source: impl FnOnce() -> Source);
-    /// Input points, one after the other.
+    /// Adds input points, one after the other.
     fn push_vertices(&mut self, range: std::ops::Range<usize>);
-    /// A range of another list.
+    /// Adds a range of another list.
     fn push_range(&mut self, other: &Self, range: std::ops::Range<usize>);
-    /// A range of this list once more.
+    /// Adds a range of this list once more.
     fn repeat(&mut self, range: std::ops::Range<usize>);
     /// Forgets everything from a length on.
     fn truncate(&mut self, length: usize);
 }
 
-/// Keeps nothing and costs nothing.
+/// Sources that keep nothing and cost nothing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct NoSources;
 

@@ -1,7 +1,8 @@
 //! Geometries cut by many cells, such as districts: each piece with the number of its cell.
 //!
 //! Cells are found by their boxes; each is a [`Mask`], ready for many geometries. A polygon with many points is made a
-//! mask itself, and the cells near it are cut with it: that looks at what is near a cell only, and gives the same points.
+//! mask itself, and the cells near it are cut with it: that looks at what is near a cell only, and gives the same
+//! points.
 //!
 //! ```
 //! use durer::clip::cells::Cells;
@@ -31,7 +32,7 @@ use crate::{Result, parallel};
 #[derive(Debug)]
 pub struct Cells {
     cells: Vec<Cell>,
-    /// Those that enclose something, by their left borders.
+    /// Cells that enclose something, by their left borders.
     order: Vec<usize>,
     /// The width of the widest.
     width: f64,
@@ -53,7 +54,7 @@ pub struct Piece {
 }
 
 impl Cells {
-    /// Makes cells ready, each of valid polygons, as [`Rules::clean`] gives them. A cell that encloses no area has no
+    /// Prepares cells, each of valid polygons, as [`Rules::clean`] returns them. A cell that encloses no area has no
     /// contents.
     ///
     /// # Errors
@@ -79,7 +80,7 @@ impl Cells {
         self.cells.len()
     }
 
-    /// Returns whether there is none.
+    /// Returns whether there are no cells.
     pub fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }
@@ -99,8 +100,8 @@ impl Cells {
         near
     }
 
-    /// Returns the pieces of a geometry, in the order of the cells; a cell near it that has nothing of it gives a cut
-    /// without geometry.
+    /// Returns the pieces of a geometry, in the order of the cells; a cell near it that contains no part of it has a
+    /// piece without geometry.
     ///
     /// # Errors
     /// As [`Cutter::cut`].
@@ -139,7 +140,8 @@ struct Large {
 const MANY: usize = 64;
 
 impl Large {
-    /// `None` for what is small, has heights or measures, or is to be cut on a grid.
+    /// Prepares the polygons of a geometry; `None` for other geometries, and for those that are small, have heights or
+    /// measures, or are to be cut on a grid.
     fn new(geometry: &Geometry, rules: &Rules) -> Result<Option<Self>> {
         let is_polygon = matches!(geometry, Geometry::Polygon(_) | Geometry::MultiPolygon(_));
         let is_flat = geometry.dimensions() == Dimensions::Xy;

@@ -16,7 +16,7 @@ pub(crate) const EPSILON: f64 = f64::EPSILON * 0.5;
 /// Products below this may have lost bits to underflow, so a filter must not trust them.
 const TRUSTED_MIN: f64 = 1e-270;
 
-/// On which side of the directed line a → b the point c lies: `Greater` left, `Less` right.
+/// Returns the side of the directed line a → b on which the point c is: `Greater` left, `Less` right.
 #[inline]
 pub(crate) fn side(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     let (left, right) = ((b.x - a.x) * (c.y - a.y), (b.y - a.y) * (c.x - a.x));
@@ -123,7 +123,7 @@ impl From<f64> for Exact {
 }
 
 impl Exact {
-    /// Compared with zero.
+    /// Compares the number with zero.
     pub(crate) fn sign(&self) -> Ordering {
         match (self.digits.is_empty(), self.negative) {
             (true, _) => Ordering::Equal,
@@ -132,7 +132,7 @@ impl Exact {
         }
     }
 
-    /// self / other, to within 2 ulp; 0 where `other` is 0.
+    /// Returns self / other, to within 2 ulp; 0 where `other` is 0.
     pub(crate) fn ratio(&self, other: &Self) -> f64 {
         // The upper 96 bits of each, and the powers of two that were left out.
         let leading = |v: &Self| {
@@ -145,7 +145,7 @@ impl Exact {
         if b == 0.0 { 0.0 } else { libm::scalbn(a / b, ea - eb) }
     }
 
-    /// self / other, correctly rounded, ties to even, where it is finite; 0 where `other` is 0.
+    /// Returns self / other, correctly rounded, ties to even, where it is finite; 0 where `other` is 0.
     pub(crate) fn rounded_ratio(&self, other: &Self) -> f64 {
         let mut near = self.ratio(other);
         let (num, den) = match other.sign() {
@@ -215,7 +215,7 @@ fn sum(a: &[u32], b: &[u32]) -> Vec<u32> {
     trimmed(digits.collect())
 }
 
-/// a − b for a ≥ b.
+/// Returns a − b for a ≥ b.
 fn difference(a: &[u32], b: &[u32]) -> Vec<u32> {
     let mut borrow = false;
     let digits = a.iter().enumerate().map(|(i, &d)| {

@@ -1,8 +1,8 @@
 //! The order of squares along the curve of David Hilbert ("Über die stetige Abbildung einer Linie auf ein
 //! Flächenstück", Mathematische Annalen 38, 1891): neighbours on it are neighbours in the plane.
 
-/// Returns the place on the curve of a square in a grid of 2^`bits` by 2^`bits`, `bits` ≤ 31: from 0 at (0,
-/// 0) on, to the last at (2^`bits` − 1, 0). What lies beyond the grid is taken modulo its side.
+/// Returns the place on the curve of a square in a grid of 2^`bits` by 2^`bits`, `bits` ≤ 31: from 0 at (0, 0) on, to
+/// the last at (2^`bits` − 1, 0). Coordinates beyond the grid are taken modulo its side.
 pub fn index(bits: u8, x: u32, y: u32) -> u64 {
     let (mut x, mut y, mut index) = (x, y, 0);
     for bit in (0..bits.min(31)).rev() {

@@ -72,7 +72,7 @@ impl Outcode {
         Self::from_inside(inside)
     }
 
-    /// Bit k is set where `inside[k]` is false.
+    /// Creates an outcode whose bit k is set where `inside[k]` is false.
     #[inline]
     pub fn from_inside<const N: usize>(inside: [bool; N]) -> Self {
         Self(inside.iter().rev().fold(0, |bits, &inside| bits << 1 | u8::from(!inside)))

@@ -144,11 +144,11 @@ crate::info::family! {
     pub enum ClipPlace {
         /// Before the camera transform, against six planes.
         World => WORLD,
-        /// In clip space.
+        /// Clip space.
         ClipSpace => CLIP_SPACE,
         /// After the division; points in and behind the eye plane are removed before it.
         AfterDivision => AFTER_DIVISION,
-        /// In the viewport: near and far in clip space, the other four borders in two dimensions.
+        /// The viewport: near and far in clip space, the other four borders in two dimensions.
         Viewport => VIEWPORT,
         /// Per pixel: nothing is cut but at the eye plane, so the ring may reach beyond all borders.
         PerPixel => PER_PIXEL,
@@ -338,7 +338,8 @@ fn in_ndc<A: Blend>(
     if ring.len() < 3 { Vec::new() } else { ring }
 }
 
-/// Position and 1/w are linear after the division; an attribute counts as much as its end is near.
+/// Computes the point at which an edge meets a border, after the division: position and 1/w are linear there, and an
+/// attribute counts as much as its end is near.
 fn cut_ndc<A: Blend>([i, o]: [&NdcVertex<A>; 2], [d_in, d_out]: [f64; 2]) -> NdcVertex<A> {
     let total = d_in - d_out;
     let (wi, wo) = (-d_out * i.inv_w, d_in * o.inv_w);

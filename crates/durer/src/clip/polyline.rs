@@ -80,7 +80,7 @@ pub enum Step {
         segment: usize,
         /// Start of the part.
         start: DVec2,
-        /// End of the visible part.
+        /// End of the part.
         end: DVec2,
         /// True if it is in the closed polygon.
         inside: bool,
@@ -115,8 +115,8 @@ pub fn replay(options: &Options, steps: &[Step]) -> Vec<(usize, Vec<DVec2>)> {
     pieces
 }
 
-/// Returns the wanted part of polylines against a polygon with holes, given by all its rings (any
-/// direction, even-odd); `ends[i]` is where polyline i ends in `points`.
+/// Returns the part of polylines inside or outside a polygon with holes, given by all its rings (any direction,
+/// even-odd); `ends[i]` is where polyline i ends in `points`.
 ///
 /// ```
 /// use durer::clip::polyline::{Options, clip};
@@ -150,7 +150,7 @@ pub fn clip(
     run(&Near::all(polygon.clone()), points, ends, options, t)
 }
 
-/// Returns the same for polygons that were made ready: only those near the polylines are examined.
+/// Clips polylines as [`clip`], for prepared polygons: only those near the polylines are examined.
 ///
 /// # Errors
 /// As [`clip`].

@@ -17,7 +17,7 @@ pub(crate) fn reach(p: DVec2) -> f64 {
     p.abs().max_element() * NEAR
 }
 
-/// Returns whether two points are as good as one; the first tells how near that is.
+/// Returns whether two points count as one; the first argument is the distance for that.
 #[inline]
 pub(crate) fn are_one(p: DVec2, q: DVec2) -> bool {
     (p - q).abs().max_element() <= reach(p)

@@ -15,7 +15,7 @@ use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, DVec4, Plane};
 use crate::trace::{NoTrace, Tracer};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "homogeneous-volume",
     title: "Homogeneous clipping",
@@ -59,26 +59,26 @@ pub enum Borders {
     /// All six.
     #[default]
     All,
-    /// The near plane; and the four sides only for what reaches beyond the guard band −g·w ≤ x, y ≤
-    /// g·w, as graphics hardware does. The rasterizer's own clip does the rest, and the depth test
-    /// must discard what is beyond the far plane.
+    /// The near plane; and the four sides only for what reaches beyond the guard band −g·w ≤ x, y ≤ g·w, as graphics
+    /// hardware does. The rasterizer's own clip does the rest, and the depth test must discard fragments beyond the far
+    /// plane.
     NearOnly {
         /// g, above 1; a power of two keeps results exactly inside. Half the rasterizer's range
         /// divided by half the viewport's width is right; more overflows its coordinates, less
         /// cuts more polygons than need be.
         guard_band: f64,
     },
-    /// The near and the far plane, and the four sides as above: for lines, of which what is left is drawn as part of the
+    /// The near and the far plane, and the four sides as above: for lines, whose remaining part is drawn as part of the
     /// whole line.
     Depths {
-        /// As above.
+        /// Guard band, as above.
         guard_band: f64,
     },
 }
 
 /// Anything that can be interpolated along an edge: attributes of vertices.
 pub trait Blend: Clone {
-    /// (a · wa + b · wb) / total, component by component; the weights are not negative.
+    /// Returns (a · wa + b · wb) / total, component by component; the weights are not negative.
     fn blend(a: &Self, wa: f64, b: &Self, wb: f64, total: f64) -> Self;
 }
 
@@ -110,7 +110,7 @@ impl<A: Blend, B: Blend> Blend for (A, B) {
     }
 }
 
-/// A vertex before the division, with what is to be interpolated.
+/// A vertex before the division, with the values to interpolate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClipVertex<A = ()> {
     /// Clip space, homogeneous.
@@ -126,7 +126,7 @@ pub enum Step {
     Code {
         /// Its number in the input.
         vertex: usize,
-        /// Beyond which borders it lies.
+        /// Borders beyond which it is.
         code: Outcode,
         /// Its boundary coordinates d₁ … d₆, see [`boundary_coordinates`].
         distances: [f64; 6],
@@ -140,7 +140,7 @@ pub enum Step {
     Border(Outcode),
     /// An inside vertex is kept.
     Keep {
-        /// Its number.
+        /// Number of the vertex.
         vertex: usize,
     },
     /// An edge meets the border.
@@ -352,11 +352,11 @@ pub fn clip_polygon<A: Blend>(
     ring
 }
 
-/// Clips triangles, each for itself, and cuts what is left of each to triangles, which come after one
-/// another in `out`: those wholly inside as they are, polygons as fans from their first vertex.
+/// Clips triangles, each by itself, and divides the rest of each into triangles, which come after one another in `out`:
+/// those wholly inside as they are, polygons as fans from their first vertex.
 ///
-/// The same as [`clip_polygon`] for each, without taking memory for each: what is inside or outside
-/// all around takes a few nanoseconds.
+/// The same as [`clip_polygon`] for each, without taking memory for each: triangles that are wholly inside or outside
+/// take a few nanoseconds.
 ///
 /// ```
 /// use durer::clip::volume::{ClipVertex, Options, clip_triangles};
@@ -442,7 +442,7 @@ pub(super) fn cut_ring<V: Clone>(
     kept
 }
 
-/// The same, in memory that is there.
+/// Cuts a ring as [`cut_ring`] does, into existing memory.
 fn cut_into<V: Clone>(
     ring: &[V],
     kept: &mut Vec<V>,

@@ -16,7 +16,7 @@ pub(super) struct Look {
     pub tex_coords: [DVec2; 3],
 }
 
-/// Gives fragments their texture and hands them on.
+/// Brush that gives fragments their texture and passes them on.
 pub(super) struct Brush<'a> {
     p: &'a Pipeline,
     texture: Option<Prepared<'a>>,
@@ -33,7 +33,7 @@ impl<'a> Brush<'a> {
         self.p
     }
 
-    /// Hands a fragment on, unless its column or row is negative.
+    /// Passes a fragment on, unless its column or row is negative.
     pub fn put(
         &self,
         [x, y]: [i32; 2],

@@ -108,7 +108,7 @@ pub(super) fn clear(
 struct Vertices<'a> {
     p: &'a Pipeline,
     clip_from_object: DMat4,
-    /// Takes normals to eye space.
+    /// Matrix that transforms normals to eye space.
     normals: DMat3,
 }
 

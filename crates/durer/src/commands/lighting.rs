@@ -6,9 +6,9 @@
 //! c = e + a·a_scene + Σ att·spot·(a·a_light + max(n·l, 0)·d·d_light + f·max(n·h, 0)^s·s·s_light)
 //! ```
 //!
-//! from the emission e, the ambient, diffuse and specular reflection a, d, s of the material, for each light that is on;
-//! att = 1 / (k₀ + k₁·δ + k₂·δ²) at the distance δ, 1 for a directional light; f = 0 where n·l ≤ 0. Colours
-//! are interpolated between the vertices (Gouraud) or are one for all of a primitive (flat).
+//! from the emission e, the ambient, diffuse and specular reflection a, d, s of the material, for each light that is
+//! on; att = 1 / (k₀ + k₁·δ + k₂·δ²) at the distance δ, 1 for a directional light; f = 0 where n·l ≤ 0. Colours are
+//! interpolated between the vertices (Gouraud) or are one for all of a primitive (flat).
 
 use crate::math::{DMat3, DVec3, DVec4, Vec4};
 use crate::trace::Tracer;
@@ -39,7 +39,7 @@ pub struct Light {
 }
 
 impl Default for Light {
-    /// OpenGL's light 0: white, directional from +z, without ambient light.
+    /// Returns the default: OpenGL's light 0, white, directional from +z, without ambient light.
     fn default() -> Self {
         let black = Vec4::new(0.0, 0.0, 0.0, 1.0);
         Self {
@@ -71,7 +71,7 @@ pub struct Material {
 }
 
 impl Default for Material {
-    /// OpenGL's initial material.
+    /// Returns the default: OpenGL's initial material.
     fn default() -> Self {
         let grey = |v: f32| Vec4::new(v, v, v, 1.0);
         let (ambient, diffuse) = (grey(0.2), grey(0.8));
@@ -91,7 +91,7 @@ pub struct LightModel {
 }
 
 impl Default for LightModel {
-    /// OpenGL's initial model: a little ambient light, a distant viewer, one side.
+    /// Returns the default: OpenGL's initial model, a little ambient light, a distant viewer, one side.
     fn default() -> Self {
         let ambient = Vec4::new(0.2, 0.2, 0.2, 1.0);
         Self { ambient, local_viewer: false, two_sided: false }
@@ -129,7 +129,7 @@ pub enum ColorMaterial {
 pub enum ShadeModel {
     /// The last vertex of a line or triangle, the first of a polygon, colours all of it.
     Flat,
-    /// Between the vertices: the initial state.
+    /// Interpolation between the vertices: the initial state.
     #[default]
     Smooth,
 }
@@ -173,7 +173,7 @@ pub struct Step {
 }
 
 impl Light {
-    /// Returns the same light in another space.
+    /// Returns the light in another space.
     pub(super) fn transformed(&self, to: &crate::math::DMat4) -> Self {
         let spot_direction = DMat3::from_mat4(*to) * self.spot_direction;
         Self { position: *to * self.position, spot_direction, ..*self }

@@ -54,14 +54,14 @@ fn dangling(list: ListId, count: usize) -> Error {
     Error::Dangling { what: "display list", index: list.0, count }
 }
 
-/// Carries out commands in their order. What was drawn before an error stays drawn.
+/// Executes commands in their order. The results of commands before an error stay.
 ///
 /// # Errors
-/// [`Error::Dangling`] for a list that is not there; [`Error::Limit`] for lists nested deeper than
-/// [`MAX_NESTING`], more commands than [`MAX_COMMANDS`], a matrix stack above [`MAX_STACK`];
-/// [`Error::Parameter`] for taking back a matrix that was not kept, a matrix, evaluator, light, material or zoom that is
-/// not finite or out of its range, and a viewport or rectangle beyond the framebuffer; [`Error::Unsupported`] for copying
-/// from a plane that the framebuffer does not have.
+/// [`Error::Dangling`] for a list that is not there; [`Error::Limit`] for lists nested deeper than [`MAX_NESTING`],
+/// more commands than [`MAX_COMMANDS`], a matrix stack above [`MAX_STACK`]; [`Error::Parameter`] for taking back a
+/// matrix that was not kept, a matrix, evaluator, light, material or zoom that is not finite or out of its range, and a
+/// viewport or rectangle beyond the framebuffer; [`Error::Unsupported`] for copying from a plane that the framebuffer
+/// does not have.
 pub fn execute(
     commands: &[Command],
     lists: &DisplayLists,

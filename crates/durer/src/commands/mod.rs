@@ -8,8 +8,8 @@
 //! fragment operation at work; pictures of scenes are made by [`crate::pipeline`].
 //!
 //! Rows count as in the framebuffer: downwards from the top, or upwards where its
-//! [origin](crate::target::Framebuffer::origin) is at the lower left, as in OpenGL. Lines light exactly the pixels of the
-//! whole line that are within the viewport.
+//! [origin](crate::target::Framebuffer::origin) is at the lower left, as in OpenGL. Lines light exactly the pixels of
+//! the whole line that are within the viewport.
 //!
 //! ```
 //! use durer::commands::{Command, DisplayLists, Pipeline, Primitive, Vertex, execute};
@@ -68,7 +68,7 @@ pub enum Primitive {
 /// A corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
-    /// In the space that the model-view matrix takes to the eye's.
+    /// Position in object space, which the model-view matrix transforms to eye space.
     pub position: DVec3,
     /// Linear RGBA with straight alpha; `None` = the pipeline's colour.
     pub color: Option<Vec4>,
@@ -102,16 +102,16 @@ pub enum Command {
     },
     /// Sets the model-view matrix.
     LoadModelView(DMat4),
-    /// Multiplies it from the right: what comes next is transformed first.
+    /// Multiplies the model-view matrix from the right: the new matrix is applied first.
     MultiplyModelView(DMat4),
-    /// Keeps a copy of it.
+    /// Pushes a copy of the model-view matrix onto its stack.
     PushModelView,
-    /// Takes the latest copy back.
+    /// Restores the model-view matrix from the top of its stack.
     PopModelView,
     /// Sets the projection matrix: eye space to clip space, −w ≤ x, y, z ≤ w.
     LoadProjection(DMat4),
-    /// Sets where normalized device coordinates lie in the framebuffer: first column, first row, width,
-    /// height; `None` = all of it.
+    /// Sets the area of the framebuffer for normalized device coordinates: first column, first row, width, height;
+    /// `None` = all of it.
     Viewport(Option<[u32; 4]>),
     /// Sets the colour of vertices that have none.
     Color(Vec4),
@@ -123,7 +123,7 @@ pub enum Command {
     TexCoord(DVec2),
     /// Turns lighting on or off.
     Lighting(bool),
-    /// Sets a light, or turns it off; its position and direction are taken through the model-view matrix as it is now.
+    /// Sets a light, or turns it off; its position and direction are transformed by the current model-view matrix.
     Light(usize, Option<Light>),
     /// Sets ambient light, viewer and sides.
     LightModel(LightModel),
@@ -137,28 +137,28 @@ pub enum Command {
     ShadeModel(ShadeModel),
     /// Sets the texture of all fragments, or none.
     Texture(Option<Texture>),
-    /// Sets the place of pixels that are drawn next: a vertex, which goes the way of all vertices.
+    /// Sets the raster position, at which pixels are drawn: a vertex, transformed like all vertices.
     RasterPosition(Vertex),
-    /// Sets the width and height that a drawn pixel gets.
+    /// Sets the width and height of a drawn pixel.
     PixelZoom(DVec2),
     /// Draws a rectangle of pixels at the raster position.
     DrawPixels(PixelBlock),
     /// Draws a rectangle of the framebuffer at the raster position: first column, first row, width, height.
     CopyPixels([u32; 4], PixelPlane),
-    /// Sets which faces are left out.
+    /// Sets the faces to leave out.
     Cull(CullFace),
-    /// Sets where near and far lie in window depth.
+    /// Sets the window depths of the near and the far plane.
     DepthRange(DepthRange),
-    /// Sets what is added to the depths of polygons.
+    /// Sets the offset that is added to the depths of polygons.
     PolygonOffset(PolygonOffset),
     /// Sets all fragment operations.
     Fragments(FragmentState),
-    /// Draws.
+    /// Draws a primitive.
     Draw(Primitive, Vec<Vertex>),
     /// Evaluates a curve at this many equal steps of its parameter and draws them as a line strip.
     EvaluateCurve(Curve, u32),
     /// Evaluates a patch at this many equal steps both ways and draws its triangles.
     EvaluatePatch(Patch, [u32; 2]),
-    /// Replays a display list with the state as it is; what it changes stays changed.
+    /// Replays a display list with the current state; its changes of the state stay.
     Call(ListId),
 }

@@ -12,9 +12,9 @@ pub enum CullFace {
     /// None: the initial state.
     #[default]
     None,
-    /// Those seen from their front.
+    /// Faces seen from the front.
     Front,
-    /// Those seen from behind.
+    /// Faces seen from behind.
     Back,
 }
 
@@ -34,7 +34,7 @@ pub struct RasterPosition {
 }
 
 impl Default for RasterPosition {
-    /// OpenGL's initial position: the first pixel, at the near plane, white.
+    /// Returns the default: OpenGL's initial position, the first pixel, at the near plane, white.
     fn default() -> Self {
         Self { at: DVec2::ZERO, depth: 0.0, color: Vec4::ONE, index: 1.0, tex_coord: DVec2::ZERO }
     }
@@ -82,7 +82,7 @@ pub struct Pipeline {
 pub const MAX_STACK: usize = 32;
 
 impl Default for Pipeline {
-    /// OpenGL's initial state: no tests, no blending, everything written.
+    /// Returns the default: OpenGL's initial state, no tests, no blending, everything written.
     fn default() -> Self {
         Self {
             model_view: DMat4::IDENTITY,

@@ -18,7 +18,7 @@ pub enum TextureFunction {
     Modulate,
     /// The texture's over the fragment's, by the texture's alpha; the fragment's alpha stays.
     Decal,
-    /// From the fragment's colour to that of the environment, by the texture's colour.
+    /// Interpolation from the fragment's colour to that of the environment, by the texture's colour.
     Blend,
     /// Their sum; alphas are multiplied.
     Add,
@@ -59,8 +59,8 @@ pub(super) struct Prepared<'a> {
 }
 
 impl Prepared<'_> {
-    /// Returns the colour of a fragment with the texture applied. `at` are texture coordinates: those of the fragment, and
-    /// those one pixel further along x and y.
+    /// Returns the colour of a fragment with the texture applied. `at` are texture coordinates: those of the fragment,
+    /// and those one pixel further along x and y.
     pub fn apply(&self, color: DVec4, at: [DVec2; 3]) -> DVec4 {
         let [uv, right, down] = at;
         let (ddx, ddy) = ((right - uv).as_vec2(), (down - uv).as_vec2());

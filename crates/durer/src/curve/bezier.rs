@@ -118,12 +118,12 @@ pub fn rational(control: &[(DVec2, f64)], t: f64) -> Option<DVec2> {
     project(de_casteljau(&lifted, t, &mut crate::trace::NoTrace)?)
 }
 
-/// From homogeneous coordinates to the plane.
+/// Projects homogeneous coordinates to the plane.
 pub(crate) fn project(p: DVec3) -> Option<DVec2> {
     (p.z != 0.0).then(|| p.truncate() / p.z)
 }
 
-/// Point, and the derivatives along u and v, of a bicubic patch; the normal is their cross product.
+/// Returns the point, and the derivatives along u and v, of a bicubic patch; the normal is their cross product.
 pub fn bicubic(control: &[[DVec3; 4]; 4], u: f64, v: f64) -> (DVec3, DVec3, DVec3) {
     let (bu, du) = (bernstein(u), bernstein_derivative(u));
     let (bv, dv) = (bernstein(v), bernstein_derivative(v));

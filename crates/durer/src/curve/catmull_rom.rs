@@ -1,9 +1,9 @@
 //! Catmull–Rom splines: cubic pieces through all points, and Hermite's form of a cubic.
 //!
-//! E. Catmull, R. Rom, *A class of local interpolating splines*, Computer Aided Geometric Design (Academic Press), 1974: the
-//! tangent at a point is half the way from the one before to the one after, so a point moves only the four pieces near
-//! it. A piece between two points with these tangents is Hermite's cubic, and that is a Bézier curve. Object space. Cost:
-//! O(1) per piece.
+//! E. Catmull, R. Rom, *A class of local interpolating splines*, Computer Aided Geometric Design (Academic Press),
+//! 1974: the tangent at a point is half the way from the one before to the one after, so a point moves only the four
+//! pieces near it. A piece between two points with these tangents is Hermite's cubic, and that is a Bézier curve.
+//! Object space. Cost: O(1) per piece.
 //!
 //! Deviation: the paper's curve begins at the second point and ends at the last but one; here the end points are taken
 //! twice, so that it runs through all points.
@@ -13,7 +13,7 @@ use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "catmull-rom",
     title: "Catmull–Rom spline",
@@ -47,7 +47,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// As published, from the first point to the last.
+    /// Returns the default: as published, from the first point to the last.
     fn default() -> Self {
         Self { tension: 0.5, closed: false }
     }
@@ -97,8 +97,8 @@ pub fn hermite(ends: [DVec2; 2], tangents: [DVec2; 2]) -> [DVec2; 4] {
     [ends[0], ends[0] + tangents[0] / 3.0, ends[1] - tangents[1] / 3.0, ends[1]]
 }
 
-/// Returns the pieces of the curve through points, each as the control points of a Bézier curve; fewer than two points have
-/// none.
+/// Returns the pieces of the curve through points, each as the control points of a Bézier curve; fewer than two points
+/// have none.
 pub fn pieces(points: &[DVec2], options: &Options, t: &mut impl Tracer<Step>) -> Vec<[DVec2; 4]> {
     let count = points.len();
     if count < 2 {

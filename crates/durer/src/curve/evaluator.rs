@@ -1,14 +1,15 @@
 //! Evaluators: points of Bézier patches on a grid of parameters, and the triangles between them.
 //!
-//! P. Bézier, *Définition numérique des courbes et surfaces*, Automatisme 11, 1966; as commands of a pipeline: M. Segal, K. Akeley,
-//! *The OpenGL Graphics System*, 1992, 5.1. Each point is found by de Casteljau's algorithm: first along the rows of control
-//! points, then across. Class: object space. Cost: O(n² m + m²) per point, m rows of n control points.
+//! P. Bézier, *Définition numérique des courbes et surfaces*, Automatisme 11, 1966; as commands of a pipeline: M.
+//! Segal, K. Akeley, *The OpenGL Graphics System*, 1992, 5.1. Each point is found by de Casteljau's algorithm: first
+//! along the rows of control points, then across. Class: object space. Cost: O(n² m + m²) per point, m rows of n
+//! control points.
 
 use super::bezier::{Point, de_casteljau};
 use crate::info::{Class, Info, Occluder};
 use crate::trace::{NoTrace, Tracer};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "evaluator",
     title: "Evaluators of Bézier patches",
@@ -77,8 +78,8 @@ pub fn replay<P: Point>(steps: &[Step<P>]) -> Option<P> {
     de_casteljau(&column, v?, &mut NoTrace)
 }
 
-/// Returns the point of a patch at (u, v): `rows` of control points, u along each row, v across the rows; `None` without
-/// control points.
+/// Returns the point of a patch at (u, v): `rows` of control points, u along each row, v across the rows; `None`
+/// without control points.
 ///
 /// ```
 /// use durer::curve::evaluator::patch;

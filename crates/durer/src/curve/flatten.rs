@@ -45,12 +45,12 @@ const MAX_SEGMENTS: f64 = 4096.0;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Contours {
     points: Vec<DVec2>,
-    /// For each contour: index one past its last point, and whether it was closed.
+    /// Ends of the contours: index one past its last point, and whether it was closed.
     ends: Vec<(usize, bool)>,
 }
 
 impl Contours {
-    /// No contours.
+    /// Creates an empty list of contours.
     pub fn new() -> Self {
         Self::default()
     }
@@ -100,7 +100,7 @@ impl Contours {
         })
     }
 
-    /// Returns the same contours with every point mapped.
+    /// Returns the contours with every point mapped.
     pub fn transformed(mut self, map: DAffine2) -> Self {
         if map != DAffine2::IDENTITY {
             self.points.iter_mut().for_each(|p| *p = map.transform_point2(*p));

@@ -1,9 +1,9 @@
 //! Cubic curves at equal steps by forward differences: three additions a point and coordinate.
 //!
-//! J. D. Foley, A. van Dam, *Fundamentals of Interactive Computer Graphics*, Addison-Wesley 1982, section 13.5. Of a cubic
-//! p(t) = a·t³ + b·t² + c·t + d the third difference at equal steps is constant, so each point follows from the one before by
-//! adding the first difference to it, the second to the first, and the third to the second. Object space. Cost: O(1)
-//! multiplications for a curve, three additions a point.
+//! J. D. Foley, A. van Dam, *Fundamentals of Interactive Computer Graphics*, Addison-Wesley 1982, section 13.5. Of a
+//! cubic p(t) = a·t³ + b·t² + c·t + d the third difference at equal steps is constant, so each point follows from the
+//! one before by adding the first difference to it, the second to the first, and the third to the second. Object space.
+//! Cost: O(1) multiplications for a curve, three additions a point.
 //!
 //! Limits: equal steps of the parameter; rounding adds up with the cube of the number of steps, as the differences are
 //! summed.
@@ -12,7 +12,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "forward-differences",
     title: "Cubic curves by forward differences",
@@ -55,8 +55,8 @@ impl Step {
     }
 }
 
-/// Returns `steps` + 1 points of a cubic Bézier curve at equal steps of its parameter, from the first to the last; no steps
-/// give the first point alone.
+/// Returns `steps` + 1 points of a cubic Bézier curve at equal steps of its parameter, from the first to the last; no
+/// steps give the first point alone.
 ///
 /// ```
 /// use durer::curve::forward_difference::points;

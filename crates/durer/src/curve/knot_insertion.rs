@@ -1,10 +1,10 @@
 //! Knot insertion: more control points and knots for the same B-spline curve.
 //!
-//! One knot: W. Boehm, *Inserting new knots into B-spline curves*, Computer-Aided Design 12(4), 1980. Many at once: E. Cohen,
-//! T. Lyche, R. Riesenfeld, *Discrete B-splines and subdivision techniques in computer-aided geometric design and computer
-//! graphics*, Computer Graphics and Image Processing 14(2), 1980, the Oslo algorithm. Both mix neighbours of the control
-//! polygon, so the new one is nearer to the curve. Object space. Cost: O(p) points for a knot by Boehm, O(p²) for each new
-//! control point by the Oslo algorithm, of degree p.
+//! One knot: W. Boehm, *Inserting new knots into B-spline curves*, Computer-Aided Design 12(4), 1980. Many at once: E.
+//! Cohen, T. Lyche, R. Riesenfeld, *Discrete B-splines and subdivision techniques in computer-aided geometric design
+//! and computer graphics*, Computer Graphics and Image Processing 14(2), 1980, the Oslo algorithm. Both mix neighbours
+//! of the control polygon, so the new one is nearer to the curve. Object space. Cost: O(p) points for a knot by Boehm,
+//! O(p²) for each new control point by the Oslo algorithm, of degree p.
 //!
 //! ```
 //! use durer::curve::b_spline::BSpline;
@@ -127,7 +127,7 @@ fn check<P: Point>(curve: &BSpline<P>, knot: f64) -> Result<()> {
     Err(Error::parameter("new knot", knot, expected))
 }
 
-/// Returns the same curve with one more knot, by Boehm's algorithm.
+/// Inserts a knot into a curve, which stays the same, by Boehm's algorithm.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a knot that is not inside the domain, or there as often as the degree already.
@@ -153,7 +153,7 @@ pub fn insert<P: Point>(
     BSpline::new(p, control, knots)
 }
 
-/// Returns the same curve with more knots, in any order, by the Oslo algorithm.
+/// Inserts knots, in any order, into a curve, which stays the same, by the Oslo algorithm.
 ///
 /// # Errors
 /// [`Error::Parameter`] as in [`insert`].

@@ -53,22 +53,22 @@ impl Path {
         self.push(PathElement::MoveTo(DVec2::new(x, y)))
     }
 
-    /// Returns a straight line to (x, y).
+    /// Appends a straight line to (x, y).
     pub fn line_to(&mut self, x: f64, y: f64) -> &mut Self {
         self.push(PathElement::LineTo(DVec2::new(x, y)))
     }
 
-    /// Returns a quadratic curve with control point (cx, cy) to (x, y).
+    /// Appends a quadratic curve with control point (cx, cy) to (x, y).
     pub fn quad_to(&mut self, cx: f64, cy: f64, x: f64, y: f64) -> &mut Self {
         self.push(PathElement::QuadTo(DVec2::new(cx, cy), DVec2::new(x, y)))
     }
 
-    /// Returns a cubic curve to the third point.
+    /// Appends a cubic curve to the third point.
     pub fn cubic_to(&mut self, a: DVec2, b: DVec2, end: DVec2) -> &mut Self {
         self.push(PathElement::CubicTo(a, b, end))
     }
 
-    /// Back to the contour's start.
+    /// Closes the contour: goes back to its start.
     pub fn close(&mut self) -> &mut Self {
         self.push(PathElement::Close)
     }
@@ -123,8 +123,8 @@ impl Path {
         path
     }
 
-    /// Returns a circular arc from angle `start` over `sweep` radians (positive turns x towards y), as
-    /// cubic curves of at most a quarter turn each. Appends a line to its start where a contour is open.
+    /// Appends a circular arc angle `start` over `sweep` radians (positive turns x towards y), as cubic curves of at
+    /// most a quarter turn each. Appends a line to its start where a contour is open.
     pub fn arc(&mut self, center: DVec2, radius: f64, start: f64, sweep: f64) -> &mut Self {
         let turns = sweep.clamp(-std::f64::consts::TAU, std::f64::consts::TAU);
         let pieces = (turns.abs() / std::f64::consts::FRAC_PI_2).ceil().max(1.0) as u32;
@@ -146,7 +146,7 @@ impl Path {
         self
     }
 
-    /// Returns the same path with every point mapped.
+    /// Returns the path with every point mapped
     pub fn transformed(&self, map: DAffine2) -> Self {
         use PathElement::{Close, CubicTo, LineTo, MoveTo, QuadTo};
         let at = |p: DVec2| map.transform_point2(p);

@@ -115,8 +115,8 @@ pub fn at_corners(curve: &Curve, cosine: f64) -> Vec<Curve> {
 /// No curve is halved more often to become arcs.
 const MOST_HALVINGS: u32 = 12;
 
-/// Returns a curve as circular arcs and lines: for each its end and its bulge, the tangent of a quarter of its turn, 0 of
-/// lines. They stay within `tolerance` of the curve.
+/// Returns a curve as circular arcs and lines: for each its end and its bulge, the tangent of a quarter of its turn, 0
+/// of lines. They stay within `tolerance` of the curve.
 ///
 /// Ellipses and cubic curves become pairs of arcs that go over into each other without a corner: K. M. Bolton, *Biarc
 /// curves*, Computer-Aided Design, 1975; both with tangents of the same length.

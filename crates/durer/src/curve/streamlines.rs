@@ -205,7 +205,7 @@ fn returns(
 struct Point {
     at: DVec2,
     line: u32,
-    /// Along its line, from the seed: negative on one side.
+    /// Number along its line, from the seed: negative on one side.
     number: i32,
 }
 

@@ -152,7 +152,7 @@ const ACCENTED: &[(char, &str, &str)] = &[
     ('¸', "csCS", "çşÇŞ"),
 ];
 
-/// Accents over a small letter.
+/// Returns the glyph of an accent over a small letter.
 fn accent_glyph(accent: char) -> Option<Glyph> {
     Some(match accent {
         '¨' => (3.0, "M0 10.3 L0 10.9 M3 10.3 L3 10.9"),
@@ -211,7 +211,7 @@ fn extend(stroke: &mut Vec<DVec2>, command: &str, control: Option<DVec2>, to: DV
     stroke.push(to);
 }
 
-/// Letters, figures and signs on the grid.
+/// Returns the glyph of a letter, figure or sign on the grid.
 fn glyph(character: char) -> Option<Glyph> {
     Some(match character {
         'A' => (8.0, "M0 0 L4 12 L8 0 M1.333 4 L6.667 4"),
@@ -270,7 +270,7 @@ fn glyph(character: char) -> Option<Glyph> {
     })
 }
 
-/// All figures have one width.
+/// Returns the glyph of a figure; all have one width.
 fn figure(character: char) -> Option<Glyph> {
     let outline = match character {
         '0' => "M3.5 12 H7 8 L7 4 V3.5 0 H0 4 L0 8 V3.5 12",
@@ -288,7 +288,7 @@ fn figure(character: char) -> Option<Glyph> {
     Some((7.0, outline))
 }
 
-/// Punctuation and the signs of measures.
+/// Returns the glyph of a punctuation mark or a sign of measures.
 fn sign(character: char) -> Option<Glyph> {
     Some(match character {
         '.' => (0.0, "M0 0 L0 0.6"),

@@ -26,8 +26,8 @@ pub struct TextLine {
     pub path: Path,
     /// Offset of the next glyph.
     pub advance: f64,
-    /// For each glyph where it starts on the base line, where the next one does, and before which element of the
-    /// path its outline ends.
+    /// Places of the glyphs: where each starts on the base line, where the next one does, and before which element of
+    /// the path its outline ends.
     pub glyphs: Vec<PlacedGlyph>,
     /// Height of ascenders above the base line, positive.
     pub ascent: f64,
@@ -47,9 +47,9 @@ pub struct PlacedGlyph {
 }
 
 impl TextLine {
-    /// Returns the outlines along a polyline: each glyph is turned by the direction at its middle, as SVG's
-    /// `textPath` does. The text's start is `start` along the polyline, its base line `below` that far on its right
-    /// (y down); what comes before the polyline or after it goes straight on.
+    /// Returns the outlines along a polyline: each glyph is turned by the direction at its middle, as SVG's `textPath`
+    /// does. The text's start is `start` along the polyline, its base line `below` that far on its right (y down);
+    /// glyphs before or after the polyline continue it straight.
     pub fn along(&self, polyline: &[DVec2], start: f64, below: f64) -> Path {
         let mut out = Path::new();
         let mut first = 0;
@@ -161,7 +161,7 @@ impl<'a> Font<'a> {
     }
 }
 
-/// Turns y upside down on the way into a path.
+/// Pen that turns y upside down on the way into a path.
 #[derive(Default)]
 struct Pen(Path);
 

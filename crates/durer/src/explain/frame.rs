@@ -7,7 +7,7 @@ use super::words::Template;
 use crate::Result;
 use crate::trace::{Recorder, Tracer};
 
-/// Sentence of a frame that stands for steps that are not shown.
+/// Sentence of a frame in place of steps that are not shown.
 pub(super) static MORE: Template = Template::new(
     "more",
     "{shown} steps are shown; {dropped} more follow.",
@@ -24,8 +24,8 @@ pub(super) fn record<S, T>(
     Ok(steps)
 }
 
-/// Makes a frame of each step by a function that gets the step and keeps the state; adds one that says how many
-/// steps were dropped.
+/// Makes a frame of each step by a function that gets the step and keeps the state; adds one with the number of steps
+/// that were dropped.
 pub(super) fn frames<S>(steps: &Recorder<S>, show: impl FnMut(&S) -> Shown) -> Frames {
     let mut run = Packer::default();
     steps.steps().iter().map(show).for_each(|shown| run.push(shown));

@@ -5,7 +5,7 @@ use super::table::Table;
 use super::words::{Value, Word};
 use crate::math::{DAffine2, DVec2, IVec2, Rect};
 
-/// The largest coordinate that is taken as it is: more pixels across cannot be told apart in a picture.
+/// The largest coordinate that is taken as it is: more pixels across cannot be distinguished in a picture.
 const LARGEST: f64 = 40.0;
 
 /// Pixels that the longer side of a larger input is scaled to.
@@ -58,7 +58,8 @@ impl Raster {
         Picture { picture_from_input, ..upright(self.columns, self.rows) }
     }
 
-    /// Returns an empty picture of the grid for inputs whose coordinates are those of pixels: a point is in the middle of one.
+    /// Returns an empty picture of the grid for inputs whose coordinates are those of pixels: a point is in the middle
+    /// of one.
     pub fn picture_of_pixels(&self) -> Picture {
         let mut picture = self.picture();
         let shift = DAffine2::from_translation(DVec2::splat(0.5));

@@ -13,7 +13,7 @@ pub const MAX_POINTS: usize = 2_000;
 pub enum Input {
     /// An example of the lesson, by its name; the first one for an empty name.
     Example(String),
-    /// Shapes of the plane.
+    /// Windows, lines and polygons in the plane.
     Figure(Figure),
     /// Faces in space, corner by corner, seen from +z.
     Faces(Vec<Vec<DVec3>>),
@@ -23,7 +23,7 @@ pub enum Input {
     Grid(Grid),
 }
 
-/// Shapes of the plane; each algorithm takes of them what it needs.
+/// Windows, lines and polygons in the plane; each algorithm takes those that it needs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Figure {
     /// The window, if there is one.
@@ -34,7 +34,7 @@ pub struct Figure {
     pub rings: Vec<Vec<DVec2>>,
     /// Rings of the clip; without any, the window's border.
     pub clip: Vec<Vec<DVec2>>,
-    /// Points that stand alone.
+    /// Single points.
     pub points: Vec<DVec2>,
 }
 
@@ -49,12 +49,12 @@ pub struct Grid {
     pub seed: [u32; 2],
 }
 
-/// Choices for a run; each algorithm takes of it what it has.
+/// Choices for a run; each algorithm uses those that it has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
     /// Operation on two regions.
     pub operation: BooleanOp,
-    /// Rule that decides what is inside rings.
+    /// Rule that decides which points are inside rings.
     pub rule: WindingRule,
 }
 
@@ -107,7 +107,7 @@ impl Input {
     /// Returns the shapes of the plane.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for another kind of input; `wanted` is what the error names as right.
+    /// [`Error::Parameter`] for another kind of input; the error names `wanted` as the right one.
     pub fn figure(&self, wanted: Word) -> Result<&Figure> {
         if let Self::Figure(figure) = self { Ok(figure) } else { Err(self.wrong(wanted)) }
     }
@@ -115,7 +115,7 @@ impl Input {
     /// Returns the faces.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for another kind of input; `wanted` is what the error names as right.
+    /// [`Error::Parameter`] for another kind of input; the error names `wanted` as the right one.
     pub fn faces(&self, wanted: Word) -> Result<&[Vec<DVec3>]> {
         if let Self::Faces(faces) = self { Ok(faces) } else { Err(self.wrong(wanted)) }
     }
@@ -123,7 +123,7 @@ impl Input {
     /// Returns the points of clip space.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for another kind of input; `wanted` is what the error names as right.
+    /// [`Error::Parameter`] for another kind of input; the error names `wanted` as the right one.
     pub fn clip_space(&self, wanted: Word) -> Result<&[DVec4]> {
         if let Self::ClipSpace(points) = self { Ok(points) } else { Err(self.wrong(wanted)) }
     }
@@ -131,7 +131,7 @@ impl Input {
     /// Returns the picture.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for another kind of input; `wanted` is what the error names as right.
+    /// [`Error::Parameter`] for another kind of input; the error names `wanted` as the right one.
     pub fn grid(&self, wanted: Word) -> Result<&Grid> {
         if let Self::Grid(grid) = self { Ok(grid) } else { Err(self.wrong(wanted)) }
     }

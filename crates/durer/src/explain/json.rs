@@ -9,7 +9,7 @@ use crate::math::DVec2;
 use std::fmt::Write;
 
 /// Returns a run as a JSON object: the algorithm's facts and pseudocode, and its frames with captions and tables in one
-/// language, values as numbers, and the marks of the pictures. `<` is written out, so that the text may stand in a page.
+/// language, values as numbers, and the marks of the pictures. `<` is written out, so that a page may contain the text.
 pub fn json(lesson: &Lesson, frames: &[Frame], language: Language) -> String {
     let info = lesson.info;
     let texts = [
@@ -69,7 +69,8 @@ fn point(p: DVec2) -> String {
     array(p.to_array().map(number))
 }
 
-/// Returns one frame as a JSON object: its line, kind, caption with values, and table, without the marks of the picture.
+/// Returns one frame as a JSON object: its line, kind, caption with values, and table, without the marks of the
+/// picture.
 pub fn frame_json(frame: &Frame, language: Language) -> String {
     object(texts(frame, language))
 }

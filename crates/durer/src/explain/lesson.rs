@@ -21,7 +21,7 @@ pub struct Lesson {
     pub templates: &'static [&'static Template],
     /// Kinds of steps that no example reaches, each with the reason.
     pub unreached: &'static [(&'static str, &'static str)],
-    /// Makes the frames of a run, at most as many as the last argument.
+    /// Maker of the frames of a run, at most as many as its last argument.
     pub(super) make: Make,
 }
 
@@ -35,13 +35,13 @@ pub struct Example {
     pub name: &'static str,
     /// Title.
     pub title: Word,
-    /// Makes the input.
+    /// Maker of the input.
     pub input: fn() -> Input,
 }
 
 impl Lesson {
-    /// Runs the algorithm and returns a frame for each of its steps, at most `cap`, and one more that says how many
-    /// are missing if there are more.
+    /// Runs the algorithm and returns a frame for each of its steps, at most `cap`, and one more with the number of
+    /// missing ones if there are more.
     ///
     /// # Errors
     /// [`Error::Parameter`] where the algorithm takes another kind of input; [`Error::Unknown`] for an example that
@@ -51,8 +51,8 @@ impl Lesson {
         Ok(self.record(input, options, cap)?.iter().collect())
     }
 
-    /// Runs the algorithm as [`Lesson::run`] does, and returns frames that are made when they are shown: for runs of many
-    /// steps.
+    /// Runs the algorithm as [`Lesson::run`] does, and returns frames that are made when they are shown: for runs of
+    /// many steps.
     ///
     /// # Errors
     /// Those of [`Lesson::run`].

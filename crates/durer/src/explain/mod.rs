@@ -106,8 +106,8 @@ pub fn lesson(name: &str) -> Result<&'static Lesson> {
         .ok_or_else(|| lesson::unknown("algorithm to explain", name, names()))
 }
 
-/// Runs an algorithm and returns a frame for each of its steps, at most `cap`, and one more that says how many are
-/// missing if there are more.
+/// Runs an algorithm and returns a frame for each of its steps, at most `cap`, and one more with the number of missing
+/// ones if there are more.
 ///
 /// # Errors
 /// Those of [`lesson()`] and [`Lesson::run`].

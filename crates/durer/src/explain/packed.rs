@@ -43,8 +43,8 @@ pub(super) struct Shown {
 /// Frames from one that is kept whole to the next: the most that are read to make a frame anew.
 const WHOLE: usize = 64;
 
-/// All frames of a run. It keeps of each only the rows and marks that the one before lacks, so that runs of 100,000 steps
-/// fit into memory; [`Frames::frame`] makes a frame from at most 64 of them.
+/// All frames of a run. It keeps of each only the rows and marks that the one before lacks, so that runs of 100,000
+/// steps fit into memory; [`Frames::frame`] makes a frame from at most 64 of them.
 #[derive(Debug, Clone, Default)]
 pub struct Frames {
     steps: Vec<Packed>,
@@ -90,7 +90,7 @@ impl<T: Clone + PartialEq> Change<T> {
     }
 }
 
-/// Collects the frames of a run.
+/// Collector of the frames of a run.
 #[derive(Default)]
 pub(super) struct Packer {
     frames: Frames,
@@ -229,7 +229,8 @@ mod tests {
         assert_eq!(Change::new(b"abc", b"abxc").items, b"x");
     }
 
-    /// A frame by itself is the one that all frames in their order have in its place, on both sides of those kept whole.
+    /// A frame by itself is the one that all frames in their order have in its place, on both sides of those kept
+    /// whole.
     #[test]
     fn any_frame_can_be_made() {
         let input = Input::Example(String::new());

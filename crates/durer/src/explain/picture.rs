@@ -6,7 +6,7 @@ use crate::math::{DAffine2, DVec2, Rect};
 /// Part that a mark plays in a picture; drawings choose colour, width and hatching by it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Look {
-    /// Given, and not looked at now: grey.
+    /// Input that is not examined now: grey.
     Pale,
     /// Auxiliary lines: thin and grey.
     Thin,
@@ -76,8 +76,8 @@ pub struct Picture {
     pub down: bool,
     /// Columns and rows of a grid of unit cells from the origin.
     pub grid: Option<[u32; 2]>,
-    /// Map from the points of the input, for faces their x and y, to their places in the picture; `None` if it shows them
-    /// in another way, or not at all.
+    /// Map from the points of the input, for faces their x and y, to their places in the picture; `None` if it shows
+    /// them in another way, or not at all.
     pub picture_from_input: Option<DAffine2>,
     /// Marks from the lowest to the uppermost.
     pub marks: Vec<Mark>,

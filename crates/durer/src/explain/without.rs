@@ -8,7 +8,7 @@ const FORMULA: &str = "one formula: there are no steps to show";
 const COARSE: &str = "its steps are too coarse to be drawn one by one";
 const UNTRACED: &str = "it reports no steps";
 
-/// Algorithms without a lesson and why, in the order of [`super::ALGORITHMS`]; whoever writes one takes the entry out.
+/// Algorithms without a lesson and why, in the order of [`super::ALGORITHMS`]; a new lesson removes its entry.
 pub const WITHOUT_LESSON: &[(&Info, &str)] = &[
     (&clip::line::batch::INFO, PRODUCTION),
     (&clip::polygon::validity::INFO, UNTRACED),

@@ -148,7 +148,7 @@ impl<T: Into<Self>> From<Vec<T>> for Value {
     }
 }
 
-/// A sentence about a kind of step, with `{name}` where values stand.
+/// Sentence about a kind of step, with `{name}` in place of values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Template {
     /// Kind of the step: the variant of `Step` in kebab case.
@@ -163,7 +163,7 @@ impl Template {
         Self { kind, text: Word::new(en, de) }
     }
 
-    /// Returns the caption that the template gives with values.
+    /// Returns the caption of the template with values.
     pub fn with<const N: usize>(&'static self, values: [(&'static str, Value); N]) -> Caption {
         Caption { template: self, values: values.into() }
     }

@@ -2,7 +2,7 @@
 
 use super::Compare;
 
-/// Passes where `alpha compare reference`.
+/// Test that passes where `alpha compare reference`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AlphaTest {
     /// The comparison; the fragment's alpha is the incoming value.

@@ -34,7 +34,7 @@ pub enum Factor {
     ConstantAlpha,
     /// 1 − the constant's alpha.
     OneMinusConstantAlpha,
-    /// For colours the smaller of source alpha and 1 − destination alpha; for alpha 1.
+    /// The smaller of source alpha and 1 − destination alpha for colours; 1 for alpha.
     SourceAlphaSaturate,
 }
 
@@ -106,16 +106,16 @@ impl Equation {
 /// Factors and equation of some channels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Function {
-    /// Multiplies the source.
+    /// Factor of the source.
     pub source: Factor,
-    /// Multiplies the destination.
+    /// Factor of the destination.
     pub destination: Factor,
-    /// Joins the products.
+    /// Equation that joins the products.
     pub equation: Equation,
 }
 
 impl Default for Function {
-    /// Source · 1 + destination · 0: OpenGL's initial state.
+    /// Returns the default: source · 1 + destination · 0, OpenGL's initial state.
     fn default() -> Self {
         Self { source: Factor::One, destination: Factor::Zero, equation: Equation::Add }
     }
@@ -144,9 +144,9 @@ pub enum Blend {
     Over,
     /// OpenGL's blending of the channels as they are stored.
     Functions {
-        /// For red, green and blue.
+        /// Function for red, green and blue.
         color: Function,
-        /// For alpha.
+        /// Function for alpha.
         alpha: Function,
         /// The constant colour, linear.
         constant: Vec4,
@@ -154,7 +154,7 @@ pub enum Blend {
 }
 
 impl Blend {
-    /// Returns the blended colour, held to 0…1.
+    /// Returns the blended colour, clamped to 0…1.
     #[inline]
     pub fn apply(&self, source: Vec4, destination: Vec4) -> Vec4 {
         match self {
@@ -168,7 +168,7 @@ impl Blend {
     }
 }
 
-/// Source over destination, straight alpha. Where nothing is there, transparent black.
+/// Blends source over destination, straight alpha; transparent black where nothing is there.
 #[inline(always)]
 pub fn over_straight(source: Vec4, destination: Vec4) -> Vec4 {
     let under = destination.w * (1.0 - source.w);
@@ -181,7 +181,7 @@ pub fn over_straight(source: Vec4, destination: Vec4) -> Vec4 {
     }
 }
 
-/// Source over destination, premultiplied alpha.
+/// Blends source over destination, premultiplied alpha.
 #[inline(always)]
 pub fn over_premultiplied(source: Vec4, destination: Vec4) -> Vec4 {
     source + destination * (1.0 - source.w)

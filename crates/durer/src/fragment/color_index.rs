@@ -34,7 +34,7 @@ pub struct Palette {
 }
 
 impl Default for Palette {
-    /// Greys of equal steps of the sRGB code, opaque, from black at 0 to white at 255.
+    /// Returns greys of equal steps of the sRGB code, opaque, from black at 0 to white at 255.
     fn default() -> Self {
         Self { colors: std::array::from_fn(|i| [i as u8, i as u8, i as u8, 255]) }
     }

@@ -11,20 +11,20 @@ pub struct DepthRange {
 }
 
 impl Default for DepthRange {
-    /// Near 0, far 1.
+    /// Returns the default: near 0, far 1.
     fn default() -> Self {
         Self { near: 0.0, far: 1.0 }
     }
 }
 
 impl DepthRange {
-    /// Takes normalized device depth −1…1 to window depth; both ends of the range are held to 0…1.
+    /// Converts normalized device depth −1…1 to window depth; both ends of the range are clamped to 0…1.
     pub fn window(&self, ndc: f64) -> f64 {
         let (near, far) = self.held();
         ndc * ((far - near) * 0.5) + (near + far) * 0.5
     }
 
-    /// Returns a window depth held to what the range can give. NaN becomes the nearer end.
+    /// Returns a window depth clamped to the range. NaN becomes the nearer end.
     pub fn clamp(&self, depth: f32) -> f32 {
         let (near, far) = self.held();
         let (low, high) = (near.min(far) as f32, near.max(far) as f32);
@@ -43,7 +43,7 @@ impl DepthRange {
     }
 }
 
-/// Moves the depth of whole polygons, so that lines or decals on them are not hidden by them.
+/// Offset of the depth of whole polygons, so that they do not hide lines or decals on them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PolygonOffset {
     /// Times the polygon's steepest slope in depth per pixel.

@@ -1,12 +1,13 @@
 //! Depth cueing and fog: what is farther away is nearer to the colour of the air.
 //!
-//! Depth cueing: J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes, *Computer Graphics: Principles and Practice*, 2nd ed. 1990, 14.3.4 and 16.1.3.
-//! Fog: *The OpenGL Graphics System* 2.1 (2006), 3.10. Cost: O(1). Limits: colours are mixed as they are, linear light mixes as air does.
+//! Depth cueing: J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes, *Computer Graphics: Principles and Practice*, 2nd
+//! ed. 1990, 14.3.4 and 16.1.3. Fog: *The OpenGL Graphics System* 2.1 (2006), 3.10. Cost: O(1). Limits: colours are
+//! mixed as they are, linear light mixes as air does.
 
 use crate::info::{Class, Info, Occluder};
 use crate::math::{Vec4, exp2};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "fog",
     title: "Depth cueing and fog",
@@ -24,24 +25,24 @@ pub const INFO: Info = Info {
 /// Formula for the share of a colour that remains at a distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fog {
-    /// Depth cueing: all of it up to `start`, `least` of it from `end` on, in between in proportion. With `least` = 0 it is
-    /// OpenGL's linear fog, (end − z) / (end − start).
+    /// Depth cueing: the whole colour up to `start`, the share `least` from `end` on, linear in between. With `least` =
+    /// 0 it is OpenGL's linear fog, (end − z) / (end − start).
     Linear {
         /// Distance from the eye, world units.
         start: f32,
-        /// The same; beyond `start`.
+        /// Distance from the eye beyond `start`, world units.
         end: f32,
-        /// From 0 to 1.
+        /// Share that remains from `end` on, 0 … 1.
         least: f32,
     },
     /// e^(−density · z): air that takes the same share per unit.
     Exponential {
-        /// Per world unit.
+        /// Density per world unit.
         density: f32,
     },
     /// e^(−(density · z)²): clear nearby, thick soon.
     Squared {
-        /// Per world unit.
+        /// Density per world unit.
         density: f32,
     },
 }

@@ -50,9 +50,9 @@ pub struct Fragment {
     pub y: u32,
     /// Window depth at the sample, 0 (near) … 1 (far).
     pub depth: f32,
-    /// Linear RGBA, straight alpha; has no say in a colour-index framebuffer.
+    /// Colour: linear RGBA, straight alpha; ignored in a colour-index framebuffer.
     pub color: Vec4,
-    /// Colour index, fractions allowed; has a say in a colour-index framebuffer only.
+    /// Colour index, fractions allowed; used in a colour-index framebuffer only.
     pub index: f32,
     /// True if the face is seen from its front; true for points and lines.
     pub front_facing: bool,
@@ -64,8 +64,8 @@ pub struct Fragment {
 
 /// The state of all fragment operations.
 ///
-/// The default draws everything that is nearer than what is there, unblended, and writes all planes.
-/// (OpenGL's own initial state has no depth test.)
+/// The default draws everything nearer than the stored depth, unblended, and writes all planes. (OpenGL's own initial
+/// state has no depth test.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FragmentState {
     /// `None` = the whole framebuffer.
@@ -76,7 +76,7 @@ pub struct FragmentState {
     pub stencil: Option<Stencil>,
     /// `None` = no depth test, and depth is not written; needs a depth plane.
     pub depth: Option<Compare>,
-    /// `None` = the fragment replaces what is there.
+    /// `None` = the fragment replaces the stored colour.
     pub blend: Option<Blend>,
     /// `None` = colours are rounded.
     pub dither: Option<Dither>,
@@ -112,17 +112,16 @@ pub enum Outcome {
     Stencil,
     /// Dropped by the depth test.
     Depth,
-    /// Passed all tests; what was written is up to the write masks.
+    /// Passed all tests; the write masks decide which planes were written.
     Drawn,
 }
 
-/// Takes one fragment through all operations. A plane that the framebuffer does not have passes its
-/// test. Cost: O(1).
+/// Passes one fragment through all operations. A plane that the framebuffer does not have passes its test. Cost: O(1).
 pub fn apply(state: &FragmentState, fragment: Fragment, target: &mut Framebuffer) -> Outcome {
     apply_traced(state, fragment, target, &mut NoTrace)
 }
 
-/// [`apply`] with a tracer.
+/// Applies a fragment as [`apply`] does, with a tracer.
 pub fn apply_traced(
     state: &FragmentState,
     fragment: Fragment,
@@ -204,7 +203,7 @@ fn write_index(state: &FragmentState, fragment: &Fragment, plane: &mut Pixels<u8
     plane.get(x, y)
 }
 
-/// [`apply`] within a mask, which is asked right after the scissor rectangle.
+/// Applies a fragment as [`apply`] does, within a mask: pixels outside of it fail as at the scissor rectangle.
 pub fn apply_within(
     mask: &PixelMask,
     state: &FragmentState,
@@ -226,7 +225,7 @@ fn passes_depth(state: &FragmentState, fragment: &Fragment, target: &Framebuffer
     }
 }
 
-/// The stencil test's answer; the stored value is updated by whichever operation applies.
+/// Returns whether the fragment passes the stencil test; updates the stored value by whichever operation applies.
 fn passes_stencil(
     state: &FragmentState,
     fragment: &Fragment,
@@ -247,7 +246,7 @@ fn passes_stencil(
     passes
 }
 
-/// Depth, item and normal of what is now nearest.
+/// Writes depth, item and normal of the fragment that is now nearest.
 fn write_depth(state: &FragmentState, fragment: &Fragment, target: &mut Framebuffer) {
     fn put<T: Copy>(plane: &mut Option<Pixels<T>>, x: u32, y: u32, value: T) {
         if let Some(plane) = plane {

@@ -59,7 +59,7 @@ impl PixelMask {
         Ok(mask)
     }
 
-    /// Lets a pixel be drawn to, or not; outside the mask nothing happens.
+    /// Sets whether a pixel may be drawn to; outside the mask nothing happens.
     pub fn set(&mut self, x: u32, y: u32, inside: bool) {
         if x >= self.width {
             return;

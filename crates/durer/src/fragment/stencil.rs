@@ -71,7 +71,7 @@ pub struct StencilFace {
 }
 
 impl Default for StencilFace {
-    /// Always passes and keeps everything: OpenGL's initial state.
+    /// Returns the state that always passes and keeps everything: OpenGL's initial state.
     fn default() -> Self {
         Self {
             compare: Compare::Always,
@@ -105,14 +105,14 @@ impl StencilFace {
 /// The stencil test for both sides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Stencil {
-    /// For fragments of front faces, points and lines.
+    /// State for fragments of front faces, points and lines.
     pub front: StencilFace,
-    /// For fragments of back faces.
+    /// State for fragments of back faces.
     pub back: StencilFace,
 }
 
 impl Stencil {
-    /// Returns the same for both sides.
+    /// Creates a test with the same state for both sides.
     pub fn both(face: StencilFace) -> Self {
         Self { front: face, back: face }
     }

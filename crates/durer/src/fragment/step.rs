@@ -5,7 +5,7 @@ use crate::info::{Class, Info, Occluder};
 use crate::math::Vec4;
 use crate::target::Framebuffer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "fragment-operations",
     title: "Fragment operations",
@@ -40,7 +40,7 @@ pub enum Step {
     Scissor {
         /// The fragment.
         fragment: Fragment,
-        /// True if it goes on.
+        /// True if the fragment passes.
         passes: bool,
     },
     /// Its alpha was compared.
@@ -49,7 +49,7 @@ pub enum Step {
         alpha: f32,
         /// The reference, 0 … 1.
         reference: f32,
-        /// True if it goes on.
+        /// True if the fragment passes.
         passes: bool,
     },
     /// The stencil value was compared and updated.
@@ -69,7 +69,7 @@ pub enum Step {
         depth: f32,
         /// The stored depth.
         stored: f32,
-        /// True if it goes on.
+        /// True if the fragment passes.
         passes: bool,
     },
     /// Its colour was blended.
@@ -107,7 +107,7 @@ impl Step {
     }
 }
 
-/// Takes the steps of fragments into the colour, index, depth and stencil planes of a framebuffer.
+/// Applies the steps of fragments to the colour, index, depth and stencil planes of a framebuffer.
 pub fn replay(steps: &[Step], target: &mut Framebuffer) {
     let mut at = [0, 0];
     for step in steps {

@@ -6,7 +6,7 @@
 pub struct WriteMask {
     /// Red, green, blue, alpha.
     pub color: [bool; 4],
-    /// Depth, and with it the item and the normal, which tell what is nearest.
+    /// Depth, and with it the item and the normal of the nearest surface.
     pub depth: bool,
     /// Stencil bits, for front and back faces.
     pub stencil: [u8; 2],
@@ -15,7 +15,7 @@ pub struct WriteMask {
 }
 
 impl Default for WriteMask {
-    /// Everything.
+    /// Returns the default: everything is written.
     fn default() -> Self {
         Self { color: [true; 4], depth: true, stencil: [0xff; 2], index: 0xff }
     }

@@ -9,7 +9,7 @@ const STEP: f64 = 0.5;
 /// A line is smoothed over this many steps to both sides: letters do not follow each bend of a river.
 const SMOOTHED: usize = 3;
 
-/// Between letters so far apart as they are large a line may turn by this much, in radians.
+/// Angle by which a line may turn between letters as far apart as they are large, in radians.
 const BEND: f64 = 0.6;
 
 /// Number of positions to try.

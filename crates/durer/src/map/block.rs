@@ -13,8 +13,8 @@ pub const HALO: f64 = 0.16;
 /// The lines of a block are so far apart, as a share of the letters' size.
 const LEADING: f64 = 1.05;
 
-/// One line or more, centred one below another. Its corner is the start of the first base line, if that line were as long
-/// as the longest.
+/// One line or more, centred one below another. Its corner is the start of the first base line, if that line were as
+/// long as the longest.
 #[derive(Debug)]
 pub struct Block {
     texts: Vec<String>,
@@ -31,12 +31,12 @@ impl Block {
         Self { texts, lines, width, size }
     }
 
-    /// Drops the outlines of its letters: what is left has its place and size.
+    /// Drops the outlines of its letters, and keeps its place and size.
     pub fn forget_outlines(&mut self) {
         self.lines.iter_mut().for_each(|line| line.path = Path::new());
     }
 
-    /// Returns the same with its outlines.
+    /// Returns the block with the outlines of its text.
     pub fn with_outlines(&self, font: &Font<'_>) -> Self {
         Self::new(self.texts.clone(), font, self.size)
     }
@@ -63,7 +63,8 @@ impl Block {
         self.lines.first().filter(|_| self.lines.len() == 1)
     }
 
-    /// Returns its size: from the left to the right and from the top of the first to the bottom of the last line's letters.
+    /// Returns the size of the block: from the left to the right and from the top of the first to the bottom of the
+    /// last line's letters.
     pub fn extent(&self) -> DVec2 {
         let down = LEADING * self.lines.len().saturating_sub(1) as f64;
         DVec2::new(self.width, (LETTERS + down) * self.size)

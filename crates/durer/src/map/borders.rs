@@ -19,7 +19,7 @@ pub struct Border {
 }
 
 impl Borders {
-    /// Takes a ring; returns the parts of it that no ring before had.
+    /// Adds a ring; returns the parts of it that no ring before had.
     pub fn take(&mut self, ring: &[DVec2]) -> Vec<Border> {
         let ring = match ring {
             [first, open @ .., last] if first == last => &ring[..=open.len()],

@@ -18,8 +18,8 @@ pub struct Joined {
 }
 
 impl Joined {
-    /// Takes polygons, each an outer ring with its holes, in pixels; refuses all where a ring winds
-    /// around more than once or crosses itself like an eight: windings of neighbours would cancel.
+    /// Adds polygons, each an outer ring with its holes, in pixels; refuses all where a ring winds around more than
+    /// once or crosses itself like an eight: windings of neighbours would cancel.
     pub fn take(&mut self, polygons: &[Vec<Vec<DVec2>>]) -> bool {
         let before = self.rings.len();
         for rings in polygons {
@@ -74,9 +74,9 @@ fn snapped(ring: &[DVec2]) -> Vec<DVec2> {
     out
 }
 
-/// 1 for a ring that turns once to the left in all, −1 to the right; `None` for any other, which is not
-/// simple (H. Hopf, *Über die Drehung der Tangenten und Sehnen ebener Kurven*, 1935), and for one whose
-/// area has another sign.
+/// Returns 1 for a ring that turns once to the left in all, −1 to the right; `None` for any other, which is not simple
+/// (H. Hopf, *Über die Drehung der Tangenten und Sehnen ebener Kurven*, 1935), and for one whose area has another
+/// sign.
 fn turns(ring: &[DVec2]) -> Option<i32> {
     let n = ring.len();
     let step = |i: usize| ring[(i + 1) % n] - ring[i % n];

@@ -193,7 +193,7 @@ fn middle(polygon: Polygon<'_>, wide: f64) -> Option<DVec2> {
 /// Counts of placed labels.
 #[derive(Debug, Default, Clone, PartialEq, Eq)]
 pub struct Placed {
-    /// For each layer the numbers of labels that found room, and of those that did not.
+    /// Numbers of labels of each layer that found room, and that did not.
     pub counts: Vec<(u64, u64)>,
     /// Letters that the fonts of their labels do not have.
     pub missing: BTreeSet<char>,
@@ -274,7 +274,8 @@ pub(super) fn draw(
     Ok(drawn)
 }
 
-/// Number of labels beyond which outlines of letters are not kept, as most find no room, but made again for those that do.
+/// Number of labels beyond which outlines of letters are not kept, as most find no room, but made again for those that
+/// do.
 const MANY: usize = 4096;
 
 /// Label with its candidate positions.
@@ -361,7 +362,7 @@ impl<'a, 'd> Planned<'a, 'd> {
         spots as u64 + self.blocks.iter().map(Block::bytes).sum::<u64>()
     }
 
-    /// Returns the same with the outlines of its letters.
+    /// Returns the label with the outlines of its letters.
     fn with_outlines(&self) -> Self {
         let blocks = self.blocks.iter().map(|block| block.with_outlines(self.font)).collect();
         let (label, missing, spots) = (self.label.clone(), Vec::new(), Vec::new());
@@ -398,8 +399,8 @@ impl<'a, 'd> Planned<'a, 'd> {
         }
     }
 
-    /// Compares the order of placing: upper layers first, then labels that their area holds, those of smaller rank, those
-    /// that their area nearly holds, and larger ones.
+    /// Compares the order of placing: upper layers first, then labels that their area holds, those of smaller rank,
+    /// those that their area nearly holds, and larger ones.
     fn order(&self, other: &Self) -> Ordering {
         let nearly = |label: &Self| label.fit == Fit::Over && label.held >= NEARLY;
         let held = |label: &Self| label.fit != Fit::Held;

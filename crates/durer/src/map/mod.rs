@@ -175,8 +175,8 @@ fn shares(style: &Style) -> bool {
 }
 
 impl Map {
-    /// Creates a map of a window in a viewport of the canvas, to which it is clipped. The window keeps its shape; y points
-    /// upwards.
+    /// Creates a map of a window in a viewport of the canvas, to which it is clipped. The window keeps its shape; y
+    /// points upwards.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] for a viewport without extent.

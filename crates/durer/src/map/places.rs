@@ -38,13 +38,13 @@ const LAND_SIDE: f64 = 1024.0;
 /// Quality of a label's position in its area; better ones are placed first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fit {
-    /// Whole.
+    /// Wholly inside.
     Held,
-    /// In part, with most of the area still to be seen.
+    /// Partly inside, with most of the area still visible.
     Over,
-    /// In part, hiding most of an area without neighbours.
+    /// Partly inside, hiding most of an area without neighbours.
     Hiding,
-    /// Hardly.
+    /// Hardly inside.
     Tiny,
 }
 
@@ -66,7 +66,7 @@ pub struct Land {
     scale: f64,
     columns: usize,
     rows: usize,
-    /// For each corner of a pixel the coverage of all that is left of it and above.
+    /// Sum, for each corner of a pixel, of the coverage of all that is left of it and above.
     sums: Vec<u64>,
 }
 
@@ -119,7 +119,7 @@ impl Land {
     }
 }
 
-/// Returns the positions for a label of a size in an area of which these points are far from the border.
+/// Returns the positions for a label of a size in an area; these points of it are far from the border.
 pub fn around(area: &Shapes, poles: &[DVec2], size: DVec2, gap: f64, land: &Land) -> Places {
     let Some(bounds) = area.bounds() else {
         return Places { fit: Fit::Tiny, held: 0.0, alone: false, middles: poles.to_vec() };
@@ -169,13 +169,13 @@ pub fn around(area: &Shapes, poles: &[DVec2], size: DVec2, gap: f64, land: &Land
     Places { fit, held: best, alone, middles }
 }
 
-/// Places from which a label still reaches to a point: it begins or ends there, is above it or below it.
+/// Returns places from which a label still reaches to a point: it begins or ends there, is above it or below it.
 fn reaching_out(point: DVec2, size: DVec2) -> [DVec2; 6] {
     let (x, y) = ((size.x - size.y) / 2.0, size.y / 2.0);
     [(x, 0.0), (-x, 0.0), (x, -y), (x, y), (-x, -y), (-x, y)].map(|(x, y)| point + DVec2::new(x, y))
 }
 
-/// Places beside a box: right, left, above, below and at its corners.
+/// Returns places beside a box: right, left, above, below and at its corners.
 fn beside(bounds: &Rect, size: DVec2, gap: f64) -> Vec<DVec2> {
     let (low, high) = (bounds.min(), bounds.max());
     let middle = (low + high) / 2.0;

@@ -9,11 +9,11 @@ use crate::target::drawing::Region;
 use crate::target::{Curve, Piece};
 use std::collections::BTreeMap;
 
-/// Returns the borders of each region as curves, in millimetres on paper, all within `tolerance` millimetres, or as an arc
-/// through corners leaves its chords; `None` for regions without anything round.
+/// Returns the borders of each region as curves, in millimetres on paper, all within `tolerance` millimetres, or as an
+/// arc through corners leaves its chords; `None` for regions without anything round.
 ///
-/// Points where more than two pieces of borders meet stay where they are, to the bit. A border that goes straight on there
-/// is fitted as a whole, so that the rim of a faceted cylinder is round, whatever the shades of its facets.
+/// Points where more than two pieces of borders meet stay where they are, to the bit. A border that goes straight on
+/// there is fitted as a whole, so that the rim of a faceted cylinder is round, whatever the shades of its facets.
 pub(super) fn borders(
     regions: &[Region],
     origin: DVec2,
@@ -51,7 +51,7 @@ struct Link {
 struct Network {
     /// Sorted by their bits.
     keys: Vec<[u64; 2]>,
-    /// On paper.
+    /// Places on paper.
     places: Vec<DVec2>,
     /// For each point where in `next` those begin that it is joined to.
     starts: Vec<usize>,
@@ -126,7 +126,7 @@ impl Network {
 #[derive(Default)]
 struct Chains {
     all: Vec<(Vec<u32>, bool)>,
-    /// By their first two points, from both ends.
+    /// Links by their first two points, from both ends.
     found: BTreeMap<[u32; 2], Link>,
 }
 
@@ -206,7 +206,7 @@ impl Chains {
         rows
     }
 
-    /// Lets a row go on as far as it does; whether it comes back to its start.
+    /// Extends a row as far as it goes; returns whether it comes back to its start.
     fn extend(&self, network: &Network, links: &mut Vec<Link>, taken: &mut [bool]) -> bool {
         while let Some(last) = links.last() {
             let ids = self.ids(*last);

@@ -8,7 +8,7 @@ pub(super) const CORNER: f64 = 0.906;
 /// No stroke gets more dashes than this; with more it looks solid anyway.
 const MOST_DASHES: f64 = 100_000.0;
 
-/// Length of a chain of points.
+/// Returns the length of a chain of points.
 pub fn length(points: &[DVec2], closed: bool) -> f64 {
     let open: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
     match (closed, points) {
@@ -86,7 +86,7 @@ pub fn cut(points: &[DVec2], closed: bool, dashes: &[f64]) -> Vec<Vec<DVec2>> {
     cutter.done
 }
 
-/// Walks along a chain, a dash or gap at a time.
+/// Walk along a chain, a dash or gap at a time.
 struct Cutter<'a> {
     dashes: &'a [f64],
     /// Index of the current element; even ones are dashes.

@@ -48,22 +48,22 @@ pub(super) fn is_as_it_was(curve: &Curve, points: usize) -> bool {
 /// Shorter polylines are left as they are.
 const LEAST: usize = 5;
 
-/// Lines of meshes, hatching and axes are straight.
+/// Returns whether curves are fitted to lines of a class; lines of meshes, hatching and axes are straight.
 fn is_fitted(class: LineClass) -> bool {
     use LineClass::{Axis, Break, Hatch, Stipple, Wire};
     !matches!(class, Wire | Hatch | Stipple | Axis | Break)
 }
 
-/// Returns whether the class's lines come from faces, which may stand for something round.
+/// Returns whether the class's lines come from faces, which may approximate round surfaces.
 fn is_round(class: LineClass) -> bool {
     !matches!(class, LineClass::Grid | LineClass::Mark)
 }
 
 /// The points that more than one line has, and the ends of those that end anywhere else.
 struct Shared {
-    /// On the plane, sorted.
+    /// Points on the plane, sorted.
     points: Vec<[u64; 2]>,
-    /// On paper, sorted by x.
+    /// Ends on paper, sorted by x.
     ends: Vec<DVec2>,
     /// Millimetres.
     near: f64,
@@ -108,7 +108,7 @@ impl Shared {
     }
 }
 
-/// Gives arcs of one circle or ellipse, of whatever lines, the same centre and axes: those of the one that turns
+/// Moves arcs of one circle or ellipse, of whatever lines, to the same centre and axes: those of the one that turns
 /// furthest. Where that would move their ends apart from what they are joined to, they stay.
 fn unite(curves: &mut [Option<Curve>], tolerance: f64) {
     let mut arcs: Vec<(f64, usize, usize)> = Vec::new();

@@ -56,7 +56,7 @@ pub enum Frame {
     /// All of the drawing, and no more.
     #[default]
     Content,
-    /// The drawing's window, if it has one: what the camera sees.
+    /// The drawing's window, if it has one: the camera's field of view.
     Window,
 }
 
@@ -116,6 +116,8 @@ const FITTED_SIDE: f64 = 180.0;
 const LARGEST: f64 = 1e6;
 
 impl Options {
+    /// Checks the options.
+    ///
     /// # Errors
     /// [`Error::Parameter`] for a margin or a fit below 0, or a unit or scale that is not above 0.
     pub fn check(&self) -> Result<()> {
@@ -346,16 +348,16 @@ fn layer_and_pen(
     }
 }
 
-/// Plane units, y up, to millimetres, y down.
+/// Converts a point in plane units, y up, to millimetres, y down.
 fn onto_paper(p: DVec2, origin: DVec2, factor: f64) -> DVec2 {
     origin + DVec2::new(p.x, -p.y) * factor
 }
 
 /// The lines of a view that are drawn.
 struct Strokes<'a> {
-    /// With how near they are.
+    /// Lines with their nearness.
     lines: Vec<(Option<u8>, &'a Line)>,
-    /// For each line its curve on paper, if it is not drawn as a polyline; none at all without fitting.
+    /// Curve of each line on paper, if it is not drawn as a polyline; none at all without fitting.
     curves: Vec<Option<Curve>>,
     /// Position of the origin, as in [`onto_paper`].
     origin: DVec2,

@@ -7,7 +7,7 @@ use std::str::FromStr;
 /// The paper that a drawing is laid onto.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Page {
-    /// As large as the drawing needs.
+    /// Page as large as the drawing needs.
     #[default]
     Fit,
     /// A size that may be turned: the way round that gives the larger scale is taken.
@@ -36,7 +36,7 @@ const LONGEST: f64 = 100_000.0;
 impl FromStr for Page {
     type Err = Error;
 
-    /// `A4`, `letter`, … (either way round), `A4-landscape`, `A4-portrait`, `WxH` in millimetres, `fit`.
+    /// Parses `A4`, `letter`, … (either way round), `A4-landscape`, `A4-portrait`, `WxH` in millimetres, or `fit`.
     fn from_str(text: &str) -> Result<Self> {
         let expected = "fit, A0 … A6, letter, legal, tabloid (also with -portrait or -landscape), or \
                         WIDTHxHEIGHT in millimetres, e.g. 300x200";
@@ -77,7 +77,7 @@ pub enum Scale {
 impl FromStr for Scale {
     type Err = Error;
 
-    /// `1:10`, `2:1`, a factor such as `0.5`, or `auto` for [`Scale::Standard`].
+    /// Parses `1:10`, `2:1`, a factor such as `0.5`, or `auto` for [`Scale::Standard`].
     fn from_str(text: &str) -> Result<Self> {
         if text.trim() == "auto" {
             return Ok(Self::Standard);

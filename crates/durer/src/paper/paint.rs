@@ -16,8 +16,8 @@ const AT_ONCE: usize = 1 << 15;
 /// Largest distance between painted chords and curves, in millimetres: far below a pixel.
 const FINE: f64 = 0.002;
 
-/// Paints a sheet, as large as it can be, in the middle of a picture; `background` is what the picture
-/// shows beside and, where the paper is blank, on the paper.
+/// Paints a sheet, as large as it can be, in the middle of a picture; `background` is the colour beside the paper and,
+/// where the paper is blank, on it.
 ///
 /// Marks are freed one by one as they are painted, so that large sheets are not held twice.
 ///

@@ -8,7 +8,7 @@ use std::str::FromStr;
 /// The width of a stroke for every class of line, in millimetres, and their colours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pens {
-    /// By class, in the order of [`LineClass::ALL`].
+    /// Widths by class, in the order of [`LineClass::ALL`].
     widths: [f64; LineClass::ALL.len()],
     /// Hidden lines of every class.
     hidden: f64,
@@ -24,7 +24,7 @@ const DASH: [f64; 2] = [9.0, 5.0];
 /// Lines thinner than this are dashed like this one: shorter dashes are hard to make out.
 const THINNEST_DASHED: f64 = 0.18;
 
-/// By step of nearness: what a pen's width is multiplied with, and how far it fades to white.
+/// Factor of a pen's width by step of nearness, and how far it fades to white.
 pub const NEARNESS: [(f64, f64); NEARNESS_STEPS as usize] =
     [(1.4, 0.0), (1.0, 0.15), (0.7, 0.35), (0.5, 0.55)];
 
@@ -32,7 +32,8 @@ pub const NEARNESS: [(f64, f64); NEARNESS_STEPS as usize] =
 const HIDDEN_GREY: u8 = 0x90;
 
 impl Default for Pens {
-    /// Contours 0.7 mm, outlines and dots 0.5 mm, edges and the model's own lines 0.35 mm, what lies on surfaces 0.18 mm, hidden lines 0.25 mm; black.
+    /// Returns the default: contours 0.7 mm, outlines and dots 0.5 mm, edges and the model's own lines 0.35 mm, lines
+    /// on surfaces (tangents, wires, shadows, hatching) 0.18 mm, all others and hidden lines 0.25 mm; black.
     fn default() -> Self {
         let mut pens =
             Self { widths: [0.25; LineClass::ALL.len()], hidden: 0.25, color: [0, 0, 0, 255] };
@@ -112,8 +113,8 @@ impl Pens {
 impl FromStr for Pens {
     type Err = Error;
 
-    /// `WIDTH[,CLASS=WIDTH…]` in millimetres, e.g. `0.35,silhouette=0.7,hidden=0.18`; the first one is
-    /// for all that are not named, and may be left out.
+    /// Parses `WIDTH[,CLASS=WIDTH…]` in millimetres, e.g. `0.35,silhouette=0.7,hidden=0.18`; the first width is for
+    /// all that are not named, and may be left out.
     fn from_str(text: &str) -> Result<Self> {
         let expected = "WIDTH[,CLASS=WIDTH…] in millimetres above 0, e.g. \
                         0.35,silhouette=0.7,hidden=0.18; classes are those of --lines, and hidden";

@@ -9,7 +9,7 @@ use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 /// Contents of the title block.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct TitleBlock {
-    /// Layers to draw.
+    /// Title: the name of the drawn object.
     pub name: String,
     /// The unit of the model, e.g. `mm`.
     pub unit: String,
@@ -86,7 +86,7 @@ impl Block<'_> {
     }
 }
 
-/// A caption and a text, small enough for the cell.
+/// Writes a caption and a text, small enough for the cell.
 fn write(
     sheet: &mut Sheet,
     block: &mut Block,
@@ -111,8 +111,8 @@ fn write(
     }
 }
 
-/// The symbol of the projection: a truncated cone whose narrow end is on the left, and that end as seen
-/// from the left, on the side where the angle puts that view (ISO 5456-2).
+/// Draws the symbol of the projection: a truncated cone whose narrow end is on the left, and that end as seen from the
+/// left, on the side where the angle puts that view (ISO 5456-2).
 fn symbol(at: DVec2, angle: Angle, block: &mut Block, pen: usize) {
     let middle = at + DVec2::new(SYMBOL, HEIGHT) * 0.5;
     let (small, large) = (2.0, 4.0);

@@ -15,9 +15,9 @@ const ROWS: u32 = 1000;
 /// Marks triangles that belong to no part.
 const NONE: u32 = u32::MAX;
 
-/// Finds for each kind of part a place where one of it is seen, as far from what is around it as can be, in plane
-/// units of a [`crate::target::drawing::Drawing`] of the camera; `None` if it is not seen. `aspect` is width over
-/// height of what the camera sees, 1/8 … 8.
+/// Finds for each kind of part a point at which a part of that kind is visible, as far from its surroundings as
+/// possible, in plane units of a [`crate::target::drawing::Drawing`] of the camera; `None` if it is not seen. `aspect`
+/// is width over height of the camera's field of view, 1/8 … 8.
 ///
 /// Cost: that of a picture of a thousand rows.
 ///
@@ -73,8 +73,8 @@ fn kinds(scene: &Scene, components: &[Component], items: &Pixels<u32>) -> Result
     Ok(items.data().iter().map(kind).collect())
 }
 
-/// For each of `count` kinds the pixel farthest, in steps to neighbours, from those of others and from the border of
-/// the picture; of equals the first.
+/// Returns, for each of `count` kinds, the pixel farthest, in steps to neighbours, from those of other kinds and from
+/// the border of the picture; of equals the first.
 fn innermost(kinds: &[u32], width: usize, count: usize) -> Vec<Option<usize>> {
     let mut steps = vec![0u32; kinds.len()];
     let step = |steps: &[u32], at: usize, other: Option<usize>| match other {

@@ -68,7 +68,7 @@ fn faces(scene: &Scene, plane: &PicturePlane) -> Vec<Face> {
 
 /// A convex polygon with the box around it.
 struct Face {
-    /// At most six corners; neighbours may be one.
+    /// Corners, at most six; neighbours may be one.
     corners: [DVec2; 6],
     low: DVec2,
     high: DVec2,
@@ -100,7 +100,7 @@ impl Face {
 /// Faces in a tree of boxes, halved by their middles along one axis and then the other.
 struct Faces {
     faces: Vec<Face>,
-    /// By node; the children of node n are 2n and 2n + 1.
+    /// Boxes by node; the children of node n are 2n and 2n + 1.
     boxes: Vec<(DVec2, DVec2)>,
 }
 
@@ -116,7 +116,7 @@ impl Faces {
         tree
     }
 
-    /// Sorts; the recursion is as deep as the logarithm of the number of faces.
+    /// Sorts the faces of a node; the recursion is as deep as the logarithm of the number of faces.
     fn sort(&mut self, node: usize, from: usize, to: usize, along_x: bool) {
         let part = &mut self.faces[from..to];
         let none = (DVec2::MAX, DVec2::MIN);

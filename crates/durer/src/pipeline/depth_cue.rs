@@ -24,8 +24,8 @@ const VERTICES: usize = 16;
 /// Drawings whose depth is less than this part of their size have no near and far.
 const FLAT: f64 = 1e-3;
 
-/// Tells how near each visible edge of a drawing is ([`Drawing::nearness`]), from the nearest to the farthest point
-/// of all, and divides lines where that changes. Hatching, hidden lines and flat drawings stay as they are.
+/// Sets the nearness of each visible edge of a drawing ([`Drawing::nearness`]), from the nearest to the farthest point
+/// of all, and divides lines where it changes. Hatching, hidden lines and flat drawings stay as they are.
 ///
 /// # Errors
 /// The errors of [`Camera::check`].
@@ -116,7 +116,8 @@ impl Vertices {
     }
 }
 
-/// Depths at all points from those that are known: linear between them, at the ends as at the next.
+/// Interpolates the depths of all points from those that are known: linearly between them, before the first and after
+/// the last equal to the nearest.
 fn between(points: &[DVec2], known: &[Option<f64>]) -> Vec<f64> {
     let mut depths: Vec<f64> = Vec::with_capacity(points.len());
     let mut last: Option<(usize, f64)> = None;

@@ -30,7 +30,7 @@ pub enum DrawStyle {
 }
 
 impl DrawStyle {
-    /// All of them.
+    /// All styles.
     pub const ALL: &'static [Self] =
         &[Self::HiddenLine, Self::Wireframe, Self::Regions, Self::RegionsAndLines, Self::Shadows];
 
@@ -72,14 +72,14 @@ impl std::str::FromStr for DrawStyle {
 pub struct DrawOptions {
     /// Style of the drawing.
     pub style: DrawStyle,
-    /// Options for the camera.
+    /// Camera that sees the drawing.
     pub camera: Camera,
-    /// Width over height of what the camera sees; 1/1000 … 1000.
+    /// Width over height of the camera's field of view; 1/1000 … 1000.
     pub aspect: f64,
     /// Classes of lines, and options for finding them; also for [`DrawStyle::RegionsAndLines`] and
     /// [`DrawStyle::Shadows`].
     pub lines: hidden_line::Options,
-    /// Source of light for filled parts.
+    /// Lights that shine on filled parts.
     pub lighting: Lighting,
     /// Exposure, as in [`super::RenderOptions::exposure`].
     pub exposure: Option<Exposure>,
@@ -98,7 +98,8 @@ pub struct DrawOptions {
 }
 
 impl DrawOptions {
-    /// Visible and hidden lines of a square view; regions of one shade are one, disjoint.
+    /// Creates the options of a square view with visible and hidden lines; regions are disjoint, and those of one
+    /// shade are merged.
     pub fn new(camera: Camera) -> Self {
         Self {
             style: DrawStyle::HiddenLine,
@@ -125,7 +126,7 @@ const REACH: f64 = 5e-4;
 
 /// Draws a scene: lines and regions in the plane of the picture.
 ///
-/// The same input gives the same bytes on every CPU and number of threads.
+/// The same input produces the same bytes on every CPU and number of threads.
 ///
 /// # Errors
 /// The errors of [`Camera::check`], [`Scene::check`] and the solvers' options.
@@ -166,7 +167,7 @@ fn all_edges(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawin
 /// Bytes that faces and their edges take for each triangle, about.
 const PER_TRIANGLE: u64 = 128;
 
-/// Takes the memory for the faces of a scene from the budget.
+/// Charges the memory for the faces of a scene to the budget.
 fn faces(scene: &Scene, options: &DrawOptions) -> Result<Charge> {
     let bytes = scene.triangle_count().saturating_mul(PER_TRIANGLE);
     options.work.charge("faces of the drawing", bytes)

@@ -20,7 +20,7 @@ pub struct EdgeStyle {
 }
 
 impl Default for EdgeStyle {
-    /// 1.5 pixels, nearly black.
+    /// Returns the default: 1.5 pixels, nearly black.
     fn default() -> Self {
         Self { width: 1.5, color: [24, 25, 28, 255] }
     }

@@ -100,7 +100,7 @@ pub fn add_axes(scene: &mut Scene, model: &Aabb) {
     }
 }
 
-/// 1, 2 or 5 times a power of ten, at most the length; `None` for a word that is not a length.
+/// Rounds a length down to 1, 2 or 5 times a power of ten; returns `None` for a number that is not a length.
 fn round_length(length: f64) -> Option<f64> {
     if !(length.is_finite() && length > 0.0) {
         return None;
@@ -257,7 +257,7 @@ fn shadow(heights: &[f64], reach: f64, side: f64) -> Vec<f32> {
     sum
 }
 
-/// Takes the mean over `radius` texels to both sides, row by row; beyond the border is nothing.
+/// Averages over `radius` texels to both sides, row by row; values beyond the border count as 0.
 fn blur_rows(values: &mut [f32], radius: usize) {
     let width = TEXELS as usize;
     for row in values.chunks_mut(width) {

@@ -1,8 +1,8 @@
 //! Pictures of scenes that come in pieces, over and over, because they are larger than memory.
 //!
-//! A [`Survey`] of all pieces finds the items that are seen; a scene of those alone, in the same order, gives the picture of
-//! the whole, bit for bit. What lets light through, throws shadows or is lit by the brightness of the whole needs all of the
-//! scene at once.
+//! A [`Survey`] of all pieces finds the items that are seen; a scene of those alone, in the same order, gives the
+//! picture of the whole, bit for bit. What lets light through, throws shadows or is lit by the brightness of the whole
+//! needs all of the scene at once.
 
 use super::{
     Cull, Exposure, Filter, Lighting, Places, RenderOptions, Report, Seen, Shading, Shadows,
@@ -17,8 +17,8 @@ use crate::{Error, Result};
 /// Alternative to a picture in pieces.
 const INSTEAD: &str = "all of the scene has to be held";
 
-/// Checks that a picture can be made of pieces; these have normals at their vertices or have none, and no lights of their
-/// own.
+/// Checks that a picture can be made of pieces; these have normals at their vertices or have none, and no lights of
+/// their own.
 ///
 /// # Errors
 /// The errors of [`RenderOptions::check`], and [`Error::Unsupported`] for what needs the whole scene at once.
@@ -49,7 +49,7 @@ pub fn check_pieces(options: &RenderOptions, have_normals: bool) -> Result<()> {
     Err(Error::Unsupported { what, instead: INSTEAD })
 }
 
-/// Begins to look for what is seen in a picture.
+/// Begins to search for the triangles that are visible in a picture.
 ///
 /// # Errors
 /// The errors of [`RenderOptions::check`]; [`Error::Memory`] where the budget has no room for the samples.
@@ -92,8 +92,8 @@ pub fn render_seen(
     Ok((picture, report))
 }
 
-/// Returns why nothing of a scene in pieces is seen: [`super::status`] of the whole. `again` hands all pieces to what it
-/// is given.
+/// Returns why nothing of a scene in pieces is visible: [`super::status`] of the whole. `again` passes all pieces to
+/// its argument.
 ///
 /// # Errors
 /// Those of `again`, and as [`survey()`].

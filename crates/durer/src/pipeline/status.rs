@@ -60,7 +60,7 @@ impl Status {
     }
 }
 
-/// Returns what a picture that [`render`] made by these options shows of its scene.
+/// Returns the status of a picture that [`render`] made by these options: whether anything of its scene is visible.
 ///
 /// Cost: the first rows of most pictures; where a picture is empty, a pass over all vertices and up to
 /// four more renderings.
@@ -102,8 +102,8 @@ pub fn status(scene: &Scene, options: &RenderOptions, picture: &Framebuffer) -> 
     Ok(Status::Invisible(if missed { Unseen::Missed } else { Unseen::Transparent }))
 }
 
-/// Returns what a drawing that [`super::draw()`] made through this camera shows of its scene; `aspect` is
-/// width over height of what the camera sees.
+/// Returns the status of a drawing that [`super::draw()`] made through this camera: whether anything of its scene is
+/// visible; `aspect` is width over height of the camera's field of view.
 ///
 /// Cost: O(1), or a pass over all vertices for an empty drawing.
 ///

@@ -9,7 +9,7 @@ use crate::view::picture_plane::PicturePlane;
 
 /// Length of a tick, in heights of a letter.
 const TICK: f64 = 0.6;
-/// From a tick to its label, in heights of a letter.
+/// Distance from a tick to its label, in heights of a letter.
 const GAP: f64 = 0.5;
 /// Width of a letter, in heights: to keep texts apart.
 pub const LETTER: f64 = 0.85;
@@ -71,7 +71,7 @@ pub fn draw(
     marks
 }
 
-/// Upright lines from the ends of the ground's axes up to the surface's own corners.
+/// Adds upright lines from the ends of the ground's axes up to the surface's own corners.
 fn corners(marks: &mut Marks, field: &HeightField, edges: &[Edge; 2], plane: &PicturePlane) {
     let (columns, rows) = (field.columns(), field.rows());
     for (column, row) in [(0, 0), (columns - 1, 0), (0, rows - 1), (columns - 1, rows - 1)] {

@@ -96,7 +96,7 @@ impl Cell<'_> {
         }
     }
 
-    /// Half-way from a corner to the point of the grid beyond it.
+    /// Returns the point half-way from a corner to the point of the grid beyond it, or the corner where there is none.
     fn beyond(&self, k: usize, step: [i64; 2]) -> DVec3 {
         let corner = self.corner(k);
         let to = |at: usize, step: i64| usize::try_from(at as i64 + step).ok();

@@ -41,7 +41,7 @@ const COOL_WARM: [[u8; 3]; 5] =
 const GREY: [[u8; 3]; 2] = [[40, 40, 40], [225, 225, 225]];
 
 impl ColorMap {
-    /// All of them.
+    /// All colour maps.
     pub const ALL: &'static [Self] = &[Self::Viridis, Self::Terrain, Self::CoolWarm, Self::Grey];
 
     /// Returns the name used on the command line.
@@ -54,8 +54,7 @@ impl ColorMap {
         }
     }
 
-    /// Returns the colour of a number from 0 to 1, sRGB, opaque; what is beyond is taken for the
-    /// end.
+    /// Returns the colour of a number from 0 to 1, sRGB, opaque; numbers beyond get the colour of the end.
     pub fn at(self, part: f64) -> [u8; 4] {
         let table: &[[u8; 3]] = match self {
             Self::Viridis => &VIRIDIS,

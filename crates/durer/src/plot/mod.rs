@@ -24,7 +24,7 @@ use crate::{Error, Result};
 /// Options for plotting a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// From where.
+    /// Direction in which the plot is seen.
     pub direction: ViewDirection,
     /// Perspective or parallel.
     pub lens: Lens,
@@ -36,7 +36,7 @@ pub struct Options {
     pub lines: floating_horizon::Options,
     /// Factor for heights; labels show the true ones.
     pub exaggeration: f64,
-    /// Depth over width of the ground as it is seen; labels tell the true coordinates. `None` has one scale for both.
+    /// Depth over width of the ground as it is seen; labels show the true coordinates. `None` has one scale for both.
     pub aspect: Option<f64>,
     /// True if there is a bar with the colours of heights, if there is a colour map.
     pub color_bar: bool,
@@ -67,7 +67,7 @@ pub struct Options {
 pub struct Axes {
     /// Names of x, y and z; empty ones are not written.
     pub names: [String; 3],
-    /// True if labels along z tell −z: the northing of a map.
+    /// True if labels along z show −z: the northing of a map.
     pub z_is_south: bool,
 }
 
@@ -134,8 +134,8 @@ type Inked = (Line, Ink);
 /// ```
 ///
 /// # Errors
-/// [`Error::Parameter`] for a number out of its range, or a field without heights; what the camera
-/// and the projection find.
+/// [`Error::Parameter`] for a number out of its range, or a field without heights; the errors of the camera and the
+/// projection.
 pub fn surface(field: &HeightField, options: &Options) -> Result<Plot> {
     options.check()?;
     let seen = as_seen(field, options)?;
@@ -191,7 +191,7 @@ fn surface_lines(
     Ok(lines)
 }
 
-/// By how much depth is stretched.
+/// Returns the factor by which depth is stretched.
 fn stretch(field: &HeightField, options: &Options) -> f64 {
     let extent = |[from, to]: [f64; 2]| (to - from).abs();
     let true_aspect = extent(field.z_range()) / extent(field.x_range());
@@ -210,7 +210,7 @@ fn as_seen(field: &HeightField, options: &Options) -> Result<HeightField> {
     }
 }
 
-/// Bounds with some height, where all heights are one: an upright axis needs it.
+/// Returns the bounds with some height, where all heights are one: an upright axis needs it.
 fn with_height(bounds: &Aabb) -> Aabb {
     let size = bounds.max - bounds.min;
     let up = if size.y > 0.0 { 0.0 } else { size.x.max(size.z) * FLAT_HEIGHT };
@@ -449,7 +449,7 @@ impl Plot {
 }
 
 impl Layout {
-    /// Regions as marks; the memory of those that are done is given back on the way.
+    /// Converts regions to marks; the memory of those that are done is freed on the way.
     fn fills(&self, mut regions: Vec<Region>) -> Vec<Mark> {
         let mut marks = Vec::with_capacity(regions.len());
         regions.reverse();

@@ -24,8 +24,8 @@ pub fn offset([low, high]: [f64; 2]) -> f64 {
     if offset.is_finite() { offset } else { 0.0 }
 }
 
-/// Returns the multiples of a round step that lie in a range, some `wanted` of them, with their texts;
-/// all texts have the same number of decimals.
+/// Returns the multiples of a round step that lie in a range, about `wanted` of them, with their texts; all texts have
+/// the same number of decimals.
 ///
 /// ```
 /// let texts: Vec<String> = durer::plot::ticks::ticks([-0.1, 1.04], 5).into_iter().map(|t| t.1).collect();

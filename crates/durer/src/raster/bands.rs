@@ -1,7 +1,8 @@
 //! Bands of rows, in which outlines are filled, and which edges each of them needs.
 //!
 //! Paths of few edges lie one after the other in a list. Those of many are made in chunks, on several threads; each
-//! chunk knows the edges of every band, and bands read chunk after chunk, so how many threads there are changes nothing.
+//! chunk knows the edges of every band, and bands read chunk after chunk, so how many threads there are changes
+//! nothing.
 
 use std::ops::Range;
 
@@ -36,7 +37,7 @@ pub(crate) struct Chunk<E> {
 }
 
 impl<E> Chunk<E> {
-    /// With the rows of each edge, first and one past the last.
+    /// Creates a chunk of edges; `rows` returns the first row of an edge and one past the last.
     pub fn new(edges: Vec<E>, rows: impl Fn(&E) -> (i32, i32)) -> Self {
         let index = BandIndex::new(edges.iter().map(rows));
         Self { edges, index }
@@ -50,7 +51,7 @@ impl<E> Chunk<E> {
 }
 
 impl<E> Edges<E> {
-    /// Takes the items of the list from a place on, in the list or, if they are many, in a chunk.
+    /// Creates the edges from the items of the list from a place on, in the list or, if they are many, in a chunk.
     pub fn from_list(list: &mut Vec<E>, first: usize, rows: impl Fn(&E) -> (i32, i32)) -> Self {
         match (u32::try_from(first), u32::try_from(list.len())) {
             (Ok(first), Ok(end)) if (end - first) as usize <= FEW_EDGES => Self::Few(first..end),
@@ -58,7 +59,7 @@ impl<E> Edges<E> {
         }
     }
 
-    /// Takes the items of chunks, or, if they are few, of the list.
+    /// Creates the edges from the items of chunks, or, if they are few, of the list.
     pub fn from_chunks(
         chunks: Vec<Chunk<E>>,
         list: &mut Vec<E>,
@@ -139,7 +140,7 @@ struct BandIndex {
 }
 
 impl BandIndex {
-    /// From the rows of each edge, first and one past the last.
+    /// Creates the index from the rows of each edge, first and one past the last.
     fn new(edges: impl Iterator<Item = (i32, i32)>) -> Self {
         let mut runs: Vec<Run> = Vec::new();
         let (mut base, mut last) = (i32::MAX, 0);
@@ -158,7 +159,7 @@ impl BandIndex {
         Self::from_runs(&runs, base, last)
     }
 
-    /// Counted first, then put in their places.
+    /// Creates the index from runs, which are counted first and then put in their places.
     fn from_runs(runs: &[Run], base: i32, last: i32) -> Self {
         let bands = (last - base + 1).max(0) as usize;
         let mut starts = vec![0; bands + 1];

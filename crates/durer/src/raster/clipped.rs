@@ -12,7 +12,7 @@ const BLOCK: usize = 32;
 
 /// Lines of a contour that follow each other.
 pub(crate) enum Lines<'a> {
-    /// Along points that are all inside a box, from the first on.
+    /// Lines along points that are all inside a box, from the first on.
     Inside(&'a DVec2, &'a [DVec2], &'a DVec2),
     /// Others, which may reach beyond.
     Any(&'a [DVec2], Range<usize>),

@@ -1,14 +1,16 @@
 //! Circles and ellipses in pixels by the midpoint method.
 //!
-//! Circles: J. E. Bresenham, *A linear algorithm for incremental digital display of circular arcs*, Communications of the
-//! ACM 20(2), 1977, in the midpoint form of M. L. V. Pitteway, *Algorithm for drawing ellipses or hyperbolae with a digital
-//! plotter*, Computer Journal 10(3), 1967. Ellipses: J. R. Van Aken, *An efficient ellipse-drawing algorithm*, IEEE CG&A 4(9),
+//! Circles: J. E. Bresenham, *A linear algorithm for incremental digital display of circular arcs*, Communications of
+//! the ACM 20(2), 1977, in the midpoint form of M. L. V. Pitteway, *Algorithm for drawing ellipses or hyperbolae with a
+//! digital plotter*, Computer Journal 10(3), 1967. Ellipses: J. R. Van Aken, *An efficient ellipse-drawing algorithm*,
+//! IEEE CG&A 4(9),
 //! 1984. Class: image space. Cost: O(n) for n pixels, two or three integer additions each. d is the curve's equation at
-//! the point midway between the two pixels that may come next: below 0 that point is inside, and the outer pixel is the nearer one.
+//! the point midway between the two pixels that may come next: below 0 that point is inside, and the outer pixel is the
+//! nearer one.
 //!
-//! Pixels come once each, by octants or quadrants mirrored; the centre is a pixel, radii are whole. Deviation: the tips of
-//! ellipses so flat that their last rows have no step between them are drawn as the line that they are. Limits: where an
-//! ellipse has rows of few pixels beside its tips, a pixel there may be the second nearest, as published.
+//! Pixels come once each, by octants or quadrants mirrored; the centre is a pixel, radii are whole. Deviation: the tips
+//! of ellipses so flat that their last rows have no step between them are drawn as the line that they are. Limits:
+//! where an ellipse has rows of few pixels beside its tips, a pixel there may be the second nearest, as published.
 
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::IVec2;
@@ -84,7 +86,7 @@ pub enum Region {
     Octant,
     /// Part of an ellipse from the top to where the curve falls by 45°; x is stepped.
     Flat,
-    /// From there to the right; y is stepped.
+    /// The part from there to the right; y is stepped.
     Steep,
 }
 
@@ -95,8 +97,8 @@ pub struct Step {
     pub region: Region,
     /// The pixel, seen from the centre, with y up.
     pub pixel: IVec2,
-    /// The decision variable there; of ellipses four times it, which makes it whole. Where it is negative the next pixel lies straight on in the
-    /// flat parts and aslant in the steep one.
+    /// The decision variable there; of ellipses four times it, which makes it whole. Where it is negative the next
+    /// pixel lies straight on in the flat parts and aslant in the steep one.
     pub d: i128,
 }
 
@@ -224,7 +226,7 @@ fn checked(radius: u32) -> Result<i64> {
     Ok(i64::from(radius))
 }
 
-/// The different mirror images of a pixel.
+/// Calls `f` for each of the different mirror images of a pixel.
 fn mirrored((x, y): (i64, i64), octants: bool, mut f: impl FnMut(i64, i64)) {
     let mut four = |x: i64, y: i64| {
         f(x, y);

@@ -106,7 +106,7 @@ pub fn blend<T: Mul<f64, Output = T> + Add<Output = T>>(weights: [f64; 3], [a, b
     a * weights[0] + b * weights[1] + c * weights[2]
 }
 
-/// Weights in space from weights on the screen: each counts as much as its corner is near.
+/// Converts weights on the screen to weights in space: each counts as much as its corner is near.
 ///
 /// `inv_w` is 1/w of the corners, positive. Weights that add up to 1 give weights that add up to 1.
 ///
@@ -160,7 +160,8 @@ pub struct PerspectivePlane {
 }
 
 impl PerspectivePlane {
-    /// From screen points, 1/w (positive) and attributes of the corners; `None` without area.
+    /// Creates the plane from screen points, 1/w (positive) and attributes of the corners; returns `None` without
+    /// area.
     pub fn through(points: [DVec2; 3], inv_w: [f64; 3], values: [f64; 3]) -> Option<Self> {
         let over_w = std::array::from_fn(|k| values[k] * inv_w[k]);
         Some(Self {

@@ -13,7 +13,7 @@ const ROUNDS: usize = 24;
 /// Dots at most; beyond that each represents more tone.
 const MOST_DOTS: f64 = 1e6;
 
-/// Places dots by density: `density` has dots per pixel, 0 if there are none; what is not a number above 0 is none.
+/// Places dots by `density`, in dots per pixel; densities that are not above 0 mean none.
 ///
 /// The places are in pixels, y downwards, the centre of the first pixel at (0.5, 0.5), in the order of Hilbert's curve.
 pub fn stipple(density: &Pixels<f32>) -> Vec<DVec2> {

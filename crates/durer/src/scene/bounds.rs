@@ -30,7 +30,7 @@ impl Aabb {
         self.min + (self.max - self.min) * 0.5
     }
 
-    /// Extent along each axis.
+    /// Returns the extent along each axis.
     pub fn size(&self) -> DVec3 {
         self.max - self.min
     }

@@ -45,7 +45,7 @@ pub struct NamedCamera {
     pub name: String,
     /// The camera. Files without a far plane get one from the scene's bounds.
     pub camera: Camera,
-    /// Width / height that the file asks for.
+    /// Width / height by the file.
     pub aspect: Option<f64>,
 }
 
@@ -119,14 +119,14 @@ impl Camera {
         [right, back.cross(right), back]
     }
 
-    /// Takes world space to view space: the eye at the origin, looking down −z.
+    /// Returns the matrix from world space to view space: the eye at the origin, looking down −z.
     pub fn view_from_world(&self) -> DMat4 {
         let [right, up, back] = self.axes();
         let row = |axis: DVec3| axis.extend(-axis.dot(self.eye));
         DMat4::from_cols(row(right), row(up), row(back), glam::DVec4::W).transpose()
     }
 
-    /// Takes view space to clip space, −w ≤ x, y, z ≤ w. `aspect` is width / height.
+    /// Returns the matrix from view space to clip space, −w ≤ x, y, z ≤ w. `aspect` is width / height.
     pub fn clip_from_view(&self, aspect: f64) -> DMat4 {
         let (n, f) = (self.near, self.far);
         match self.projection {

@@ -15,7 +15,7 @@ const LARGEST: f64 = 1e100;
 /// where all four of its corners are there. A cell is two triangles, parted by the diagonal whose
 /// ends differ less in height.
 ///
-/// A surface may be cut off at two [levels](Self::within): what lies below or above is not a part of it, and a cell with
+/// A surface may be cut off at two [levels](Self::within): parts below or above do not belong to it, and a cell with
 /// corners on both sides, which jumps over all that is between, is left out, as poles of functions make them.
 ///
 /// # Guarantees
@@ -46,9 +46,9 @@ pub struct HeightField {
 /// Diagonal that divides a cell of a height field into its two triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Diagonal {
-    /// From the corner with the smallest x and z to the one with the largest.
+    /// Diagonal from the corner with the smallest x and z to the one with the largest.
     Rising,
-    /// From the corner with the largest x and the smallest z to its opposite.
+    /// Diagonal from the corner with the largest x and the smallest z to its opposite.
     Falling,
 }
 
@@ -70,7 +70,7 @@ impl HeightField {
     /// Creates the field of `size` = columns × rows points, given row by row, over the ranges of x
     /// and z.
     ///
-    /// What is not finite, or beyond ±1e100, is missing.
+    /// Heights that are not finite, or beyond ±1e100, are missing.
     ///
     /// # Errors
     /// [`Error::Limit`] for more than [`Self::MAX_POINTS`] points, [`Error::Parameter`] for no
@@ -88,8 +88,8 @@ impl HeightField {
         Ok(Self { columns: size[0], rows: size[1], x, z, heights, levels: None })
     }
 
-    /// Returns the field of a function, called with x and z of each point; what [`Self::new`] says
-    /// of heights holds for its values.
+    /// Returns the field of a function, called with x and z of each point; its values are treated like the heights of
+    /// [`Self::new`].
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -118,22 +118,22 @@ impl HeightField {
         self.rows
     }
 
-    /// x of the first and the last column.
+    /// Returns x of the first and the last column.
     pub fn x_range(&self) -> [f64; 2] {
         self.x
     }
 
-    /// z of the first and the last row.
+    /// Returns z of the first and the last row.
     pub fn z_range(&self) -> [f64; 2] {
         self.z
     }
 
-    /// x of a column.
+    /// Returns x of a column.
     pub fn x(&self, column: usize) -> f64 {
         between(self.x, column, self.columns)
     }
 
-    /// z of a row.
+    /// Returns z of a row.
     pub fn z(&self, row: usize) -> f64 {
         between(self.z, row, self.rows)
     }
@@ -156,8 +156,8 @@ impl HeightField {
         self.heights.iter().filter(|h| h.is_nan()).count()
     }
 
-    /// Returns the same surface, cut off where it is below the first or above the second level.
-    /// [`Self::height`] still tells the heights beyond.
+    /// Returns the surface, cut off where it is below the first or above the second level. [`Self::height`] still
+    /// returns the heights beyond.
     ///
     /// # Errors
     /// [`Error::Parameter`] for levels that are not finite or do not increase.
@@ -199,15 +199,14 @@ impl HeightField {
         Some(Aabb { min: corner(self.x[0], lo, self.z[0]), max: corner(self.x[1], hi, self.z[1]) })
     }
 
-    /// Returns the same surface with each height, and the levels, taken through `f`, which does not turn
-    /// their order.
+    /// Returns the surface with `f` applied to each height and to the levels; `f` must not reverse their order.
     pub fn map(&self, f: impl Fn(f64) -> f64) -> Self {
         let heights = self.heights.iter().map(|&h| f(h));
         let heights = heights.map(|h| if h.abs() <= LARGEST { h } else { f64::NAN }).collect();
         Self { heights, levels: self.levels.map(|levels| levels.map(&f)), ..*self }
     }
 
-    /// Creates the same surface over other ranges.
+    /// Returns the surface over other ranges.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a range that is not finite or does not increase.

@@ -6,31 +6,31 @@ use crate::math::{DVec3, Vec3};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum LightKind {
-    /// The same from everywhere.
+    /// The same light from everywhere.
     Ambient,
-    /// From infinitely far away.
+    /// Light from infinitely far away.
     Directional {
         /// Unit vector in which the light travels.
         direction: DVec3,
     },
-    /// From a point, falling off with the square of the distance.
+    /// Light from a point, falling off with the square of the distance.
     Point {
-        /// Position of the feature.
+        /// Position of the light.
         position: DVec3,
-        /// Distance at which it ends; `None` = never.
+        /// Distance at which the light ends; `None` = never.
         range: Option<f64>,
     },
-    /// A point light that shines into a cone.
+    /// Light from a point into a cone.
     Spot {
-        /// Position of the feature.
+        /// Position of the light.
         position: DVec3,
         /// Unit vector along the cone's axis, in which the light travels.
         direction: DVec3,
-        /// Distance at which it ends; `None` = never.
+        /// Distance at which the light ends; `None` = never.
         range: Option<f64>,
-        /// Half angle of the full-strength cone, radians.
+        /// Half angle of the cone of full strength, radians.
         inner: f64,
-        /// Half angle at which the light is gone, radians.
+        /// Half angle of the whole cone, without light outside, radians.
         outer: f64,
     },
 }
@@ -39,7 +39,7 @@ pub enum LightKind {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Light {
-    /// Kind and place.
+    /// Kind and position.
     pub kind: LightKind,
     /// Linear colour times intensity: at 1 a white matte surface facing a directional light is white;
     /// for point and spot lights, at the distance of one world unit.

@@ -2,7 +2,7 @@
 
 use crate::math::{DMat3, Vec3, Vec4};
 
-/// A texture and how it is laid on.
+/// A texture and its mapping to a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TextureRef {
@@ -10,7 +10,7 @@ pub struct TextureRef {
     pub texture: usize,
     /// Index of the set in [`super::Mesh::tex_coords`].
     pub tex_coord: u32,
-    /// Takes the mesh's texture coordinates to the texture's (KHR_texture_transform).
+    /// Matrix from the mesh's texture coordinates to the texture's (KHR_texture_transform).
     pub transform: DMat3,
 }
 
@@ -21,16 +21,16 @@ pub enum AlphaMode {
     /// Alpha is ignored: the surface is opaque.
     #[default]
     Opaque,
-    /// The surface is there where alpha ≥ cutoff and not there elsewhere.
+    /// The surface exists where alpha ≥ cutoff and has holes elsewhere.
     Mask {
         /// The threshold, usually 0.5.
         cutoff: f32,
     },
-    /// The surface is blended over what is behind it.
+    /// The surface is blended over the surfaces behind it.
     Blend,
 }
 
-/// Formula that a material was written for.
+/// Shading formula that a material is written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ShadingModel {
@@ -43,35 +43,35 @@ pub enum ShadingModel {
     Unlit,
 }
 
-/// Colours are linear; factors multiply their textures.
+/// Material of a surface. Colours are linear; factors multiply their textures.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Material {
     /// Name in the file.
     pub name: String,
-    /// Formula that it was written for.
+    /// Shading formula that it is written for.
     pub model: ShadingModel,
-    /// Linear RGBA, straight alpha.
+    /// Base colour: linear RGBA, straight alpha.
     pub base_color: Vec4,
-    /// sRGB colour and alpha.
+    /// Texture of the base colour: sRGB and alpha.
     pub base_color_texture: Option<TextureRef>,
-    /// 0 = dielectric, 1 = metal.
+    /// Metalness: 0 = dielectric, 1 = metal.
     pub metallic: f32,
-    /// 0 = mirror, 1 = matte; perceptual (squared before use).
+    /// Roughness: 0 = mirror, 1 = matte; perceptual (squared before use).
     pub roughness: f32,
-    /// Roughness in green, metalness in blue; linear.
+    /// Texture with roughness in green and metalness in blue; linear.
     pub metallic_roughness_texture: Option<TextureRef>,
-    /// Tangent-space normals, linear.
+    /// Texture of tangent-space normals; linear.
     pub normal_texture: Option<TextureRef>,
     /// Scale of the normal texture's x and y.
     pub normal_scale: f32,
-    /// Ambient occlusion in red, linear.
+    /// Texture of ambient occlusion, in red; linear.
     pub occlusion_texture: Option<TextureRef>,
-    /// 0 = ignore the occlusion texture, 1 = in full.
+    /// Strength of the occlusion texture: 0 = none, 1 = full.
     pub occlusion_strength: f32,
-    /// Linear; may be above 1 (KHR_materials_emissive_strength).
+    /// Emitted colour: linear; may be above 1 (KHR_materials_emissive_strength).
     pub emissive: Vec3,
-    /// sRGB.
+    /// Texture of the emitted colour: sRGB.
     pub emissive_texture: Option<TextureRef>,
     /// Phong: linear specular colour.
     pub specular: Vec3,
@@ -79,12 +79,12 @@ pub struct Material {
     pub specular_texture: Option<TextureRef>,
     /// Phong: the exponent of Blinn's halfway form.
     pub shininess: f32,
-    /// Metallic-roughness: refractive index of the dielectric part, at least 1; 1.5 reflects 4 % of
-    /// the light that falls on it straight (KHR_materials_ior).
+    /// Metallic-roughness: refractive index of the dielectric part, at least 1; 1.5 reflects 4 % of the light at normal
+    /// incidence (KHR_materials_ior).
     pub ior: f32,
     /// Metallic-roughness: strength of the dielectric part's reflection, 0 … 1 (KHR_materials_specular).
     pub specular_strength: f32,
-    /// Metallic-roughness: linear colour of the dielectric part's reflection straight on
+    /// Metallic-roughness: linear colour of the dielectric part's reflection at normal incidence
     /// (KHR_materials_specular).
     pub specular_tint: Vec3,
     /// Metallic-roughness: strength of a clear layer over the surface, 0 … 1 (KHR_materials_clearcoat).
@@ -96,17 +96,17 @@ pub struct Material {
     pub sheen_color: Vec3,
     /// Perceptual roughness of the fibres.
     pub sheen_roughness: f32,
-    /// Metallic-roughness: part of the light that the dielectric lets through instead of scattering it
-    /// diffusely, 0 … 1 (KHR_materials_transmission).
+    /// Metallic-roughness: part of the light that the dielectric transmits instead of scattering it diffusely, 0 … 1
+    /// (KHR_materials_transmission).
     pub transmission: f32,
     /// Use of alpha.
     pub alpha_mode: AlphaMode,
-    /// True if back faces are seen, with the normal turned over.
+    /// True if back faces are visible, with reversed normals.
     pub double_sided: bool,
 }
 
 impl Default for Material {
-    /// Creates a light grey, slightly shiny plastic: what a file without materials is shown in.
+    /// Creates a light grey, slightly shiny plastic, the material of files without materials.
     fn default() -> Self {
         Self {
             name: String::new(),

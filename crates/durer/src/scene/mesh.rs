@@ -1,18 +1,18 @@
-//! Vertices and what they are joined to.
+//! Meshes: vertices, and the primitives that they form.
 
 use crate::math::{Vec2, Vec3, Vec4};
 use crate::{Error, Result};
 use std::ops::Range;
 
-/// Shapes that consecutive indices form. Strips, fans and loops become lists when they are read.
+/// Primitives that consecutive indices form. Readers convert strips, fans and loops to lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Topology {
-    /// Each index is a point.
+    /// Points: one index each.
     Points,
-    /// Each two indices are a line.
+    /// Lines: two indices each.
     Lines,
-    /// Each three indices are a triangle, counter-clockwise seen from its front.
+    /// Triangles: three indices each, counter-clockwise seen from the front.
     #[default]
     Triangles,
 }
@@ -21,7 +21,7 @@ pub enum Topology {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Part {
-    /// Primitives (triangles, lines or points), as a range of their indices.
+    /// Range of the primitives (triangles, lines or points).
     pub range: Range<u32>,
     /// Index into [`super::Scene::materials`]; `None` is the default material.
     pub material: Option<usize>,
@@ -31,35 +31,34 @@ pub struct Part {
 
 /// Geometry in its own coordinates.
 ///
-/// Attribute arrays are empty if the file has none, else as long as `positions`. Readers of formats
-/// with double precision keep coordinates exact to 24 bits of the model's own extent by moving a
-/// far-off model to its middle and the offset into the instance's matrix.
+/// An attribute array is empty if the file lacks the attribute, else as long as `positions`. Readers of formats with
+/// double precision move the middle of a far-off model to the origin and the offset into the instance's matrix, so that
+/// coordinates are exact to 24 bits of the model's own extent.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mesh {
     /// Name in the file, empty if it has none.
     pub name: String,
-    /// Shapes that the indices form.
+    /// Primitives that the indices form.
     pub topology: Topology,
-    /// One per vertex.
+    /// Position of each vertex.
     pub positions: Vec<Vec3>,
-    /// Unit normals; readers leave out what the file leaves out.
+    /// Unit normals; readers do not compute missing ones.
     pub normals: Vec<Vec3>,
-    /// Unit tangents, w = ±1 the sign of the bitangent.
+    /// Unit tangents; w = ±1 is the sign of the bitangent.
     pub tangents: Vec<Vec4>,
     /// Texture coordinates, set by set; (0, 0) is the upper left corner of the image.
     pub tex_coords: Vec<Vec<Vec2>>,
-    /// Linear RGBA, straight alpha.
+    /// Colours: linear RGBA, straight alpha.
     pub colors: Vec<Vec4>,
-    /// Vertex numbers; `None` if vertex i is index i.
+    /// Vertex numbers; `None` if index i is vertex i.
     pub indices: Option<Vec<u32>>,
     /// Runs of primitives by material, in order, without gaps; empty = one part, default material.
     pub parts: Vec<Part>,
-    /// First triangle of each face, in order, where the file had faces of more than three vertices;
-    /// empty if each face is one triangle. The triangles of a face cover it, run around as it does, and
-    /// follow each other: a fan from its first vertex where that covers it, as in convex faces, else
-    /// any. n vertices make n − 2 of them, fewer where some lie on spikes without area, others where the
-    /// outline crosses itself.
+    /// First triangle of each face, in order, if the file has faces of more than three vertices; empty if each face is
+    /// one triangle. The triangles of a face follow each other, cover the face and have its orientation: a fan from its
+    /// first vertex if that covers it, as in convex faces, else any triangulation. A face of n vertices has n − 2
+    /// triangles; fewer if some vertices are on spikes without area, another number if the outline crosses itself.
     pub faces: Vec<u32>,
 }
 
@@ -78,7 +77,7 @@ impl Mesh {
         Self { positions, ..Self::default() }
     }
 
-    /// Returns the bytes of its attributes, indices, parts and faces.
+    /// Returns the size of its attributes, indices, parts and faces in bytes.
     pub fn bytes(&self) -> u64 {
         let sets: usize = self.tex_coords.iter().map(|set| size_of_val(&set[..])).sum();
         let bytes = size_of_val(&self.positions[..])
@@ -128,14 +127,14 @@ impl Mesh {
         }
     }
 
-    /// Runs of primitives with one material; never empty unless the mesh is.
+    /// Returns the runs of primitives with one material; none is empty unless the mesh is.
     pub fn material_runs(&self) -> impl Iterator<Item = (Range<u32>, Option<usize>)> + '_ {
         let whole = self.parts.is_empty().then(|| (0..self.primitive_count() as u32, None));
         self.parts.iter().map(|p| (p.range.clone(), p.material)).chain(whole)
     }
 
-    /// Returns true for each vertex that has an index; `None` if there are no indices, and all are
-    /// used. Indices beyond the vertices are left out. Cost: O(indices).
+    /// Returns, for each vertex, whether an index refers to it; `None` if there are no indices, so that all vertices
+    /// are used. Indices beyond the vertices are ignored. Cost: O(indices).
     pub fn used_vertices(&self) -> Option<Vec<bool>> {
         let indices = self.indices.as_ref()?;
         let mut used = vec![false; self.positions.len()];
@@ -162,10 +161,10 @@ impl Mesh {
         self.positions.len() - 1
     }
 
-    /// Checks what algorithms rely on: attribute lengths, index range, parts in order.
+    /// Checks the conditions that algorithms rely on: lengths of attributes, range of indices, order of parts.
     ///
     /// # Errors
-    /// [`Error::Dangling`] or [`Error::Parameter`] for the first thing that is wrong.
+    /// [`Error::Dangling`] or [`Error::Parameter`] for the first fault.
     pub fn check(&self) -> Result<()> {
         let count = self.positions.len();
         if u32::try_from(count).is_err() {

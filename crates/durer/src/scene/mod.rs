@@ -41,7 +41,7 @@ pub enum UpAxis {
 }
 
 impl UpAxis {
-    /// All of them.
+    /// All axes.
     pub const ALL: &'static [Self] =
         &[Self::Y, Self::Z, Self::X, Self::NegY, Self::NegZ, Self::NegX];
 
@@ -57,7 +57,7 @@ impl UpAxis {
         }
     }
 
-    /// Up; unit length.
+    /// Returns the unit vector that points up.
     pub const fn up(self) -> DVec3 {
         match self {
             Self::Y => DVec3::Y,
@@ -69,8 +69,8 @@ impl UpAxis {
         }
     }
 
-    /// From the model towards its front; unit length. Turning the world around it by quarters takes y,
-    /// x, −y and −x up into each other; by half, z and −z.
+    /// Returns the unit vector from the model towards its front. Turning the world around it by quarters takes y, x,
+    /// −y and −x up into each other; by half, z and −z.
     pub const fn front(self) -> DVec3 {
         match self {
             Self::Y | Self::X | Self::NegY | Self::NegX => DVec3::Z,
@@ -78,7 +78,7 @@ impl UpAxis {
         }
     }
 
-    /// To the right as seen from the front: up × front; unit length.
+    /// Returns the unit vector to the right as seen from the front: up × front.
     pub const fn right(self) -> DVec3 {
         match self {
             Self::Y | Self::Z => DVec3::X,
@@ -95,7 +95,7 @@ impl UpAxis {
 pub struct Instance {
     /// Index into [`Scene::meshes`].
     pub mesh: usize,
-    /// Takes the mesh's coordinates to the world's. Affine; may mirror.
+    /// Matrix from the mesh's coordinates to the world's. Affine; may mirror.
     pub world_from_mesh: DMat4,
     /// The name of the node or object, empty if the file has none.
     pub name: String,
@@ -200,7 +200,7 @@ impl Scene {
         Some(BoundingSphere { center, radius: radius2.sqrt() })
     }
 
-    /// Gives a material to all parts that have none.
+    /// Assigns a material to all parts that have none.
     pub fn give_material(&mut self, material: Material) {
         let number = self.materials.len();
         for mesh in &mut self.meshes {

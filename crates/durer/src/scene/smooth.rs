@@ -11,10 +11,10 @@ use crate::math::{DVec3, Vec3};
 const CREASE_COSINE: f64 = 0.766_044_443_118_978;
 
 impl Mesh {
-    /// Creates the same triangles with normals: each corner has the average over the faces that
-    /// share its position and lie within 40° of its own face. Vertices are no longer shared.
+    /// Returns the triangles with normals: each corner has the average over the faces that share its position and lie
+    /// within 40° of its own face. Vertices are no longer shared.
     ///
-    /// A mesh with normals, and lines and points, are given back as they are.
+    /// A mesh with normals, and lines and points, are returned as they are.
     pub fn with_smooth_normals(&self) -> Self {
         if !self.normals.is_empty() || self.topology != Topology::Triangles {
             return self.clone();
@@ -68,7 +68,7 @@ impl Mesh {
     }
 }
 
-/// Groups of vertices at the same place, each in ascending order.
+/// Returns groups of vertices at the same place, each in ascending order.
 fn same_positions(positions: &[Vec3]) -> Vec<Vec<u32>> {
     // Adding zero makes −0 into 0, which is the same place.
     let key = |i: &u32| positions[*i as usize].to_array().map(|v| (v + 0.0).to_bits());

@@ -63,9 +63,9 @@ pub struct Sampler {
     pub min: Filter,
     /// The choice of level where a texel is smaller than a pixel.
     pub mip: MipFilter,
-    /// Along u.
+    /// Wrap mode along u.
     pub wrap_u: Wrap,
-    /// Along v.
+    /// Wrap mode along v.
     pub wrap_v: Wrap,
 }
 

@@ -10,7 +10,7 @@ pub(super) fn turned<L: Lane>(v: Vec3Lane<L>, [x, y, z]: &[Vec3; 3]) -> Vec3Lane
     Vec3Lane::new(v.dot_all(*x), v.dot_all(*y), v.dot_all(*z))
 }
 
-/// To the right, up and to the front of a scene: what the named views show.
+/// Returns the axes to the right, up and to the front of a scene, as the named views show them.
 pub(super) fn world_axes(up: UpAxis) -> [Vec3; 3] {
     [up.right(), up.up(), up.front()].map(|axis| axis.as_vec3())
 }

@@ -52,7 +52,7 @@ const fn step_table() -> [u64; 1 << INDEX_BITS] {
     table
 }
 
-/// Fifth root of x in 0…1 by Newton's iteration from above.
+/// Returns the fifth root of x in 0…1 by Newton's iteration from above.
 const fn fifth_root(x: f64) -> f64 {
     if x <= 0.0 {
         return 0.0;
@@ -67,7 +67,7 @@ const fn fifth_root(x: f64) -> f64 {
     y
 }
 
-/// sRGB 0…1 to linear 0…1: x^2.4 = x² · (x²)^(1/5).
+/// Converts sRGB 0…1 to linear 0…1: x^2.4 = x² · (x²)^(1/5).
 const fn linear_from_srgb(s: f64) -> f64 {
     if s <= 0.04045 {
         return s / 12.92;
@@ -111,7 +111,7 @@ const fn bucket_table() -> [u8; BUCKETS] {
     table
 }
 
-/// Returns linear value of an 8-bit sRGB code.
+/// Returns the linear value of an 8-bit sRGB code.
 #[inline(always)]
 pub fn decode_srgb8(code: u8) -> f32 {
     LINEAR_FROM_SRGB[usize::from(code)]
@@ -133,8 +133,8 @@ pub fn encode_srgb8(linear: f32) -> u8 {
     code + u8::from(linear >= THRESHOLD[usize::from(code)])
 }
 
-/// Sixteen opaque linear colours, by channel, to 8-bit sRGB, for each channel what [`encode_srgb8`] gives:
-/// of each pixel the four bytes, the first one lowest.
+/// Converts sixteen opaque linear colours, by channel, to 8-bit sRGB, each channel as [`encode_srgb8`] does: of each
+/// pixel the four bytes, the first one lowest.
 ///
 /// Cost: one look-up per channel.
 #[inline(always)]
@@ -166,7 +166,7 @@ impl Encoding {
         }
     }
 
-    /// From buckets to steps.
+    /// Replaces the buckets by steps.
     #[inline(always)]
     fn look_up(&mut self) {
         for steps in &mut self.steps {
@@ -206,19 +206,19 @@ fn buckets_x16<S: Simd>(simd: S, linear: f32x16<S>) -> [u32x16<S>; 2] {
     [bucket, bits & ((1 << BUCKET_SHIFT) - 1)]
 }
 
-/// Returns linear RGBA to 8-bit sRGB with 8-bit linear alpha.
+/// Encodes linear RGBA as 8-bit sRGB with 8-bit linear alpha.
 #[inline(always)]
 pub fn encode_rgba8(color: Vec4) -> [u8; 4] {
     [encode_srgb8(color.x), encode_srgb8(color.y), encode_srgb8(color.z), encode_unorm8(color.w)]
 }
 
-/// Returns linear RGBA, premultiplied, to 8-bit sRGB with straight 8-bit alpha.
+/// Encodes linear RGBA, premultiplied, as 8-bit sRGB with straight 8-bit alpha.
 #[inline(always)]
 pub(crate) fn encode_premultiplied(color: Vec4) -> [u8; 4] {
     encode_rgba8(if color.w >= 1.0 { color } else { unpremultiply(color) })
 }
 
-/// 8-bit sRGB with 8-bit alpha to linear RGBA.
+/// Converts 8-bit sRGB with 8-bit alpha to linear RGBA.
 #[inline(always)]
 pub fn decode_rgba8(code: [u8; 4]) -> Vec4 {
     Vec4::new(
@@ -255,7 +255,7 @@ pub fn decode_unorm8(code: u8) -> f32 {
     UNORM[usize::from(code)]
 }
 
-/// Relative luminance of a linear colour with sRGB's primaries (ITU-R BT.709).
+/// Returns the relative luminance of a linear colour with sRGB's primaries (ITU-R BT.709).
 #[inline(always)]
 pub fn luminance(color: Vec3) -> f32 {
     0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z
@@ -267,7 +267,7 @@ pub fn premultiply(color: Vec4) -> Vec4 {
     Vec4::new(color.x * color.w, color.y * color.w, color.z * color.w, color.w)
 }
 
-/// Premultiplied alpha to straight alpha; where alpha is not above 0, transparent black.
+/// Converts premultiplied alpha to straight alpha; where alpha is not above 0, to transparent black.
 #[inline(always)]
 pub fn unpremultiply(color: Vec4) -> Vec4 {
     if color.w > 0.0 {

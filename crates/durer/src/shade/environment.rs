@@ -32,13 +32,13 @@ pub struct Environment {
     pub up: Vec3,
     /// Light from all around on a matte surface: at 1 a white one appears white.
     pub ambient: Vec3,
-    /// By which part of `ambient` a surface facing up gets more, one facing down less; 0…1.
+    /// Part of `ambient` by which a surface facing up gets more, one facing down less; 0…1.
     pub slope: f32,
     /// Mean radiance that mirrors show; the factor of a panorama.
     pub radiance: Vec3,
-    /// By which part of `radiance` zenith and nadir differ from the mean, without the step; 0…1.
+    /// Part of `radiance` by which zenith and nadir differ from the mean, without the step; 0…1.
     pub gradient: f32,
-    /// By which part sky and ground differ from the mean besides; `gradient + step ≤ 1`.
+    /// Part by which sky and ground differ from the mean besides; `gradient + step ≤ 1`.
     pub step: f32,
     /// Reflection in mirrors in place of sky and ground.
     pub mirrored: Mirrored,
@@ -54,7 +54,7 @@ pub enum Mirrored {
     Studio(Studio),
     /// A panorama, to which matte surfaces owe light too.
     Panorama {
-        /// Style of the drawing.
+        /// The panorama.
         panorama: Arc<Panorama>,
         /// Unit vectors to the right, up and to the front, in world space.
         axes: [Vec3; 3],
@@ -65,7 +65,7 @@ pub enum Mirrored {
 const SHARPEST: f32 = 0.12;
 
 impl Environment {
-    /// Returns the same light from everywhere.
+    /// Creates an environment with the same light from everywhere.
     pub fn uniform(ambient: Vec3) -> Self {
         Self {
             up: Vec3::Y,
@@ -114,7 +114,7 @@ impl Environment {
         self.mirrored != Mirrored::Sky
     }
 
-    /// Sky and ground as a part of their mean.
+    /// Returns sky and ground as a part of their mean.
     #[inline(always)]
     fn sky<L: Lane>(&self, r: Vec3Lane<L>, alpha: L) -> L {
         let height = r.dot_all(self.up);

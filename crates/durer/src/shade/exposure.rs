@@ -43,7 +43,7 @@ const IN_MIRRORS: f32 = 0.5;
 /// Measured light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Metered {
-    /// By which all lights are to be made stronger; 1 where no light falls on anything.
+    /// Factor by which all lights are made stronger; 1 where no light falls on anything.
     factor: f32,
     /// Reflections of point lights in mirrors, before that.
     from_points: Vec3,
@@ -71,10 +71,10 @@ impl Metered {
 }
 
 impl PreparedLights {
-    /// Builds it like [`Self::within`], but makes all light stronger or weaker by one factor, so
-    /// that a white matte surface where much of it falls on the scene is nearly white: see
-    /// [the module](self). If there is no ambient light, [`DEFAULT_AMBIENT`](super::light::DEFAULT_AMBIENT) is added as it is.
-    /// The scene must pass [`Scene::check`].
+    /// Builds it like [`Self::within`], but makes all light stronger or weaker by one factor, so that a white matte
+    /// surface where much of it falls on the scene is nearly white: see [the module](self). If there is no ambient
+    /// light, [`DEFAULT_AMBIENT`](super::light::DEFAULT_AMBIENT) is added as it is. The scene must pass
+    /// [`Scene::check`].
     pub fn exposed(around: Around<'_>, lights: &[Light], scene: &Scene, camera: &Camera) -> Self {
         let mut prepared = Self::without_ambient(around, lights, camera);
         let ambient = ambient(lights);

@@ -12,7 +12,7 @@ use super::material::PreparedMaterial;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::Vec3;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "flat",
     title: "Flat shading",

@@ -12,7 +12,7 @@ use super::{Shading, tone};
 /// Everything that textures and factors say about a point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Inputs<'a, L> {
-    /// For the metallic-roughness and the unlit model.
+    /// Parameters for the metallic-roughness and the unlit model.
     pub substance: Substance<L>,
     /// Phong's diffuse colour.
     pub diffuse: Vec3Lane<L>,

@@ -15,7 +15,7 @@ pub use super::reflected::Reflected;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::Vec3;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "gouraud",
     title: "Gouraud shading",
@@ -41,9 +41,9 @@ pub const INFO: Info = Info {
 
 /// Returns the light at one vertex of a face, for [`super::Surface::lit`].
 ///
-/// `position` is relative to the lights' origin, `view` points to the eye (any length), `normal` is
-/// the vertex's and `face` the face's unit normal, which decides from which side it is seen.
-/// Textures of roughness and occlusion have no say at a vertex. Cost: O(lights).
+/// `position` is relative to the lights' origin, `view` points to the eye (any length), `normal` is the vertex's and
+/// `face` the face's unit normal, which decides from which side it is seen. Textures of roughness and occlusion are
+/// ignored at a vertex. Cost: O(lights).
 pub fn shade_vertex(
     position: Vec3,
     view: Vec3,

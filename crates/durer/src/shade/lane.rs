@@ -21,11 +21,11 @@ pub trait Lane:
     + Sub<f32, Output = Self>
     + Mul<f32, Output = Self>
 {
-    /// `value` in every lane; `self` only says how many there are.
+    /// Returns `value` in every lane; `self` only determines the number of lanes.
     fn splat(self, value: f32) -> Self;
     /// Returns the square root, correctly rounded.
     fn sqrt(self) -> Self;
-    /// `then` where `self > limit`, `otherwise` elsewhere and where `self` is NaN.
+    /// Returns `then` where `self > limit`, `otherwise` elsewhere and where `self` is NaN.
     fn if_above(self, limit: f32, then: Self, otherwise: Self) -> Self;
     /// Returns the larger of two; where either is NaN, `other`.
     fn larger(self, other: Self) -> Self;
@@ -39,34 +39,34 @@ pub trait Lane:
     fn floor(self) -> Self;
     /// Calls `f` without making it part of the caller: for what is long and seldom requested.
     fn apart<R>(self, f: impl FnOnce() -> R) -> R;
-    /// Creates a function of one number per value, lane by lane: for what has no formula, such as
-    /// looking up.
+    /// Applies a function lane by lane to a number of each value: for functions without a formula, such as look-ups.
     fn lanewise<const N: usize>(values: [Self; N], f: impl Fn([f32; N]) -> f32) -> Self;
-    /// Returns the same of three numbers, by a function that is not made part of the caller.
+    /// Applies a function lane by lane as [`Self::lanewise`], with three results; the function is not made part of the
+    /// caller.
     fn looked_up<const N: usize>(
         values: [Self; N],
         look_up: &dyn Fn([f32; N]) -> [f32; 3],
     ) -> [Self; 3];
 
-    /// `self` where it is above `limit`, else `limit`; NaN becomes `limit`.
+    /// Returns `self` where it is above `limit`, else `limit`; NaN becomes `limit`.
     #[inline(always)]
     fn at_least(self, limit: f32) -> Self {
         self.if_above(limit, self, self.splat(limit))
     }
 
-    /// `self` if it is not above `limit`, else `limit`; NaN stays.
+    /// Returns `self` where it is not above `limit`, else `limit`; NaN stays.
     #[inline(always)]
     fn at_most(self, limit: f32) -> Self {
         self.if_above(limit, self.splat(limit), self)
     }
 
-    /// `1 − self`.
+    /// Returns `1 − self`.
     #[inline(always)]
     fn one_minus(self) -> Self {
         self.splat(1.0) - self
     }
 
-    /// `self` to a whole power, by repeated squaring.
+    /// Returns `self` to a whole power, by repeated squaring.
     #[inline(always)]
     fn power(self, mut exponent: u32) -> Self {
         let (mut result, mut square) = (self.splat(1.0), self);
@@ -82,7 +82,7 @@ pub trait Lane:
         }
     }
 
-    /// `self`, at least 1e-37, to any power: relative error below 1e-6 · (1 + |exponent · log2 self|).
+    /// Returns `self`, at least 1e-37, to any power: relative error below 1e-6 · (1 + |exponent · log2 self|).
     #[inline(always)]
     fn power_real(self, exponent: f32) -> Self {
         (self.at_least(1e-37).log2() * exponent).exp2()
@@ -231,7 +231,7 @@ macro_rules! lanes {
                 let lanes = values.map(<[f32; $count]>::from);
                 let result: [f32; $count] =
                     std::array::from_fn(|i| f(std::array::from_fn(|k| lanes[k][i])));
-                // Without values there is nothing to compute; nobody asks for that.
+                // Without values there is nothing to compute; this does not occur.
                 $floats::from_slice(values[0].simd, &result)
             }
         }
@@ -284,31 +284,31 @@ pub struct Vec3Lane<L> {
 const LENGTH2: (f32, f32) = (1e-36, 1e36);
 
 impl<L: Lane> Vec3Lane<L> {
-    /// From components.
+    /// Creates a vector from its components.
     #[inline(always)]
     pub fn new(x: L, y: L, z: L) -> Self {
         Self { x, y, z }
     }
 
-    /// Returns the same vector in every lane; `like` only says how many there are.
+    /// Creates a vector that is the same in every lane; `like` only determines the number of lanes.
     #[inline(always)]
     pub fn splat(like: L, v: Vec3) -> Self {
         Self::new(like.splat(v.x), like.splat(v.y), like.splat(v.z))
     }
 
-    /// Scalar product, summed from the left.
+    /// Returns the scalar product, summed from the left.
     #[inline(always)]
     pub fn dot(self, o: Self) -> L {
         self.x * o.x + self.y * o.y + self.z * o.z
     }
 
-    /// Scalar product with one vector for all lanes.
+    /// Returns the scalar product with one vector for all lanes.
     #[inline(always)]
     pub fn dot_all(self, o: Vec3) -> L {
         self.x * o.x + self.y * o.y + self.z * o.z
     }
 
-    /// Vector product.
+    /// Returns the vector product.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
         Self::new(
@@ -318,13 +318,13 @@ impl<L: Lane> Vec3Lane<L> {
         )
     }
 
-    /// Sum.
+    /// Returns the sum.
     #[inline(always)]
     pub fn plus(self, o: Self) -> Self {
         Self::new(self.x + o.x, self.y + o.y, self.z + o.z)
     }
 
-    /// Difference.
+    /// Returns the difference.
     #[inline(always)]
     pub fn minus(self, o: Self) -> Self {
         Self::new(self.x - o.x, self.y - o.y, self.z - o.z)
@@ -336,25 +336,25 @@ impl<L: Lane> Vec3Lane<L> {
         Self::new(self.x * k, self.y * k, self.z * k)
     }
 
-    /// Turned about.
+    /// Returns the opposite vector.
     #[inline(always)]
     pub fn reversed(self) -> Self {
         self.scale(self.x.splat(-1.0))
     }
 
-    /// Component by component.
+    /// Multiplies component by component.
     #[inline(always)]
     pub fn times(self, o: Self) -> Self {
         Self::new(self.x * o.x, self.y * o.y, self.z * o.z)
     }
 
-    /// Component by component, with one colour for all lanes.
+    /// Multiplies component by component with one colour for all lanes.
     #[inline(always)]
     pub fn times_all(self, o: Vec3) -> Self {
         Self::new(self.x * o.x, self.y * o.y, self.z * o.z)
     }
 
-    /// `then` where `value > limit`, `otherwise` elsewhere and where `value` is NaN.
+    /// Returns `then` where `value > limit`, `otherwise` elsewhere and where `value` is NaN.
     #[inline(always)]
     pub fn if_above(value: L, limit: f32, then: Self, otherwise: Self) -> Self {
         Self::new(

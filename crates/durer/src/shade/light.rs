@@ -68,9 +68,9 @@ const NEAREST2: f32 = 1e-8;
 impl PreparedLights {
     /// Prepares lights for pictures from this camera's eye.
     ///
-    /// Directions that are not finite or zero are left out, and so are positions that are not finite.
-    /// Where there is no ambient light, [`DEFAULT_AMBIENT`] is added. Mirrors show the ambient light
-    /// and a quarter of the directional light: what it would be, spread over the whole sphere.
+    /// Directions that are not finite or zero are left out, and so are positions that are not finite. Where there is no
+    /// ambient light, [`DEFAULT_AMBIENT`] is added. Mirrors show the ambient light and a quarter of the directional
+    /// light, as if that were spread over the whole sphere.
     pub fn new(lights: &[Light], camera: &Camera) -> Self {
         Self::within(None, lights, camera)
     }
@@ -120,7 +120,7 @@ impl PreparedLights {
         (environment.gradient, environment.step) = (0.4, 0.45);
     }
 
-    /// Key, fill and rim light that go with the camera, and more ambient light from above: see
+    /// Creates key, fill and rim lights that go with the camera, and more ambient light from above: see
     /// [`auto_lights`].
     pub fn auto(camera: &Camera) -> Self {
         let mut prepared = Self::new(&auto_lights(camera), camera);

@@ -24,9 +24,9 @@ pub(super) struct Lobes {
     dielectric: Dielectric,
     coat: Option<Coat>,
     sheen: Option<Sheen>,
-    /// The part of light that goes through what is not blended.
+    /// The part of light that an unblended material transmits.
     through: f32,
-    /// True if what is blended shows its reflections in full, as glass does.
+    /// True if a blended material shows its reflections in full, as glass does.
     glass: bool,
 }
 
@@ -59,7 +59,7 @@ fn held_color(color: Vec3, default: f32) -> Vec3 {
 }
 
 impl Lobes {
-    /// `None` for a material that the plain formula says all about.
+    /// Returns the lobes of a material, or `None` if the plain formula covers it.
     pub fn of(m: &Material) -> Option<Self> {
         let sheen_color = held_color(m.sheen_color, 0.0);
         let coat = held(m.clearcoat, 1.0, 0.0);
@@ -124,7 +124,7 @@ impl Lobes {
         }
     }
 
-    /// Reflections alone, without what the surface scatters or sends out itself.
+    /// Returns the reflections alone, without the light that the surface scatters or emits itself.
     #[inline(always)]
     pub fn shine<L: Lane>(
         &self,
@@ -175,7 +175,7 @@ fn reflect_apart<L: Lane>(
     )
 }
 
-/// Reflectance by KHR_materials_ior and KHR_materials_specular. An index of 0 reflects all, as for
+/// Returns the reflectance by KHR_materials_ior and KHR_materials_specular. An index of 0 reflects all, as for
 /// materials that were converted from specular-glossiness.
 fn dielectric(m: &Material) -> Dielectric {
     let index = held(m.ior, 1e6, 1.5);
@@ -240,7 +240,7 @@ impl Sheen {
         ((exponent.exp2() + self.more) * std::f32::consts::FRAC_1_PI).at_most(1.0)
     }
 
-    /// Fibres over what leaves the surface.
+    /// Lays the reflection of fibres over the light that leaves the surface.
     #[inline(always)]
     fn over<L: Lane>(
         &self,

@@ -48,7 +48,7 @@ impl PreparedTexture<'_> {
         self.sampler.mip != MipFilter::None
     }
 
-    /// Red, green, blue and alpha of sixteen points, bit for bit what [`Self::sample`] gives.
+    /// Returns red, green, blue and alpha of sixteen points, with the same bits as [`Self::sample`].
     #[simd]
     pub(super) fn sample_x16<S: Simd>(
         simd: S,
@@ -63,7 +63,7 @@ impl PreparedTexture<'_> {
         straight_x16(simd, columns(simd, colors), this.chain.usage)
     }
 
-    /// From the levels that suit each point.
+    /// Returns the colours from the levels that suit each point.
     #[inline(always)]
     fn between_levels<S: Simd>(&self, simd: S, at: &TexCoords<f32x16<S>>) -> Rows<S> {
         let across = squared_length(at.ddx, self.size);
@@ -166,7 +166,7 @@ impl PreparedTexture<'_> {
         means
     }
 
-    /// The texels of this many columns and rows from the texel `first` on, row by row.
+    /// Decodes the texels of this many columns and rows from the texel `first` on, row by row.
     #[inline(always)]
     fn decode_area(
         &self,
@@ -258,7 +258,7 @@ fn ends<S: Simd>(simd: S, v: i32x16<S>) -> [i32; 2] {
     [simd.reduce_min_i32x4(least), simd.reduce_max_i32x4(most)]
 }
 
-/// Red, green, blue and alpha, straight, of sixteen texels of this usage.
+/// Returns red, green, blue and alpha, straight, of sixteen texels of this usage.
 #[inline(always)]
 fn straight_x16<S: Simd>(simd: S, [r, g, b, a]: [f32x16<S>; 4], usage: Usage) -> [f32x16<S>; 4] {
     if usage != Usage::ColorWithAlpha {
@@ -315,7 +315,7 @@ fn fixed_x16<S: Simd>(simd: S, u: f32x16<S>, size: i32, wrap: Wrap) -> (i32x16<S
     ((fixed >> SUBTEXEL_BITS) - 1, weight)
 }
 
-/// Coordinates brought to 0…1 (both ends possible) by the wrap mode; not finite = 0.
+/// Brings coordinates to 0…1 (both ends possible) by the wrap mode; not finite = 0.
 #[inline(always)]
 fn wrapped_x16<S: Simd>(simd: S, u: f32x16<S>, wrap: Wrap) -> f32x16<S> {
     let zero = simd.splat_f32x16(0.0);

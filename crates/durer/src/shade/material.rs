@@ -127,9 +127,9 @@ impl<'a> PreparedMaterial<'a> {
         self.slots().any(|slot| slot.texture.has_levels())
     }
 
-    /// Returns linear red, green and blue of sixteen points and their alpha, each bit for bit what [`shade`]
-    /// gives, but that colours without alpha are not black; the material must be [looked up
-    /// together](Self::looked_up_together). Cost: O(lights) and sixteen samples per texture.
+    /// Returns linear red, green and blue of sixteen points and their alpha, with the same bits as [`shade`], except
+    /// that colours without alpha are not black; the material must be [looked up together](Self::looked_up_together).
+    /// Cost: O(lights) and sixteen samples per texture.
     #[simd]
     pub(crate) fn shade_x16<S: Simd>(
         simd: S,
@@ -157,7 +157,7 @@ impl<'a> PreparedMaterial<'a> {
         (formula::display(&frame, points.position, &inputs, None, lights, shading), alpha)
     }
 
-    /// Base colour with its texture, without the vertex colour.
+    /// Returns the base colour with its texture, without the vertex colour.
     #[inline(always)]
     pub(super) fn base_times<L: Lane>(&self, texel: &Texel<L>) -> Vec3Lane<L> {
         Vec3Lane::splat(texel.0[0], self.base_color.truncate()).times(texel.color())
@@ -179,8 +179,8 @@ impl<'a> PreparedMaterial<'a> {
         self.model.into()
     }
 
-    /// Returns whether the material has one alpha, no textures and no more lobes than most, so that many points of a mesh
-    /// without vertex colours are shaded at a time.
+    /// Returns whether the material has one alpha, no textures and no more lobes than most, so that many points of a
+    /// mesh without vertex colours are shaded at a time.
     pub fn is_plain(&self) -> bool {
         let clear = matches!(self.alpha_mode, AlphaMode::Opaque | AlphaMode::Blend);
         !self.textured && clear && self.lobes.is_none()
@@ -201,12 +201,12 @@ impl<'a> PreparedMaterial<'a> {
         self.normal_slot.is_some()
     }
 
-    /// Use of alpha.
+    /// Returns the use of alpha.
     pub fn alpha_mode(&self) -> AlphaMode {
         self.alpha_mode
     }
 
-    /// Phong's exponent without textures.
+    /// Returns Phong's exponent without textures.
     pub(super) fn shininess(&self) -> Shininess {
         self.phong.shininess
     }
@@ -232,14 +232,14 @@ impl<'a> PreparedMaterial<'a> {
         }
     }
 
-    /// Base colour with its texture and the vertex colour.
+    /// Returns the base colour with its texture and the vertex colour.
     #[inline]
     fn base(&self, surface: &Surface<'_>) -> Vec4 {
         let base = self.base_color * surface.color;
         self.base_color_slot.as_ref().map_or(base, |slot| base * slot.sample(surface))
     }
 
-    /// Returns the alpha of a point, as [`shade`] gives it, without lighting it.
+    /// Returns the alpha of a point, equal to that of [`shade`], without lighting it.
     pub fn alpha(&self, surface: &Surface<'_>) -> f32 {
         self.coverage(self.base(surface).w)
     }
@@ -285,7 +285,7 @@ impl<'a> PreparedMaterial<'a> {
         inputs
     }
 
-    /// Phong's inputs from metallic-roughness ones, unless the factors alone decide them.
+    /// Sets Phong's inputs from metallic-roughness ones, unless the factors alone decide them.
     #[inline]
     fn phong_inputs(&self, surface: &Surface<'_>, base: Vec3, inputs: &mut Inputs<'_, f32>) {
         if self.textured || surface.color != Vec4::ONE {
@@ -375,7 +375,7 @@ fn metallic_roughness_of(m: &Material) -> (f32, f32) {
     }
 }
 
-/// Phong's parameters of a material, whichever formula it was written for.
+/// Returns Phong's parameters of a material, whichever formula it was written for.
 fn phong_of(m: &Material) -> Colors {
     let base = m.base_color.truncate();
     if m.model == ShadingModel::MetallicRoughness {

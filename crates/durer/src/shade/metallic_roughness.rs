@@ -1,13 +1,13 @@
 //! glTF's metallic-roughness formula: a matte dielectric under a clear rough surface, or a metal.
 //!
-//! Khronos, *glTF 2.0*, appendix B, 2017: Lambert's diffuse reflection; microfacets after Trowbridge
-//! and Reitz, *Average Irregularity Representation of a Rough Surface*, JOSA 65(5), 1975 (the "GGX" of
-//! Walter et al. 2007); Smith's height-correlated masking after Heitz, *Understanding the
-//! Masking-Shadowing Function*, JCGT 3(2), 2014; Fresnel reflection after Schlick, *An Inexpensive BRDF
-//! Model for Physically-based Rendering*, 1994. What mirrors show of the surroundings is
-//! weighted by the closed form of Karis, *Physically Based Shading on Mobile*, 2014; what surrounds them is in [`super::environment`]. Light that is reflected more than once
-//! between microfacets is given back by scaling, as in Turquin, *Practical Multiple Scattering
-//! Compensation for Microfacet Models*, 2019. Cost: O(lights) per pixel. Limits: no shadows.
+//! Khronos, *glTF 2.0*, appendix B, 2017: Lambert's diffuse reflection; microfacets after Trowbridge and Reitz,
+//! *Average Irregularity Representation of a Rough Surface*, JOSA 65(5), 1975 (the "GGX" of Walter et al. 2007);
+//! Smith's height-correlated masking after Heitz, *Understanding the Masking-Shadowing Function*, JCGT 3(2), 2014;
+//! Fresnel reflection after Schlick, *An Inexpensive BRDF Model for Physically-based Rendering*, 1994. What mirrors
+//! show of the surroundings is weighted by the closed form of Karis, *Physically Based Shading on Mobile*, 2014; what
+//! surrounds them is in [`super::environment`]. Light that is reflected more than once between microfacets is given
+//! back by scaling, as in Turquin, *Practical Multiple Scattering Compensation for Microfacet Models*, 2019. Cost:
+//! O(lights) per pixel. Limits: no shadows.
 
 use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
@@ -16,7 +16,7 @@ use super::shadow;
 use crate::info::{Class, Info, Occluder};
 use crate::math::Vec3;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "metallic-roughness",
     title: "Metallic-roughness",
@@ -57,18 +57,18 @@ impl Dielectric {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Substance<L> {
     pub base: Vec3Lane<L>,
-    /// 0 … 1.
+    /// Metalness, 0 … 1.
     pub metallic: L,
-    /// Perceptual, 0 … 1.
+    /// Perceptual roughness, 0 … 1.
     pub roughness: L,
     /// Part of the ambient light that gets there.
     pub occlusion: L,
-    /// True if the material shows what surrounds the scene clearly: metals, what is smooth, clear layers.
+    /// True if the material mirrors the surroundings clearly: metals, smooth surfaces, clear layers.
     pub mirrors: bool,
 }
 
-/// By how much brighter screens are mirrored by dielectrics than by metals: those show four hundredths of them,
-/// and metals what they would burn out with.
+/// Factor by which screens are brighter in reflections from dielectrics than from metals: dielectrics reflect only four
+/// hundredths of them, and metals would burn out with brighter ones.
 const BRIGHTER: f32 = 1.5;
 
 /// Terms that all lights share at one point.
@@ -92,7 +92,8 @@ struct Layers<L> {
 }
 
 impl<L: Lane> Layers<L> {
-    /// `lack`: what a white mirror as rough as this loses by single scattering, over what it reflects.
+    /// Creates the layers; `lack` is the light that a white mirror of this roughness loses by single scattering,
+    /// divided by the light it reflects.
     #[inline(always)]
     fn new(base: Vec3Lane<L>, metallic: L, dielectric: &Dielectric, lack: L) -> Self {
         let dielectric_gain = lack * dielectric.most + 1.0;
@@ -162,7 +163,7 @@ pub(super) fn under_lights<L: Lane>(
     sum
 }
 
-/// Ambient light: diffuse from all around, specular from where the mirror looks.
+/// Returns the reflected ambient light: diffuse from all around, specular from the direction of the mirror image.
 #[inline(always)]
 fn surroundings<L: Lane>(
     frame: &Frame<L>,
@@ -226,7 +227,7 @@ fn lack<L: Lane>(alpha: L, nv: L) -> L {
     ((second * alpha + first) * alpha).at_least(0.0)
 }
 
-/// Scale of f0 and offset that give the reflected part of uniform light (Karis 2014).
+/// Returns the scale of f0 and the offset that make up the reflected part of uniform light (Karis 2014).
 #[inline(always)]
 fn environment_brdf<L: Lane>(roughness: L, nv: L) -> (L, L) {
     let x = roughness.one_minus();

@@ -35,8 +35,7 @@ pub(super) struct MipChain<'a> {
 const WHITE: &[[u8; 4]] = &[[255; 4]];
 
 impl<'a> MipChain<'a> {
-    /// Filters all levels, if they are wanted. An image without pixels, or with fewer than it claims,
-    /// becomes white.
+    /// Filters all levels, if requested. An image without pixels, or with fewer than it claims, becomes white.
     pub fn new(image: &'a Image, usage: Usage, levels: bool) -> Self {
         let pixels = u64::from(image.width) * u64::from(image.height);
         let readable = pixels > 0 && image.data.len() as u64 >= pixels;
@@ -74,7 +73,7 @@ impl<'a> MipChain<'a> {
         self.sizes.len()
     }
 
-    /// Level 0 is the image; numbers beyond the last give the image too.
+    /// Returns a level: 0 is the image; numbers beyond the last return the image, too.
     #[inline(always)]
     pub fn level(&self, number: usize) -> Level<'_> {
         match number.checked_sub(1).and_then(|i| self.sizes.get(i)) {

@@ -7,7 +7,7 @@ use crate::math::{Vec2, Vec3};
 /// The unit vectors of a surface point, all on the viewer's side.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Frame<L> {
-    /// To the eye.
+    /// Direction to the eye.
     pub view: Vec3Lane<L>,
     /// The face's own normal.
     pub face: Vec3Lane<L>,
@@ -42,8 +42,8 @@ pub(super) fn face_seen<L: Lane>(
     framed(view.unit_or(Vec3Lane::splat(view.x, Vec3::ZERO)), face, normal)
 }
 
-/// From a unit vector to the eye and a face on its side. Where a normal is missing (zero, NaN), the next best is
-/// taken: the face's, then the direction to the eye.
+/// Creates the frame from a unit vector to the eye and a face on its side. Where a normal is missing (zero, NaN), the
+/// next best is taken: the face's, then the direction to the eye.
 #[inline(always)]
 fn framed<L: Lane>(view: Vec3Lane<L>, face: Vec3Lane<L>, normal: Vec3Lane<L>) -> Frame<L> {
     let face = Vec3Lane::if_above(face.dot(face), 0.0, face, view);
@@ -73,7 +73,7 @@ pub(super) fn perturbed(surface: &Surface<'_>, at: TexCoord, map: Vec3) -> Vec3 
     if bent.is_finite() { bent } else { n }
 }
 
-/// Tangent and bitangent (towards the top of the image) of the unit normal `n`, of equal scale.
+/// Returns the tangent and bitangent (towards the top of the image) of the unit normal `n`, of equal scale.
 fn tangents(dpdx: Vec3, dpdy: Vec3, at: TexCoord, n: Vec3) -> (Vec3, Vec3) {
     // Gradients of u and v on the surface, but for one common factor whose sign matters alone.
     let (across_x, across_y) = (n.cross(dpdx), dpdy.cross(n));

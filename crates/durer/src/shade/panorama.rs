@@ -12,11 +12,11 @@ use crate::parallel;
 use crate::{Error, Result};
 use std::f64::consts::{PI, TAU};
 
-/// A panorama: what lies ahead of one who looks at the scene's front is in its middle. Directions are along
-/// its own axes: to the right, up and to the front.
+/// A panorama. Its middle is what an observer who faces the scene's front sees straight ahead. Directions are along its
+/// own axes: to the right, up and to the front.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panorama {
-    /// From the sharpest to the roughest.
+    /// Levels from the sharpest to the roughest.
     levels: Vec<Level>,
     /// Light on matte surfaces, by spherical harmonics with all constants in them.
     harmonics: [Vec3; 9],
@@ -48,11 +48,11 @@ const LEVELS: [(f32, usize); 5] = [(0.04, 128), (0.12, 64), (0.3, 32), (0.65, 32
 const BRIGHTEST: f32 = 1e9;
 
 impl Panorama {
-    /// From a picture in equirectangular projection, linear colours, row by row from the zenith.
+    /// Creates a panorama from a picture in equirectangular projection, linear colours, row by row from the zenith.
     /// Colours below 0 and NaN become 0.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a picture without pixels, or with another number than its size says.
+    /// [`Error::Parameter`] for a picture without pixels, or with another number than its size requires.
     pub fn new(width: u32, height: u32, pixels: &[[f32; 3]]) -> Result<Self> {
         let (width, height) = (width as usize, height as usize);
         if pixels.is_empty() || width.checked_mul(height) != Some(pixels.len()) {
@@ -204,7 +204,7 @@ fn lobe(r: Vec3, alpha: f32, source: &[(Vec3, f32, Vec3)]) -> Vec3 {
     sum / whole.max(f32::MIN_POSITIVE)
 }
 
-/// Nine functions of a direction, by which light on matte surfaces is put together.
+/// Returns nine functions of a direction, of which light on matte surfaces is composed.
 #[inline(always)]
 fn functions<L: Lane>(Vec3Lane { x, y, z }: Vec3Lane<L>) -> [L; 9] {
     let one = x.splat(1.0);

@@ -16,7 +16,7 @@ use super::shadow;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::Vec3;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "phong",
     title: "Phong shading",
@@ -61,7 +61,7 @@ impl Shininess {
         Self { whole: if whole { exponent as u32 } else { 0 }, half: exponent * 0.5 }
     }
 
-    /// `cos2`, a squared cosine, to half the exponent: the cosine to the exponent.
+    /// Raises `cos2`, a squared cosine, to half the exponent, which is the cosine raised to the exponent.
     #[inline(always)]
     fn of_squared<L: Lane>(self, cos2: L) -> L {
         if self.whole == 0 {
@@ -82,7 +82,7 @@ pub(super) struct Sums<L> {
 }
 
 impl<L: Lane> Sums<L> {
-    /// One light of unit direction `l`, colour and strength.
+    /// Adds one light of unit direction `l`, colour and strength.
     #[inline(always)]
     fn add(&mut self, f: &Frame<L>, l: Vec3Lane<L>, color: Vec3, strength: L, s: Shininess) {
         let (nl, nv) = (f.normal.dot(l), f.normal.dot(f.view));
@@ -98,7 +98,7 @@ impl<L: Lane> Sums<L> {
     }
 }
 
-/// Diffuse (with ambient, times `occlusion`) and specular light that a point reflects.
+/// Returns the diffuse (with ambient, times `occlusion`) and specular light that a point reflects.
 #[inline(always)]
 pub(super) fn reflect<L: Lane>(
     frame: &Frame<L>,
@@ -148,7 +148,7 @@ fn add_lights<L: Lane, const SHADOWED: bool>(
     }
 }
 
-/// Returns the same for one point.
+/// Returns the reflected light of one point.
 #[inline]
 pub(super) fn reflect_one(
     frame: &Frame<f32>,
@@ -169,7 +169,7 @@ pub(super) struct Colors {
     pub shininess: Shininess,
 }
 
-/// Phong's parameters for a material written for the metallic-roughness formula.
+/// Returns Phong's parameters for a material written for the metallic-roughness formula.
 ///
 /// The exponent is that of the Blinn–Phong lobe as wide as the GGX lobe, 2/α² − 2, rounded; the
 /// specular colour makes the highlight about as bright. Metals keep part of their colour as diffuse,

@@ -9,8 +9,7 @@ use super::{Shading, formula};
 use fearless_simd::{f32x16, prelude::*};
 use fearless_simd_macros::simd;
 
-/// Returns linear red, green and blue of sixteen samples, each bit for bit what
-/// [`super::shade_seen`] gives.
+/// Returns linear red, green and blue of sixteen samples, with the same bits as [`super::shade_seen`].
 ///
 /// The material must be [plain](PreparedMaterial::is_plain): textures and vertex colours are ignored, alpha is
 /// [`PreparedMaterial::plain_alpha`]. Cost: O(lights), a tenth of [`super::shade`] per sample where eight lanes
@@ -114,7 +113,7 @@ mod tests {
         vec![phong(32.0), phong(7.0), phong(96.078), metal(1.0, 0.0), metal(0.3, 0.6)]
     }
 
-    /// Pseudo-random numbers −1…1 with some that break formulas.
+    /// Returns a pseudo-random number −1 … 1, sometimes one that breaks formulas.
     fn numbers(seed: &mut u32) -> f32 {
         *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         match *seed >> 24 {

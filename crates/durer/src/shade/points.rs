@@ -8,15 +8,15 @@ use super::normal::{Frame, face_seen};
 pub struct Points<L> {
     /// Relative to the lights' origin. Only read where there are point or spot lights, or shadows.
     pub position: Vec3Lane<L>,
-    /// Towards the eye, any length.
+    /// Direction to the eye, of any length.
     pub view: Vec3Lane<L>,
     /// Interpolated normals, any length.
     pub normal: Vec3Lane<L>,
-    /// By what it is known which side of the surface is seen.
+    /// Data that determine the visible side of the surface.
     pub faces: Faces<L>,
 }
 
-/// By what it is known which side of a surface is seen at several points.
+/// Data that determine the visible side of a surface at several points.
 #[derive(Debug, Clone, Copy)]
 pub enum Faces<L> {
     /// Unit normals of the faces' planes, on the viewer's side; zero if there is none.

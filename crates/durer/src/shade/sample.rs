@@ -11,7 +11,7 @@ use super::phong::Shininess;
 use fearless_simd::{f32x8, prelude::*};
 use fearless_simd_macros::simd;
 
-/// A point of a surface with everything that its material's textures say of it, ready to be lit.
+/// A point of a surface with the values of its material's textures, ready to be lit.
 #[derive(Debug, Clone, Copy)]
 pub struct Sample<'a> {
     pub(super) frame: Frame<f32>,
@@ -22,7 +22,7 @@ pub struct Sample<'a> {
 /// Numbers of a sample.
 const NUMBERS: usize = 27;
 
-/// Up to eight samples of one material; those not set hold what was there before.
+/// Up to eight samples of one material; those not set keep their earlier contents.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Samples<'a> {
     numbers: [[f32; 8]; NUMBERS],
@@ -76,8 +76,7 @@ impl<'a> Samples<'a> {
         (self.shininess, self.mirrors, self.lobes) = (inputs.shininess, s.mirrors, inputs.lobes);
     }
 
-    /// Returns linear red, green and blue, each bit for bit what [`super::shade`] gives. Cost:
-    /// O(lights).
+    /// Returns linear red, green and blue, with the same bits as [`super::shade`]. Cost: O(lights).
     #[simd]
     pub fn shade<S: Simd>(
         simd: S,

@@ -17,7 +17,7 @@ use crate::trace::{NoTrace, Tracer};
 use crate::{Error, Result};
 use std::sync::Arc;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "shadow-map",
     title: "Shadow maps",
@@ -65,12 +65,12 @@ pub enum Step {
         depth: f32,
         /// Weight of the texel in the mean; texels without any are left out.
         weight: f32,
-        /// True if the point is not behind what the light sees there.
+        /// True if the point is not behind the surface that the light sees there.
         lit: bool,
     },
     /// The share of the light that reaches the point.
     Share {
-        /// 0 … 1.
+        /// Share of the light, 0 … 1.
         share: f32,
     },
 }
@@ -107,7 +107,7 @@ const BIAS: f32 = 0.1;
 /// Depths that one light sees, by texel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShadowMap {
-    /// From points relative to [`super::PreparedLights::origin`] to texels times w and depth times w.
+    /// Matrix from points relative to [`super::PreparedLights::origin`] to texels times w and depth times w.
     map_from_position: Mat4,
     /// Size of a texel in world units, at w = 1 where the map is seen in perspective.
     texel: f32,
@@ -152,7 +152,7 @@ impl ShadowMap {
         self.reach_traced(position, face, &mut NoTrace)
     }
 
-    /// [`Self::reach`] with a tracer.
+    /// Returns the share of light as [`Self::reach`] does, with a tracer.
     #[inline]
     pub fn reach_traced(
         &self,
@@ -209,9 +209,9 @@ impl ShadowMap {
 /// The maps of all lights of a picture; by default there are none, and no shadows.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ShadowMaps {
-    /// By the index in [`super::PreparedLights::directional`].
+    /// Maps by the index in [`super::PreparedLights::directional`].
     pub directional: Vec<Vec<ShadowMap>>,
-    /// By the index in [`super::PreparedLights::points`]; several maps look in several directions.
+    /// Maps by the index in [`super::PreparedLights::points`]; several maps look in several directions.
     pub points: Vec<Vec<ShadowMap>>,
 }
 
@@ -240,7 +240,8 @@ pub(super) fn reach<L: Lane>(
     }
 }
 
-/// Not inlined: formulas would prepare for it before they know that there are maps.
+/// Returns the share of light that reaches points, by their maps. It is not inlined: formulas would prepare for it
+/// before they know that there are maps.
 #[inline(never)]
 fn reach_by<L: Lane>(maps: &[ShadowMap], p: Vec3Lane<L>, n: Vec3Lane<L>, l: Vec3Lane<L>) -> L {
     L::lanewise([p.x, p.y, p.z, n.x, n.y, n.z, l.x, l.y, l.z], |v| reach_one(maps, v))

@@ -34,7 +34,7 @@ impl Slot<'_> {
         self.texture.sample(at.uv, at.ddx, at.ddy)
     }
 
-    /// [`Self::sample`] of sixteen points; `at` is of the slot's own set.
+    /// Samples sixteen points as [`Self::sample`] does one; `at` is of the slot's own set.
     #[inline(always)]
     fn sample_x16<S: Simd>(&self, simd: S, at: &TexCoords<f32x16<S>>) -> [f32x16<S>; 4] {
         let mut at = *at;
@@ -49,7 +49,7 @@ impl Slot<'_> {
         PreparedTexture::sample_x16(simd, &self.texture, &at)
     }
 
-    /// Coordinates in the texture from those of the mesh.
+    /// Converts coordinates of the mesh to coordinates in the texture.
     #[inline(always)]
     pub fn placed<S: Simd>(&self, uv: [f32x16<S>; 2]) -> [f32x16<S>; 2] {
         let Some([x, y, offset]) = self.columns else { return uv };
@@ -83,7 +83,7 @@ pub(super) struct Texels<L> {
     pub specular: Option<Texel<L>>,
 }
 
-/// [`Slot::sample_x16`], where there is a slot.
+/// Samples sixteen points as [`Slot::sample_x16`] does, where there is a slot.
 #[inline(always)]
 pub(super) fn sampled_x16<S: Simd>(
     simd: S,
@@ -104,7 +104,7 @@ pub(super) struct Chains<'a> {
 }
 
 impl<'a> Chains<'a> {
-    /// None yet.
+    /// Creates the set of a scene, without any chains yet.
     pub fn new(scene: &'a Scene) -> Self {
         Self { scene, made: Vec::new() }
     }

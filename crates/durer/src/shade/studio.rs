@@ -116,14 +116,14 @@ impl Studio {
     }
 }
 
-/// From 0 at −1 to 1 at 1, without a bend.
+/// Returns a smooth step from 0 at −1 to 1 at 1, without a bend.
 #[inline(always)]
 fn step<L: Lane>(x: L) -> L {
     let t = (x * 0.5 + 0.5).at_least(0.0).at_most(1.0);
     t * t * (t.splat(3.0) - t * 2.0)
 }
 
-/// About 1 between −half and half; its integral is 2 half, however soft its ends are.
+/// Returns about 1 between −half and half; its integral is 2 half, however soft its ends are.
 #[inline(always)]
 fn band<L: Lane>(x: L, half: f32, sharpness: L) -> L {
     step((x + half) * sharpness) - step((x - half) * sharpness)
@@ -133,7 +133,7 @@ fn band<L: Lane>(x: L, half: f32, sharpness: L) -> L {
 mod tests {
     use super::*;
 
-    /// Directions spread evenly over the sphere.
+    /// Returns directions that are spread evenly over the sphere.
     fn directions() -> impl Iterator<Item = Vec3> {
         let count = 20_000;
         (0..count).map(move |i| {

@@ -19,7 +19,7 @@ pub struct TexCoord {
 pub struct Surface<'a> {
     /// Position. Only read if there are point or spot lights.
     pub position: Vec3,
-    /// Towards the eye, any length: `−position` in perspective, one direction for parallel lines.
+    /// Direction to the eye, of any length: `−position` in perspective, one direction for parallel lines.
     pub view: Vec3,
     /// The interpolated normal, any length. Zero where the mesh has none: the face's is taken.
     pub normal: Vec3,

@@ -15,7 +15,7 @@ pub struct Tone {
 }
 
 impl Default for Tone {
-    /// Light as it is.
+    /// Returns the default: light as it is.
     fn default() -> Self {
         Self { gain: 1.0, map: ToneMap::None }
     }
@@ -54,9 +54,9 @@ const BLEACH: f32 = 0.5;
 /// Brighter counts as this bright, so that infinity stays calculable.
 const BRIGHTEST: f32 = 1e6;
 
-/// Colours within 0…1 are kept exactly; NaN and negative channels become 0. A brighter colour is
-/// scaled until its largest channel is 1, so that it keeps its hue where cutting each channel would
-/// turn orange into yellow, and drawn towards white by how much too bright it was.
+/// Fits colours into 0…1. Those within are kept exactly; NaN and negative channels become 0. A brighter colour is
+/// scaled until its largest channel is 1, so that it keeps its hue where cutting each channel would turn orange into
+/// yellow, and drawn towards white by how much too bright it was.
 #[inline(always)]
 pub(super) fn display<L: Lane>(color: Vec3Lane<L>) -> Vec3Lane<L> {
     let c = Vec3Lane::new(held(color.x), held(color.y), held(color.z));

@@ -23,7 +23,7 @@ pub enum ToneMap {
 }
 
 impl ToneMap {
-    /// All of them.
+    /// All tone maps.
     pub const ALL: &'static [Self] = &[Self::None, Self::KhronosNeutral, Self::Aces, Self::Agx];
 
     /// Returns the name used on the command line.
@@ -56,7 +56,7 @@ fn smaller<L: Lane>(a: L, b: L) -> L {
     (a - b).if_above(0.0, b, a)
 }
 
-/// Khronos PBR Neutral.
+/// Maps a colour by Khronos PBR Neutral.
 #[inline(always)]
 pub(super) fn khronos_neutral<L: Lane>(c: Vec3Lane<L>) -> Vec3Lane<L> {
     /// Brightness at which compression begins, less the reflection of 4 % that is taken off.
@@ -75,7 +75,7 @@ pub(super) fn khronos_neutral<L: Lane>(c: Vec3Lane<L>) -> Vec3Lane<L> {
     Vec3Lane::if_above(peak, START, mixed, c)
 }
 
-/// ACES by Hill's fit.
+/// Maps a colour by ACES, in Hill's fit.
 #[inline(always)]
 pub(super) fn aces<L: Lane>(c: Vec3Lane<L>) -> Vec3Lane<L> {
     const EXPOSURE: f32 = 1.0 / 0.6;
@@ -96,7 +96,7 @@ pub(super) fn aces<L: Lane>(c: Vec3Lane<L>) -> Vec3Lane<L> {
     transformed(OUT, c)
 }
 
-/// AgX by Wrensch's fit, without a look.
+/// Maps a colour by AgX, in Wrensch's fit, without a look.
 #[inline(always)]
 pub(super) fn agx<L: Lane>(c: Vec3Lane<L>) -> Vec3Lane<L> {
     const IN: Rows = [
@@ -119,7 +119,7 @@ pub(super) fn agx<L: Lane>(c: Vec3Lane<L>) -> Vec3Lane<L> {
     each(transformed(OUT, c), |v| v.at_least(1e-10).power_real(2.2))
 }
 
-/// AgX's contrast curve.
+/// Returns AgX's contrast curve at x.
 #[inline(always)]
 fn sigmoid<L: Lane>(x: L) -> L {
     let high = ((x * 15.5 - 40.14) * x + 31.96) * x - 6.868;

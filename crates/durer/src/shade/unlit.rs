@@ -4,7 +4,7 @@
 
 use crate::info::{Class, Info, Occluder};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "unlit",
     title: "Unlit",

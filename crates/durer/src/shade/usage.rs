@@ -8,7 +8,7 @@ use crate::math::Vec4;
 pub enum Usage {
     /// sRGB colour, averaged in linear light; alpha has no say.
     Color,
-    /// sRGB colour weighted by its alpha, so that what is transparent does not show at borders.
+    /// sRGB colour weighted by its alpha, so that transparent texels do not show at borders.
     ColorWithAlpha,
     /// Numbers, averaged as they are.
     Data,

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 pub struct Arc {
     /// The middle of the ellipse.
     pub center: DVec2,
-    /// From the centre to the end of the longer axis; of a circle, a radius in any direction.
+    /// Vector from the centre to the end of the longer axis; of a circle, a radius in any direction.
     pub axis: DVec2,
     /// The shorter axis over the longer one, in (0, 1]; 1 for circles.
     pub ratio: f64,
@@ -70,7 +70,7 @@ impl Piece {
         }
     }
 
-    /// Returns in which ways it leaves `start` and comes to its end; of any length, 0 if it has no extent.
+    /// Returns the directions in which it leaves `start` and reaches its end; of any length, 0 if it has no extent.
     pub fn ways(&self, start: DVec2) -> [DVec2; 2] {
         match *self {
             Self::Line(end) => [end - start; 2],

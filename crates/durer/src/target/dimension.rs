@@ -44,7 +44,7 @@ pub struct DimensionText {
     pub at: DVec2,
     /// The way it runs, of unit length.
     pub along: DVec2,
-    /// Subject of the text.
+    /// The text itself.
     pub text: String,
     /// Height of capital letters, millimetres.
     pub height: f64,

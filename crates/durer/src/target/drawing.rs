@@ -1,49 +1,48 @@
-//! The exact result of a view: lines and regions in the plane of the picture, before pens, paper and
-//! pixels.
+//! The exact result of a view: lines and regions in the plane of the picture, without pens, paper and pixels.
 
 use crate::math::{DVec2, Rect};
 
-/// Class of a drawing's line; layers, pens and line types follow it.
+/// Class of a line, which determines its layer, pen and line type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum LineClass {
-    /// A silhouette or border with nothing behind it, if these are distinguished.
+    /// Silhouette or border with nothing behind it, if these are distinguished.
     Contour,
-    /// Edge between a face that looks to the eye and one that looks away.
+    /// Edge between a face that faces the eye and one that faces away.
     Silhouette,
     /// Edge between two faces at an angle above the crease angle.
     Crease,
-    /// The edge of one face only: the rim of an open shell.
+    /// Edge of one face only: the rim of an open shell.
     Border,
-    /// An edge of three faces or more, or of two that run against each other.
+    /// Edge of three faces or more, or of two with opposite orientations.
     NonManifold,
     /// Edge between two materials.
     Material,
     /// Intersection of two faces that penetrate each other.
     Intersection,
-    /// The outline of a cut by a section plane.
+    /// Outline of a cut by a section plane.
     Section,
-    /// Edge between a curved face and another that it meets smoothly, as a fillet meets a plane.
+    /// Edge between a curved face and another that continues it smoothly, as between a fillet and a plane.
     Tangent,
     /// Any other edge of the mesh.
     Wire,
-    /// The border between light and shadow.
+    /// Border between light and shadow.
     Shadow,
-    /// A line of hatching.
+    /// Line of hatching.
     Hatch,
-    /// A dot, drawn as a stroke much shorter than its pen is wide.
+    /// Dot, drawn as a stroke much shorter than its pen is wide.
     Stipple,
-    /// A line of a surface y = f(x, z) along which x or z is constant.
+    /// Line of a surface y = f(x, z) along which x or z is constant.
     Grid,
-    /// An axis, its ticks, or a frame.
+    /// Axis, its ticks, or a frame.
     Axis,
-    /// A line or a point that the model itself has.
+    /// Line or point of the model itself.
     Mark,
-    /// End of a view's part where the view is broken: the model between two of them is left out.
+    /// End of a part of a broken view: the model between two such lines is left out.
     Break,
 }
 
 impl LineClass {
-    /// Every class, in the order in which they are listed and, where two lie on each other, preferred.
+    /// Every class, in the order of listing; of lines of two classes at one place, the earlier class is preferred.
     pub const ALL: &'static [Self] = &[
         Self::Contour,
         Self::Silhouette,
@@ -105,26 +104,26 @@ impl std::str::FromStr for LineClass {
     }
 }
 
-/// A chain of straight pieces of one class, all hidden by the same number of faces.
+/// Chain of straight pieces of one class, all hidden by the same number of faces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// Style of the drawing.
+    /// Class of the line.
     pub class: LineClass,
-    /// Its quantitative invisibility: how many surfaces lie in front of it. 0 is visible.
+    /// Quantitative invisibility of the line: the number of surfaces in front of it. 0 is visible.
     pub invisibility: u32,
-    /// At least two points, plane units; no two neighbours are equal.
+    /// Points, at least two, in plane units; no two neighbours are equal.
     pub points: Vec<DVec2>,
     /// True if the last point is joined to the first (which is not repeated).
     pub closed: bool,
 }
 
 impl Line {
-    /// Returns whether nothing lies in front of it.
+    /// Returns whether nothing is in front of the line.
     pub const fn is_visible(&self) -> bool {
         self.invisibility == 0
     }
 
-    /// Length in plane units.
+    /// Returns the length in plane units.
     pub fn length(&self) -> f64 {
         let open: f64 = self.points.windows(2).map(|w| w[0].distance(w[1])).sum();
         match (self.closed, self.points.first(), self.points.last()) {
@@ -137,32 +136,32 @@ impl Line {
 /// Kind of the surface that a region is a part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum RegionKind {
-    /// A surface of the scene; lit by all lights, where shadows are requested.
+    /// Surface of the scene; lit by all lights, if shadows are requested.
     Surface,
-    /// A surface in the shadow of another.
+    /// Surface in the shadow of another.
     Shadow,
-    /// The face that a section plane leaves in a closed body.
+    /// Cap: the face that closes a body cut by a section plane.
     Cap,
 }
 
-/// A part of the picture that shows one thing in one colour.
+/// Part of the picture that shows one thing in one colour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
-    /// Kind of the surface that it is a part of.
+    /// Kind of the region's surface.
     pub kind: RegionKind,
-    /// Outer rings counter-clockwise (y up), holes clockwise, plane units, open (the first point is not
-    /// repeated); filled by the non-zero rule.
+    /// Rings, filled by the non-zero rule: outer rings counter-clockwise (y up), holes clockwise; plane units; open
+    /// (the first point is not repeated).
     pub rings: Vec<Vec<DVec2>>,
-    /// sRGB with straight alpha.
+    /// Colour: sRGB with straight alpha.
     pub color: [u8; 4],
-    /// The face that it shows: the triangle's index in scene order; `None` if several are merged.
+    /// Face that the region shows: the triangle's index in scene order; `None` if several are merged.
     pub item: Option<u32>,
-    /// Instance that was cut, for a cap, if it is known: parts are hatched in directions of their own.
+    /// Instance that was cut, for a cap, if it is known: each instance has its own direction of hatching.
     pub part: Option<u32>,
 }
 
 impl Region {
-    /// Returns the area in squared plane units: what is in holes is not counted.
+    /// Returns the area in squared plane units, without the holes.
     pub fn area(&self) -> f64 {
         let ring = |points: &Vec<DVec2>| {
             let Some((&origin, rest)) = points.split_first() else { return 0.0 };
@@ -178,14 +177,14 @@ pub enum Anchor {
     /// The text starts at the point.
     #[default]
     Start,
-    /// Its middle is at the point.
+    /// The middle of the text is at the point.
     Middle,
-    /// It ends at the point.
+    /// The text ends at the point.
     End,
 }
 
 impl Anchor {
-    /// Returns the share of the text's length before the point.
+    /// Returns the part of the text's length that is before the point.
     pub fn share(self) -> f64 {
         match self {
             Self::Start => 0.0,
@@ -195,12 +194,12 @@ impl Anchor {
     }
 }
 
-/// A line of text.
+/// Line of text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
-    /// Position of its base line, in plane units.
+    /// Point of the base line, in plane units.
     pub at: DVec2,
-    /// Subject of the text.
+    /// The text itself.
     pub text: String,
     /// Height of capital letters; millimetres on paper, whatever the scale.
     pub height: f64,
@@ -213,11 +212,11 @@ pub const NEARNESS_STEPS: u8 = 4;
 
 /// Content of a view, as geometry in the plane of the picture.
 ///
-/// **Plane units**: model units on the plane through the camera's target, at right angles to the line
-/// of sight; x to the right, y up, the origin at the target. For a parallel projection that is
-/// ((p − target)·right, (p − target)·up); in perspective, points are projected on that plane.
+/// **Plane units** are model units on the plane through the camera's target, at right angles to the line of sight; x to
+/// the right, y up, the origin at the target. In parallel projection they are ((p − target)·right, (p − target)·up); in
+/// perspective, points are projected onto that plane.
 ///
-/// Painted in this order: regions as listed, then hidden lines, visible lines, labels.
+/// Order of painting: regions as listed, then hidden lines, visible lines, labels.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Drawing {
     /// Window of the plane that the view shows; `None` if nothing bounds it.
@@ -226,34 +225,33 @@ pub struct Drawing {
     pub regions: Vec<Region>,
     /// Lines, in the order of drawing.
     pub lines: Vec<Line>,
-    /// Text.
+    /// Labels.
     pub labels: Vec<Label>,
-    /// Counts of the edges between the faces that the lines belong to.
+    /// Counts of the edges of the faces that the lines belong to.
     pub edges: EdgeCount,
-    /// For each line how near it is, in steps from 0, the nearest, below [`NEARNESS_STEPS`]; `None` for lines of
-    /// which that is unknown. Empty if it is unknown for all.
+    /// Nearness of each line, in steps from 0, the nearest, to below [`NEARNESS_STEPS`]; `None` for lines whose
+    /// nearness is unknown. Empty if it is unknown for all.
     pub nearness: Vec<Option<u8>>,
 }
 
 /// Counts of a model's edges by the number of faces that meet there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EdgeCount {
-    /// All edges.
+    /// Number of edges.
     pub edges: u64,
-    /// Those of one triangle only.
+    /// Number of edges of one triangle only.
     pub borders: u64,
 }
 
 impl Drawing {
-    /// Returns the smallest rectangle around all regions, lines and labels' points; `None` if there
-    /// are none.
+    /// Returns the smallest rectangle around all regions, lines and points of labels; `None` if there are none.
     pub fn bounds(&self) -> Option<Rect> {
         let regions = self.regions.iter().flat_map(|r| r.rings.iter().flatten());
         let lines = self.lines.iter().flat_map(|l| &l.points);
         Rect::around(regions.chain(lines).copied().chain(self.labels.iter().map(|l| l.at)))
     }
 
-    /// Total length of the lines that `filter` lets through, plane units.
+    /// Returns the total length, in plane units, of the lines that `filter` accepts.
     pub fn length(&self, filter: impl Fn(&Line) -> bool) -> f64 {
         // The sum of no numbers is −0.
         self.lines.iter().filter(|l| filter(l)).map(Line::length).sum::<f64>() + 0.0

@@ -3,8 +3,8 @@
 use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
-/// Row of a picture that comes first in memory. Pictures of scenes have theirs on top; [`crate::commands`] draw in either
-/// order, and [`Framebuffer::with_origin`] takes one to the other.
+/// Row of a picture that comes first in memory. Pictures of scenes have theirs on top; [`crate::commands`] draw in
+/// either order, and [`Framebuffer::with_origin`] takes one to the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Origin {
     /// Row 0 is the top row, as in PNG; y grows downwards.
@@ -34,11 +34,10 @@ impl<T: Copy> Pixels<T> {
         Self { width, height, data, charge: Charge::default() }
     }
 
-    /// Creates a plane filled with one value, which takes its memory from a budget and gives it back when it
-    /// is dropped.
+    /// Creates a plane filled with one value, whose memory is charged to a budget until it is dropped.
     ///
     /// # Errors
-    /// [`Error::Memory`] where the budget has not so much left, [`Error::OutOfMemory`] where the system has not.
+    /// [`Error::Memory`] if the budget has too little left, [`Error::OutOfMemory`] if the system has.
     pub fn within(
         (work, stage): (&Work, &'static str),
         width: u32,
@@ -51,8 +50,8 @@ impl<T: Copy> Pixels<T> {
         Ok(Self { charge, ..Self::new(width, height, value) })
     }
 
-    /// Returns the work that the plane was charged to; one without bounds if it was charged to none. Whoever makes something
-    /// of the plane can charge that to the same budget.
+    /// Returns the work that the plane was charged to; one without bounds if it was charged to none. Whoever makes
+    /// something of the plane can charge that to the same budget.
     pub fn work(&self) -> Work {
         self.charge.work()
     }
@@ -147,8 +146,8 @@ pub const NO_ITEM: u32 = u32::MAX;
 /// The planes a picture is made in. Colour is always there; the others when requested.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Framebuffer {
-    /// Row that comes first. [`crate::commands`] draw in either order; [`crate::pipeline`] makes pictures with the top row
-    /// first, which all writers expect.
+    /// Row that comes first. [`crate::commands`] draw in either order; [`crate::pipeline`] makes pictures with the top
+    /// row first, which all writers expect.
     pub origin: Origin,
     /// 8-bit sRGB with straight (not premultiplied) alpha.
     pub color: Pixels<[u8; 4]>,
@@ -191,7 +190,7 @@ impl Framebuffer {
         Ok(Self { color, ..Self::new(0, 0) })
     }
 
-    /// Gives the framebuffer the planes that are requested, cleared as new, within a budget.
+    /// Adds the requested planes, cleared as new, within a budget.
     ///
     /// # Errors
     /// As [`Pixels::within`].
@@ -219,7 +218,7 @@ impl Framebuffer {
         self.color.height()
     }
 
-    /// Creates the same picture with another row first: the rows of all planes are turned over unless it has that order.
+    /// Turns over the rows of all planes unless the picture has this order; returns the picture.
     ///
     /// ```
     /// use durer::target::{Framebuffer, Origin};
@@ -242,32 +241,31 @@ impl Framebuffer {
         self
     }
 
-    /// Creates the same framebuffer with a depth plane cleared to 1, the far end.
+    /// Adds a depth plane cleared to 1, the far end.
     pub fn with_depth(mut self) -> Self {
         self.depth = Some(Pixels::new(self.width(), self.height(), 1.0));
         self
     }
 
-    /// Creates the same framebuffer with an item plane cleared to [`NO_ITEM`].
+    /// Adds an item plane cleared to [`NO_ITEM`].
     pub fn with_items(mut self) -> Self {
         self.item = Some(Pixels::new(self.width(), self.height(), NO_ITEM));
         self
     }
 
-    /// Creates the same framebuffer with a normal plane cleared to zero.
+    /// Adds a normal plane cleared to zero.
     pub fn with_normals(mut self) -> Self {
         self.normal = Some(Pixels::new(self.width(), self.height(), [0.0; 3]));
         self
     }
 
-    /// Creates the same framebuffer with a stencil plane cleared to zero.
+    /// Adds a stencil plane cleared to zero.
     pub fn with_stencil(mut self) -> Self {
         self.stencil = Some(Pixels::new(self.width(), self.height(), 0));
         self
     }
 
-    /// Creates the same framebuffer with a plane of colour indices cleared to zero: a colour-index
-    /// framebuffer.
+    /// Adds a plane of colour indices cleared to zero: the framebuffer becomes a colour-index framebuffer.
     pub fn with_indices(mut self) -> Self {
         self.index = Some(Pixels::new(self.width(), self.height(), 0));
         self

@@ -1,62 +1,62 @@
-//! A drawing on paper: pens, fills and text in millimetres, in named layers. What the writers of SVG,
-//! PDF, DXF and HPGL take, and what is painted into pixels.
+//! A drawing on paper: pens, fills and text in millimetres, in named layers. It is the input of the writers of SVG,
+//! PDF, DXF and HPGL, and of painting into pixels.
 
 use super::Curve;
 use super::dimension::{DimensionText, Measure};
 use super::drawing::Anchor;
 use crate::math::DVec2;
 
-/// With what a stroke is drawn.
+/// Pen that draws a stroke.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pen {
     /// Width of the stroke, millimetres, > 0.
     pub width: f64,
-    /// sRGB with straight alpha.
+    /// Colour: sRGB with straight alpha.
     pub color: [u8; 4],
-    /// Lengths of dashes and gaps in turn, millimetres; empty for a solid line. An even number of
-    /// values, all > 0. They are nominal: each stroke stretches them a little, so that it begins and
-    /// ends with a whole dash ([`crate::paper::dashes`]).
+    /// Lengths of dashes and gaps in turn, millimetres: an even number of values, all > 0; empty for a solid line. The
+    /// lengths are nominal: each stroke stretches them a little, so that it begins and ends with a whole dash
+    /// ([`crate::paper::dashes`]).
     pub dashes: Vec<f64>,
 }
 
-/// One thing on the paper.
+/// Mark on the paper.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Mark {
-    /// A chain of straight pieces with round caps and joins.
+    /// Chain of straight pieces with round caps and joins.
     Stroke {
-        /// At least two points.
+        /// Points, at least two.
         points: Vec<DVec2>,
         /// True if the last point is joined to the first.
         closed: bool,
         /// Index into [`Sheet::pens`].
         pen: usize,
     },
-    /// A chain of lines and curves, with round caps and joins.
+    /// Chain of lines and curves, with round caps and joins.
     Curve {
-        /// At least one piece.
+        /// Curve of at least one piece.
         curve: Curve,
         /// Index into [`Sheet::pens`].
         pen: usize,
     },
-    /// A filled area.
+    /// Filled area bounded by straight lines.
     Fill {
         /// Open rings, filled by the non-zero rule: outer rings run one way, holes the other.
         rings: Vec<Vec<DVec2>>,
-        /// sRGB with straight alpha.
+        /// Colour: sRGB with straight alpha.
         color: [u8; 4],
     },
-    /// A filled area within lines and curves.
+    /// Filled area bounded by lines and curves.
     Area {
         /// Closed rings, filled by the non-zero rule: outer rings run one way, holes the other.
         rings: Vec<Curve>,
-        /// sRGB with straight alpha.
+        /// Colour: sRGB with straight alpha.
         color: [u8; 4],
     },
-    /// A line of text.
+    /// Line of text.
     Text {
-        /// Position of the base line.
+        /// Point of the base line.
         at: DVec2,
-        /// Subject of the text.
+        /// The text itself.
         text: String,
         /// Height of capital letters, millimetres.
         height: f64,
@@ -65,11 +65,11 @@ pub enum Mark {
         /// Index into [`Sheet::pens`].
         pen: usize,
     },
-    /// A dimension with its lines, arrows and text.
+    /// Dimension with its lines, arrows and text.
     Dimension(Box<Dimension>),
 }
 
-/// A dimension: what it measures, for programs that measure anew, and how it is drawn.
+/// Dimension: the measured points, for programs that measure again, and the marks that draw it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dimension {
     /// Measured quantity.
@@ -78,7 +78,7 @@ pub struct Dimension {
     pub value: f64,
     /// Units of the model per millimetre of the sheet.
     pub units_per_millimetre: f64,
-    /// True if the text says just the value, with the usual sign before it.
+    /// True if the text is just the value, with the usual sign before it.
     pub is_plain: bool,
     /// Strokes and fills: the lines, and the arrows.
     pub marks: Vec<Mark>,
@@ -96,13 +96,13 @@ pub struct SheetLayer {
 }
 
 impl Mark {
-    /// Returns whether it is an area, which covers what is beneath.
+    /// Returns whether the mark is an area, which covers the marks beneath.
     pub const fn is_area(&self) -> bool {
         matches!(self, Self::Fill { .. } | Self::Area { .. })
     }
 }
 
-/// A piece of paper. Coordinates are millimetres from the upper left corner, y down.
+/// Sheet of paper. Coordinates are millimetres from the upper left corner, y down.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sheet {
     /// Title of the file; may be empty.

@@ -14,7 +14,7 @@ pub struct Component {
 }
 
 /// Finds the kinds of parts of a scene: those made of the same meshes are of one kind. In the order of the first of
-/// each; what has no triangles is not a part.
+/// each; instances without triangles are no parts.
 ///
 /// A kind is called as its parts are, without the numbers that tell them apart: `bolt` for `bolt.001` and
 /// `bolt.002`. Cost: O(n log n) for n instances.

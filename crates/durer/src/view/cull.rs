@@ -10,7 +10,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, Plane, Rect};
 use crate::scene::{Aabb, BoundingSphere};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "bounding-volumes",
     title: "Culling by bounding volumes",
@@ -97,18 +97,18 @@ impl ConvexVolume {
         &self.planes
     }
 
-    /// Returns a box against the region; two corners a plane are examined, whatever its size.
+    /// Tests a box against the region; two corners a plane are examined, whatever its size.
     pub fn contains_box(&self, b: &Aabb) -> Containment {
         let (center, half) = (b.min * 0.5 + b.max * 0.5, b.max * 0.5 - b.min * 0.5);
         self.contains(center, |normal| normal.abs().dot(half))
     }
 
-    /// Returns a sphere against the region.
+    /// Tests a sphere against the region.
     pub fn contains_sphere(&self, s: &BoundingSphere) -> Containment {
         self.contains(s.center, |normal| normal.length() * s.radius)
     }
 
-    /// `reach` is how far the thing extends from its centre along a normal.
+    /// Tests a thing against the region; `reach` is how far it extends from its centre along a normal.
     fn contains(&self, center: DVec3, reach: impl Fn(DVec3) -> f64) -> Containment {
         let mut inside = true;
         for plane in &self.planes {

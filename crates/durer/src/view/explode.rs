@@ -12,11 +12,11 @@ use crate::{Error, Result};
 /// Direction in which parts are moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Way {
-    /// Along the x axis of the world.
+    /// The world's x axis.
     X,
-    /// Along its y axis.
+    /// The world's y axis.
     Y,
-    /// Along its z axis.
+    /// The world's z axis.
     Z,
     /// Away from the middle.
     Radial,
@@ -160,8 +160,8 @@ impl Stacks<'_> {
         })
     }
 
-    /// From below upwards: first what reaches farther down than all that it overlaps, and not farther up than all of
-    /// them, then the rest by its upper end.
+    /// Sorts from below upwards: first what reaches farther down than all that it overlaps, and not farther up than
+    /// all of them, then the rest by its upper end.
     fn order(&self) -> Vec<usize> {
         let ends = |i: usize| (self.parts[i].1.min[self.axis], self.parts[i].1.max[self.axis]);
         let is_base = |i: usize| {

@@ -160,7 +160,7 @@ pub fn depth_range_of(camera: &Camera, ends: Option<[DVec3; 2]>) -> (f64, f64) {
     }
 }
 
-/// Planes with some room before and behind, the near one not too near.
+/// Returns the near and far planes with some room before and behind, the near one not too near.
 fn perspective_range(nearest: f64, farthest: f64) -> (f64, f64) {
     let room = (farthest - nearest).max(farthest.abs() * 1e-3) * 0.01;
     let far = farthest + room;

@@ -47,7 +47,7 @@ impl Step {
     }
 }
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "interior-point",
     title: "Pole of inaccessibility",
@@ -225,7 +225,7 @@ impl PartialOrd for Square {
     }
 }
 
-/// Positive inside by the even-odd rule, negative outside.
+/// Returns the distance to the border: positive inside by the even-odd rule, negative outside.
 fn distance_to_border(p: DVec2, rings: &[Vec<DVec2>]) -> f64 {
     let (mut inside, mut nearest) = (false, f64::INFINITY);
     for ring in rings {

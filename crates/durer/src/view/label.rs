@@ -8,7 +8,7 @@
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "greedy-labels",
     title: "Greedy label placement",
@@ -26,27 +26,27 @@ pub const INFO: Info = Info {
 /// Buckets have this size in pixels: about that of a label.
 const BUCKET: f64 = 64.0;
 
-/// Keeps account of the places that are taken.
+/// Record of the places that are taken.
 #[derive(Debug, Clone)]
 pub struct Placer {
     bounds: Rect,
     columns: usize,
     rows: usize,
-    /// For each bucket the labels that touch it.
+    /// Labels that touch each bucket.
     buckets: Vec<Vec<u32>>,
     taken: Vec<Rect>,
 }
 
 impl Placer {
-    /// No labels yet; none will reach beyond `bounds`, in pixels.
+    /// Creates a placer without labels; none will reach beyond `bounds`, in pixels.
     pub fn new(bounds: Rect) -> Self {
         let count = |length: f64| (length / BUCKET).ceil().clamp(1.0, 1024.0) as usize;
         let (columns, rows) = (count(bounds.size().x), count(bounds.size().y));
         Self { bounds, columns, rows, buckets: vec![Vec::new(); columns * rows], taken: Vec::new() }
     }
 
-    /// Takes the first of the candidates that lies within the bounds and overlaps nothing that is taken;
-    /// gives its number.
+    /// Takes the first of the candidates that lies within the bounds and overlaps nothing that is taken; returns its
+    /// number.
     ///
     /// ```
     /// use durer::math::{DVec2, Rect};
@@ -70,8 +70,8 @@ impl Placer {
         None
     }
 
-    /// Takes the first of the candidates of which all parts are free and within the bounds, as of a label along a
-    /// line; gives its number. Parts of one candidate may overlap.
+    /// Takes the first of the candidates all of whose parts are free and within the bounds, as of a label along a line;
+    /// returns its number. Parts of one candidate may overlap.
     pub fn place_parts(
         &mut self,
         candidates: impl IntoIterator<Item = Vec<Rect>>,

@@ -76,7 +76,7 @@ impl Layout {
     }
 }
 
-/// Part `i` of `n` of a length, to whole pixels; the parts add up to it.
+/// Returns part `i` of `n` of a length, to whole pixels; the parts add up to it.
 fn part(length: i32, i: usize, n: usize) -> (i32, i32) {
     // i ≤ n, so the quotient is at most `length`.
     let border = |i: usize| (i64::from(length) * i as i64 / n.max(1) as i64) as i32;

@@ -1,16 +1,16 @@
 //! The window–viewport transformation as it is taught: four coefficients, then two multiplications and two additions
 //! for each point.
 //!
-//! W. M. Newman and R. F. Sproull, *Principles of Interactive Computer Graphics*, 1973. Object space. Cost: O(n) for n points.
-//! The coefficients are those of [`WindowToViewport`], which keeps them to twice the precision for its own way to the
-//! screen; here they are rounded, so that the numbers on paper are the ones used.
+//! W. M. Newman and R. F. Sproull, *Principles of Interactive Computer Graphics*, 1973. Object space. Cost: O(n) for n
+//! points. The coefficients are those of [`WindowToViewport`], which keeps them to twice the precision for its own way
+//! to the screen; here they are rounded, so that the numbers on paper are the ones used.
 
 use super::window::{Aspect, Viewport, Window, WindowToViewport, YAxis};
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "window-viewport",
     title: "Window–viewport transformation",

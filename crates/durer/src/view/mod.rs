@@ -74,12 +74,12 @@ impl View {
         self.height
     }
 
-    /// World space to clip space, −w ≤ x, y, z ≤ w.
+    /// Returns the matrix from world space to clip space, −w ≤ x, y, z ≤ w.
     pub fn clip_from_world(&self) -> DMat4 {
         self.clip_from_world
     }
 
-    /// World space to homogeneous screen space: x and y in pixels times w, y down, z in 0…w.
+    /// Returns the matrix from world space to homogeneous screen space: x and y in pixels times w, y down, z in 0…w.
     pub fn screen_from_world(&self) -> DMat4 {
         self.screen_from_world
     }

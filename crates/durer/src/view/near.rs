@@ -6,7 +6,7 @@
 
 use crate::math::DVec3;
 
-/// Points of three dimensions, to be asked which of them lie near a segment.
+/// Points of three dimensions, indexed to find those near a segment.
 pub(crate) struct Places {
     /// Each point with its number; the middle of each range divides it.
     points: Vec<(DVec3, u32)>,
@@ -95,8 +95,8 @@ pub(crate) fn reach(step: f64, digit: f64, extent: f64) -> f64 {
 }
 
 impl Places {
-    /// Returns which of the points become which others: each point, in order, takes those in its reach, in whose reach it
-    /// is, that no earlier one has taken; so what becomes one lies within two reaches, however many lie in a row.
+    /// Returns which of the points become which others: each point, in order, takes those in its reach, in whose reach
+    /// it is, that no earlier one has taken; so what becomes one lies within two reaches, however many lie in a row.
     pub fn joined(
         &self,
         points: &[DVec3],

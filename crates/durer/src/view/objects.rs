@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 /// parts of two names. Files that tell objects apart by names alone are read as one mesh; with this their objects are
 /// the parts of assemblies ([`super::components`], [`super::explode`]).
 ///
-/// Parts of one name are one object. Objects with like names, as `bolt.001` and `bolt.002`, that are one up to a shift are
-/// instances of one mesh. Memory: that of the meshes again. Cost: O(n log n) for n triangles of such meshes.
+/// Parts of one name are one object. Objects with like names, as `bolt.001` and `bolt.002`, that are one up to a shift
+/// are instances of one mesh. Memory: that of the meshes again. Cost: O(n log n) for n triangles of such meshes.
 pub fn divided(scene: &Scene) -> Option<Scene> {
     let objects: Vec<Vec<Mesh>> = scene.meshes.iter().map(objects).collect();
     if objects.iter().all(Vec::is_empty) {

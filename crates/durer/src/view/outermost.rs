@@ -64,7 +64,7 @@ impl Furthest {
 }
 
 impl<const N: usize> Outermost<N> {
-    /// Creates a bound of no points.
+    /// Creates a search along these directions, with no points so far.
     pub fn new(directions: [DVec3; N]) -> Self {
         let both = |axis: DVec3| [Furthest::along(axis), Furthest::along(-axis)];
         let extremes = DVec3::AXES.map(both);
@@ -193,7 +193,7 @@ pub(super) struct OutermostOfPieces<const N: usize> {
 }
 
 impl<const N: usize> OutermostOfPieces<N> {
-    /// Creates a bound of no points.
+    /// Creates a search along these directions, with no points so far.
     pub fn new(directions: [DVec3; N]) -> Self {
         Self { found: [Outermost::new(directions), Outermost::new(directions)] }
     }
@@ -210,7 +210,7 @@ impl<const N: usize> OutermostOfPieces<N> {
         }
     }
 
-    /// Returns those of all pieces.
+    /// Returns the outermost points of all pieces.
     pub fn whole(&self) -> Outermost<N> {
         let [mut whole, others] = self.found.clone();
         let others = others.furthest.iter().chain(others.extremes.as_flattened());
@@ -318,7 +318,7 @@ mod tests {
         }
     }
 
-    /// Compares with all points looked at one by one.
+    /// Compares with examining all points one by one.
     fn check(positions: &[Vec3], place: &DMat4) {
         let directions = [DVec3::ONE, -DVec3::ONE, DVec3::new(0.3, -1.0, 0.2), DVec3::X, -DVec3::Z];
         let used: Vec<bool> = (0..positions.len()).map(|i| i % 5 != 3).collect();

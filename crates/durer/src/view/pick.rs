@@ -16,7 +16,7 @@ use crate::trace::{NoTrace, Tracer};
 use crate::view::View;
 use crate::view::cull::{Containment, ConvexVolume};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "pick",
     title: "Picking in the view volume behind a rectangle or a point",
@@ -57,7 +57,7 @@ pub enum Area {
 pub struct Hit {
     /// Index into [`Scene::instances`].
     pub instance: usize,
-    /// Kind of the feature.
+    /// Kind of primitive.
     pub topology: Topology,
     /// Index of the triangle, line or point in the instance's mesh.
     pub primitive: usize,
@@ -70,7 +70,7 @@ pub struct Hit {
     pub position: DVec3,
 }
 
-/// An instance of which triangles, lines or points were hit.
+/// Instance some of whose triangles, lines or points were hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Object {
     /// Index into [`Scene::instances`].
@@ -138,7 +138,7 @@ pub fn pick(scene: &Scene, view: &View, area: Area) -> Vec<Hit> {
     pick_traced(scene, view, area, &mut NoTrace)
 }
 
-/// [`pick`] with a tracer.
+/// Picks as [`pick`] does, with a tracer.
 pub fn pick_traced(scene: &Scene, view: &View, area: Area, t: &mut impl Tracer<Step>) -> Vec<Hit> {
     let Some(around) = window(area) else { return Vec::new() };
     let pick_from_world = pick_from_screen(&around) * view.screen_from_world();
@@ -230,7 +230,7 @@ fn window(area: Area) -> Option<Rect> {
     }
 }
 
-/// Takes homogeneous screen space to the clip space of a window's own frustum.
+/// Returns the matrix from homogeneous screen space to the clip space of a window's own frustum.
 fn pick_from_screen(window: &Rect) -> DMat4 {
     let (scale, sum) = (2.0 / window.size(), window.min() + window.max());
     let shift = -0.5 * scale * sum;

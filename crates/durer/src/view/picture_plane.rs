@@ -1,33 +1,33 @@
-//! From world space to the plane of the picture, with a depth that is linear there.
+//! The projection from world space to the plane of the picture, with a depth that is linear there.
 
 use super::View;
 use crate::Result;
 use crate::math::{DVec2, DVec3, Rect};
 use crate::scene::{Camera, Projection};
 
-/// A point of the picture and how far behind it something lies.
+/// A point of the picture, with its depth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanePoint {
-    /// Plane units, as [`crate::target::drawing::Drawing`] says.
+    /// Position in plane units; see [`crate::target::drawing::Drawing`].
     pub at: DVec2,
-    /// 0 in the plane through the target, growing away from the eye, there in model units. Affine over
-    /// a projected plane: parallel projection has the distance from the target's plane, perspective
-    /// d − d²/w for a point at distance w along the line of sight, d that of the target.
+    /// Depth: 0 in the plane through the target, growing away from the eye, in model units at the target. It is affine
+    /// over a projected plane: in parallel projection the distance from the target's plane, in perspective d − d²/w for
+    /// a point at distance w along the line of sight, where d is the target's distance.
     pub depth: f64,
 }
 
 /// Borders of the view volume at which faces and lines are clipped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Borders {
-    /// Cut at the near and the far plane.
+    /// True to clip at the near and the far plane.
     pub depth: bool,
-    /// Cut at the sides of the window, widened by this factor (at least 1); `None` leaves them.
+    /// Factor (at least 1) by which the window is widened before its sides clip; `None` to clip at no sides.
     pub sides: Option<f64>,
 }
 
 /// The map from the world to the plane of the picture.
 ///
-/// View space here is x right, y up, z = distance from the eye along the line of sight.
+/// View space here: x right, y up, z = distance from the eye along the line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PicturePlane {
     eye: DVec3,
@@ -41,14 +41,14 @@ pub struct PicturePlane {
 }
 
 impl PicturePlane {
-    /// Creates the plane of a view's picture.
+    /// Creates the picture plane of a view.
     pub fn new(view: &View) -> Self {
         let aspect = f64::from(view.width()) / f64::from(view.height());
         Self::seen_by(view.camera(), aspect)
     }
 
-    /// Returns the plane of a camera, for pictures whose width / height is `aspect`; that bears on the
-    /// window and its sides only.
+    /// Creates the picture plane of a camera, for pictures whose width / height is `aspect`, which affects only the
+    /// window and its sides.
     ///
     /// # Errors
     /// The errors of [`Camera::check`].
@@ -80,7 +80,7 @@ impl PicturePlane {
         Rect::new(-self.half, self.half).ok()
     }
 
-    /// Returns whether lines of sight meet in the eye.
+    /// Returns whether the lines of sight meet in the eye.
     pub fn is_perspective(&self) -> bool {
         self.perspective
     }
@@ -90,12 +90,12 @@ impl PicturePlane {
         self.eye
     }
 
-    /// Returns the way sight travels at a point of the world; not of unit length in perspective.
+    /// Returns the direction of the line of sight through a point of the world; not of unit length in perspective.
     pub fn sight_at(&self, p: DVec3) -> DVec3 {
         if self.perspective { p - self.eye } else { self.axes[2] }
     }
 
-    /// World to view space: right, up, distance from the eye.
+    /// Converts from world space to view space: right, up, distance from the eye.
     #[inline]
     pub fn view_from_world(&self, p: DVec3) -> DVec3 {
         let d = p - self.eye;
@@ -103,7 +103,7 @@ impl PicturePlane {
         DVec3::new(right.dot(d), up.dot(d), sight.dot(d))
     }
 
-    /// View space to the plane; in perspective only for points in front of the eye.
+    /// Projects from view space to the plane; in perspective only for points in front of the eye.
     #[inline]
     pub fn plane_from_view(&self, p: DVec3) -> PlanePoint {
         if self.perspective {
@@ -114,31 +114,31 @@ impl PicturePlane {
         }
     }
 
-    /// World to the plane; in perspective only for points in front of the eye.
+    /// Projects from world space to the plane; in perspective only for points in front of the eye.
     #[inline]
     pub fn plane_from_world(&self, p: DVec3) -> PlanePoint {
         self.plane_from_view(self.view_from_world(p))
     }
 
-    /// Returns whether a point of the world does not lie before the near plane.
+    /// Returns whether a point of the world is not before the near plane.
     pub fn is_behind_near(&self, p: DVec3) -> bool {
         self.view_from_world(p).z >= self.near
     }
 
-    /// Projects a point of the world; `None` if it lies before the near plane.
+    /// Projects a point of the world; `None` if it is before the near plane.
     pub fn project(&self, p: DVec3) -> Option<DVec2> {
         let p = self.view_from_world(p);
         (p.z >= self.near).then(|| self.plane_from_view(p).at)
     }
 
-    /// Returns the part of a segment of the world that lies behind the near plane, as seen; `None`
-    /// if all of it lies before.
+    /// Projects the part of a segment of the world that is behind the near plane; `None` if all of it is before that
+    /// plane.
     pub fn project_segment(&self, a: DVec3, b: DVec3) -> Option<[DVec2; 2]> {
         let ends = cut(|p| self.inside(0, p, 1.0), [a, b].map(|p| self.view_from_world(p)))?;
         Some(ends.map(|p| self.plane_from_view(p).at))
     }
 
-    /// Back from the plane to view space.
+    /// Converts back from the plane to view space.
     pub fn view_from_plane(&self, p: PlanePoint) -> DVec3 {
         if self.perspective {
             let w = self.distance * self.distance / (self.distance - p.depth);
@@ -148,16 +148,15 @@ impl PicturePlane {
         }
     }
 
-    /// Back from the plane to the world.
+    /// Converts back from the plane to world space.
     pub fn world_from_plane(&self, p: PlanePoint) -> DVec3 {
         let v = self.view_from_plane(p);
         let [right, up, sight] = self.axes;
         self.eye + right * v.x + up * v.y + sight * v.z
     }
 
-    /// Returns the signed distance of a view-space point from the border `index` (0 near, 1 far, 2…5
-    /// left, right, bottom, top); below 0 it is outside. Linear, so that edges can be cut where it is
-    /// 0.
+    /// Returns the signed distance of a view-space point from the border `index` (0 near, 1 far, 2…5 left, right,
+    /// bottom, top); outside it is below 0. It is linear, so that edges can be cut where it is 0.
     fn inside(&self, index: usize, p: DVec3, widened: f64) -> f64 {
         let half = self.half * widened;
         let slope = if self.perspective { p.z / self.distance } else { 1.0 };
@@ -176,14 +175,14 @@ impl PicturePlane {
         from..if borders.sides.is_some() { 6 } else { 2.max(from) }
     }
 
-    /// Returns whether a point of view space lies inside the borders.
+    /// Returns whether a point of view space is inside the borders.
     #[inline]
     pub fn contains(&self, p: DVec3, borders: Borders) -> bool {
         Self::borders(borders).all(|b| self.inside(b, p, borders.sides.unwrap_or(1.0)) >= 0.0)
     }
 
-    /// Returns the part of a segment in view space that lies inside the borders. Either direction
-    /// gives the same points.
+    /// Returns the part of a segment in view space inside the borders. Both directions of a segment yield the same
+    /// points.
     pub fn clip_segment(&self, ends: [DVec3; 2], borders: Borders) -> Option<[DVec3; 2]> {
         let mut ends = ends;
         for border in Self::borders(borders) {
@@ -192,9 +191,8 @@ impl PicturePlane {
         Some(ends)
     }
 
-    /// Returns the part of a convex polygon in view space that lies inside the borders: what
-    /// neighbours share they still share. Empty if nothing is left. (Sutherland–Hodgman, border by
-    /// border.)
+    /// Returns the part of a convex polygon in view space inside the borders, border by border (Sutherland–Hodgman).
+    /// Neighbours that share an edge share its cut points. Empty if nothing remains.
     pub fn clip_face(&self, corners: &[DVec3], borders: Borders) -> Vec<DVec3> {
         let mut ring = corners.to_vec();
         for border in Self::borders(borders) {
@@ -232,8 +230,8 @@ fn cut(inside: impl Fn(DVec3) -> f64, [a, b]: [DVec3; 2]) -> Option<[DVec3; 2]> 
     }
 }
 
-/// Returns the intersection of the border with the line between a point inside and one outside; the
-/// inside one comes first, so both directions of an edge give the same bits.
+/// Returns the intersection of the border with the line between a point inside and one outside. The inside point comes
+/// first, so that both directions of an edge yield the same bits.
 fn crossing(inside: DVec3, d_in: f64, outside: DVec3, d_out: f64) -> DVec3 {
     (outside * d_in - inside * d_out) / (d_in - d_out)
 }

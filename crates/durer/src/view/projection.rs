@@ -23,21 +23,21 @@ use std::str::FromStr;
 /// The usual views of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum NamedView {
-    /// From the front, the right and above, all three axes shortened alike: azimuth 45°, elevation
+    /// View from the front, the right and above, with all three axes equally foreshortened: azimuth 45°, elevation
     /// atan(1/√2) = 35.264…°.
     #[default]
     Iso,
-    /// From the front.
+    /// View from the front.
     Front,
-    /// From behind.
+    /// View from behind.
     Back,
-    /// From the model's left, as seen from the front.
+    /// View from the model's left, as seen from the front.
     Left,
-    /// From the right.
+    /// View from the model's right.
     Right,
-    /// From above; the front is at the bottom of the picture.
+    /// View from above; the front is at the bottom of the picture.
     Top,
-    /// From below; the front is at the top of the picture.
+    /// View from below; the front is at the top of the picture.
     Bottom,
 }
 
@@ -45,7 +45,7 @@ pub enum NamedView {
 const ISOMETRIC_ELEVATION: f64 = 35.264_389_682_754_654;
 
 impl NamedView {
-    /// All of them.
+    /// All named views.
     pub const ALL: &'static [Self] =
         &[Self::Iso, Self::Front, Self::Back, Self::Left, Self::Right, Self::Top, Self::Bottom];
 
@@ -62,7 +62,7 @@ impl NamedView {
         }
     }
 
-    /// Azimuth and elevation in degrees.
+    /// Returns azimuth and elevation in degrees.
     pub const fn angles(self) -> (f64, f64) {
         match self {
             Self::Iso => (45.0, ISOMETRIC_ELEVATION),
@@ -91,7 +91,7 @@ impl std::fmt::Display for NamedView {
 impl FromStr for NamedView {
     type Err = Error;
 
-    /// Also takes `side` for `right`.
+    /// Parses the name of a view; also accepts `side` for `right`.
     fn from_str(s: &str) -> Result<Self> {
         let name = if s == "side" { "right" } else { s };
         Self::ALL.iter().copied().find(|v| v.name() == name).ok_or_else(|| {
@@ -100,7 +100,7 @@ impl FromStr for NamedView {
     }
 }
 
-/// From which side a model is seen.
+/// Direction in which a model is seen.
 ///
 /// # Guarantees
 /// Two unit vectors at right angles.
@@ -111,7 +111,7 @@ pub struct ViewDirection {
 }
 
 impl ViewDirection {
-    /// From azimuth and elevation in degrees, any size.
+    /// Creates a direction from azimuth and elevation in degrees, of any size.
     ///
     /// # Errors
     /// [`Error::Parameter`] for an angle that is not finite.
@@ -132,17 +132,17 @@ impl ViewDirection {
         Self { to_eye: level * ce + above * se, up: above * ce - level * se }
     }
 
-    /// From the model to the eye; unit length.
+    /// Returns the unit vector from the model to the eye.
     pub fn to_eye(&self) -> DVec3 {
         self.to_eye
     }
 
-    /// Up in the picture; unit length, at a right angle to [`Self::to_eye`].
+    /// Returns the unit vector that points up in the picture, at a right angle to [`Self::to_eye`].
     pub fn up(&self) -> DVec3 {
         self.up
     }
 
-    /// To the right in the picture; unit length.
+    /// Returns the unit vector to the right in the picture.
     pub fn right(&self) -> DVec3 {
         self.up.cross(self.to_eye)
     }
@@ -162,49 +162,50 @@ fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     }
 }
 
-/// Perspective or parallel, without the numbers that fitting finds.
+/// Kind of projection, without the numbers that fitting determines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Lens {
-    /// Vertical angle of view in radians, between 0 and π.
+    /// Perspective projection.
     Perspective {
-        /// The angle.
+        /// Vertical angle of view in radians, between 0 and π.
         fov_y: f64,
     },
-    /// Parallel lines.
+    /// Parallel projection.
     Orthographic,
 }
 
-/// Options for the frame around the model.
+/// Options for fitting a model into the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitOptions {
-    /// Perspective or parallel.
+    /// Kind of projection.
     pub lens: Lens,
     /// Width / height of the picture.
     pub aspect: f64,
-    /// Part of the picture's width and height left free at each border, in 0 ≤ margin < 0.5.
+    /// Part of the picture's width and height that is left free at each border; 0 ≤ margin < 0.5.
     pub margin: f64,
 }
 
 impl Default for FitOptions {
-    /// 30 degrees, a square picture, 4 % free at each border.
+    /// Returns the default: 30 degrees, a square picture, 4 % free at each border.
     fn default() -> Self {
         let lens = Lens::Perspective { fov_y: std::f64::consts::PI / 6.0 };
         Self { lens, aspect: 1.0, margin: 0.04 }
     }
 }
 
-/// The nearest point of the model is no nearer to the eye than this part of its radius: a needle that
-/// points at the eye is ignored from within.
+/// Smallest distance between the eye and the nearest point of the model, as a part of the model's radius: a needle that
+/// points at the eye is seen from inside it.
 pub const CLOSEST: f64 = 0.02;
 
-/// Near and far plane keep this part of the radius from the model.
+/// Distance of the near and the far plane from the model, as a part of its radius.
 const DEPTH_PAD: f64 = 0.01;
 
-/// Returns the camera whose picture holds the box as large as it can be, in the middle.
+/// Returns the camera that shows the box in the middle of the picture, as large as possible.
 ///
-/// The box's own corners are projected: at least two opposite borders of the frame (less the margin)
-/// are touched, unless the nearest point would come nearer than [`CLOSEST`]. `None` (an empty scene), a point, and a line are seen too: what has no extent is
-/// taken for a cube of side 1, or as much as the digits at its place can tell apart.
+/// The box's own corners are projected: they touch at least two opposite borders of the frame (the picture without its
+/// margin), unless the nearest corner would be nearer than [`CLOSEST`]. `None` (an empty scene), a point and a line are
+/// visible, too: a box without extent is taken for a cube of side 1, or larger where coordinates have too few digits to
+/// resolve that.
 ///
 /// # Errors
 /// [`Error::Parameter`] for an option out of range or bounds that are not finite.
@@ -217,11 +218,10 @@ pub fn fit_box(
     fit(&extent.corners(), &extent, direction, options)
 }
 
-/// Returns the camera whose picture holds the points as large as they can be, in the middle:
-/// tighter than [`fit_box`] where a model does not fill its box. Points that are not finite are
-/// left out.
+/// Returns the camera that shows the points in the middle of the picture, as large as possible: tighter than
+/// [`fit_box`] if a model does not fill its box. Points that are not finite are left out.
 ///
-/// One pass; keeps only the points that some side of the frame may rest on.
+/// Makes one pass, and keeps only the points that may touch a side of the frame.
 ///
 /// # Errors
 /// As [`fit_box`].
@@ -235,8 +235,8 @@ pub fn fit_points(
     fit_outermost(&outermost, direction, options)
 }
 
-/// [`fit_points`] of all vertices that a scene draws something with, which is faster than handing
-/// them over one by one.
+/// Fits the camera, like [`fit_points`], to all vertices that a primitive of a scene uses; faster than passing them one
+/// by one.
 ///
 /// # Errors
 /// As [`fit_box`].
@@ -246,8 +246,8 @@ pub fn fit_scene(scene: &Scene, direction: &ViewDirection, options: &FitOptions)
     fit_outermost(&outermost, direction, options)
 }
 
-/// Returns the box around all finite vertices that a scene draws something with, in world space; `None`
-/// if there are none.
+/// Returns the box around all finite vertices that a primitive of a scene uses, in world space; `None` if there are
+/// none.
 ///
 /// Cost: O(vertices), a few operations each.
 pub fn drawn_bounds(scene: &Scene) -> Option<Aabb> {
@@ -256,8 +256,8 @@ pub fn drawn_bounds(scene: &Scene) -> Option<Aabb> {
     outermost.bounds()
 }
 
-/// Returns the finite vertices, among those that a scene draws something with, that are furthest along a
-/// direction and against it, in world space; `None` if there are none.
+/// Returns the two finite vertices that are furthest along a direction and against it, among those that a primitive of
+/// a scene uses, in world space; `None` if there are none.
 ///
 /// Cost: O(vertices), a few operations each.
 pub fn drawn_ends(scene: &Scene, direction: DVec3) -> Option<[DVec3; 2]> {
@@ -266,10 +266,10 @@ pub fn drawn_ends(scene: &Scene, direction: DVec3) -> Option<[DVec3; 2]> {
     outermost.bounds().map(|_| outermost.points())
 }
 
-/// Fits a camera to a scene of one instance that comes in pieces: the camera of [`fit_scene`], bit for bit.
+/// Fit of a camera to a scene of one instance that comes in pieces; the result is that of [`fit_scene`], bit for bit.
 ///
-/// But for the last, pieces have a multiple of [`PIECE`] vertices, in the order of the whole; what nothing is drawn with
-/// is not finite or has no index.
+/// All pieces but the last have a multiple of [`PIECE`] vertices, in the order of the whole. Vertices that no primitive
+/// uses are not finite or have no index.
 pub struct FitPieces {
     direction: ViewDirection,
     options: FitOptions,
@@ -277,7 +277,7 @@ pub struct FitPieces {
 }
 
 impl FitPieces {
-    /// Creates the fit of no pieces.
+    /// Creates a fit without pieces.
     ///
     /// # Errors
     /// [`Error::Parameter`] for an option out of range.
@@ -301,13 +301,13 @@ impl FitPieces {
     }
 }
 
-/// [`drawn_bounds`] and [`drawn_ends`] of a scene that comes in pieces, as [`FitPieces`] takes them.
+/// The results of [`drawn_bounds`] and [`drawn_ends`] for a scene that comes in pieces, as for [`FitPieces`].
 pub struct EndsOfPieces {
     outermost: OutermostOfPieces<2>,
 }
 
 impl EndsOfPieces {
-    /// Creates the ends of no pieces; along a direction, and against it.
+    /// Creates the ends, without pieces, along a direction and against it.
     pub fn new(direction: DVec3) -> Self {
         Self { outermost: OutermostOfPieces::new([direction, -direction]) }
     }
@@ -317,12 +317,12 @@ impl EndsOfPieces {
         self.outermost.add_piece(piece);
     }
 
-    /// As [`drawn_bounds`].
+    /// Returns the box that [`drawn_bounds`] returns.
     pub fn bounds(&self) -> Option<Aabb> {
         self.outermost.whole().bounds()
     }
 
-    /// As [`drawn_ends`].
+    /// Returns the points that [`drawn_ends`] returns.
     pub fn ends(&self) -> Option<[DVec3; 2]> {
         let whole = self.outermost.whole();
         whole.bounds().map(|_| whole.points())
@@ -365,8 +365,8 @@ fn fit(
     finished(world(eye), world(target), direction, options, height, nearest..farthest, radius)
 }
 
-/// Returns the camera whose picture holds the sphere, centred: the frame stays the same from all
-/// directions, as a turntable needs it.
+/// Returns the camera that shows the sphere in the middle of the picture: the frame is the same from all directions, as
+/// for a turntable.
 ///
 /// # Errors
 /// [`Error::Parameter`] for an option out of range or a sphere that is not finite.
@@ -411,8 +411,8 @@ fn finished(
     Ok(camera)
 }
 
-/// Returns the amount to add to an extent so that it is visible: nothing, unless it is 0, or lost in
-/// the digits of its place.
+/// Returns the amount to add to an extent so that it is visible: 0, unless the extent is 0 or lost to rounding at its
+/// place.
 fn smallest_extent(center: DVec3, size: f64) -> f64 {
     let place = center.abs().max_element();
     if size > place * 1e-9 { 0.0 } else { (place * 1e-6).max(if size > 0.0 { 0.0 } else { 1.0 }) }
@@ -432,7 +432,7 @@ fn range(points: &[DVec3], k: usize) -> (f64, f64) {
     points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), grow)
 }
 
-/// The part of the picture to be filled.
+/// The part of the picture that the model may fill.
 struct Frame {
     lens: Lens,
     /// Perspective: half the frame's width and height at distance 1. Orthographic: half the frame's
@@ -461,20 +461,19 @@ impl Frame {
         Ok(Self { lens, slope: DVec3::new(half_height * aspect, half_height, 0.0) * free })
     }
 
-    /// Creates a bound of no points.
+    /// Creates an empty search for the points that determine the fit from this direction.
     fn outermost(&self, direction: &ViewDirection) -> Outermost<10> {
         Outermost::new(self.outermost_directions(direction))
     }
 
-    /// Along the axes of the view, and towards the sides of the frame.
+    /// Returns the directions along the axes of the view, and towards the sides of the frame.
     fn outermost_directions(&self, direction: &ViewDirection) -> [DVec3; 10] {
         let (x, y, z) = (direction.right(), direction.up(), direction.to_eye());
         let (in_x, in_y) = (z * self.slope.x, z * self.slope.y);
         [x, -x, y, -y, z, -z, x + in_x, in_x - x, y + in_y, in_y - y]
     }
 
-    /// Returns the position of the eye at which the frame holds the points; x right, y up, z toward
-    /// the eye.
+    /// Returns the position of the eye from which the points just fit into the frame; x right, y up, z towards the eye.
     fn eye_for(&self, points: &[DVec3], radius: f64) -> DVec3 {
         let largest =
             |f: &dyn Fn(&DVec3) -> f64| points.iter().map(f).fold(f64::NEG_INFINITY, f64::max);
@@ -498,7 +497,7 @@ impl Frame {
         }
     }
 
-    /// Returns the height of an orthographic picture whose frame holds the points.
+    /// Returns the height of an orthographic picture into whose frame the points just fit.
     fn height_for(&self, points: &[DVec3]) -> f64 {
         let extent = |k: usize| {
             let (lo, hi) = range(points, k);

@@ -5,8 +5,8 @@ use super::near::{self, OF_EDGE, Places, STEP};
 use crate::math::{DVec3, Vec3};
 use crate::scene::{Aabb, Mesh};
 
-/// Result of [`mesh_topology`]. Vertices at one place count as one: those of which no coordinate differs by more than
-/// 2⁻²⁶ of the model's extent, and ends of borders that are as near to each other as rounding may have moved them, as in
+/// Result of [`mesh_topology`]. Vertices at one place count as one: those whose coordinates differ by no more than 2⁻²⁶
+/// of the model's extent, and ends of borders that are as near to each other as rounding may have moved them, as in
 /// [`crate::visibility::object::Weld::Auto`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MeshTopology {
@@ -54,8 +54,8 @@ pub fn mesh_topology(mesh: &Mesh) -> MeshTopology {
     written_topology(mesh, 0.0)
 }
 
-/// Returns the same for a mesh of a file whose coordinates have a last digit that is worth
-/// `last_digit`, as [`crate::scene::Scene::last_digit`] returns it.
+/// Finds the topology for a mesh of a file whose coordinates have a last digit that is worth `last_digit`, as
+/// [`crate::scene::Scene::last_digit`] returns it.
 pub fn written_topology(mesh: &Mesh, last_digit: f64) -> MeshTopology {
     let welded = weld(mesh, last_digit);
     let mut found = MeshTopology { oriented: true, ..MeshTopology::default() };
@@ -99,8 +99,8 @@ fn finite_corners(mesh: &Mesh, corners: [u32; 3]) -> Option<[DVec3; 3]> {
 /// close real gaps, less would leave models open that are closed.
 const WELD: f64 = 1.0 / (1u64 << 26) as f64;
 
-/// For each vertex the number of one at the same place, the same for all of them; the last digit of coordinates is
-/// worth `last_digit`, 0 if that is not known.
+/// Returns, for each vertex, the number of one at the same place, the same for all of them; the last digit of
+/// coordinates is worth `last_digit`, 0 if that is not known.
 pub(super) fn weld(mesh: &Mesh, last_digit: f64) -> Vec<u32> {
     let mut welded = weld_places(&mesh.positions);
     let lone = border_ends(mesh, &welded);
@@ -151,7 +151,7 @@ fn border_ends(mesh: &Mesh, welded: &[u32]) -> Vec<(u32, f64)> {
     ends
 }
 
-/// Returns the same for those within [`WELD`].
+/// Joins the places within [`WELD`] of each other.
 fn weld_places(positions: &[Vec3]) -> Vec<u32> {
     let bounds = Aabb::around(positions.iter().map(|p| p.as_dvec3()));
     let tolerance = bounds.map_or(0.0, |b| b.size().max_element() * WELD);

@@ -7,10 +7,10 @@
 //! window depth is linear on the screen, so squares of one plane join without a gap. Cost: O(pixels of
 //! all pictures + pixels lit); memory O(pixels of the new picture).
 //!
-//! Limits: what no picture shows is a hole; colours are those seen from the old eye; pixels that become
-//! larger than [`LARGEST`] are left out. Depth 1 means that there is no surface: such
-//! pixels are treated as infinitely far away, and show only where no picture shows a surface. Pixels of smoothed outlines get the colour of the
-//! surface whose depth they have.
+//! Limits: what no picture shows is a hole; colours are those seen from the old eye; pixels that become larger than
+//! [`LARGEST`] are left out. Depth 1 means that there is no surface: such pixels are treated as infinitely far away,
+//! and show only where no picture shows a surface. Pixels of smoothed outlines get the colour of the surface whose
+//! depth they have.
 
 mod unmixed;
 
@@ -23,7 +23,7 @@ use crate::view::View;
 use crate::work::Work;
 use crate::{Error, Result};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "forward-warp",
     title: "Forward warping with a z-buffer",
@@ -76,7 +76,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Magenta, which marks them.
+    /// Returns the default: magenta, which marks holes.
     fn default() -> Self {
         Self { hole: [255, 0, 255, 255], work: Work::default() }
     }
@@ -98,8 +98,8 @@ pub enum Step {
         /// Its colour, without that of others at a smoothed outline.
         color: [u8; 4],
     },
-    /// The pixel moved last is the nearest so far at a pixel of the new picture. What is nearest in an
-    /// earlier picture stays, and surfaces hide what has depth 1 in all of them.
+    /// The pixel moved last is the nearest so far at a pixel of the new picture. The nearest pixel of an earlier
+    /// picture stays, and surfaces hide pixels of depth 1 in all pictures.
     Write {
         /// Column and row.
         at: [u32; 2],
@@ -130,8 +130,8 @@ pub struct Warped {
 /// The source of a pixel that no picture shows.
 pub const HOLE: u32 = u32::MAX;
 
-/// Makes the view of a camera from pictures: the surfaces of the first, where it shows none those of the
-/// second, and so on; then, where no picture has a surface, what is behind everything.
+/// Makes the view of a camera from pictures: the surfaces of the first, where it shows none those of the second, and so
+/// on; then, where no picture has a surface, the background.
 ///
 /// # Errors
 /// [`Error::Parameter`] where a picture's depth has another size than its colours, or a camera cannot
@@ -182,7 +182,7 @@ struct Layer {
     height: u32,
     /// Depth and colour of the nearest surface so far.
     nearest: Vec<Option<(f64, [u8; 4])>>,
-    /// The colour of what is behind everything.
+    /// Colour of the background.
     nothing: Vec<Option<(f64, [u8; 4])>>,
 }
 
@@ -275,8 +275,8 @@ impl Layer {
     }
 }
 
-/// Returns the matrix that takes pixels of the old screen to the new one as if they were infinitely far
-/// away: only the turn of the camera moves them. Where projection lines are parallel, they stay where they are in the picture.
+/// Returns the matrix that takes pixels of the old screen to the new one as if they were infinitely far away: only the
+/// turn of the camera moves them. Where projection lines are parallel, they stay where they are in the picture.
 fn endless(old: &View, new: &View) -> DMat4 {
     let size = |view: &View| DVec2::new(f64::from(view.width()), f64::from(view.height()));
     let parallel = |view: &View| {
@@ -311,8 +311,8 @@ fn corners(new_from_old: &DMat4, center: DVec3, slope: DVec2) -> Option<[DVec3; 
     Some([corner(-h, -h)?, corner(h, -h)?, corner(h, h)?, corner(-h, h)?])
 }
 
-/// Change of depth per pixel to the right and downwards: towards that neighbour whose depth is nearer,
-/// for the other may belong to another surface.
+/// Returns the change of depth per pixel to the right and downwards: towards that neighbour whose depth is nearer, for
+/// the other may belong to another surface.
 fn slope(depth: &Pixels<f32>, x: u32, y: u32) -> DVec2 {
     let here = depth.get(x, y).unwrap_or(1.0);
     let along = |before: Option<f32>, after: Option<f32>| {

@@ -6,7 +6,7 @@
 use crate::math::{DVec2, Rect};
 use crate::{Error, Result};
 
-/// Pixels x0 … x1 − 1 of rows y0 … y1 − 1; y grows downwards. May be empty.
+/// Rectangle of the pixels x0 … x1 − 1 of rows y0 … y1 − 1; y grows downwards. May be empty.
 ///
 /// # Guarantees
 /// `x0 ≤ x1` and `y0 ≤ y1`.
@@ -17,9 +17,11 @@ pub struct PixelRect {
 }
 
 impl PixelRect {
-    /// All pixels that an i32 can name, but the last row and column.
+    /// All pixels with i32 coordinates, except the last row and column.
     pub const EVERYTHING: Self = Self { min: [i32::MIN; 2], max: [i32::MAX; 2] };
 
+    /// Creates a rectangle of pixels from its first column and row and its last ones, which are exclusive.
+    ///
     /// # Errors
     /// [`Error::Parameter`] where `x0 > x1` or `y0 > y1`.
     pub fn new(x0: i32, y0: i32, x1: i32, y1: i32) -> Result<Self> {
@@ -31,7 +33,7 @@ impl PixelRect {
         }
     }
 
-    /// Returns all pixels of a picture from the origin.
+    /// Returns the rectangle of all pixels of a picture, from the origin.
     ///
     /// # Errors
     /// [`Error::Limit`] for a side above 2³¹ − 1.
@@ -62,37 +64,37 @@ impl PixelRect {
         self.min[1]
     }
 
-    /// Last column, exclusive.
+    /// Returns the last column, exclusive.
     pub fn x1(&self) -> i32 {
         self.max[0]
     }
 
-    /// Last row, exclusive.
+    /// Returns the last row, exclusive.
     pub fn y1(&self) -> i32 {
         self.max[1]
     }
 
-    /// Returns columns.
+    /// Returns the number of columns.
     pub fn width(&self) -> u32 {
         self.max[0].abs_diff(self.min[0])
     }
 
-    /// Rows.
+    /// Returns the number of rows.
     pub fn height(&self) -> u32 {
         self.max[1].abs_diff(self.min[1])
     }
 
-    /// Returns whether there is no pixel in it.
+    /// Returns whether the rectangle has no pixels.
     pub fn is_empty(&self) -> bool {
         self.min[0] == self.max[0] || self.min[1] == self.max[1]
     }
 
-    /// Returns whether the pixel lies in it.
+    /// Returns whether the pixel is in the rectangle.
     pub fn contains(&self, x: i32, y: i32) -> bool {
         (self.min[0]..self.max[0]).contains(&x) && (self.min[1]..self.max[1]).contains(&y)
     }
 
-    /// Returns the pixels in both; if there are none, some empty rectangle.
+    /// Returns the pixels in both rectangles; if there are none, some empty rectangle.
     pub fn intersection(&self, other: &Self) -> Self {
         let lo = [0, 1].map(|k| self.min[k].max(other.min[k]));
         let hi = [0, 1].map(|k| self.max[k].min(other.max[k]));
@@ -100,17 +102,17 @@ impl PixelRect {
     }
 }
 
-/// A rectangle of the world with an area, y up; closed.
+/// Closed rectangle of the world with an area; y grows upwards.
 ///
 /// # Guarantees
-/// Finite, `left < right`, `bottom < top`, and neither a coordinate nor an extent is beyond
-/// 10^±100, so that no scale overflows, nor their ratio.
+/// Finite, `left < right`, `bottom < top`, no coordinate beyond ± 10¹⁰⁰ and no extent below 10⁻¹⁰⁰, so that neither
+/// scales nor their ratio overflow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
     rect: Rect,
 }
 
-/// Beyond this, and for extents below its inverse, scales times extents leave the range of f64.
+/// Limit on coordinates: beyond it, and for extents below its inverse, scales times extents leave the range of f64.
 const WINDOW_LIMIT: f64 = 1e100;
 
 impl Window {
@@ -133,13 +135,13 @@ impl Window {
         Ok(Self { rect: Rect::new(DVec2::new(left, bottom), DVec2::new(right, top))? })
     }
 
-    /// Returns the same as a closed rectangle, for clipping.
+    /// Returns the window as a closed rectangle, for clipping.
     pub fn rect(&self) -> &Rect {
         &self.rect
     }
 }
 
-/// A rectangle of pixels to draw in.
+/// Rectangle of pixels to draw in.
 ///
 /// # Guarantees
 /// Not empty.
@@ -149,6 +151,8 @@ pub struct Viewport {
 }
 
 impl Viewport {
+    /// Creates a viewport from its pixels.
+    ///
     /// # Errors
     /// [`Error::Parameter`] for a rectangle without pixels.
     pub fn new(pixels: PixelRect) -> Result<Self> {
@@ -159,39 +163,38 @@ impl Viewport {
         Ok(Self { pixels })
     }
 
-    /// Returns its pixels.
+    /// Returns the pixels of the viewport.
     pub fn pixels(&self) -> &PixelRect {
         &self.pixels
     }
 }
 
-/// Treatment of windows and viewports that differ in shape.
+/// Treatment of a window and a viewport of different shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Aspect {
-    /// Each axis has its own scale; corners map to corners.
+    /// Separate scales for the axes; corners map to corners.
     #[default]
     Stretch,
-    /// One scale; all of the window is visible, in the middle of the viewport.
+    /// One scale for both axes; all of the window is visible, in the middle of the viewport.
     Fit,
-    /// One scale; all of the viewport is filled, with the middle of the window.
+    /// One scale for both axes; all of the viewport is filled, with the middle of the window.
     Fill,
 }
 
 /// Direction of y on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum YAxis {
-    /// The top of the window is the top row: y is flipped, as row 0 is on top.
+    /// Downwards: y is flipped, as the top of the window is row 0.
     #[default]
     Down,
-    /// The bottom of the window is row 0; for framebuffers with the origin at the bottom left.
+    /// Upwards: the bottom of the window is row 0, for framebuffers with the origin at the bottom left.
     Up,
 }
 
 /// The mapping from a window to a viewport and back.
 ///
-/// Coefficients are kept to twice the precision of f64, and x is taken from a corner of the window,
-/// so that corners map to corners exactly and the way back returns within 1 ulp of the extent, also
-/// for a small window far from the origin.
+/// Coefficients have twice the precision of f64, and x is measured from a corner of the window. So corners map to
+/// corners exactly, and the inverse returns within 1 ulp of the extent, even for a small window far from the origin.
 ///
 /// ```
 /// use durer::math::DVec2;
@@ -231,25 +234,24 @@ impl WindowToViewport {
         }
     }
 
-    /// From world coordinates to screen coordinates in pixels.
+    /// Converts world coordinates to screen coordinates in pixels.
     pub fn to_screen(&self, world: DVec2) -> DVec2 {
         DVec2::new(self.x.forward(world.x), self.y.forward(world.y))
     }
 
-    /// From screen coordinates in pixels to world coordinates.
+    /// Converts screen coordinates in pixels to world coordinates.
     pub fn to_world(&self, screen: DVec2) -> DVec2 {
         DVec2::new(self.x.backward(screen.x), self.y.backward(screen.y))
     }
 
-    /// a, b, c, d of x' = a·x + b and y' = c·y + d, rounded to f64.
+    /// Returns the coefficients a, b, c, d of x' = a·x + b and y' = c·y + d, rounded to f64.
     pub fn coefficients(&self) -> [f64; 4] {
         let b = |axis: &Axis| axis.forward(0.0);
         [self.x.scale.hi, b(&self.x), self.y.scale.hi, b(&self.y)]
     }
 }
 
-/// One axis: to' = scale · (x − from) + to, from whichever of two anchors is nearer, so that each is
-/// mapped exactly.
+/// Mapping of one axis: to' = scale · (x − from) + to, from the nearer of two anchors, so that each is mapped exactly.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Axis {
     from: [f64; 2],
@@ -259,14 +261,14 @@ struct Axis {
 }
 
 impl Axis {
-    /// Maps the ends to the ends.
+    /// Creates the mapping of ends to ends.
     fn stretched(from: [f64; 2], to: [f64; 2]) -> Self {
         let (span, length) = (Double::sum(from[1], -from[0]), Double::sum(to[1], -to[0]));
         let (scale, inverse) = (length.over(span), span.over(length));
         Self { from, to, scale, inverse }
     }
 
-    /// Returns the same axis with the size of the other's scale, the middle staying in the middle.
+    /// Returns the axis with the size of the other's scale; its middle stays in the middle.
     fn rescaled(&self, other: &Self, from: [f64; 2], to: [f64; 2]) -> Self {
         let sign = (self.scale.hi * other.scale.hi).signum();
         let (scale, inverse) = (other.scale.times(sign), other.inverse.times(sign));
@@ -284,7 +286,7 @@ impl Axis {
     }
 }
 
-/// scale · (x − from) + to, rounded once where all is in range.
+/// Returns scale · (x − from) + to, rounded once if all numbers are in range.
 fn transform(x: f64, from: [f64; 2], scale: Double, to: [f64; 2]) -> f64 {
     let nearer = usize::from((x - from[1]).abs() < (x - from[0]).abs());
     let (from, to) = (from[nearer], to[nearer]);
@@ -303,21 +305,21 @@ struct Double {
 }
 
 impl Double {
-    /// a + b without error (Knuth's two-sum).
+    /// Returns a + b without error (Knuth's two-sum).
     fn sum(a: f64, b: f64) -> Self {
         let hi = a + b;
         let b_part = hi - a;
         Self { hi, lo: (a - (hi - b_part)) + (b - b_part) }
     }
 
-    /// a · b without error (Veltkamp's splitting, Dekker's product).
+    /// Returns a · b without error (Veltkamp's splitting, Dekker's product).
     fn exact_product(a: f64, b: f64) -> Self {
         let hi = a * b;
         let ((a1, a0), (b1, b0)) = (split(a), split(b));
         Self { hi, lo: ((a1 * b1 - hi) + a1 * b0 + a0 * b1) + a0 * b0 }
     }
 
-    /// Multiplied by ± 1.
+    /// Returns the product with `sign`, which is ± 1.
     fn times(self, sign: f64) -> Self {
         Self { hi: self.hi * sign, lo: self.lo * sign }
     }

@@ -33,7 +33,7 @@ use crate::scene::{Camera, Mesh, Projection, Scene};
 use crate::trace::Tracer;
 use crate::view::cull::{Face, face_along, face_from_point, newell_area, triangle_area};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "back-face-removal",
     title: "Back-face removal",
@@ -57,12 +57,12 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// From where faces are seen.
+/// Place or direction from which faces are seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Eye {
-    /// From a point, in perspective.
+    /// A point, in perspective.
     At(DVec3),
-    /// Along a direction, by parallel rays.
+    /// A direction, by parallel rays.
     Along(DVec3),
 }
 
@@ -95,7 +95,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Faces seen edge-on go; polygons stay or go as a whole.
+    /// Returns the default: faces seen edge-on are removed; polygons stay or are removed as a whole.
     fn default() -> Self {
         Self { keep_edge_on: false, whole_polygons: true }
     }

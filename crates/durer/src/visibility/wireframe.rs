@@ -18,7 +18,7 @@ use crate::target::Pixels;
 use crate::trace::{NoTrace, Tracer};
 use crate::view::View;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "wireframe",
     title: "Wireframe",
@@ -36,7 +36,7 @@ pub const INFO: Info = Info {
 /// Options for the look of lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
-    /// 8-bit sRGB with straight alpha; replaces what is there.
+    /// 8-bit sRGB with straight alpha; replaces the stored colour.
     pub color: [u8; 4],
 }
 
@@ -50,7 +50,8 @@ impl Default for Options {
 /// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
-    /// An edge, or what near and far plane leave of it, is drawn between two pixels, which may be outside of the picture.
+    /// An edge, or what near and far plane leave of it, is drawn between two pixels, which may be outside of the
+    /// picture.
     Edge {
         /// Index of the instance.
         instance: usize,
@@ -63,8 +64,8 @@ pub enum Step {
     },
 }
 
-/// Draws the edges of all faces and all lines of a scene, which has passed [`Scene::check`], over what
-/// is in the plane. Edges with an end that is not finite are left out.
+/// Draws the edges of all faces and all lines of a scene, which has passed [`Scene::check`], over the contents of the
+/// plane. Edges with an end that is not finite are left out.
 pub fn render(
     scene: &Scene,
     view: &View,
@@ -106,7 +107,8 @@ fn edges(mesh: &Mesh) -> Vec<[u32; 2]> {
     edges
 }
 
-/// Returns the pixels at the ends of an edge between the near and the far plane; `None` if it is outside of the picture.
+/// Returns the pixels at the ends of an edge between the near and the far plane; `None` if it is outside of the
+/// picture.
 fn pixels_of(
     mesh: &Mesh,
     vertices: [u32; 2],

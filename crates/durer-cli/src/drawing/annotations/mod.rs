@@ -25,8 +25,8 @@ pub struct Annotated {
 }
 
 impl Annotated {
-    /// Reads the options, and finds the round parts of a scene once for all its views and frames; `None` if they ask
-    /// for nothing.
+    /// Reads the options, and finds the round parts of a scene once for all its views and frames; `None` if they
+    /// request none.
     pub fn new(args: &AnnotationArgs, scene: &Scene, weld: Weld) -> Result<Option<Self>, Failure> {
         let annotations = annotations(args)?;
         if annotations.is_empty() {
@@ -37,12 +37,12 @@ impl Annotated {
         Ok(Some(Self { annotations, features }))
     }
 
-    /// Room around views, millimetres.
+    /// Returns the room around views, in millimetres.
     pub fn room(&self) -> f64 {
         annotate::room(&self.annotations)
     }
 
-    /// Puts the annotations on a sheet; its notes tell what has no place.
+    /// Puts the annotations on a sheet; notes name those without room.
     pub fn put(
         &self,
         laid: &mut LaidOut,

@@ -12,7 +12,7 @@ fn pixel([r, g, b]: [u8; 3]) -> Vec<u8> {
     bytes
 }
 
-/// Finds pictures by name, in colours that tell them apart.
+/// Pictures by name, in colours that distinguish them.
 struct Folder;
 
 impl Resources for Folder {

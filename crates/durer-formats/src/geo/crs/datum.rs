@@ -1,8 +1,9 @@
 //! Frames of longitudes and latitudes, and the transformations between them.
 //!
 //! Those of today differ from WGS 84 by less than two metres, and by what continents move; coordinates are taken over
-//! between them as they are, as other software does where no grid is at hand. Those of old surveys are hundreds of metres
-//! off; of some, the seven parameters of the EPSG's list bring them there to a few metres. Others need grids, and are refused.
+//! between them as they are, as other software does where no grid is at hand. Those of old surveys are hundreds of
+//! metres off; of some, the seven parameters of the EPSG's list bring them there to a few metres. Others need grids,
+//! and are refused.
 
 use super::ellipsoid::Ellipsoid;
 use super::shift::Shift;

@@ -62,7 +62,7 @@ impl Crs {
     /// definition as well-known text.
     ///
     /// # Errors
-    /// A sentence that says what is known instead.
+    /// A sentence that names the known systems.
     pub fn parse(text: &str) -> Result<Self, String> {
         let text = text.trim();
         if text.contains('[') {
@@ -142,7 +142,7 @@ pub struct Transform {
 }
 
 impl Transform {
-    /// From one system to another.
+    /// Creates the transform from one system to another.
     pub fn new(from: &Crs, to: &Crs) -> Self {
         Self { from: from.clone(), to: to.clone() }
     }

@@ -39,7 +39,7 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// From longitude and latitude in radians; `None` if the projection has no such place.
+    /// Projects longitude and latitude in radians; `None` if the projection has no such place.
     pub fn forward(&self, lon: f64, lat: f64) -> Option<DVec2> {
         if lat.abs() > FRAC_PI_2 + 1e-10 {
             return None;
@@ -89,7 +89,7 @@ impl Projection {
         far && is_pole(lat)
     }
 
-    /// To longitude and latitude in radians; `None` if nothing lies there.
+    /// Returns longitude and latitude of a point in radians; `None` if nothing is there.
     pub fn inverse(&self, p: DVec2) -> Option<(f64, f64)> {
         let (body, a) = (self.body, self.body.a);
         let p = p - self.offset;
@@ -170,7 +170,7 @@ impl Cone {
         Self { n, constant: m1 * m1 + n * q1, conformal: None }
     }
 
-    /// In units of the longer axis.
+    /// Returns the radius of a latitude, in units of the longer axis.
     fn conformal_radius(&self, lat: f64) -> f64 {
         let psi = self.conformal.map_or(0.0, |body| body.isometric(lat));
         if lat.abs() >= FRAC_PI_2 && lat * self.n > 0.0 {

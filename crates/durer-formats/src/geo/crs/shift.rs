@@ -1,7 +1,7 @@
-//! From one frame to another by seven parameters: the position vector transformation, method 9606 of the EPSG's list, and
-//! Bowring's formula for geographic coordinates (*Transformation from spatial to geographical coordinates*, Survey Review
-//! 23, 1976), repeated. Places lie on the ellipsoid; the heights that this leaves out
-//! reach longitudes and latitudes by millimetres.
+//! From one frame to another by seven parameters: the position vector transformation, method 9606 of the EPSG's list,
+//! and Bowring's formula for geographic coordinates (*Transformation from spatial to geographical coordinates*, Survey
+//! Review 23, 1976), repeated. Places lie on the ellipsoid; the heights that this leaves out reach longitudes and
+//! latitudes by millimetres.
 
 use super::ellipsoid::Ellipsoid;
 use durer::math::DVec3;
@@ -9,7 +9,7 @@ use durer::math::DVec3;
 /// Transformation of a frame to WGS 84.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shift {
-    /// In metres.
+    /// Offset in metres.
     offset: DVec3,
     /// Around the axes, in seconds of arc.
     turn: DVec3,
@@ -24,7 +24,7 @@ impl Shift {
     /// The shift of WGS 84 itself.
     pub const NONE: Self = Self::new([0.0; 3], [0.0; 3], 0.0);
 
-    /// Metres, seconds of arc, and parts in a million.
+    /// Creates a shift from metres, seconds of arc, and parts in a million.
     pub const fn new(offset: [f64; 3], turn: [f64; 3], scale: f64) -> Self {
         Self { offset: DVec3::from_array(offset), turn: DVec3::from_array(turn), scale }
     }
@@ -34,7 +34,7 @@ impl Shift {
         turned * (1.0 + self.scale * 1e-6) + self.offset
     }
 
-    /// Back, but for products of angles.
+    /// Shifts a point back from WGS 84, without products of angles.
     fn of_wgs84(self, p: DVec3) -> DVec3 {
         let q = (p - self.offset) / (1.0 + self.scale * 1e-6);
         q - (self.turn * SECOND).cross(q)

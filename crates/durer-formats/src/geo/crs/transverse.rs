@@ -5,7 +5,7 @@
 use super::ellipsoid::Ellipsoid;
 use durer::math::DVec2;
 
-/// Beyond, the series says nothing; some 80 degrees from the meridian on the equator.
+/// Largest value for which the series is valid; some 80 degrees from the meridian on the equator.
 const FARTHEST: f64 = 2.623_395_162_778;
 
 /// The coefficients of powers of the third flattening, from that of the series' number on.

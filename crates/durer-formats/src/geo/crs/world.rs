@@ -9,7 +9,7 @@ const EQUAL_EARTH: [f64; 4] = [1.340264, -0.081106, 0.000893, 0.003796];
 /// Half the root of 3.
 const M: f64 = 0.866_025_403_784_438_6;
 
-/// From longitude and the sine of the authalic latitude, on a sphere of radius 1.
+/// Projects longitude and the sine of the authalic latitude, on a sphere of radius 1.
 pub fn equal_earth(lon: f64, sin: f64) -> DVec2 {
     let theta = libm::asin(M * sin);
     let (y, slope) = equal_earth_height(theta);
@@ -25,7 +25,7 @@ fn equal_earth_height(theta: f64) -> (f64, f64) {
     (y, a1 + 3.0 * a2 * t2 + t6 * (7.0 * a3 + 9.0 * a4 * t2))
 }
 
-/// To longitude and the sine of the authalic latitude.
+/// Returns longitude and the sine of the authalic latitude of a point.
 pub fn equal_earth_back(p: DVec2) -> Option<(f64, f64)> {
     let mut theta = p.y;
     for _ in 0..12 {
@@ -110,14 +110,14 @@ fn at(lat: f64) -> (usize, f64) {
     (i, (lat.abs() - STEP * i as f64).to_degrees())
 }
 
-/// From longitude and latitude, on a sphere of radius 1.
+/// Projects longitude and latitude, on a sphere of radius 1.
 pub fn robinson(lon: f64, lat: f64) -> DVec2 {
     let (i, z) = at(lat);
     let [x, y] = [&ROBINSON_X, &ROBINSON_Y].map(|table| piece(&table[i], z).0);
     DVec2::new(WIDTH * x * lon, (HEIGHT * y).copysign(lat))
 }
 
-/// To longitude and latitude.
+/// Returns longitude and latitude of a point.
 pub fn robinson_back(p: DVec2) -> Option<(f64, f64)> {
     let height = p.y.abs() / HEIGHT;
     if height > 1.0 + 1e-6 {

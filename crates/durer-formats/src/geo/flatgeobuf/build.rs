@@ -58,13 +58,13 @@ impl Builder {
         }
     }
 
-    /// Lets an offset lead to what is written next.
+    /// Sets an offset to what is written next.
     fn here(&mut self, later: Later) {
         let offset = u32::try_from(self.out.len() - later.0).unwrap_or(u32::MAX);
         self.set(later.0, &offset.to_le_bytes());
     }
 
-    /// Writes a table of fields, by their slots; gives those of offsets, in their order.
+    /// Writes a table of fields, by their slots; returns the positions of those that are offsets, in their order.
     pub fn table(&mut self, later: Later, fields: &[(usize, Value)]) -> Vec<Later> {
         let slots = fields.iter().map(|(slot, _)| slot + 1).max().unwrap_or(0);
         let mut sorted: Vec<(usize, Value)> = fields.to_vec();
@@ -125,7 +125,7 @@ impl Builder {
         numbers.for_each(|n| self.out.extend(n.to_le_bytes()));
     }
 
-    /// Returns a vector of tables that are written next.
+    /// Writes a vector of offsets to tables that are written next, and returns those offsets.
     pub fn tables(&mut self, later: Later, count: usize) -> Vec<Later> {
         self.count(later, count, 4);
         let start = self.out.len();

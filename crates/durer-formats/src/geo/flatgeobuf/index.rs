@@ -1,5 +1,5 @@
-//! The index of places: a packed tree of boxes over features that follow each other along Hilbert's curve. Its nodes stand
-//! level by level, the root first; those of the lowest level tell the place of a feature.
+//! The index of places: a packed tree of boxes over features that follow each other along Hilbert's curve. Its nodes
+//! stand level by level, the root first; those of the lowest level tell the place of a feature.
 
 use durer::clip::hilbert;
 use durer::math::{DVec2, Rect};
@@ -126,7 +126,7 @@ fn starts(count: u64, width: u16) -> Vec<u64> {
     sizes.iter().rev().map(next).collect()
 }
 
-/// Bytes of the index over this many features, of nodes of this many children.
+/// Returns the size in bytes of the index over `count` features, with nodes of `width` children.
 pub fn size(count: u64, width: u16) -> u64 {
     let nodes = starts(count, width).last().map_or(0, |last| last.saturating_add(count));
     nodes.saturating_mul(NODE as u64)

@@ -18,7 +18,7 @@ struct Column {
     kind: u8,
 }
 
-/// Gives the features of a file.
+/// Reader of the features of a file.
 pub struct Reader {
     bytes: Vec<u8>,
     at: usize,
@@ -64,7 +64,7 @@ impl Reader {
         Ok(Self { index, chosen, columns, kind, has_z, has_m, system, at, bytes, binary, infinite })
     }
 
-    /// Lets only features be read whose boxes meet a window, before the first one; nothing happens if there is no
+    /// Restricts reading to features whose boxes meet a window, before the first one; nothing happens if there is no
     /// index.
     pub fn choose(&mut self, window: &Rect) {
         let (place, count, width) = &self.index;
@@ -240,7 +240,7 @@ fn value(kind: u8, bytes: &[u8]) -> Option<(Option<String>, &[u8])> {
     }
 }
 
-/// Makes geometries of a feature's tables.
+/// Maker of geometries from a feature's tables.
 struct Shapes<'a> {
     /// Positions and parts that the feature's bytes have room for.
     left: usize,

@@ -73,7 +73,7 @@ impl<'a> Table<'a> {
         Self::at(self.bytes, follow(self.bytes, self.field(slot)?)?)
     }
 
-    /// Elements of this many bytes; `None` also if there is no room for them.
+    /// Returns a vector of elements of this many bytes; `None` also if there is no room for them.
     pub fn vector(&self, slot: usize, size: usize) -> Option<Vector<'a>> {
         let start = follow(self.bytes, self.field(slot)?)?;
         let len = u32::from_le_bytes(take(self.bytes, start)?) as usize;

@@ -5,7 +5,7 @@ use crate::geo::{Dimensions, Geometry, MAX_DEPTH, Member, Points, Warnings};
 use crate::{Place, Result};
 use durer::math::DVec2;
 
-/// Reads geometries; keeps what was repaired.
+/// Reader of geometries, which records repairs.
 #[derive(Debug, Default)]
 pub struct Geometries {
     pub warnings: Warnings,
@@ -184,7 +184,8 @@ impl Geometries {
     }
 }
 
-/// Members of a geometry that the format does not define. As those of features they are kept without `bbox`.
+/// Returns the members of a geometry that the format does not define. As those of features they are kept without
+/// `bbox`.
 pub fn further_members(members: &[RawMember<'_>]) -> Result<Vec<Member>> {
     let further = members.iter().filter(|(name, _)| !is_of_geometry(name));
     further

@@ -202,7 +202,7 @@ impl<'a> Cursor<'a> {
         Ok(value)
     }
 
-    /// The items of an array; `item` reads each.
+    /// Reads an array; `item` reads each of its items.
     pub fn array(
         &mut self,
         what: &str,

@@ -42,7 +42,7 @@ impl<R: Read> Stream<R> {
         Ok(self.chunk.get(self.at).copied())
     }
 
-    /// Takes what the source has, so that a slow source is read as it comes.
+    /// Reads what the source has, so that a slow source is read as it comes.
     fn refill(&mut self) -> Result<()> {
         self.at = 0;
         self.chunk.resize(CHUNK, 0);
@@ -135,11 +135,11 @@ impl<R: Read> Stream<R> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum State {
     Between,
-    /// In the array `features` of a collection; whether features came before.
+    /// Within the array `features` of a collection; true if features came before.
     Features(bool),
 }
 
-/// Reads features from any sequence of GeoJSON documents.
+/// Reader of features from any sequence of GeoJSON documents.
 pub struct Reader<R> {
     stream: Stream<R>,
     state: State,
@@ -153,8 +153,7 @@ pub struct Reader<R> {
     in_lines: u64,
 }
 
-/// After this many features that each stand on one line all others do: a line that is cut off is not read on to
-/// the end of the file.
+/// After this many features on a line each all others do: a line that is cut off is not read on to the end of the file.
 const LINES: u64 = 2;
 
 impl<R: Read> Reader<R> {
@@ -177,7 +176,7 @@ impl<R: Read> Reader<R> {
         &mut self.geometries.warnings
     }
 
-    /// Foreign members of the collections, as far as they have been read.
+    /// Returns foreign members of the collections, as far as they have been read.
     pub fn members(&self) -> &[Member] {
         &self.members
     }
@@ -220,7 +219,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Goes into the next document, to its end or its array of features; false if there is none.
+    /// Enters the next document, to its end or its array of features; false if there is none.
     fn begin(&mut self) -> Result<bool> {
         // Byte-order mark, and the separators of RFC 8142.
         if self.documents == 0 && self.stream.peek()? == Some(0xef) {

@@ -15,7 +15,7 @@ pub enum Progress {
     TooDeep,
 }
 
-/// Looks at a value byte by byte.
+/// State of a scan of a value, byte by byte.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Scan {
     depth: usize,

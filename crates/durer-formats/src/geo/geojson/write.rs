@@ -75,7 +75,7 @@ fn open_geometry<W: Write>(out: &mut W, geometry: &Geometry) -> io::Result<()> {
     }
 }
 
-/// Returns an array; `write` writes each item.
+/// Writes an array; `write` writes each item.
 fn list<W: Write, T>(
     out: &mut W,
     items: &[T],

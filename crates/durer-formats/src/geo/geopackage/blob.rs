@@ -15,7 +15,7 @@ const HEAD: usize = 8;
 /// Reads a geometry.
 ///
 /// # Errors
-/// What is wrong with it, at a byte of it.
+/// The fault, at a byte of it.
 pub fn read(bytes: &[u8], warnings: &mut Warnings, place: &Place) -> Result<Option<Geometry>> {
     let (&[_, _, _, flags], _) = bytes
         .split_first_chunk()
@@ -85,7 +85,7 @@ impl Presence {
         self.without |= !is_there;
     }
 
-    /// 0 for never, 1 for always, 2 for sometimes.
+    /// Returns 0 for never, 1 for always, 2 for sometimes.
     fn code(self) -> i64 {
         match (self.with, self.without) {
             (false, _) => 0,
@@ -96,13 +96,13 @@ impl Presence {
 }
 
 impl Ordinates {
-    /// Takes note of a geometry.
+    /// Counts a geometry.
     pub fn add(&mut self, dimensions: Dimensions) {
         self.z.add(dimensions.has_z());
         self.m.add(dimensions.has_m());
     }
 
-    /// Returns the numbers by which tables tell it, of heights and measures.
+    /// Returns the numbers for it in tables, of heights and measures.
     pub fn codes(self) -> [i64; 2] {
         [self.z.code(), self.m.code()]
     }

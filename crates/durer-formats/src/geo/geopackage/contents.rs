@@ -22,19 +22,19 @@ pub struct Layer {
     pub system: System,
 }
 
-/// Report on a file's contents.
+/// Tables of a database, and those that are left out.
 #[derive(Debug, Default)]
 pub struct Contents {
     /// Tables of features; then those of attributes, which have no geometry.
     pub layers: Vec<Layer>,
-    /// Names of what is left out, with reasons.
+    /// Names of tables that are left out, with reasons.
     pub left_out: Vec<(String, &'static str)>,
 }
 
-/// Reads what the tables say.
+/// Reads the tables that describe the contents.
 ///
 /// # Errors
-/// Where it is another database, or one that is damaged.
+/// If it is another database, or a damaged one.
 pub fn contents(database: &Database) -> Result<Contents> {
     let tables = database.tables()?;
     let about = Records::of(database, &tables, "gpkg_contents")?;
@@ -94,8 +94,7 @@ fn layer(
     Ok(Layer { name: table.name.clone(), root: table.root, columns, geometry: place, json, system })
 }
 
-/// Returns the coordinate systems of the file by their numbers in it. Two stand for what is not
-/// known.
+/// Returns the coordinate systems of the file by their numbers in it. Two of them mean an unknown system.
 fn systems(database: &Database, tables: &[Table]) -> Result<BTreeMap<i64, System>> {
     let rows = Records::of(database, tables, "gpkg_spatial_ref_sys")?.unwrap_or_default();
     let system = |row: &Record| {
@@ -112,7 +111,7 @@ fn systems(database: &Database, tables: &[Table]) -> Result<BTreeMap<i64, System
     Ok(rows.0.iter().filter_map(system).collect())
 }
 
-/// Tables and columns whose texts are JSON.
+/// Returns the tables and columns whose texts are JSON.
 fn json_columns(database: &Database, tables: &[Table]) -> Result<Vec<(String, String)>> {
     let rows = Records::of(database, tables, "gpkg_data_columns")?.unwrap_or_default();
     let of_json = rows.0.iter().filter(|row| is(text(row, "mime_type"), "application/json"));

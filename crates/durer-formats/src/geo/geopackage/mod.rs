@@ -1,4 +1,5 @@
-//! GeoPackage 1.0 to 1.4 of the OGC, <https://www.geopackage.org/spec140/>: a database of SQLite with tables of features.
+//! GeoPackage 1.0 to 1.4 of the OGC, <https://www.geopackage.org/spec140/>: a database of SQLite with tables of
+//! features.
 //!
 //! Tables are read row by row; what is written is one table without an index of places, page by page.
 

@@ -9,7 +9,7 @@ use crate::sqlite::{Column, Database, Rows, Value};
 use crate::text::Tally;
 use crate::{Error, Place, Result};
 
-/// Gives the features of all layers of a file, or of one, layer by layer.
+/// Reader of the features of all layers of a file, or of one, layer by layer.
 pub struct Reader {
     database: Database,
     layers: Vec<Layer>,
@@ -169,7 +169,7 @@ fn chosen(contents: Contents, name: Option<&str>, warnings: &mut Warnings) -> Re
     Ok(layers)
 }
 
-/// Makes a feature of a row.
+/// Converter of a row to a feature.
 struct Row<'a> {
     layer: &'a Layer,
     place: Place,

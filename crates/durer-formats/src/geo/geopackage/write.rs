@@ -1,7 +1,7 @@
 //! Features as a file with one table.
 //!
-//! Pages are written as features come. What a field holds is known at the end, when the table is given its columns: rows
-//! that were written before a field came first have no value for it, and SQLite takes that as null.
+//! Pages are written as features come. What a field holds is known at the end, when the table is given its columns:
+//! rows that were written before a field came first have no value for it, and SQLite takes that as null.
 
 use super::{APPLICATION, blob};
 use crate::geo::members::members;
@@ -28,7 +28,7 @@ const VERSION: u32 = 10_300;
 /// time.
 const CHANGED: &str = "1970-01-01T00:00:00.000Z";
 
-/// Writes features to pages.
+/// Writer of features to pages.
 pub struct Writer {
     database: NewDatabase,
     table: NewTable,
@@ -72,7 +72,7 @@ impl Writer {
         }
     }
 
-    /// Says which system coordinates are in, before the first feature.
+    /// Sets the system of the coordinates, before the first feature.
     pub fn set_system(&mut self, system: System) {
         self.system = system;
     }
@@ -155,8 +155,8 @@ impl Writer {
         self.table.add_at(&mut self.database, number, &values)
     }
 
-    /// Writes what is left, under the name of a layer: gives the first page, which takes the place of the first one
-    /// that was taken, the pages at the end, and the warnings.
+    /// Writes the remaining pages, under the name of a layer; returns the first page, which takes the place of the
+    /// first one that was taken, the pages at the end, and the warnings.
     ///
     /// # Errors
     /// As [`Self::add`].
@@ -287,7 +287,7 @@ fn layer_name(name: &str) -> String {
 
 /// Returns the number of a system in the file; -1 for one that is not known.
 fn system_id(system: &System) -> i32 {
-    /// For a system that has a definition and no number.
+    /// Number for a system that has a definition and no number.
     const OWN: i32 = 300_000;
     match (system.code, &system.wkt) {
         (Some(code), _) if code > 0 => code,
@@ -377,7 +377,7 @@ fn geometry_columns(
     own_index(database, name, 2, &[layer.into()])
 }
 
-/// The index that SQLite would make for what must be unique, of a table with one row.
+/// Adds the index that SQLite would make for unique values, of a table with one row.
 fn own_index(
     database: &mut NewDatabase,
     table: &str,

@@ -5,14 +5,14 @@ use crate::geo::{Feature, System, Warnings};
 use crate::{Error, Place, Result};
 use std::io::Write;
 
-/// Gives no features.
+/// Reader without features, which cannot be made.
 pub struct Reader {
-    /// An unknown system.
+    /// System of the coordinates.
     pub system: System,
 }
 
 impl Reader {
-    /// Tells what would read the file.
+    /// Refuses the file, and names the build that would read it.
     ///
     /// # Errors
     /// Always.
@@ -20,13 +20,13 @@ impl Reader {
         Err(missing("GeoParquet"))
     }
 
-    /// Never called.
+    /// Returns no feature; never called.
     pub fn next_feature(&mut self, _: &mut Warnings) -> Result<Option<Feature>> {
         Ok(None)
     }
 }
 
-/// Tells what would write the file.
+/// Refuses to write, and names the build that would.
 ///
 /// # Errors
 /// Always.

@@ -28,7 +28,7 @@ pub fn check(bytes: &[u8]) -> Result<()> {
     })
 }
 
-/// Goes through structures of Thrift's compact protocol.
+/// Walk through structures of Thrift's compact protocol.
 struct Walk<'a> {
     bytes: &'a [u8],
 }
@@ -114,7 +114,7 @@ impl Walk<'_> {
         if matches!(kind, 1 | 2) { self.skip(1) } else { self.value(kind, depth) }
     }
 
-    /// Returns the description of the file, with its columns as field 2.
+    /// Walks through the description of the file, with its columns as field 2.
     fn file(&mut self) -> Option<()> {
         let mut number = 0;
         loop {
@@ -126,7 +126,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Returns the columns, of which groups tell how many of the next are in them.
+    /// Walks through the columns; groups state how many of the next are in them.
     fn columns(&mut self) -> Option<()> {
         let (count, kind) = self.list()?;
         let mut open: Vec<u64> = Vec::new();
@@ -148,7 +148,7 @@ impl Walk<'_> {
         Some(())
     }
 
-    /// Returns the number of a column's children.
+    /// Walks through a column; returns the number of its children.
     fn column(&mut self) -> Option<u64> {
         let (mut number, mut children) = (0, 0);
         loop {

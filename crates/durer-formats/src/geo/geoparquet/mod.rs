@@ -1,5 +1,5 @@
-//! GeoParquet 1.0 and 1.1, <https://geoparquet.org/releases/v1.1.0/>: a Parquet file with geometries as well-known binary,
-//! by the crate `parquet` (feature `geoparquet`).
+//! GeoParquet 1.0 and 1.1, <https://geoparquet.org/releases/v1.1.0/>: a Parquet file with geometries as well-known
+//! binary, by the crate `parquet` (feature `geoparquet`).
 //!
 //! Row groups are read one after the other. What is written is held until the end, for its columns come first.
 

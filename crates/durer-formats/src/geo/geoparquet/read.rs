@@ -14,7 +14,7 @@ use parquet::record::{Field, Row, reader::RowIter};
 use serde_json::Value;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Gives the features of a file.
+/// Reader of the features of a file.
 pub struct Reader {
     rows: RowIter<'static>,
     row: u64,
@@ -32,7 +32,7 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// Reads what the file says of its columns.
+    /// Reads the description of the file's columns.
     ///
     /// # Errors
     /// An error for files that are not Parquet, or have no geometries as well-known binary.
@@ -145,7 +145,7 @@ fn check(column: &Value, name: &str, warnings: &mut Warnings) -> Result<()> {
     Ok(())
 }
 
-/// Columns that are not fields.
+/// Returns the columns that are not fields; warns of further geometries.
 fn hidden(geo: &Value, geometry: &str, warnings: &mut Warnings) -> Vec<String> {
     let columns = geo["columns"].as_object().into_iter().flatten();
     let mut hidden = Vec::new();

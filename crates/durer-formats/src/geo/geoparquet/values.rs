@@ -42,7 +42,7 @@ impl Meaning {
     }
 }
 
-/// Returns a value in JSON; `None` for what is binary.
+/// Returns a value in JSON; `None` for binary values.
 pub fn json(field: &Field, meaning: Meaning) -> Option<String> {
     Some(match (field, meaning) {
         (Field::Null, _) => "null".to_owned(),

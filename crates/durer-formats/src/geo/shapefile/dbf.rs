@@ -139,7 +139,7 @@ impl Table {
 
 const NULL: &str = "null";
 
-/// Without a known encoding a text is UTF-8 where that fits, else Windows-1252.
+/// Decodes a text; without a known encoding it is UTF-8 where that fits, else Windows-1252.
 fn decode(encoding: Option<Encoding>, bytes: &[u8]) -> (Cow<'_, str>, bool) {
     match encoding {
         Some(encoding) => encoding.decode(bytes),
@@ -151,7 +151,7 @@ fn decode(encoding: Option<Encoding>, bytes: &[u8]) -> (Cow<'_, str>, bool) {
     }
 }
 
-/// Returns the fields whose descriptions stand in a head, as far as rows have bytes for them.
+/// Returns the fields described in a header, as far as rows have bytes for them.
 fn columns(bytes: &[u8], head: usize, length: usize, encoding: Option<Encoding>) -> Vec<Column> {
     let described = bytes.get(FIELD..head.min(bytes.len())).unwrap_or_default();
     let mut at = 1;
@@ -198,7 +198,7 @@ fn decimal(value: &[u8]) -> Option<String> {
     (length == dotted.len()).then(|| double(number))?
 }
 
-/// `YYYYMMDD` as a day of JSON.
+/// Converts `YYYYMMDD` to a day of JSON.
 fn day(value: &[u8]) -> Option<String> {
     let digits = std::str::from_utf8(value.first_chunk::<8>()?).ok()?;
     let whole = digits.bytes().all(|b| b.is_ascii_digit());

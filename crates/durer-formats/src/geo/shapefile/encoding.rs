@@ -84,7 +84,7 @@ impl Encoding {
         })
     }
 
-    /// Returns the text that bytes stand for, and whether all of them stand for something.
+    /// Decodes bytes to text; returns the text, and whether all bytes are valid.
     pub fn decode<'a>(self, bytes: &'a [u8]) -> (Cow<'a, str>, bool) {
         match self {
             Self::Known(encoding) => {

@@ -27,7 +27,7 @@ pub fn sniff(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC) && bytes.get(28..32) == Some(&1000_u32.to_le_bytes())
 }
 
-/// Gives the records of a Shapefile as features.
+/// Reader of the records of a Shapefile as features.
 pub struct Reader {
     bytes: Vec<u8>,
     at: usize,
@@ -52,10 +52,10 @@ pub struct Faults {
 }
 
 impl Reader {
-    /// Looks for the files beside this one.
+    /// Creates a reader; searches for the files beside this one.
     ///
     /// # Errors
-    /// What is no .shp, and a table that cannot be read.
+    /// If the file is no .shp, or its table cannot be read.
     pub fn new(bytes: Vec<u8>, beside: &Beside<'_>, warnings: &mut Warnings) -> Result<Self> {
         if !sniff(&bytes) || bytes.len() < HEADER {
             return Err(Error::byte(

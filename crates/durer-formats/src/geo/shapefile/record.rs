@@ -7,7 +7,7 @@ use crate::{Error, Place, Result};
 use durer::clip::polygon::signed_area;
 use durer::math::DVec2;
 
-/// Measures below stand for none.
+/// Limit below which a measure means "none".
 const NO_MEASURE: f64 = -1e38;
 
 /// Numbers of a record, one after the other, little-endian.
@@ -160,7 +160,7 @@ fn content(
     Some(content)
 }
 
-/// Heights or measures; those of several positions come after their range.
+/// Reads heights or measures; those of several positions come after their range.
 fn further(from: &mut Numbers<'_>, shape: u32, count: usize) -> Option<Vec<f64>> {
     if shape != 1 {
         from.at += 16;
@@ -183,7 +183,7 @@ fn lines(content: &Content, place: &Place, warnings: &mut Warnings) -> Geometry 
     }
 }
 
-/// Polygons of rings; outer ones should run clockwise.
+/// Returns the polygons of rings; outer ones should run clockwise.
 fn areas(content: &Content, place: &Place, warnings: &mut Warnings) -> Vec<Vec<Points>> {
     let mut all: Vec<Points> = content.parts().collect();
     for ring in &mut all {
@@ -197,7 +197,7 @@ fn areas(content: &Content, place: &Place, warnings: &mut Warnings) -> Vec<Vec<P
     rings::polygons(all, is_outer, place, warnings)
 }
 
-/// Polygons of triangles and rings.
+/// Returns the polygons of triangles and rings.
 fn patches(content: &Content, place: &Place, warnings: &mut Warnings) -> Vec<Vec<Points>> {
     let mut polygons: Vec<Vec<Points>> = Vec::new();
     for (mut part, &kind) in content.parts().zip(&content.kinds) {

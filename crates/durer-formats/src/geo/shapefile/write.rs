@@ -25,7 +25,7 @@ pub type Sidecars = Vec<(&'static str, Vec<u8>)>;
 /// Returns the bytes of a .shp, and what belongs beside it.
 ///
 /// # Errors
-/// Where features have several kinds of geometry, of which a Shapefile holds one; or are too many.
+/// If features have several kinds of geometry, as a Shapefile contains only one, or are too many.
 pub fn write(features: &[Feature], system: &System) -> Result<(Vec<u8>, Sidecars, Vec<Warning>)> {
     let mut warnings = Vec::new();
     let shapes: Vec<Shape> = features.iter().map(|f| Shape::of(f.geometry.as_ref())).collect();
@@ -339,7 +339,7 @@ fn named<'a>(fields: &[Option<&'a Field>], warnings: &mut Vec<Warning>) -> Vec<C
     columns
 }
 
-/// Returns the values of a feature, as they stand in a row.
+/// Returns the values of a feature, as they are in a row.
 fn values(feature: &Feature, index: u64, columns: &[Column<'_>], schema: &Schema) -> Vec<Vec<u8>> {
     let mut given = vec![None; schema.columns().len()];
     for member in members(feature.properties.as_deref().unwrap_or_default()) {

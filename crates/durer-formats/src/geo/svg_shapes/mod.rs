@@ -56,12 +56,12 @@ struct Level {
     start: (usize, usize),
     matrix: Matrix,
     id: Option<Arc<str>>,
-    /// True if ids within give way to this one: they are those of what a `use` shows.
+    /// True if ids within yield to this one: they are within an element that a `use` shows.
     keeps_id: bool,
     fill_rule: WindingRule,
-    /// True if what is in it is drawn at all.
+    /// True if its contents are drawn at all.
     drawn: bool,
-    /// True if it is seen; what is in it may say otherwise.
+    /// True if it is visible; elements in it may differ.
     visible: bool,
 }
 
@@ -87,7 +87,7 @@ const OUTERMOST: Level = Level {
 /// The document, or one element of it that a `use` shows.
 #[derive(Debug)]
 struct Frame {
-    /// The next byte.
+    /// Index of the next byte.
     at: usize,
     /// Levels around it, then those of the open elements.
     levels: Vec<Level>,
@@ -95,7 +95,7 @@ struct Frame {
     is_done: bool,
 }
 
-/// Gives the shapes of a document one after the other.
+/// Reader of the shapes of a document, one after the other.
 #[derive(Debug)]
 pub struct Reader {
     text: Vec<u8>,
@@ -118,7 +118,7 @@ impl Reader {
 /// Position of a reader in its text.
 #[derive(Debug)]
 struct Walk {
-    /// The document, then what the `use`s being followed show.
+    /// The document, then the elements that the `use`s being followed show.
     frames: Vec<Frame>,
     has_root: bool,
     /// The first byte of the elements with an `id`, when a `use` has requested it.
@@ -189,7 +189,7 @@ impl Walk {
         Ok(None)
     }
 
-    /// Line and column of a byte. Counts on from the last reported place.
+    /// Returns the line and column of a byte; counts on from the last reported place.
     fn place(&mut self, text: &[u8], at: usize) -> Place {
         let at = at.min(text.len());
         let (from, mut line, mut start) = if at < self.told.0 { (0, 1, 0) } else { self.told };
@@ -206,7 +206,7 @@ impl Walk {
         Error::Decode { place: self.place(text, at), message: message.into() }
     }
 
-    /// A warning, whose place is looked for only where it is kept.
+    /// Adds a warning, whose place is found only where it is kept.
     fn warn(&mut self, text: &[u8], at: usize, message: String, warnings: &mut Warnings) {
         let place = if warnings.are_many() { Place::Whole } else { self.place(text, at) };
         warnings.push(place, message);
@@ -251,7 +251,7 @@ impl Walk {
         Ok(())
     }
 
-    /// Text between tags, which says something in style sheets only.
+    /// Reads text between tags, which has a meaning in style sheets only.
     fn words(
         &mut self,
         text: &[u8],
@@ -274,7 +274,7 @@ impl Walk {
         Ok(())
     }
 
-    /// Returns a tag: what it draws.
+    /// Reads a tag; returns the shape that it draws.
     fn element(
         &mut self,
         text: &[u8],
@@ -425,7 +425,7 @@ fn enter(
     Ok(level)
 }
 
-/// A document within the document, or a symbol: at its place, if it has no scale of its own.
+/// Places a document within the document, or a symbol; fails if it has a scale of its own.
 fn nested(element: &BytesStart<'_>, level: &mut Level) -> Result<(), String> {
     if attribute(element, "viewBox")?.is_some() {
         let name = element.local_name();

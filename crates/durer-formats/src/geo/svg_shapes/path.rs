@@ -46,7 +46,7 @@ impl Path {
         self.done.push((points, true));
     }
 
-    /// The commands of the attribute `d`.
+    /// Runs the commands of the attribute `d`.
     pub fn run(&mut self, text: &str) -> Result<(), String> {
         let mut scanner = Scanner::new(text);
         let mut command = None;
@@ -128,7 +128,7 @@ impl Path {
         Ok(())
     }
 
-    /// A cubic Bézier curve from the current point.
+    /// Adds a cubic Bézier curve from the current point.
     fn curve(&mut self, [p1, p2, p3]: [DVec2; 3], control: DVec2, degree: u8) {
         let p0 = self.at;
         for i in 1..=STEPS {
@@ -143,7 +143,7 @@ impl Path {
         self.control = Some((control, degree));
     }
 
-    /// An elliptical arc.
+    /// Adds an elliptical arc.
     fn arc(&mut self, ends: &Ends) {
         if let Some(arc) = Arc::new(ends) {
             // A hair less, so that rounding adds no edge to a quarter turn.
@@ -158,7 +158,7 @@ impl Path {
         self.line_to(ends.to);
     }
 
-    /// An ellipse with its axes along the coordinates'; none if a radius is not above zero.
+    /// Adds an ellipse with its axes along the coordinates'; none if a radius is not above zero.
     pub fn ellipse(&mut self, center: DVec2, radii: DVec2) {
         if radii.cmpgt(DVec2::ZERO).all() {
             (0..4 * STEPS).for_each(|i| self.line_to(center + on_circle(i) * radii));
@@ -166,7 +166,7 @@ impl Path {
         }
     }
 
-    /// A rectangle, with corners as round as its sides allow.
+    /// Adds a rectangle, with corners as round as its sides allow.
     pub fn rectangle(&mut self, corner: DVec2, size: DVec2, radii: DVec2) {
         if !size.cmpgt(DVec2::ZERO).all() {
             return;
@@ -224,7 +224,7 @@ impl Path {
     }
 }
 
-/// Point i of a unit circle of 4 · [`STEPS`]; quarters are alike to the bit.
+/// Returns point i of a unit circle of 4 · [`STEPS`] points; quarters are alike to the bit.
 fn on_circle(i: u32) -> DVec2 {
     let step = i % STEPS;
     let (sin, cos) = libm::sincos(FRAC_PI_2 * f64::from(step) / f64::from(STEPS));

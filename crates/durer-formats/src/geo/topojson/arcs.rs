@@ -52,7 +52,7 @@ fn key((points, i): Spot<'_>) -> [u64; 5] {
     [x, y, z, m, points.dimensions.count() as u64]
 }
 
-/// Runs as numbers, and a place for each number.
+/// Returns runs as numbers, and a place for each number.
 fn numbered<'a>(runs: &[(&'a Points, bool)]) -> (Vec<Path>, Vec<Spot<'a>>) {
     let spots = runs.iter().flat_map(|(run, _)| (0..run.len()).map(move |i| (*run, i)));
     let mut sorted: Vec<([u64; 5], Spot<'a>)> = spots.map(|spot| (key(spot), spot)).collect();
@@ -101,7 +101,7 @@ fn junctions(paths: &[Path], count: usize) -> Vec<bool> {
 
 struct Maker {
     arcs: Vec<Run>,
-    /// Arcs by what they are in the direction that comes first.
+    /// Arcs, by their positions in the direction that comes first.
     known: BTreeMap<Run, i64>,
 }
 

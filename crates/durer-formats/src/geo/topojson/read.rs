@@ -142,7 +142,7 @@ impl Topology<'_> {
         Ok(())
     }
 
-    /// The features of an object: those of a collection, or it itself.
+    /// Reads the features of an object: those of a collection, or the object itself.
     fn object(&mut self, object: Text<'_>) -> Result<()> {
         let members = object.members()?;
         if kind(&members).as_deref() != Some("GeometryCollection")
@@ -240,7 +240,7 @@ impl Topology<'_> {
         }))
     }
 
-    /// Positions that stand in a geometry itself.
+    /// Reads positions that are given in a geometry itself.
     fn positions(
         &mut self,
         read: impl FnOnce(&mut dyn FnMut(&mut Cursor<'_>) -> Result<()>) -> Result<()>,

@@ -29,7 +29,7 @@ pub fn write(out: &mut impl Write, features: &[Feature], members: &[Member]) -> 
     out.write_all(b"\n]}\n")
 }
 
-/// The lines and rings of a geometry, in the order in which they are written.
+/// Collects the lines and rings of a geometry, in the order in which they are written.
 fn collect<'a>(geometry: &'a Geometry, runs: &mut Vec<(&'a Points, bool)>) {
     match geometry {
         Geometry::Point(_) | Geometry::MultiPoint(_) => {}
@@ -103,7 +103,7 @@ fn numbers(out: &mut impl Write, paths: &mut Paths<'_>) -> io::Result<()> {
     list(out, paths.next().into_iter().flatten(), |out, arc| write!(out, "{arc}"))
 }
 
-/// Returns an array; `write` writes each item.
+/// Writes an array; `write` writes each item.
 fn list<W: Write, T>(
     out: &mut W,
     items: impl IntoIterator<Item = T>,

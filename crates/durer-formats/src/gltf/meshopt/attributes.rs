@@ -93,8 +93,7 @@ fn decode_block(
     Ok(())
 }
 
-/// Returns the differences at one byte position of a block's elements; `lane` is rounded up to
-/// groups.
+/// Decodes the differences at one byte position of a block's elements; `lane` is rounded up to groups.
 fn decode_lane(
     body: &mut Bytes<'_>,
     lane: &mut [u8],
@@ -121,7 +120,7 @@ fn decode_lane(
     Ok(())
 }
 
-/// Sixteen differences of `width` bits; one whose bits are all set follows as a byte of its own.
+/// Decodes sixteen differences of `width` bits; one whose bits are all set follows as a byte of its own.
 fn decode_group(body: &mut Bytes<'_>, group: &mut [u8; GROUP], width: u32) -> Result<(), Refusal> {
     if width == 0 {
         group.fill(0);

@@ -6,7 +6,7 @@ use std::f32::consts::FRAC_1_SQRT_2;
 /// The largest normalized 16-bit value.
 const MAX_16: f32 = 32767.0;
 
-/// Undoes a filter by name, element by element.
+/// Reverses a filter by name, element by element.
 pub fn apply(bytes: &mut [u8], stride: usize, filter: &str) -> Result<(), Refusal> {
     let each_16 = |bytes: &mut [u8], undo: fn([i16; 4]) -> [i16; 4]| {
         for element in bytes.as_chunks_mut::<8>().0 {
@@ -76,14 +76,14 @@ fn quaternion(v: [i16; 4]) -> [i16; 4] {
     out
 }
 
-/// 2^e · m with the exponent in the upper 8 bits and the mantissa in the lower 24, both signed.
+/// Returns 2^e · m with the exponent in the upper 8 bits and the mantissa in the lower 24, both signed.
 fn exponential(v: i32) -> f32 {
     let (exponent, mantissa) = (v >> 24, v << 8 >> 8);
     let power = f64::from_bits(((1023 + i64::from(exponent)) as u64) << 52);
     (power * f64::from(mantissa)) as f32
 }
 
-/// RGBA from luma, two chroma and alpha; the highest set bit of the alpha gives the scale.
+/// Converts luma, two chroma and alpha to RGBA; the highest set bit of the alpha determines the scale.
 fn color([y, co, cg, _]: [i32; 4], alpha: u32, max: f32) -> [f32; 4] {
     // The luma is unsigned, whatever the lanes are.
     let y = y & max as i32;

@@ -39,7 +39,7 @@ struct Triangles<'a> {
     last: u32,
 }
 
-/// Triangle lists; `count` indices.
+/// Decodes triangle lists of `count` indices.
 pub fn decode_triangles(data: &[u8], count: usize) -> Result<Vec<u32>, Refusal> {
     let mut input = Bytes(data);
     if input.byte()? != 0xe1 {
@@ -84,7 +84,7 @@ impl Triangles<'_> {
         Ok(self.last)
     }
 
-    /// Returns a triangle on an edge of the queue (high four bits), with a third vertex (low four).
+    /// Decodes a triangle on an edge of the queue (high four bits), with a third vertex (low four).
     fn on_edge(&mut self, code: u8) -> Result<[u32; 3], Refusal> {
         let (a, b) = self.edges.get(code >> 4)?;
         let third = code & 15;
@@ -105,8 +105,7 @@ impl Triangles<'_> {
         Ok([a, b, c])
     }
 
-    /// Returns a triangle of three vertices, each fresh (0), from the queue (1 … 14) or written out
-    /// (15).
+    /// Decodes a triangle of three vertices, each fresh (0), from the queue (1 … 14) or written out (15).
     fn of_vertices(&mut self, first: u8, pair: u8) -> Result<[u32; 3], Refusal> {
         let kinds = [first, pair >> 4, pair & 15];
         let mut triangle = [0; 3];
@@ -131,7 +130,7 @@ impl Triangles<'_> {
     }
 }
 
-/// Indices of any kind, each against one of two baselines.
+/// Decodes indices of any kind, each against one of two baselines.
 pub fn decode_sequence(data: &[u8], count: usize) -> Result<Vec<u32>, Refusal> {
     let mut input = Bytes(data);
     if input.byte()? != 0xd1 {

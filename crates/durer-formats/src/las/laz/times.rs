@@ -1,9 +1,10 @@
 //! GPS times of LAZ's second version, without recursion.
 //!
-//! The crate `laz` follows a change of sequence by a call of itself, as deep as a file has such changes: a few hundred bytes
-//! overflow the stack. Writers change the sequence once per point.
+//! The crate `laz` follows a change of sequence by a call of itself, as deep as a file has such changes: a few hundred
+//! bytes overflow the stack. Writers change the sequence once per point.
 //!
-//! Source: M. Isenburg, *LASzip: lossless compression of LiDAR data*, Photogrammetric Engineering and Remote Sensing 79 (2), 2013.
+//! Source: M. Isenburg, *LASzip: lossless compression of LiDAR data*, Photogrammetric Engineering and Remote Sensing 79
+//! (2), 2013.
 
 use laz::decoders::ArithmeticDecoder;
 use laz::decompressors::{IntegerDecompressor, IntegerDecompressorBuilder};

@@ -28,6 +28,8 @@ impl Parser<'_> {
         Ok(self.out)
     }
 
+    /// Checks that something is left to show.
+    ///
     /// # Errors
     /// What was wrong first, where nothing can be shown because of it.
     fn check_something_left(&self) -> Result<()> {

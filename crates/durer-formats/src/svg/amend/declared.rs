@@ -12,7 +12,7 @@ use std::borrow::Cow;
 use usvg::roxmltree::Node;
 
 impl<'a, 'i> Walk<'a, 'i> {
-    /// Looks at what style sheets and the element's style say of a property.
+    /// Examines the declarations of a property in style sheets and in the element's style.
     #[allow(clippy::too_many_arguments)]
     pub(super) fn declared(
         &mut self,

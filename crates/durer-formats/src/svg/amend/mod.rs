@@ -26,7 +26,7 @@ pub(super) struct Amended {
     /// `None` if nothing has to be other.
     pub written: Option<Written>,
     pub warnings: Vec<Warning>,
-    /// The addresses of pictures, in the place of which their numbers stand now, and where they were.
+    /// Addresses of pictures, which their numbers have replaced, and where they were.
     pub pictures: Vec<(String, usize)>,
 }
 
@@ -107,7 +107,7 @@ impl<'a, 'i> Walk<'a, 'i> {
         }
     }
 
-    /// Looks at an element within a scope; gives that for what is in it.
+    /// Examines an element within a scope; returns the scope of its contents.
     fn element(&mut self, node: Node<'a, 'i>, mut scope: Scope) -> Result<Scope> {
         let name = node.tag_name().name();
         if !is_of_svg(&node) || name.starts_with("animate") || name == "set" || name == "style" {
@@ -199,7 +199,7 @@ impl<'a, 'i> Walk<'a, 'i> {
         edits.push((Cow::Borrowed("href"), Some(Cow::Owned(key))));
     }
 
-    /// Looks at an attribute.
+    /// Examines an attribute.
     fn attribute(
         &mut self,
         node: Node<'a, 'i>,
@@ -249,7 +249,7 @@ impl<'a, 'i> Walk<'a, 'i> {
         edits.push((Cow::Borrowed(name), edit));
     }
 
-    /// Tells what is wrong with a value; whether anything is.
+    /// Reports the fault of a value; returns whether there is one.
     fn check(
         &mut self,
         kind: Kind,
@@ -281,7 +281,7 @@ impl<'a, 'i> Walk<'a, 'i> {
         }
     }
 
-    /// Tells of references to what is not there.
+    /// Reports references to what does not exist.
     fn check_links(&mut self, node: Node<'a, 'i>, name: &str, value: &str, at: usize) {
         let element = node.tag_name().name();
         let wants = match name {

@@ -12,7 +12,7 @@ const MAX_STEPS: u64 = 300_000_000;
 /// the same type.
 type Positions = HashMap<NodeId, [i64; 4]>;
 
-/// Matches selectors with elements of a document.
+/// Matcher of selectors with elements of a document.
 #[derive(Debug, Default)]
 pub(super) struct Matcher {
     positions: Positions,
@@ -20,7 +20,7 @@ pub(super) struct Matcher {
 }
 
 impl Matcher {
-    /// For selectors of which some look at positions among siblings or not.
+    /// Creates a matcher for selectors; counts positions among siblings only if some of them need these.
     pub fn new<'a>(
         document: &Document<'_>,
         mut selectors: impl Iterator<Item = &'a Selector>,
@@ -41,8 +41,8 @@ impl Matcher {
 
     /// Returns whether an element matches a selector.
     ///
-    /// From the last part on backwards it keeps the elements that may be meant; of several that stand one within
-    /// another the innermost is enough where any ancestor will do. Cost: parts times ancestors and siblings.
+    /// From the last part on backwards it keeps the elements that may be meant; of several nested ones the innermost is
+    /// enough where any ancestor will do. Cost: parts times ancestors and siblings.
     pub fn matches(&self, selector: &Selector, node: Node<'_, '_>) -> bool {
         if !self.fits(&selector.last, node) {
             return false;
@@ -179,7 +179,7 @@ impl Test {
     }
 }
 
-/// Returns whether a selector looks at positions among siblings.
+/// Returns whether a selector depends on positions among siblings.
 fn counts(selector: &Selector) -> bool {
     let mut parts =
         std::iter::once(&selector.last).chain(selector.before.iter().map(|(_, part)| part));

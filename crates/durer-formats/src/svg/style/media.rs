@@ -7,7 +7,7 @@ use crate::css::{Piece, Token, Units, split, words};
 /// Screen that the drawing is seen on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Screen {
-    /// In pixels.
+    /// Width in pixels.
     pub width: f64,
     pub height: f64,
 }

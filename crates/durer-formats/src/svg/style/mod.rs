@@ -196,8 +196,7 @@ fn key(selector: &Selector) -> Option<&Simple> {
         .or_else(|| of(|s| matches!(s, Simple::Type(_))))
 }
 
-/// Returns a rule of which shorthands are divided and values that cannot be used are taken out and
-/// told.
+/// Returns a rule with shorthands divided; values that cannot be used are removed, with a warning.
 fn usable(rule: Rule, start: usize, is_sheet: bool, told: &mut Vec<Told>) -> Rule {
     let mut declarations = Vec::new();
     for mut declaration in rule.declarations {

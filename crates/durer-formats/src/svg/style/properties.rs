@@ -4,7 +4,7 @@ use super::sheet::{Declaration, shown};
 use super::variables::has_variables;
 use crate::svg::values::{Around, Kind};
 
-/// Those that elements take from around.
+/// Properties that elements inherit.
 const INHERITED: [(&str, &str); 40] = [
     ("clip-rule", "nonzero"),
     ("color", "black"),
@@ -98,10 +98,10 @@ const OTHERS: [&str; 45] = [
     "glyph-orientation-horizontal",
 ];
 
-/// Those that usvg reads in a `style` attribute alone.
+/// Properties that usvg reads in a `style` attribute alone.
 pub(crate) const IN_STYLE: [&str; 3] = ["mix-blend-mode", "isolation", "font-kerning"];
 
-/// Those that change a picture in browsers, but not here.
+/// Properties that change a picture in browsers, but not here.
 const NOT_DRAWN: [&str; 26] = [
     "animation",
     "animation-name",
@@ -158,7 +158,7 @@ pub(crate) fn takes(element: &str, name: &str) -> bool {
     }
 }
 
-/// Keywords that every property may have.
+/// Returns whether a value is a keyword that every property may have.
 fn is_general(value: &str) -> bool {
     ["inherit", "initial", "unset", "revert", "revert-layer"]
         .iter()

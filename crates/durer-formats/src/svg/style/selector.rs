@@ -269,7 +269,7 @@ impl<'a, 'b> Parser<'a, 'b> {
         }
     }
 
-    /// Returns a pseudo-class or pseudo-element, to its end.
+    /// Parses a pseudo-class or pseudo-element, to its end.
     fn pseudo(&mut self, specificity: &mut Specificity) -> Option<Simple> {
         self.at += 1;
         let is_element = self.peek() == Some(&Token::Other(':'));

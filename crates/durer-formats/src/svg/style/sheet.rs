@@ -9,10 +9,10 @@ use crate::css::{Piece, Token, tokens};
 /// Rules within `@media` and `@supports` may be so deep.
 const MAX_DEPTH: u32 = 8;
 
-/// Value of a property.
+/// A property with its value.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Declaration {
-    /// In small letters, unless it is a custom property.
+    /// Name, in small letters unless it is a custom property.
     pub name: String,
     pub value: String,
     pub is_important: bool,
@@ -130,7 +130,7 @@ impl Reader<'_, '_> {
         self.sheet.rules.push(Rule { selectors, declarations });
     }
 
-    /// Returns a rule that begins with `@`; gives where it is over.
+    /// Parses a rule that begins with `@`; returns where it ends.
     fn at_rule(&mut self, name: &str, at: usize, end: usize, depth: u32) -> usize {
         let open = self.find(at + 1, end, &[Token::Open('{'), Token::Other(';')]);
         let is_block = self.pieces.get(open).is_some_and(|piece| piece.token == Token::Open('{'));

@@ -33,7 +33,8 @@ struct Set {
 }
 
 impl Variables {
-    /// Returns a set of what an element says itself, within the one around it. Values are as said.
+    /// Adds the properties that an element itself declares, within those around it, and returns the number of the set.
+    /// Values are as declared.
     pub fn add(&mut self, around: Option<usize>, said: BTreeMap<String, String>) -> usize {
         let mut values = BTreeMap::new();
         for name in said.keys() {
@@ -83,8 +84,8 @@ impl Variables {
         self.replace(value, set, &BTreeMap::new(), &mut Vec::new())
     }
 
-    /// Replaces like [`Self::replaced`]; `said` are values that are not replaced yet, `open` the names of those that are
-    /// being replaced.
+    /// Replaces like [`Self::replaced`]; `said` are values that are not replaced yet, `open` the names of those that
+    /// are being replaced.
     fn replace(
         &mut self,
         value: &str,

@@ -18,7 +18,7 @@ const ERROR: f64 = 1.0 / (1u128 << 96) as f64;
 const TAME: std::ops::Range<f64> = 1e-60..1e60;
 
 impl Pair {
-    /// a + b, exactly.
+    /// Returns a + b, exactly.
     #[inline(always)]
     fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
@@ -26,13 +26,13 @@ impl Pair {
         Self(high, (a - (high - of_b)) + (b - of_b))
     }
 
-    /// a − b, exactly.
+    /// Returns a − b, exactly.
     #[inline(always)]
     fn difference(a: f64, b: f64) -> Self {
         Self::sum(a, -b)
     }
 
-    /// a · b, exactly.
+    /// Returns a · b, exactly.
     #[inline(always)]
     fn product(a: f64, b: f64) -> Self {
         let halves = |v: f64| {
@@ -104,8 +104,7 @@ impl Mul for Pair {
     }
 }
 
-/// Returns the coordinate on axis k of the crossing of two segments' lines, where this tells how it is
-/// rounded.
+/// Returns the coordinate on axis k of the crossing of two segments' lines, if this determines its rounding.
 pub(super) fn crossing(k: usize, [a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<f64> {
     let minus = |p: DVec2, q: DVec2| [0, 1].map(|k| Pair::difference(p[k], q[k]));
     let (along, across, between) = (minus(b, a), minus(d, c), minus(c, a));

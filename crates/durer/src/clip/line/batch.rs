@@ -93,7 +93,7 @@ impl Clipped {
         })
     }
 
-    /// Drops what is not accepted and returns the indices in the input of what is left.
+    /// Drops the segments that are not accepted and returns the indices in the input of the others.
     ///
     /// Afterwards every entry is accepted and [`Clipped::non_finite`] still speaks of the input.
     pub fn compact(&mut self) -> Vec<usize> {
@@ -224,7 +224,7 @@ fn clip_range(
     dispatch!(level, simd => range_kernel(simd, window, input, &mut output, accepted, doubtful));
 }
 
-/// Clips segment i by the scalar algorithm; whether its coordinates are finite.
+/// Clips segment i by the scalar algorithm; returns whether its coordinates are finite.
 fn clip_one(
     window: &Rect,
     input: [&[f64]; 4],
@@ -347,7 +347,7 @@ struct Lanes<S: Simd> {
     doubt: u64,
 }
 
-/// Between these, products of distances are as exact as rounding is.
+/// Smallest product of distances that is exact but for relative rounding errors.
 const LEAST_PRODUCT: f64 = 1e-280;
 /// See [`LEAST_PRODUCT`].
 const GREATEST_PRODUCT: f64 = 1e300;

@@ -29,7 +29,7 @@ impl End {
 }
 
 impl<P> Segment<P> {
-    /// Replaces one end; what replaying a trace does.
+    /// Replaces one end; for replaying a trace.
     pub(super) fn moved(mut self, end: End, point: P) -> Self {
         match end {
             End::Start => self.start = point,
@@ -93,7 +93,7 @@ pub(super) fn bit(axis: usize, upper: usize) -> Outcode {
     Outcode(1 << (2 * axis + upper))
 }
 
-/// Axis and side of the lowest bit of a code that is not empty.
+/// Returns the axis and side of the lowest bit of a code that is not empty.
 #[inline]
 pub(super) fn lowest_border(code: Outcode) -> (usize, usize) {
     let k = code.0.trailing_zeros() as usize;
@@ -101,7 +101,7 @@ pub(super) fn lowest_border(code: Outcode) -> (usize, usize) {
 }
 
 impl<const N: usize> ClipBox<N> {
-    /// Beyond which borders the point lies; exact comparisons.
+    /// Returns the borders that the point is beyond; comparisons are exact.
     #[inline]
     pub(super) fn code(&self, p: [f64; N]) -> Outcode {
         let mut code = 0;
@@ -124,6 +124,8 @@ pub(crate) struct Canonical<const N: usize> {
 }
 
 impl<const N: usize> Canonical<N> {
+    /// Creates the segment from its lexicographically smaller to its larger end point.
+    ///
     /// # Errors
     /// [`Error::NonFinite`], with index 0 for the start and 1 for the end.
     #[inline]
@@ -143,7 +145,7 @@ impl<const N: usize> Canonical<N> {
         Segment { start: start.into(), end: end.into() }
     }
 
-    /// The crossing with `x[axis] = border`, which the segment must span.
+    /// Returns the crossing with `x[axis] = border`, which the segment must span.
     ///
     /// The coordinate on the axis is the border itself; the others are within 4 ulp of the largest
     /// coordinate, and on the side of each border of the window that the exact crossing is on.
@@ -200,7 +202,7 @@ impl<const N: usize> Canonical<N> {
         Outcode::INSIDE
     }
 
-    /// p + (q − p)·t with t = (border − p) / (q − p) on the axis.
+    /// Returns p + (q − p)·t with t = (border − p) / (q − p) on the axis.
     #[inline]
     pub(super) fn interpolate(&self, axis: usize, border: f64) -> [f64; N] {
         let mut point = self.at(self.parameter(axis, border));
@@ -208,7 +210,7 @@ impl<const N: usize> Canonical<N> {
         point
     }
 
-    /// t of the crossing with a border: 0 at p, 1 at q.
+    /// Returns t of the crossing with a border: 0 at p, 1 at q.
     #[inline]
     pub(super) fn parameter(&self, axis: usize, border: f64) -> f64 {
         let (p, q) = (self.p[axis], self.q[axis]);
@@ -220,7 +222,7 @@ impl<const N: usize> Canonical<N> {
         }
     }
 
-    /// p + (q − p)·t for 0 ≤ t ≤ 1; finite even where q − p is not.
+    /// Returns p + (q − p)·t for 0 ≤ t ≤ 1; finite even where q − p is not.
     #[inline]
     pub(crate) fn at(&self, t: f64) -> [f64; N] {
         let (p, q) = (&self.p, &self.q);
@@ -228,7 +230,7 @@ impl<const N: usize> Canonical<N> {
         if finite(&point) { point } else { self.at_huge(t) }
     }
 
-    /// Returns the same where a difference overflows: with everything an eighth as large.
+    /// Returns the point of [`Self::at`] where a difference overflows: with everything an eighth as large.
     #[cold]
     fn at_huge(&self, t: f64) -> [f64; N] {
         let (p, q) = (self.p.map(|v| v * 0.125), self.q.map(|v| v * 0.125));
@@ -290,7 +292,7 @@ pub(super) fn is_greater<const N: usize>(a: &[f64; N], b: &[f64; N]) -> bool {
     (0..N).rev().fold(false, |rest, k| (a[k] > b[k]) | ((a[k] == b[k]) & rest))
 }
 
-/// [b, a] where `swap`, else [a, b]; by masks, for the same reason.
+/// Returns [b, a] where `swap`, else [a, b]; by masks, for the same reason as [`is_greater`].
 #[inline]
 fn exchanged_if<const N: usize>(swap: bool, a: [f64; N], b: [f64; N]) -> [[f64; N]; 2] {
     let mask = 0u64.wrapping_sub(u64::from(swap));

@@ -40,7 +40,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// There is nothing to choose.
+/// Empty options: the algorithm has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
@@ -54,9 +54,9 @@ pub enum Step<P> {
         /// Outcode of the end.
         end: Outcode,
     },
-    /// OR of the codes is empty: what is left lies inside.
+    /// OR of the codes is empty: the rest is inside.
     Accepted,
-    /// AND of the codes is not empty: everything left lies beyond one border.
+    /// AND of the codes is not empty: all of the rest is beyond one border.
     Rejected,
     /// One end moved to a border.
     Cut {
@@ -188,7 +188,7 @@ fn run<const N: usize, P: From<[f64; N]>>(
 #[derive(Debug, Clone, Copy)]
 struct Line<const N: usize> {
     ends: [[f64; N]; 2],
-    /// From the first to the second.
+    /// Vector from the first end to the second.
     way: [f64; N],
 }
 
@@ -217,11 +217,11 @@ impl<const N: usize> Line<N> {
         Ok((code, point[k]))
     }
 
-    /// The crossing with a border, which the segment must span, coordinate by coordinate, and its code; segments
-    /// parallel to the axis take the short way without arithmetic.
+    /// Returns the crossing with a border, which the segment must span, coordinate by coordinate, and its code.
+    /// Segments parallel to the axis take the short way without arithmetic.
     ///
-    /// Coordinates that are not finite let none of the quick tests succeed, so that only what these
-    /// leave open needs to be looked at.
+    /// Coordinates that are not finite let none of the quick tests succeed, so that only the cases that these leave
+    /// open have to be tested.
     // A call would pass the cut through memory, which costs as much as making it.
     #[inline(always)]
     fn cut(

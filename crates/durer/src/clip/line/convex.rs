@@ -81,8 +81,8 @@ fn turns(ring: &[DVec2]) -> impl Iterator<Item = Orientation> + '_ {
     pairs(ring).zip(ring.iter().cycle().skip(2)).map(|((a, b), c)| orient2d(a, b, *c))
 }
 
-/// A ring that only turns left goes round once if it goes up and down again only once, and does not
-/// turn back on itself.
+/// Returns whether a ring that only turns left goes round once: whether it goes up and down again only once, and does
+/// not turn back on itself.
 fn goes_round_once(ring: &[DVec2]) -> bool {
     let ups: Vec<bool> =
         pairs(ring).filter(|(a, b)| a != b).map(|(a, b)| (b.y, b.x) > (a.y, a.x)).collect();
@@ -102,14 +102,14 @@ pub struct Edge {
 /// A closed half space E ≥ 0 of N dimensions that knows how far its rounded E can be off:
 /// [`HalfPlane`], [`Edge`] or [`Plane`].
 pub trait HalfSpace<const N: usize> {
-    /// E(p) rounded, and a bound of its error; both may be infinite or NaN for huge coordinates.
+    /// Returns E(p) rounded, and a bound of its error; both may be infinite or NaN for huge coordinates.
     fn value(&self, p: [f64; N]) -> (f64, f64);
-    /// E(p) itself.
+    /// Returns E(p) exactly.
     #[doc(hidden)]
     fn exact(&self, p: [f64; N]) -> Exact;
     /// Returns the gradient of E, rounded.
     fn normal(&self) -> [f64; N];
-    /// Axis and coordinate of a border that is parallel to all other axes and has such a number.
+    /// Returns the axis and coordinate of a border that is parallel to all other axes and has such a number.
     fn coordinate(&self) -> Option<(usize, f64)>;
     /// Returns corners of the window on this border, if known.
     fn corners(&self) -> Vec<[f64; N]> {
@@ -266,7 +266,7 @@ fn nearest_corner<const N: usize, H: HalfSpace<N>>(
     space.corners().into_iter().find(|c| offset(c) <= scale * (64.0 * EPSILON))
 }
 
-/// t of the crossing: 0 at p, 1 at q; to within a few ulp.
+/// Returns t of the crossing: 0 at p, 1 at q; to within a few ulp.
 pub(crate) fn parameter<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N>) -> f64 {
     let ((p, p_off), (q, q_off)) = (space.value(line.p), space.value(line.q));
     let accurate = |v: f64, off: f64| off <= v.abs() * 1e-14 && off > 1e-280 && v.is_finite();
@@ -296,8 +296,8 @@ fn settled<const N: usize, H: HalfSpace<N>>(
     None
 }
 
-/// Turns around the borders after which a window is taken to hold no floating-point point near the
-/// cut: enough for steps to grow from an ulp of the point to one of the segment's ends.
+/// Number of turns around the borders after which a window is taken to hold no floating-point point near the cut:
+/// enough for steps to grow from an ulp of the point to one of the segment's ends.
 const SETTLE_ROUNDS: i32 = 64;
 
 /// Moves a cut point that rounding has put outside along one axis to the first number inside the border

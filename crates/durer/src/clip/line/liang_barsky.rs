@@ -45,7 +45,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// There is nothing to choose.
+/// Empty options: the algorithm has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
@@ -135,7 +135,7 @@ fn run<const N: usize, P: From<[f64; N]>>(
     Ok(Some(finish(segment, &line, cut(lower), cut(upper), t)))
 }
 
-/// Tells a tracer of every border, in order, crossed or not.
+/// Reports every border to a tracer, in order, crossed or not.
 fn report<const N: usize, P>(
     window: &ClipBox<N>,
     line: &Canonical<N>,

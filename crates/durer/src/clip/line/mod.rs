@@ -41,9 +41,9 @@ use crate::{Error, Result};
 /// A straight piece from `start` to `end`, both included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Segment<P> {
-    /// Start of the visible part.
+    /// Start of the segment.
     pub start: P,
-    /// End of the visible part.
+    /// End of the segment.
     pub end: P,
 }
 
@@ -53,7 +53,7 @@ impl<P> Segment<P> {
         Self { start, end }
     }
 
-    /// Returns the same points in the other direction.
+    /// Returns the segment in the other direction.
     pub fn reversed(self) -> Self {
         Self { start: self.end, end: self.start }
     }

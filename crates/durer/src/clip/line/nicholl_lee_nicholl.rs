@@ -41,7 +41,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// There is nothing to choose.
+/// Empty options: the algorithm has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 

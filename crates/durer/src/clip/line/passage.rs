@@ -53,7 +53,7 @@ impl<P> Step<P> {
     }
 }
 
-/// The numbers of a border as the methods are taught; rounded, while what they decide is decided exactly.
+/// The numbers of a border as the methods are taught; rounded, while the decisions are exact.
 ///
 /// E(P) = n · (P − Q) has a normal n that points inwards, and Q on the border: E ≥ 0 inside. It is q of Liang and
 /// Barsky, the boundary coordinate d of Blinn and Newell; with Cyrus and Beck's outer normal it has the other sign.
@@ -70,7 +70,7 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// p of Liang and Barsky, the product of the outer normal and the segment's direction: where it is
+    /// Returns p of Liang and Barsky, the product of the outer normal and the segment's direction: where it is
     /// negative the segment enters, where it is positive it leaves, if it is zero it runs along the border.
     pub fn p(&self) -> f64 {
         self.start - self.end
@@ -95,7 +95,7 @@ pub(super) struct Bounds {
 impl Bounds {
     pub const WHOLE: Self = Self { lower: 0.0, upper: 1.0 };
 
-    /// Returns the step of the next border, from what is known of the canonical segment.
+    /// Updates the bounds by the next border, and returns the step.
     pub fn step<const N: usize, P>(
         &mut self,
         line: &Canonical<N>,
@@ -154,7 +154,7 @@ pub(super) fn clip<const N: usize, P: From<[f64; N]>, H: HalfSpace<N>>(
     Some(finish(segment, line, cut(passage.entering), cut(passage.leaving), t))
 }
 
-/// Returns the same with the cut points of [`convex::crossing`].
+/// Clips a segment as [`clip`], with the cut points of [`convex::crossing`].
 pub(super) fn clip_convex<const N: usize, P: From<[f64; N]>, H: HalfSpace<N>>(
     spaces: &[H],
     segment: Segment<P>,
@@ -209,7 +209,7 @@ impl Relation {
         }
     }
 
-    /// From whether the start and the end are inside.
+    /// Returns the relation by whether the start and the end are inside.
     pub(super) fn of(inside: [bool; 2]) -> Self {
         match inside {
             [true, true] => Self::Inside,
@@ -227,8 +227,8 @@ struct Passage {
     leaving: Option<usize>,
 }
 
-/// Finds the last border entered and the first one left; `None` if the segment misses the
-/// intersection of the half spaces. `report` hears of every half space looked at.
+/// Finds the last border entered and the first one left; `None` if the segment misses the intersection of the half
+/// spaces. `report` is called for every half space examined.
 fn passage<const N: usize, H: HalfSpace<N>>(
     spaces: &[H],
     line: &Canonical<N>,

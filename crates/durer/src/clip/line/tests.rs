@@ -15,7 +15,7 @@ const FLOAT: [LineClipper; 5] = [
     LineClipper::Homogeneous,
 ];
 
-/// Coordinates of one family: a tiny grid where everything touches, or numbers of every size.
+/// Returns coordinates of one family: a tiny grid where everything touches, or numbers of every size.
 fn coordinate(family: usize) -> BoxedStrategy<f64> {
     match family {
         0 => (-3i32..=3).prop_map(f64::from).boxed(),
@@ -64,7 +64,7 @@ fn meets(w: &Rect, s: &Segment<DVec2>) -> bool {
     w.overlaps(&around) && !one_side(Ordering::Less) && !one_side(Ordering::Greater)
 }
 
-/// 4 ulp of the largest coordinate involved.
+/// Returns 4 ulp of the largest coordinate involved.
 fn tolerance(w: &Rect, s: &Segment<DVec2>) -> f64 {
     let largest = [w.min(), w.max(), s.start, s.end]
         .iter()
@@ -144,7 +144,7 @@ proptest! {
         prop_assert_eq!(bits(places), bits(got));
     }
 
-    /// Points of any positive weight stand for the same places; exact where weights are powers of two.
+    /// Points of any positive weight represent the same places; exact where weights are powers of two.
     #[test]
     fn weights_do_not_move_places((w, s) in case(), k in prop::array::uniform2(-3i32..=3)) {
         let weights = k.map(|k| libm::scalbn(1.0, k));

@@ -156,8 +156,8 @@ impl Area {
 /// second or less; beyond it heights are interpolated along the border from the known ones.
 const PAIRS: usize = 1 << 26;
 
-/// Returns values if none is known: along the ring, by length, between the known ones before and
-/// after; where the ring has none, by `otherwise`.
+/// Returns the values of a ring with the unknown ones filled in: by length along the ring between the known ones before
+/// and after; if the ring has none, by `otherwise`.
 fn fill(ring: &[DVec2], known: &[Option<Zm>], otherwise: impl Fn(DVec2) -> Zm) -> Vec<Zm> {
     let count = ring.len();
     let Some(first) = known.iter().position(Option::is_some) else {

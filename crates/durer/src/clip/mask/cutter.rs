@@ -91,7 +91,7 @@ pub struct Cut {
     pub lost: bool,
     /// Points of polygons that stay on the grid, not where edges cross or vertices were.
     pub snapped: usize,
-    /// Lines without length, of which nothing is left.
+    /// Lines without length, which vanish.
     pub flat: usize,
 }
 

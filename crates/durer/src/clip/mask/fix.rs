@@ -38,8 +38,8 @@ pub fn is_valid(geometry: &Geometry) -> bool {
 }
 
 impl Rules {
-    /// Makes the polygons of a geometry valid: edges that cross are cut there, spikes and doubled rings vanish. What is
-    /// valid by the even-odd rule stays as it is; members of collections are taken one by one.
+    /// Makes the polygons of a geometry valid: edges that cross are cut there, spikes and doubled rings vanish.
+    /// Geometries that are valid by the even-odd rule stay as they are; members of collections are taken one by one.
     ///
     /// # Errors
     /// As [`Rules::clean`].
@@ -70,9 +70,9 @@ impl Rules {
     }
 }
 
-/// Gives polygons the points that neighbours have on the borders that they share, where these lie on the border but for
-/// the rounding of coordinates ([`matched()`]); returns how many geometries got some. Collections, lines and points stay
-/// as they are.
+/// Adds to polygons the points that neighbours have on the borders that they share, where these lie on the border but
+/// for the rounding of coordinates ([`matched()`]); returns how many geometries got some. Collections, lines and points
+/// stay as they are.
 pub fn match_points(geometries: &mut [Option<Geometry>]) -> usize {
     let area = |geometry: &Option<Geometry>| match geometry {
         Some(geometry @ (Geometry::Polygon(_) | Geometry::MultiPolygon(_))) => {

@@ -16,7 +16,7 @@ struct Ring<'a> {
     sign: f64,
 }
 
-/// See the module.
+/// Polygons with values along their borders, which determine the values within.
 pub struct MeanValues<'a> {
     polygons: Vec<Vec<Ring<'a>>>,
 }

@@ -44,7 +44,7 @@ pub struct Union {
 }
 
 impl Union {
-    /// Adds a geometry, with its valid polygons as [`Rules::clean`] gives them. Heights and measures that some of the
+    /// Adds a geometry, with its valid polygons as returned by [`Rules::clean`]. Heights and measures that some of the
     /// geometries lack are 0 there; returns whether that is so.
     pub fn add(&mut self, geometry: &Geometry, valid: &Area) -> bool {
         let mixed = self.area.append(valid);

@@ -218,7 +218,7 @@ impl Linked {
         }
     }
 
-    /// Tells a tracer of both lists.
+    /// Reports both lists to a tracer.
     pub fn tell(&self, t: &mut impl Tracer<Step>) {
         for (lists, list) in self.lists.iter().zip([Operand::Subject, Operand::Clip]) {
             for v in lists.starts.iter().flat_map(|start| lists.ring(start.vertex)) {

@@ -19,7 +19,7 @@ use crate::trace::Tracer;
 
 pub use super::steps::{Mark, Operand, Options, Step, replay};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "greiner-hormann",
     title: "Greiner–Hormann",
@@ -106,7 +106,7 @@ fn walk(linked: &Linked, op: BooleanOp, t: &mut impl Tracer<Step>) -> Vec<Vec<DV
     found
 }
 
-/// For each vertex that crosses: whether its list enters the other's region there.
+/// Returns for each vertex that crosses whether its list enters the other's region there.
 ///
 /// These alternate along a ring, from where it starts. Of rings that do not cross, the edges tell it of each crossing
 /// alone, and exactly, also where rounding has put several crossings in one place.

@@ -21,7 +21,7 @@ pub(super) fn is_flat(ring: &Ring) -> bool {
     ring.iter().all(|&c| orient2d(a, b, c) == Orientation::Collinear)
 }
 
-/// For each ring those that it lies within; boxes decide first, in the order of their left sides.
+/// Returns for each ring those that it is within; boxes decide first, in the order of their left sides.
 fn parents(rings: &[Vec<DVec2>]) -> Vec<Vec<usize>> {
     let mut parents = vec![Vec::new(); rings.len()];
     let boxes = rings.iter().map(|ring| Rect::around(ring.iter().copied()));

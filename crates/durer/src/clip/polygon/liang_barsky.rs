@@ -2,12 +2,12 @@
 //!
 //! Y.-D. Liang, B. A. Barsky, *An analysis and algorithm for polygon clipping*, Communications of the ACM 26(11), 1983;
 //! named as in Foley, van Dam, Feiner, Hughes, *Computer Graphics* (1990), 19.1.3. Object space. Cost: O(n) for n
-//! vertices, one pass. An edge's line enters both slabs of the window and leaves both; where it is in both at once the edge
-//! is seen, and where it enters one only after it has left the other, or leaves the last, the border that is being made
-//! turns around a corner of the window.
+//! vertices, one pass. An edge's line enters both slabs of the window and leaves both; where it is in both at once the
+//! edge is seen, and where it enters one only after it has left the other, or leaves the last, the border that is being
+//! made turns around a corner of the window.
 //!
-//! **Bridging edges**, as with [`super::sutherland_hodgman`]: the result is one ring, which may run to and fro along the
-//! window's border. Parameters are compared as rounded; cuts lie exactly on their border.
+//! **Bridging edges**, as with [`super::sutherland_hodgman`]: the result is one ring, which may run to and fro along
+//! the window's border. Parameters are compared as rounded; cuts lie exactly on their border.
 
 use super::signed_area;
 use crate::info::{Class, Info, Occluder};
@@ -15,7 +15,7 @@ use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "liang-barsky-polygon",
     title: "Liang–Barsky polygon clipping",
@@ -171,7 +171,7 @@ impl Line {
         DVec2::new(self.from.x + (self.to.x - self.from.x) * t, border)
     }
 
-    /// Tells the points that the edge adds to the ring.
+    /// Emits the points that the edge adds to the ring.
     fn walk(&self, mut put: impl FnMut(Step)) {
         let (x, y) = (&self.x, &self.y);
         let (out_1, out_2) = (x.t_out.min(y.t_out), x.t_out.max(y.t_out));

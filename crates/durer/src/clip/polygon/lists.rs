@@ -101,7 +101,7 @@ impl Lists {
     }
 }
 
-/// Links the vertices of a crossing; `enters` tells whether the subject comes in.
+/// Links the vertices of a crossing; `enters` is true if the subject enters.
 pub(super) fn join(lists: &mut [Lists; 2], [s, c]: [usize; 2], enters: bool) {
     let vertex = &mut lists[0].vertices[s];
     (vertex.twin, vertex.enters) = (Some(c), enters);

@@ -21,7 +21,7 @@ use crate::trace::NoTrace;
 use crate::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "coverage-check",
     title: "Validity of coverages by their edges",
@@ -48,7 +48,7 @@ pub enum Mismatch {
 }
 
 impl Mismatch {
-    /// Returns the words for it, as a message says them.
+    /// Returns the words for it in messages.
     pub const fn words(self) -> &'static str {
         match self {
             Self::Overlap => "two features overlap",
@@ -72,7 +72,7 @@ impl Mismatch {
 /// A mismatch and its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Misfit {
-    /// Kind of the mismatch.
+    /// Kind of mismatch.
     pub mismatch: Mismatch,
     /// A point of it.
     pub at: DVec2,
@@ -80,8 +80,8 @@ pub struct Misfit {
     pub features: [usize; 2],
 }
 
-/// Returns what keeps features from being a coverage, sorted by features and places; empty if they are one.
-/// Each feature must be [valid](super::validity::flaws).
+/// Returns the mismatches that keep features from being a coverage, sorted by features and places; empty if they are
+/// one. Each feature must be [valid](super::validity::flaws).
 ///
 /// `gap_width`: holes of the whole whose area is less than this times half their length are gaps; `None`: none is.
 ///
@@ -118,7 +118,7 @@ pub fn misfits(features: &[Shapes], gap_width: Option<f64>) -> Result<Vec<Misfit
 struct Layer<'a> {
     features: &'a [Shapes],
     whole: Shapes,
-    /// For each ring of the whole, its feature, and whether it runs the other way than outer rings and holes should.
+    /// Each ring of the whole: its feature, and whether it runs the other way than outer rings and holes should.
     rings: Vec<(usize, bool)>,
 }
 
@@ -332,8 +332,8 @@ fn is_within(p: DVec2, edge: &Edge) -> bool {
     p != edge.a && p != edge.b && p.cmpge(low).all() && p.cmple(high).all()
 }
 
-/// For each polygon the first of its vertices, or else of the middles of its edges, that is not on the border of the
-/// other feature, where a middle is rounded, tells where it is: returns the first such point that is inside.
+/// Returns a point of the first polygon that is inside `outer`. The first of its vertices that is not on the border of
+/// `outer` decides, or else the first such middle of its edges; middles are rounded.
 fn first_within(inner: &Shapes, outer: &Prepared) -> Option<DVec2> {
     let around = outer.bounds()?;
     inner.polygons().find_map(|polygon| {
@@ -404,8 +404,8 @@ mod tests {
         assert_eq!(found(&[inside, feature(&[LEFT])]), within);
     }
 
-    /// Lesotho and the hole of South Africa around it, in Natural Earth's map 1:110 million: the middles of their common edges
-    /// are rounded to one side or the other.
+    /// Lesotho and the hole of South Africa around it, in Natural Earth's map 1:110 million: the middles of their
+    /// common edges are rounded to one side or the other.
     #[test]
     fn what_fills_a_hole_does_not_overlap_with_what_is_around() {
         let lesotho: &[(f64, f64)] = &[

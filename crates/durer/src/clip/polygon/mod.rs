@@ -1,7 +1,7 @@
-//! Polygons: their shape types, and the clippers that take and give them.
+//! Polygons: the types of shapes, and the algorithms that clip them.
 //!
-//! [`overlay()`] is the robust door: any rings in, valid polygons out. [`rectangle`] is the fast path
-//! for windows and map tiles. The others are the published algorithms, each with its preconditions.
+//! [`overlay()`] is the robust way to clip: it accepts any rings and returns valid polygons. [`rectangle`] is the fast
+//! path for windows and map tiles. The others are the published algorithms, each with its own preconditions.
 
 pub mod coverage;
 mod cyclic;
@@ -40,7 +40,7 @@ use crate::trace::NoTrace;
 use crate::{Error, Result};
 
 crate::info::family! {
-    /// The algorithms that clip polygons with polygons.
+    /// Algorithm that clips polygons with polygons.
     pub enum PolygonClipper {
         /// [`rectangle`]
         Rectangle => rectangle::INFO,
@@ -61,10 +61,10 @@ impl PolygonClipper {
     /// Runs the algorithm with its default options, by the even-odd rule.
     ///
     /// # Errors
-    /// As [`overlay()`]; all take only finite points. [`Error::Unsupported`] for Weiler–Atherton where
-    /// rings of one operand cross or overlap, for Greiner–Hormann if they also touch the other; for the rectangle clip and
-    /// Sutherland–Hodgman with an operation other than intersection, and where the clip is
-    /// not one rectangle, or one ring; [`Error::Parameter`] where that ring is not convex.
+    /// As [`overlay()`]; all take only finite points. [`Error::Unsupported`] for Weiler–Atherton if rings of one
+    /// operand cross or overlap, and for Greiner–Hormann if they also touch the other operand; for the rectangle clip
+    /// and Sutherland–Hodgman for operations other than intersection, and for a clip that is not a single rectangle or
+    /// a single ring, respectively. [`Error::Parameter`] if that ring is not convex.
     pub fn clip(self, subject: &Shapes, clip: &Shapes, op: BooleanOp) -> Result<Shapes> {
         let t = &mut NoTrace;
         let points = || subject.points().iter().chain(clip.points());
@@ -120,7 +120,7 @@ impl PolygonClipper {
     }
 }
 
-/// Returns the rectangle that the shapes are, if they are one ring of its four corners.
+/// Returns the shapes as a rectangle, if they are a single ring of its four corners.
 fn as_rectangle(shapes: &Shapes) -> Option<Rect> {
     let [a, b, c, d] = *shapes.points() else { return None };
     let upright = a.x == b.x && b.y == c.y && c.x == d.x && d.y == a.y;
@@ -129,8 +129,8 @@ fn as_rectangle(shapes: &Shapes) -> Option<Rect> {
     one.then(|| Rect::around([a, c])).flatten()
 }
 
-/// Winding rule: decides from the winding number w around a point whether a set of closed curves
-/// encloses it: the five rules of OpenGL's tessellator (GLU 1.3, 5.1).
+/// Rule that decides from the winding number w of a point whether a set of closed curves encloses it: the five winding
+/// rules of OpenGL's tessellator (GLU 1.3, 5.1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum WindingRule {
     /// w is odd.
@@ -142,7 +142,7 @@ pub enum WindingRule {
     Positive,
     /// w < 0: inside curves that run clockwise (y up).
     Negative,
-    /// |w| ≥ 2: inside two curves that run the same way, or twice inside one.
+    /// |w| ≥ 2: inside two curves that run the same way, or twice inside the same curve.
     AbsGeqTwo,
 }
 
@@ -162,7 +162,7 @@ impl WindingRule {
         }
     }
 
-    /// Returns whether a point of this winding number is inside.
+    /// Returns whether a point with this winding number is inside.
     #[inline]
     pub const fn fills(self, winding: i32) -> bool {
         match self {
@@ -178,14 +178,14 @@ impl WindingRule {
 /// Boolean operation on two regions, the subject A and the clip B.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum BooleanOp {
-    /// A ∩ B: what is in both.
+    /// A ∩ B: the points in both.
     #[default]
     Intersection,
-    /// A ∪ B: what is in one or both.
+    /// A ∪ B: the points in one or both.
     Union,
-    /// A ∖ B: what is in the subject only.
+    /// A ∖ B: the points only in the subject.
     Difference,
-    /// A △ B: what is in exactly one.
+    /// A △ B: the points in exactly one.
     Xor,
 }
 
@@ -204,7 +204,7 @@ impl BooleanOp {
         }
     }
 
-    /// Returns whether a point belongs to the result, from whether it belongs to subject and clip.
+    /// Returns whether a point is in the result, given whether it is in the subject and in the clip.
     #[inline]
     pub const fn keeps(self, subject: bool, clip: bool) -> bool {
         match self {

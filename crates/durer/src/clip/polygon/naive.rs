@@ -11,7 +11,7 @@ use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
 
-/// There is nothing to choose.
+/// Empty options: the algorithm has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
@@ -45,7 +45,7 @@ pub fn replay(steps: &[Step]) -> Vec<DVec2> {
     ring
 }
 
-/// Clips every edge of a ring as a line and joins what is left; **wrong** as a polygon clip.
+/// Clips every edge of a ring as a line and joins the parts; **wrong** as a polygon clip.
 ///
 /// ```
 /// use durer::clip::polygon::{naive, signed_area};

@@ -20,7 +20,7 @@ pub struct NestingTree {
 }
 
 impl NestingTree {
-    /// Finds the tree by a sweep over all edges, each ring asking what is below its first point.
+    /// Finds the tree by a sweep over all edges, which finds the edge below the first point of each ring.
     ///
     /// It is right where the shapes are valid, as results of [`overlay()`](super::overlay()) are; of
     /// others it is some tree. O(n log n) time and O(n) memory for n points. All decisions are exact.
@@ -49,8 +49,8 @@ impl NestingTree {
         Self::from_parents(sweep.parents.into_iter().map(Place::ring).collect(), &sweep.order)
     }
 
-    /// Returns for each ring the one directly around it, whatever polygons they are of: right where no edges cross or overlap and
-    /// each ring has an area, in the same time.
+    /// Returns for each ring the one directly around it, whatever polygons they are of: right where no edges cross or
+    /// overlap and each ring has an area, in the same time.
     pub(super) fn rings_around<P: Vertex>(shapes: &Shapes<P>) -> Vec<Option<usize>> {
         let mut sweep = Sweep::new(shapes);
         sweep.by_sides = true;
@@ -58,7 +58,7 @@ impl NestingTree {
         sweep.parents.into_iter().map(Place::ring).collect()
     }
 
-    /// `order` names every ring that has a parent, and that parent before it.
+    /// Creates the tree; `order` names every ring that has a parent, and that parent before it.
     fn from_parents(parents: Vec<Option<usize>>, order: &[usize]) -> Self {
         let mut depths = vec![0; parents.len()];
         let mut starts = vec![0; parents.len() + 1];
@@ -148,8 +148,8 @@ struct Sweep<P> {
     forward: Vec<bool>,
     /// Outer ring of each ring's polygon; itself for outer rings.
     outers: Vec<usize>,
-    /// True if the edges' directions tell on which side of them the inside of a ring is, and not what valid polygons
-    /// have there.
+    /// True if the edges' directions determine on which side of them the inside of a ring is, and not what valid
+    /// polygons have there.
     by_sides: bool,
     parents: Vec<Place>,
     /// The lower of the two edges at the first point of each outer ring, once the sweep met it.
@@ -260,7 +260,7 @@ mod tests {
         [(0, 0), (size, 0), (size, size), (0, size)].map(|(u, v)| I64Vec2::new(x + u, y + v))
     }
 
-    /// Polygons, each a shell with its holes.
+    /// Returns polygons, each a shell with its holes.
     fn shapes(polygons: &[&[[I64Vec2; 4]]]) -> Shapes<I64Vec2> {
         let mut shapes = Shapes::new();
         for polygon in polygons {

@@ -13,17 +13,17 @@ use std::cmp::Ordering;
 /// A border's way through the point.
 #[derive(Debug, Clone, Copy)]
 struct Passage {
-    /// In the operand's list.
+    /// Index in the operand's list.
     vertex: usize,
     from: DVec2,
     to: DVec2,
 }
 
-/// See the module.
+/// A point that several borders pass.
 #[derive(Debug)]
 pub(super) struct Node {
     at: DVec2,
-    /// Those of subject and clip.
+    /// Passages of subject and clip.
     passages: [Vec<Passage>; 2],
 }
 
@@ -44,7 +44,7 @@ pub(super) fn common(lists: &[Lists; 2]) -> Vec<Node> {
     shared.map(node).collect()
 }
 
-/// By x, then y; zeros of either sign are one place.
+/// Compares by x, then y; zeros of either sign are one place.
 fn order(a: DVec2, b: DVec2) -> Ordering {
     (a.x + 0.0).total_cmp(&(b.x + 0.0)).then((a.y + 0.0).total_cmp(&(b.y + 0.0)))
 }
@@ -76,7 +76,7 @@ impl Node {
         Ok(())
     }
 
-    /// On which side of a passage of the clip the subject comes and goes.
+    /// Returns whether the subject comes, and whether it goes, on the left of a passage of the clip.
     fn sides(&self, s: &Passage, c: &Passage, grown: bool) -> [bool; 2] {
         // Subject shrunk: to its own left, which is the clip's left where they run the same way.
         let side = |x: DVec2, along: DVec2, against: DVec2| match x {
@@ -106,7 +106,7 @@ impl Node {
         nearest.map(|(_, goes)| goes)
     }
 
-    /// Gives every crossing two linked vertices.
+    /// Adds two linked vertices for every crossing.
     pub fn link(&self, lists: &mut [Lists; 2], grown: bool) {
         let [ours, theirs] = &self.passages;
         let mut crossings: Vec<[usize; 2]> = Vec::new();

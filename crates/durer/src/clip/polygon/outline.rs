@@ -15,7 +15,7 @@ struct Edge {
     to: usize,
 }
 
-/// By x, then y; zeros of either sign are one place.
+/// Compares by x, then y; zeros of either sign are one place.
 fn order(a: &DVec2, b: &DVec2) -> Ordering {
     (a.x + 0.0).total_cmp(&(b.x + 0.0)).then((a.y + 0.0).total_cmp(&(b.y + 0.0)))
 }
@@ -79,8 +79,8 @@ fn remaining(edges: &[Edge]) -> Vec<Edge> {
     edges.iter().zip(kept).filter(|(_, kept)| *kept).map(|(&edge, _)| edge).collect()
 }
 
-/// For each edge the one to go on with: at a place that is passed several times, the first one
-/// clockwise, which bounds the same wedge.
+/// Returns for each edge the one to go on with: at a place that is passed several times, the first one clockwise,
+/// which bounds the same wedge.
 fn joints(edges: &[Edge], places: &[DVec2]) -> Vec<usize> {
     let sorted = |place: fn(&Edge) -> usize| {
         let mut order: Vec<usize> = (0..edges.len()).collect();

@@ -12,7 +12,7 @@ use crate::trace::{NoTrace, Tracer};
 /// Location of a point relative to a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Place {
-    /// Within it.
+    /// Inside the polygon.
     Inside,
     /// On the border.
     Border,
@@ -20,7 +20,7 @@ pub enum Place {
     Outside,
 }
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "point-in-polygon",
     title: "Point in polygon by the winding number",

@@ -1,14 +1,15 @@
 //! Vatti's scan beams: polygons swept upwards from vertex to vertex, the result as trapezoids.
 //!
-//! B. R. Vatti, *A generic solution to polygon clipping*, Communications of the ACM 35(7), 1992. Object space. The heights of all
-//! vertices divide the plane into beams, in which no edge begins or ends. Edges come in by pairs, a left and a right bound,
-//! at local minima of the rings, and are followed upwards in a list of active edges; where two change places within a beam
-//! they cross there. From left to right each active edge changes the winding number of subject or clip; it contributes where
-//! it thereby changes whether the result is there.
+//! B. R. Vatti, *A generic solution to polygon clipping*, Communications of the ACM 35(7), 1992. Object space. The
+//! heights of all vertices divide the plane into beams, in which no edge begins or ends. Edges come in by pairs, a left
+//! and a right bound, at local minima of the rings, and are followed upwards in a list of active edges; where two
+//! change places within a beam they cross there. From left to right each active edge changes the winding number of
+//! subject or clip; it contributes where it thereby changes whether the result is there.
 //!
-//! Cost: O(b a²) for b beams and a active edges, O(trapezoids) memory. Deviations: the result is given as the trapezoids between
-//! contributing edges, which Vatti names as the other form of output; horizontal edges bound beams and are in no list. Crossings are rounded
-//! to f64. It shares nothing with [`super::overlay()`] and serves it as an oracle; for polygons use that, or [`super::vatti`].
+//! Cost: O(b a²) for b beams and a active edges, O(trapezoids) memory. Deviations: the result is given as the
+//! trapezoids between contributing edges, which Vatti names as the other form of output; horizontal edges bound beams
+//! and are in no list. Crossings are rounded to f64. It shares nothing with [`super::overlay()`] and serves it as an
+//! oracle; for polygons use that, or [`super::vatti`].
 
 use super::{BooleanOp, Shapes, WindingRule};
 use crate::info::{Class, Coherence, Info, Occluder};
@@ -16,7 +17,7 @@ use crate::math::DVec2;
 use crate::trace::Tracer;
 use crate::{Error, Result};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "scan-beams",
     title: "Vatti's scan beams",
@@ -44,9 +45,9 @@ pub const INFO: Info = Info {
 /// Options for sweeping polygons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
-    /// Fill rule of the subject.
+    /// Winding rule of the subject.
     pub subject_rule: WindingRule,
-    /// Fill rule of the clip.
+    /// Winding rule of the clip.
     pub clip_rule: WindingRule,
     /// The most trapezoids that are made.
     pub max_trapezoids: usize,
@@ -66,7 +67,7 @@ pub struct Trapezoid {
     pub y: [f64; 2],
     /// The left and the right end of its lower side.
     pub bottom: [f64; 2],
-    /// Those of its upper side.
+    /// The left and the right end of its upper side.
     pub top: [f64; 2],
 }
 
@@ -90,7 +91,7 @@ pub enum Step {
     },
     /// A beam begins.
     Beam {
-        /// From here to there.
+        /// Lower and upper y.
         y: [f64; 2],
         /// Number of active edges.
         active: usize,
@@ -168,7 +169,8 @@ impl Edge {
 /// ```
 ///
 /// # Errors
-/// [`Error::NonFinite`] for a point with a NaN or infinite coordinate; [`Error::Limit`] for more trapezoids than the options allow.
+/// [`Error::NonFinite`] for a point with a NaN or infinite coordinate; [`Error::Limit`] for more trapezoids than the
+/// options allow.
 pub fn scan_beams(
     subject: &Shapes,
     clip: &Shapes,
@@ -210,7 +212,7 @@ pub fn scan_beams(
     Ok(parts)
 }
 
-/// Tells the local minima of a ring: corners, and ends of level stretches, from which both neighbours rise.
+/// Reports the local minima of a ring: corners, and ends of level stretches, from which both neighbours rise.
 fn minima(ring: &[DVec2], clip: bool, t: &mut impl Tracer<Step>) {
     let mut found = Vec::new();
     let n = ring.len();
@@ -232,8 +234,8 @@ fn edges(ring: &[DVec2], operand: usize) -> impl Iterator<Item = Edge> + '_ {
     })
 }
 
-/// Sorts the active edges by x at the beam's lower side, and tells at which heights they change places within it; both sides
-/// of the beam are among these.
+/// Sorts the active edges by x at the beam's lower side, and tells at which heights they change places within it; both
+/// sides of the beam are among these.
 fn cuts(active: &mut [Edge], y: [f64; 2], t: &mut impl Tracer<Step>) -> Vec<f64> {
     let ends = |e: &Edge| [e.at(y[0]), e.at(y[1])];
     active.sort_by(|a, b| {

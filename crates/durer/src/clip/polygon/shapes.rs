@@ -21,9 +21,9 @@ pub fn signed_area<P: Vertex>(ring: &[P]) -> f64 {
 
 /// Any number of polygons, each an outer ring with its holes, in one flat buffer.
 ///
-/// What is read from a file may be a mere bag of rings: then each ring is its own polygon.
-/// Rings are open: the first point is not repeated at the end. Points are [`DVec2`], or
-/// [`I64Vec2`](crate::math::I64Vec2) where all coordinates are whole numbers.
+/// Shapes from a file may be a mere list of rings: then each ring is its own polygon. Rings are open: the first point
+/// is not repeated at the end. Points are [`DVec2`], or [`I64Vec2`](crate::math::I64Vec2) where all coordinates are
+/// whole numbers.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Shapes<P = DVec2> {
     points: Vec<P>,
@@ -32,12 +32,13 @@ pub struct Shapes<P = DVec2> {
 }
 
 impl<P> Shapes<P> {
-    /// No polygon.
+    /// Creates an empty set of polygons.
     pub const fn new() -> Self {
         Self { points: Vec::new(), ring_ends: Vec::new(), polygon_ends: Vec::new() }
     }
 
-    /// From all points, where each ring ends among them, and where each polygon ends among the rings.
+    /// Creates a set of polygons from all points, the end of each ring among them, and the end of each polygon among
+    /// the rings.
     pub(crate) const fn from_parts(
         points: Vec<P>,
         ring_ends: Vec<usize>,

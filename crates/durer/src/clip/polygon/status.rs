@@ -39,7 +39,7 @@ struct Node {
     children: [usize; 2],
 }
 
-/// See the module.
+/// The edges that a sweep line cuts, from below to above.
 #[derive(Debug)]
 pub struct Status {
     /// One for each edge, on the sweep line or not.
@@ -48,12 +48,12 @@ pub struct Status {
 }
 
 impl Status {
-    /// For this many edges, none of them on the line.
+    /// Creates the status of `edges` edges, none of them on the line.
     pub fn new(edges: usize) -> Self {
         Self { nodes: vec![Node { parent: NONE, children: [NONE; 2] }; edges], root: NONE }
     }
 
-    /// Takes an edge that is not on the line.
+    /// Inserts an edge that is not on the line.
     pub fn insert<P: Vertex>(&mut self, edges: &[Edge<P>], edge: usize) {
         let (mut parent, mut side, mut at) = (NONE, 0, self.root);
         while at != NONE {

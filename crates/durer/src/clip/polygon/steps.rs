@@ -4,7 +4,7 @@ use super::Shapes;
 use super::group::group;
 use crate::math::DVec2;
 
-/// There is nothing to choose.
+/// Empty options: the algorithm has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {}
 
@@ -45,7 +45,7 @@ pub enum Step {
     },
     /// The walk passes a vertex, which belongs to the ring that is being made.
     Passed {
-        /// Along which list.
+        /// List that was followed.
         list: Operand,
         /// Position of the point.
         at: DVec2,
@@ -65,7 +65,8 @@ pub enum Step {
         to_subject: bool,
     },
     /// Greiner and Hormann: rings of an operand cross themselves or one another. Entries and exits take turns along
-    /// each ring, and rings of the result may cross, too: what they enclose by the even-odd rule is the result.
+    /// each ring, and rings of the result may cross, too: the area that they enclose by the even-odd rule is the
+    /// result.
     CrossingRings,
     /// A ring of the result is complete.
     Ring {

@@ -52,13 +52,13 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// There is nothing to choose.
+/// Empty options: the algorithm has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
 /// Vertex with a position that can be mixed with another vertex of an edge.
 pub trait Vertex<const N: usize>: Copy {
-    /// Coordinates, in the space of the window.
+    /// Returns the coordinates, in the space of the window.
     fn position(&self) -> [f64; N];
     /// Returns the vertex at `position` on the edge from self (t = 0) to `other` (t = 1).
     fn cut(&self, other: &Self, t: f64, position: [f64; N]) -> Self;
@@ -108,7 +108,7 @@ impl<const K: usize> Vertex<3> for (DVec3, [f64; K]) {
     }
 }
 
-/// One stage: takes the vertices of a ring one at a time, hands on those of the part inside.
+/// One stage: it takes the vertices of a ring one at a time, and passes on those of the part inside.
 #[derive(Debug, Clone)]
 pub struct Stage<H, V> {
     border: H,
@@ -122,8 +122,7 @@ impl<H, V> Stage<H, V> {
         Self { border, first: None, previous: None }
     }
 
-    /// Returns the next vertex; up to two come out: the cut of the edge that leads to it, and
-    /// itself.
+    /// Takes the next vertex; up to two come out: the cut of the edge that leads to it, and itself.
     fn take<const N: usize>(&mut self, vertex: V) -> [Option<V>; 2]
     where
         H: HalfSpace<N>,
@@ -136,8 +135,7 @@ impl<H, V> Stage<H, V> {
         [cut, inside.then_some(vertex)]
     }
 
-    /// Returns the end of the ring: the cut of the edge that closes it, if there is one. Afterwards
-    /// the stage is as new.
+    /// Ends the ring; returns the cut of the edge that closes it, if there is one. Afterwards the stage is as new.
     fn close<const N: usize>(&mut self) -> Option<V>
     where
         H: HalfSpace<N>,
@@ -243,7 +241,7 @@ impl<H, V> Pipeline<H, V> {
         Self { stages: borders.into_iter().map(Stage::new).collect() }
     }
 
-    /// Hands a vertex of the ring to the first stage; `out` gets what comes out of the last.
+    /// Passes a vertex of the ring to the first stage; `out` gets the output of the last.
     pub fn push<const N: usize>(
         &mut self,
         vertex: V,
@@ -314,8 +312,8 @@ pub fn clip_polygon<V: Vertex<2>>(
     run(window.edges(), ring, t)
 }
 
-/// Returns the parts of all rings in a rectangle; rings of which no area is left are left out, and so
-/// are the holes of such an outer ring.
+/// Returns the parts of all rings in a rectangle; rings without a remaining area are left out, and so are the holes of
+/// such an outer ring.
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a point with a NaN or infinite coordinate.
@@ -327,8 +325,8 @@ pub fn clip_shapes(
     map_rings(shapes, |ring| clip(window, ring, t))
 }
 
-/// Returns the parts of all rings in a convex polygon; rings of which no area is left are left out,
-/// and so are the holes of such an outer ring.
+/// Returns the parts of all rings in a convex polygon; rings without a remaining area are left out, and so are the
+/// holes of such an outer ring.
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a point with a NaN or infinite coordinate.

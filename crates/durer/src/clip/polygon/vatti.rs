@@ -13,7 +13,7 @@ use crate::trace::Tracer;
 
 pub use super::overlay::{Options, Output, Step, replay};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "vatti",
     title: "Vatti",
@@ -39,10 +39,10 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// Boolean operation on any two sets of polygons, self-crossing too, by any fill rules.
+/// Computes a Boolean operation on any two sets of polygons, self-crossing too, by any fill rules.
 ///
-/// The result's polygons nest: each outer ring comes with its own holes, islands in a hole are
-/// polygons of their own, which [`Output::tree`] gives their place. It equals that of [`overlay::overlay()`] bit for bit.
+/// The result's polygons nest: each outer ring comes with its own holes, islands in a hole are polygons of their own,
+/// which [`Output::tree`] gives their place. It equals that of [`overlay::overlay()`] bit for bit.
 ///
 /// ```
 /// use durer::clip::polygon::{BooleanOp, Shapes, vatti::vatti};

@@ -11,7 +11,7 @@ pub trait Vertex: Copy + PartialEq + Default + Debug + Send + Sync + GridPoint +
     /// Returns whether no coordinate is infinite or no number.
     fn is_finite(self) -> bool;
 
-    /// By x, then by y.
+    /// Compares by x, then by y.
     fn order(self, other: Self) -> Ordering;
 
     /// Returns the smaller x and the smaller y of two points.
@@ -86,8 +86,8 @@ impl Vertex for I64Vec2 {
     }
 }
 
-/// (a − b)(c − d) as something that compares like it: two differences of 65 bits make a product
-/// that i128 does not hold, but its sign and size in u128 do.
+/// Returns a value that compares like (a − b)(c − d): two differences of 65 bits make a product that i128 does not
+/// hold, but its sign and size in u128 do.
 fn product(a: i64, b: i64, c: i64, d: i64) -> (i8, u128) {
     let size = u128::from(a.abs_diff(b)) * u128::from(c.abs_diff(d));
     let positive = (a > b) == (c > d);

@@ -107,7 +107,7 @@ impl<T: Tracer<Step>> Tracer<Step> for Scaled<'_, T> {
     }
 }
 
-/// Returns the result, and whether rings of an operand cross.
+/// Clips polygons whose rings may cross; returns the result, and whether rings of an operand cross.
 fn walk_tame<T: Tracer<Step>>(
     [subject, clip]: [&Shapes; 2],
     op: BooleanOp,

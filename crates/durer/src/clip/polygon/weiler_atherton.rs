@@ -15,7 +15,7 @@ use crate::trace::Tracer;
 
 pub use super::steps::{Mark, Operand, Options, Step, replay};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "weiler-atherton",
     title: "Weiler–Atherton",

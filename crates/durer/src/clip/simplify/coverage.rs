@@ -23,7 +23,7 @@ use crate::math::DVec2;
 use crate::trace::Tracer;
 use crate::{Error, Result};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "coverage",
     title: "Coverage simplification",
@@ -49,7 +49,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// Options for the amount that is left out.
+/// Options for simplifying lines and rings together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Method that orders points.
@@ -157,7 +157,7 @@ impl Coverage {
         Ok(self.of_points(&weights, &place_of))
     }
 
-    /// From weights of places to those of points.
+    /// Converts weights of places to those of points.
     fn of_points(&self, weights: &[f64], place_of: &[u32]) -> Vec<f64> {
         let mut all: Vec<f64> = place_of.iter().map(|&place| weights[place as usize]).collect();
         for chain in &self.chains {
@@ -206,7 +206,7 @@ impl Coverage {
     }
 }
 
-/// Lets a closed walk begin, and end, at a place that stays; if there is none, makes two.
+/// Turns a closed walk so that it begins, and ends, at a place that stays; if there is none, makes two.
 fn hold(walk: &mut Vec<u32>, weights: &mut [Option<f64>], places: &[DVec2]) {
     let stays = |i: &u32| weights[*i as usize] == Some(f64::INFINITY);
     let start = walk.iter().position(stays).or_else(|| {
@@ -229,7 +229,7 @@ fn hold(walk: &mut Vec<u32>, weights: &mut [Option<f64>], places: &[DVec2]) {
     }
 }
 
-/// Keeps lines from crossing.
+/// Guard that keeps lines from crossing.
 struct Fence {
     index: Index,
     network: Network,

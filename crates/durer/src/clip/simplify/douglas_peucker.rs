@@ -43,7 +43,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// Options for the amount that is left out.
+/// Options for simplifying a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Largest distance of a point that is left out from the line that stays, in units of the coordinates. The

@@ -10,7 +10,7 @@ use crate::trace::NoTrace;
 /// Number of points to leave out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Amount {
-    /// Those that weigh no more than this, in units of the coordinates.
+    /// Points that weigh no more than this, in units of the coordinates.
     Tolerance(f64),
     /// All but this share of the points that can be left out, 0 … 1.
     Keep(f64),

@@ -67,7 +67,7 @@ impl Index {
         Self { order, at, place_of, left, levels, open: Vec::new() }
     }
 
-    /// Takes a point away.
+    /// Removes a point.
     pub fn remove(&mut self, point: u32) {
         let Some(&place) = self.place_of.get(point as usize) else { return };
         let mut place = place as usize;

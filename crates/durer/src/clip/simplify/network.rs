@@ -5,7 +5,7 @@ use super::removal::{Links, NONE};
 use crate::math::DVec2;
 use std::collections::BTreeSet;
 
-/// See the module.
+/// Lines and rings as one network of places.
 #[derive(Debug, Clone, Default)]
 pub struct Network {
     /// The places, each once, by x and then by y.
@@ -59,7 +59,7 @@ impl Network {
         walk
     }
 
-    /// Takes note of the edges of a chain between two places that stay.
+    /// Records the edges of a chain between two places that stay.
     pub fn note_direct(&mut self, links: &Links, chain: &Chain) {
         let walk = self.walk(chain);
         let again = chain.closed.then(|| walk.first().copied()).flatten();
@@ -113,7 +113,7 @@ fn ordered(value: f64) -> u64 {
 #[derive(Debug, Clone, Copy)]
 enum Seen {
     Never,
-    /// Always these two, the smaller one first.
+    /// Between these two each time, the smaller one first.
     Between([u32; 2]),
     Node,
 }

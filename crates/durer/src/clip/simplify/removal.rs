@@ -13,7 +13,7 @@ pub const NONE: u32 = u32::MAX;
 pub struct Links(pub Vec<[u32; 2]>);
 
 impl Links {
-    /// Returns those of one line, whose ends stay.
+    /// Creates the links of one line, whose ends stay.
     pub fn of_line(count: usize) -> Self {
         let link = |i: usize| match (i.checked_sub(1), i + 1 < count) {
             (Some(before), true) => [before as u32, i as u32 + 1],
@@ -73,11 +73,11 @@ pub enum Obstacle {
     Edge,
 }
 
-/// Says which points must not be left out.
+/// Guard of the points that must not be left out.
 pub trait Guard {
     /// Returns the obstacle to an edge that bypasses point b.
     fn obstacle(&mut self, places: &[DVec2], links: &Links, abc: [u32; 3]) -> Option<Obstacle>;
-    /// Takes note that the point in the middle is left out.
+    /// Records that the point in the middle is left out.
     fn removed(&mut self, links: &Links, abc: [u32; 3]);
 }
 
@@ -108,8 +108,8 @@ type Entry = (u64, u32);
 
 /// Points by how much they matter, then by index.
 ///
-/// Only those of the smallest magnitude are in a heap, which so stays in the processor's cache; the others wait unsorted, and
-/// what is out of date by then never gets there.
+/// Only those of the smallest magnitude are in a heap, which so stays in the processor's cache; the others wait
+/// unsorted, and what is out of date by then never gets there.
 #[derive(Default)]
 struct Queue {
     heap: BinaryHeap<Reverse<Entry>>,
@@ -123,7 +123,7 @@ struct Queue {
     waiting: BTreeMap<u32, Vec<u32>>,
 }
 
-/// Measures are of one magnitude that have the same bits but for the last ones: a fourth of a power of two.
+/// Number of low bits that do not count for the magnitude of a measure: a magnitude spans a fourth of a power of two.
 const MAGNITUDE_SHIFT: u32 = 50;
 
 impl Queue {
@@ -168,8 +168,8 @@ fn is_current(now: &[f64], &(bits, point): &Entry) -> bool {
 const GONE: f64 = -1.0;
 
 impl<G: Guard> Removal<'_, G> {
-    /// Leaves out what it can; `told` is called with each point and its weight. Gives the weights, infinite for
-    /// points that stay.
+    /// Leaves out all points that it can; calls `told` with each point and its weight. Returns the weights, infinite
+    /// for points that stay.
     pub fn run(mut self, mut told: impl FnMut(usize, f64)) -> Vec<f64> {
         let count = self.places.len();
         let mut weights = vec![f64::INFINITY; count];

@@ -41,7 +41,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// Options for the amount that is left out.
+/// Options for simplifying a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// The side of a square as large as the largest triangle that is left out, in units of the coordinates. The
@@ -125,7 +125,7 @@ mod tests {
     use crate::trace::Recorder;
     use proptest::prelude::*;
 
-    /// By looking at all triangles again and again.
+    /// Simplifies by examining all triangles again and again.
     fn slow(points: &[DVec2], tolerance: f64) -> Vec<usize> {
         let mut kept: Vec<usize> = (0..points.len()).collect();
         loop {

@@ -116,7 +116,8 @@ impl Edge {
         self.left.y.max(self.right.y)
     }
 
-    /// Positive where a point lies on the left of the edge from its left end to its right one, 0 on its line.
+    /// Returns the side of a point: positive on the left of the edge from its left end to its right one, 0 on its
+    /// line.
     fn side(&self, p: IVec2) -> i64 {
         let (along, to) = ((self.right - self.left).as_i64vec2(), (p - self.left).as_i64vec2());
         (along.x * to.y - along.y * to.x).signum()
@@ -155,7 +156,7 @@ struct Slabs {
 }
 
 impl Slabs {
-    /// `None` if the edges are too high and too many.
+    /// Creates the slabs; `None` if the edges are too high and too many.
     fn new(edges: Vec<Edge>) -> Option<Self> {
         let top = edges.iter().map(Edge::high).max()?;
         let mut count = (edges.len() / 16).isqrt() as i32 + 1;
@@ -413,8 +414,8 @@ mod tests {
             };
             let rings = shapes(&bases.iter().enumerate().map(ring).collect::<Vec<_>>());
             let fill = WindingRule::ALL[rule];
-            // The overlay lets edges go through vertices that they pass within half a cell; of larger rings, they do not
-            // come so near.
+            // The overlay lets edges go through vertices that they pass within half a cell; of larger rings, they do
+            // not come so near.
             let large = |shapes: &Shapes<I64Vec2>| {
                 let mut shapes = shapes.clone();
                 shapes.points_mut().iter_mut().for_each(|p| *p *= 1024);

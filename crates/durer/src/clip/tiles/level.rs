@@ -104,7 +104,7 @@ impl<'a> Level<'a> {
         Rect::new(square[0] - buffer, square[1] + buffer)
     }
 
-    /// No fewer tiles than there are: those that the boxes around the features meet.
+    /// Returns an upper bound of the number of tiles: those that the boxes around the features meet.
     pub fn count_of_boxes(&self) -> u64 {
         let side = self.cells / f64::from(1u32 << self.zoom);
         let last = f64::from((1u32 << self.zoom) - 1);
@@ -125,9 +125,9 @@ impl<'a> Level<'a> {
 pub struct Part<'a> {
     level: &'a Level<'a>,
     feature: usize,
-    /// By how many worlds it is moved to the east.
+    /// Number of worlds by which it is moved to the east.
     shift: f64,
-    /// In cells; `None` as long as nothing is cut away.
+    /// The part in cells; `None` as long as nothing is cut off.
     cut: Option<Body>,
 }
 

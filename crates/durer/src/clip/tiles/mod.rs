@@ -31,13 +31,13 @@ use super::hilbert;
 pub struct Tile {
     /// The zoom level: there are 2^zoom tiles on each axis. At most [`Tile::MAX_ZOOM`].
     pub zoom: u8,
-    /// Counts to the east.
+    /// Column, counted to the east.
     pub x: u32,
-    /// Counts to the south.
+    /// Row, counted to the south.
     pub y: u32,
 }
 
-/// Coordinates of what is placed on tiles.
+/// Coordinates of features to be placed on tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Coordinates {
     /// Longitude and latitude in degrees.

@@ -39,8 +39,8 @@ pub enum Shape {
 pub struct Piece {
     /// The index of the feature.
     pub feature: usize,
-    /// On the grid of the tile: (0, 0) is its upper left corner, y counts downwards. Outer rings have positive signed
-    /// areas in these coordinates, holes negative ones.
+    /// Shape on the grid of the tile: (0, 0) is its upper left corner, y counts downwards. Outer rings have positive
+    /// signed areas in these coordinates, holes negative ones.
     pub shape: Shape,
 }
 
@@ -61,7 +61,7 @@ impl Body {
         }
     }
 
-    /// Returns the part in a closed window; of areas only what has an area. Areas must be valid.
+    /// Returns the part in a closed window; parts of areas that have no area are left out. Areas must be valid.
     ///
     /// # Errors
     /// [`crate::Error::NonFinite`] names the first point with a NaN or infinite coordinate.
@@ -81,9 +81,9 @@ impl Body {
         Ok((!part.points().is_empty()).then_some(part))
     }
 
-    /// Returns the same on the grid, with `origin` as its zero: every place goes to the nearest whole
-    /// numbers, halves up. Lines that become points are left out, and so is what has no area any more. Areas
-    /// are made valid.
+    /// Returns the geometry on the grid, with `origin` as its zero: every place goes to the nearest whole numbers,
+    /// halves up. Lines that become points are left out, and so are parts that have no area any more. Areas are made
+    /// valid.
     ///
     /// # Errors
     /// As [`overlay()`].
@@ -144,7 +144,7 @@ impl Shape {
         }
     }
 
-    /// Returns the same with coordinates of f64.
+    /// Returns the geometry with coordinates of f64.
     pub fn to_body(&self) -> Body {
         let float = |p: &I64Vec2| p.as_dvec2();
         match self {

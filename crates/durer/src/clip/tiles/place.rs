@@ -6,7 +6,7 @@ use crate::clip::polygon::Shapes;
 use crate::geometry::{Geometry, Points};
 use crate::math::{DVec2, Rect};
 
-/// A geometry by kinds, and what is odd about it.
+/// A geometry by kinds, and its peculiarities.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Placed {
     /// Its areas, lines and points, those that there are; none if it is far.
@@ -50,8 +50,8 @@ struct Parts {
 
 /// Places a geometry on the map, for [`Pyramid::new`](super::Pyramid::new).
 ///
-/// By the short way, lines and borders never go more than half around the world: a longer edge goes the other way, across
-/// the date line, and rings that go around a pole are closed along it.
+/// By the short way, lines and borders never go more than half around the world: a longer edge goes the other way,
+/// across the date line, and rings that go around a pole are closed along it.
 ///
 /// ```
 /// use durer::clip::tiles::{Coordinates, place};

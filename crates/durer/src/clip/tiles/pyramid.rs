@@ -26,11 +26,11 @@ pub struct Pyramid {
 }
 
 impl Pyramid {
-    /// Makes features ready: finds out which points each level has. Those without a point are in no tile.
+    /// Prepares features: finds the points that each level has. Those without a point are in no tile.
     ///
     /// # Errors
-    /// [`Error::NonFinite`] and [`Error::Parameter`] for places beyond [`WORLDS`](super::WORLDS) and for options outside of their domains;
-    /// [`Error::Limit`] for 2³² points of one layer and more.
+    /// [`Error::NonFinite`] and [`Error::Parameter`] for places beyond [`WORLDS`](super::WORLDS) and for options
+    /// outside of their domains; [`Error::Limit`] for 2³² points of one layer and more.
     pub fn new(features: Vec<Feature>, options: Options) -> Result<Self> {
         check(&options)?;
         let layers = features.iter().map(|f| f.layer + 1).max().unwrap_or(0);
@@ -60,7 +60,7 @@ impl Pyramid {
     /// order of the features. See [`walk()`](super::walk()).
     ///
     /// # Errors
-    /// Of the overlay, and what `take` says.
+    /// Those of the overlay, and of `take`.
     pub fn visit<R: Send, E: From<Error>>(
         &self,
         zoom: u8,

@@ -146,12 +146,12 @@ impl Tiling {
 }
 
 impl<'a> Subject<'a> {
-    /// Prepares a geometry, which `index` tells from others.
+    /// Prepares a geometry, which `index` identifies.
     pub fn new(tiling: &'a Tiling, index: usize, geometry: &'a Geometry, rules: Rules) -> Self {
         Self { tiling, index, geometry, rules, repaired: AtomicBool::new(false) }
     }
 
-    /// Returns the number that tells the geometry from others.
+    /// Returns the number that identifies the geometry.
     pub fn index(&self) -> usize {
         self.index
     }
@@ -161,7 +161,7 @@ impl<'a> Subject<'a> {
         self.repaired.load(Ordering::Relaxed)
     }
 
-    /// No fewer tiles than there are.
+    /// Returns an upper bound of the number of tiles.
     fn count_of_box(&self) -> u64 {
         let Some(own) = self.geometry.bounds() else { return 0 };
         let square = |p: DVec2| match self.tiling.coordinates {

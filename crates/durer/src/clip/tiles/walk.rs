@@ -35,11 +35,11 @@ type Open<C> = Vec<(Tile, Vec<C>)>;
 /// of a tile's contents, on any thread, and `take` takes it, one after the other.
 ///
 /// The contents are in the order in which they were given. Parts are cut from the parts in the tiles of the level
-/// above, so that the time grows with the contents and not with the number of tiles. Held at a time is what is in the
-/// tiles on the way down to one.
+/// above, so that the time grows with the contents and not with the number of tiles. At any time, the contents of the
+/// tiles on the way down to one are in memory.
 ///
 /// # Errors
-/// The first error of [`Content::within`], and what `take` says.
+/// The first error of [`Content::within`], and those of `take`.
 pub fn walk<C: Content, R: Send, E: From<crate::Error>>(
     contents: &[C],
     zoom: u8,

@@ -31,7 +31,7 @@ pub(super) struct Bends {
     pub closed: bool,
     /// Length of the polyline up to each point.
     pub along: Vec<f64>,
-    /// By how much the polyline turns at each point, in radians; 0 at open ends.
+    /// Angle by which the polyline turns at each point, in radians; 0 at open ends.
     pub turns: Vec<f64>,
     /// Largest distance of the curve from each chord.
     pub allowed: Vec<f64>,
@@ -40,7 +40,7 @@ pub(super) struct Bends {
     /// Points at which pieces have to end, with the first and the last point.
     pub breaks: Vec<usize>,
     pub tolerance: f64,
-    /// The index that the first point has in what was given.
+    /// Index of the first point in the input.
     shift: usize,
 }
 
@@ -85,7 +85,7 @@ impl Bends {
         self.points.len() - usize::from(self.closed)
     }
 
-    /// Returns the index that a point had in what was given.
+    /// Returns the index of a point in the input.
     pub fn original(&self, i: usize) -> usize {
         (i + self.shift) % self.count()
     }
@@ -175,7 +175,7 @@ fn both(turns: &[f64], i: usize) -> Option<[f64; 2]> {
     }
 }
 
-/// For each chord whether it is one of many that turn the same way by like angles.
+/// Returns for each chord whether it is one of many that turn the same way by like angles.
 fn regular(turns: &[f64], chords: &[f64], closed: bool) -> Vec<bool> {
     let count = chords.len();
     let is_like = |i: usize| {
@@ -217,9 +217,9 @@ fn regular(turns: &[f64], chords: &[f64], closed: bool) -> Vec<bool> {
 }
 
 /// Returns true for each point that is a fold: two round edges, one behind the other, whose facets are not in step are
-/// seen as a polygon whose points lie on the edges in part, and in part where the chord of one crosses that of the other.
-/// At these, the folds, it turns by little; they are not on the circle but within it, by less than the chords are. Empty
-/// if there are none.
+/// seen as a polygon whose points lie on the edges in part, and in part where the chord of one crosses that of the
+/// other. At these, the folds, it turns by little; they are not on the circle but within it, by less than the chords
+/// are. Empty if there are none.
 fn folds(turns: &[f64], closed: bool, kept: &[bool]) -> Vec<bool> {
     let last = turns.len() - 1;
     let is_fold = |i: usize| {
@@ -256,7 +256,7 @@ struct Less {
 }
 
 impl Less {
-    /// `points` of a closed polyline end with the first again.
+    /// Creates a polyline without its folds; `points` of a closed one end with the first again.
     fn new(points: &[DVec2], closed: bool, folds: &[bool]) -> Self {
         let count = points.len() - 1;
         let is_fold = |i: usize| folds.get(i).copied().unwrap_or(false);
@@ -271,7 +271,8 @@ impl Less {
         Self { turns: turns(&places, closed), points: left, count, chords, closed }
     }
 
-    /// Allows the curve to leave chords as an arc does, where the polyline turns regularly and nothing ends on the chord.
+    /// Allows the curve to leave chords as an arc does, where the polyline turns regularly and nothing ends on the
+    /// chord.
     fn allow(&self, allowed: &mut [f64], met: &dyn Fn(usize) -> bool) {
         let regular = regular(&self.turns, &self.chords, self.closed);
         for (k, _) in regular.iter().enumerate().filter(|(_, r)| **r) {

@@ -19,8 +19,8 @@ pub(super) fn exact(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<Arc> {
     run.is_near(&found, tolerance * EXACT).then_some(found)
 }
 
-/// Returns an arc between the ends of a run that all its points are near to: that through the middle one, moved to where
-/// the errors on both sides are equal.
+/// Returns an arc between the ends of a run that all its points are near to: that through the middle one, moved to
+/// where the errors on both sides are equal.
 pub(super) fn loose(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<Arc> {
     let (first, last) = (run.first(), run.last());
     let middle = run.points[run.points.len() / 2];

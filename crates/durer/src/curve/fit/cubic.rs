@@ -1,8 +1,8 @@
 //! Cubic Bézier curves near to points.
 //!
-//! P. J. Schneider, *An algorithm for automatically fitting digitized curves*, Graphics Gems, 1990: the ways at both ends
-//! are given, least squares find how far the control points lie on them, and Newton's method moves the parameters of
-//! the points. That the curve stays near to the polyline between its points follows from its control polygon.
+//! P. J. Schneider, *An algorithm for automatically fitting digitized curves*, Graphics Gems, 1990: the ways at both
+//! ends are given, least squares find how far the control points lie on them, and Newton's method moves the parameters
+//! of the points. That the curve stays near to the polyline between its points follows from its control polygon.
 
 use super::measure::Run;
 use crate::math::DVec2;
@@ -89,7 +89,8 @@ fn largest_error(points: &[DVec2], parameters: &[f64], curve: &[DVec2; 4]) -> f6
     errors.fold(0.0, f64::max).sqrt()
 }
 
-/// Newton's step towards the foot of each point on the curve; `None` if the points would not follow each other.
+/// Moves parameters by Newton's step towards the foot of each point on the curve; `None` if the points would not
+/// follow each other.
 fn move_parameters(points: &[DVec2], parameters: &mut [f64], curve: &[DVec2; 4]) -> Option<()> {
     let [a, b, c, d] = *curve;
     let first = [b - a, c - b, d - c].map(|v| v * 3.0);
@@ -133,7 +134,7 @@ fn blossom(curve: &[DVec2; 4], [r, s, t]: [f64; 3]) -> DVec2 {
     ab.lerp(bc, s).lerp(bc.lerp(cd, s), t)
 }
 
-/// From a point to a segment.
+/// Returns the distance from a point to a segment.
 fn distance(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let along = b - a;
     let t = ((p - a).dot(along) / along.length_squared()).clamp(0.0, 1.0);

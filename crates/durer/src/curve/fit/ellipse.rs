@@ -27,13 +27,13 @@ pub(super) fn exact(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<Arc> {
     is_near.then(|| joined(arc, run, tolerance)).flatten()
 }
 
-/// Returns whether a run that turns so far tells which ellipse it is of.
+/// Returns whether a run that turns so far determines its ellipse.
 pub(super) fn is_certain(turned: f64) -> bool {
     turned.abs() > LEAST_TURN
 }
 
-/// Returns the ellipse whose equation the points of a run fulfil best: x² + y² + d (x² − y²) + e xy + f x + g y + h = 0,
-/// by least squares. It begins where the run does.
+/// Returns the ellipse whose equation the points of a run fulfil best: x² + y² + d (x² − y²) + e xy + f x + g y + h =
+/// 0, by least squares. It begins where the run does.
 pub(super) fn whole(run: &Run<'_>, turned: f64) -> Option<Arc> {
     let count = run.points.len() as f64;
     let middle = run.points.iter().sum::<DVec2>() / count;

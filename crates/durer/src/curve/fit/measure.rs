@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// Some points in a row of a polyline.
 pub(super) struct Run<'a> {
-    /// Those that are not folds, and the ends.
+    /// Points that are not folds, and the ends.
     pub points: Cow<'a, [DVec2]>,
     /// Largest distances of the curve from the chords between them.
     pub allowed: Cow<'a, [f64]>,

@@ -1,9 +1,10 @@
 //! Polylines to lines, circles, ellipses, arcs of both and cubic Bézier curves within a tolerance.
 //!
-//! A polyline is divided at its corners and at points that are to be kept. A closed one without such points is tried as a
-//! whole circle or ellipse. In the rest, arcs whose points lie on a circle or ellipse nearly exactly come first: those
-//! of a mesh do, where an arc was meshed. What is between them is taken greedily: from each point the longest circular
-//! arc or cubic curve that fits, or a line where that is about as long. Lengths are found by doubling and halving.
+//! A polyline is divided at its corners and at points that are to be kept. A closed one without such points is tried as
+//! a whole circle or ellipse. In the rest, arcs whose points lie on a circle or ellipse nearly exactly come first:
+//! those of a mesh do, where an arc was meshed. What is between them is taken greedily: from each point the longest
+//! circular arc or cubic curve that fits, or a line where that is about as long. Lengths are found by doubling and
+//! halving.
 //!
 //! Sources: circles through three points and, for whole ones, I. Kåsa, *A circle fitting procedure and its error
 //! analysis*, IEEE Transactions on Instrumentation and Measurement, 1976 (`circle`); ellipses by linear least squares
@@ -33,11 +34,11 @@ pub struct Options {
     /// points. 0.02 mm on paper is less than pens, lasers and mills resolve; ten times as much is visible on paper. The
     /// number of pieces grows slowly as it gets smaller. With 0 and less the polyline comes back.
     pub tolerance: f64,
-    /// True if polylines that turn regularly stand for round ones. Between two of their points, the curve may then leave
-    /// their chord by as much as an arc through the points does. They turn one way, five times or more in a row, by at
-    /// most 30° and by like angles, over chords of like lengths: a polygon of twelve sides is round, one of eight is
-    /// not. Where two such polylines of one circle cross each other, the crossings, at which they turn by little, may
-    /// lie within it, as far as the chords do.
+    /// True if polylines that turn regularly represent round curves. Between two of their points, the curve may then
+    /// leave their chord by as much as an arc through the points does. They turn one way, five times or more in a row,
+    /// by at most 30° and by like angles, over chords of like lengths: a polygon of twelve sides is round, one of eight
+    /// is not. Where two such polylines of one circle cross each other, the crossings, at which they turn by little,
+    /// may lie within it, as far as the chords do.
     pub round: bool,
 }
 
@@ -66,12 +67,12 @@ pub struct Polyline<'a> {
 pub struct Fitted {
     /// The curve.
     pub curve: Curve,
-    /// For each piece the index of the point in which it begins.
+    /// Index of the first point of each piece.
     pub from: Vec<usize>,
 }
 
 /// Fits lines and curves to a polyline. Its ends and the points to be kept are ends of pieces, to the bit; a closed
-/// polyline gives a closed curve. `is_met` tells whether something ends on the chord between two points: such a chord
+/// polyline gives a closed curve. `is_met` returns whether something ends on the chord between two points: such a chord
 /// stays within the tolerance, however round the polyline is.
 ///
 /// `None` if the polyline has fewer than two points, or one that is not finite.

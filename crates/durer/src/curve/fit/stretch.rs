@@ -106,8 +106,8 @@ fn goes_round(bends: &Bends, from: usize) -> bool {
     turns.iter().all(|t| *t > 0.0) || turns.iter().all(|t| *t < 0.0)
 }
 
-/// Lets arcs run on to the ends of the stretch over a last chord: where something lies in front, a polyline ends
-/// between two points of the arc.
+/// Prolongs arcs to the ends of the stretch over a last chord: where something lies in front, a polyline ends between
+/// two points of the arc.
 fn prolonged(bends: &Bends, mut arcs: Vec<Found>, from: usize, to: usize) -> Vec<Found> {
     let try_to = |found: &mut Found, start: usize, end: usize| {
         let run = Run::new(bends, start, end);

@@ -85,7 +85,7 @@ struct State {
     heights: Vec<f64>,
     /// Number of edges active in it.
     width: usize,
-    /// Number of edges told of the beam.
+    /// Number of edges of the beam that have been reported.
     told: usize,
     /// Active edges of the part of the beam: x below and above, windings, whether it contributes.
     active: Vec<([f64; 2], [i32; 2], bool)>,
@@ -124,7 +124,7 @@ impl State {
         Shown { line: step.line(), caption, table: self.table(), picture }
     }
 
-    /// Returns the sides of the part of the beam that the edge told last belongs to: each part tells all edges.
+    /// Returns the sides of the part of the beam that the last reported edge belongs to: each part reports all edges.
     fn part(&self) -> [f64; 2] {
         let k = self.told.saturating_sub(1) / self.width.max(1);
         let height =

@@ -131,7 +131,7 @@ impl Operands {
     }
 }
 
-/// Subject and window of a lesson with one ring.
+/// Returns subject and window of a lesson with one ring.
 fn ring_and_window(input: &Input) -> Result<(Vec<DVec2>, Rect)> {
     let figure = input.figure(TAKES_WINDOW)?;
     Ok((figure.ring(TAKES_WINDOW)?.to_vec(), figure.window(TAKES_WINDOW)?))

@@ -26,7 +26,7 @@ const TAKES: Word = Word::new(
     "Linien mit einem Punkt je Spalte, die nächste zuerst",
 );
 
-/// The most columns that can be told apart.
+/// Largest number of columns that can be distinguished.
 const MOST: usize = 200;
 
 const EXAMPLES: &[Example] = &[

@@ -110,7 +110,7 @@ fn strip() -> Vec<Vec<DVec3>> {
         .collect()
 }
 
-/// Numbers equal corners alike.
+/// Numbers corners, equal ones alike.
 fn shared(faces: &[Vec<DVec3>]) -> (Vec<DVec3>, Vec<Vec<usize>>) {
     let mut points: Vec<DVec3> = Vec::new();
     let mut number = |p: &DVec3| {
@@ -144,7 +144,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
 struct State<'a> {
     faces: &'a [Vec<DVec3>],
     points: &'a [DVec3],
-    /// For each face that was reached: whether it is turned.
+    /// True for each reached face that is turned; `None` for faces not reached.
     turned: Vec<Option<bool>>,
     piece: Vec<usize>,
 }

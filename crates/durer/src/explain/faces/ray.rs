@@ -140,7 +140,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     Ok(frames(&steps, |step| state.show(step)))
 }
 
-/// Gives all faces a material that mirrors.
+/// Assigns a material that mirrors to all faces.
 fn mirrors(model: &mut crate::scene::Scene) {
     model.materials = vec![Material {
         model: ShadingModel::Phong,

@@ -10,7 +10,7 @@ use std::fmt::Write;
 /// Size of letters in pictures.
 const SMALL: f64 = TEXT - 1.0;
 
-/// Colours of Okabe and Ito (2008), which people with any colour vision tell apart, and how lines are drawn.
+/// Colours of Okabe and Ito (2008), which people with any colour vision can distinguish, and styles of lines.
 struct Style {
     stroke: &'static str,
     width: f64,
@@ -164,7 +164,7 @@ impl Pen<'_> {
         }
     }
 
-    /// Draws a dot whose form tells the look, too.
+    /// Draws a dot whose form shows its kind, too.
     fn dot(&mut self, p: DVec2, look: Look) {
         let color = look.style().stroke;
         // Texts that come later leave it free.

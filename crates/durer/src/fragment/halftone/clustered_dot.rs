@@ -1,15 +1,16 @@
 //! Clustered-dot halftones: dots that grow with the tone, as a printer's screen makes them.
 //!
-//! J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes, *Computer Graphics: Principles and Practice*, 2nd ed. 1990, 13.1.2; the screen of two dots
-//! in a square at 45° as in R. Ulichney, *Digital Halftoning*, 1987. Class: image space. Cost: O(1) per pixel. Dots hold together, where
-//! ordered dithering scatters them, so they survive printing; of finer detail less is left.
+//! J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes, *Computer Graphics: Principles and Practice*, 2nd ed. 1990,
+//! 13.1.2; the screen of two dots in a square at 45° as in R. Ulichney, *Digital Halftoning*, 1987. Class: image space.
+//! Cost: O(1) per pixel. Dots hold together, where ordered dithering scatters them, so they survive printing; of finer
+//! detail less is left.
 
 use super::light;
 use crate::info::{Class, Info, Occluder};
 use crate::target::Pixels;
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "clustered-dot",
     title: "Clustered-dot halftone",
@@ -33,7 +34,8 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// The quarter of the screen that a dark dot grows in, in the order in which its pixels turn black: a spiral from the middle.
+/// The quarter of the screen that a dark dot grows in, in the order in which its pixels turn black: a spiral from the
+/// middle.
 const DOT: [[u8; 4]; 4] = [[12, 11, 10, 9], [13, 2, 1, 8], [14, 3, 0, 7], [15, 4, 5, 6]];
 
 /// The thresholds of the screen, of 32: a pixel is white where light · 32 lies above its own, by half a step. Dark dots

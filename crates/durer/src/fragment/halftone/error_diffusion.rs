@@ -1,15 +1,16 @@
 //! Floyd–Steinberg error diffusion: what a pixel's level is wrong by goes to the neighbours that come after it.
 //!
-//! R. W. Floyd, L. Steinberg, *An adaptive algorithm for spatial greyscale*, Proceedings of the Society for Information Display
-//! 17(2), 1976. Class: image space. Cost: O(1) per pixel, two rows of errors. Of the error 7/16 go to the next pixel of the
-//! row, 3/16, 5/16 and 1/16 to those below: behind, straight and ahead; nothing is lost but at the borders.
+//! R. W. Floyd, L. Steinberg, *An adaptive algorithm for spatial greyscale*, Proceedings of the Society for Information
+//! Display 17(2), 1976. Class: image space. Cost: O(1) per pixel, two rows of errors. Of the error 7/16 go to the next
+//! pixel of the row, 3/16, 5/16 and 1/16 to those below: behind, straight and ahead; nothing is lost but at the
+//! borders.
 
 use super::{light, of_level};
 use crate::info::{Class, Info, Occluder};
 use crate::target::Pixels;
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "floyd-steinberg",
     title: "Floyd–Steinberg error diffusion",
@@ -61,8 +62,7 @@ pub struct Step {
     pub value: f32,
     /// The nearest level.
     pub level: u8,
-    /// Error of the level: value − level's light, in sixteenths handed on to 7, 3, 5 and 1
-    /// neighbours.
+    /// Error of the level: value − level's light, of which 7, 3, 5 and 1 sixteenths go to four neighbours.
     pub error: f32,
 }
 

@@ -23,7 +23,7 @@ struct Side<'a> {
     of: &'a ViewBreak,
     /// Position of the line on the axis.
     at: f64,
-    /// 1 where what is above stays, −1 where what lies below does.
+    /// 1 if the part above stays, −1 if the part below does.
     sign: f64,
     /// The zigzag: places along the line, and how far it swings off there.
     knots: [(f64, f64); 4],
@@ -57,7 +57,7 @@ pub(super) fn cut(of: &ViewBreak, drawing: Drawing) -> Result<Drawing> {
     Ok(kept)
 }
 
-/// Between which places along its lines a break cuts something.
+/// Returns the range of places along the break's lines in which it cuts something.
 fn across(of: &ViewBreak, drawing: &Drawing) -> Option<[f64; 2]> {
     let rings = drawing.regions.iter().flat_map(|r| &r.rings).map(|r| (&r[..], true));
     let chains = drawing.lines.iter().map(|l| (&l.points[..], l.closed)).chain(rings);

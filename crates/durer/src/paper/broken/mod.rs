@@ -47,7 +47,7 @@ impl std::fmt::Display for Break {
 impl FromStr for Break {
     type Err = Error;
 
-    /// `AXIS:FROM,TO`: x, y or z, and where on it the part begins and ends.
+    /// Parses `AXIS:FROM,TO`: x, y or z, and where on it the part begins and ends.
     fn from_str(text: &str) -> Result<Self> {
         let expected = "AXIS:FROM,TO with x, y or z and FROM below TO, e.g. x:40,260";
         let wrong = || Error::parameter("break", text, expected);
@@ -67,7 +67,7 @@ const GAP: f64 = 0.025;
 /// The breaks of a model, each between ends of it and apart from the others.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Breaks {
-    /// Those of an axis from its lower end on.
+    /// Breaks of an axis, from its lower end on.
     breaks: Vec<Break>,
     /// Units of the model.
     gap: f64,
@@ -149,7 +149,7 @@ struct ViewBreak {
 }
 
 impl ViewBreak {
-    /// By how much what is beyond is moved.
+    /// Returns the distance by which everything beyond the break is moved.
     fn shift(&self) -> f64 {
         self.to - self.from - self.gap
     }
@@ -187,7 +187,7 @@ impl ViewBreaks {
         self.0.is_empty()
     }
 
-    /// Returns where a point of the plane is drawn; what is left out is squeezed into the gap.
+    /// Returns where a point of the plane is drawn; points of the part that is left out are squeezed into the gap.
     pub fn drawn_at(&self, p: DVec2) -> DVec2 {
         let moved = |b: &ViewBreak| {
             let share = ((p.dot(b.way) - b.from) / (b.to - b.from)).clamp(0.0, 1.0);
@@ -205,7 +205,7 @@ impl ViewBreaks {
     }
 
     /// Returns a drawing of the view with its breaks: lines of the class
-    /// [`LineClass::Break`](crate::target::drawing::LineClass::Break) stand where the model is broken. It has no window.
+    /// [`LineClass::Break`](crate::target::drawing::LineClass::Break) are where the model is broken. It has no window.
     ///
     /// # Errors
     /// [`Error::NonFinite`] for regions with a corner that is not finite.

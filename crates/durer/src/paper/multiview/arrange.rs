@@ -42,7 +42,7 @@ pub struct Arranged {
     pub page: DVec2,
     /// Length on paper over true length, of the principal views.
     pub scale: f64,
-    /// By view.
+    /// Places by view.
     pub places: Vec<Place>,
     /// The list of parts, if there is one, and its lower right corner.
     pub list: Option<(Shape, DVec2)>,
@@ -202,7 +202,7 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Millimetres per unit of a view's plane, where the principal views have a scale.
+    /// Returns the millimetres per unit of a view's plane, where the principal views have a scale.
     fn factor(&self, view: &SheetView, scale: f64) -> f64 {
         let unit = self.options.unit;
         match &view.kind {

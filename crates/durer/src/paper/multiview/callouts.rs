@@ -9,7 +9,7 @@ use crate::paper::PlacedView;
 pub struct Callout {
     /// Index of its view on the sheet.
     pub view: usize,
-    /// Subject of the text.
+    /// The part's number, as the circle shows it.
     pub number: String,
     /// A place of the part, in the plane of that view.
     pub at: DVec2,
@@ -53,7 +53,7 @@ pub fn put(annotator: &mut Annotator, callouts: &[Callout], placed: &[PlacedView
     annotator.end_layer("callouts");
 }
 
-/// Places along the edge of a rectangle around what is drawn, at least `count`, and how far apart they are.
+/// Returns places along the edge of a rectangle around the drawing, at least `count`, and how far apart they are.
 fn ports(bounds: &Rect, count: usize) -> (Vec<DVec2>, f64) {
     let (min, size) = (bounds.min() - AWAY, bounds.size() + 2.0 * AWAY);
     let around = 2.0 * (size.x + size.y);
@@ -74,7 +74,7 @@ fn ports(bounds: &Rect, count: usize) -> (Vec<DVec2>, f64) {
     ((0..number).map(place).collect(), apart)
 }
 
-/// Gives each point a port of its own, at least as many as there are points. At the end no exchange of two, and no
+/// Assigns each point a port of its own; there are at least as many as points. At the end no exchange of two, and no
 /// free port, makes lines shorter in sum: so no two of them cross.
 fn matched(points: &[DVec2], ports: &[DVec2]) -> Vec<usize> {
     let length = |point: usize, port: usize| points[point].distance(ports[port]);

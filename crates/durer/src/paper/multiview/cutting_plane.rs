@@ -49,7 +49,7 @@ struct Trace {
     sight: DVec2,
 }
 
-/// Returns the trace of a plane in a view, where that sees it edge on and it meets what is drawn.
+/// Returns the trace of a plane in a view, if the view sees it edge on and it meets the drawing.
 fn trace(plane: &Plane, camera: &Camera, view: &PlacedView) -> Option<Trace> {
     let plane = plane.normalized()?;
     let [right, up, back] = camera.axes();

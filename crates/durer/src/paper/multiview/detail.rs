@@ -111,7 +111,7 @@ impl Detail {
     }
 }
 
-/// Draws the circles of all details where they are and around what they show: layer `details`.
+/// Draws the circles of all details, around the enlarged views and around the parts that they show: layer `details`.
 pub fn put(annotator: &mut Annotator, views: &[SheetView], placed: &[PlacedView]) {
     for (view, place) in views.iter().zip(placed) {
         let ViewKind::Detail(detail) = &view.kind else { continue };

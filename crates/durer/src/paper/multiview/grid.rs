@@ -55,7 +55,7 @@ fn cell(view: Option<NamedView>) -> [i32; 2] {
 }
 
 impl Grid {
-    /// Places views, each given by its index, its side, if it is a usual one, and what it takes up.
+    /// Places views, each given by its index, its side if it is a usual one, and its extent.
     pub fn new(views: &[(usize, Option<NamedView>, Extent)], angle: Angle) -> Self {
         let cells: Vec<Cell> = views
             .iter()
@@ -68,7 +68,7 @@ impl Grid {
         Self { cells, tracks }
     }
 
-    /// Gaps from border to border: one more than there are columns, and rows.
+    /// Returns the number of gaps from border to border: one more than there are columns, and rows.
     pub fn gaps(&self) -> DVec2 {
         let [columns, rows] = self.tracks.each_ref().map(|t| t.len() as f64 + 1.0);
         DVec2::new(columns, rows)

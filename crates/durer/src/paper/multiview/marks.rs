@@ -24,7 +24,7 @@ const HEAD_HALF_WIDTH: f64 = 0.6;
 /// Corners of a circle.
 const AROUND: u32 = 96;
 
-/// Adds layers of marks to a sheet.
+/// Annotator that adds layers of marks to a sheet.
 pub struct Annotator<'a> {
     sheet: &'a mut Sheet,
     options: &'a Options,

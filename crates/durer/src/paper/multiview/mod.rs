@@ -24,7 +24,7 @@ use crate::target::sheet::Sheet;
 use crate::view::projection::NamedView;
 use marks::Annotator;
 
-/// On which side of the front view the others stand.
+/// Side of the front view on which each other view is placed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Angle {
     /// The right view is on the left, the top view below.
@@ -56,7 +56,7 @@ pub enum ViewKind {
 /// A parallel view of a thing; all of a sheet have the same point of the thing at the origin of their planes.
 #[derive(Debug, Clone)]
 pub struct SheetView<'a> {
-    /// Style of the drawing.
+    /// Kind of the view.
     pub kind: ViewKind,
     /// Camera of the view.
     pub camera: Camera,
@@ -100,7 +100,7 @@ pub struct Contents<'a> {
     pub views: &'a [SheetView<'a>],
     /// Numbers of parts around views.
     pub callouts: &'a [Callout],
-    /// The list of parts, which is above the title block, or in its place; `None` for none.
+    /// List of parts, placed above the title block, or in its place; empty for none.
     pub parts: &'a [PartsListRow],
     /// Title block; without one there is no frame either.
     pub title: Option<&'a TitleBlock>,

@@ -11,9 +11,9 @@ use crate::target::drawing::Anchor;
 pub struct PartsListRow {
     /// Number in the part's callout.
     pub number: String,
-    /// Letter that names it.
+    /// Name of the part.
     pub name: String,
-    /// Returns the number of bytes.
+    /// Number of parts of this kind.
     pub quantity: usize,
 }
 

@@ -14,7 +14,7 @@ const NEIGHBORS: usize = 10;
 /// The ends of strokes; the last of them is the pen's home, from which it starts.
 pub struct Ends {
     turns: Vec<Turn>,
-    /// By end.
+    /// Points by end.
     points: Vec<DVec2>,
     /// The nearest ends of other strokes, up to this many an end, the nearest first.
     near: Vec<End>,
@@ -23,7 +23,7 @@ pub struct Ends {
 }
 
 impl Ends {
-    /// Creates those of strokes as they are drawn first.
+    /// Creates the ends of strokes as they are drawn first.
     pub fn new(strokes: &[Stroke], turns: &[Turn], home: DVec2) -> Self {
         let finite = |p: DVec2| if p.is_finite() { p } else { home };
         let both = |turn: &Turn| {
@@ -77,8 +77,8 @@ impl Ends {
         Some(Turn { first, ..turn })
     }
 
-    /// Lets closed strokes begin where the way past them is shortest, given all in a circle by the ends that
-    /// they are entered at. Whether anything got shorter.
+    /// Turns closed strokes to begin where the way past them is shortest, given all in a circle by the ends that they
+    /// are entered at. Returns whether anything got shorter.
     pub fn turn_rings(&mut self, strokes: &[Stroke], sequence: &[End]) -> bool {
         let (count, mut shorter) = (sequence.len(), false);
         for (i, &end) in sequence.iter().enumerate() {

@@ -80,7 +80,7 @@ impl Way {
         }
     }
 
-    /// Makes one change at a stroke that saves something: the ends at which the way changed.
+    /// Makes one change at a stroke that saves something; returns the ends at which the way changed.
     fn change(&mut self, ends: &Ends, stroke: u32) -> Option<[End; 6]> {
         [stroke * 2, stroke * 2 + 1].into_iter().find_map(|a| {
             let b = self.mate(a);
@@ -108,7 +108,7 @@ impl Way {
         if self.is_entry(end) { self.at(place + count - 1) ^ 1 } else { self.at(place + 1) }
     }
 
-    /// 2-opt: instead of a–b and c–d the pen goes a–c and b–d.
+    /// Applies 2-opt where it saves enough: instead of a–b and c–d the pen goes a–c and b–d.
     fn exchange(&mut self, ends: &Ends, [a, b, c]: [End; 3], saved: f64) -> Option<[End; 6]> {
         if self.is_entry(a) != self.is_entry(c) {
             return None;
@@ -125,7 +125,8 @@ impl Way {
         self.reverse(from, to).then_some([a, b, c, d, a, b])
     }
 
-    /// Or-opt: a row of strokes that begins at `a` goes between c and its mate d, turned so that a is at c.
+    /// Applies Or-opt where it saves enough: moves a row of strokes that begins at `a` between c and its mate d,
+    /// turned so that a is at c.
     fn move_row(&mut self, ends: &Ends, [a, b, c]: [End; 3], saved: f64) -> Option<[End; 6]> {
         let count = self.sequence.len();
         let d = self.mate(c);
@@ -182,8 +183,8 @@ impl Way {
         true
     }
 
-    /// Moves the row of this many strokes at `first` behind the stroke at the place `after`, reversed if
-    /// told; `false` where that is too far.
+    /// Moves the row of this many strokes at `first` behind the stroke at the place `after`, reversed if requested;
+    /// `false` if that is too far.
     fn shift(&mut self, first: usize, length: usize, after: usize, reversed: bool) -> bool {
         let count = self.sequence.len();
         let mut row: Vec<End> = (0..length).map(|i| self.at(first + i)).collect();

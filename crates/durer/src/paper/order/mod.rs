@@ -94,8 +94,8 @@ pub fn ordered(mut strokes: Vec<Stroke>, start: DVec2) -> Vec<Stroke> {
     joined(turns.into_iter().filter_map(&mut take).collect())
 }
 
-/// Orders strokes and curves as [`ordered`] does, and joins those that follow each other without a gap. Curves may be begun
-/// where their pieces meet, circles anywhere on a sixteenth of them.
+/// Orders strokes and curves as [`ordered`] does, and joins those that follow each other without a gap. Curves may be
+/// begun where their pieces meet, circles anywhere on a sixteenth of them.
 pub fn ordered_chains(chains: Vec<Chain>, start: DVec2) -> Vec<Chain> {
     chain::joined(chain::in_turn(chains, start))
 }
@@ -120,9 +120,9 @@ fn meet(last: &Stroke, next: &Stroke) -> bool {
     ends.is_some_and(|(a, b)| a.distance(*b) <= JOIN)
 }
 
-/// Orders the marks of a sheet, layer by layer, for pens that draw one layer after another: within a layer
-/// each pen is taken once, for strokes and then for texts, which stay in one piece. Strokes with dashes are
-/// not joined, and layers with fills stay as they are, because what comes later covers what is there.
+/// Orders the marks of a sheet, layer by layer, for pens that draw one layer after another: within a layer each pen is
+/// taken once, for strokes and then for texts, which stay in one piece. Strokes with dashes are not joined, and layers
+/// with fills stay as they are, because later marks cover earlier ones.
 pub fn sheet(sheet: &mut Sheet) {
     let solid: Vec<bool> = sheet.pens.iter().map(|p| p.dashes.is_empty()).collect();
     let mut at = DVec2::ZERO;
@@ -169,7 +169,7 @@ impl ByPen {
     }
 }
 
-/// Texts, from one beginning to the next.
+/// Sorts texts for the way from one beginning to the next.
 fn texts_in_turn(texts: Vec<Mark>, at: &mut DVec2) -> Vec<Mark> {
     let place = |mark: &Mark| match mark {
         Mark::Text { at, .. } => Stroke { points: vec![*at], closed: true },

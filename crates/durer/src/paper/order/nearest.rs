@@ -65,7 +65,7 @@ impl Tree {
         Node { id: 1, from: 0, to: self.points.len(), along_x: true }
     }
 
-    /// Sorts; the recursion is as deep as the logarithm of the number of points.
+    /// Sorts the points of a node; the recursion is as deep as the logarithm of the number of points.
     fn sort(&mut self, node: Node) {
         self.left[node.id] = (node.to - node.from) as u32;
         if node.is_leaf() {
@@ -79,7 +79,7 @@ impl Tree {
         node.halves().into_iter().for_each(|half| self.sort(half));
     }
 
-    /// Takes out a point that is in it.
+    /// Removes a point that is in it.
     pub fn remove(&mut self, number: u32) {
         let place = self.place[number as usize] as usize;
         let mut node = self.root();
@@ -94,8 +94,8 @@ impl Tree {
         }
     }
 
-    /// The nearest points that `wanted` lets through, at most as many as `found` has room for: squared
-    /// distances and numbers, the nearest first; equally near ones by their numbers where all have room.
+    /// Finds the nearest points that `wanted` accepts, at most as many as `found` has room for: squared distances and
+    /// numbers, the nearest first; equally near ones by their numbers where all have room.
     pub fn nearest(&self, to: DVec2, found: &mut Nearest, wanted: impl Fn(u32) -> bool) {
         found.list.clear();
         self.search(self.root(), to, found, &wanted);
@@ -131,7 +131,7 @@ pub struct Nearest {
 }
 
 impl Nearest {
-    /// Room for this many.
+    /// Creates an empty list with room for `most` points.
     pub fn new(most: usize) -> Self {
         Self { list: Vec::with_capacity(most + 1), most }
     }

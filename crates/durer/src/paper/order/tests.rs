@@ -14,7 +14,7 @@ fn ring(list: &[(f64, f64)]) -> Stroke {
     Stroke { points: points(list), closed: true }
 }
 
-/// Numbers from 0 to 1 (Knuth's linear congruences).
+/// Returns random numbers from 0 to 1 (Knuth's linear congruences).
 fn random() -> impl FnMut() -> f64 {
     let mut state = 1_u64;
     move || {
@@ -24,7 +24,7 @@ fn random() -> impl FnMut() -> f64 {
     }
 }
 
-/// Short strokes, every fifth a square, all over a sheet of 100 × 100.
+/// Creates short strokes, every fifth a square, all over a sheet of 100 × 100.
 pub fn scattered(count: usize) -> Vec<Stroke> {
     let mut random = random();
     let mut stroke = |i: usize| {

@@ -11,7 +11,7 @@ use super::tensor::Tensor;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// For each pixel, whether it takes the second of its directions.
+/// Returns, for each pixel, whether it takes the second of its directions.
 pub fn second(seen: &Seen, bent: &[Bent]) -> Vec<bool> {
     let mut order: Vec<usize> = (0..bent.len()).filter(|i| bent[*i].weight > 0.0).collect();
     order.sort_by(|a, b| bent[*b].weight.total_cmp(&bent[*a].weight));
@@ -40,7 +40,7 @@ struct Taking<'a> {
 }
 
 impl Taking<'_> {
-    /// Takes all that is connected with a pixel.
+    /// Takes all pixels that are connected with a pixel.
     fn surface(&mut self, first: usize) {
         // Weights are at least 0, so their bits are in their order.
         let entry = |i: usize| (self.bent[i].weight.to_bits(), Reverse(i));

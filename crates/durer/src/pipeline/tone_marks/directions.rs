@@ -16,9 +16,9 @@ use crate::math::{DVec2, DVec3};
 /// One of two directions at right angles on the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Across {
-    /// No exchange: the direction of the strongest curvature, as a rule.
+    /// The direction of the strongest curvature, as a rule.
     No,
-    /// The other.
+    /// The direction at right angles to it.
     Yes,
 }
 
@@ -51,7 +51,7 @@ struct Evening {
 }
 
 impl Directions {
-    /// Finds the directions; `height` is that of what is seen, model units.
+    /// Finds the directions; `height` is that of the field of view, in model units.
     pub fn new(seen: &Seen, height: f64) -> Self {
         let sides: Vec<Option<Sides>> = seen.places().map(|at| Sides::at(seen, at)).collect();
         let curvature = sides.iter().map(|s| s.as_ref().map_or(Tensor::ZERO, Sides::curvature));
@@ -112,7 +112,7 @@ fn main_direction([xx, xy, yy]: [f64; 3]) -> Option<DVec2> {
     v.try_normalize()
 }
 
-/// Takes each tensor between its own value and those around it on the same surface, again and again.
+/// Replaces each tensor by one between its own value and those around it on the same surface, again and again.
 fn evened(seen: &Seen, own: Vec<Tensor>, how: &Evening) -> Vec<Tensor> {
     let mut now = own.clone();
     let mut next = own.clone();

@@ -63,8 +63,8 @@ const DOT_LENGTH: f64 = 0.02;
 /// Largest distance that lines may move when points are left out, in pixels.
 const TOLERANCE: f64 = 0.05;
 
-/// Marks for the tones of what a drawing by the same options shows, in its plane: visible lines to be drawn with it.
-/// Caps of sections have none: [`crate::visibility::region::hatch`] is for these.
+/// Returns marks for the tones of the surfaces that a drawing by the same options shows, in its plane: visible lines to
+/// be drawn with it. Caps of sections have none: [`crate::visibility::region::hatch`] is for these.
 ///
 /// # Errors
 /// A size that is not a number above 0; as [`super::draw`] and [`super::render`].
@@ -203,11 +203,11 @@ impl Field for Hatching<'_> {
 
 /// The distances of lines of one direction by the tone, 0 … 1.
 struct Tones {
-    /// Up to which they are at their closest.
+    /// Tone up to which they are at their closest.
     closest: f64,
-    /// By how much lighter they are twice as far apart.
+    /// Difference in tone at which they are twice as far apart.
     doubled: f64,
-    /// From which on there are none.
+    /// Tone from which on there are none.
     none: f64,
 }
 

@@ -19,7 +19,7 @@ pub struct Seen {
 /// The surface at one pixel.
 #[derive(Clone, Copy)]
 pub struct Pixel {
-    /// From the eye: to the right, down, and back; model units. NaN where nothing is.
+    /// Position relative to the eye: to the right, down, and back; model units. NaN where nothing is.
     pub place: DVec3,
     /// Unit normal in the same directions, on the eye's side.
     pub normal: DVec3,

@@ -10,12 +10,12 @@ pub struct Tensor([f32; 6]);
 impl Tensor {
     pub const ZERO: Self = Self([0.0; 6]);
 
-    /// v·vᵀ.
+    /// Returns v·vᵀ.
     pub fn of(v: DVec3) -> Self {
         Self([v.x * v.x, v.x * v.y, v.x * v.z, v.y * v.y, v.y * v.z, v.z * v.z].map(|v| v as f32))
     }
 
-    /// v·wᵀ + w·vᵀ.
+    /// Returns v·wᵀ + w·vᵀ.
     pub fn between(v: DVec3, w: DVec3) -> Self {
         let of = |a: usize, b: usize| v[a] * w[b] + v[b] * w[a];
         Self([of(0, 0), of(0, 1), of(0, 2), of(1, 1), of(1, 2), of(2, 2)].map(|v| v as f32))
@@ -26,7 +26,7 @@ impl Tensor {
         Self(std::array::from_fn(|k| self.0[k] + times * other.0[k]))
     }
 
-    /// vᵀ·T·w.
+    /// Returns vᵀ·T·w.
     pub fn form(&self, v: DVec3, w: DVec3) -> f64 {
         let [xx, xy, xz, yy, yz, zz] = self.0.map(f64::from);
         v.x * (xx * w.x + xy * w.y + xz * w.z)

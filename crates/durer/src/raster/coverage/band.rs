@@ -56,7 +56,7 @@ impl PathEdges {
         self.rows.0 >= top + BAND_ROWS || self.rows.1 <= top
     }
 
-    /// With the list it was made with.
+    /// Returns the path with the list it was made with.
     pub fn with<'a>(&'a self, list: &'a [Edge]) -> Path<'a> {
         Path { path: self, list }
     }
@@ -106,7 +106,7 @@ impl Path<'_> {
         self.path.rows
     }
 
-    /// Returns the same within the band at row `top`, from there.
+    /// Returns the rows within the band at row `top`, counted from there.
     fn rows_of_band(&self, top: i32) -> (i32, i32) {
         let (first, end) = self.path.rows;
         ((first - top).max(0), (end - top).min(BAND_ROWS))
@@ -124,20 +124,20 @@ impl Path<'_> {
 #[derive(Debug, Default)]
 pub(crate) struct BandFiller {
     cells: Cells,
-    /// For small convex paths.
+    /// Cells for small convex paths.
     small: SmallCells,
     resolver: Resolver,
     width: usize,
 }
 
 impl BandFiller {
-    /// Buffers for rows of `width` pixels.
+    /// Creates buffers for rows of `width` pixels.
     pub fn new(width: u32) -> Self {
         let (small, resolver) = (SmallCells::default(), Resolver::default());
         Self { cells: Cells::new(width), small, resolver, width: width as usize }
     }
 
-    /// Adds the edges of a path to the cells; says whether there are pixels that have to be resolved.
+    /// Adds the edges of a path to the cells; returns whether there are pixels that have to be resolved.
     #[simd]
     fn collect<S: Simd>(
         simd: S,
@@ -229,7 +229,7 @@ impl BandFiller {
     }
 }
 
-/// Coverage 0 … 255 of an area 0 … 65,536.
+/// Returns the coverage 0 … 255 of an area 0 … 65,536.
 pub(crate) fn coverage_of_area(area: i32) -> u8 {
     alpha(area, FillRule::NonZero)
 }

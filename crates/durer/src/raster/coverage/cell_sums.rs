@@ -1,11 +1,13 @@
 //! Coverage by cover and area in cells, as published: what [`super::fill`] does with integers, bands and lanes.
 //!
-//! Each edge is cut at the sides of the pixels that it crosses. A piece adds its height to the *cover* of its pixel, and
-//! its height times the distance of its middle from the pixel's right side to the pixel's *area*. Along a row, the covers
-//! of all cells to the left and the area of the cell itself add up to the integral of the winding number over the pixel.
+//! Each edge is cut at the sides of the pixels that it crosses. A piece adds its height to the *cover* of its pixel,
+//! and its height times the distance of its middle from the pixel's right side to the pixel's *area*. Along a row, the
+//! covers of all cells to the left and the area of the cell itself add up to the integral of the winding number over
+//! the pixel.
 //!
-//! Deviations: numbers are f64; edges left of the target count as its left side. Class: image space. Cost: O(c log c + p),
-//! c pixels crossed by edges and p covered. Limits: where contours overlap, the integral is not the area of their union.
+//! Deviations: numbers are f64; edges left of the target count as its left side. Class: image space. Cost: O(c log c +
+//! p), c pixels crossed by edges and p covered. Limits: where contours overlap, the integral is not the area of their
+//! union.
 
 use super::{FillRule, check_size};
 use crate::Result;
@@ -16,7 +18,7 @@ use crate::target::Pixels;
 use crate::trace::Tracer;
 use std::collections::BTreeMap;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "cell-sums",
     title: "Coverage by cover and area in cells",
@@ -45,7 +47,8 @@ pub const INFO: Info = Info {
 /// Sums of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Cell {
-    /// Sum of the heights of the pieces of edges, positive for those that run towards larger y; −1 … 1 without overlaps.
+    /// Sum of the heights of the pieces of edges, positive for those that run towards larger y; −1 … 1 without
+    /// overlaps.
     pub cover: f64,
     /// Sum of those heights, each times the distance from the middle of the piece to the right side of the pixel.
     pub area: f64,
@@ -116,7 +119,7 @@ pub fn replay(steps: &[Step], width: u32, height: u32) -> Pixels<u8> {
 }
 
 /// Returns the coverage 0 … 255 of every pixel of a `width` × `height` target by the outline, whose contours count as
-/// closed; coordinates in pixels. Points that are not finite are left out; what is outside the target is clipped.
+/// closed; coordinates in pixels. Points that are not finite are left out; parts outside the target are clipped.
 ///
 /// # Errors
 /// [`crate::Error::Limit`] for sides beyond 32,767 pixels.
@@ -207,7 +210,7 @@ impl Sums {
         t.step(|| Step::Piece { pixel: [x, y], ends, adds, cell });
     }
 
-    /// Sums the cells along the rows.
+    /// Adds up the cells along the rows.
     fn sweep(self, rule: FillRule, t: &mut impl Tracer<Step>) -> Pixels<u8> {
         let [width, height] = self.size;
         let mut mask = Pixels::new(width, height, 0);

@@ -39,14 +39,14 @@ pub(crate) struct Cells {
     first: usize,
     /// Marks of a row.
     words: usize,
-    /// Not 0 once a pixel has become shared.
+    /// Number that is not 0 once a pixel has become shared.
     pub any_shared: u64,
     /// Parts that have yet to be added.
     parts: Box<Parts>,
 }
 
 impl Cells {
-    /// Empty cells for rows of up to `width` pixels.
+    /// Creates empty cells for rows of up to `width` pixels.
     pub fn new(width: u32) -> Self {
         let words = (width as usize + SPILL).div_ceil(64);
         let rows = BAND_ROWS as usize;
@@ -107,7 +107,7 @@ impl Cells {
         }
     }
 
-    /// Adds what is still in the queue.
+    /// Adds the edges that are still in the queue.
     #[simd]
     pub fn flush<S: Simd>(simd: S, this: &mut Self, shared: bool) {
         let columns = (this.width - this.first.min(this.width)) as i32;
@@ -147,7 +147,7 @@ impl Cells {
         self.any_shared |= any;
     }
 
-    /// A part that touches more than two pixels, or two in different words.
+    /// Adds a part that touches more than two pixels, or two in different words.
     #[inline(always)]
     fn long_part<S: Simd, const SHARED: bool>(&mut self, simd: S, i: usize) {
         let Parts { cells, left, right, height, .. } = &*self.parts;
@@ -187,7 +187,7 @@ impl Cells {
         }
     }
 
-    /// An edge within one row that crosses three pixels or more; its marks are set.
+    /// Adds an edge within one row that crosses three pixels or more; its marks are set already.
     #[inline(always)]
     fn wide_part<S: Simd>(&mut self, simd: S, first: usize, ramp: &Ramp, sign: i32) {
         let flip = i32x8::splat(simd, (sign - 1) >> 1);

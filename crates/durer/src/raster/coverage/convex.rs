@@ -1,8 +1,8 @@
 //! Triangles and thin strips, as most lines are: coverage without cells.
 //!
 //! Few edges meet in a row, mostly two. So rows are summed as they are found, from the same integers that
-//! [`super::cells`] would add up: eight pixels at a time, and eight rows at a time between two steep edges that are less
-//! than two pixels apart, as those of thin lines are.
+//! [`super::cells`] would add up: eight pixels at a time, and eight rows at a time between two steep edges that are
+//! less than two pixels apart, as those of thin lines are.
 
 use fearless_simd::i32x8;
 use fearless_simd::prelude::*;
@@ -201,7 +201,7 @@ fn pair(sides: &[Side], row: i32, end: i32) -> Option<Pair> {
     (count == 2).then_some(Pair { left, right, end })
 }
 
-/// Rows between two edges, eight pixels at a time.
+/// Fills rows between two edges, eight pixels at a time.
 #[simd]
 fn wide_rows<S: Simd, K: Sink<S>>(
     simd: S,
@@ -230,7 +230,7 @@ fn wide_rows<S: Simd, K: Sink<S>>(
     }
 }
 
-/// Rows between two steep edges, eight at a time.
+/// Fills rows between two steep edges, eight rows at a time.
 #[simd]
 fn steep_rows<S: Simd, K: Sink<S>>(
     simd: S,
@@ -266,7 +266,7 @@ fn steep_rows<S: Simd, K: Sink<S>>(
     }
 }
 
-/// One row, eight pixels at a time.
+/// Fills one row, eight pixels at a time.
 #[simd]
 fn one_row<S: Simd, K: Sink<S>>(
     simd: S,

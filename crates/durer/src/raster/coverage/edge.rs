@@ -40,7 +40,7 @@ pub(crate) struct Steps {
 }
 
 impl Steps {
-    /// x at the border this many rows below the first one, 32.32.
+    /// Returns x at the border `rows` rows below the first one, 32.32.
     #[inline(always)]
     pub fn at(&self, rows: i32) -> i64 {
         (i64::from(self.crossing) << BITS) + self.slope.wrapping_mul(i64::from(rows))
@@ -48,7 +48,7 @@ impl Steps {
 }
 
 impl Edge {
-    /// From one point in the target to another.
+    /// Creates an edge from one point in the target to another.
     #[inline(always)]
     pub(super) fn new(from: (i32, i32), to: (i32, i32)) -> Self {
         // In one number each, so that there is nothing to be guessed.
@@ -72,7 +72,7 @@ impl Edge {
         }
     }
 
-    /// +1 for an edge that goes down in its path (horizontal: to the right), −1 for others.
+    /// Returns +1 for an edge that goes down in its path (horizontal: to the right), −1 for others.
     pub fn sign(&self) -> i32 {
         1 - 2 * (self.flags & REVERSED) as i32
     }
@@ -118,7 +118,7 @@ impl Edge {
         }
     }
 
-    /// Takes over what has been chained of a copy.
+    /// Takes over the chained edges of a copy.
     pub(super) fn chain_as(&mut self, copy: &Self) {
         self.flags |= copy.flags;
     }

@@ -44,8 +44,7 @@ pub(super) fn chain_contour(edges: &mut [Edge], gaps: bool) {
     }
 }
 
-/// Returns the same between the first and the last edge that a group of joints begins at; gives
-/// these two.
+/// Chains the edges between the first and the last edge that a group of joints begins at; returns these two.
 pub(super) fn chain_inner(edges: &mut [Edge], gaps: bool) -> Option<(usize, usize)> {
     let begins = |i: &usize| {
         !edges[*i].is_short() || (gaps && *i > 0 && !is_joint(&edges[i - 1], &edges[*i]))

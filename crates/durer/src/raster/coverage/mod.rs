@@ -1,18 +1,18 @@
 //! Anti-aliased fill by exact area coverage.
 //!
-//! Each pixel's coverage is the area of its part inside the outline, rounded once to 8 bits. Signed
-//! areas of edges are accumulated per pixel and summed along the rows, as in Catmull, *A hidden-surface
-//! algorithm with anti-aliasing* (SIGGRAPH 1978), and in the cells of D. Turner's and R. Levien's
-//! font rasterizers. Two things go beyond them: pixels in which windings overlap or cancel are found by
-//! two bits per pixel and resolved exactly, and an edge gives the same integers whichever of its two
-//! faces it is drawn for, so a partition's areas add up to exactly one.
+//! The coverage of a pixel is the area of its part inside the outline, rounded once to 8 bits. Signed areas of edges
+//! are accumulated per pixel and summed along the rows, as in Catmull, *A hidden-surface algorithm with anti-aliasing*
+//! (SIGGRAPH 1978), and in the cells of D. Turner's and R. Levien's font rasterizers. This module goes beyond them in
+//! two respects. Two bits per pixel mark the pixels in which windings overlap or cancel, and these are resolved
+//! exactly. And an edge contributes the same integers to both of the faces that share it, so that the areas of a
+//! partition add up to exactly one.
 //!
-//! Class: image space. Cost: O(pixels crossed by edges + pixels touched); rows are worked on in bands, which are the
-//! parallel task. Limits: sides of at most 32,767 pixels; winding numbers beyond ±32,767 wrap around; pixels crossed
-//! by more than 24 edges are measured along 16 to 256 lines; unless [`Overlap::Exact`] is requested, bands of noise
-//! take the integral of the winding number for the area: those of more than 256 edges, short ones that cross each
-//! other in more than a fifth of what they touch. To resolve those too takes twelve times as long (a random walk of
-//! 10⁵ steps at 2048²: 180 ms instead of 15). Where a contour starts and which way it runs changes nothing.
+//! Class: image space. Cost: O(pixels crossed by edges + pixels touched); rows are processed in bands, which are the
+//! parallel tasks. Limits: sides of at most 32,767 pixels; winding numbers beyond ±32,767 wrap around; pixels crossed
+//! by more than 24 edges are measured along 16 to 256 lines. Unless [`Overlap::Exact`] is requested, bands of noise use
+//! the integral of the winding number as the area: these have more than 256 edges, short ones that cross each other in
+//! more than a fifth of the pixels that they touch. To resolve those exactly takes twelve times as long (a random walk
+//! of 10⁵ steps at 2048²: 180 ms instead of 15). The start and direction of a contour have no effect.
 
 pub(crate) mod band;
 pub mod cell_sums;
@@ -46,43 +46,44 @@ use band::{BandFiller, PathEdges};
 use edge::{Edge, MAX_SIDE};
 use sweep::Sink;
 
-/// Rule that decides from the winding number what is inside.
+/// Rule that decides which winding numbers are inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum FillRule {
-    /// All but zero.
+    /// All winding numbers but 0.
     #[default]
     NonZero,
-    /// The odd ones.
+    /// Odd winding numbers.
     EvenOdd,
 }
 
-/// Treatment of pixels in which several contours, or parts of one, overlap.
+/// Treatment of pixels in which several contours, or several parts of one, overlap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Overlap {
     /// The area of the union, by the fill rule: opposite windings do not cancel.
     Exact,
-    /// The same, but in bands of noise, those of more than 256 short edges that cross each other in more than a fifth
-    /// of what they touch, pixels of 5 to 32 edges are measured along 16 to 64 lines, and those of more take the integral.
-    /// What strokes take for [`Overlap::Adaptive`]: their outlines overlap themselves.
+    /// As [`Self::Exact`], except in bands of noise: bands of more than 256 short edges that cross each other in more
+    /// than a fifth of the pixels that they touch. There, pixels of 5 to 32 edges are measured along 16 to 64 lines,
+    /// and pixels of more edges take the integral of the winding number. Strokes use this in place of
+    /// [`Overlap::Adaptive`], because their outlines overlap themselves.
     Measured,
-    /// The same, but for the integral in all pixels of such bands.
+    /// As [`Self::Exact`], except in bands of noise, where all pixels take the integral of the winding number.
     #[default]
     Adaptive,
-    /// The integral of the winding number, as most rasterizers do: fast on drawings that cross themselves
-    /// everywhere, wrong by up to a whole pixel where windings of both signs meet.
+    /// The integral of the winding number, as in most rasterizers: fast on drawings that cross themselves everywhere,
+    /// but wrong by up to a whole pixel where windings of both signs meet.
     Accumulated,
 }
 
 /// Options for computing coverage from an outline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
-    /// Rule that decides from the winding number what is inside.
+    /// Rule that decides which winding numbers are inside.
     pub rule: FillRule,
-    /// Treatment of pixels in which outlines overlap.
+    /// Treatment of pixels in which contours overlap.
     pub overlap: Overlap,
 }
 
-/// One step: pixels of a row that are covered alike.
+/// Step of the algorithm: pixels of a row with the same coverage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Step {
     /// Row, from the top.
@@ -95,7 +96,7 @@ pub struct Step {
     pub coverage: u8,
 }
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "area-coverage",
     title: "Exact area coverage",
@@ -110,11 +111,11 @@ pub const INFO: Info = Info {
     pseudocode: &[],
 };
 
-/// Returns the coverage 0 … 255 of every pixel of a `width` × `height` target by the outline, whose
-/// contours count as closed; coordinates in pixels, y down.
+/// Returns the coverage 0 … 255 of every pixel of a `width` × `height` target by the outline. All contours count as
+/// closed; coordinates are in pixels, y down.
 ///
-/// Points that are not finite are left out; what is outside the target is clipped. The error is that
-/// of rounding to 8 bits, plus 2⁻¹⁷ of a pixel per edge through it.
+/// Points that are not finite are left out; parts outside the target are clipped. The error is that of rounding to 8
+/// bits, plus 2⁻¹⁷ of a pixel per edge through it.
 ///
 /// # Errors
 /// [`Error::Limit`] for sides beyond 32,767 pixels.
@@ -156,7 +157,7 @@ fn fill_at(
     Ok(mask)
 }
 
-/// Fills a path made for a mask of that size.
+/// Fills a path for a mask of that size.
 fn fill_path(
     level: Level,
     path: &PathEdges,
@@ -174,7 +175,7 @@ fn fill_path(
     }
 }
 
-/// Writes coverage to a mask.
+/// Sink that writes coverage to a mask.
 struct Mask<'a, T> {
     mask: &'a mut Pixels<u8>,
     /// First row of the band.

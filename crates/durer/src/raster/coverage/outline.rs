@@ -70,7 +70,8 @@ pub(super) fn size(width: u32, height: u32) -> DVec2 {
     DVec2::new(f64::from(width.min(MAX_SIDE)), f64::from(height.min(MAX_SIDE)))
 }
 
-/// Returns the edges of this many points at once; how many changes nothing in them.
+/// Returns the edges of contours in chunks of this many points; the number of points in a chunk changes nothing in
+/// them.
 pub(super) fn chunks(
     contours: &Contours,
     size: DVec2,
@@ -101,7 +102,7 @@ pub(super) fn chunks(
     (chunks, extent)
 }
 
-/// Chains the joints of a contour that come between what was made in several chunks.
+/// Chains the joints of a contour between the parts that were made in several chunks.
 fn chain_parts(chunks: &mut [Chunk<Edge>], parts: &[(usize, Part)]) {
     let gaps = parts.iter().any(|(_, part)| part.gaps);
     let places = |parts: &[(usize, Part)]| -> Vec<(usize, usize)> {
@@ -141,7 +142,7 @@ fn chain_parts(chunks: &mut [Chunk<Edge>], parts: &[(usize, Part)]) {
     on(&all, &|edges| chain(edges, Some(closing), gaps));
 }
 
-/// Makes edges.
+/// Builder of edges.
 struct Builder<'a> {
     edges: &'a mut Vec<Edge>,
     /// Size of the target in pixels.
@@ -218,7 +219,7 @@ impl<'a> Builder<'a> {
         self.extent = extent;
     }
 
-    /// The part of a line that matters: within the rows, and left of the right border.
+    /// Adds the part of a line that matters: within the rows, and left of the right border.
     fn clipped(&mut self, a: DVec2, b: DVec2) {
         if a.x.min(b.x) > self.size.x {
             return;

@@ -14,7 +14,7 @@ use crate::raster::bands::BAND_ROWS;
 use crate::target::Pixels;
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "partition",
     title: "Faces summed to full coverage",
@@ -67,7 +67,7 @@ pub enum Step {
     Pixel {
         /// Column and row.
         pixel: (u32, u32),
-        /// The faces over what was there.
+        /// The faces over the earlier colour.
         color: [u8; 4],
     },
 }
@@ -82,8 +82,8 @@ impl Step {
     }
 }
 
-/// Paints faces that do not overlap over the target as one shape: their areas and colours are added in
-/// each pixel before anything is rounded, so where faces meet nothing of what is behind shines through.
+/// Paints faces that do not overlap over the target as one shape: their areas and colours are added in each pixel
+/// before anything is rounded, so that where faces meet nothing behind shines through.
 ///
 /// The same picture whatever the order of the faces and their vertices. Faces that do overlap mix in
 /// proportion to their areas. Returns how many pixels are fully covered by the faces together.

@@ -74,8 +74,8 @@ impl Parts {
     /// Adds what an edge does in the rows of the band whose first row is `top`; a row has this many
     /// cells.
     ///
-    /// Edges of several rows are added eight rows at a time, the first and the last among them: to guess how long an edge
-    /// is costs more than rows that are not meant.
+    /// Edges of several rows are added eight rows at a time, the first and the last among them: to guess how long an
+    /// edge is costs more than rows that are not meant.
     #[inline(always)]
     pub fn add<S: Simd>(&mut self, simd: S, edge: &Edge, top: i32, cells: u32) {
         let (first, last) = (edge.y0 >> BITS, edge.y1 >> BITS);
@@ -143,7 +143,7 @@ impl Parts {
         }
     }
 
-    /// Makes areas of what is in the queue; x is moved between 0 and the limit, 16.16.
+    /// Makes areas of the edges in the queue; x is moved between 0 and the limit, 16.16.
     #[simd]
     pub fn make<S: Simd>(simd: S, this: &mut Self, limit: i32) {
         let splat = |v: i32| i32x8::splat(simd, v);
@@ -194,7 +194,7 @@ impl Parts {
         (flags & OWN_LEFT != 0, flags & OWN_RIGHT != 0)
     }
 
-    /// +1 or −1, for a part's edge that goes down or up.
+    /// Returns +1 for a part's edge that goes down, −1 for one that goes up.
     #[inline(always)]
     pub fn sign(&self, i: usize) -> i32 {
         1 - 2 * (self.flags[i & (ROOM - 1)] & UP) as i32

@@ -11,7 +11,7 @@ use super::edge::{BITS, ONE};
 /// Coverage to the right of an edge within one row, by pixel.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Ramp {
-    /// The first pixel it touches, and what it covers of that.
+    /// The first pixel that it touches, and the area that it covers of that.
     pub first: i32,
     pub head: i32,
     /// The last one, at least the one after the first.
@@ -95,7 +95,7 @@ pub(super) fn steep_deltas(a: i32, b: i32, half_inverse: f32) -> [i32; 3] {
     [d0, ONE - d0 - d2, d2]
 }
 
-/// Returns the same for an edge that crosses part of a row's height.
+/// Returns the [`steep_deltas`] of an edge that crosses part of a row's height.
 #[inline(always)]
 pub(super) fn narrow_deltas(a: i32, b: i32, height: i32) -> [i32; 3] {
     let scale = |delta: i32| ((i64::from(delta) * i64::from(height)) >> BITS) as i32;
@@ -106,7 +106,8 @@ pub(super) fn narrow_deltas(a: i32, b: i32, height: i32) -> [i32; 3] {
     [d0, height - d0 - d2, d2]
 }
 
-/// [`narrow_deltas`] of eight parts at once, from `a` on and so far across; for a height of one [`steep_deltas`].
+/// Returns the [`narrow_deltas`] of eight parts at once, which begin at `a` and extend `across`; for a height of one
+/// the [`steep_deltas`].
 #[inline(always)]
 pub(super) fn eight_deltas<S: Simd>(
     simd: S,
@@ -154,7 +155,7 @@ pub(super) struct Stepped<S: Simd> {
 }
 
 impl<S: Simd> Stepped<S> {
-    /// By its slope, 32.32.
+    /// Creates the movement of an edge with a slope, 32.32.
     #[inline(always)]
     pub fn new(simd: S, slope: i64) -> Self {
         let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
@@ -164,7 +165,7 @@ impl<S: Simd> Stepped<S> {
         }
     }
 
-    /// x in each of the rows, 16.16, by x in the first, 32.32.
+    /// Returns x in each of the rows, 16.16, from x in the first, 32.32.
     #[inline(always)]
     pub fn from(&self, simd: S, x: i64) -> i32x8<S> {
         let below = self.below + i32x8::splat(simd, x as i32 & (ONE - 1));
@@ -199,8 +200,8 @@ impl<S: Simd> Eight<S> {
         }
     }
 
-    /// In each of the rows the first pixel touched, what is covered of it and of the next one, and how far that is
-    /// touched; then eight rows on.
+    /// Returns, for each of the rows, the first pixel touched, the coverage of it and of the next one, and how far the
+    /// next one is touched; then moves eight rows on.
     #[inline(always)]
     pub fn next(&mut self, simd: S) -> [i32x8<S>; 4] {
         let (one, zero) = (i32x8::splat(simd, ONE), i32x8::splat(simd, 0));

@@ -154,7 +154,7 @@ impl Resolver {
         found
     }
 
-    /// Takes note of what an edge does in the shared pixels of the given rows.
+    /// Records the effect of an edge in the shared pixels of the given rows.
     pub fn add<'a>(
         &mut self,
         edge: &Edge,
@@ -189,7 +189,7 @@ impl Resolver {
         }
     }
 
-    /// The pieces of an edge in one row of the band, between its ends.
+    /// Collects the pieces of an edge in one row of the band, between its ends.
     fn row(&mut self, row: i32, marks: &[Marks], ends: [(i32, i32); 2], sign: i32) {
         let (x_upper, x_lower) = (ends[0].0, ends[1].0);
         let (first, last) = (x_upper.min(x_lower) >> BITS, x_upper.max(x_lower) >> BITS);
@@ -339,7 +339,7 @@ fn insert<T: Copy>(list: &mut Vec<T>, item: T, before: impl Fn(&T, &T) -> bool) 
     list[at] = item;
 }
 
-/// The part of a piece inside the pixel, and what it means for the pixel's left border.
+/// Adds the part of a piece inside the pixel, and its effect on the pixel's left border.
 fn push_segments(piece: &Piece, out: &mut Vec<Segment>) {
     let unit = |v: i32| f64::from(v) / f64::from(ONE);
     let [upper, lower] = piece.ends;
@@ -380,14 +380,14 @@ fn push_segments(piece: &Piece, out: &mut Vec<Segment>) {
     }
 }
 
-/// Heights between which a pixel with this many segments is measured in the middle, from 0 to 1.
+/// Sets `cuts` to the heights, from 0 to 1, between which a pixel with this many segments is measured in the middle.
 fn lines(segments: usize, limits: &Limits, cuts: &mut Vec<f64>) {
     let count = (limits.measures / segments).clamp(limits.lines.0, limits.lines.1);
     cuts.clear();
     cuts.extend((0..=count).map(|i| i as f64 / count as f64));
 }
 
-/// The heights at which a segment ends or two of them cross, in order, from 0 to 1.
+/// Finds the heights at which a segment ends or two of them cross, in order, from 0 to 1.
 fn cuts(segments: &[Segment], cuts: &mut Vec<f64>) {
     cuts.clear();
     cuts.extend([0.0, 1.0]);

@@ -1,7 +1,7 @@
 //! Small convex outlines: all pixels around them are summed, so touched pixels need not be remembered.
 //!
-//! The same integers as in [`super::cells`], added up almost without branches: a steep edge in eight rows at once, a flat
-//! one row by row, eight pixels at once.
+//! The same integers as in [`super::cells`], added up almost without branches: a steep edge in eight rows at once, a
+//! flat one row by row, eight pixels at once.
 
 use fearless_simd::i32x8;
 use fearless_simd::prelude::*;

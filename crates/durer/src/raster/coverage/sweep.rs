@@ -14,15 +14,15 @@ use crate::raster::bands::running_sums;
 
 /// Receiver of a row's coverage, from left to right.
 pub(crate) trait Sink<S: Simd> {
-    /// Eight pixels from `x` on, each with its coverage 0 … 255. At the end of the row some of them, or all, may
-    /// lie beyond it.
+    /// Takes eight pixels from `x` on, each with its coverage 0 … 255. At the end of the row some of them, or all, may
+    /// be beyond it.
     fn eight(&mut self, simd: S, row: i32, x: usize, coverage: u32x8<S>);
-    /// Four pixels from `x` on, their coverage in the bytes of a number, the first in the lowest.
+    /// Takes four pixels from `x` on, their coverage in the bytes of a number, the first in the lowest.
     #[inline(always)]
     fn four(&mut self, simd: S, row: i32, x: usize, coverage: u32) {
         self.eight(simd, row, x, unpacked(simd, coverage));
     }
-    /// Pixels that all have the same coverage 1 … 255.
+    /// Takes pixels that all have the same coverage 1 … 255.
     fn span(&mut self, simd: S, row: i32, x: Range<usize>, coverage: u8);
 }
 
@@ -40,11 +40,11 @@ pub(crate) struct Rows {
     pub rows: (i32, i32),
     /// Pixels of the row.
     pub width: usize,
-    /// Rule that decides what is inside.
+    /// Rule that decides which winding numbers are inside.
     pub rule: FillRule,
 }
 
-/// Coverage 0 … 255 of a pixel from its integral of winding numbers.
+/// Returns the coverage 0 … 255 of a pixel from its integral of winding numbers.
 #[inline(always)]
 pub(crate) fn alpha(sum: i32, rule: FillRule) -> u8 {
     let area = match rule {
@@ -118,7 +118,7 @@ pub(crate) fn sweep<S: Simd, K: Sink<S>>(
     }
 }
 
-/// [`alpha`] of eight pixels at once.
+/// Returns the [`alpha`] of eight pixels at once.
 #[inline(always)]
 pub(super) fn lanes<S: Simd>(simd: S, v: i32x8<S>, rule: FillRule) -> u32x8<S> {
     let one = i32x8::splat(simd, ONE);

@@ -10,7 +10,7 @@ use crate::raster::triangle::Options;
 use crate::trace::Tracer;
 use crate::{Error, Result};
 
-/// A corner of a triangle with what is interpolated.
+/// A corner of a triangle with the values to interpolate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
     /// Place on the screen, in pixels.
@@ -154,7 +154,8 @@ fn check(corners: &[Corner; 3]) -> Result<()> {
     }
 }
 
-/// Returns the points at which a row's centre crosses two edges, from left to right; the upper end of an edge belongs to it.
+/// Returns the points at which a row's centre crosses two edges, from left to right; the upper end of an edge belongs
+/// to it.
 fn crossings(corners: &[Linear; 3], y: f64) -> Option<[Linear; 2]> {
     let [a, b, c] = corners;
     let mut found = [(a, b), (b, c), (c, a)].into_iter().filter_map(|(from, to)| {

@@ -145,7 +145,7 @@ pub fn draw(
 /// Steps of the filter table per pixel.
 const TABLE_STEPS: usize = 32;
 
-/// Intensity of a pixel whose centre lies `distance` pixels from the axis of a line one pixel wide.
+/// Returns the intensity of a pixel whose centre is `distance` pixels from the axis of a line one pixel wide.
 fn filtered(distance: f64) -> u8 {
     static TABLE: OnceLock<Vec<u8>> = OnceLock::new();
     let table = TABLE.get_or_init(|| (0..=TABLE_STEPS * 3 / 2).map(cone_over_line).collect());

@@ -8,7 +8,7 @@ use crate::info::{Class, Info, Occluder};
 use crate::math::IVec2;
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "equation",
     title: "Equation of the line",

@@ -175,7 +175,7 @@ impl Course {
         ((wanted + twice - 1) / twice).clamp(0, i128::from(self.steps) + 1) as i64
     }
 
-    /// Tells a tracer of all pixels, in the caller's direction.
+    /// Reports all pixels to a tracer, in the caller's direction.
     fn report(&self, t: &mut impl Tracer<Step>) {
         for step in self.first..=self.last {
             t.step(|| {

@@ -1,18 +1,18 @@
 //! Thick and patterned lines on pixels: a pen that is moved along a thin line, and a mask that says where it is down.
 //!
-//! J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes, *Computer Graphics: Principles and Practice*, 2nd ed. 1990, 3.7 and 3.9;
-//! the pattern as in OpenGL 1.0 (1992), `glLineStipple`. Class: image space. Cost: O(n · w) for n steps and w pixels of the
-//! pen. [`super::wide`] gives wide lines as areas, with joints and ends, and dashes by length.
+//! J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes, *Computer Graphics: Principles and Practice*, 2nd ed. 1990, 3.7
+//! and 3.9; the pattern as in OpenGL 1.0 (1992), `glLineStipple`. Class: image space. Cost: O(n · w) for n steps and w
+//! pixels of the pen. [`super::wide`] gives wide lines as areas, with joints and ends, and dashes by length.
 //!
-//! The pattern is counted in steps from the line's first end, so it is coarser along diagonals, as published, and it can
-//! go on from line to line.
+//! The pattern is counted in steps from the line's first end, so it is coarser along diagonals, as published, and it
+//! can go on from line to line.
 
 use super::bresenham;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::IVec2;
 use crate::trace::{NoTrace, Tracer};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "line-pattern",
     title: "Thick and stippled lines on pixels",
@@ -48,9 +48,9 @@ pub enum Pen {
 /// Options for drawing a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Options {
-    /// Layers to draw.
+    /// Pen that draws the line.
     pub pen: Pen,
-    /// 16 bits, of which the lowest is used first: the pen is down where they are 1.
+    /// Pattern of 16 bits, the lowest first: the pen is down where they are 1.
     pub pattern: u16,
     /// Each bit counts for this many steps; 0 is taken as 1.
     pub repeat: u32,
@@ -137,7 +137,7 @@ fn is_steep(from: IVec2, to: IVec2) -> bool {
     to.y.abs_diff(from.y) > to.x.abs_diff(from.x)
 }
 
-/// The pen at a pixel; of an even width one pixel more lies before it than behind. Pixels beyond i32 are left out.
+/// Plots the pen at a pixel; of an even width one pixel more is before it than behind. Pixels beyond i32 are left out.
 fn stamp(at: IVec2, pen: Pen, steep: bool, plot: &mut impl FnMut(IVec2)) {
     let reach = |width: u32| {
         let before = i64::from(width / 2);

@@ -65,7 +65,7 @@ impl Pieces {
     }
 }
 
-/// See [`super::Course`], of which this is a form without branches.
+/// Sets up the parts of the lines as [`super::Course`] does, but without branches.
 #[simd]
 fn set_up<S: Simd>(simd: S, ends: &Ends, size: (i32, i32), out: &mut Pieces) {
     let (zero, unit) = (i32x8::splat(simd, 0), i32x8::splat(simd, 1));

@@ -20,8 +20,8 @@ pub(crate) fn cut<A: Blend>(ends: [ClipVertex<A>; 2], size: u32) -> Option<[Clip
     clip_segment(ends, &options, &mut NoTrace)
 }
 
-/// Returns the pixel of a place, column and row; places exactly on the border at which the window ends belong to its last
-/// pixels.
+/// Returns the pixel of a place, column and row; places exactly on the border at which the window ends belong to its
+/// last pixels.
 pub(crate) fn pixel(at: DVec2, end: DVec2) -> IVec2 {
     let on_border = at.cmpeq(end);
     let at = at.floor() - DVec2::new(f64::from(on_border.x), f64::from(on_border.y));

@@ -14,7 +14,7 @@ use crate::simd::{Level, default_level};
 use crate::target::Pixels;
 use crate::trace::{NoTrace, Tracer};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "tiled-lines",
     title: "Lines tile by tile",
@@ -29,15 +29,15 @@ pub const INFO: Info = Info {
     pseudocode: &[],
 };
 
-/// Pixels of a tile's side. With four bytes a pixel a tile is 64 KiB, which the second-level cache holds, and most of it
-/// the first.
+/// Pixels of a tile's side. With four bytes a pixel a tile is 64 KiB, which the second-level cache holds, and most of
+/// it the first.
 const TILE: i32 = 1 << TILE_BITS;
 /// Lines that are sorted into tiles at a time, which bounds the memory to twenty bytes or so, with 4-byte pixels, for
 /// each tile that one of them touches.
 const BATCH: usize = 1 << 18;
 /// Groups of lines that are set up before the first of them is drawn.
 const AHEAD: usize = 2;
-/// With fewer lines than this a tile is not worth copying.
+/// Number of lines below which a tile is not worth copying.
 const FEW: usize = 24;
 /// Bits of the distance across below the pixel.
 const BITS: u32 = 40;
@@ -45,7 +45,7 @@ const BITS: u32 = 40;
 /// out exact.
 const EXACT_STEPS: i64 = 1 << 19;
 
-/// A line between two pixels, both included, and what it leaves there.
+/// A line between two pixels, both included, and the value that it writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Line<T> {
     /// First pixel, column and row.
@@ -56,16 +56,17 @@ pub struct Line<T> {
     pub value: T,
 }
 
-/// One step: what a line leaves in a tile.
+/// Step of the algorithm: the part of a line in a tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Step<T> {
     /// First and last pixel of the tile, both included; tiles at the target's border end with it.
     pub tile: (IVec2, IVec2),
-    /// The line; what is outside the tile is drawn elsewhere.
+    /// The line; parts outside the tile are drawn with other tiles.
     pub line: Line<T>,
 }
 
-/// Draws lines in their order: pixels of several have the value of the last. What lies outside the target is left out.
+/// Draws lines in their order: pixels of several lines have the value of the last. Pixels outside the target are left
+/// out.
 ///
 /// The same pixels as [`super::bresenham::draw`] lights, one line after the other, in less than half the time where
 /// there are many. Memory: a share of the lines at a time, about 10 MB with short lines and 4-byte pixels.
@@ -226,7 +227,7 @@ fn is_short<T>(line: &Line<T>) -> bool {
     line.from.x.abs_diff(line.to.x).max(line.from.y.abs_diff(line.to.y)) <= SHORT
 }
 
-/// Short lines as seen from a corner of a tile that their boxes touch; others are nothing.
+/// Returns short lines as seen from a corner of a tile that their boxes touch; other lines are left at 0.
 #[inline(always)]
 fn ends<T>(lines: &[Line<T>], corner: IVec2) -> Ends {
     let mut ends = Ends::default();

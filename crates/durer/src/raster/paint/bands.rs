@@ -78,8 +78,8 @@ struct Painter<'a, P> {
     layers: Vec<Vec<P>>,
     /// Coverage of the open clip paths, each multiplied with those below it in the same layer.
     clips: Vec<Vec<u8>>,
-    /// For each layer how many clip paths were open when it was begun: they do not clip what is painted
-    /// onto it, but the layer as a whole, or edges would be thinned twice.
+    /// Number of clip paths that were open when each layer was begun: they do not clip the marks on the layer, but the
+    /// layer as a whole; otherwise edges would be thinned twice.
     floors: Vec<usize>,
     /// Vectors that were popped, for further use.
     spare: Vec<Vec<P>>,
@@ -301,7 +301,7 @@ impl<'a, P: Space> Painter<'a, P> {
     }
 }
 
-/// Returns the coverage that what is painted now is multiplied with.
+/// Returns the coverage by which the current marks are multiplied.
 fn clip_in_force<'a>(clips: &'a [Vec<u8>], floors: &[usize]) -> Option<&'a Vec<u8>> {
     clips.last().filter(|_| clips.len() > floors.last().copied().unwrap_or(0))
 }
@@ -353,13 +353,13 @@ impl<S: Simd, P: Space> Sink<S> for Plain<'_, P> {
     }
 }
 
-/// [`fill`] of all rows, by the widest stores of the SIMD level.
+/// Sets all rows as [`fill`] does, with the widest stores of the SIMD level.
 #[simd]
 fn clear<S: Simd>(_simd: S, pixels: &mut [Color], color: Color) {
     fill(pixels, color);
 }
 
-/// Sets pixels; those in the middle perhaps twice, because then there are few distinct lengths.
+/// Sets pixels to a colour; those in the middle perhaps twice, because then there are few distinct lengths.
 #[inline(always)]
 fn fill<P: Copy>(pixels: &mut [P], color: P) {
     match pixels.len() {
@@ -379,7 +379,7 @@ fn fill<P: Copy>(pixels: &mut [P], color: P) {
     }
 }
 
-/// Sets the first and the last this many pixels.
+/// Sets the first and the last `COUNT` pixels to a colour.
 #[inline(always)]
 fn fill_ends<P: Copy, const COUNT: usize>(pixels: &mut [P], color: P) {
     if let Some(first) = pixels.first_chunk_mut::<COUNT>() {
@@ -431,7 +431,7 @@ impl<S: Simd, P: Space> Sink<S> for Painted<'_, P> {
     }
 }
 
-/// Eight times the same coverage, or as often as there are pixels left.
+/// Returns the same coverage for all pixels that are left, at most eight, and 0 for the rest of the eight.
 #[inline(always)]
 fn part_covered<S: Simd>(simd: S, coverage: u8, left: usize) -> u32x8<S> {
     let all = u32x8::splat(simd, u32::from(coverage));

@@ -160,7 +160,7 @@ fn with_luminosity(color: [f32; 3], wanted: f32) -> [f32; 3] {
     color
 }
 
-/// Spreads a colour from 0 to the saturation wanted ("SetSat"); greys become black.
+/// Spreads a colour from 0 to the given saturation ("SetSat"); greys become black.
 fn with_saturation(color: [f32; 3], wanted: f32) -> [f32; 3] {
     let [r, g, b] = color;
     let (least, range) = (r.min(g).min(b), saturation(color));

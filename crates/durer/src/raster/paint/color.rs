@@ -9,27 +9,27 @@ use crate::math::powf;
 
 /// A premultiplied pixel in which source-over can be computed.
 pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
-    /// An unknown system.
+    /// The transparent pixel.
     const CLEAR: Self;
-    /// From straight sRGB 0 … 1 and an opacity.
+    /// Creates a pixel from straight sRGB 0 … 1 and an opacity.
     fn from_srgb(color: [f32; 4], opacity: f32) -> Self;
-    /// Returns the same memory as pixels of this space, where they look alike; to be premultiplied.
+    /// Returns the memory as pixels of this space, where they look alike; to be premultiplied.
     fn in_place(_rows: &mut [[u8; 4]]) -> Option<&mut [Self]> {
         None
     }
-    /// From straight 8-bit sRGB.
+    /// Creates a pixel from straight 8-bit sRGB.
     fn load(color: [u8; 4]) -> Self;
-    /// To straight 8-bit sRGB.
+    /// Returns the pixel in straight 8-bit sRGB.
     fn store(self) -> [u8; 4];
-    /// To straight colour and opacity 0 … 1, mixed as this space mixes.
+    /// Returns straight colour and opacity 0 … 1, mixed as this space mixes.
     fn to_unit(self) -> [f32; 4];
-    /// From straight colour and opacity 0 … 1 of this space.
+    /// Creates a pixel from straight colour and opacity 0 … 1 of this space.
     fn from_unit(color: [f32; 4]) -> Self;
-    /// In-place forms of [`Space::load`] and [`Space::store`].
+    /// Premultiplies a pixel in place, as [`Space::load`] does.
     fn premultiplied(self) -> Self {
         self
     }
-    /// See [`Space::premultiplied`].
+    /// Converts a pixel in place to straight alpha, as [`Space::store`] does.
     fn straight(self) -> Self {
         self
     }
@@ -43,22 +43,22 @@ pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
     fn all_opaque(pixels: &[Self]) -> bool {
         pixels.iter().all(|p| p.is_opaque())
     }
-    /// This with a coverage 0 … 255.
+    /// Returns the pixel scaled by a coverage 0 … 255.
     fn scaled(self, coverage: u8) -> Self;
-    /// `self` over `below`, after `self` has been scaled by the coverage.
+    /// Returns `self` over `below`, after `self` has been scaled by the coverage.
     fn over(self, coverage: u8, below: Self) -> Self;
     /// Returns the sum of both, at most what is opaque and white.
     fn plus(self, other: Self) -> Self;
-    /// One colour over eight pixels, each with its coverage 0 … 255.
+    /// Paints one colour over eight pixels, each with its coverage 0 … 255.
     fn color_over<S: Simd>(simd: S, color: Self, coverage: u32x8<S>, below: &mut [Self; 8]);
-    /// One colour over four pixels, their coverage in the bytes of a number, the first in the lowest.
+    /// Paints one colour over four pixels, their coverage in the bytes of a number, the first in the lowest.
     #[inline(always)]
     fn color_over_four<S: Simd>(_: S, color: Self, coverage: u32, below: &mut [Self; 4]) {
         for (pixel, coverage) in below.iter_mut().zip(coverage.to_le_bytes()) {
             *pixel = color.over(coverage, *pixel);
         }
     }
-    /// Colours over eight pixels, each with its coverage 0 … 255.
+    /// Paints colours over eight pixels, each with its coverage 0 … 255.
     fn colors_over<S: Simd>(simd: S, colors: &[Self; 8], coverage: u32x8<S>, below: &mut [Self; 8]);
 }
 
@@ -67,13 +67,13 @@ pub(crate) fn premultiply<P: Space>(color: [u8; 4], opacity: f32) -> P {
     P::from_srgb(color.map(|c| f32::from(c) / 255.0), opacity)
 }
 
-/// `x / 255`, rounded, for x up to 255².
+/// Returns `x / 255`, rounded, for x up to 255².
 #[inline(always)]
 fn div255(x: u32) -> u32 {
     (x + 128 + ((x + 128) >> 8)) >> 8
 }
 
-/// Brightness of red, green and blue 0 … 255 (ITU-R BT.709), times 2¹⁶, with a half for rounding.
+/// Returns the brightness of red, green and blue 0 … 255 (ITU-R BT.709), times 2¹⁶, with a half for rounding.
 fn luminance([r, g, b]: [u32; 3]) -> u32 {
     r * 13_933 + g * 46_871 + b * 4_732 + (1 << 15)
 }
@@ -233,14 +233,14 @@ impl Space for Srgb {
     }
 }
 
-/// Numbers below 2¹⁶ in both halves of their pixels.
+/// Copies numbers below 2¹⁶ into both halves of their pixels.
 #[inline(always)]
 fn twice<S: Simd>(v: u32x8<S>) -> u16x16<S> {
     (v | (v << 16)).bitcast()
 }
 
-/// Eight pixels of source-over: (source · coverage + below · through) / 255, where what shines through is 255 − alpha ·
-/// coverage / 255. The source is no brighter than opaque, so nothing exceeds 255.
+/// Composes eight pixels by source-over: (source · coverage + below · through) / 255, where `through`, the part that
+/// shines through, is 255 − alpha · coverage / 255. The source is no brighter than opaque, so nothing exceeds 255.
 ///
 /// Bytes are taken apart by their places in pairs, for which nothing has to be moved across.
 #[inline(always)]
@@ -268,7 +268,7 @@ fn div255_lanes<S: Simd>(simd: S, x: u16x16<S>) -> u16x16<S> {
     (x + (x >> 8)) >> 8
 }
 
-/// [`div255_lanes`] of half as many.
+/// Divides as [`div255_lanes`] does, for half as many numbers.
 #[inline(always)]
 fn div255_half<S: Simd>(simd: S, x: u16x8<S>) -> u16x8<S> {
     let x = x + u16x8::splat(simd, 128);

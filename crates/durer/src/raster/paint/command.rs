@@ -12,7 +12,7 @@ use crate::raster::coverage::{self, convex::Strip};
 pub(super) struct Line {
     pub strip: Strip,
     pub color: Color,
-    /// 0 … 1.
+    /// Opacity, 0 … 1.
     pub opacity: f32,
 }
 
@@ -152,8 +152,8 @@ pub(super) enum Prepared<'a, P> {
     EndMask { kind: MaskKind },
 }
 
-/// For each band of `band_rows` rows the commands and lines that concern it: fills and lines of their rows,
-/// everything else in all bands where there is something between its begin and its end.
+/// Sorts the commands and lines into bands of `band_rows` rows: fills and lines into those of their rows, everything
+/// else into all bands where there is something between its begin and its end.
 pub(super) fn sort_into_bands<P>(
     commands: &[Prepared<'_, P>],
     lines: &[Line],
@@ -194,7 +194,7 @@ pub(super) fn sort_into_bands<P>(
 #[derive(Debug, Clone, Default)]
 struct Band {
     items: Vec<Item>,
-    /// For all that is open: where it begins, and where what it encloses does.
+    /// Start of each open command, and start of its contents.
     open: Vec<(usize, usize)>,
 }
 
@@ -212,7 +212,7 @@ impl Band {
         }
     }
 
-    /// Ends an outline; one that encloses nothing is dropped.
+    /// Ends the clip path, mask or group opened last; one that encloses nothing is dropped.
     fn end(&mut self, command: Item) {
         match self.open.pop() {
             Some((start, inside)) if inside == self.items.len() => self.items.truncate(start),

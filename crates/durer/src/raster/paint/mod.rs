@@ -42,7 +42,7 @@ pub enum MaskKind {
     Luminance,
 }
 
-/// In which space colours are mixed.
+/// Space in which colours are mixed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Blending {
     /// The sRGB bytes themselves, as browsers and SVG viewers do.
@@ -55,7 +55,7 @@ pub enum Blending {
 /// Options of a canvas.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// In which space colours are mixed.
+    /// Space in which colours are mixed.
     pub blending: Blending,
     /// Treatment of pixels in which a path overlaps itself. Strokes, which do so wherever they bend, take
     /// [`Overlap::Measured`] for [`Overlap::Adaptive`].
@@ -160,8 +160,8 @@ impl Canvas {
         })
     }
 
-    /// Takes the memory for what is noted from a budget. Where that has too little left, nothing more is noted and
-    /// [`Self::render`] says so, and likewise where the work is stopped.
+    /// Charges the memory for recorded commands to a budget. Where that has too little left, nothing more is recorded
+    /// and [`Self::render`] returns the error, and likewise where the work is stopped.
     pub fn set_work(&mut self, work: &Work) {
         self.work = work.part();
         self.work.enter(NOTED);
@@ -188,16 +188,15 @@ impl Canvas {
         &self.options
     }
 
-    /// Forgets what has been painted so far and sets every pixel to one colour instead, cheaper than
-    /// filling the target before. Keeps the memory, so that picture after picture costs less on one canvas than on a
-    /// new one each.
+    /// Forgets all that has been painted so far and sets every pixel to one colour instead, cheaper than filling the
+    /// target before. Keeps the memory, so that picture after picture costs less on one canvas than on a new one each.
     pub fn clear(&mut self, color: Color) {
         self.restart();
         self.background = Some(color);
     }
 
-    /// Forgets what has been painted so far and what is open, and paints what follows over the pixels of the target:
-    /// so a long list is painted in parts. Keeps the memory.
+    /// Forgets all that has been painted so far and all that is open, and paints later marks over the pixels of the
+    /// target: so a long list is painted in parts. Keeps the memory.
     ///
     /// Where the target is opaque and colours are mixed in sRGB, parts give the same bytes as the whole.
     pub fn restart(&mut self) {
@@ -226,7 +225,7 @@ impl Canvas {
         self.transform = pixel_from_path;
     }
 
-    /// Sets whether the edges of later shapes are smoothed; at first as the options say.
+    /// Sets whether the edges of later shapes are smoothed; initially by the options.
     pub fn set_anti_alias(&mut self, smooth: bool) {
         self.anti_alias = smooth;
     }
@@ -312,12 +311,12 @@ impl Canvas {
         Ok(outline)
     }
 
-    /// Takes memory for a while; if it does not fit the work is stopped.
+    /// Charges memory for a while; if it does not fit the work is stopped.
     fn hold(&self, bytes: u64) -> Result<Charge> {
         self.work.charge(NOTED, bytes).inspect_err(|error| self.work.stop(error.clone()))
     }
 
-    /// A thin straight line of one colour inside the target needs no path.
+    /// Returns a thin straight line of one colour inside the target, which needs no path; `None` for anything else.
     fn line(&self, path: &Path, stroke: &Stroke, paint: &Paint, opacity: f64) -> Option<Line> {
         let Paint::Color(color) = *paint else { return None };
         let (from, to) = wide::straight(path, stroke).filter(|_| self.anti_alias)?;
@@ -407,9 +406,8 @@ impl Canvas {
         self.open.push(Open::Mask);
     }
 
-    /// Ends the mask begun last, and what is still open inside: from here on what has been painted since
-    /// restricts what follows, as a clip path does, until it is popped. Where no mask is open nothing
-    /// happens.
+    /// Ends the mask begun last, and everything still open inside it: from here on the marks painted since then
+    /// restrict later ones, as a clip path does, until the mask is popped. Where no mask is open nothing happens.
     pub fn end_mask(&mut self, kind: MaskKind) {
         if !self.open.contains(&Open::Mask) {
             return;
@@ -422,14 +420,15 @@ impl Canvas {
         self.open.push(Open::Clip);
     }
 
-    /// Ends the clip path, mask or group opened last; the layer of a group is laid over what is below it
-    /// with the given opacity 0 … 1. Without anything open nothing happens.
+    /// Ends the clip path, mask or group opened last; the layer of a group is laid over the layers below it with the
+    /// given opacity 0 … 1. Without anything open nothing happens.
     pub fn pop(&mut self, opacity: f64) {
         self.pop_blended(opacity, Blend::Normal);
     }
 
-    /// [`Canvas::pop`], where the colours of a group's layer blend with those below it in the layer that the
-    /// group was started on. Groups are isolated: what is within blends with what the group shows alone.
+    /// Ends what was opened last as [`Canvas::pop`] does, and blends the colours of a group's layer with those below it
+    /// in the layer that the group was started on. Groups are isolated: marks within a group blend only with the
+    /// group's own layer.
     pub fn pop_blended(&mut self, opacity: f64, blend: Blend) {
         if self.open.last() == Some(&Open::Mask) {
             self.end_mask(MaskKind::Alpha);
@@ -473,7 +472,7 @@ impl Canvas {
         self.work.check()
     }
 
-    /// Buffers used before, or new ones.
+    /// Returns buffers used before, or new ones.
     fn filler(&self) -> Filler {
         let spare = self.fillers.lock().unwrap_or_else(PoisonError::into_inner).pop();
         spare.unwrap_or_else(|| Filler::new(self.width))

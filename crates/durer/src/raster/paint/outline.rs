@@ -78,7 +78,7 @@ impl Outline {
         }
     }
 
-    /// With the lists it was made with.
+    /// Returns the outline with the lists it was made with.
     pub fn with<'a>(&'a self, lists: &'a Lists) -> Drawn<'a> {
         match self {
             Self::Smooth(path) => Drawn::Smooth(path.with(&lists.smooth)),
@@ -95,7 +95,7 @@ pub(super) enum Drawn<'a> {
 }
 
 impl Drawn<'_> {
-    /// See [`Outline::rows`].
+    /// Returns its rows as [`Outline::rows`] does.
     pub fn rows(&self) -> (i32, i32) {
         match self {
             Self::Smooth(path) => path.rows(),
@@ -112,12 +112,12 @@ pub(super) struct Filler {
 }
 
 impl Filler {
-    /// Buffers for rows of `width` pixels.
+    /// Creates buffers for rows of `width` pixels.
     pub fn new(width: u32) -> Self {
         Self { smooth: BandFiller::new(width), hard: CrossingFiller::new(width) }
     }
 
-    /// Hands what an outline covers of the band at row `top` to the sink.
+    /// Passes the coverage of an outline in the band at row `top` to the sink.
     #[simd]
     pub fn fill<S: Simd, K: Sink<S>>(
         simd: S,

@@ -22,17 +22,17 @@ pub enum Spread {
     Reflect,
 }
 
-/// Along which curve a gradient's parameter runs from 0 to 1; points in the paint's own space.
+/// Curve along which a gradient's parameter runs from 0 to 1; points in the paint's own space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
-    /// From one point to another, constant across.
+    /// Gradient from one point to another, constant across.
     Linear {
         /// Point where the parameter is 0.
         start: DVec2,
         /// Point where it is 1.
         end: DVec2,
     },
-    /// From a focal circle to an outer circle, as in SVG and PDF.
+    /// Gradient from a focal circle to an outer circle, as in SVG and PDF.
     Radial {
         /// Centre of the outer circle, where the parameter is 1.
         center: DVec2,
@@ -54,7 +54,7 @@ pub struct Gradient {
     pub stops: Vec<(f64, Color)>,
     /// Extension outside 0 … 1.
     pub spread: Spread,
-    /// From the paint's own space to the path's.
+    /// Map from the paint's own space to the path's.
     pub transform: DAffine2,
 }
 
@@ -63,7 +63,7 @@ pub struct Gradient {
 pub struct Pattern {
     /// The pixels; straight alpha.
     pub image: Arc<Pixels<Color>>,
-    /// From the image's pixels to the path's space.
+    /// Map from the image's pixels to the path's space.
     pub transform: DAffine2,
     /// Extension outside the image: the pixels at its border, or the image again; `None` = nothing.
     pub spread: Option<Spread>,
@@ -79,8 +79,8 @@ pub enum Filter {
     /// A mixture of the four pixels around.
     #[default]
     Bilinear,
-    /// A mixture of the sixteen pixels around, for what is enlarged: D. Mitchell, A. Netravali, *Reconstruction
-    /// Filters in Computer Graphics*, SIGGRAPH 1988, with B = C = 1/3.
+    /// A mixture of the sixteen pixels around, for enlarged images: D. Mitchell, A. Netravali, *Reconstruction Filters
+    /// in Computer Graphics*, SIGGRAPH 1988, with B = C = 1/3.
     Bicubic,
     /// The mean of the pixels at 8 × 8 points spread evenly over the one that is painted, for images with
     /// about eight times as many pixels a side as are painted.
@@ -104,11 +104,11 @@ impl From<Color> for Paint {
     }
 }
 
-/// Entries of a gradient's table: twice what 8 bits can tell apart.
+/// Entries of a gradient's table: twice the number that 8 bits distinguish.
 const RAMP: usize = 512;
 
 /// Within half a step of a table's entry colours differ from it by no more than this, of 255; where they do they are
-/// found from the stops, so that hard borders between colours stand where they should and are sharp.
+/// found from the stops, so that hard borders between colours are in the right place and sharp.
 const FLAT: f64 = 2.0;
 
 /// A paint made ready: colours premultiplied in the space of the canvas, maps inverted.
@@ -179,8 +179,8 @@ pub(super) fn opacity(opacity: f64) -> f64 {
 }
 
 impl<P: Space> Source<P> {
-    /// `pixel_from_path` maps the path's space to pixels. A paint that cannot be evaluated — a map without
-    /// inverse, a gradient without stops — paints nothing or its last stop, as SVG says.
+    /// Creates the source of a paint; `pixel_from_path` maps the path's space to pixels. A paint that cannot be
+    /// evaluated — a map without inverse, a gradient without stops — paints nothing or its last stop, as SVG says.
     pub fn new(paint: &Paint, pixel_from_path: DAffine2, opacity: f64) -> Self {
         let opacity = self::opacity(opacity);
         match paint {
@@ -208,7 +208,7 @@ impl<P: Space> Source<P> {
         Self::Ramp(Box::new(Ramp::new(g, paint_from_pixel, opacity)))
     }
 
-    /// The colours of the eight pixels of row `y` from column `x` on.
+    /// Computes the colours of the eight pixels of row `y` from column `x` on.
     pub fn row(&self, x: usize, y: usize, out: &mut [P; 8]) {
         match self {
             Self::Solid(color) => out.fill(*color),
@@ -363,7 +363,7 @@ fn area(pattern: &Pattern, p: DVec2, image_from_pixel: &DAffine2) -> [f64; 4] {
     sum.straight()
 }
 
-/// [`pixel`], fast for what is within the image.
+/// Returns the colour that [`pixel`] returns, fast for what is within the image.
 fn pixel_within(pattern: &Pattern, at: DVec2) -> [f64; 4] {
     let place = (at.x >= 0.0 && at.y >= 0.0).then_some((at.x as u32, at.y as u32));
     let found = place.and_then(|(x, y)| pattern.image.get(x, y));

@@ -144,7 +144,7 @@ impl CrossingEdges {
         self.rows.0 >= top + BAND_ROWS || self.rows.1 <= top
     }
 
-    /// With the list it was made with.
+    /// Returns the path with the list it was made with.
     pub fn with<'a>(&'a self, list: &'a [Edge]) -> Path<'a> {
         Path { path: self, list }
     }
@@ -190,14 +190,14 @@ pub(crate) struct CrossingFiller {
     counts: [u32; BAND_ROWS as usize],
     /// Twice the pixel of each, and one where the edge goes down.
     lists: Vec<[u32; LISTED]>,
-    /// For bands with more: what the winding number changes by from the pixel left of it.
+    /// Change of the winding number from the pixel to the left, for bands with more crossings.
     cells: Vec<i32>,
     /// Cells of a row: room for the one after the last pixel, a multiple of eight.
     stride: usize,
 }
 
 impl CrossingFiller {
-    /// Buffers for rows of `width` pixels.
+    /// Creates buffers for rows of `width` pixels.
     pub fn new(width: u32) -> Self {
         Self {
             width: width as usize,
@@ -247,7 +247,7 @@ impl CrossingFiller {
         fits
     }
 
-    /// Sorts each row's list and hands on its spans.
+    /// Sorts each row's list and passes on its spans.
     #[inline(always)]
     fn spans<S: Simd>(
         &mut self,

@@ -2,13 +2,13 @@
 //!
 //! B. D. Ackland, N. H. Weste, *The edge flag algorithm — a fill method for raster scan displays*, IEEE Transactions on
 //! Computers C-30(1), 1981. Each crossing of an edge with a row complements one flag; then a row is run through once,
-//! and each flag turns a bit over that says whether pixels are inside. Class: image space. Cost: O(crossings + pixels of
-//! the box); every pixel is touched once, which suits hardware. Coherence used: spans.
+//! and each flag turns a bit over that says whether pixels are inside. Class: image space. Cost: O(crossings + pixels
+//! of the box); every pixel is touched once, which suits hardware. Coherence used: spans.
 //!
 //! Limits: the even-odd rule; a plane of its own. Vertices are snapped to 1/256 of a pixel.
 //!
-//! Deviation: two crossings in one pixel complement its flag twice, so that thin parts vanish as they have no centre inside;
-//! the paper's marks may be Bresenham's pixels, which also light parts outside.
+//! Deviation: two crossings in one pixel complement its flag twice, so that thin parts vanish as they have no centre
+//! inside; the paper's marks may be Bresenham's pixels, which also light parts outside.
 
 use super::rows::for_each_crossing;
 use crate::curve::Contours;
@@ -17,7 +17,7 @@ use crate::raster::span::Span;
 use crate::target::Pixels;
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "edge-flag",
     title: "Edge flag",
@@ -66,8 +66,8 @@ impl Step {
     }
 }
 
-/// Sets the pixels of a plane to whether they are in a polygon, by the even-odd rule; contours count as closed, points that are
-/// not finite are left out. Coordinates in pixels.
+/// Sets the pixels of a plane to whether they are in a polygon, by the even-odd rule; contours count as closed, points
+/// that are not finite are left out. Coordinates in pixels.
 ///
 /// ```
 /// use durer::curve::Contours;

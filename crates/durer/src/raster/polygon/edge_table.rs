@@ -16,7 +16,7 @@ use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS, first_center};
 use crate::raster::span::Span;
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "edge-table",
     title: "Edge table and active edge table",
@@ -44,7 +44,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// One step of the algorithm.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
     /// An entry of the edge table, row by row (bucket by bucket), before anything is filled.
@@ -60,7 +60,7 @@ pub enum Step {
     Active {
         /// Row.
         y: i32,
-        /// As it is in this row.
+        /// Edge as it is in this row.
         edge: Edge,
     },
     /// Edges that end above this row leave the table; this many stay.
@@ -101,7 +101,7 @@ pub struct Edge {
     pub step: i64,
     /// Increment of the accumulator from row to row: the rest of Δx/Δy, in 1/`whole` of a pixel.
     pub remainder: i64,
-    /// As much in the accumulator is one pixel: when it is reached, `x` grows by one.
+    /// Amount in the accumulator that is one pixel: when it is reached, `x` grows by one.
     pub whole: i64,
     /// 1 for an edge that goes down in the contour, −1 for one that goes up.
     pub winding: i32,
@@ -209,7 +209,7 @@ pub(crate) fn table(contours: &Contours, height: u32) -> Vec<Edge> {
     table
 }
 
-/// The spans of one row from its edges in order of x; those that touch are one.
+/// Emits the spans of one row from its edges in order of x; those that touch are joined.
 fn row(active: &[Edge], y: i32, width: u32, rule: FillRule, mut emit: impl FnMut(Span)) {
     let width = i64::from(width.min(i32::MAX as u32));
     let (mut winding, mut span) = (0, Span { y, x0: 0, x1: 0 });

@@ -5,8 +5,8 @@
 //! if its centre does; a centre on the border belongs to a left and an upper edge (y down), not to a right or
 //! lower one, so faces that share edges light each pixel once.
 //!
-//! [`edge_fill`] (with or without a fence) and [`edge_flag`] find the same pixels by the even-odd rule without any list or
-//! sorting, in a plane of their own.
+//! [`edge_fill`] (with or without a fence) and [`edge_flag`] find the same pixels by the even-odd rule without any list
+//! or sorting, in a plane of their own.
 //!
 //! ```
 //! use durer::curve::{Path, flatten};
@@ -71,7 +71,7 @@ impl PolygonRasterizer {
 /// Options for filling a polygon.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
-    /// Rule that decides from the winding number what is inside.
+    /// Rule that decides which winding numbers are inside.
     pub rule: FillRule,
 }
 

@@ -25,7 +25,7 @@ use crate::raster::coverage::sweep::Sink;
 use crate::raster::span::Span;
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "ordered-edge-list",
     title: "Simple ordered edge list",
@@ -50,7 +50,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// One step of the algorithm.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
     /// An edge crosses the centre of a row.
@@ -128,7 +128,7 @@ fn trace_crossings(path: Path<'_>, top: i32, width: usize, t: &mut impl Tracer<S
 /// No span.
 const NONE: Span = Span { y: 0, x0: 0, x1: 0 };
 
-/// Joins what the band hands on to spans.
+/// Spans that are joined from the band's output.
 struct Spans<'a, E, T> {
     top: i32,
     width: i32,

@@ -20,10 +20,10 @@ use region::Region;
 /// Neighbourhood of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Connectivity {
-    /// Those with a common side.
+    /// Pixels with a common side.
     #[default]
     Four,
-    /// Those with a common side or corner.
+    /// Pixels with a common side or corner.
     Eight,
 }
 
@@ -32,12 +32,12 @@ pub enum Connectivity {
 pub struct Options {
     /// Neighbourhood of pixels.
     pub connectivity: Connectivity,
-    /// For [`boundary_fill`]: whether pixels that have the new value already stop it, too, as is taught
-    /// (`current ≠ boundary and current ≠ fill`). Then what is behind them is not reached.
+    /// For [`boundary_fill`]: whether pixels that have the new value already stop it, too, as is taught (`current ≠
+    /// boundary and current ≠ fill`). Then pixels behind them are not reached.
     pub stop_at_value: bool,
 }
 
-/// One step of the algorithm.
+/// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
     /// Pixels are taken from the stack, or are the seed's, and filled.
@@ -143,9 +143,9 @@ pub const INFO: Info = Info {
 family! {
     /// The seed fills.
     pub enum SeedFill {
-        /// With a stack of pixels.
+        /// Filling with a stack of pixels.
         Naive => NAIVE,
-        /// By spans.
+        /// Filling by spans.
         Spans => INFO,
     }
 }
@@ -297,7 +297,7 @@ pub fn fill_where<P: Copy>(
     found
 }
 
-/// Tells a tracer of the run of the seed; says whether there is one.
+/// Reports the run of the seed to a tracer; returns whether there is a tracer.
 fn listens<P: Copy>(
     image: &Pixels<P>,
     (x, y): (u32, u32),
@@ -316,7 +316,7 @@ fn listens<P: Copy>(
     listens
 }
 
-/// In the order in which they are taught to be visited.
+/// Neighbours, in the order in which they are taught to be visited.
 const NEIGHBOURS: [(i64, i64); 8] =
     [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)];
 
@@ -340,7 +340,7 @@ fn naive(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer
     found
 }
 
-/// The first run has been reported.
+/// Fills the spans of a region from a seed on, whose run has been reported, and returns the number of their pixels.
 fn spans(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer<Step>) -> u64 {
     let reach = usize::from(eight);
     let first = region.take_run(seed.1 as usize, seed.0 as usize);

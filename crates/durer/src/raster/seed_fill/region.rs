@@ -16,7 +16,7 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// Creates an image of which only one row is known, and nothing open there yet.
+    /// Creates an image with only one row known, and nothing open there yet.
     pub fn unread<P: Copy>(image: &Pixels<P>, row: usize) -> Self {
         let (width, height) = (image.width() as usize, image.height() as usize);
         let words = width.div_ceil(64);
@@ -40,7 +40,7 @@ impl Region {
         &mut self.open[row * self.words..(row + 1) * self.words]
     }
 
-    /// Looks at a row that is known or beside a known one.
+    /// Examines a row that is known or beside a known one.
     #[inline(always)]
     pub fn know<P: Copy>(&mut self, row: usize, image: &Pixels<P>, inside: &impl Fn(P) -> bool) {
         if !self.known.contains(&row) {
@@ -93,7 +93,7 @@ impl Region {
     }
 }
 
-/// Sets a bit for each pixel of a row that may be filled; says whether all may.
+/// Sets a bit for each pixel of a row that may be filled; returns whether all may.
 pub(super) fn read_row<P: Copy>(
     pixels: &[P],
     inside: &impl Fn(P) -> bool,

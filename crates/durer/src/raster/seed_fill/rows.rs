@@ -76,7 +76,8 @@ impl Row {
         Self { eight, open: vec![0; words], full: false, reached: vec![0; words], left: false }
     }
 
-    /// Steps from the row before into this one: what is open beside what was reached there. Says whether there is any.
+    /// Steps from the row before into this one, to what is open beside what was reached there; returns whether there
+    /// is any.
     fn enter(&mut self) -> bool {
         let mut any = 0;
         for (reached, open) in self.reached.iter_mut().zip(&self.open) {
@@ -86,7 +87,7 @@ impl Row {
         any != 0
     }
 
-    /// Runs of open pixels are reached as a whole.
+    /// Extends what is reached to whole runs of open pixels.
     fn spread(&mut self) {
         if self.full {
             return self.reached.copy_from_slice(&self.open);

@@ -16,7 +16,7 @@ pub(super) struct Waiting {
 }
 
 impl Waiting {
-    /// None for a region.
+    /// Creates an empty list for a region.
     pub fn new(region: &Region, eight: bool) -> Self {
         Self { eight, seeds: vec![0; region.open.len()], stack: Vec::new() }
     }
@@ -31,7 +31,7 @@ impl Waiting {
         }
     }
 
-    /// Adds what is open in a row beside what is reached in a neighbour of it; `reached` is widened.
+    /// Adds the open pixels of a row beside those that are reached in a neighbouring row; `reached` is widened.
     pub fn add_beside(&mut self, row: usize, reached: &[u64], region: &Region) {
         let start = row * region.words;
         for (i, beside) in reached.iter().enumerate() {

@@ -9,7 +9,7 @@ use super::{Edge, SnappedTriangle, Span};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "edge-function",
     title: "Edge functions over the bounding box",

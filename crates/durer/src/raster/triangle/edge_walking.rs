@@ -11,7 +11,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS, first_center};
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "edge-walking",
     title: "Edge walking by scan line",
@@ -124,7 +124,7 @@ impl RowWalk {
         [self.left.x, self.right.x]
     }
 
-    /// Goes on to row `y`, the one below the latest; says whether the triangle reaches it.
+    /// Goes on to row `y`, the one below the latest; returns whether the triangle reaches it.
     #[inline]
     pub fn advance(&mut self, y: i32, triangle: impl FnOnce() -> SnappedTriangle) -> bool {
         if y >= self.end {
@@ -169,7 +169,7 @@ impl Chains {
         (area != 0).then_some(Self { top, middle, bottom, middle_is_right: area > 0 })
     }
 
-    /// Above and below the middle corner. A row belongs where its centre is not above the upper end
+    /// Returns the halves above and below the middle corner. A row belongs where its centre is not above the upper end
     /// and strictly above the lower one: that is the top rule.
     fn halves(&self) -> [Half; 2] {
         let long = [self.top, self.bottom];
@@ -180,7 +180,7 @@ impl Chains {
     }
 }
 
-/// Follows an edge: x is the first column whose centre is not left of it.
+/// Walk down an edge: x is the first column whose centre is not left of it.
 ///
 /// The same number serves on both sides: inclusive start on the left, exclusive end on the right.
 /// x = ⌈n / d⌉ with n = the edge's abscissa times d; `error` = n − x · d lies in (−d, 0].
@@ -194,7 +194,7 @@ struct Walk {
 }
 
 impl Walk {
-    /// `y` is a row whose centre lies in the edge's range of y, so the edge is not horizontal.
+    /// Starts at row `y`, whose centre is in the edge's range of y, so that the edge is not horizontal.
     fn start([from, to]: [[i32; 2]; 2], y: i32) -> Self {
         let per_pixel = i64::from(SUBPIXELS);
         let [dx, dy] = [0, 1].map(|k| i64::from(to[k]) - i64::from(from[k]));

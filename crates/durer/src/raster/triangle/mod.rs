@@ -58,7 +58,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// No clip but the guard band.
+    /// Returns the default: no clip but the guard band.
     fn default() -> Self {
         Self { clip: PixelRect::EVERYTHING }
     }
@@ -164,8 +164,8 @@ impl Edge {
         Self { a: a.map(i64::from), d, bias: if owned { 0 } else { -1 } }
     }
 
-    /// `E + bias` at the centre of pixel (x, y), which must be in the triangle's bounding box or a
-    /// tile's width from it.
+    /// Returns `E + bias` at the centre of pixel (x, y), which must be in the triangle's bounding box or a tile's
+    /// width from it.
     fn at_center(&self, x: i32, y: i32) -> i64 {
         let center = |i: i32| i64::from(i) * i64::from(SUBPIXELS) + i64::from(HALF_PIXEL);
         self.d[0] * (center(y) - self.a[1]) - self.d[1] * (center(x) - self.a[0]) + self.bias

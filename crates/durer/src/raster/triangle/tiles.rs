@@ -12,7 +12,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::trace::Tracer;
 use crate::view::window::PixelRect;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "tiles",
     title: "Tiles with half-plane edge functions",
@@ -47,7 +47,7 @@ pub enum Verdict {
     Rejected,
     /// All of it lies inside all edges.
     Accepted,
-    /// Its pixels were looked at.
+    /// Its pixels were tested.
     Examined,
 }
 
@@ -126,7 +126,8 @@ fn row_of_tiles(
     }
 }
 
-/// A triangle is convex: the covered pixels of a mask are one run, and continue the run so far.
+/// Extends a run by the covered pixels of a mask: a triangle is convex, so they are one run and continue the run so
+/// far.
 fn extend(run: &mut Option<(i32, i32)>, tile_x: i32, mask: u8) {
     if mask != 0 {
         let x0 = tile_x + mask.trailing_zeros() as i32;

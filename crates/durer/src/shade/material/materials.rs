@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 pub struct PreparedMaterials<'a> {
     materials: Vec<PreparedMaterial<'a>>,
     default: PreparedMaterial<'a>,
-    /// For lines and points without a material.
+    /// Material for lines and points without a material.
     ink: PreparedMaterial<'a>,
 }
 
@@ -42,8 +42,7 @@ impl<'a> PreparedMaterials<'a> {
         Self { materials, default, ink }
     }
 
-    /// Creates the same where lines and points that have no material are drawn in a linear colour,
-    /// unlit.
+    /// Returns the materials with which lines and points that have no material are drawn in a linear colour, unlit.
     #[must_use]
     pub(crate) fn with_ink(mut self, color: Vec3) -> Self {
         self.ink.model = ShadingModel::Unlit;

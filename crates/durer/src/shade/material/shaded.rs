@@ -11,10 +11,9 @@ use crate::shade::{Shading, formula, lobes, tone};
 /// Returns the colour of a visible point: linear RGBA with straight alpha, all within 0…1 and never
 /// NaN.
 ///
-/// Alpha is 1 for opaque materials, 0 or 1 for masked ones (the caller drops what has 0), else the
-/// surface's alpha. Both sides of a face are lit; what is brighter than white keeps its hue and is
-/// drawn towards white, all else is kept exactly. Cost: O(lights) and one sample per texture;
-/// allocates nothing.
+/// Alpha is 1 for opaque materials, 0 or 1 for masked ones (the caller drops points of 0), else the surface's alpha.
+/// Both sides of a face are lit; a colour brighter than white keeps its hue and is drawn towards white, all else is
+/// kept exactly. Cost: O(lights) and one sample per texture; allocates nothing.
 pub fn shade(
     surface: &Surface<'_>,
     material: &PreparedMaterial<'_>,
@@ -24,7 +23,8 @@ pub fn shade(
     shade_framed(surface, face_viewer, material, lights, shading)
 }
 
-/// [`shade`] of a point whose geometric normal is on the viewer's side already, or zero, which is then not asked.
+/// Shades a point as [`shade`] does, whose geometric normal is on the viewer's side already, or zero, which is then
+/// not tested.
 pub fn shade_seen(
     surface: &Surface<'_>,
     material: &PreparedMaterial<'_>,

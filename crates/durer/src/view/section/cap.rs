@@ -153,8 +153,8 @@ impl<'a> Flat<'a> {
     }
 }
 
-/// Ear clipping leaves out vertices on straight borders: here the triangles along them are divided, so
-/// that each edge of the ring is a side again.
+/// Divides the triangles along straight borders, on which ear clipping leaves out vertices, so that each edge of the
+/// ring is a side again.
 fn use_all(ring: &[u32], start: usize, triangles: &mut Vec<[u32; 3]>) {
     let mut sides: HashMap<(u32, u32), usize> = HashMap::new();
     for (i, t) in triangles.iter().enumerate().skip(start) {

@@ -43,7 +43,7 @@ pub fn triangles(mesh: &Mesh, plane: &Plane, last_digit: f64) -> Cut {
     Cut { mesh, segments }
 }
 
-/// Vertices this near to the plane, as a part of the mesh's extent, lie on it: as far as an f32 can tell.
+/// Vertices this near to the plane, as a part of the mesh's extent, count as on it: the precision of an f32.
 const ON_PLANE: f64 = 1.0 / (1u64 << 23) as f64;
 
 /// Returns the distance of each vertex inside the plane, the same for all at one place.
@@ -157,7 +157,7 @@ impl Cutter<'_> {
         }
     }
 
-    /// The faces beside the cap run from `b` to `a`, so the cap's border from `a` to `b`.
+    /// Adds the cap's border from `a` to `b`, because the faces beside the cap run from `b` to `a`.
     fn segment(&mut self, a: u32, b: u32) {
         if a != b {
             self.segments.push([a, b]);

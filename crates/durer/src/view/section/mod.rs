@@ -16,7 +16,7 @@ use crate::math::{DMat4, DVec3, Plane, Vec3, Vec4};
 use crate::scene::{Material, Scene, ShadingModel, Topology};
 use crate::{Error, Result};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "section",
     title: "Sections with caps",
@@ -31,7 +31,7 @@ pub const INFO: Info = Info {
     pseudocode: &[],
 };
 
-/// Options for the clipping method.
+/// Options for cutting a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// True if closed bodies are closed again.
@@ -41,7 +41,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Caps, in a strong red that no light changes.
+    /// Returns the default: caps, in a strong red that no light changes.
     fn default() -> Self {
         Self { caps: true, cap_color: Vec3::new(0.6, 0.05, 0.03) }
     }
@@ -65,8 +65,8 @@ pub struct Section {
 /// Cuts a scene: of each instance the part stays that lies inside all planes (`normal · p + distance > 0`,
 /// world space).
 ///
-/// Points and lines of a mesh are left out where their first vertex is. Attributes are interpolated along
-/// the edges that are cut; on caps, which have their own material, they say nothing.
+/// Points and lines of a mesh are left out where their first vertex is. Attributes are interpolated along the edges
+/// that are cut; on caps, which have their own material, they are meaningless.
 ///
 /// ```
 /// use durer::math::{DMat4, DVec3, Plane, Vec3};

@@ -29,7 +29,7 @@ pub(super) struct Bends {
 }
 
 impl Bends {
-    /// Creates those at the crossings of outlines.
+    /// Creates the bends at the crossings of outlines.
     pub fn new(
         faces: &Faces,
         surface: &SmoothSurface,
@@ -87,7 +87,7 @@ fn radial(
     sums.into_iter().map(|[growth, area]| if area > 0.0 { growth / area } else { 0.0 }).collect()
 }
 
-/// See [`Bends::chords`].
+/// Computes [`Bends::chords`].
 fn chords(faces: &Faces, surface: &SmoothSurface, crossings: &[Crossing]) -> Vec<[f32; 2]> {
     let mut beside = vec![false; faces.points().len()];
     crossings.iter().flat_map(|c| c.edge).for_each(|v| beside[v as usize] = true);

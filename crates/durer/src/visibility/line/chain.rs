@@ -17,7 +17,7 @@ pub(super) struct Chain {
 }
 
 impl Chain {
-    /// In steps.
+    /// Returns the length in steps.
     pub fn length(&self) -> f64 {
         let open: f64 = self.points.windows(2).map(|w| w[0].distance(w[1])).sum();
         match (self.closed, self.points.first(), self.points.last()) {
@@ -55,7 +55,7 @@ pub(super) fn chains(pieces: &[Piece]) -> Vec<Chain> {
     walks(pieces).into_iter().map(chain).collect()
 }
 
-/// Returns the same as walks over the pieces.
+/// Returns the chains as walks over the pieces.
 pub(super) fn walks(pieces: &[Piece]) -> Vec<Walk> {
     let partner = partners(pieces);
     let mut used = vec![false; pieces.len()];
@@ -84,7 +84,7 @@ fn follow(partner: &[u32], start: u32, used: &mut [bool]) -> Walk {
     }
 }
 
-/// For each end of a piece the end that it is joined to.
+/// Returns, for each end of a piece, the end that it is joined to.
 fn partners(pieces: &[Piece]) -> Vec<u32> {
     let mut ends: Vec<(u32, LineClass, GridPoint, u32)> = (0..pieces.len() as u32 * 2)
         .map(|end| {

@@ -63,7 +63,7 @@ struct End {
     end: u32,
 }
 
-/// For each end of a line (line · 2 + which end) the end that it goes on in, if each is the straightest way
+/// Returns, for each end of a line (line · 2 + which end), the end that it goes on in, if each is the straightest way
 /// on for the other.
 fn partners(lines: &[EdgeLine], points: &[DVec3]) -> Vec<u32> {
     let mut ends = Vec::new();

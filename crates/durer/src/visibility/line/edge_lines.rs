@@ -55,7 +55,7 @@ impl Default for ClassSet {
 /// Pairs of faces that are searched for intersections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Intersections {
-    /// Between different bodies: what is modelled in one piece is taken to be sound.
+    /// Intersections of different bodies: a body modelled in one piece is assumed not to intersect itself.
     #[default]
     BetweenBodies,
     /// Everywhere.
@@ -78,14 +78,14 @@ pub(super) struct EdgeLine {
     pub outside: Outside,
 }
 
-/// From where a surface can be seen.
+/// Side from which a surface can be seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Outside {
-    /// It bounds a volume, and has the fronts of its triangles outside.
+    /// The fronts of its triangles: it bounds a volume, with the fronts outside.
     Front,
-    /// The same with their backs.
+    /// The backs of its triangles: it bounds a volume, with the backs outside.
     Back,
-    /// It bounds none.
+    /// Both sides: it bounds no volume.
     Both,
 }
 
@@ -111,7 +111,7 @@ pub(super) struct Rules<'a> {
     /// Material as in `materials`; its faces are the caps of a section.
     pub cap: Option<u32>,
     pub classes: ClassSet,
-    /// Tangent edges, where they are wanted, and what the triangles are parts of.
+    /// Tangent edges, if requested, and the surfaces that triangles are parts of.
     pub tangents: Option<&'a Tangents>,
     /// Knowledge about edges besides their turn, if there is any.
     pub steps: Option<&'a Steps>,
@@ -172,7 +172,7 @@ impl Rules<'_> {
         self.wanted(LineClass::Wire)
     }
 
-    /// Returns the first wanted class that an edge belongs to.
+    /// Returns the first requested class that an edge belongs to.
     fn class(&self, ends: [u32; 2], sides: &[Side]) -> (Option<LineClass>, Sharpness) {
         let blunt = |class: Option<LineClass>| (class, Sharpness::Blunt);
         if self.ends_a_cap(sides)

@@ -27,8 +27,9 @@ const EDGE_ON: f64 = 2.0;
 const ONE_SURFACE: f32 = 0.94;
 
 impl Facing {
-    /// Normals are those of the whole triangles. Slivers lower than `tolerance`, a part of the scene's extent,
-    /// that lie in a surface and are turned away from it only by rounding have none either.
+    /// Finds how each triangle faces; normals are those of the whole triangles. Slivers lower than `tolerance`, a part
+    /// of the scene's extent, that lie in a surface and are turned away from it only by rounding have no normal
+    /// either.
     pub fn new(
         faces: &Faces,
         bodies: &Bodies,
@@ -111,7 +112,7 @@ impl Facing {
         }
     }
 
-    /// Returns whether triangles stand for a smooth surface at all.
+    /// Returns whether triangles approximate a smooth surface at all.
     pub fn any_smooth(&self) -> bool {
         !self.surface.is_empty()
     }
@@ -186,7 +187,8 @@ fn turned_in_space(faces: &Faces, item: u32, points: [DVec3; 3], projected: &Pro
     }
 }
 
-/// 1 where the points turn counter-clockwise, 0 where the triangle is hardly more than a line.
+/// Returns 1 where the points turn counter-clockwise, −1 where they turn clockwise, and 0 where the triangle is hardly
+/// more than a line.
 pub(super) fn turned_on_grid(c: [GridPoint; 3]) -> i8 {
     let area = orient(c[0], c[1], c[2]) as f64;
     let squared = |a: usize, b: usize| {

@@ -1,11 +1,11 @@
 //! The floating horizon as published: curve by curve, with two arrays.
 //!
-//! T. J. Wright, *A Two-space Solution to the Hidden Line Problem for Plotting Functions of Two Variables*, IEEE Transactions on
-//! Computers C-22(1), 1973; ends of curves after D. F. Rogers, *Procedural Elements for Computer Graphics*, 1985, section 4-2.
-//! Image space. Curves come from near to far. Two arrays have, for each column, the highest and the lowest y so far. A
-//! point is seen if it lies above the upper horizon or below the lower one, and then raises or lowers it; where a
-//! curve passes a horizon between two columns, the crossing is interpolated. Coherence used: scan lines, from curve to
-//! curve. Cost: O(curves · columns) time, O(columns) memory.
+//! T. J. Wright, *A Two-space Solution to the Hidden Line Problem for Plotting Functions of Two Variables*, IEEE
+//! Transactions on Computers C-22(1), 1973; ends of curves after D. F. Rogers, *Procedural Elements for Computer
+//! Graphics*, 1985, section 4-2. Image space. Curves come from near to far. Two arrays have, for each column, the
+//! highest and the lowest y so far. A point is seen if it lies above the upper horizon or below the lower one, and then
+//! raises or lowers it; where a curve passes a horizon between two columns, the crossing is interpolated. Coherence
+//! used: scan lines, from curve to curve. Cost: O(curves · columns) time, O(columns) memory.
 //!
 //! Limits: between columns horizons are straight, so what is narrower than a column may be lost, and crossings are
 //! as exact as columns are narrow. [`super::floating_horizon`] has none of these limits.
@@ -16,7 +16,7 @@ use crate::trace::Tracer;
 use crate::work::Work;
 use crate::{Error, Result};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "horizon-curves",
     title: "Floating horizon, curve by curve",
@@ -73,11 +73,11 @@ pub struct Curve {
 /// Position of a point relative to the horizons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Seen {
-    /// On the upper horizon or above it: seen.
+    /// On the upper horizon or above it: visible.
     Above,
-    /// Between the two: hidden.
+    /// Between the horizons: hidden.
     Hidden,
-    /// On the lower horizon or below it: seen.
+    /// On the lower horizon or below it: visible.
     Below,
 }
 
@@ -88,7 +88,7 @@ pub struct Piece {
     pub curve: usize,
     /// Its ends, x in columns, from left to right.
     pub ends: [DVec2; 2],
-    /// Beyond which horizon.
+    /// Horizon beyond which it is.
     pub seen: Seen,
 }
 
@@ -294,7 +294,7 @@ impl Horizons {
         }
     }
 
-    /// The same along the line between the ends of two curves.
+    /// Raises the upper horizon and lowers the lower one to the line between the ends of two curves.
     fn fill(&mut self, from: DVec2, to: DVec2, t: &mut impl Tracer<Step>) {
         let (from, to) = if from.x <= to.x { (from, to) } else { (to, from) };
         let columns = from.x as usize..=to.x as usize;

@@ -46,8 +46,8 @@ const LEAF: usize = 4;
 /// A body's number in a node that has several.
 const MIXED: u32 = u32::MAX;
 
-/// A box: its smallest coordinates, its largest with their signs turned, and two zeros. So one kind of
-/// comparison tells whether two boxes touch, and processors make eight at once.
+/// A box: its smallest coordinates, its largest with their signs turned, and two zeros. So one kind of comparison
+/// decides whether two boxes touch, and processors make eight at once.
 type Bounds = [f32; 8];
 
 /// Bounds that nothing touches.
@@ -183,7 +183,7 @@ fn raised<T: Copy>(values: &[T], leaves: usize, none: T, join: impl Fn(&T, &T) -
     nodes
 }
 
-/// A face with what tells quickly on which side of it a point lies.
+/// A face, with data for a quick test of the side on which a point is.
 struct Sided {
     vertices: [u32; 3],
     corners: [DVec3; 3],
@@ -240,8 +240,8 @@ impl Sided {
         same(b) && same(c)
     }
 
-    /// The same of faces that share one vertex: neighbours at a vertex are the most of all pairs, and few of
-    /// them meet elsewhere too.
+    /// Returns whether two faces that share one vertex may meet elsewhere too: neighbours at a vertex are the most of
+    /// all pairs, and few of them do.
     #[inline(always)]
     fn may_meet_beyond(&self, (i, k): (usize, usize), other: &Self) -> bool {
         // The others of both faces, as they run around them.
@@ -273,7 +273,7 @@ fn face_box(faces: &Faces, item: u32) -> Bounds {
     [low(min.x), low(min.y), low(min.z), high(max.x), high(max.y), high(max.z), 0.0, 0.0]
 }
 
-/// Items that belong to a body, along a curve that keeps neighbours together.
+/// Returns the items that belong to a body, along a curve that keeps neighbours together.
 fn morton_order(faces: &Faces, bodies: &Bodies) -> Vec<u32> {
     let bounds = crate::scene::Aabb::around(faces.points().iter().copied());
     let Some(bounds) = bounds else { return Vec::new() };
@@ -292,7 +292,7 @@ fn morton_order(faces: &Faces, bodies: &Bodies) -> Vec<u32> {
     keys.into_iter().map(|k| k as u32).collect()
 }
 
-/// Ten bits, two zeros between each two.
+/// Spreads ten bits, with two zeros between each two.
 fn spread(v: u32) -> u32 {
     let v = (v | v << 16) & 0x0300_00ff;
     let v = (v | v << 8) & 0x0300_f00f;
@@ -300,7 +300,7 @@ fn spread(v: u32) -> u32 {
     (v | v << 2) & 0x0924_9249
 }
 
-/// The side of the plane of a, b, c on which the point lies; its sign is exact.
+/// Returns the side of the plane of a, b, c on which the point is; the sign is exact.
 fn side([a, b, c]: &[DVec3; 3], p: DVec3) -> f64 {
     let coord = |p: &DVec3| robust::Coord3D { x: p.x, y: p.y, z: p.z };
     robust::orient3d(coord(a), coord(b), coord(c), coord(&p))

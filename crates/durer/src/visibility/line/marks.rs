@@ -9,8 +9,8 @@ const ARM: f64 = 0.0025;
 /// The longest arm in steps, so that crosses stay where coordinates are exact.
 const LONGEST: f64 = (1u32 << 25) as f64;
 
-/// Returns the segments that stand for the model's own lines and points on the page, in their order;
-/// what is outside the view volume is cut off.
+/// Returns the segments that represent the model's own lines and points on the page, in their order; what is outside
+/// the view volume is cut off.
 pub(super) fn marks<'a>(
     faces: &'a Faces,
     projected: &'a Projected,

@@ -7,7 +7,7 @@ crate::info::family! {
     pub enum LineMethod {
         /// All edges, hidden or not.
         Wireframe => wireframe::INFO,
-        /// Finds the visible parts of edges, and how many surfaces hide the rest.
+        /// Visible parts of edges, and how many surfaces hide the rest.
         HiddenLine => hidden_line::INFO,
         /// The lines of a surface y = f(x, z) that rise above or sink below those before them.
         FloatingHorizon => floating_horizon::INFO,

@@ -26,7 +26,7 @@ impl GridPoint {
         [i64::from(self.x) - i64::from(other.x), i64::from(self.y) - i64::from(other.y)]
     }
 
-    /// Steps between the two.
+    /// Returns the distance between the two, in steps.
     pub fn distance(self, other: Self) -> f64 {
         let [x, y] = self.minus(other).map(|d| d as f64);
         (x * x + y * y).sqrt()
@@ -65,7 +65,7 @@ impl Page {
         (self.origin + DVec2::new(f64::from(p.x), f64::from(p.y))) * self.step
     }
 
-    /// Back again; exact for what [`Self::plane_from_grid`] gives.
+    /// Converts back from the plane to the grid; exact for the points that [`Self::plane_from_grid`] returns.
     pub(super) fn grid_from_plane(&self, p: DVec2) -> GridPoint {
         let p = p / self.step - self.origin;
         GridPoint { x: p.x.round() as i32, y: p.y.round() as i32 }
@@ -213,7 +213,7 @@ impl Around {
         }
     }
 
-    /// Returns the same of what is in the window, and the guard around it.
+    /// Returns the bounds of what is in the window, and the guard around it.
     fn limited(&self, window: Rect, faces: &Faces, plane: &PicturePlane) -> Self {
         let mut depths = Self::default();
         let volume = Borders { depth: true, sides: Some(GUARD) };

@@ -15,7 +15,7 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// Silhouettes of round parts and creases; what else ends in the open has a reason.
+    /// Returns whether it may end in the open without a reason, as silhouettes of round parts and creases may.
     pub fn may_end_anywhere(&self) -> bool {
         self.smooth || self.class == LineClass::Crease
     }

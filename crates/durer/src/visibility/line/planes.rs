@@ -20,7 +20,7 @@ struct Plane {
 pub(super) struct Planes(Vec<Plane>);
 
 impl Planes {
-    /// Creates those of faces; O(n).
+    /// Creates the planes of faces; O(n).
     pub fn new(faces: &Faces) -> Self {
         let plane = |item: usize| {
             let corners = faces.corners(item as u32);
@@ -53,8 +53,8 @@ impl Planes {
         self.0[item as usize].area
     }
 
-    /// Returns the cosine of what the surface turns by between two triangles at an edge; NaN where one has no
-    /// direction.
+    /// Returns the cosine of the angle by which the surface turns between two triangles at an edge; NaN where one has
+    /// no direction.
     #[inline]
     pub fn cosine(&self, a: Side, b: Side) -> f64 {
         let [p, q] = [a, b].map(|side| self.0[side.item() as usize]);

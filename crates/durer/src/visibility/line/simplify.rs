@@ -7,8 +7,8 @@
 
 use super::page::GridPoint;
 
-/// A closed ring counts from the point that lies furthest to the left, then down, and keeps the
-/// point furthest from it as well. Points among the sorted `corners` stay.
+/// Leaves out points within the tolerance. A closed ring begins at the point that is furthest to the left, then down,
+/// and keeps the point furthest from it as well. Points among the sorted `corners` stay.
 pub(super) fn simplify(
     points: &[GridPoint],
     closed: bool,

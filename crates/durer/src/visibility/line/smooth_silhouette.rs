@@ -143,7 +143,7 @@ pub(super) fn divided(
     Divided { faces, whole, origins, turns, bends, surface }
 }
 
-/// Returns for each vertex where those crossings start, which are sorted, of which it is the smaller end; and their number.
+/// Returns, for each vertex, the start of the crossings, which are sorted, whose smaller end it is; and their number.
 fn starts(crossings: &[Crossing], vertices: usize) -> Vec<u32> {
     let mut starts = vec![0_u32; vertices + 1];
     crossings.iter().for_each(|c| starts[c.edge[0] as usize + 1] += 1);
@@ -171,7 +171,7 @@ struct Vertices<'a> {
 }
 
 impl<'a> Vertices<'a> {
-    /// `crossings` are sorted by edge, then place.
+    /// Creates the vertices of the silhouette; `crossings` are sorted by edge, then place.
     fn new(
         faces: &'a Faces,
         surface: &'a SmoothSurface,

@@ -88,8 +88,8 @@ impl SmoothSurface {
         self.corners.get(item as usize).copied().filter(|c| c[0] != NONE)
     }
 
-    /// 1 where a triangle shows the front of the surface, −1 where its back, 0 where that does not tell; by those of
-    /// its corners that are also a part's.
+    /// Returns 1 where a triangle shows the front of the surface, −1 where its back, 0 where that is uncertain; by
+    /// those of its corners that are also a part's.
     pub fn side(&self, item: u32, is_of_part: impl Fn(usize) -> bool) -> i8 {
         let Some(corners) = self.corners(item) else { return 0 };
         let slopes = (0..3).filter(|k| is_of_part(*k)).map(|k| self.slopes[corners[k] as usize]);

@@ -1,11 +1,11 @@
 //! Creases that one angle does not tell.
 //!
-//! A mesh of round parts turns from facet to facet by about equal steps, and an edge is a step alone. So the turns straight
-//! across an edge on both sides of it say what it is: between two flat faces that bend no further an edge is a
+//! A mesh of round parts turns from facet to facet by about equal steps, and an edge is a step alone. So the turns
+//! straight across an edge on both sides of it say what it is: between two flat faces that bend no further an edge is a
 //! crease, however blunt; and few edges above the crease angle, between facets that go on to bend about as much, are no
-//! crease where they begin and end in the open. As in Tamal Dey and Lei Wang, *Voronoi-based feature curves extraction for
-//! sampled singular surfaces*, Computers & Graphics, 2013, a feature is known from what is around it, and not from one
-//! threshold. O(n), and O(k log k) for k such edges.
+//! crease where they begin and end in the open. As in Tamal Dey and Lei Wang, *Voronoi-based feature curves extraction
+//! for sampled singular surfaces*, Computers & Graphics, 2013, a feature is known from what is around it, and not from
+//! one threshold. O(n), and O(k log k) for k such edges.
 //!
 //! Flat faces are of two triangles or more: single ones that are turned against each other are what scanned meshes are
 //! made of.
@@ -39,7 +39,7 @@ pub(super) struct Steps {
 }
 
 impl Steps {
-    /// Creates those of faces with creases from the angle `crease` on, in radians.
+    /// Finds the steps of faces with creases from the angle `crease` on, in radians.
     pub fn new((faces, edges): (&Faces, &Edges), planes: &Planes, crease: f64) -> Self {
         let seen = Seen { faces, edges, planes, crease: libm::cos(crease) };
         let mut turns = Turns::default();
@@ -199,7 +199,7 @@ impl Seen<'_> {
         parallel::map(jobs, f)
     }
 
-    /// Returns the first look at the edges whose smaller vertices lie in a range.
+    /// Returns the first pass over the edges whose smaller vertices lie in a range.
     fn turns(&self, vertices: Range<u32>) -> Turns {
         let mut found = Turns::default();
         for (ends, sides) in self.edges.from_vertices(vertices) {

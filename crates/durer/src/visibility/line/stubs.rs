@@ -222,7 +222,7 @@ impl<'a> Lines<'a> {
         open
     }
 
-    /// Takes away the part between the tip of a walk and the next junction, if that is near.
+    /// Removes the part between the tip of a walk and the next junction, if that is near.
     fn cut_back(&mut self, ends: &[u32], cuts: &mut Vec<Cut>) {
         let (turn, length) = (self.turn_back(ends), self.length);
         let longest = |k: usize, ends_here: bool| match turn {
@@ -291,7 +291,7 @@ impl<'a> Lines<'a> {
         first
     }
 
-    /// Pieces between tips that meet, or lie near each other and go on in each other's direction.
+    /// Returns pieces between tips that meet, or that are near each other and go on in each other's direction.
     fn gaps(&mut self) -> Vec<Piece> {
         let most = self.length * STRAIGHT_GAP;
         let mut tips = Vec::new();
@@ -353,7 +353,8 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// A visible line ends in the open, whatever is hidden there.
+/// Returns whether another piece counts at an end of a piece: a visible line ends in the open, whatever is hidden
+/// there.
 fn counts(of: &Piece, other: &Piece) -> bool {
     of.invisibility > 0 || other.invisibility == 0
 }

@@ -1,5 +1,5 @@
-//! Pieces of lines by place: a uniform grid. Where the pieces lie in few of its cells, as those of a long row, cells are
-//! smaller, and share lists by a hash of their number.
+//! Pieces of lines by place: a uniform grid. Where the pieces lie in few of its cells, as those of a long row, cells
+//! are smaller, and share lists by a hash of their number.
 
 use super::page::GridPoint;
 use super::piece::Piece;
@@ -34,7 +34,7 @@ struct Cells {
 }
 
 impl Cells {
-    /// Cells over a size in steps, for this many pieces.
+    /// Creates cells over a size in steps, for this many pieces.
     fn new(low: GridPoint, size: [i64; 2], shift: u32, pieces: usize) -> Self {
         let [columns, rows] = size.map(|d| (d >> shift) as usize + 1);
         let all = columns * rows;
@@ -111,7 +111,8 @@ fn shift_of(side: f64) -> u32 {
 }
 
 impl Table {
-    /// `None` if there are no pieces. `close` is the largest margin of entries and questions.
+    /// Creates the table of the pieces; returns `None` if there are none. `close` is the largest margin of entries and
+    /// queries.
     pub fn new(pieces: &[Piece], close: f64) -> Option<Self> {
         let mut points = pieces.iter().flat_map(|p| p.ends);
         let first = points.next()?;

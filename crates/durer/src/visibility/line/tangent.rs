@@ -1,9 +1,9 @@
 //! The edges at which curved faces meet others smoothly.
 //!
-//! A mesh does not say where its faces were, but there the curvature changes at once: straight across the first edge of a
-//! fillet, the surface bends as the fillet does on one side, and on the other, of a plane or along a cylinder, hardly. The
-//! facets of the fillet begin on the edge itself, so the mesh turns there by half of what it turns from facet to facet.
-//! O(n log n).
+//! A mesh does not say where its faces were, but there the curvature changes at once: straight across the first edge of
+//! a fillet, the surface bends as the fillet does on one side, and on the other, of a plane or along a cylinder,
+//! hardly. The facets of the fillet begin on the edge itself, so the mesh turns there by half of what it turns from
+//! facet to facet. O(n log n).
 
 use super::planes::Planes;
 use super::roundness::FLAT;
@@ -12,15 +12,15 @@ use crate::parallel;
 use crate::visibility::object::{Edges, Faces, Side};
 use std::ops::Range;
 
-/// Range of an edge's turn relative to a facet's own: half of it, or less if its neighbour is coarse too, or a whole turn
-/// if the triangulation is uneven.
+/// Range of an edge's turn relative to a facet's own: half of it, or less if its neighbour is coarse too, or a whole
+/// turn if the triangulation is uneven.
 const TURN: Range<f64> = 0.25..1.0;
 
 /// The edges of the mesh that are tangent edges, the smaller vertex first, in order.
 pub(super) struct Tangents(Vec<[u32; 2]>);
 
 impl Tangents {
-    /// Creates those with bends of less than the angle `crease`, in radians.
+    /// Finds the tangent edges with bends of less than the angle `crease`, in radians.
     pub fn new((faces, edges): (&Faces, &Edges), planes: &Planes, crease: f64) -> Self {
         let items: Vec<u32> = faces.triangles().map(|(item, _)| item).collect();
         let directions = Directions::new((faces, edges), planes, crease, &items);

@@ -1,9 +1,9 @@
 //! Normals of the smooth surface at the vertices of a mesh that has none.
 //!
-//! Henri Gouraud, *Continuous shading of curved surfaces*, IEEE Transactions on Computers, 1971: averages over the faces
-//! around a vertex. Weights are area times angle: it does not matter how a quadrilateral is divided, as in Grit
-//! Thürmer and Charles Wüthrich, *Computing vertex normals from polygonal facets*, Journal of Graphics Tools, 1998,
-//! and large flat faces keep their own direction beside narrow roundings.
+//! Henri Gouraud, *Continuous shading of curved surfaces*, IEEE Transactions on Computers, 1971: averages over the
+//! faces around a vertex. Weights are area times angle: it does not matter how a quadrilateral is divided, as in Grit
+//! Thürmer and Charles Wüthrich, *Computing vertex normals from polygonal facets*, Journal of Graphics Tools, 1998, and
+//! large flat faces keep their own direction beside narrow roundings.
 //!
 //! What is beyond a sharp edge does not count: beyond a crease, and beyond a bend between two flat faces that are
 //! no facets of anything round. O(n) for vertices of bounded degree.
@@ -17,7 +17,8 @@ use crate::visibility::object::{Edges, Faces};
 /// angle θ along that side is up to θL/8 away from it: lower triangles may be turned against it by more than θ.
 const SLIVER: f64 = 0.125;
 
-/// Lower than this part of their longest side triangles may still be turned against the surface by half of the crease angle.
+/// Lower than this part of their longest side triangles may still be turned against the surface by half of the crease
+/// angle.
 const LOW: f64 = 0.2;
 
 /// Largest number of slivers beside each other; more are a strip of a round part, and turned as that
@@ -43,7 +44,7 @@ pub(super) const UNEVEN: f64 = 8.0;
 /// Largest number of triangles in a facet of a round part: two for a quadrilateral, and as many beside.
 const FACET: usize = 4;
 
-/// Vertices of more triangles are hubs, and not round: all pairs of them are too many to look at.
+/// Vertices of more triangles are hubs, and not round: all pairs of them are too many to examine.
 const HUB: usize = 256;
 
 /// Returns twice the area of a triangle along its normal, and whether it is a sliver.
@@ -65,7 +66,8 @@ pub(super) struct Directions<'a> {
     faces: &'a Faces,
     edges: &'a Edges,
     planes: &'a Planes,
-    /// The cosine of the crease angle, of a half and a quarter of it, and of what faces beside a sliver may be turned by.
+    /// The cosine of the crease angle, of a half and a quarter of it, and of what faces beside a sliver may be turned
+    /// by.
     crease: f64,
     half: f64,
     quarter: f64,
@@ -77,7 +79,8 @@ pub(super) struct Directions<'a> {
 }
 
 impl<'a> Directions<'a> {
-    /// `crease` is the crease angle in radians; `items` are the triangles to look for slivers among, in order.
+    /// Finds the directions of faces; `crease` is the crease angle in radians; `items` are the triangles to look for
+    /// slivers among, in order.
     pub fn new(
         (faces, edges): (&'a Faces, &'a Edges),
         planes: &'a Planes,
@@ -204,9 +207,9 @@ impl<'a> Directions<'a> {
         next.is_some_and(|curvature| curvature * curvature >= 2.0 * least)
     }
 
-    /// Returns the width of the flat face that a triangle is a part of, straight across from the edge `ends`, as far as that
-    /// is followed, and the bend of the surface in that direction at its other end: the turn over the mean width of the
-    /// faces there, if it is round.
+    /// Returns the width of the flat face that a triangle is a part of, straight across from the edge `ends`, as far as
+    /// that is followed, and the bend of the surface in that direction at its other end: the turn over the mean width
+    /// of the faces there, if it is round.
     pub fn next_bend(&self, ends: [u32; 2], item: u32) -> (f64, Option<f64>) {
         self.next_turn(ends, item, FLAT)
     }

@@ -19,7 +19,7 @@ use crate::view::View;
 use crate::view::picture_plane::PicturePlane;
 use crate::visibility::object::{Bodies, Edges, Faces, Side, Weld};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "wireframe-lines",
     title: "Wireframe",
@@ -45,7 +45,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// 0.05 pixels in a picture of 1000.
+    /// Returns the default: 0.05 pixels in a picture of 1000.
     fn default() -> Self {
         Self { tolerance: 5e-5, weld: Weld::Auto }
     }
@@ -81,8 +81,8 @@ fn piece(ends: [super::page::GridPoint; 2]) -> Piece {
     Piece { ends, class: LineClass::Wire, invisibility: 0, smooth: false }
 }
 
-/// Draws all edges of a scene's faces, and its lines and points. Edges inside a polygon that was read as several triangles are
-/// none; edges that lie on each other in the picture are drawn once.
+/// Draws all edges of a scene's faces, and its lines and points. Edges inside a polygon that was read as several
+/// triangles are none; edges that lie on each other in the picture are drawn once.
 ///
 /// # Errors
 /// [`crate::Error::Parameter`] for an option out of its range, and what [`Faces::welded`] finds.

@@ -8,7 +8,7 @@ use super::chain::{point, walks};
 use super::page::GridPoint;
 use super::piece::Piece;
 
-/// Takes away what runs back and forth of smooth outlines.
+/// Removes the parts of smooth outlines that run back and forth.
 pub(super) fn without_zigzags(pieces: &mut Vec<Piece>) {
     let (mut smooth, others): (Vec<Piece>, Vec<Piece>) = pieces.iter().partition(|p| p.smooth);
     for walk in walks(&smooth) {
@@ -19,7 +19,7 @@ pub(super) fn without_zigzags(pieces: &mut Vec<Piece>) {
     pieces.append(&mut smooth);
 }
 
-/// Takes it from pieces in a row, which are given by the ends that they begin at.
+/// Removes those parts from pieces in a row, which are given by the ends that they begin at.
 fn straighten(pieces: &mut [Piece], row: &[u32]) {
     let mut places: Vec<GridPoint> = row.iter().map(|end| point(pieces, *end)).collect();
     places.extend(row.last().map(|end| point(pieces, end ^ 1)));

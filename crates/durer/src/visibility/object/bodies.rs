@@ -7,9 +7,8 @@ use crate::math::DVec3;
 /// A connected piece of surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Body {
-    /// True if each edge has as many triangles on one side as on the other, after turning triangles
-    /// that run against their neighbours: the piece bounds a volume, and whoever looks at it from
-    /// outside meets a front face first.
+    /// True if each edge has as many triangles on one side as on the other, after turning triangles that run against
+    /// their neighbours: the piece bounds a volume, and seen from outside the first face is a front face.
     pub closed: bool,
     /// Number of its triangles, without duplicates.
     pub triangles: u32,
@@ -30,13 +29,13 @@ pub struct Bodies {
 const ABSENT: u32 = u32::MAX;
 
 impl Bodies {
-    /// Finds the bodies, and gives the edges with them: of two triangles with the same three vertices
-    /// only the first counts. O(n α(n)).
+    /// Finds the bodies, and returns the edges with them: of two triangles with the same three vertices only the first
+    /// counts. O(n α(n)).
     pub fn find(faces: &Faces) -> (Self, Edges) {
         Self::of_edges(faces, Edges::new(faces, |_| true))
     }
 
-    /// Returns the same where the edges of all triangles are known.
+    /// Finds the bodies where the edges of all triangles are known.
     pub(in crate::visibility) fn of_edges(faces: &Faces, mut edges: Edges) -> (Self, Edges) {
         if let Some(copy) = copies(faces, &edges) {
             edges = Edges::new(faces, |item| !copy[item as usize]);
@@ -49,7 +48,7 @@ impl Bodies {
 
     fn new(faces: &Faces, edges: &Edges, counts: impl Fn(u32) -> bool) -> Self {
         let mut sets = TurnedSets::new(faces.len());
-        // Neighbours across an edge of two are turned alike; across more, nobody can say.
+        // Neighbours across an edge of two are turned alike; across more, the orientation is undefined.
         for (_, sides) in edges.iter() {
             if let [a, b] = sides {
                 sets.unite(a.item(), b.item(), a.forward() == b.forward());
@@ -177,7 +176,7 @@ impl TurnedSets {
         Self { parent, torn: std::collections::BTreeSet::new() }
     }
 
-    /// Root, and turn against it; halves paths.
+    /// Finds the root of an item and whether it is turned against it; halves paths.
     fn find(&mut self, mut item: u32) -> (u32, bool) {
         let mut turned = 0;
         loop {

@@ -32,9 +32,9 @@ impl Side {
 /// All edges of the faces, with the triangles at each.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Edges {
-    /// For each vertex, where its sides start; one more at the end.
+    /// Start of each vertex's sides; one more at the end.
     starts: Vec<u32>,
-    /// By smaller vertex, then larger vertex, then item.
+    /// Sides by smaller vertex, then larger vertex, then item.
     sides: Vec<Side>,
 }
 
@@ -69,16 +69,16 @@ impl Edges {
         Self { starts, sides }
     }
 
-    /// Returns the same after some triangles were changed, which are given in item order. Costs less than to
-    /// find all again where they are few.
+    /// Returns the edges after some triangles were changed, which are given in item order. Costs less than to find all
+    /// again where they are few.
     pub(super) fn renewed(self, faces: &Faces, changed: &[u32]) -> Self {
         let mut is_changed = vec![false; faces.len()];
         changed.iter().for_each(|item| is_changed[*item as usize] = true);
         self.with(faces, changed, |item| (!is_changed[item as usize]).then_some(item))
     }
 
-    /// Returns those of faces in which some triangles are divided: for each item it is given which one it was before, in
-    /// order.
+    /// Returns the edges of faces some of whose triangles are divided: `origins` has, for each item, the item that it
+    /// was part of, in order.
     pub(super) fn divided(&self, faces: &Faces, origins: &[u32]) -> Self {
         let before = origins.last().map_or(0, |last| *last as usize + 1);
         let mut number = vec![None; before];
@@ -93,8 +93,8 @@ impl Edges {
         self.with(faces, &parts, |item| number.get(item as usize).copied().flatten())
     }
 
-    /// Returns the same with the triangles `new`, in item order, and those old ones that have a `number` now, which keeps
-    /// their order.
+    /// Returns the edges with the triangles `new`, in item order, and those old ones that have a `number` now, which
+    /// keeps their order.
     fn with(&self, faces: &Faces, new: &[u32], number: impl Fn(u32) -> Option<u32>) -> Self {
         if new.len() > faces.len() / 4 {
             return Self::new(faces, |_| true);

@@ -27,9 +27,9 @@ pub struct FaceRun {
 
 /// The triangles of a scene, and its lines and points.
 ///
-/// Vertices of one mesh that lie at one place are one vertex, so neighbours are found even where the file
-/// shares no vertices. Vertices at borders are shared with those of other instances too, and triangles without
-/// height between others are left out; [`Weld`] says how near.
+/// Vertices of one mesh that lie at one place are one vertex, so neighbours are found even where the file shares no
+/// vertices. Vertices at borders are shared with those of other instances too, and triangles without height between
+/// others are left out; [`Weld`] determines how near.
 ///
 /// # Guarantees
 /// All points are finite; the three vertices of a triangle differ.
@@ -50,11 +50,11 @@ pub struct Faces {
     edges: Option<Edges>,
 }
 
-/// In place of the vertices of a triangle that has no area or no place.
+/// Value in place of the vertices of a triangle that has no area or no place.
 const NONE: [u32; 3] = [u32::MAX; 3];
 
 impl Faces {
-    /// Creates the faces of a scene, welded as [`Weld::Auto`] says.
+    /// Creates the faces of a scene, welded by [`Weld::Auto`].
     ///
     /// # Errors
     /// See [`Self::welded`].
@@ -121,8 +121,8 @@ impl Faces {
         items.iter().for_each(|item| self.triangles[*item as usize] = NONE);
     }
 
-    /// Puts vertices in the place of others, given as (old, new), and gives the items of the triangles
-    /// that have changed.
+    /// Puts vertices in the place of others, given as (old, new), and returns the items of the triangles that have
+    /// changed.
     pub(super) fn renumber(&mut self, pairs: &[(u32, u32)]) -> Vec<u32> {
         if pairs.is_empty() {
             return Vec::new();
@@ -214,8 +214,8 @@ impl Faces {
     }
 
     /// Returns the same with parts in place of some triangles, and of each triangle the item that it was. `edges` are
-    /// those of the faces as they are, `parts` are (item, vertices) in item order, `points` those of the faces and more. Parts of one
-    /// polygon are one polygon.
+    /// those of the faces as they are, `parts` are (item, vertices) in item order, `points` those of the faces and
+    /// more. Parts of one polygon are one polygon.
     pub(in crate::visibility) fn refined(
         &self,
         edges: &Edges,
@@ -281,7 +281,7 @@ impl Faces {
         &self.marks
     }
 
-    /// All triangles that have three vertices, with their items, in item order.
+    /// Returns all triangles that have three vertices, with their items, in item order.
     pub fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
         (0..).zip(&self.triangles).filter(|(_, t)| **t != NONE).map(|(item, t)| (item, *t))
     }
@@ -300,7 +300,7 @@ impl Faces {
         Some(corners)
     }
 
-    /// Runs of one instance and material, in item order.
+    /// Returns the runs of one instance and material, in item order.
     pub fn runs(&self) -> &[FaceRun] {
         &self.runs
     }
@@ -347,7 +347,7 @@ fn face_runs(scene: &Scene) -> Result<Vec<FaceRun>> {
     Ok(triangles.collect())
 }
 
-/// For each item the first item of its polygon; `None` if each polygon is one triangle.
+/// Returns, for each item, the first item of its polygon; `None` if each polygon is one triangle.
 fn polygons(scene: &Scene) -> Option<Vec<u32>> {
     scene.meshes.iter().any(|m| !m.faces.is_empty()).then(|| {
         let mut first_of = Vec::new();

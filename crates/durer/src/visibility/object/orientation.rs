@@ -1,8 +1,8 @@
 //! Orientation of faces: which way each is turned, and which way is out.
 //!
-//! A. F. Möbius, *Ueber die Bestimmung des Inhaltes eines Polyëders*, Berichte der Königlich Sächsischen Gesellschaft der
-//! Wissenschaften 17, 1865: faces of an orientable surface can be run around so that each edge is run through once in
-//! either direction; then the sum of the tetrahedra from any point to the faces is the volume, which is negative if
+//! A. F. Möbius, *Ueber die Bestimmung des Inhaltes eines Polyëders*, Berichte der Königlich Sächsischen Gesellschaft
+//! der Wissenschaften 17, 1865: faces of an orientable surface can be run around so that each edge is run through once
+//! in either direction; then the sum of the tetrahedra from any point to the faces is the volume, which is negative if
 //! the faces are turned inwards. Convex bodies have a simpler test: a face is turned outwards if its normal points away
 //! from the mean of all corners. Object space. Cost: O(n log n) time and O(n) memory for n corners.
 //!
@@ -35,7 +35,7 @@ use crate::trace::Tracer;
 use crate::view::cull::newell_area;
 use crate::{Error, Result};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "orientation",
     title: "Orientation of faces",

@@ -1,14 +1,13 @@
 //! Faces that meet up to rounding find each other.
 //!
-//! A closed surface has no borders. Where a mesh has some only because one corner of a face was rounded
-//! otherwise than its neighbour's, because each face is a mesh of its own, or because the edge of one face goes along several
-//! of another (a T-junction), its borders lie on each other. Here they become one: first triangles
-//! without height are left out, then ends of borders that lie within a reach of each other are one vertex, and
-//! then borders are divided where ends of others lie on them. Nothing but borders is touched, so walls stay apart
-//! however thin they are. After André Guéziec, Gabriel Taubin, Francis Lazarus and Bill Horn, *Cutting and
-//! stitching: converting sets of polygons to manifold surfaces*, IEEE Transactions on Visualization and
-//! Computer Graphics, 2001; the pairs come from a k-d tree, and no surface is cut. O(n), and
-//! O(b log² b) for b borders.
+//! A closed surface has no borders. Where a mesh has some only because one corner of a face was rounded otherwise than
+//! its neighbour's, because each face is a mesh of its own, or because the edge of one face goes along several of
+//! another (a T-junction), its borders lie on each other. Here they become one: first triangles without height are left
+//! out, then ends of borders that lie within a reach of each other are one vertex, and then borders are divided where
+//! ends of others lie on them. Nothing but borders is touched, so walls stay apart however thin they are. After André
+//! Guéziec, Gabriel Taubin, Francis Lazarus and Bill Horn, *Cutting and stitching: converting sets of polygons to
+//! manifold surfaces*, IEEE Transactions on Visualization and Computer Graphics, 2001; the pairs come from a k-d tree,
+//! and no surface is cut. O(n), and O(b log² b) for b borders.
 
 use super::{Edges, Faces};
 use crate::math::DVec3;
@@ -21,7 +20,7 @@ pub(super) struct Grain {
     pub tree: u32,
     /// The spacing of numbers as large as its largest coordinate.
     pub step: f64,
-    /// The last digit that its file gives of coordinates, 0 if that is not known.
+    /// Value of the last digit of coordinates in its file, 0 if that is not known.
     pub digit: f64,
     /// Its extent.
     pub extent: f64,
@@ -43,7 +42,7 @@ impl Grain {
     }
 }
 
-/// Stitches the faces, whose edges it gives back. `grains` are those of the instances.
+/// Stitches the faces, and returns their edges. `grains` are those of the instances.
 pub(super) fn stitch(faces: &mut Faces, grains: &[Grain]) -> Edges {
     let mut edges = Edges::new(faces, |_| true);
     let low = all_low(faces, &edges, grains);
@@ -161,7 +160,7 @@ struct Borders {
 }
 
 impl Borders {
-    /// `None` if there are none that may meet.
+    /// Creates the borders that may meet; returns `None` if there are none.
     fn new(faces: &Faces, edges: &Edges, grains: &[Grain]) -> Option<Self> {
         let mut all: Vec<Border> =
             edges.borders().map(|(ends, item)| Border { ends, item, kind: 0 }).collect();

@@ -18,21 +18,23 @@ const CELLS: f64 = (1u64 << 20) as f64;
 /// Rule that joins vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Weld {
-    /// Those of one mesh that lie at one place, up to 2⁻²⁶ of the mesh's extent; and, within one
-    /// object ([`Scene::trees`]), ends of borders that lie on each other as far as the precision of
-    /// their coordinates can tell: 2⁻¹⁶ of the largest, or one unit of the last decimal. Borders that go along
-    /// each other are one too, though their vertices are not.
+    /// Vertices of one mesh that are at one place, up to 2⁻²⁶ of the mesh's extent; and, within one object
+    /// ([`Scene::trees`]), ends of borders that lie on each other to the precision of their coordinates: 2⁻¹⁶ of the
+    /// largest, or one unit of the last decimal. Borders that go along each other are one too, though their vertices
+    /// are not.
     ///
     /// [`Scene::trees`]: crate::scene::Scene::trees
     #[default]
     Auto,
-    /// Those of one mesh whose coordinates are equal.
+    /// Vertices of one mesh whose coordinates are equal.
     None,
     /// Like [`Self::Auto`], but with this largest distance between borders, in units of the world.
     Within(f64),
 }
 
 impl Weld {
+    /// Checks the length.
+    ///
     /// # Errors
     /// [`Error::Parameter`] for a length that is negative or not finite.
     pub(crate) fn check(self) -> Result<()> {
@@ -55,8 +57,8 @@ pub(super) struct Welded {
     pub bounds: Option<Aabb>,
 }
 
-/// Numbers the distinct places of the vertices, if not `exactly` those within [`TOLERANCE`]. Those that are
-/// not finite stay alone.
+/// Numbers the distinct places of the vertices, or, if not `exactly`, those within [`TOLERANCE`]. Those that are not
+/// finite stay alone.
 pub(super) fn weld(positions: &[Vec3], exactly: bool) -> Welded {
     let Some(bounds) = Aabb::around(positions.iter().map(|p| p.as_dvec3())) else {
         return alone(positions.len());

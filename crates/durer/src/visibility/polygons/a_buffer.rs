@@ -1,15 +1,16 @@
 //! The A-buffer's arithmetic of one pixel, as published: masks of 4 × 4 sub-pixels, and shares by depth.
 //!
-//! L. Carpenter, *The A-buffer, an Antialiased Hidden Surface Method*, SIGGRAPH 1984. Class: image space. Fragments of a pixel
-//! come by their nearest depth. One takes the sub-pixels that are still searched for; where the next one overlaps it in
-//! depth, the two share them by how far each lies before the other, as if they crossed there. Cost: O(k log k)
-//! for k fragments. [`crate::visibility::surface::a_buffer`] decides by exact areas and planes where faces cut each other, and renders models.
+//! L. Carpenter, *The A-buffer, an Antialiased Hidden Surface Method*, SIGGRAPH 1984. Class: image space. Fragments of
+//! a pixel come by their nearest depth. One takes the sub-pixels that are still searched for; where the next one
+//! overlaps it in depth, the two share them by how far each lies before the other, as if they crossed there. Cost: O(k
+//! log k) for k fragments. [`crate::visibility::surface::a_buffer`] decides by exact areas and planes where faces cut
+//! each other, and renders models.
 
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Vec4};
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "a-buffer-shares",
     title: "A-buffer with shares by depth",
@@ -39,8 +40,8 @@ pub const INFO: Info = Info {
 /// All sub-pixels of a pixel.
 pub const FULL: u16 = u16::MAX;
 
-/// Signed distance of a point from the line through two others, positive where the edge function
-/// ΔY (x − Xa) − ΔX (y − Ya) is: that function divided by the edge's length. None for an edge without length.
+/// Returns the signed distance of a point from the line through two others, positive where the edge function ΔY (x −
+/// Xa) − ΔX (y − Ya) is: that function divided by the edge's length; `None` for an edge without length.
 ///
 /// ```
 /// use durer::math::DVec2;
@@ -109,7 +110,7 @@ pub enum Step {
         fragment: usize,
         /// The sub-pixels that are still searched for.
         search: u16,
-        /// Those of them that it covers.
+        /// The sub-pixels among them that it covers.
         inside: u16,
     },
     /// Another one overlaps it in depth: they share sub-pixels.
@@ -125,7 +126,7 @@ pub enum Step {
     Weight {
         /// Its index; none for the background.
         fragment: Option<usize>,
-        /// 0 … 1.
+        /// Weight, 0 … 1.
         weight: f64,
     },
 }

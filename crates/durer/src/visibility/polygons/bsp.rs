@@ -1,8 +1,8 @@
 //! Binary space partition: a tree of planes that orders polygons for any eye.
 //!
-//! H. Fuchs, Z. M. Kedem, B. F. Naylor, *On visible surface generation by a priori tree structures*, SIGGRAPH 1980. List
-//! priority. One polygon's plane divides the others, those that cross it are split, and so on in both halves. The tree
-//! does not hang on the eye: for each eye a walk through it, the far half of each node first, gives an order from
+//! H. Fuchs, Z. M. Kedem, B. F. Naylor, *On visible surface generation by a priori tree structures*, SIGGRAPH 1980.
+//! List priority. One polygon's plane divides the others, those that cross it are split, and so on in both halves. The
+//! tree does not hang on the eye: for each eye a walk through it, the far half of each node first, gives an order from
 //! back to front. Cost: O(n²) pieces at worst, O(n log n) as a rule; a walk is linear in the pieces.
 //!
 //! A piece keeps its face and the planes that cut it, and its pixels are those of the face on its side of them; so
@@ -20,7 +20,7 @@ use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 use crate::visibility::back_face::Eye;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "bsp-tree",
     title: "Binary space partition tree",

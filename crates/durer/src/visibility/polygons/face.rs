@@ -20,7 +20,7 @@ const FLATNESS: f64 = 1e-6;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Face {
     corners: Vec<DVec3>,
-    /// Through the mean of the corners; its normal by Newell's method, of unit length.
+    /// Plane through the mean of the corners; its normal by Newell's method, of unit length.
     plane: Plane,
     center: DVec3,
     /// Increase of z per pixel to the right and down; zero for a face seen edge-on.

@@ -1,14 +1,15 @@
 //! The hierarchical z-buffer: an octree of faces from front to back, and a pyramid of depths that hides whole cells.
 //!
-//! N. Greene, M. Kass, G. Miller, *Hierarchical Z-buffer visibility*, SIGGRAPH 1993. Each entry of the pyramid's level k
-//! is the farthest depth of 2 × 2 entries of level k − 1, and level 0 is the z-buffer: what is farther than an entry is
-//! hidden in all of the entry's pixels. A cell of the octree whose front is hidden is left out with all that is in it. Class:
-//! image space, with object-space coherence by the octree and image-space coherence by the pyramid. Cost: O(visible cells
-//! and faces, and pixels of these); memory O(4/3 pixels + faces).
+//! N. Greene, M. Kass, G. Miller, *Hierarchical Z-buffer visibility*, SIGGRAPH 1993. Each entry of the pyramid's level
+//! k is the farthest depth of 2 × 2 entries of level k − 1, and level 0 is the z-buffer: what is farther than an entry
+//! is hidden in all of the entry's pixels. A cell of the octree whose front is hidden is left out with all that is in
+//! it. Class: image space, with object-space coherence by the octree and image-space coherence by the pyramid. Cost:
+//! O(visible cells and faces, and pixels of these); memory O(4/3 pixels + faces).
 //!
-//! Deviations: the eye looks along z in parallel, so that cells are seen as rectangles, the front of a cell is its lowest z,
-//! and children come in the order of z. A face belongs to the smallest cell that holds it. The paper's temporal
-//! coherence (the faces seen last time first) is left out. What is equally near goes to the first face, as in the family.
+//! Deviations: the eye looks along z in parallel, so that cells are seen as rectangles, the front of a cell is its
+//! lowest z, and children come in the order of z. A face belongs to the smallest cell that holds it. The paper's
+//! temporal coherence (the faces seen last time first) is left out. What is equally near goes to the first face, as in
+//! the family.
 
 mod octree;
 mod pyramid;
@@ -22,7 +23,7 @@ use crate::trace::Tracer;
 use octree::Octree;
 use pyramid::{Entry, Pyramid};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "hierarchical-z-buffer",
     title: "Hierarchical z-buffer",
@@ -60,7 +61,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Cells of at most two faces, eight divisions deep.
+    /// Returns the default: cells of at most two faces, eight divisions deep.
     fn default() -> Self {
         Self { capacity: 2, depth: 8 }
     }
@@ -91,7 +92,7 @@ impl Test {
 pub enum Step {
     /// A cell of the octree, once it is complete.
     Cell {
-        /// Its number.
+        /// Number of the cell.
         cell: usize,
         /// Its corners: x, y in pixels, z from the eye.
         corners: [DVec3; 2],
@@ -100,14 +101,14 @@ pub enum Step {
     },
     /// A cell is compared with the pyramid.
     Visit {
-        /// Its number.
+        /// Number of the cell.
         cell: usize,
         /// The comparison.
         test: Test,
     },
     /// A cell is hidden or outside of the picture, and left out with everything in it.
     LeaveOut {
-        /// Its number.
+        /// Number of the cell.
         cell: usize,
         /// Number of faces in it and its children.
         faces: usize,

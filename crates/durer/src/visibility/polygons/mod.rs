@@ -77,7 +77,7 @@ impl PolygonMethod {
     /// smallest.
     ///
     /// # Errors
-    /// What the method's own function says; all take memory from the screen's budget.
+    /// Those of the method's own function; all charge memory to the screen's budget.
     pub fn items(self, faces: &[Face], screen: &Screen) -> Result<Pixels<u32>> {
         match self {
             Self::ZBuffer => z_buffer::items(faces, screen, &mut NoTrace),

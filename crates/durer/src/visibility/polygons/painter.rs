@@ -11,7 +11,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "painter",
     title: "Painter's method",
@@ -35,7 +35,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// By what faces are sorted.
+/// Key by which faces are sorted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Key {
     /// The z of the farthest corner.
@@ -48,7 +48,7 @@ pub enum Key {
 /// Options for sorting faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
-    /// By what.
+    /// Key by which faces are sorted.
     pub key: Key,
 }
 

@@ -6,8 +6,9 @@
 //! in the same way, and so is the outside. Coherence used: areas. Cost: O(n²) cuts where few overlap; memory
 //! O(regions).
 //!
-//! Deviations: cuts are made by the overlay, which takes any polygons; polygons that pierce each other are divided where
-//! their planes meet. [`crate::visibility::region::planar_map`] finds the same regions of models, in far less time.
+//! Deviations: cuts are made by the overlay, which takes any polygons; polygons that pierce each other are divided
+//! where their planes meet. [`crate::visibility::region::planar_map`] finds the same regions of models, in far less
+//! time.
 
 use super::Face;
 use crate::clip::line::HalfPlane;
@@ -18,7 +19,7 @@ use crate::math::{DVec2, Rect};
 use crate::trace::{NoTrace, Tracer};
 use crate::{Error, Result};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "area-sorting",
     title: "Weiler–Atherton visible regions",
@@ -201,7 +202,7 @@ impl<'a> Cutter<'a> {
         Some(Self { faces, around, grid, equal: 1e-9 * (1.0 + deep) })
     }
 
-    /// Takes the polygon with the nearest corner out of a list.
+    /// Removes the polygon with the nearest corner from a list and returns it.
     fn take_nearest(&self, polygons: &mut Vec<Region>) -> Option<Region> {
         let z = |region: &Region| self.faces[region.face as usize].depths()[0];
         let order = |a: &Region, b: &Region| z(a).total_cmp(&z(b)).then(a.face.cmp(&b.face));

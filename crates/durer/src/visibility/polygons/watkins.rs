@@ -1,12 +1,13 @@
 //! The spanning scan line with its three tables.
 //!
-//! G. S. Watkins, *A Real Time Visible Surface Algorithm*, dissertation, University of Utah, 1970; after W. J. Bouknight, CACM
-//! 13(9), 1970. Class: image space. The edge table has all edges by first row, with x there, last row, Δx/Δy and their
-//! polygon; the polygon table has each polygon's plane and an in/out flag. In each row the active edges are sorted by
-//! x; passing one turns its polygon's flag over, and between two of them the polygons that are in stay the same. One that
-//! is nearest at both ends of such a span is nearest in all of it, for planes are linear; where two change places the
-//! span is halved. Coherence used: edges, scan lines, spans. Cost: O(n log n) for n edges, then per row O(e log e + spans · d) for e
-//! active edges, d deep. What renders models is [`crate::visibility::surface::spanning_scan_line`].
+//! G. S. Watkins, *A Real Time Visible Surface Algorithm*, dissertation, University of Utah, 1970; after W. J.
+//! Bouknight, CACM 13(9), 1970. Class: image space. The edge table has all edges by first row, with x there, last row,
+//! Δx/Δy and their polygon; the polygon table has each polygon's plane and an in/out flag. In each row the active edges
+//! are sorted by x; passing one turns its polygon's flag over, and between two of them the polygons that are in stay
+//! the same. One that is nearest at both ends of such a span is nearest in all of it, for planes are linear; where two
+//! change places the span is halved. Coherence used: edges, scan lines, spans. Cost: O(n log n) for n edges, then per
+//! row O(e log e + spans · d) for e active edges, d deep. What renders models is
+//! [`crate::visibility::surface::spanning_scan_line`].
 
 use super::{Face, Screen};
 use crate::Result;
@@ -16,7 +17,7 @@ use crate::raster::polygon::edge_table::{Edge, table};
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "watkins",
     title: "Watkins' spanning scan line, with its tables",

@@ -1,7 +1,7 @@
 //! The z-buffer as the plain loop that it is.
 //!
-//! E. Catmull, *A Subdivision Algorithm for Computer Display of Curved Surfaces*, dissertation, University of Utah, 1974.
-//! Class: image space. Cost: O(covered pixels) time, two numbers a pixel. What renders models is
+//! E. Catmull, *A Subdivision Algorithm for Computer Display of Curved Surfaces*, dissertation, University of Utah,
+//! 1974. Class: image space. Cost: O(covered pixels) time, two numbers a pixel. What renders models is
 //! [`crate::visibility::surface::z_buffer`], which finds the same.
 
 use super::{Face, Screen};
@@ -10,7 +10,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "z-buffer-loop",
     title: "z-buffer, the plain loop",

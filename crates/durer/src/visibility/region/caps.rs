@@ -25,8 +25,8 @@ use crate::visibility::surface::setup::Run;
 /// part of an instance's a region of kind [`RegionKind::Cap`]; what several instances have in common belongs
 /// to the first. Of the options only the material and the culling count.
 ///
-/// The scene must be what [`crate::view::section::cut`] gives: caps with faces on both of their sides are
-/// not distinguished from others.
+/// The scene must be a result of [`crate::view::section::cut`]: caps with faces on both of their sides are not
+/// distinguished from others.
 ///
 /// # Errors
 /// As [`super::draw`].
@@ -112,7 +112,7 @@ struct Cap {
 }
 
 impl Cap {
-    /// `None` if nothing is in the picture, or nothing has a plane.
+    /// Creates a cap; returns `None` if nothing is in the picture, or nothing has a plane.
     fn new(world: &World<'_>, run: &Run, view: &View, faces: Vec<Face>) -> Option<Self> {
         let area = |f: &&Face| f.doubled_area();
         // The plane of the largest is the most certain.

@@ -38,7 +38,7 @@ const PARTS: [f64; 6] = [0.0, 90.0, 15.0, 105.0, -15.0, 75.0];
 /// Lines over one region, at most: beyond that it is black anyway.
 const MOST_LINES: f64 = 1e6;
 
-/// Returns the lines that stand for the tones of regions; class [`LineClass::Hatch`].
+/// Returns the lines that represent the tones of regions; class [`LineClass::Hatch`].
 ///
 /// Caps get the standard hatching of sections, one distance at one angle, whatever their colour; the caps of further
 /// parts ([`Region::part`]) get other angles. Cost:
@@ -84,14 +84,14 @@ fn first_tone(region: &Region, options: &Options) -> Stride {
     (tone < 1.0).then(|| 1i64 << ((tone.max(0.0) * f64::from(TONES)) as i32).min(TONES - 1))
 }
 
-/// Crossed lines come in where the first direction alone is at its densest.
+/// Returns the stride of the crossed lines, which come in where the first direction alone is at its densest.
 fn second_tone(region: &Region, options: &Options) -> Stride {
     let densest = region.kind != RegionKind::Cap && first_tone(region, options) == Some(1);
     let half = luminance(region.color) * f64::from(2 * TONES) < options.white;
     densest.then_some(if half { 1 } else { 2 })
 }
 
-/// Perceived lightness of a colour, 0…1: the root of its linear luminance.
+/// Returns the perceived lightness of a colour, 0…1: the root of its linear luminance.
 pub(crate) fn luminance(color: [u8; 4]) -> f64 {
     let [r, g, b] = [color[0], color[1], color[2]].map(|c| f64::from(decode_srgb8(c)));
     (0.2126 * r + 0.7152 * g + 0.0722 * b).sqrt()
@@ -152,7 +152,7 @@ fn crossings(a: DVec2, b: DVec2, spacing: f64, stride: i64, meets: &mut Vec<(i64
     }
 }
 
-/// Spans that follow each other without a gap, as one.
+/// Joins spans that follow each other without a gap.
 fn united(spans: &[(i64, f64, f64)], spacing: f64) -> impl Iterator<Item = (i64, f64, f64)> {
     // Neighbours meet to the last few digits; a thousandth of the spacing is far below any pen.
     let gap = spacing * 1e-3;

@@ -31,17 +31,17 @@ use shadow::{Lamps, World};
 /// Rule that joins neighbours to one region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Merge {
-    /// None: each region shows one triangle, and [`crate::target::drawing::Region::item`] tells which.
+    /// No neighbours: each region shows one triangle, given by [`crate::target::drawing::Region::item`].
     Face,
-    /// Those that show one material in one colour (8-bit sRGB).
+    /// Neighbours that show one material in one colour (8-bit sRGB).
     #[default]
     Shade,
-    /// Those that show one material in like shades, of 16 between black and white, in the colour of most of the area
-    /// that the material has in that shade: round faces become bands.
+    /// Neighbours that show one material in like shades, of 16 between black and white, in the colour of most of the
+    /// area that the material has in that shade: round faces become bands.
     Band,
     /// Areas with the same material, in the colour of most of their area.
     Material,
-    /// Those of one instance of a mesh, likewise.
+    /// Neighbours of one instance of a mesh, likewise.
     Part,
 }
 

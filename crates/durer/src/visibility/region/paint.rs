@@ -260,7 +260,7 @@ fn darken(keys: &mut [Key]) {
     }
 }
 
-/// Gives all items of one material or part the colour that most of its area has.
+/// Assigns all items of one material or part the colour that most of its area has.
 fn share_colors(map: &VisibleMap, shown: &[Option<Shown>], distinct: &[Shown], keys: &mut [Key]) {
     let mut areas = vec![0i128; shown.len()];
     for edge in 0..map.map.edges.len() as u32 {

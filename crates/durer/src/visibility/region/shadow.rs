@@ -19,7 +19,7 @@ use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::surface::setup::{Run, runs};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "shadow-polygons",
     title: "Polygon shadow generation",
@@ -85,7 +85,7 @@ impl<'a> World<'a> {
     }
 }
 
-/// Source of light.
+/// Direction or position of an eye or a light.
 #[derive(Debug, Clone, Copy)]
 enum From {
     Direction(DVec3),
@@ -101,7 +101,7 @@ fn eye(view: &View) -> From {
     }
 }
 
-/// On which side of a plane an eye or a light is.
+/// Returns whether an eye or a light is above a plane.
 fn is_above(plane: &Plane, from: From) -> bool {
     match from {
         From::Direction(d) => plane.normal.dot(d) > 0.0,

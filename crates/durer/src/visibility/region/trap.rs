@@ -131,7 +131,8 @@ impl Trap<'_> {
         self.patches.of_face[self.map.face_of[half as usize] as usize]
     }
 
-    /// Into the sector between two half-edges that leave a vertex, to if it is one unit away from both.
+    /// Returns the vector from a vertex into the sector between two half-edges that leave it, to the point one unit
+    /// away from both.
     fn bisector(&self, from: u32, to: u32) -> DVec2 {
         let direction = |half: u32| {
             let [a, b] =

@@ -15,7 +15,7 @@ pub struct Active {
     walk: RowWalk,
 }
 
-/// Follows all triangles down the screen; visits each row once.
+/// List of active triangles, followed down the screen; visits each row once.
 ///
 /// Triangles wait sorted by their first row instead of in one bucket per row, so that memory grows
 /// with the triangles and not with the picture's height.

@@ -22,7 +22,7 @@ pub struct VisibleTriangle {
     /// Normal of each vertex, turned if the triangle is seen from behind, and 0, then its position and 0, in
     /// rows to be interpolated together.
     pub(super) rows: [Row; 3],
-    /// Unit normal of the side of the face that is seen, world axes; zero of lines and of what has no area.
+    /// Unit normal of the side of the face that is seen, world axes; zero for lines and faces without area.
     pub seen_face_normal: Vec3,
     /// True if it is the back that is seen. All points of a plane show the same side.
     pub from_behind: bool,
@@ -62,13 +62,13 @@ impl VisibleTriangle {
         self.turned(self.seen_face_normal)
     }
 
-    /// From the side that is seen to the front, and back.
+    /// Turns a normal from the side that is seen to the front, and back.
     #[inline(always)]
     fn turned(&self, normal: Vec3) -> Vec3 {
         if self.from_behind { -normal } else { normal }
     }
 
-    /// Edge functions at a point counted from the origin, in this order of operations.
+    /// Returns the edge functions at a point counted from the origin, in this order of operations.
     #[inline(always)]
     fn edges_at(&self, x: f32, y: f32) -> Weights {
         let [constant, dx, dy] = &self.edges;
@@ -88,8 +88,8 @@ impl VisibleTriangle {
         (&self.edges, [(x - self.normals.origin[0]) as f32, (y - self.normals.origin[1]) as f32])
     }
 
-    /// Perspective-correct barycentric coordinates at a pixel's centre moved by `shift` pixels; kept
-    /// within the triangle where the point lies outside, as it may at edges.
+    /// Returns the perspective-correct barycentric coordinates at a pixel's centre moved by `shift` pixels; kept
+    /// within the triangle where the point is outside, as it may be at edges.
     #[inline(always)]
     pub fn weights(&self, x: i32, y: i32, shift: [f32; 2]) -> Weights {
         let fx = (x - self.normals.origin[0]) as f32 + shift[0];
@@ -99,7 +99,8 @@ impl VisibleTriangle {
         [a * inverse, b * inverse, c * inverse]
     }
 
-    /// Coordinates at the centres of the pixels to the right and below, also outside the triangle.
+    /// Returns the barycentric coordinates at the centres of the pixels to the right and below, also outside the
+    /// triangle.
     pub fn weights_beside(&self, x: i32, y: i32) -> (Weights, Weights) {
         let at = |x: i32, y: i32| {
             let (fx, fy) =
@@ -140,7 +141,7 @@ impl VisibleTriangle {
         blend(&self.corner_normals(), self.edges_at(x, y).map(|e| e.max(0.0)))
     }
 
-    /// Edge functions, at least 0, at the pixels of a patch.
+    /// Returns the edge functions, at least 0, at the pixels of a patch.
     #[inline(always)]
     fn edges_x16<S: Simd>(&self, simd: S, patch: Patch) -> [f32x16<S>; 3] {
         let ([constant, dx, dy], at) = self.edge_functions(patch.at[0], patch.at[1]);
@@ -153,7 +154,8 @@ impl VisibleTriangle {
         edges
     }
 
-    /// Normals as of [`Self::normal`], bit for bit, but of the side that is seen, at the pixels of a patch.
+    /// Returns the normals of the side that is seen at the pixels of a patch, but for the side those of
+    /// [`Self::normal`], bit for bit.
     #[inline(always)]
     pub fn normals_x16<S: Simd>(&self, simd: S, patch: Patch) -> [f32x16<S>; 3] {
         if self.normals.settled {
@@ -167,7 +169,7 @@ impl VisibleTriangle {
         normal
     }
 
-    /// Positions at the pixels of a patch, bit for bit the vertices' blended by [`Self::weights`].
+    /// Returns the positions at the pixels of a patch, bit for bit the vertices' blended by [`Self::weights`].
     #[inline(always)]
     pub fn positions_x16<S: Simd>(&self, simd: S, patch: Patch) -> [f32x16<S>; 3] {
         let [a, b, c] = self.edges_x16(simd, patch);
@@ -181,7 +183,7 @@ impl VisibleTriangle {
         position
     }
 
-    /// Edge functions, at least 0, at one pixel.
+    /// Returns the edge functions, at least 0, at one pixel.
     #[inline(always)]
     fn edges_at_pixel<S: Simd>(&self, simd: S, [x, y]: [i32; 2]) -> [f32; 3] {
         let ([constant, dx, dy], [x, y]) = self.edge_functions(x, y);

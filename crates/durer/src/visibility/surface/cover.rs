@@ -18,12 +18,12 @@ impl SampleGrid {
     /// 256 samples a pixel; with more, depths would be rounded on the way.
     pub const MAX_SHIFT: u32 = 4;
 
-    /// 4^`levels` samples a pixel, at most those of [`Self::MAX_SHIFT`].
+    /// Creates a grid of 4^`levels` samples a pixel, at most those of [`Self::MAX_SHIFT`].
     pub fn below_pixel(levels: u32) -> Self {
         Self { shift: levels.min(Self::MAX_SHIFT) }
     }
 
-    /// Samples along the side of a pixel.
+    /// Returns the number of samples along the side of a pixel.
     pub fn per_pixel(self) -> i32 {
         1 << self.shift
     }
@@ -52,7 +52,7 @@ impl SampleGrid {
         t.depth_at(dx, dy)
     }
 
-    /// From the centre of a triangle's origin pixel to a sample, in pixels; exact.
+    /// Returns the vector from the centre of a triangle's origin pixel to a sample, in pixels; exact.
     #[inline]
     pub fn from_origin(self, t: &ScreenTriangle, x: i32, y: i32) -> [f32; 2] {
         let [ox, oy] = t.origin();

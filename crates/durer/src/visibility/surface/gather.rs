@@ -16,7 +16,7 @@ impl Gathered {
         vector.store_slice(&mut self.0[lane % 16]);
     }
 
-    /// The same with three numbers.
+    /// Sets the vector of a point from three numbers.
     #[inline(always)]
     pub fn set_vector(&mut self, lane: usize, v: Vec3) {
         self.0[lane % 16] = [v.x, v.y, v.z, 0.0];
@@ -82,7 +82,7 @@ pub fn four_rows<S: Simd>(simd: S, [a, b, c, d]: [f32x8<S>; 4]) -> [[f32; 4]; 8]
     rows
 }
 
-/// Rows to columns.
+/// Turns rows into columns.
 #[inline(always)]
 pub fn transpose<S: Simd>(simd: S, mut from: [f32x8<S>; 8]) -> [f32x8<S>; 8] {
     // Each shuffle rotates the six bits of a number's row and lane by one; three exchange them.
@@ -97,21 +97,22 @@ pub fn transpose<S: Simd>(simd: S, mut from: [f32x8<S>; 8]) -> [f32x8<S>; 8] {
     from
 }
 
-/// In double precision.
+/// Converts to double precision.
 #[inline(always)]
 pub fn widened<S: Simd>(simd: S, v: f32x8<S>) -> f64x8<S> {
     let (a, b) = simd.widen_f32x8(v);
     simd.combine_f64x4(a, b)
 }
 
-/// Rounded to single precision.
+/// Rounds to single precision.
 #[inline(always)]
 pub fn narrowed<S: Simd>(simd: S, v: f64x8<S>) -> f32x8<S> {
     let (a, b) = simd.split_f64x8(v);
     simd.narrow_f64x4(a, b)
 }
 
-/// 1.5 · 2⁵²: a number that it is added to is rounded to the nearest integer, ties to even ones, which the low bits are.
+/// 1.5 · 2⁵²: a number that it is added to is rounded to the nearest integer, ties to even ones, which the low bits
+/// are.
 pub const MAGIC: f64 = 6_755_399_441_055_744.0;
 
 /// Returns the lower 32 bits of eight doubles.
@@ -121,7 +122,7 @@ pub fn low_bits<S: Simd>(simd: S, v: f64x8<S>) -> i32x8<S> {
     simd.narrow_i64x4(a.bitcast(), b.bitcast())
 }
 
-/// Integers of at most 31 bits as they are.
+/// Converts integers of at most 31 bits exactly.
 #[inline(always)]
 pub fn integers_widened<S: Simd>(simd: S, v: i32x8<S>) -> f64x8<S> {
     // Added to the bits of this, an integer is added to the number.

@@ -60,7 +60,7 @@ pub(crate) fn write_row(
 }
 
 impl<'a> Layers<'a> {
-    /// `None` if nothing blends.
+    /// Creates the layers of an input; returns `None` if nothing blends.
     pub fn of(input: &'a SurfaceInput<'_>) -> Option<Self> {
         let (triangles, blended) = (&input.triangles, input.having(Coverage::Blended));
         let opaque = DepthRow::new(input.view.width());
@@ -110,7 +110,7 @@ impl<'a> Layers<'a> {
     }
 }
 
-/// Blended items over an opaque one, far ones first; linear, premultiplied.
+/// Composes blended items over an opaque one, far ones first; linear, premultiplied.
 pub(crate) fn compose(
     lit: &mut Lit<'_>,
     opaque: u32,

@@ -40,7 +40,7 @@ impl SurfaceMethod {
     /// Returns the bytes that a method takes beside the input, about: for each of its triangles, and for each pixel.
     fn bytes(self) -> [u64; 2] {
         match self {
-            // It charges what it makes.
+            // The z-buffer charges its memory itself.
             Self::ZBuffer => [0, 0],
             Self::ScanLineZ | Self::SpanningScanLine => [ActiveList::PER_TRIANGLE, 0],
             Self::ABuffer => [a_buffer::PER_TRIANGLE, 0],
@@ -71,11 +71,11 @@ pub struct Options {
     pub shadow_rays: bool,
     /// Number of times that a ray may be reflected or refracted; for the ray method.
     pub bounces: u32,
-    /// `None` = by material.
+    /// Shading; `None` = by material.
     pub shading: Option<Shading>,
     /// Background of the picture.
     pub background: Background,
-    /// The SIMD level to work at; all give the same bytes.
+    /// SIMD level; all levels produce the same bytes.
     pub level: Level,
 }
 
@@ -106,7 +106,7 @@ impl Options {
             look: self.picture(),
             shadows: self.shadow_rays,
             reflections: self.bounces > 0,
-            // Without mirrors rays still go on through what blends.
+            // Without mirrors, rays still pass through blended surfaces.
             depth: if self.bounces > 0 { self.bounces } else { ray::Options::default().depth },
             samples: self.samples,
             ..Default::default()
@@ -153,7 +153,7 @@ pub enum Step {
     ABuffer(a_buffer::Step),
 }
 
-/// Hands the steps of one method on as [`Step`].
+/// Tracer that passes the steps of one method on as [`Step`].
 struct Wrapped<'a, T, F>(&'a mut T, F);
 
 impl<S, T: Tracer<Step>, F: Fn(S) -> Step> Tracer<S> for Wrapped<'_, T, F> {
@@ -170,7 +170,7 @@ impl<S, T: Tracer<Step>, F: Fn(S) -> Step> Tracer<S> for Wrapped<'_, T, F> {
 /// The production z-buffer works in parallel and takes no steps.
 ///
 /// # Errors
-/// What the method's own function finds, and what stopped the input's work.
+/// Those of the method's own function, and the reason that stopped the input's work.
 pub fn render_with(
     method: SurfaceMethod,
     input: &SurfaceInput<'_>,

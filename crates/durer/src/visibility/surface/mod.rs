@@ -1,4 +1,4 @@
-//! Visible surfaces.
+//! Algorithms for visible surfaces, their input, and the lighting that they share.
 
 pub mod a_buffer;
 pub(crate) mod active;
@@ -33,37 +33,36 @@ pub use method::{SurfaceMethod, render_with};
 use crate::math::{Vec3, Vec4};
 use crate::shade::color::luminance;
 
-/// Blended surfaces that let through less than this hide what is behind them: it is the last bit of a
-/// colour's sum.
+/// Share of light below which a blended surface hides what is behind it: the last bit of a colour's sum.
 pub(crate) const LEAST_THROUGH: f32 = 1.0 / 16_777_216.0;
 
 /// Faces to leave out by their orientation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Cull {
-    /// All faces are drawn, from both sides.
+    /// No faces: all are drawn, from both sides.
     #[default]
     None,
-    /// Faces seen from behind are left out.
+    /// Faces that are seen from behind.
     Back,
-    /// Faces seen from behind are left out where their material is single-sided, as glTF has it.
+    /// Faces that are seen from behind and whose material is single-sided, as in glTF.
     Material,
 }
 
-/// Samples per pixel of the production path.
+/// Number of samples per pixel of the production path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Samples {
-    /// One, at the pixel's centre.
+    /// One sample, at the pixel's centre.
     One,
-    /// Four, on a rotated grid.
+    /// Four samples, on a rotated grid.
     #[default]
     Four,
-    /// Sixteen, no two in a row or column of the 16 × 16 grid.
+    /// Sixteen samples, no two in a row or column of the 16 × 16 grid.
     Sixteen,
 }
 
 impl Samples {
-    /// Returns the positions of the samples, from the pixel's centre in 1/256 pixel, x right and y
-    /// down: the standard patterns of Direct3D 11.
+    /// Returns the positions of the samples relative to the pixel's centre, in 1/256 pixel, x right and y down: the
+    /// standard patterns of Direct3D 11.
     pub fn offsets(self) -> &'static [[i32; 2]] {
         const FOUR: [[i32; 2]; 4] = sixteenths([[-2, -6], [6, -2], [-6, 2], [2, 6]]);
         const SIXTEEN: [[i32; 2]; 16] = sixteenths([
@@ -91,13 +90,13 @@ impl Samples {
         }
     }
 
-    /// Returns their largest distance from the pixel's centre, along x or y, in 1/256 pixel.
+    /// Returns the largest distance of a sample from the pixel's centre, along x or y, in 1/256 pixel.
     pub(crate) fn reach(self) -> i32 {
         self.offsets().iter().flatten().map(|o| o.abs()).max().unwrap_or(0)
     }
 }
 
-/// From sixteenths of a pixel to the 24.8 grid.
+/// Converts sixteenths of a pixel to the 24.8 grid.
 const fn sixteenths<const N: usize>(mut offsets: [[i32; 2]; N]) -> [[i32; 2]; N] {
     let mut i = 0;
     while i < N {
@@ -107,22 +106,22 @@ const fn sixteenths<const N: usize>(mut offsets: [[i32; 2]; N]) -> [[i32; 2]; N]
     offsets
 }
 
-/// The size of the lines and points of models on the screen.
+/// Size on the screen of a model's lines and points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Marks {
     /// Width of lines in pixels, above 0.
     pub line_width: f64,
-    /// Side of the square that a point becomes, in pixels, above 0.
+    /// Side of the square that represents a point, in pixels, above 0.
     pub point_size: f64,
 }
 
 impl Marks {
-    /// Lines of 1.5 pixels, points of 3.
+    /// The usual size: lines of 1.5 pixels, points of 3.
     pub const USUAL: Self = Self { line_width: 1.5, point_size: 3.0 };
 }
 
 impl Default for Marks {
-    /// [`Self::USUAL`].
+    /// Returns the default: [`Self::USUAL`].
     fn default() -> Self {
         Self::USUAL
     }
@@ -133,13 +132,13 @@ impl Default for Marks {
 pub enum Background {
     /// One colour; alpha 0 makes it transparent.
     Color(Vec4),
-    /// From the top row to the bottom row.
+    /// Gradient from the top row to the bottom row.
     Gradient(Vec4, Vec4),
 }
 
 impl Background {
-    /// Returns the linear colour in which lines and points without a material are seen against it:
-    /// dark on light, light on dark. Transparent parts count as light.
+    /// Returns the linear colour for lines and points without a material before this background: dark on light, light
+    /// on dark. Transparent parts count as light.
     pub fn ink(&self) -> Vec3 {
         let mean = match *self {
             Self::Color(color) => color,

@@ -26,8 +26,8 @@ impl DepthRow {
         self.item.fill(NO_ITEM);
     }
 
-    /// Enters the pixels x0 … x1 − 1 of a triangle where it is nearer than what is there and
-    /// `passes` says that it is there at all; calls `wrote` for each pixel entered.
+    /// Enters the pixels x0 … x1 − 1 of a triangle where it is nearer than the stored depth and `passes` returns that
+    /// it has no hole; calls `wrote` for each pixel entered.
     #[inline(always)]
     pub fn enter(
         &mut self,
@@ -59,10 +59,10 @@ pub fn is_nearer(depth: f32, item: u32, kept: f32, kept_item: u32) -> bool {
     depth < kept || (depth == kept && item < kept_item && kept_item != NO_ITEM)
 }
 
-/// Enters triangles into rows, with holes where they have them.
+/// Triangles to be entered into rows, with holes where they have them.
 pub(crate) struct Masked<'a> {
     triangles: &'a [ScreenTriangle],
-    /// Those that have to be asked at each pixel whether they are there.
+    /// Triangles that have to be tested for holes at each pixel.
     pub masked: TriangleSet,
 }
 

@@ -20,8 +20,8 @@ pub struct NormalPlane {
     pub(super) origin: [i32; 2],
     /// The item.
     pub item: u32,
-    /// True if the rest can be used: wherever a sample of the item's may be, the normals are well on the side of the face
-    /// that is seen, and their lengths are such that rounding changes nothing of it.
+    /// True if the rest can be used: wherever a sample of the item's may be, the normals are well on the side of the
+    /// face that is seen, and their lengths are such that rounding changes nothing of it.
     pub settled: bool,
 }
 
@@ -47,7 +47,7 @@ impl NormalPlane {
         Vec3::new(x, y, z)
     }
 
-    /// [`Self::at`], bit for bit, and 0.
+    /// Returns the normal as [`Self::at`] does, bit for bit, and 0.
     #[inline(always)]
     pub fn at_x4<S: Simd>(&self, simd: S, pixel: [i32; 2]) -> f32x4<S> {
         let ([constant, dx, dy], [x, y]) = (&self.planes, self.place(pixel));
@@ -55,7 +55,7 @@ impl NormalPlane {
         dx * x + dy * y + f32x4::from_slice(simd, constant)
     }
 
-    /// [`Self::at`] of the pixels of a patch, bit for bit.
+    /// Returns the normals of the pixels of a patch as [`Self::at`] does, bit for bit.
     #[inline(always)]
     pub fn of_patch<S: Simd>(&self, simd: S, patch: Patch) -> [f32x16<S>; 3] {
         let ([constant, dx, dy], at) = (&self.planes, self.place(patch.at));

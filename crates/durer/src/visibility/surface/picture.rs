@@ -21,16 +21,16 @@ use fearless_simd_macros::simd;
 /// Options for the planes of a picture with one surface per pixel.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// `None` = by material.
+    /// Shading; `None` = by material.
     pub shading: Option<Shading>,
     /// Background of the picture.
     pub background: Background,
-    /// The SIMD level to work at; all give the same bytes.
+    /// SIMD level; all levels produce the same bytes.
     pub level: Level,
 }
 
 impl Default for Options {
-    /// By material, on white, the machine's best level.
+    /// Returns the default: by material, on white, the machine's best level.
     fn default() -> Self {
         let background = Background::Color(Vec4::ONE);
         Self { shading: None, background, level: default_level() }
@@ -72,7 +72,7 @@ impl<'a> Picture<'a> {
         Self::with_lighting(lighting, options, framebuffer)
     }
 
-    /// With materials that are prepared already.
+    /// Creates a picture with materials that are prepared already.
     pub fn with_lighting(
         lighting: Lighting<'a>,
         options: &Options,

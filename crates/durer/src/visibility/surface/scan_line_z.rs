@@ -22,7 +22,7 @@ use crate::visibility::surface::nearest::{DepthRow, Masked};
 pub use crate::visibility::surface::picture::Options;
 use crate::visibility::surface::picture::Picture;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "scan-line-z",
     title: "Scan-line z-buffer",
@@ -62,7 +62,7 @@ pub enum Step {
         /// Its item.
         item: u32,
     },
-    /// A triangle's part of the row is compared with what is there.
+    /// A triangle's part of the row is compared with the stored depths.
     Span {
         /// Its item.
         item: u32,

@@ -31,7 +31,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// 2048.
+    /// Returns the default: 2048.
     fn default() -> Self {
         Self { side: 2048 }
     }
@@ -40,7 +40,7 @@ impl Default for Options {
 /// The largest side: 1 GB a map.
 pub const MAX_SIDE: u32 = 16_384;
 
-/// Cosine of the widest half angle that one map can look at without wasting most of its texels.
+/// Cosine of the widest half angle that one map can cover without wasting most of its texels.
 const WIDEST: f32 = 0.5;
 
 /// Width of a spot's map relative to the cone, so that points that are moved off their surface stay
@@ -95,7 +95,7 @@ pub fn cast_within(
     Ok(())
 }
 
-/// Sees all of a sphere along a direction.
+/// Creates a camera that sees all of a sphere along a direction.
 fn parallel_camera(sphere: &BoundingSphere, to_light: DVec3) -> Option<Camera> {
     let r = sphere.radius;
     let projection = Projection::Orthographic { height: 2.0 * r * MARGIN };
@@ -111,7 +111,7 @@ fn parallel_camera(sphere: &BoundingSphere, to_light: DVec3) -> Option<Camera> {
     camera.check().is_ok().then_some(camera)
 }
 
-/// Looks wherever a point or spot light shines.
+/// Returns cameras that together see wherever a point or spot light shines.
 fn cameras_of_point(light: &PointLight, eye: DVec3, sphere: &BoundingSphere) -> Vec<Camera> {
     let far = ((sphere.center - eye).length() + sphere.radius) * MARGIN;
     let camera = |axis: DVec3, fov_y: f64| Camera {

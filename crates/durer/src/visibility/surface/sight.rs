@@ -47,21 +47,21 @@ impl Sight {
         [x as f32 + 0.5 - self.middle[0], y as f32 + 0.5 - self.middle[1]]
     }
 
-    /// Towards the eye from the point seen at a pixel's centre, world axes.
+    /// Returns the vector towards the eye from the point seen at a pixel's centre, world axes.
     #[inline(always)]
     pub fn towards_eye(&self, pixel: [i32; 2]) -> Vec3 {
         let [x, y] = self.place(pixel);
         self.at_middle + self.right * x + self.down * y
     }
 
-    /// [`Self::towards_eye`] of a patch's pixels, bit for bit.
+    /// Returns the vectors of a patch's pixels as [`Self::towards_eye`] does, bit for bit.
     #[inline(always)]
     pub fn towards_eye_x16<S: Simd>(&self, simd: S, patch: Patch) -> Vec3Lane<f32x16<S>> {
         let [x, y] = patch.places(simd, self.place(patch.at));
         self.by_place(x, y)
     }
 
-    /// [`Self::towards_eye`] of any sixteen pixels, bit for bit.
+    /// Returns the vectors of any sixteen pixels as [`Self::towards_eye`] does, bit for bit.
     #[inline(always)]
     pub fn towards_eye_of<S: Simd>(&self, simd: S, pixels: &[[i32; 2]; 16]) -> Vec3Lane<f32x16<S>> {
         let mut places = [[0.0; 16]; 2];

@@ -31,7 +31,7 @@ pub use crate::visibility::surface::picture::Options;
 use crate::visibility::surface::picture::Picture;
 use crate::visibility::surface::setup::ScreenTriangle;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "spanning-scan-line",
     title: "Spanning scan line",
@@ -178,7 +178,7 @@ struct Line<'a> {
     masked: Masked<'a>,
     row: DepthRow,
     y: i32,
-    /// True if anybody looks at the depths of decided spans.
+    /// True if the depths of decided spans are used.
     wants_depth: bool,
     /// Indices of the triangles whose flag says in.
     inside: Vec<u32>,
@@ -275,7 +275,7 @@ impl Line<'_> {
             let raw = t.depth + (t.depth_dx * dx + t.depth_dy * dy);
             raw >= t.depth_min && raw <= t.depth_max
         };
-        // Five roundings, each at most 2⁻²⁴ of the largest number on the way.
+        // Five roundings, each at most 2⁻²⁴ of the largest intermediate number.
         let along = t.depth_dx.abs() * dx0.abs().max(dx1.abs());
         let largest = along + (t.depth_dy * dy).abs() + t.depth.abs();
         let slack = largest * (32.0 * f32::EPSILON);

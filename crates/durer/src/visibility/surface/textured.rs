@@ -8,8 +8,7 @@ use crate::visibility::surface::patch::Patch;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16};
 
-/// Up to sixteen pixels with what their texture coordinates follow from; those not set hold what was
-/// there before.
+/// Up to sixteen pixels with what their texture coordinates follow from; those not set keep their earlier contents.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct GatheredCoords {
     /// Edge functions: constants, changes along x, changes along y, each of the three edges.
@@ -95,7 +94,7 @@ fn three<S: Simd>(simd: S, [a, b, c]: &[[f32; 16]; 3]) -> Corners<S> {
     [a, b, f32x16::from_slice(simd, c)]
 }
 
-/// From edge functions, by constant and changes, and the coordinates of the corners.
+/// Interpolates texture coordinates from edge functions, by constant and changes, and the coordinates of the corners.
 #[inline(always)]
 fn coordinates<S: Simd>(
     simd: S,

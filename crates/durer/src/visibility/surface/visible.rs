@@ -80,14 +80,14 @@ pub fn nearer(a: (f32, u32), b: (f32, u32)) -> bool {
     a.0 < b.0 || (a.0 == b.0 && a.1 < b.1)
 }
 
-/// Says of masked materials where they are; knows which triangles have one.
+/// Holes of masked materials, and the triangles that have such a material.
 pub struct Masks<'a> {
     lit: Lit<'a>,
     masked: TriangleSet,
 }
 
 impl<'a> Masks<'a> {
-    /// For the triangles of an input.
+    /// Creates the masks for the triangles of an input.
     pub fn new(input: &SurfaceInput<'_>, lighting: Lighting<'a>) -> Self {
         Self { lit: Lit::new(lighting), masked: input.having(Coverage::Masked) }
     }
@@ -105,7 +105,7 @@ impl<'a> Masks<'a> {
     }
 }
 
-/// Calls `f` with what is needed to light an input's items, which are found at pixels' centres.
+/// Calls `f` with the data needed to light an input's items, which are found at pixels' centres.
 pub fn with_lighting<R>(
     input: &SurfaceInput<'_>,
     lights: &PreparedLights,

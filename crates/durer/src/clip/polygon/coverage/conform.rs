@@ -14,12 +14,12 @@ use std::ops::Range;
 #[derive(Debug)]
 pub(super) struct Subject<'a> {
     input: &'a Shapes,
-    /// With more vertices, if there are any, and where each point comes from.
+    /// Shapes with more vertices, if there are any, and where each point comes from.
     divided: Option<(Shapes, Vec<Source>)>,
 }
 
 impl<'a> Subject<'a> {
-    /// Polygons as they are.
+    /// Creates the subject from polygons as they are.
     pub fn plain(input: &'a Shapes) -> Self {
         Self { input, divided: None }
     }
@@ -29,7 +29,7 @@ impl<'a> Subject<'a> {
         self.input
     }
 
-    /// With the vertices that the mask puts on its edges.
+    /// Returns the polygons, with the vertices that the mask adds to their edges.
     pub fn shapes(&self) -> &Shapes {
         self.divided.as_ref().map_or(self.input, |(shapes, _)| shapes)
     }

@@ -16,8 +16,8 @@ pub struct Matched {
     pub sources: Vec<Source>,
 }
 
-/// Returns the features that get points because others have them on their edges, or 32 to 64 ulp beside; `None` for those
-/// that stay as they are. No point is moved.
+/// Returns the features that get points because others have them on their edges, or 32 to 64 ulp beside; `None` for
+/// those that stay as they are. No point is moved.
 ///
 /// So the corner at which two parcels end becomes a point of the third one that lies along both, and
 /// all may be cut or simplified without a gap. The features are valid; one that would not be any more stays as it is.

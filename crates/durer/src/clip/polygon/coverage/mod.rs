@@ -26,16 +26,16 @@ use crate::trace::NoTrace;
 use crate::work::Work;
 use conform::{Mask, Subject};
 
-/// Options for the clipping method.
+/// Options for cutting with a mask.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Options {
-    /// Fill rule of the subject.
+    /// Winding rule of the subject.
     pub rule: WindingRule,
     /// True if the subject's own vertices are looked for on its edges too. Of polygons that are not valid some
     /// lie there but for rounding, and would leave slivers.
     pub mend: bool,
-    /// True if vertices of the mask stay also where it runs along an edge of the subject on both sides of them: where the
-    /// mask is what is cut, and the subject what it is cut with.
+    /// True if vertices of the mask also stay where it runs along an edge of the subject on both sides of them: for
+    /// cutting the mask with the subject.
     pub keep: bool,
     /// Budget of memory, and whether to go on.
     pub work: Work,
@@ -85,7 +85,7 @@ pub fn cut(subject: &Shapes, mask: &Prepared, op: BooleanOp, options: &Options) 
     solve(&subject, &mask, op, options)
 }
 
-/// All of one set of polygons with all of another, of which the second are valid.
+/// Combines all of one set of polygons with all of another, which are valid.
 ///
 /// # Errors
 /// As [`overlay()`](fn@super::overlay).

@@ -13,7 +13,7 @@ use crate::math::DVec2;
 #[derive(Debug, Clone, Copy)]
 struct Point {
     exact: DVec2,
-    /// On the grid.
+    /// Position on the grid.
     snapped: DVec2,
     source: Source,
     /// True if it stays there.

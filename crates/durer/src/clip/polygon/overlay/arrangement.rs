@@ -14,7 +14,7 @@ use super::{Source, parallel};
 
 pub(super) const NONE: u32 = u32::MAX;
 
-/// See the module.
+/// The planar graph of the snapped segments.
 ///
 /// Nodes come in patches, and edges in those of their low nodes, so that each patch can be worked
 /// on alone but for the few edges that go to other ones.
@@ -216,9 +216,8 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         self.inner_starts.sort_unstable();
     }
 
-    /// Sorts the edges around every node, and joins those that coincide in the first of them.
-    /// Gives the others, which have no meaning any more. `arrivals` are for each patch the edges of
-    /// other ones that end there.
+    /// Sorts the edges around every node, and joins those that coincide in the first of them. Returns the others, which
+    /// have no meaning any more. `arrivals` are for each patch the edges of other ones that end there.
     #[inline(never)]
     fn arrange(&mut self, arrivals: &[Vec<u32>]) -> Vec<u32> {
         let leaving = |edge: &Edge, patch: &Patch| usize::from(!patch.has_node(edge.high));
@@ -250,8 +249,8 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         joined
     }
 
-    /// Sorts the edges around the nodes of a patch; gives pairs of edges that coincide. The lists
-    /// start at index `first` of all.
+    /// Sorts the edges around the nodes of a patch; returns pairs of edges that coincide. The lists start at index
+    /// `first` of all.
     fn stars(
         &self,
         patch: &Patch,

@@ -11,7 +11,7 @@ const MOST_POINTS: usize = 1 << 29;
 /// The smallest and the largest coordinates.
 pub type Corners<P> = [P; 2];
 
-/// Returns the boxes around subject and clip.
+/// Checks the coordinates, and returns the boxes around subject and clip.
 pub fn check<P: Vertex>(subject: &Shapes<P>, clip: &Shapes<P>) -> Result<[Option<Corners<P>>; 2]> {
     let count = subject.points().len() + clip.points().len();
     if count > MOST_POINTS {

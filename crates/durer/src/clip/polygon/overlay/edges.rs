@@ -30,7 +30,7 @@ pub struct Edges {
     pub inner: Vec<u32>,
     /// Range of each edge's inner nodes; empty if no edge has any.
     pub inner_of: Vec<[u32; 2]>,
-    /// For each patch the edges of other ones whose high node lies in it.
+    /// Edges of other patches whose high node is in the patch, by patch.
     pub arrivals: Vec<Vec<u32>>,
 }
 
@@ -196,7 +196,7 @@ impl<'a, C: Coord> Batch<'a, C> {
         Self { noding, edges, runs, patch: (0, 0..0), inner, inner_of }
     }
 
-    /// Returns the edges of some segments; gives what belongs to edges that go on in other parts.
+    /// Adds the edges of some segments; returns the parts of edges that go on in other ranges.
     fn rings(&mut self, rings: Rings, range: Range<usize>) -> Vec<Loose> {
         let mut loose = Vec::new();
         let mut path = Vec::new();
@@ -223,7 +223,7 @@ impl<'a, C: Coord> Batch<'a, C> {
         loose
     }
 
-    /// The nodes of consecutive segments of a ring in its direction, without the last one's end.
+    /// Adds the nodes of consecutive segments of a ring in its direction, without the last one's end.
     fn collect(&self, rings: Rings, segments: Range<usize>, path: &mut Vec<u32>) {
         for i in segments {
             let chain = self.noding.chain(i);
@@ -235,7 +235,8 @@ impl<'a, C: Coord> Batch<'a, C> {
         }
     }
 
-    /// The first of some segments that has nodes gives its first, or the last before its end.
+    /// Returns a node of the first of some segments that has nodes: its first one, or with `last` the one before its
+    /// end.
     fn neighbour(
         &self,
         rings: Rings,
@@ -253,7 +254,7 @@ impl<'a, C: Coord> Batch<'a, C> {
         Some(chain[k])
     }
 
-    /// The edges of a whole ring.
+    /// Adds the edges of a whole ring.
     fn closed(&mut self, path: &[u32], across: Winding) {
         let count = path.len();
         if count < 2 {
@@ -276,7 +277,7 @@ impl<'a, C: Coord> Batch<'a, C> {
         self.edge(path[from], &path[from + 1..], &path[..first], path[first], across);
     }
 
-    /// Returns the edges between the nodes of a part of a ring.
+    /// Adds the edges between the nodes of a part of a ring; returns what belongs to edges that go on in other parts.
     fn open(
         &mut self,
         ring: usize,

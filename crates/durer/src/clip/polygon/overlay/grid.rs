@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::lattice::{Coord, Point, Segment, whole};
 use super::parallel;
 
-/// Leaves with no more segments than this are not divided.
+/// Largest number of segments of a leaf that is not divided.
 const SMALL_LEAF: usize = 24;
 
 /// A crowded leaf is divided only where its parts hold at most this many times its segments, in
@@ -82,7 +82,7 @@ impl Block {
     }
 }
 
-/// Statistics of the segments in the block around them.
+/// Statistics of the segments in a block.
 #[derive(Debug, Clone, Copy)]
 pub struct Spread {
     /// The share of squares of a rough grid in which a segment starts: small for curves.
@@ -342,7 +342,7 @@ pub fn order_by_squares(
 }
 
 impl Spread {
-    /// Statistics of the segments in the block around them.
+    /// Computes the statistics of the segments in a block.
     #[inline(never)]
     pub fn of<C: Coord>(segments: &[Segment<C>], block: Block) -> Self {
         let (width, height) = block.size();

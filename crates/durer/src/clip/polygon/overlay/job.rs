@@ -35,7 +35,7 @@ pub struct Job<'a, P: Vertex> {
 }
 
 impl<P: Vertex> Job<'_, P> {
-    /// Returns the order of the stages.
+    /// Runs the stages in their order.
     pub fn run<C: Coord>(&self, t: &mut impl Tracer<Step<P>>) -> Result<Output<P>> {
         let work = &self.options.work;
         let points = (self.subject.points().len() + self.clip.points().len()) as u64;

@@ -21,7 +21,7 @@ pub trait Coord: Copy + Ord + Debug + Send + Sync + Default + 'static {
         + Sub<Output = Self::Wide>
         + Mul<Output = Self::Wide>
         + Neg<Output = Self::Wide>;
-    /// Holds both coordinates of a point.
+    /// Number that contains both coordinates of a point.
     type Key: Ord;
     /// Returns a word that orders points by x, then y.
     fn key(x: Self, y: Self) -> Self::Key;
@@ -37,7 +37,7 @@ pub trait Coord: Copy + Ord + Debug + Send + Sync + Default + 'static {
     fn i128(wide: Self::Wide) -> i128;
     /// Returns a product as a float, rounded.
     fn approximate(wide: Self::Wide) -> f64;
-    /// Exact as long as the coordinate keeps within LIMIT.
+    /// Converts to a float; exact as long as the coordinate keeps within LIMIT.
     fn f64(self) -> f64 {
         self.i64() as f64
     }
@@ -110,9 +110,9 @@ impl Coord for i64 {
 /// A grid point; ordered by x, then y.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct Point<C> {
-    /// In cells, to the right.
+    /// Column of the cell, to the right.
     pub x: C,
-    /// In cells, upwards.
+    /// Row of the cell, upwards.
     pub y: C,
 }
 
@@ -131,7 +131,7 @@ impl<C: Coord> Ord for Point<C> {
 }
 
 impl<C: Coord> Point<C> {
-    /// From whole numbers within ± [`Coord::LIMIT`].
+    /// Creates a point from whole numbers within ± [`Coord::LIMIT`].
     #[inline(always)]
     pub fn new(x: i64, y: i64) -> Self {
         Self { x: C::from_i64(x), y: C::from_i64(y) }
@@ -236,7 +236,7 @@ impl<C: Coord> Segment<C> {
         Point { x: axis(self.a.x, self.b.x), y: axis(self.a.y, self.b.y) }
     }
 
-    /// Roughly how high the segment is at x = `doubled`/2, which it must span.
+    /// Returns roughly how high the segment is at x = `doubled`/2, which it must span.
     #[inline]
     pub fn height_at(&self, doubled: i64) -> Height {
         let (dx, dy) = (self.b.x.f64() - self.a.x.f64(), self.b.y.f64() - self.a.y.f64());
@@ -299,7 +299,7 @@ pub trait GridMap<P>: Copy + Sync + Sized {
     fn unsnap<C: Coord>(&self, p: Point<C>) -> P;
     /// Returns the size of a cell in the caller's units.
     fn cell(&self) -> f64;
-    /// Roughly where a point lies, in the caller's units; never exchanges two points on an axis.
+    /// Returns roughly where a point is, in the caller's units; never exchanges two points on an axis.
     fn place(&self, p: P) -> DVec2;
 }
 
@@ -319,7 +319,7 @@ pub struct Lattice {
 /// Cells from the middle of the extent to its border, where the caller names no cell size.
 const DEFAULT_REACH: f64 = (1u64 << 29) as f64;
 
-/// Beyond this, differences and products of coordinates could overflow f64.
+/// Largest coordinate: beyond, differences and products of coordinates could overflow f64.
 const FARTHEST: f64 = 1e300;
 
 impl Lattice {
@@ -406,7 +406,7 @@ mod tests {
         if a <= b { Segment { a, b } } else { Segment { a: b, b: a } }
     }
 
-    /// The half-open pixel by definition, in doubled coordinates, on fine samples of the segment.
+    /// Tests the half-open pixel by definition, in doubled coordinates, on fine samples of the segment.
     fn hits_slowly(s: &Segment<i32>, p: Point<i32>) -> bool {
         let (dx, dy) = (s.b.x - s.a.x, s.b.y - s.a.y);
         // The parameter enters and leaves each slab at multiples of 1/(2·dx·dy).

@@ -47,7 +47,7 @@ use edge::Winding;
 use job::Job;
 use lattice::GridMap;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "overlay",
     title: "Overlay by snap rounding",
@@ -77,16 +77,16 @@ pub const INFO: Info = Info {
 /// Options for an overlay.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Options {
-    /// Fill rule of the subject.
+    /// Winding rule of the subject.
     pub subject_rule: WindingRule,
-    /// Fill rule of the clip.
+    /// Winding rule of the clip.
     pub clip_rule: WindingRule,
     /// The size of a grid cell, in units of the coordinates. `None` takes the smallest power of two
     /// that leaves at most 2³⁰ cells across the input. Sizes that leave up to 2⁴¹ cells across are
     /// possible, at about twice the time. Powers of two are best: other sizes make grid points that
     /// have to be rounded to f64. Whole numbers are their own grid: 1 or `None`.
     pub grid: Option<f64>,
-    /// True if [`Output::origins`] is wanted.
+    /// True if [`Output::origins`] is computed.
     pub origins: bool,
     /// True if vertices of the input are left out where the border of the result goes straight on. Else
     /// only what noding added is: neighbours that share a border, and heights along one, need them.
@@ -96,7 +96,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// Creates the same fill rule for both.
+    /// Creates options with the same winding rule for subject and clip.
     pub fn with_rule(rule: WindingRule) -> Self {
         Self { subject_rule: rule, clip_rule: rule, ..Self::default() }
     }
@@ -260,9 +260,9 @@ impl<P: Vertex> Output<P> {
 /// ring, each polygon's interior connected. It does not depend on the order of the rings, their
 /// starting points, or the number of threads.
 ///
-/// Points are [`DVec2`], which are snapped to a grid, or [`I64Vec2`](crate::math::I64Vec2), which are
-/// taken as they are: any coordinates of which no two lie further apart than 2⁴¹ − 2, also beyond the
-/// 2⁵³ that f64 holds. Crossings are rounded to the nearest whole numbers, ties up and to the right.
+/// Points are [`DVec2`], which are snapped to a grid, or [`I64Vec2`](crate::math::I64Vec2), which are taken as they
+/// are: any coordinates no two of which are further apart than 2⁴¹ − 2, also beyond the 2⁵³ that f64 holds. Crossings
+/// are rounded to the nearest whole numbers, ties up and to the right.
 ///
 /// ```
 /// use durer::clip::polygon::{BooleanOp, Shapes, overlay};
@@ -310,9 +310,9 @@ pub fn overlay<P: Vertex>(
 /// Method for finding winding numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Winder {
-    /// By connected parts of the graph.
+    /// Method by connected parts of the graph.
     Parts,
-    /// By a sweep with a list of active edges.
+    /// Method by a sweep with a list of active edges.
     Sweep,
 }
 
@@ -361,7 +361,7 @@ impl Source {
         if self.0 & 1 == 0 { Operand::Subject } else { Operand::Clip }
     }
 
-    /// Winding on the left less winding on the right, in the direction of its ring.
+    /// Returns the winding on the left less the winding on the right, in the direction of its ring.
     fn across(self) -> Winding {
         match self.operand() {
             Operand::Subject => Winding { subject: 1, clip: 0 },

@@ -10,7 +10,7 @@ use super::strips::Strips;
 use crate::Result;
 use crate::work::{Charge, Work};
 
-/// Leaves with more segments than this are divided into strips, smaller ones compare all pairs.
+/// Largest number of segments of a leaf in which all pairs are compared; larger leaves are divided into strips.
 const CROWD: usize = 96;
 
 /// Number of pixels of a crowded leaf that one task searches for.
@@ -19,8 +19,8 @@ const SEARCHES: usize = if cfg!(test) { 8 } else { 1 << 11 };
 /// Stage of the hot pixels in errors about memory.
 const STAGE: &str = "crossings of the overlay";
 
-/// Bytes that it takes at the most, on the way to the hot pixels, to find two segments that cross: the pair, its pixel, and which
-/// segments pass there, each in a list that grows.
+/// Bytes that it takes at the most, on the way to the hot pixels, to find two segments that cross: the pair, its pixel,
+/// and which segments pass there, each in a list that grows.
 const PER_CROSSING: u64 = 128;
 
 /// Cause of a hot pixel, in one word; of several causes the smallest counts, so that an end comes
@@ -79,7 +79,7 @@ impl CauseWord {
 pub struct Noding<C> {
     /// The hot pixels, each once, leaf by leaf.
     pub nodes: Vec<Point<C>>,
-    /// Leaves are worked on in patches; where the nodes of each patch end.
+    /// End of the nodes of each patch; leaves are processed in patches.
     pub patch_ends: Vec<u32>,
     /// True for each node that is a ring's point which only its two edges touch.
     pub passed: Vec<bool>,
@@ -142,7 +142,7 @@ impl<C> Part<C> {
     }
 }
 
-/// Hits are sorted by segment in shelves of this many: their lists fit the cache.
+/// Number of segments in a shelf, by which hits are sorted: the lists of a shelf fit the cache.
 const SHELF: usize = if cfg!(test) { 8 } else { 1 << 14 };
 
 /// Scratch space for one leaf.
@@ -169,8 +169,8 @@ pub enum Ends {
     Both,
 }
 
-/// Nodes all segments; `ends` tells which ends of each no other segment accounts for, `causes`
-/// whether to keep what made each node.
+/// Nodes all segments; `ends` returns which ends of each no other segment accounts for, `causes` tells whether to keep
+/// the causes of each node.
 ///
 /// # Errors
 /// Those of the work: where crossings take more memory than it may have.
@@ -309,7 +309,8 @@ impl<C: Coord> Workbench<'_, C> {
         Ok(())
     }
 
-    /// Every point of a ring is the start of one edge, so only starts are examined there.
+    /// Adds the pixels of the ends in a leaf. Every point of a ring is the start of one edge, so only starts are
+    /// examined there.
     #[inline(never)]
     fn ends(&mut self, items: &[u32], leaf: &Leaf, ends: &impl Fn(u32) -> Ends) {
         for (s, &i) in self.segments.iter().zip(items) {
@@ -372,7 +373,8 @@ impl<C: Coord> Workbench<'_, C> {
         }
     }
 
-    /// Pixels are in the order of x: of each segment only those in its range of x are examined.
+    /// Finds the pixels that segments hit. Pixels are in the order of x: of each segment only those in its range of x
+    /// are examined.
     #[inline(never)]
     fn hits(&mut self, items: &[u32], first: u32, part: &mut Part<C>) {
         for (s, &i) in self.segments.iter().zip(items) {
@@ -475,7 +477,8 @@ fn sort_hits<'a, I: Iterator<Item = (u32, &'a Vec<(u32, u32)>)>>(
     }
 }
 
-/// Snapped segments keep their direction on both axes, so x, then y in that direction, orders them.
+/// Sorts nodes along a segment. Snapped segments keep their direction on both axes, so x, then y in that direction,
+/// orders them.
 fn sort_along<C: Coord>(s: &Segment<C>, chain: &mut [u32], nodes: &[Point<C>]) {
     let key = |n: &u32| nodes[*n as usize];
     if s.a.y <= s.b.y {

@@ -32,7 +32,7 @@ impl Outline {
     }
 }
 
-/// See the module.
+/// The rings of both inputs, in the order in which they are processed.
 #[derive(Debug)]
 pub struct Outlines {
     rings: Vec<Outline>,
@@ -89,7 +89,7 @@ impl Outlines {
         (segments, sources)
     }
 
-    /// The edges from index `start` on.
+    /// Computes the edges from index `start` on.
     fn fill<P: Vertex, C: Coord>(
         &self,
         inputs: [&Shapes<P>; 2],

@@ -4,7 +4,7 @@ pub use crate::parallel::{map, threads};
 use std::cmp::Ordering;
 use std::ops::Range;
 
-/// Sorts by an order that no two different items are equal in; what is in runs costs little.
+/// Sorts by an order that no two different items are equal in; items in runs cost little.
 pub fn sort<T: Send>(list: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync) {
     #[cfg(feature = "parallel")]
     if crate::parallel::threads() > 1 {
@@ -14,7 +14,7 @@ pub fn sort<T: Send>(list: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync
     list.sort_by(compare);
 }
 
-/// Ranges of at most `size` that cover `0..count`.
+/// Returns ranges of at most `size` that cover `0..count`.
 pub fn ranges(count: usize, size: usize) -> Vec<Range<usize>> {
     (0..count).step_by(size).map(|start| start..(start + size).min(count)).collect()
 }

@@ -111,8 +111,8 @@ fn courses<C: Coord>(
 }
 
 impl<C: Coord> Linker<'_, C> {
-    /// At each node, an edge that arrives goes on with the edge that leaves on the other side of
-    /// the piece of inside to its left, so that pieces that only touch stay apart.
+    /// Links edges at each node: an edge that arrives goes on with the edge that leaves on the other side of the piece
+    /// of inside to its left, so that pieces that only touch stay apart.
     #[inline(never)]
     fn pair(&mut self) {
         let mut next = parallel::filled(NONE, self.graph.edges.len());
@@ -465,7 +465,7 @@ impl<C: Coord> Trace<'_, '_, C> {
         self.found.walks.push(walk);
     }
 
-    /// Takes back what was found on a walk that leaves the patch.
+    /// Discards what was found on a walk that leaves the patch.
     fn leave(&mut self, start: Half, path: &[u32], (rings, nodes): (usize, usize)) {
         self.found.left.push(start.edge() as u32);
         self.found.ring_ends.truncate(rings);

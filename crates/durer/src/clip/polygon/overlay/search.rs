@@ -8,7 +8,7 @@ use super::grid::Grid;
 use super::lattice::{Coord, Point, Segment, cross};
 use super::noding::Noding;
 
-/// See the module.
+/// Search for the edge below a node.
 #[derive(Debug)]
 pub struct Search<'a, C> {
     pub grid: &'a Grid,
@@ -25,8 +25,8 @@ struct Piece<C> {
 }
 
 impl<C: Coord> Search<'_, C> {
-    /// Returns for each of some nodes, in the order of their points, the highest of the edges that pass just left of it,
-    /// strictly below it, and that `take` accepts, in the direction in which it passes to the right.
+    /// Returns for each of some nodes, in the order of their points, the highest of the edges that pass just left of
+    /// it, strictly below it, and that `take` accepts, in the direction in which it passes to the right.
     pub fn below_each(
         &self,
         graph: &Arrangement<C>,

@@ -59,7 +59,7 @@ pub struct Strips<C> {
 #[derive(Debug, Clone, Copy, Default)]
 struct Strip {
     stairs: (u32, u32),
-    /// From low to high, at least one.
+    /// Groups from low to high, at least one.
     groups: (u32, u32),
 }
 
@@ -94,8 +94,8 @@ impl<C: Coord> Strips<C> {
         is_full(&self.found, self.room)
     }
 
-    /// All pairs that cross, with their pixels; some pairs more than once, and of segments that lie on each other
-    /// perhaps only the first.
+    /// Calls `f` for all pairs that cross, with their pixels; for some pairs more than once, and of segments that
+    /// overlap perhaps only for the first.
     pub fn crossings(&self, mut f: impl FnMut(usize, usize, Point<C>)) {
         for &(i, j, p) in &self.found {
             f(i as usize, j as usize, p);
@@ -379,8 +379,8 @@ impl<'a, C: Coord> Bounds<'a, C> {
     }
 }
 
-/// Looks for what segments cross on a staircase. Neighbours mostly follow one another, so each
-/// search begins where the one before ended.
+/// Search for the crossings of segments with a staircase. Neighbours mostly follow one another, so each search begins
+/// where the one before ended.
 struct Climber<'a, C> {
     bounds: &'a Bounds<'a, C>,
     stairs: &'a [Stair],
@@ -389,8 +389,8 @@ struct Climber<'a, C> {
 }
 
 impl<C: Coord> Climber<'_, C> {
-    /// Finds the stairs that a segment crosses within the strip. Gives its lowest and highest place:
-    /// how many stairs are below.
+    /// Finds the stairs that a segment crosses within the strip. Returns its lowest and highest place: how many stairs
+    /// are below.
     fn climb(&mut self, index: u32, found: &mut Found<C>) -> (u32, u32) {
         let Self { bounds, stairs, below } = self;
         let segments = bounds.segments;

@@ -158,8 +158,8 @@ impl<C: Coord> Arrangement<'_, C> {
         }
     }
 
-    /// Sets windings relative to some face of each patch's part. Gives for each node its part of
-    /// its patch, what was found in each patch, and for each edge the winding on its right.
+    /// Sets windings relative to some face of each patch's part. Returns for each node its part of its patch, the
+    /// results of the walks through the patches, and for each edge the winding on its right.
     #[inline(never)]
     fn walk(&self) -> (Vec<u32>, Vec<Walked<C>>, Vec<Winding>) {
         let mut part_of = parallel::filled(NONE, self.nodes.len());
@@ -306,7 +306,7 @@ impl<C: Coord> Walk<'_, '_, C> {
         }
     }
 
-    /// Takes a node for the part's smallest point if it is.
+    /// Records a node as the part's smallest point if it is.
     #[inline(always)]
     fn first_at(&mut self, name: u32, node: u32, outside: Winding) {
         let (point, part) =
@@ -316,7 +316,7 @@ impl<C: Coord> Walk<'_, '_, C> {
         }
     }
 
-    /// Looks for the part's smallest point among an edge's inner nodes.
+    /// Searches for the part's smallest point among an edge's inner nodes.
     #[inline(always)]
     fn first_within(&mut self, name: u32, e: usize, right: Winding) {
         let (nodes, inner) = (self.graph.nodes, self.graph.inner(e));

@@ -60,7 +60,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// There is nothing to choose.
+/// Empty options: the algorithm has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
@@ -157,8 +157,8 @@ pub fn clip(
     run::<NoSources>(window, shapes, t).map(|(clipped, _)| clipped)
 }
 
-/// Returns the same, with the source of every output vertex, from which attributes are interpolated
-/// by [`crate::clip::attribute::interpolate`].
+/// Clips polygons as [`clip`], and returns the source of every output vertex, from which attributes are interpolated by
+/// [`crate::clip::attribute::interpolate`].
 ///
 /// # Errors
 /// As [`clip`].

@@ -5,7 +5,7 @@ use crate::clip::attribute::Source;
 use crate::clip::polygon::Shapes;
 use crate::math::{DVec2, Rect};
 
-/// See the module.
+/// The part of many polygons near a box.
 #[derive(Debug, Default)]
 pub(crate) struct Near {
     pub shapes: Shapes,

@@ -17,7 +17,7 @@ use crate::{Error, Result};
 use std::cmp::Ordering;
 use std::ops::Range;
 
-/// Polygons of which many windows are wanted, or about which many points are asked.
+/// Polygons prepared for many windows or for tests of many points.
 ///
 /// Preparing costs O(n + r log r) time for n vertices in r rings, and about ten bytes per vertex. A window
 /// then costs O(log n + k) for k vertices near it, and a point O(log n), as long as consecutive edges
@@ -40,7 +40,7 @@ pub struct Prepared {
     /// The rings of each polygon.
     polygons: Vec<Range<usize>>,
     rings: Vec<PreparedRing>,
-    /// The rings that have points, so that those near one another stand together.
+    /// The rings that have points, with those near one another together.
     order: Vec<usize>,
     /// Boxes around runs of that order.
     tree: Tree,
@@ -93,12 +93,12 @@ impl Prepared {
         self.tree.around()
     }
 
-    /// Returns the part of all polygons in the window: bit for bit what [`super::clip`] gives.
+    /// Returns the part of all polygons in the window, with the same bits as [`super::clip`].
     pub fn clip(&self, window: &Rect) -> Shapes {
         self.run::<NoSources>(window).0
     }
 
-    /// Returns the same, with the source of every point.
+    /// Clips as [`Self::clip`], and returns the source of every point.
     pub fn clip_with_sources(&self, window: &Rect) -> (Shapes, Vec<Source>) {
         self.run(window)
     }

@@ -60,7 +60,7 @@ pub(super) trait Guide {
     fn holds(&self, ring: &Directed<'_>, p: DVec2) -> bool;
 }
 
-/// Looks at every edge.
+/// Search that examines every edge.
 pub(super) struct Unprepared;
 
 impl Guide for Unprepared {
@@ -331,7 +331,7 @@ impl<P: Provenance> Clipper<P> {
         self.sources.push_range(&self.point_sources, ring);
     }
 
-    /// Returns the window as a ring, where no edge crosses it and it is inside the polygon.
+    /// Adds the window as a ring, if no edge crosses it and it is inside the polygon; returns the range of its points.
     fn whole_window(&mut self) -> Vec<Range<usize>> {
         if !self.surrounded {
             return Vec::new();
@@ -418,7 +418,7 @@ impl ChainEnd {
     }
 }
 
-/// For each chain the one that follows it on the border, given all ends in the order of the border.
+/// Returns for each chain the one that follows it on the border, given all ends in the order of the border.
 ///
 /// Where the polygon is valid exits and entries alternate; elsewhere they pair like brackets.
 fn followers(ends: &[ChainEnd], chains: usize) -> Vec<usize> {

@@ -129,8 +129,7 @@ fn star_with_hole() -> impl Strategy<Value = Shapes> {
     })
 }
 
-/// Returns a simple ring on a small grid: the outline of random columns of cells that stand on one
-/// line.
+/// Returns a simple ring on a small grid: the outline of random columns of cells on one line.
 fn skyline() -> impl Strategy<Value = Shapes> {
     prop::collection::vec(1i32..5, 1..8).prop_map(|heights| {
         let mut ring = vec![p(-3.0, -2.0)];

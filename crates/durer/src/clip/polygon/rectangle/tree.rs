@@ -30,7 +30,7 @@ impl Tree {
     /// examining two boxes.
     pub(in crate::clip::polygon) const RUN: usize = if cfg!(test) { 2 } else { 16 };
 
-    /// Over things numbered from 0, with what gives the box around some of them.
+    /// Creates a tree over things numbered from 0; `around` returns the box around some of them.
     pub(in crate::clip::polygon) fn new(
         count: usize,
         around: &impl Fn(Range<usize>) -> Option<Rect>,

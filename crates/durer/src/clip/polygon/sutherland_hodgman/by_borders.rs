@@ -52,7 +52,7 @@ pub enum Step<V> {
         border: usize,
         /// Start of the edge.
         from: V,
-        /// End of the visible part.
+        /// End of the edge.
         to: V,
         /// Rule that applies to the edge.
         rule: Rule,
@@ -60,7 +60,7 @@ pub enum Step<V> {
         /// itself.
         emitted: [Option<V>; 2],
     },
-    /// A border is done: this is what is left.
+    /// A border is done: the remaining vertices.
     List {
         /// The border's index.
         border: usize,

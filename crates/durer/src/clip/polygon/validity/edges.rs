@@ -41,8 +41,8 @@ pub fn edges_of(shapes: &Shapes) -> Vec<Edge> {
     edges
 }
 
-/// Calls for each two edges whose boxes may meet, some of them twice, as long as the answer is yes and `budget` lasts; returns
-/// whether that was to the end.
+/// Calls for each two edges whose boxes may meet, some of them twice, as long as the answer is yes and `budget` lasts;
+/// returns whether that was to the end.
 pub fn each_pair(
     edges: &[Edge],
     mut budget: usize,

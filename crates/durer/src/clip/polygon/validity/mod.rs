@@ -5,8 +5,8 @@
 //! not in one another, polygons outside one another, and the inside of each polygon in one piece. All
 //! decisions are made by exact predicates.
 //!
-//! Edges are compared within horizontal slabs, in the order of their left ends. Cost: O(n √n) for n edges of usual data,
-//! O(n²) where most of them overlap in both axes; that is cut off at some thousand comparisons per edge.
+//! Edges are compared within horizontal slabs, in the order of their left ends. Cost: O(n √n) for n edges of usual
+//! data, O(n²) where most of them overlap in both axes; that is cut off at some thousand comparisons per edge.
 
 mod edges;
 mod nesting;
@@ -24,7 +24,7 @@ use crate::{Error, Result};
 use nesting::{each_misplaced, nests};
 use touches::{Touches, ways_touch};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "validity",
     title: "Validity of polygons by exact predicates",
@@ -45,7 +45,7 @@ pub(super) const PAIRS_PER_EDGE: usize = 4096;
 /// Intersections that two edges may have, beside the common vertex of consecutive ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Touching {
-    /// An unknown system.
+    /// None.
     No,
     /// A vertex of both.
     AtVertices,
@@ -75,7 +75,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Returns the words for it, as a message says them.
+    /// Returns the words for it in messages.
     pub const fn words(self) -> &'static str {
         match self {
             Self::FewPoints => "a ring has less than three different points",
@@ -107,7 +107,7 @@ impl Fault {
 /// A fault and its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flaw {
-    /// Kind of the mismatch.
+    /// Kind of fault.
     pub fault: Fault,
     /// A point of it: of crossings the nearest to it, of rings a vertex.
     pub at: DVec2,
@@ -115,16 +115,16 @@ pub struct Flaw {
     pub rings: [usize; 2],
 }
 
-/// Returns whether all rings are simple and, but for what is allowed, apart from one another, holes lie in
-/// their outer rings and polygons outside one another. `false` too where that takes too many comparisons.
+/// Returns whether all rings are simple and apart from one another, except for allowed touches, holes lie in their
+/// outer rings and polygons outside one another. `false` too where that takes too many comparisons.
 ///
 /// With [`Touching::AtPoints`], polygons whose inside is [divided](Fault::Divided) pass.
 pub fn is_valid(shapes: &Shapes, touching: Touching) -> bool {
     edges_are_apart(shapes, touching) && nests(shapes)
 }
 
-/// Returns what is wrong with polygons, sorted by rings and places; empty if they are valid. Points that come
-/// twice in a row are no fault.
+/// Returns the faults of polygons, sorted by rings and places; empty if they are valid. Points that come twice in a row
+/// are no fault.
 ///
 /// Crossings and touches of one pair of rings come once per place. Where edges cross or overlap, it is
 /// ignored how rings lie in each other.
@@ -213,8 +213,8 @@ fn without_repeats(shapes: &Shapes) -> (Shapes, Vec<Flaw>) {
     (kept, few)
 }
 
-/// Returns whether no two edges cross, overlap or, but for what is allowed, touch. `false` too for rings of less than three
-/// points, for points that come twice in a row, and where it takes too many comparisons.
+/// Returns whether no two edges cross, overlap or touch, except for allowed touches. `false` too for rings of less than
+/// three points, for points that come twice in a row, and where it takes too many comparisons.
 pub fn edges_are_apart(shapes: &Shapes, touching: Touching) -> bool {
     each_fault(shapes, touching, |_| false)
 }

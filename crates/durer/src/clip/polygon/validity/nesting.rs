@@ -33,8 +33,8 @@ pub fn each_misplaced(shapes: &Shapes, tell: impl FnMut(Flaw) -> bool) {
     }
 }
 
-/// Returns whether directly around each hole is its outer ring, and directly around each outer ring a hole or nothing: then all
-/// that is around a ring comes in pairs of a hole and its outer ring, and nothing is misplaced.
+/// Returns whether directly around each hole is its outer ring, and directly around each outer ring a hole or nothing:
+/// then all that is around a ring comes in pairs of a hole and its outer ring, and nothing is misplaced.
 fn alternates(shapes: &Shapes) -> bool {
     let around = NestingTree::rings_around(shapes);
     let mut is_hole = vec![true; around.len()];
@@ -155,8 +155,8 @@ fn each_within(rings: &[Ring<'_>], mut f: impl FnMut(usize, usize) -> bool) {
     });
 }
 
-/// Calls for each ring, in the order of their left ends, and those before it that overlap it from left to right, as long as
-/// the answer is yes.
+/// Calls for each ring, in the order of their left ends, and those before it that overlap it from left to right, as
+/// long as the answer is yes.
 fn each_beside(rings: &[Ring<'_>], mut f: impl FnMut(usize, &[usize]) -> bool) {
     let mut order: Vec<usize> = (0..rings.len()).collect();
     order.sort_by(|&i, &j| rings[i].around.min().x.total_cmp(&rings[j].around.min().x));
@@ -174,7 +174,7 @@ fn each_beside(rings: &[Ring<'_>], mut f: impl FnMut(usize, &[usize]) -> bool) {
 mod tests {
     use super::*;
 
-    /// Squares within squares, each a polygon with a square hole or without; `odd` is moved out of line.
+    /// Returns squares within squares, each a polygon with a square hole or without; `odd` is moved out of line.
     fn squares(count: i32, odd: Option<i32>) -> Shapes {
         let ring = |left: i32, right: i32| {
             [(left, left), (right, left), (right, right), (left, right)]

@@ -29,7 +29,7 @@ type RingWay = (usize, [[u64; 2]; 3]);
 /// Points at which different rings touch.
 #[derive(Default)]
 pub struct Touches {
-    /// For each place, by the bits of its coordinates, the ways through it, by ring.
+    /// The ways through each place, by ring; places by the bits of their coordinates.
     places: BTreeMap<[u64; 2], BTreeSet<RingWay>>,
 }
 

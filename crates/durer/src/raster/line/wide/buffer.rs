@@ -61,6 +61,8 @@ impl Default for Options {
 }
 
 impl Options {
+    /// Returns the stroke for these options, and its tolerance.
+    ///
     /// # Errors
     /// [`Error::Parameter`] for a distance or tolerance that is not finite, and for a tolerance that is not above 0.
     fn stroke(&self) -> Result<(Stroke, f64)> {
@@ -78,7 +80,7 @@ impl Options {
 }
 
 /// Returns the polygons that reach a distance farther than `shapes` do, or less far where it is below 0; the rings of
-/// `shapes` may cross, and enclose what `rule` says.
+/// `shapes` may cross, and `rule` decides which points they enclose.
 ///
 /// ```
 /// use durer::clip::polygon::{WindingRule, Shapes};

@@ -22,7 +22,7 @@ pub(super) struct Piece {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertex {
     pub at: DVec2,
-    /// At the ends of elements, the directions of the path before and after it.
+    /// Corner at the end of an element: the directions of the path before and after it.
     pub corner: Option<(DVec2, DVec2)>,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct Contour {
 }
 
 impl Contour {
-    /// The same, from its end to its start.
+    /// Reverses the contour, so that it goes from its end to its start.
     pub fn reverse(&mut self) {
         let fixed = usize::from(self.closed);
         if let Some(vertices) = self.vertices.get_mut(fixed..) {
@@ -94,7 +94,7 @@ impl Contour {
         }
     }
 
-    /// Back to the start.
+    /// Closes the contour, back to its start.
     fn close(&mut self, near: f64) {
         (self.closed, self.drawn) = (true, true);
         let (Some(first), Some(last)) = (self.vertices.first().copied(), self.vertices.last())

@@ -9,14 +9,14 @@ use crate::math::DVec2;
 /// No path gets more dashes and gaps than this; with more the line is drawn solid.
 const MAX_DASHES: f64 = 100_000.0;
 
-/// With more dashes and gaps than this, lengths are those of chords, not those of curves.
+/// Number of dashes and gaps above which lengths are those of chords, not those of curves.
 const MAX_MEASURED: f64 = 2000.0;
 
 /// Paths that are longer are made this long while they are cut into dashes.
 const MEASURED: f64 = 1e4;
 
-/// Curves whose control points lie nearer together are lines: the squares of their lengths may be too small for numbers, and
-/// kurbo makes dashes of them without end.
+/// Curves whose control points lie nearer together are lines: the squares of their lengths may be too small for
+/// numbers, and kurbo makes dashes of them without end.
 const SHORTEST: f64 = 1e-9;
 
 /// Dots — dashes without length, with round or square caps — are lines as long as this share of the width: too
@@ -43,7 +43,7 @@ pub(super) fn only_dots(stroke: &Stroke) -> bool {
     stroke.cap != Cap::Butt && repeated(&stroke.dashes).step_by(2).all(|d| d == 0.0)
 }
 
-/// SVG repeats a list of odd length, so that dashes and gaps change places.
+/// Returns the lengths, twice if their number is odd, as SVG does, so that dashes and gaps change places.
 fn repeated(dashes: &[f64]) -> impl Iterator<Item = f64> {
     let times = if dashes.len() % 2 == 1 { 2 } else { 1 };
     dashes.iter().copied().cycle().take(times * dashes.len())
@@ -110,7 +110,7 @@ fn chords(path: &BezPath, length: f64, tolerance: f64) -> BezPath {
     out
 }
 
-/// Elements with the points where they start and where they end; every contour begins with its start.
+/// Returns the elements with the points where they start and where they end; every contour begins with its start.
 fn with_ends(
     elements: impl Iterator<Item = PathEl>,
 ) -> impl Iterator<Item = (Point, PathEl, Point)> {
@@ -135,7 +135,7 @@ fn control_length(path: &BezPath) -> f64 {
         .sum()
 }
 
-/// Returns the same of one element that begins at a point; of what only moves or closes it is 0.
+/// Returns the length of one element that begins at a point; of what only moves or closes it is 0.
 fn chain_length(mut at: Point, element: PathEl) -> f64 {
     let chain = match element {
         PathEl::LineTo(p) => [p, p, p],
@@ -151,7 +151,7 @@ fn chain_length(mut at: Point, element: PathEl) -> f64 {
     sum
 }
 
-/// Dashes without length get one, at the cost of the gap after them, where it has enough.
+/// Lengthens dashes without length, at the cost of the gap after them, where it has enough.
 fn lengthen_dots(dashes: &mut [f64], length: f64) {
     for pair in dashes.chunks_exact_mut(2).filter(|p| p[0] == 0.0 && p[1] > length) {
         pair[0] += length;

@@ -54,10 +54,10 @@ pub const INFO: Info = Info {
 /// Shape of a stroke's ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Cap {
-    /// At the end point, straight.
+    /// Straight end at the end point.
     #[default]
     Butt,
-    /// With a half circle.
+    /// Half circle.
     Round,
     /// Half a width beyond the end point, straight.
     Square,
@@ -66,10 +66,10 @@ pub enum Cap {
 /// Shape of a stroke where two pieces meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Join {
-    /// With a sharp corner, cut off where it would be longer than the miter limit.
+    /// Sharp corner, cut off where it would be longer than the miter limit.
     #[default]
     Miter,
-    /// With a part of a circle.
+    /// Part of a circle.
     Round,
     /// Cut off straight.
     Bevel,
@@ -225,7 +225,7 @@ pub fn has_too_many_dashes(path: &Path, stroke: &Stroke) -> bool {
     dashes::are_too_many(elements(path), stroke)
 }
 
-/// Tells the steps of the outline of one straight line, whose corners are those of its ends.
+/// Reports the steps of the outline of one straight line, whose corners are those of its ends.
 fn trace(outline: &Contours, t: &mut impl Tracer<Step>) {
     for (i, point) in outline.points().iter().enumerate() {
         if i == 0 {
@@ -235,8 +235,8 @@ fn trace(outline: &Contours, t: &mut impl Tracer<Step>) {
     }
 }
 
-/// Returns about how many bytes the walk along a path takes at most: the vertices and pieces of its longest contour, and both
-/// sides of them.
+/// Returns about how many bytes the walk along a path takes at most: the vertices and pieces of its longest contour,
+/// and both sides of them.
 pub(crate) fn cost(path: &Path, tolerance: f64) -> u64 {
     const BYTES: f64 = 128.0;
     let (mut chords, mut at) = (0.0, DVec2::ZERO);

@@ -1,7 +1,7 @@
 //! The parts of a path whose stroke can reach a window, for paths that go far beyond it.
 //!
-//! Curves that are many times as large as the window have thousands of chords, hardly any of which are seen: halved until
-//! their pieces are small or away from the window, they cost what is seen of them.
+//! Curves that are many times as large as the window have thousands of chords, hardly any of which are seen: halved
+//! until their pieces are small or away from the window, they cost what is seen of them.
 
 use super::{Stroke, elements, reach};
 use crate::curve::{Path, PathElement};

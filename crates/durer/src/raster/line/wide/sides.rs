@@ -108,7 +108,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         }
     }
 
-    /// The left side of a closed contour.
+    /// Draws the left side of a closed contour.
     fn ring(&mut self, contour: &Contour) {
         let Some(mut before) = contour.pieces.last() else { return };
         for (vertex, after) in contour.vertices.iter().zip(&contour.pieces) {
@@ -117,7 +117,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         }
     }
 
-    /// The left side of an open contour, and the cap at its end.
+    /// Draws the left side of an open contour, and the cap at its end.
     fn side(&mut self, contour: &Contour) {
         let (Some(start), Some(end)) = (contour.vertices.first(), contour.vertices.last()) else {
             return;
@@ -141,7 +141,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         along.perp() * self.half
     }
 
-    /// The left side at a vertex.
+    /// Draws the left side at a vertex.
     fn vertex(&mut self, vertex: &Vertex, before: &Piece, after: &Piece) {
         let p = vertex.at;
         match vertex.corner {
@@ -165,7 +165,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         2.0 <= (1.0 + before.dot(after)) * self.secant
     }
 
-    /// A corner between straight pieces.
+    /// Draws a corner between straight pieces.
     fn corner(&mut self, p: DVec2, before: &Piece, after: &Piece, join: Join, part: Part) {
         let (from, to) = (before.along, after.along);
         if from.perp_dot(to) <= 0.0 {
@@ -181,9 +181,9 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         }
     }
 
-    /// The inner side of a bend within a curve that is tighter than the width: the pen's edge, which turns on from one
-    /// direction to the other, sweeps a wedge beyond the centre of the bend, with a part of a circle as its far side. It is
-    /// added the way that all the rest turns.
+    /// Draws the inner side of a bend within a curve that is tighter than the width: the pen's edge, which turns on
+    /// from one direction to the other, sweeps a wedge beyond the centre of the bend, with a part of a circle as its
+    /// far side. It is added the way that all the rest turns.
     fn sweep(&mut self, p: DVec2, from: DVec2, to: DVec2) {
         let wedge = |pen: &mut Self| {
             pen.push(p, p + pen.left(from), Part::Side);
@@ -205,7 +205,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         (fits && turn > 0.0).then(|| (self.left(from) + self.left(to)) / turn)
     }
 
-    /// The inner side of a corner where curves end.
+    /// Draws the inner side of a corner where curves end.
     fn inner_curved(
         &mut self,
         p: DVec2,
@@ -231,7 +231,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         }
     }
 
-    /// From the last piece of a curve to the curve's direction at its end.
+    /// Draws the side from the last piece of a curve to the curve's direction at its end.
     fn arrive(&mut self, p: DVec2, piece: &Piece, end: DVec2) {
         if piece.along == end {
             return;
@@ -240,7 +240,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         self.push(p, p + self.left(end), Part::Side);
     }
 
-    /// From a curve's direction at its start to its first piece.
+    /// Draws the side from a curve's direction at its start to its first piece.
     fn leave(&mut self, p: DVec2, start: DVec2, piece: &Piece) {
         if start == piece.along {
             return;
@@ -249,7 +249,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         self.bend(p, start, piece.along, piece);
     }
 
-    /// The bend between a curve's direction at an end and its piece there, less the point of the end itself.
+    /// Draws the bend between a curve's direction at an end and its piece there, without the point of the end itself.
     fn bend(&mut self, p: DVec2, from: DVec2, to: DVec2, piece: &Piece) {
         let cross = from.perp_dot(to);
         let small = self.half * (1.0 - from.dot(to)) <= self.tolerance;
@@ -262,7 +262,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         }
     }
 
-    /// The outer side of a corner: everything between the two offset lines.
+    /// Draws the outer side of a corner: everything between the two offset lines.
     fn outer(&mut self, p: DVec2, from: DVec2, to: DVec2, join: Join, part: Part) {
         let turn = 1.0 + from.dot(to);
         let (first, last) = (self.left(from), self.left(to));
@@ -280,7 +280,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         }
     }
 
-    /// An arc that begins at an offset and turns right: the corners of the lines that touch it.
+    /// Draws an arc that begins at an offset and turns right: the corners of the lines that touch it.
     fn arc(&mut self, p: DVec2, from: DVec2, angle: f64, part: Part) {
         let pieces = (angle / self.arc).ceil().max(1.0);
         let step = angle / pieces;
@@ -293,7 +293,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         }
     }
 
-    /// The cap at an end; `curved` where the offset line does not lead straight to it.
+    /// Draws the cap at an end; `curved` where the offset line does not lead straight to it.
     fn cap(&mut self, p: DVec2, along: DVec2, curved: bool) {
         let (left, beyond) = (self.left(along), along * self.half);
         match self.cap {

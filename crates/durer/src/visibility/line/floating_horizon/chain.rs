@@ -9,7 +9,7 @@ use crate::view::picture_plane::PicturePlane;
 /// eye are cut at the same point, but for rounding.
 const JOIN: f64 = 1e-9;
 
-/// Pieces joined to curves, in the order of families, lines, and along the lines.
+/// Joins pieces to curves, in the order of families, lines, and along the lines.
 pub fn curves(field: &HeightField, mut pieces: Vec<Piece>) -> Vec<Curve> {
     pieces.sort_unstable_by(|a, b| {
         let key = |p: &Piece| (p.family, p.line, p.segment);

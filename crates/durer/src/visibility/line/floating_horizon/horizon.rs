@@ -138,7 +138,7 @@ impl Horizon {
         self.fresh = fresh;
     }
 
-    /// The parts of the segment p … q that are covered, as sorted, disjoint ranges of 0 … 1 from p to q.
+    /// Finds the parts of the segment p … q that are covered, as sorted, disjoint ranges of 0 … 1 from p to q.
     ///
     /// What runs along the border of the covered area is covered: it lies on a line that is there.
     pub fn hidden(&self, p: DVec2, q: DVec2, hidden: &mut Vec<[f64; 2]>) {
@@ -190,8 +190,8 @@ impl Horizon {
         (v - u > self.column).then_some([u, v])
     }
 
-    /// An upright segment is covered where the surface covers either side of it: the surface in
-    /// front of it goes through its column.
+    /// Finds the covered parts of an upright segment: those where the surface covers either side of it, because the
+    /// surface in front of it goes through its column.
     fn hidden_upright(&self, p: DVec2, q: DVec2, hidden: &mut Vec<[f64; 2]>) {
         if p.y == q.y {
             return;

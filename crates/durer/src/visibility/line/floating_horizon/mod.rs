@@ -100,7 +100,7 @@ pub struct Piece {
 pub enum Step {
     /// A piece of a line was found to be visible or hidden.
     Piece(Piece),
-    /// A triangle, corners in the field's coordinates, was added to what is covered.
+    /// A triangle, with corners in the field's coordinates, was added to the covered area.
     Cover([DVec3; 3]),
 }
 
@@ -115,7 +115,7 @@ pub struct Curve {
     pub visible: bool,
     /// True if the surface in front of it shows its lower side to the eye.
     pub underside: bool,
-    /// At least two points, in the field's coordinates, in ascending x or z.
+    /// Points, at least two, in the field's coordinates, in ascending x or z.
     pub points: Vec<DVec3>,
 }
 

@@ -15,12 +15,12 @@ const WIDEST: f64 = 2.0;
 /// Nearer to the eye's own plumb line than this part of the surface's extent nothing is projected.
 const FOOT: f64 = 1e-4;
 
-/// From where the surface is seen; coordinates are relative to the middle of the surface.
+/// Place or direction from which the surface is seen; coordinates are relative to the middle of the surface.
 #[derive(Debug, Clone, Copy)]
 pub enum Sight {
-    /// Along this direction, of unit length.
+    /// A direction, of unit length.
     Along(DVec3),
-    /// From this point.
+    /// A point.
     From(DVec3),
 }
 
@@ -116,7 +116,7 @@ impl Sight {
         pictures.into_iter().filter(|p| p.min.x <= p.max.x).collect()
     }
 
-    /// In which order columns (`axis` 0) or rows (`axis` 2) of cells come, the nearest first.
+    /// Returns the order of columns (`axis` 0) or rows (`axis` 2) of cells, the nearest first.
     pub fn order(self, field: &HeightField, axis: usize, middle: f64) -> Vec<usize> {
         let (points, [first, last]) = match axis {
             0 => (field.columns(), field.x_range()),
@@ -254,7 +254,7 @@ impl Picture {
         DVec2::new(x, p.up / p.ahead)
     }
 
-    /// Opposite corners around everything in the picture.
+    /// Returns opposite corners around everything in the picture.
     pub fn corners(&self) -> [DVec2; 2] {
         [self.min, self.max]
     }
@@ -284,7 +284,7 @@ impl Picture {
         Some(Part { range: [from, to], ends: cut.map(|p| self.project(&p)), depths })
     }
 
-    /// The corners of a triangle of the field, where all of it lies in the picture.
+    /// Sets `out` to the corners of a triangle of the field if all of it is in the picture, and returns whether it is.
     pub fn triangle(&self, numbers: [usize; 3], out: &mut Vec<DVec2>) -> bool {
         out.clear();
         let whole = numbers.map(|n| self.whole[n]) == [true; 3];
@@ -294,7 +294,8 @@ impl Picture {
         whole
     }
 
-    /// The corners, in order, of the part of a convex polygon that lies in the picture; at most three more.
+    /// Sets `out` to the corners, in order, of the part of a convex polygon that is in the picture; at most three
+    /// more.
     pub fn polygon(&self, corners: &[DVec3], out: &mut Vec<DVec2>) {
         out.clear();
         let mut ring: Vec<Place> = corners.iter().map(|p| self.place(*p)).collect();
@@ -332,8 +333,8 @@ fn mix(p: &Place, q: &Place, t: f64) -> Place {
     Place { aside: mix(p.aside, q.aside), up: mix(p.up, q.up), ahead: mix(p.ahead, q.ahead) }
 }
 
-/// On which side of a line through two points on the ground the eye is: positive or negative as the
-/// cross product of the line's direction with that to the eye.
+/// Returns the side of a line through two points on the ground on which the eye is: positive or negative as the cross
+/// product of the line's direction with that to the eye.
 pub fn side_of_eye(sight: Sight, from: DVec3, to: DVec3) -> f64 {
     let line = DVec2::new(to.x - from.x, to.z - from.z);
     let to_eye = match sight {

@@ -83,7 +83,7 @@ pub fn push(strips: &mut Vec<Strip>, strip: Strip) {
     }
 }
 
-/// The union of a strip's bands and one more over the columns `from … to` of the strip.
+/// Unites a strip's bands and one more over the columns `from … to` of the strip.
 pub fn unite(
     strip: &Strip,
     band: &Band,

@@ -16,7 +16,7 @@ const SIDES: [(Family, [usize; 2]); 4] = [
     (Family::AlongZ, [1, 3]),
 ];
 
-/// Returns all pieces of all lines that are wanted, in the order in which they are found.
+/// Returns all pieces of all requested lines, in the order of finding.
 pub fn pieces(
     field: &HeightField,
     camera: &Camera,
@@ -93,7 +93,8 @@ impl Place {
     }
 }
 
-/// The segments of all lines that are wanted and whose ends are there, with the parts of them between the levels.
+/// Calls `f` with the segments of all lines that the options select and whose ends exist, and with the parts of them
+/// between the levels.
 fn segments(
     field: &HeightField,
     options: &Options,
@@ -116,7 +117,7 @@ fn segments(
     }
 }
 
-/// Tells of a piece and keeps it.
+/// Reports a piece and keeps it.
 fn keep(piece: Piece, pieces: &mut Vec<Piece>, t: &mut impl Tracer<Step>) {
     t.step(|| Step::Piece(piece));
     pieces.push(piece);
@@ -131,8 +132,8 @@ fn everything(
     segments(field, options, |place, _, part| keep(place.piece(part, true, false), pieces, t));
 }
 
-/// Right above or below the eye upright pictures have no place. There only one cell hides, and not
-/// its own sides: what no picture held is visible.
+/// Finds the visible pieces right above or below the eye, where upright pictures have no place. There only one cell
+/// hides, and not its own sides: everything that no picture held is visible.
 fn at_the_foot(
     field: &HeightField,
     middle: DVec3,

@@ -4,7 +4,7 @@ use super::span::Span;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Gives slivers, the shortest first, to the longer neighbour; O(n log n) for n parts.
+/// Joins slivers, the shortest first, to the longer neighbour; O(n log n) for n parts.
 pub(super) fn absorb(sliver: f64, spans: &mut Vec<Span>) {
     if spans.len() > 1 && spans.iter().any(|span| length(span) < sliver) {
         let mut chain = Chain::new(spans, sliver);
@@ -55,7 +55,7 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// Gives the shortest sliver away; `false` if there is none.
+    /// Joins the shortest sliver to a neighbour; `false` if there is none.
     fn absorb_shortest(&mut self) -> bool {
         let Some(i) = self.next() else { return false };
         let gone = self.spans[i];
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The same by looking at all parts each time.
+    /// Computes the same as [`absorb`] by examining all parts each time.
     fn slowly(sliver: f64, spans: &mut Vec<Span>) {
         while spans.len() > 1 {
             let all = 0..spans.len();

@@ -21,7 +21,8 @@ const LONG: usize = 64;
 /// Log₂ of the smallest cell's side in steps.
 const LEAST_SHIFT: u32 = 4;
 
-/// Steps beyond a cell that count as in it when it is asked which part of a line lies there: more than rounding has.
+/// Steps beyond a cell that count as in it when the part of a line in the cell is determined: more than rounding
+/// errors.
 const MARGIN: f64 = 4.0;
 
 /// The cells of the page.
@@ -37,7 +38,7 @@ struct Cells {
 }
 
 impl Cells {
-    /// About `count` square cells over what the points span.
+    /// Creates about `count` square cells over the extent of the points.
     fn new(bounds: [GridPoint; 2], count: usize) -> Self {
         let [low, high] = bounds;
         let size = high.minus(low).map(|d| d.max(1));
@@ -52,7 +53,7 @@ impl Cells {
         Self { shift, low, size, columns, rows }
     }
 
-    /// Cells of half the side.
+    /// Returns cells of half the side.
     fn halved(&self) -> Self {
         Self::of_side(self.low, self.size, self.shift - 1)
     }
@@ -73,7 +74,7 @@ impl Cells {
         }
     }
 
-    /// Rows and columns of the cells that lines run through, in order.
+    /// Returns the rows and columns of the cells that lines run through, in order.
     fn run_through(&self, lines: impl Iterator<Item = [Vertex; 2]>) -> Vec<[i32; 2]> {
         let (mut found, mut most) = (Vec::new(), 1 << 16);
         let in_order = |found: &mut Vec<[i32; 2]>| {
@@ -92,7 +93,7 @@ impl Cells {
         found
     }
 
-    /// See [`Lists::stretch`].
+    /// Returns the stretch of a line as [`Lists::stretch`] does.
     fn stretch(&self, row: i64, column: i64, [p, q]: &[Vertex; 2]) -> [f64; 2] {
         let [dx, dy] = q.at.minus(p.at);
         let axis = |low: i32, cell: i64, from: i32, delta: i64| {
@@ -184,7 +185,7 @@ impl Lists {
         Self::all(Cells::new(bounds(lines.clone()), faces), lines)
     }
 
-    /// Smaller cells, where lines run through few of these and their lists, of this many entries together, are
+    /// Returns smaller cells, where lines run through few of these and their lists, of this many entries together, are
     /// long.
     pub fn finer(
         &self,
@@ -207,7 +208,7 @@ impl Lists {
         Self { cells, kept: Kept::All(marked) }
     }
 
-    /// Cells of at least twice the side, all of them kept.
+    /// Returns cells of at least twice the side, all of them kept.
     pub fn coarser(&self, lines: impl Iterator<Item = [Vertex; 2]>) -> Self {
         let Cells { low, size, shift, .. } = self.cells;
         let mut cells = Cells::of_side(low, size, shift + 1);
@@ -222,7 +223,7 @@ impl Lists {
         self.cells.count() == 1
     }
 
-    /// Cells that are smaller and smaller, as long as lines run through fewer than there are faces.
+    /// Creates smaller and smaller cells, as long as lines run through fewer than there are faces.
     fn small(
         mut cells: Cells,
         faces: usize,
@@ -272,7 +273,7 @@ impl Lists {
         });
     }
 
-    /// From where to where of a line, 0 … 1, it may lie in the cell of a list of that row.
+    /// Returns the range of a line, within 0 … 1, in which it may be in the cell of a list of that row.
     pub fn stretch(&self, row: i32, list: usize, line: &[Vertex; 2]) -> [f64; 2] {
         let column = match &self.kept {
             Kept::All(_) => list as i64 - i64::from(row) * i64::from(self.cells.columns),

@@ -15,9 +15,9 @@ use super::span::Span;
 pub struct Cover {
     /// The face's item.
     pub item: u32,
-    /// Start, 0 … 1 along the line.
+    /// Start of the part, 0 … 1 along the line.
     pub from: f64,
-    /// End of the visible part.
+    /// End of the part, 0 … 1 along the line.
     pub to: f64,
     /// True if the left side of the line is hidden, seen along it, y up.
     pub left: bool,

@@ -1,5 +1,5 @@
-//! The lines of a scene, before it is known what of them can be seen: edges of the mesh, lines where faces meet, and the
-//! lines and points of the model.
+//! The lines of a scene, before it is known what of them can be seen: edges of the mesh, lines where faces meet, and
+//! the lines and points of the model.
 
 use super::super::crease_chain::connected;
 use super::super::edge_lines::{
@@ -158,7 +158,7 @@ pub(super) struct FeatureLine {
 }
 
 impl FeatureLine {
-    /// `None` for a line that is a point in the picture.
+    /// Creates a line of a class; returns `None` if it is a point in the picture.
     pub fn new(mut ends: [Vertex; 2], class: LineClass, items: [u32; 2]) -> Option<Self> {
         // One way round whatever the faces' order, so that cuts are rounded alike.
         ends.sort_unstable_by_key(|v| v.at);

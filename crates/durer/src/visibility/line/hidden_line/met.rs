@@ -1,6 +1,6 @@
 //! The faces that a line has met on its way, so that one that lies in many cells is tested once (the mailbox of John
-//! Amanatides and Andrew Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987), and the length of the
-//! line that they hide, so that the way ends once all of it is hidden.
+//! Amanatides and Andrew Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987), and the length of
+//! the line that they hide, so that the way ends once all of it is hidden.
 
 /// Limit on the faces that are remembered; of more some are tested again, which changes nothing.
 const MOST_SLOTS: usize = 1 << 14;
@@ -17,7 +17,7 @@ pub(super) struct Met {
 }
 
 impl Met {
-    /// For lines among this many faces.
+    /// Creates the memory for lines among this many faces.
     pub fn new(faces: usize) -> Self {
         let count = faces.clamp(1, MOST_SLOTS).next_power_of_two();
         Self { line: 0, slots: vec![[0; 2]; count], hidden: Vec::new(), times: 0 }
@@ -30,14 +30,14 @@ impl Met {
         self.times = 0;
     }
 
-    /// Notes that the line has met a face; returns whether that may be for the first time.
+    /// Records that the line has met a face; returns whether that may be for the first time.
     pub fn is_first(&mut self, id: u32) -> bool {
         let (mask, met) = (self.slots.len() - 1, [self.line, id]);
         let slot = &mut self.slots[id as usize & mask];
         std::mem::replace(slot, met) != met
     }
 
-    /// Notes that a part of the line is hidden.
+    /// Records that a part of the line is hidden.
     pub fn hide(&mut self, from: f64, to: f64) {
         self.times += 1;
         let first = self.hidden.partition_point(|part| part[1] < from);

@@ -54,7 +54,7 @@ use crate::work::Work;
 use crate::{Error, Result, parallel};
 use std::ops::Range;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "hidden-line",
     title: "Hidden lines by quantitative invisibility",
@@ -111,11 +111,10 @@ pub struct Options {
     /// True if hidden lines are given too. Without them the work ends where a line is known to be
     /// hidden, and the drawing has visible lines only.
     pub hidden: bool,
-    /// Largest distance that a line may be moved, as a part of the drawing's larger side: polylines are
-    /// simplified within it, those shorter are left out, and lines much closer than it to another along
-    /// their whole length are drawn once. A triangle lower than that, as a part of the model's extent,
-    /// between two that continue each other makes no line, however rounding has turned it. 0 gives
-    /// everything that the grid resolves.
+    /// Largest distance that a line may be moved, as a part of the drawing's larger side: polylines are simplified
+    /// within it, those shorter are left out, and lines much closer than it to another along their whole length are
+    /// drawn once. A triangle lower than that, as a part of the model's extent, between two that continue each other
+    /// makes no line, however rounding has turned it. 0 keeps everything that the grid resolves.
     pub tolerance: f64,
     /// Silhouettes of round parts and creases that end in the open are cut back to the next junction,
     /// or left out, where that takes at most this part of the drawing's larger side, or four times as
@@ -170,7 +169,7 @@ impl Options {
         self.how().check()
     }
 
-    /// Stubs are known by what they do not touch, so only where everything is drawn.
+    /// Returns how lines are drawn; stubs are known by what they do not touch, so only where everything is drawn.
     fn how(&self) -> How {
         let edges = |set: ClassSet| {
             let loose = set.with(LineClass::Wire).with(LineClass::Section).with(LineClass::Mark);
@@ -328,8 +327,8 @@ fn hide(
 /// Lines per job.
 const JOB: usize = 2048;
 
-/// Returns the parts of a line that faces hide, by face. `enough` ends the search in places where the
-/// line is known to be hidden. Calls `tried` with the item of each face that is compared, perhaps several times.
+/// Finds the parts of a line that faces hide, by face. `enough` ends the search in places where the line is known to be
+/// hidden. Calls `tried` with the item of each face that is compared, perhaps several times.
 fn covers_of(
     line: &FeatureLine,
     lines: &Lines<'_>,

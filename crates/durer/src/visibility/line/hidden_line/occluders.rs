@@ -112,7 +112,7 @@ impl<'a> Occluders<'a> {
         found
     }
 
-    /// See [`Self::folds`].
+    /// Computes [`Self::folds`].
     fn lists_with_folds(&self, ids: impl Iterator<Item = u32>) -> Vec<bool> {
         if self.folded.is_empty() {
             return Vec::new();
@@ -209,8 +209,8 @@ impl<'a> Occluders<'a> {
         &self.projected.page
     }
 
-    /// Calls `f` once, or now and then more often, with each face that may hide a part of the line; in the order of cells
-    /// and depths. In cells in which the line is known to be hidden, the rest is ignored, unless a face there may
+    /// Calls `f` once, or now and then more often, with each face that may hide a part of the line; in the order of
+    /// cells and depths. In cells in which the line is known to be hidden, the rest is ignored, unless a face there may
     /// make up for another.
     pub fn along(
         &self,

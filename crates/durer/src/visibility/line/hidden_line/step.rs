@@ -16,14 +16,14 @@ pub enum Step {
     Page(Page),
     /// One line was held against the faces that overlap it.
     Line {
-        /// Style of the drawing.
+        /// Class of the line.
         class: LineClass,
         /// True if it is a silhouette across a part of the surface that is not sharp there.
         smooth: bool,
         /// Its ends in the plane of the picture.
         ends: [DVec2; 2],
-        /// Items of the faces that it was compared with, each once: those in the cells of the grid that it crosses, less
-        /// the faces that it lies on.
+        /// Items of the faces that it was compared with, each once: those in the cells of the grid that it crosses,
+        /// less the faces that it lies on.
         tried: Vec<u32>,
         /// Parts that hide it, by item.
         covers: Vec<Cover>,

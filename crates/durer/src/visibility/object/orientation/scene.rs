@@ -5,7 +5,7 @@ use crate::math::{DMat3, DVec3};
 use crate::scene::{Aabb, Mesh, Scene};
 use crate::visibility::object::{Bodies, Edges, Faces};
 
-/// The orientation of a scene's faces, of which triangles that are parts of one polygon count as one.
+/// Orientation of a scene's faces; triangles that are parts of one polygon count as one.
 ///
 /// A closed piece of surface that is turned inwards and lies within another closed one bounds a cavity, and is right.
 /// Pieces with a border stay as most of their triangles are, and those that cannot be oriented as they are.
@@ -73,9 +73,9 @@ impl SceneOrientation {
         !self.turned.contains(&true)
     }
 
-    /// Turns the faces of the scene that have to be turned, which must be the one of [`Self::of`]. Vertex normals that look
-    /// away from the new front are reversed. Instances of one mesh that have to be turned differently get meshes of their
-    /// own.
+    /// Turns the faces of the scene that have to be turned, which must be the one of [`Self::of`]. Vertex normals that
+    /// look away from the new front are reversed. Instances of one mesh that have to be turned differently get meshes
+    /// of their own.
     pub fn apply(&self, scene: &mut Scene) {
         let mut next = 0;
         let mut made: Vec<Option<(Vec<bool>, usize)>> = vec![None; scene.meshes.len()];

@@ -13,7 +13,7 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    /// From the axis to a point, at a right angle to it.
+    /// Returns the vector from the axis to a point, at a right angle to the axis.
     pub fn spoke(&self, p: DVec3) -> DVec3 {
         let d = p - self.point;
         d - self.axis * d.dot(self.axis)
@@ -66,9 +66,9 @@ impl Sums {
         &self.points
     }
 
-    /// Returns the cylinder: its axis is what the normals are most at right angles to, its circle the
-    /// best one in the algebraic sense (I. Kåsa, *A circle fitting procedure and its error analysis*,
-    /// IEEE Transactions on Instrumentation and Measurement, 1976). `None` if the points are in line.
+    /// Returns the cylinder: its axis is the direction most nearly at right angles to the normals, its circle the best
+    /// one in the algebraic sense (I. Kåsa, *A circle fitting procedure and its error analysis*, IEEE Transactions on
+    /// Instrumentation and Measurement, 1976). `None` if the points are in line.
     pub fn fit(&self) -> Option<Surface> {
         let axis = smallest_direction(self.normals)?;
         let [u, v] = across(axis);
@@ -91,8 +91,8 @@ const MANY: usize = 18;
 /// Steps of refinement: each doubles the number of right digits.
 const STEPS: usize = 3;
 
-/// Returns one step of Gauss and Newton to the cylinder that is nearest to points: the axis tilts and moves,
-/// the radius changes. `None` if the points do not tell it.
+/// Makes one step of Gauss and Newton towards the cylinder that is nearest to points: the axis tilts and moves, the
+/// radius changes. `None` if the points do not determine it.
 fn nearer(surface: &Surface, points: &[DVec3]) -> Option<Surface> {
     let [u, v] = surface.across();
     let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
@@ -122,8 +122,8 @@ fn nearer(surface: &Surface, points: &[DVec3]) -> Option<Surface> {
     (found.radius > 0.0 && found.point.is_finite()).then_some(found)
 }
 
-/// Solves symmetric equations, a column for the right side last; a trace of each unknown's own is added, so that what
-/// the equations do not tell stays near 0.
+/// Solves symmetric equations, a column for the right side last; a trace of each unknown's own is added, so that
+/// unknowns that the equations do not determine stay near 0.
 fn solved(mut m: [[f64; 6]; 5]) -> Option<[f64; 5]> {
     const TRACE: f64 = 1e-10;
     let trace: f64 = (0..5).map(|i| m[i][i]).sum();
@@ -194,7 +194,7 @@ fn smallest_direction([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Option<DVec3> {
     vectors.get(smallest)?.try_normalize()
 }
 
-/// Makes the entry (p, q) of a symmetric matrix 0.
+/// Rotates a symmetric matrix so that its entry (p, q) becomes 0.
 fn rotate(m: &mut [[f64; 3]; 3], vectors: &mut [DVec3; 3], p: usize, q: usize) {
     if m[p][q] == 0.0 {
         return;

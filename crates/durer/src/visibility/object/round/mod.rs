@@ -20,11 +20,11 @@ use std::f64::consts::TAU;
 pub struct Cylinder {
     /// Start and end, points of its axis, world space.
     pub ends: [DVec3; 2],
-    /// In units of the world.
+    /// Radius in units of the world.
     pub radius: f64,
     /// Angle of the circle that it covers, in radians; [`TAU`] for all of it.
     pub angle: f64,
-    /// From the axis to the middle of what it covers, of unit length; anywhere for a full circle.
+    /// Direction from the axis to the middle of the covered part, of unit length; any for a full circle.
     pub facing: DVec3,
     /// True if it is a hole: the surface looks towards the axis.
     pub hollow: bool,
@@ -169,7 +169,7 @@ impl Finder<'_> {
         cylinder
     }
 
-    /// Notes that triangles have found their place, or have been in vain in a region.
+    /// Records that triangles have found their place, or were tried in a region in vain.
     fn mark(&mut self, items: &[u32], taken: bool) {
         for item in items {
             let tries = &mut self.tries[*item as usize];
@@ -177,8 +177,8 @@ impl Finder<'_> {
         }
     }
 
-    /// Returns the triangles around two that turn little against them; `None` if they are no more. Where
-    /// triangles are tilted, two normals do not tell the axis.
+    /// Returns the triangles around two that turn little against them; `None` if they are no more. Where triangles are
+    /// tilted, two normals do not determine the axis.
     fn patch(&self, edges: &Edges, pair: [u32; 2]) -> Option<Vec<u32>> {
         let normal = self.normal(pair[0])?;
         let mut items = pair.to_vec();
@@ -246,7 +246,7 @@ impl Finder<'_> {
         all.then_some(region)
     }
 
-    /// Returns a region with all that belongs to it.
+    /// Grows a region by all triangles that belong to it.
     fn grown(&mut self, edges: &Edges, mut region: Region) -> Region {
         self.regions += 1;
         region.items.iter().for_each(|item| self.region_of[*item as usize] = self.regions);

@@ -8,7 +8,8 @@ use crate::visibility::back_face::Eye;
 use crate::visibility::polygons::Face;
 use crate::{Error, Result};
 
-/// So near to a plane, in units of the largest coordinate, a corner lies in it: corners that splitting made are rounded.
+/// So near to a plane, in units of the largest coordinate, a corner lies in it: corners that splitting made are
+/// rounded.
 const IN_PLANE: f64 = 1e-10;
 
 /// Part of a face after splitting.
@@ -177,7 +178,7 @@ impl Tree {
         }
     }
 
-    /// Returns the parts of a piece in front of a plane and behind it.
+    /// Splits a piece into its parts in front of a plane and behind it.
     fn split(&mut self, plane: &Plane, piece: u32, options: &Options) -> Result<[u32; 2]> {
         let limit = options.max_pieces as u64;
         if self.pieces.len() as u64 + 2 > limit {

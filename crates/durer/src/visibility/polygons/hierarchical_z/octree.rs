@@ -19,7 +19,8 @@ pub struct Octree {
     pub cells: Vec<Cell>,
 }
 
-/// Returns the box around a face; its depths are those of the plane, too, which is through the corners but for rounding.
+/// Returns the box around a face; its depths are those of the plane, too, which is through the corners but for
+/// rounding.
 pub fn bounds(face: &Face) -> [DVec3; 2] {
     let corners = face.corners().iter();
     let around = |[low, high]: [DVec3; 2], corner: &DVec3| {

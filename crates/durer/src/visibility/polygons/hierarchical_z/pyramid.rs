@@ -31,7 +31,7 @@ impl Pyramid {
         Ok(Self { levels })
     }
 
-    /// Returns the farthest depth of an entry; nothing is nearer than what is not there.
+    /// Returns the farthest depth of an entry; for an entry outside, a depth that hides everything.
     pub fn get(&self, level: u32, [x, y]: [u32; 2]) -> f64 {
         let plane = self.levels.get(level as usize);
         plane.and_then(|plane| plane.get(x, y)).unwrap_or(f64::NEG_INFINITY)

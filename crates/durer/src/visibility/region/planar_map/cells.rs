@@ -11,7 +11,7 @@ const PER_CELL: f64 = 1.0;
 /// Cells along a side, at most.
 const MOST: f64 = 2048.0;
 
-/// See the module.
+/// Grid of cells over the picture, each with its faces from front to back.
 #[derive(Debug)]
 pub struct Cells {
     /// Lower left corner of the grid of cells.

@@ -60,7 +60,7 @@ fn unite(edges: &mut Vec<Edge>) {
     });
 }
 
-/// Cells that one task looks at.
+/// Number of cells in one task.
 const TASK: usize = 1 << 12;
 
 /// Finds the intersections of faces: a segment for each pair whose depths change their order.
@@ -176,7 +176,7 @@ const FARTHEST: f64 = 65_536.0;
 /// Hidden parts closer than this, in grid steps, are one: rounding at the borders of cells.
 const GAP: f64 = 1e-3;
 
-/// Edges that one task looks at.
+/// Number of edges in one task.
 const EDGES: usize = 1 << 13;
 
 /// A part of an edge that something lies before, and how far the visible part beside it reaches in.
@@ -266,7 +266,7 @@ fn inside(edge: &Edge, face: &Face) -> Option<Hidden> {
     (part.from < part.to).then_some(part)
 }
 
-/// Keeps of a part what lies clearly behind the face; whether anything is left.
+/// Keeps of a part what lies clearly behind the face; returns whether anything is left.
 #[inline]
 fn behind(edge: &Edge, face: &Face, a: DVec2, b: DVec2, part: &mut Hidden) -> bool {
     let (from, to) = (part.from, part.to);
@@ -287,7 +287,7 @@ fn behind(edge: &Edge, face: &Face, a: DVec2, b: DVec2, part: &mut Hidden) -> bo
     true
 }
 
-/// Returns the visible parts of an edge.
+/// Adds the visible parts of an edge to `pieces`.
 fn visible_parts(edge: &Edge, hidden: &mut [Hidden], pieces: &mut Vec<(Place, Place)>) {
     if hidden.is_empty() {
         pieces.push((edge.a, edge.b));

@@ -23,7 +23,7 @@ const ROUNDING: f64 = 1e-12;
 /// before it meets the next would join separate faces.
 pub const CLEARLY: f64 = 4.0;
 
-/// Between the grid, the plane of the picture and the world.
+/// Conversion between the grid, the plane of the picture and the world.
 #[derive(Debug, Clone, Copy)]
 pub struct Frame {
     clip_from_world: DMat4,
@@ -31,7 +31,7 @@ pub struct Frame {
     half: DVec2,
     /// Plane units of a grid step.
     pub unit: f64,
-    /// Returns whether lines of sight meet in the eye.
+    /// True if lines of sight meet in the eye.
     perspective: bool,
     /// The camera.
     eye: DVec3,
@@ -83,7 +83,7 @@ impl Frame {
         (at, depth)
     }
 
-    /// Grid coordinates and depth of a point of the world; `None` behind the eye.
+    /// Returns the grid coordinates and depth of a point of the world; `None` behind the eye.
     pub fn project_world(&self, p: DVec3) -> Option<(DVec2, f64)> {
         let c = self.clip_from_world * p.extend(1.0);
         if !(c.w > 0.0 && c.is_finite()) {
@@ -222,7 +222,7 @@ pub fn surfaces(scene: &Scene) -> crate::Result<Vec<Run>> {
     Ok(runs(scene)?.into_iter().filter(|run| is_surface(&scene.meshes[run.mesh])).collect())
 }
 
-/// Brings runs of triangles into the picture; those of one instance one after the other are cheapest.
+/// Projection of runs of triangles into the picture; those of one instance one after the other are cheapest.
 pub struct Projector<'a> {
     scene: &'a Scene,
     view: &'a View,
@@ -236,7 +236,7 @@ impl<'a> Projector<'a> {
         Self { scene, view, frame, cull, vertices: Vertices::default() }
     }
 
-    /// Gives the faces of a run, cut at the picture's border.
+    /// Emits the faces of a run, cut at the picture's border.
     pub fn project(&mut self, run: &Run, mut give: impl FnMut(Face)) {
         let mesh = &self.scene.meshes[run.mesh];
         let world_from_mesh = self.scene.instances[run.instance].world_from_mesh;
@@ -304,7 +304,7 @@ impl Vertices {
     }
 }
 
-/// Gives a face, unless its front must and does not look to the eye.
+/// Emits a face, unless it must face the eye and does not.
 fn push(v: [(Place, f64); 3], item: u32, hidden: Option<bool>, give: &mut impl FnMut(Face)) {
     let corners = v.map(|v| v.0);
     let front = cross(corners[0], corners[1], corners[2]) > 0;

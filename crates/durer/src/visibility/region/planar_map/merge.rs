@@ -62,7 +62,7 @@ pub fn patches(map: &Planar, labels: &[u32]) -> Patches {
     Patches { list, of_face }
 }
 
-/// For each face the representative of all faces joined to it.
+/// Returns, for each face, the representative of all faces joined to it.
 fn join(map: &Planar, keep: impl Fn(usize) -> bool) -> Vec<u32> {
     let mut parent: Vec<u32> = (0..map.face_count as u32).collect();
     fn root(parent: &mut [u32], mut i: u32) -> u32 {
@@ -151,7 +151,7 @@ pub fn lines(map: &Planar, keep: impl Fn(usize) -> bool) -> Vec<(Vec<u32>, bool)
 /// Vertices looked back at, at most.
 const MOST_DROPPED: usize = 64;
 
-/// Tells the inner vertices of a chain that lie within a grid step of the line past them.
+/// Reports the inner vertices of a chain that lie within a grid step of the line past them.
 fn straight(map: &Planar, chain: &[u32], mut tell: impl FnMut(u32)) {
     let at = |i: usize| map.points[chain[i] as usize];
     let mut from = 0;

@@ -1,9 +1,9 @@
 //! Visible regions by a planar map: all divisions along edges of faces at once.
 //!
-//! The regions of K. Weiler, P. Atherton, *Hidden Surface Removal Using Polygon Area Sorting*, SIGGRAPH 1977; their own way
-//! is [`crate::visibility::polygons::regions`]. Class: object
-//! space; the result does not depend on pixels. Cost: O((n + k) log n) on usual scenes, for n faces and k visible
-//! pieces of edges; at worst every face lies over every other, O(n²).
+//! The regions of K. Weiler, P. Atherton, *Hidden Surface Removal Using Polygon Area Sorting*, SIGGRAPH 1977; their own
+//! way is [`crate::visibility::polygons::regions`]. Class: object space; the result does not depend on pixels. Cost:
+//! O((n + k) log n) on usual scenes, for n faces and k visible pieces of edges; at worst every face lies over every
+//! other, O(n²).
 //!
 //! The paper divides the picture along the outline of the nearest polygon, throws away what is behind it,
 //! and goes on with the rest, again and again; polygons that penetrate are split. Here all divisions are
@@ -44,7 +44,7 @@ use faces::{Face, Frame};
 use merge::{NOTHING, Patch};
 use planar::Planar;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "planar-map",
     title: "Visible regions by a planar map",
@@ -82,7 +82,7 @@ pub enum Step {
     Divide {
         /// One end.
         from: DVec2,
-        /// The other.
+        /// The other end.
         to: DVec2,
     },
     /// The planar map is complete.
@@ -131,7 +131,7 @@ pub struct VisibleMap {
     pub(super) shown: Vec<Option<(DVec2, u32)>>,
 }
 
-/// Divides the picture of a scene into what is visible in it.
+/// Divides the picture of a scene into its visible regions.
 ///
 /// ```
 /// use durer::math::{DMat4, DVec3, Vec3};
@@ -175,7 +175,7 @@ pub fn solve(
     Ok(map)
 }
 
-/// Returns the order of the stages; `more` gives further edges that divide the picture.
+/// Runs the stages in their order; `more` returns further edges that divide the picture.
 pub(super) fn divide(
     scene: &Scene,
     view: &View,
@@ -208,7 +208,7 @@ pub(super) fn divide(
     Ok(VisibleMap { frame, faces, cells, map, shown })
 }
 
-/// Faces of the map that one task looks at.
+/// Number of faces of the map in one task.
 const TASK: usize = 1 << 13;
 
 /// Finds the visible item in each face of the map.

@@ -24,7 +24,7 @@ pub struct Planar {
     around: Vec<u32>,
     /// Those of vertex i are `around[starts[i]..starts[i + 1]]`.
     starts: Vec<u32>,
-    /// The face to the left of each half-edge. Face 0 is what lies around everything.
+    /// Face to the left of each half-edge. Face 0 is the outer face.
     pub face_of: Vec<u32>,
     pub face_count: usize,
     /// Connected parts.
@@ -79,7 +79,7 @@ impl Planar {
         &self.around[from as usize..to as usize]
     }
 
-    /// For each half-edge the next along the border of the face to its left, where only edges that `keep`
+    /// Returns, for each half-edge, the next along the border of the face to its left, where only edges that `keep`
     /// accepts count; `NONE` for the others.
     pub fn successors(&self, keep: impl Fn(usize) -> bool) -> Vec<u32> {
         let mut next = vec![NONE; self.edges.len() * 2];
@@ -138,7 +138,7 @@ impl Planar {
         self.face_count = count as usize;
     }
 
-    /// Half-edges by the face to their left: those of face i are `list[starts[i]..starts[i + 1]]`.
+    /// Returns the half-edges by the face to their left: those of face i are `list[starts[i]..starts[i + 1]]`.
     pub fn borders(&self) -> (Vec<u32>, Vec<u32>) {
         let mut starts = vec![0u32; self.face_count + 2];
         for &face in &self.face_of {

@@ -32,7 +32,7 @@ pub struct Areas {
 }
 
 impl Areas {
-    /// Takes a triangle's edges in pixels first … end − 1.
+    /// Creates the coverage of a triangle's edges in pixels first … end − 1.
     #[inline(always)]
     pub fn new<S: Simd>(simd: S, edges: &RowEdges<S>, [first, end]: [i32; 2]) -> Self {
         let (zero, nowhere) = (f32x4::splat(simd, 0.0), f32x4::splat(simd, NOWHERE));
@@ -42,7 +42,7 @@ impl Areas {
         let per_pixel = slanted.select(edges.height / width, zero);
         let upright = slanted.select(zero, edges.height);
         let (left, right) = (edges.left.max(from), edges.right.min(end));
-        // Nor do edges that are not in the row or wholly beside the pixels lie anywhere.
+        // Edges that are not in the row, or are wholly beside the pixels, count as nowhere, too.
         let here = left.simd_le(right);
         let is_cut = edges.left.simd_lt(from).to_bitmask() != 0;
         let outside = is_cut.then(|| {

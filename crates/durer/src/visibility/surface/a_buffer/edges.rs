@@ -34,7 +34,7 @@ impl Slopes {
         let right_per_down = down.simd_eq(zero).select(zero, (lower_x - upper_x) / down);
         let [a, b]: [Lanes<f64>; 2] = edges.gain().map(|gain| gain.into());
         let direction = |i: usize| Direction::new(a[i] as f32, b[i] as f32);
-        // Not by `map`, which would be a call.
+        // No `map`, which would be a call.
         let directions = [direction(0), direction(1), direction(2)];
         Self { right_per_down: right_per_down.into(), directions }
     }
@@ -137,7 +137,8 @@ pub struct Functions<S: Simd> {
 const COLUMNS_F64: [f64; EIGHT] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 impl<S: Simd> Functions<S> {
-    /// At the centres of eight pixels, of which the first is this many columns after the first.
+    /// Returns the edge functions at the centres of eight pixels; the first is this many columns after the first of the
+    /// row.
     #[inline(always)]
     pub fn at(&self, simd: S, columns: usize) -> [f32x8<S>; 3] {
         let columns = f64x8::from_slice(simd, &COLUMNS_F64) + columns as f64;
@@ -208,7 +209,7 @@ impl<S: Simd> RowEdges<S> {
     #[inline(always)]
     pub fn columns(&self, simd: S, [x0, x1]: [i32; 2]) -> [i32; 2] {
         let (lo, hi) = (simd.reduce_min_f32x4(self.left), simd.reduce_max_f32x4(self.right));
-        // Where lo is negative, rounding towards zero is as good: x0 is not.
+        // If lo is negative, rounding towards zero is as good: x0 is not negative.
         [(lo as i32).max(x0), (hi as i32).saturating_add(1).min(x1)]
     }
 }

@@ -5,7 +5,7 @@ use super::mask::Direction;
 use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 use fearless_simd::Simd;
 
-/// See the module.
+/// A triangle with the data that all its fragments share.
 #[derive(Debug, Clone, Copy)]
 pub struct Face {
     pub triangle: u32,
@@ -13,7 +13,7 @@ pub struct Face {
     pub slopes: Slopes,
     /// Change of depth over half a pixel in both directions.
     pub half_depth: f32,
-    /// Towards the far plane, if that is near.
+    /// Direction to the far plane, if that is near.
     pub far: Option<Direction>,
 }
 

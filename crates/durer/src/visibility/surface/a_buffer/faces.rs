@@ -8,8 +8,8 @@ use fearless_simd::Simd;
 
 /// The triangles that touch a row anywhere, not only at pixels' centres.
 ///
-/// They come by their smallest depth, so that most of what is hidden in a pixel comes after what
-/// hides it. The picture does not depend on that order, only the work.
+/// They come by their smallest depth, so that most hidden fragments of a pixel come after those that hide them. The
+/// picture does not depend on that order, only the work.
 pub struct Faces<'a> {
     input: &'a SurfaceInput<'a>,
     /// The triangles by first row.
@@ -21,7 +21,7 @@ pub struct Faces<'a> {
     before: Vec<Active>,
     /// Depth and number of those that begin in the row.
     order: Vec<u64>,
-    /// The active ones and what was computed of those that were looked at, by place; some places are free.
+    /// Active triangles, with the data computed for those that were used, by place; some places are free.
     places: Vec<(ScreenTriangle, Face)>,
     free: Vec<u32>,
     /// True if some items come in several pieces.

@@ -19,7 +19,7 @@ pub struct Fragment {
     pub item: u32,
     /// Index of its triangle.
     pub triangle: u32,
-    /// The sub-pixels it covers; it hides what is behind these.
+    /// Sub-pixels that it covers; it hides fragments behind these.
     pub mask: u64,
     /// The sub-pixels that decide whether it is seen: the mask, or the nearest one where that is
     /// empty.
@@ -52,7 +52,7 @@ pub struct Pool<'a> {
 }
 
 impl<'a> Pool<'a> {
-    /// For rows of this width and as many fragments at a time.
+    /// Creates a pool for rows of this width and as many fragments at a time as `max_fragments`.
     pub fn new(table: &'a MaskTable, width: u32, max_fragments: usize) -> Self {
         Self {
             table,
@@ -65,7 +65,7 @@ impl<'a> Pool<'a> {
         }
     }
 
-    /// Returns the bytes of the fragments, and of what is kept for each column.
+    /// Returns the bytes of the fragments, and of the data kept for each column.
     pub fn bytes(&self) -> u64 {
         let columns = size_of::<u32>() + size_of::<f32>() + size_of::<Cover>();
         let fragments = self.fragments.capacity() * PER_FRAGMENT;
@@ -89,8 +89,8 @@ impl<'a> Pool<'a> {
         self.hidden_from[x as usize]
     }
 
-    /// In which of the first `count` of eight pixels from x on something can be seen at these depths, as
-    /// bits.
+    /// Returns, as bits, in which of the first `count` of eight pixels from x on something can be seen at these
+    /// depths.
     #[inline(always)]
     fn seen<S: Simd>(&self, simd: S, x: i32, count: i32, depths: f32x8<S>) -> u64 {
         let hidden_from = &self.hidden_from[x as usize..][..EIGHT];
@@ -145,8 +145,8 @@ impl<'a> Pool<'a> {
         &self.fragments[number as usize]
     }
 
-    /// Adds a triangle's fragments in pixels x0 … x1 − 1 of row y, where `passes` says that it is
-    /// there; calls `added` with the column of each. Says whether there was room for all of them.
+    /// Adds a triangle's fragments in pixels x0 … x1 − 1 of row y, where `passes` returns true; calls `added` with the
+    /// column of each. Returns whether there was room for all of them.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "one call, all of it a row's state")]
     pub fn add<S: Simd>(
@@ -172,7 +172,7 @@ impl<'a> Pool<'a> {
         let areas = Areas::new(simd, &parts, columns);
         let functions = edges.functions(simd, columns[0], y);
         let row = Row { t, face, depths, areas, functions, columns };
-        // Most triangles have no more pixels than these.
+        // Most triangles have no pixels but these.
         let mut next = (columns[0], 0.0);
         let mut room = self.add_eight(simd, &row, &mut next, part > 1, &mut passes, &mut added);
         while room && next.0 < columns[1] {
@@ -181,7 +181,7 @@ impl<'a> Pool<'a> {
         room
     }
 
-    /// Adds a triangle's fragments in up to eight pixels from `next` on, a column and the area before it. Says
+    /// Adds a triangle's fragments in up to eight pixels from `next` on, a column and the area before it. Returns
     /// whether there was room, if it is `limited`.
     #[inline(always)]
     fn add_eight<S: Simd>(
@@ -285,8 +285,8 @@ struct Depths<'a> {
 }
 
 impl Depths<'_> {
-    /// In eight pixels from column x on: at the centre, as [`plane_depth`] has it, the smallest and the
-    /// largest.
+    /// Returns the depths in eight pixels from column x on: at the centre, as [`plane_depth`] has it, the smallest and
+    /// the largest.
     #[inline(always)]
     fn of_eight<S: Simd>(&self, simd: S, x: i32) -> [f32x8<S>; 3] {
         let (t, [from_x, from_y]) = (self.t, self.from);
@@ -325,7 +325,7 @@ impl Cover {
 }
 
 impl Fragment {
-    /// Takes away what is beyond the far plane; `depth` is that at the pixel's centre.
+    /// Removes what is beyond the far plane; `depth` is that at the pixel's centre.
     #[cold]
     fn cut_off(&mut self, table: &MaskTable, far: &Direction, depth: f32) {
         let before = self.mask & table.half_plane(far, 1.0 - depth);

@@ -154,7 +154,7 @@ impl MaskTable {
         let (zero, last) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, LAST_DISTANCE));
         let (mut places, mut turned) = ([[0; EIGHT]; 3], [0; 3]);
         for (i, (direction, centers)) in functions.iter().enumerate() {
-            // Powers of two change no rounding.
+            // Scaling by powers of two does not change the rounding.
             let per_center = direction.scale * (DISTANCES as f32 / scale);
             let step = *centers * per_center + 0.5 * DISTANCES as f32;
             let place = simd.cvt_i32_f32x8(step.max(zero).min(last));

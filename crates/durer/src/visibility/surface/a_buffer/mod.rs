@@ -49,7 +49,7 @@ use fragment::{Fragment, PER_FRAGMENT, Pool};
 use mask::MaskTable;
 use resolve::{Pixel, Place};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "a-buffer",
     title: "A-buffer",
@@ -75,7 +75,7 @@ pub enum Mask {
 }
 
 impl Mask {
-    /// Sub-pixels along the side of a pixel.
+    /// Returns the number of sub-pixels along the side of a pixel.
     fn side(self) -> u32 {
         match self {
             Self::M16 => 4,
@@ -87,7 +87,7 @@ impl Mask {
 /// Bytes for each triangle of the input.
 pub(super) const PER_TRIANGLE: u64 = Faces::PER_TRIANGLE + ActiveList::PER_TRIANGLE;
 
-/// Options for the planes of the picture.
+/// Options for rendering with the A-buffer.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// Resolution of the masks.
@@ -95,16 +95,16 @@ pub struct Options {
     /// Fragments kept at a time. Bounds memory to 44 bytes times this; a row with more is made in
     /// parts, so a low limit costs time and changes no pixel.
     pub max_fragments: usize,
-    /// `None` = by material.
+    /// Shading; `None` = by material.
     pub shading: Option<Shading>,
     /// Background of the picture.
     pub background: Background,
-    /// The SIMD level to work at; all give the same bytes.
+    /// SIMD level; all levels produce the same bytes.
     pub level: Level,
 }
 
 impl Default for Options {
-    /// 4 × 4 masks, a million fragments, by material, on white.
+    /// Returns the default: 4 × 4 masks, a million fragments, by material, on white.
     fn default() -> Self {
         let picture::Options { shading, background, level } = picture::Options::default();
         Self { mask: Mask::M16, max_fragments: 1 << 20, shading, background, level }
@@ -142,14 +142,14 @@ pub enum Step {
         x: i32,
         /// Its item.
         item: u32,
-        /// 0 … 1; with its alpha.
+        /// Share of the pixel, 0 … 1; alpha included.
         share: f32,
     },
     /// The background gets the rest of a pixel.
     Background {
         /// The column.
         x: i32,
-        /// 0 … 1.
+        /// Share of the pixel, 0 … 1.
         share: f32,
     },
 }
@@ -256,7 +256,7 @@ impl Rows<'_> {
         picture.write_sums(y as u32, &self.queue.sums);
     }
 
-    /// Collects the fragments of a part of a row; says whether there was room.
+    /// Collects the fragments of a part of a row; returns whether there was room.
     #[inline(always)]
     fn collect<S: Simd>(
         &mut self,
@@ -311,7 +311,7 @@ impl Rows<'_> {
             let place = Place { triangles: &input.triangles, table, x, y };
             queue.sums[x as usize] = Vec4::ZERO;
             if let Some(only) = pool.only(x).filter(|f| !f.blended) {
-                // Most pixels.
+                // This is the case for most pixels.
                 if only.area > 0.0 {
                     t.step(|| Step::Share { x, item: only.item, share: only.area });
                     queue.add(simd, lit, point_at(only.item, [x, y], only.area), None);
@@ -346,7 +346,7 @@ fn point_at(item: u32, at: [i32; 2], weight: f32) -> ShadingPoint {
     ShadingPoint { item, at, pixel: at[0] as u32, weight }
 }
 
-/// Makes a part of a row; says whether there was room for its fragments.
+/// Makes a part of a row; returns whether there was room for its fragments.
 #[simd]
 fn part_of_row<S: Simd, T: Tracer<Step>>(
     simd: S,

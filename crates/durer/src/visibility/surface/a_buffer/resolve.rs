@@ -31,9 +31,9 @@ pub struct Place<'a> {
 }
 
 impl Pixel {
-    /// Takes the fragments of a pixel: what lies wholly behind opaque fragments that cover all is
-    /// dropped, pieces of one face become one fragment, the rest is sorted front to back.
-    /// `in_pieces` says whether there are such pieces at all.
+    /// Collects the fragments of a pixel: those wholly behind opaque fragments that cover all are dropped, pieces of
+    /// one face become one fragment, the rest is sorted front to back. `in_pieces` is true if there are such pieces at
+    /// all.
     #[inline(always)]
     pub fn begin(&mut self, pool: &Pool<'_>, x: i32, full: u64, in_pieces: bool) {
         let hidden_from = pool.hidden_from(x);
@@ -45,7 +45,7 @@ impl Pixel {
             // Depths are at least 0, so that their bits grow with them.
             let z_min = pool.fragment(number).z_min + 0.0;
             if z_min <= hidden_from {
-                // The latest are the farthest for the most part.
+                // The latest are mostly the farthest.
                 self.order.push(!(u64::from(z_min.to_bits()) << 32 | u64::from(number)));
                 sink(&mut self.order);
             }
@@ -68,7 +68,7 @@ impl Pixel {
     /// leaves fragments out, that does not depend on the order in which they came.
     #[inline(always)]
     fn drop_hidden(&mut self, full: u64) {
-        // What hides the farthest may hide the one before it.
+        // A fragment that hides the farthest may hide the one before it.
         while let Some(last) = self.fragments.last() {
             let (mut covered, farthest) = (0, last.z_min);
             for f in &self.fragments {
@@ -87,7 +87,7 @@ impl Pixel {
         self.fragments.iter().any(|f| f.blended)
     }
 
-    /// Opaque fragments: by their exact areas, as far as their sub-pixels are seen.
+    /// Resolves opaque fragments: by their exact areas, as far as their sub-pixels are seen.
     #[inline(always)]
     pub fn resolve_opaque(&mut self, place: &Place<'_>) {
         if let [only] = self.fragments[..] {
@@ -103,7 +103,7 @@ impl Pixel {
         for i in 0..self.fragments.len() {
             let f = &self.fragments[i];
             let (mut visible, mut area) = (f.seen_by, f.area);
-            // Sub-pixels of its own alone can be hidden by nothing.
+            // Nothing can hide sub-pixels that only this fragment covers.
             if f.mask == 0 || f.mask & twice != 0 {
                 visible = self.seen_of(i, twice, place);
                 area *= visible.count_ones() as f32 / f.seen_by.count_ones().max(1) as f32;
@@ -124,7 +124,7 @@ impl Pixel {
     #[inline(always)]
     fn seen_of(&self, i: usize, twice: u64, place: &Place<'_>) -> u64 {
         let f = &self.fragments[i];
-        // All that is wholly before it comes before it.
+        // All fragments wholly before it come before it.
         let before = self.fragments[..i].iter();
         let hidden = before.fold(0, |masks, g| masks | if g.z_max < f.z_min { g.mask } else { 0 });
         let mut visible = f.seen_by & !hidden;
@@ -157,8 +157,7 @@ impl Pixel {
         left
     }
 
-    /// Gives the rest of the areas to fragments that continue behind others, if the masks leave no
-    /// background.
+    /// Adds the rest of the areas to fragments that continue behind others, if the masks leave no background.
     #[inline(always)]
     fn give_to_half_hidden(&mut self, mut left: f32) -> f32 {
         for ((f, share), &visible) in self.fragments.iter().zip(&mut self.shares).zip(&self.visible)
@@ -180,7 +179,7 @@ impl Pixel {
         })
     }
 
-    /// Fragments of which some are blended, [in order](Self::is_in_order): composed front to back.
+    /// Resolves fragments some of which are blended, [in order](Self::is_in_order): composes them front to back.
     ///
     /// `alpha` says that of a fragment, by its number; it is not requested what next to nothing of is
     /// seen.
@@ -209,7 +208,7 @@ impl Pixel {
         self.background = all.iter().fold(0.0, |sum, through| sum + through);
     }
 
-    /// Fragments of which some are blended: composed front to back at each sub-pixel, in the order of
+    /// Resolves fragments some of which are blended: composes them front to back at each sub-pixel, in the order of
     /// their depths there.
     ///
     /// `alphas` are those of the fragments, in their order; shares are of colour times alpha.
@@ -274,7 +273,7 @@ fn is_nearer(a: &Fragment, b: &Fragment) -> bool {
 
 fn order(a: &Fragment, b: &Fragment) -> Ordering {
     let depths = a.z_min.total_cmp(&b.z_min).then(a.z_max.total_cmp(&b.z_max));
-    // Of equally far ones the order must not come from the order of the input.
+    // The order of equally far ones must not depend on the order of the input.
     depths.then(a.area.total_cmp(&b.area)).then(a.mask.cmp(&b.mask)).then(a.item.cmp(&b.item))
 }
 
@@ -286,7 +285,7 @@ fn depth_at(f: &Fragment, [u, v]: [f32; 2], place: &Place<'_>) -> f32 {
     depth.clamp(f.z_min, f.z_max)
 }
 
-/// Puts a piece of the same face to another; says whether it did, which is always.
+/// Adds a piece of the same face to another; returns whether it did, which is always the case.
 fn merge(kept: &mut Fragment, piece: &Fragment) -> bool {
     kept.seen_by = match (kept.mask, piece.mask) {
         (0, 0) => kept.seen_by,
@@ -309,8 +308,8 @@ fn in_front(a: &Fragment, b: &Fragment, place: &Place<'_>) -> u64 {
     if a.z_max < b.z_min {
         return full;
     }
-    // A sliver without a sub-pixel of its own lies in the sub-pixels of its neighbours in the same
-    // surface: only what is clearly in front hides it.
+    // A sliver without a sub-pixel of its own is in the sub-pixels of its neighbours in the same surface: only
+    // fragments clearly in front hide it.
     if b.z_max < a.z_min || b.mask == 0 {
         return 0;
     }

@@ -11,7 +11,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 /// Slices around each pixel.
 const SLICES: usize = 3;
 
-/// Looks at the depth plane in each of the two directions of a slice.
+/// Number of samples of the depth plane in each of the two directions of a slice.
 const STEPS: usize = 5;
 
 /// Neighbours whose planes are farther apart than this part of the radius are different surfaces.
@@ -20,7 +20,7 @@ const SAME_SURFACE: f32 = 0.05;
 /// The order in which the pixels of the pattern turn their slices: a Bayer matrix.
 const TURNS: [usize; 16] = [0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5];
 
-/// By which part of a step pixels of each turn look farther.
+/// Part of a step by which the samples of the pixels of each turn are farther away.
 const JITTER: [f32; 16] = [
     0.03, 0.53, 0.28, 0.78, 0.16, 0.66, 0.41, 0.91, 0.09, 0.59, 0.34, 0.84, 0.22, 0.72, 0.47, 0.97,
 ];
@@ -36,7 +36,7 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
-    /// For a picture of `height` pixels; `radius` in world units.
+    /// Creates the surroundings for a picture of `height` pixels; `radius` in world units.
     pub fn new(view: &View, height: u32, radius: f32) -> Self {
         let shown = match view.camera().projection {
             Projection::Perspective { fov_y } => 2.0 * libm::tan(fov_y * 0.5),
@@ -57,7 +57,7 @@ impl Surroundings {
             let side = |side: f32| {
                 let step = |step: usize| {
                     let part = (step as f32 + JITTER[turn]) * (1.0 / STEPS as f32);
-                    // Closer together where they are near.
+                    // The samples are closer together near the pixel.
                     let away = along * (side * (1.0 + part * part * reach));
                     [away.x, away.y].map(nearest)
                 };
@@ -121,7 +121,7 @@ struct Points<S: Simd> {
 }
 
 impl<S: Simd> Points<S> {
-    /// Returns those from the column `x` on; `None` if they show nothing.
+    /// Returns the points from the column `x` on; `None` if they show nothing.
     #[inline(always)]
     fn get(simd: S, planes: &Planes, x: i32, y: i32) -> Option<Self> {
         let at = planes.place(x, y);
@@ -175,7 +175,7 @@ pub fn light_of_row<S: Simd>(
     }
 }
 
-/// Returns the part of the light that gets to sixteen pixels: those that look equally far together.
+/// Returns the part of the light that reaches sixteen pixels; those with the same reach are lit together.
 #[inline(always)]
 fn light<S: Simd>(
     simd: S,
@@ -196,7 +196,7 @@ fn light<S: Simd>(
     let reach = reach.map(rounded_down);
     let mut light = [1.0; LANES];
     for lane in 0..LANES {
-        // What is as far away as a lane before has been lit with it.
+        // A lane with the reach of an earlier lane has been lit with it.
         if reach[lane] < 1.0 || reach[..lane].contains(&reach[lane]) {
             continue;
         }
@@ -228,7 +228,7 @@ fn light_above<S: Simd>(
     let splat = |v: f32| f32x16::splat(simd, v);
     let mut sum = splat(0.0);
     for (along, sides) in &looks.slices {
-        // The plane of the sight and a direction of the screen.
+        // Plane through the line of sight and a direction on the screen.
         let forth = to_eye.x * along.x + to_eye.y * along.y;
         let on_screen = Vec3x16 { x: splat(along.x), y: splat(along.y), z: splat(0.0) };
         let across = on_screen.minus(to_eye.scale(forth));
@@ -244,7 +244,7 @@ fn light_above<S: Simd>(
             (splat(1.0) - cos_n * cos_n).max(splat(0.0)).sqrt().copysign(in_plane.dot(across));
         let mut arcs = splat(0.0);
         for (side, pixels) in [-1.0_f32, 1.0].into_iter().zip(sides) {
-            // The horizon of the surface itself, cos(n ± π/2), and what rises above it.
+            // Horizon of the surface itself, cos(n ± π/2), and the highest horizon above it.
             let low = sin_n * -side;
             let highest = highest(simd, planes, around, (points, to_eye), low, pixels);
             arcs += arc(simd, side, highest, [cos_n, sin_n]);
@@ -268,7 +268,7 @@ fn highest<S: Simd>(
     let mut highest = low;
     for [dx, dy] in pixels {
         let (x, y) = (points.x + dx, points.y + dy);
-        // Numbers below 0 become larger than the height.
+        // Negative numbers become larger than the height.
         if y as u32 >= planes.height {
             continue;
         }
@@ -277,7 +277,7 @@ fn highest<S: Simd>(
         let fading = squared * around.per_radius_squared;
         let cosine = delta.dot(to_eye) / squared.sqrt();
         let above = low + (cosine - low) * (splat(1.0) - fading);
-        // Not so where nothing is, because that is not a number.
+        // False where nothing is visible: the values are NaN there.
         let counts = fading.simd_lt(splat(1.0)) & squared.simd_gt(splat(0.0));
         highest = (counts & above.simd_gt(highest)).select(above, highest);
     }
@@ -290,12 +290,12 @@ fn arc<S: Simd>(simd: S, side: f32, cos_h: f32x16<S>, [cos_n, sin_n]: [f32x16<S>
     let one = f32x16::splat(simd, 1.0);
     let h = arc_cos(simd, cos_h) * side;
     let sin_h = (one - cos_h * cos_h).sqrt() * side;
-    // cos(2h − n), by the sums of angles.
+    // cos(2h − n), by the addition theorem.
     let cos = (cos_h * cos_h * 2.0 - 1.0) * cos_n + sin_h * cos_h * sin_n * 2.0;
     (cos_n - cos + h * sin_n * 2.0) * 0.25
 }
 
-/// Sets the mean over the pattern's size around the pixels of a row, of what is on the same surface.
+/// Sets the pixels of a row to the mean over the pattern's size around them, of everything on the same surface.
 #[simd]
 pub fn mean_of_row<S: Simd>(
     simd: S,
@@ -336,7 +336,7 @@ fn mean<S: Simd>(
         for x in points.x - half..points.x + half {
             let apart = place_of(simd, planes, x, y).minus(points.place).dot(points.normal).abs();
             let weight = splat(1.0) - apart * same;
-            // No number is above 0 where nothing is.
+            // Where nothing is visible the weight is NaN, which is not above 0.
             let weight = weight.simd_gt(splat(0.0)).select(weight, splat(0.0));
             let at = planes.place(x, y);
             sum += weight * f32x16::from_slice(simd, &rough[at..at + LANES]);
@@ -348,12 +348,11 @@ fn mean<S: Simd>(
 
 /// Returns the nearest whole number; half goes away from zero.
 fn nearest(v: f32) -> i32 {
-    // Without SSE 4.1 rounding is a call.
+    // Without SSE 4.1, rounding is a function call.
     (v + 0.5_f32.copysign(v)) as i32
 }
 
-/// Returns the next number below with two bits after its first, so that neighbours look equally
-/// far.
+/// Returns the next number below with two bits after its first, so that neighbours have the same reach.
 fn rounded_down(reach: f32) -> f32 {
     f32::from_bits(reach.to_bits() & 0xffe0_0000)
 }

@@ -24,7 +24,7 @@ use crate::view::View;
 use horizon::{Surroundings, light_of_row, mean_of_row};
 use planes::Planes;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "ambient-occlusion",
     title: "Ambient occlusion by horizons in the depth plane",
@@ -39,7 +39,7 @@ pub const INFO: Info = Info {
     pseudocode: &[],
 };
 
-/// From so much light on nothing is taken away: a flat floor seen from aside misses a hundredth by the steps of
+/// Amount of light from which on nothing is taken away: a flat floor seen from aside misses a hundredth by the steps of
 /// its depth.
 const OPEN: f32 = 0.98;
 

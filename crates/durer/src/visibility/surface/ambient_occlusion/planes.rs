@@ -21,11 +21,11 @@ const PHASES_SHIFT: u32 = PATTERN.trailing_zeros();
 /// Numbers before and after those of a row, so that looks beyond the picture find that nothing is there.
 const MARGIN: usize = ((FARTHEST as usize + 1) >> PHASES_SHIFT) + LANES + 1;
 
-/// Distances and normals of what a picture shows, in the directions of the screen: to the right, down, and back
-/// to the eye.
+/// Distances and normals of the visible surfaces, in the directions of the screen: to the right, down, and back to the
+/// eye.
 ///
-/// Of each row, the pixels at 0, 4, 8 … come first, then those at 1, 5, 9 …: those that look in the same
-/// directions lie side by side, and what they look at does too.
+/// Of each row, the pixels at 0, 4, 8 … come first, then those at 1, 5, 9 …: those with the same directions are side by
+/// side, and so are their samples.
 pub struct Planes {
     pub width: u32,
     pub height: u32,
@@ -70,12 +70,12 @@ impl Planes {
         Self { back, normal: normals, ..empty }
     }
 
-    /// Numbers of a row, all phases with their margins.
+    /// Returns the number of values in a row, all phases with their margins.
     pub fn row_len(&self) -> usize {
         PATTERN * self.stride
     }
 
-    /// Numbers of a plane.
+    /// Returns the number of values in a plane.
     pub fn len(&self) -> usize {
         self.row_len() * self.height as usize
     }
@@ -120,7 +120,7 @@ impl Lens {
             * view.screen_from_world().inverse();
         let [x, y, z, w] = [0, 1, 2, 3].map(|i| from_screen.col(i));
         let perspective = matches!(camera.projection, Projection::Perspective { .. });
-        // In perspective, the last coordinate of what is homogeneous is the same for all that is in front.
+        // In perspective, the last homogeneous coordinate is the same for all points in front.
         let scale = if perspective { [0.0, 1.0 / w.z] } else { [1.0 / w.w, 0.0] };
         Self {
             axes: axes.map(|a| a.as_vec3()),

@@ -22,7 +22,7 @@ pub struct Glazed<'a> {
     lit: Lit<'a>,
 }
 
-/// Bytes for each pixel: what is opaque there, the sum over it, and a colour.
+/// Bytes for each pixel: the opaque surface, the sum over it, and a colour.
 pub const PER_PIXEL: u64 = Visible::PER_SAMPLE + size_of::<(Option<Vec4>, [u8; 4])>() as u64;
 
 impl<'a> Glazed<'a> {

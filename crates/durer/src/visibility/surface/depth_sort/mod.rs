@@ -41,7 +41,7 @@ use relation::Verdict;
 use std::collections::BinaryHeap;
 use tiles::Tiles;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "depth-sort",
     title: "Newell–Newell–Sancha depth sort",
@@ -71,7 +71,7 @@ pub const INFO: Info = Info {
 /// Bytes for each triangle of the input.
 pub(super) const PER_TRIANGLE: u64 = Pieces::PER_TRIANGLE;
 
-/// Options for the planes of the picture.
+/// Options for rendering with depth sort.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Options {
     /// Shading and background.
@@ -136,7 +136,7 @@ pub enum Step {
     Split {
         /// Number of the polygon.
         polygon: u32,
-        /// By what.
+        /// Cut that divides it.
         cut: Cut,
         /// The two pieces: the one on the cut's inner side first.
         pieces: [u32; 2],
@@ -181,7 +181,7 @@ impl ScreenPolygon {
         }
     }
 
-    /// The pixels that it covers: its share of the triangle's.
+    /// Emits the pixels that it covers: its share of the triangle's.
     pub fn spans(&self, input: &SurfaceInput<'_>, mut emit: impl FnMut(Span)) {
         match &self.part {
             Some(part) => part.spans.iter().for_each(|&span| emit(span)),
@@ -208,9 +208,9 @@ pub fn order(input: &SurfaceInput<'_>, t: &mut impl Tracer<Step>) -> Result<Vec<
     order_after(input, &[], t)
 }
 
-/// [`order`] with frame-to-frame coherence: polygons are examined as they stood in an order of the same scene
-/// seen before, not from far to near. `previous` has that order's items. Any list gives an order that is as
-/// right; the picture is the same. Little is saved: a tenth of the moves, where frames are a degree apart.
+/// Sorts polygons as [`order`] does, with frame-to-frame coherence: they are examined as in an order of the same scene
+/// seen before, not from far to near. `previous` has that order's items. With any list the order is as right, and the
+/// picture is the same. Little is saved: a tenth of the moves, where frames are a degree apart.
 ///
 /// # Errors
 /// As [`order`].
@@ -228,7 +228,7 @@ pub fn order_after(
 const COMPARISONS: u64 = 1 << 26;
 const COMPARISONS_PER_TRIANGLE: u64 = 4096;
 
-/// [`order_after`] with this many comparisons at most.
+/// Sorts polygons as [`order_after`] does, with at most `most` comparisons.
 fn order_within(
     input: &SurfaceInput<'_>,
     previous: &[u32],
@@ -274,7 +274,7 @@ fn order_within(
 /// are in no order come first, by depth.
 fn turns(input: &SurfaceInput<'_>, previous: &[u32]) -> Vec<u32> {
     let mut places: Vec<(u32, u32)> = previous.iter().copied().zip(0..).collect();
-    // Where an item was in pieces, its first one counts.
+    // Of an item in pieces, the first piece counts.
     places.sort_unstable();
     let turn = |item: u32| {
         let at = places.partition_point(|p| p.0 < item);
@@ -351,7 +351,7 @@ struct Sorter<'a> {
     queue: BinaryHeap<(u32, Key)>,
     /// Placed, or replaced by its pieces.
     done: Vec<bool>,
-    /// Stands in the stack.
+    /// True for each polygon in the stack.
     marked: Vec<bool>,
     /// The round in which a polygon was last tested.
     seen: Vec<u32>,
@@ -379,14 +379,14 @@ impl Sorter<'_> {
         self.stack.push(polygon);
     }
 
-    /// Takes the polygon at this place of the stack off it, and all above.
+    /// Removes the polygon at this place of the stack, and all above.
     fn pop_from(&mut self, place: usize) {
         for polygon in self.stack.drain(place..) {
             self.marked[polygon as usize] = false;
         }
     }
 
-    /// One step with the polygon in question; gives whether it can be painted next.
+    /// Takes one step with the polygon in question; returns whether it can be painted next.
     fn advance(&mut self, p: u32, t: &mut impl Tracer<Step>) -> bool {
         t.step(|| Step::Look { polygon: p });
         match self.obstacle(p, t) {
@@ -438,8 +438,8 @@ impl Sorter<'_> {
         None
     }
 
-    /// P and Q penetrate each other, or Q waits for P: one that takes part is split. Gives false
-    /// where none can be.
+    /// Splits a polygon where P and Q penetrate each other, or Q waits for P: one that takes part; returns `false`
+    /// where none can be split.
     fn resolve(&mut self, p: u32, q: u32, verdict: Verdict, t: &mut impl Tracer<Step>) -> bool {
         if self.split(p, &Cut::along(q), t) {
             return true;

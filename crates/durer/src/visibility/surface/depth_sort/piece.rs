@@ -16,11 +16,11 @@ pub enum Cut {
         /// The other polygon.
         of: u32,
     },
-    /// Along an edge of the triangle of another polygon, from this vertex to the next.
+    /// Line along an edge of the triangle of another polygon, from this vertex to the next.
     Edge {
         /// The other polygon.
         of: u32,
-        /// The vertex.
+        /// Number of the edge's first vertex.
         edge: usize,
     },
     /// Left of a column of pixels.

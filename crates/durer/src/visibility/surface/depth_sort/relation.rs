@@ -17,8 +17,8 @@ pub enum Verdict {
 }
 
 impl Pieces<'_> {
-    /// May P be painted before Q? If Q is marked, it is not enough that planes forbid it: there must
-    /// be a pixel at which P hides Q.
+    /// Decides whether P may be painted before Q. If Q is marked, a conflict of planes is not enough against it: there
+    /// must be a pixel at which P hides Q.
     pub fn judge(&self, p: u32, q: u32, marked: bool) -> Verdict {
         if self.is_behind(p, q) {
             return Verdict::Passed(Test::Depths);
@@ -46,7 +46,7 @@ impl Pieces<'_> {
         self.compare_pixels(p, q)
     }
 
-    /// Test 1; of equal depths the higher item is behind.
+    /// Returns whether P is behind Q (test 1); of equal depths the higher item is behind.
     fn is_behind(&self, p: u32, q: u32) -> bool {
         let p = (self.nearest(p), self.triangle(p).item);
         let q = (self.farthest(q), self.triangle(q).item);

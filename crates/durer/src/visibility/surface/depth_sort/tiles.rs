@@ -30,8 +30,8 @@ impl Tiles {
         tiles
     }
 
-    /// Returns the bytes that the lists of these polygons take, before they are made: large polygons are in many. Lists that
-    /// have grown have room for up to twice as many.
+    /// Returns the bytes that the lists of these polygons take, before they are made: large polygons are in many. Lists
+    /// that have grown have room for up to twice as many.
     pub fn bytes(pieces: &Pieces<'_>, view: &View) -> u64 {
         let across = |from: i32, to: i32| ((to + TILE - 1) / TILE - from / TILE).max(0) as u64;
         let tiles = |w: &Window| across(w.x0, w.x1) * across(w.y0, w.y1);

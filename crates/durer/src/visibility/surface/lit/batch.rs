@@ -53,8 +53,8 @@ enum Destination {
 }
 
 impl Batch {
-    /// Lights the pixels of a patch that show an item, of which there is one, now or at the latest by
-    /// [`Self::flush`]; its halves of eight pixels go to the given places of `codes`.
+    /// Lights the pixels of a patch that show an item, at least one, now or at the latest by [`Self::flush`]; its
+    /// halves of eight pixels go to the given places of `codes`.
     #[inline(always)]
     pub fn light<S: Simd>(
         &mut self,
@@ -93,8 +93,8 @@ impl Batch {
     }
 
     /// Lights all items of a patch whose pixels have the given samples, and weights them by their samples, as
-    /// [`Self::light`] now or later. Not true, and nothing is done, where there is background among them, where their
-    /// materials, lights or normals ask for more than normals, or where they are of several runs.
+    /// [`Self::light`] now or later. Returns `false`, and takes none of them, where there is background among them,
+    /// where their materials, lights or normals need more than normals, or where they are of several runs.
     #[inline(always)]
     pub fn light_samples<S: Simd>(
         &mut self,
@@ -114,7 +114,7 @@ impl Batch {
             let Some(plane) = self.plane_of(lit, item) else {
                 self.waiting.truncate(first);
                 if item != NO_ITEM {
-                    // What waits may be of a run that is not requested any more.
+                    // The waiting pixels may be of a run that is not requested any more.
                     Self::flush(simd, self, lit, codes);
                 }
                 return false;
@@ -143,8 +143,8 @@ impl Batch {
         lit.settled_plane(item, info.run)
     }
 
-    /// Adds an item of a patch to those that wait from the number `first` on, with its normals and how much it weighs: of each
-    /// pixel in the order in which they come, but together with others that are shown by other pixels.
+    /// Adds an item of a patch to those that wait from the number `first` on, with its normals and how much it weighs:
+    /// of each pixel in the order in which they come, but together with others that are shown by other pixels.
     #[inline(always)]
     fn share<S: Simd>(
         &mut self,
@@ -175,8 +175,8 @@ impl Batch {
         }
     }
 
-    /// Lights what waits, in three loops: a processor looks ahead by less than what there is to do for one patch,
-    /// but by several patches of a third of it.
+    /// Lights the waiting pixels, in three loops: a processor looks ahead by less than the work of one patch, but by
+    /// several patches of a third of that work.
     #[simd]
     pub fn flush<S: Simd>(simd: S, this: &mut Self, lit: &mut Lit<'_>, codes: &mut [u32]) {
         if this.waiting.is_empty() {
@@ -186,7 +186,7 @@ impl Batch {
         let (sight, lights) = (lit.sight, lit.shared.lights);
         for Waiting { vectors, views, patch, .. } in &mut this.waiting {
             let (view, normal) = (sight.towards_eye_x16(simd, *patch), loaded(simd, vectors));
-            // Nobody asks for positions.
+            // Positions are not used.
             let points = Points { position: view, view, normal, faces: Faces::Settled };
             let frame = points.frame();
             (*vectors, *views) = (stored(frame.normal), stored(frame.view));

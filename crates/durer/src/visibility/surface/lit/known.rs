@@ -1,7 +1,7 @@
 //! Normals that were found before anybody requested them by items: where triangles were sampled while they were set up.
 //!
-//! Where pixels have one sample each has room for a normal of its own; where they have four, the samples of a pixel share
-//! those that were found.
+//! Where pixels have one sample each has room for a normal of its own; where they have four, the samples of a pixel
+//! share those that were found.
 
 use crate::shade::lane::Vec3Lane;
 use crate::target::NO_ITEM;
@@ -18,7 +18,7 @@ pub struct KnownNormals {
     places: Vec<u32>,
     /// The normals, and a number that means nothing: by pixel where pixels have one sample.
     normals: Vec<[f32; 4]>,
-    /// Samples of a pixel.
+    /// Number of samples of a pixel.
     samples: usize,
 }
 
@@ -26,8 +26,8 @@ pub struct KnownNormals {
 pub type Known<S> = (mask32x16<S>, Vec3Lane<f32x16<S>>);
 
 impl KnownNormals {
-    /// Makes room for this many pixels of one sample or four, and none of other pixels, of which nothing is
-    /// known.
+    /// Makes room for this many pixels of one sample or four, with nothing known; for pixels with other numbers of
+    /// samples it makes none.
     pub fn new(pixels: usize, samples: usize) -> Self {
         let (rooms, of_pixels) = match samples {
             1 => (pixels, pixels),
@@ -56,7 +56,8 @@ impl KnownNormals {
         self.normals[pixel] = [x, y, z, 0.0];
     }
 
-    /// The same at those of a pixel's four samples where all bits are set.
+    /// Sets the normal of an item at those of a pixel's four samples where all bits of `seen` are set; NaN if it is
+    /// not known.
     #[inline(always)]
     pub fn set_four<S: Simd>(
         &mut self,
@@ -66,7 +67,7 @@ impl KnownNormals {
         [x, y, z]: [f32; 3],
     ) {
         if x.is_nan() {
-            // What is there is of other items, and so not taken for that of this one.
+            // The normals there belong to other items, and so are not taken for that of this one.
             return;
         }
         self.any = true;
@@ -133,7 +134,7 @@ impl KnownNormals {
         Some((known, Vec3Lane::new(x, y, z)))
     }
 
-    /// [`Self::of_patch`] by the first samples of the pixels.
+    /// Returns the normals as [`Self::of_patch`] does, by the first samples of the pixels.
     #[inline(always)]
     fn of_first_samples<S: Simd>(
         &self,

@@ -20,12 +20,12 @@ pub struct Lighting<'a> {
     pub shading: Option<Shading>,
     /// Largest distance from pixels' centres of items that are then lit there, in 1/256 pixel.
     pub reach: i32,
-    /// The SIMD level to work at; all give the same bytes.
+    /// SIMD level; all levels produce the same bytes.
     pub level: Level,
 }
 
 impl<'a> Lighting<'a> {
-    /// Lights by the formula of each material, for tests.
+    /// Creates lighting by the formula of each material, for tests.
     #[cfg(test)]
     pub fn by_material(
         (scene, view, runs): (&'a Scene, &'a View, &'a [Run]),
@@ -38,7 +38,7 @@ impl<'a> Lighting<'a> {
 
     /// Returns the data of their triangles that lighting several pixels of plain materials needs.
     pub fn part(&self) -> Part {
-        // Lights ask where points lie, or shadows which way their faces look.
+        // Lights need the positions of points, and shadows the orientation of their faces.
         let more = !self.lights.shadows.is_empty() || !self.lights.points.is_empty();
         if more { Part::All } else { Part::Normals }
     }
@@ -104,7 +104,7 @@ pub struct RunInfo<'a> {
     pub plain: bool,
     /// True if several pixels can be lit at a time, after their textures were looked up one by one.
     pub together: bool,
-    /// By what sixteen pixels can also be looked up at a time.
+    /// Data by which sixteen pixels can also be looked up at a time.
     pub looked_up: Option<LookedUp<'a>>,
 }
 

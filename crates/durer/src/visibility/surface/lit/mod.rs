@@ -33,13 +33,13 @@ const TEX_COORD_SETS: usize = 4;
 /// The viewpoint of an item's point.
 #[derive(Debug, Clone, Copy)]
 pub enum Seen {
-    /// From the eye, at a pixel's centre.
+    /// View from the eye, at a pixel's centre.
     Pixel(i32, i32),
-    /// From anywhere, as by a ray that was reflected; textures are sampled at full size.
+    /// View from anywhere, as by a ray that was reflected; textures are sampled at full size.
     Point {
         /// Barycentric coordinates of the point.
         weights: Weights,
-        /// Towards where it is seen from, world axes.
+        /// Direction from which it is seen, world axes.
         view: Vec3,
     },
 }
@@ -48,25 +48,25 @@ pub enum Seen {
 pub struct Lit<'a> {
     shared: Lighting<'a>,
     triangles: Triangles<'a>,
-    /// Returns the data of their triangles that lighting several pixels of plain materials needs.
+    /// Data of their triangles that lighting several pixels of plain materials needs.
     part: Part,
     /// The run of the latest item.
     latest: Option<RunInfo<'a>>,
-    /// Towards the eye where projection lines are parallel.
+    /// Direction to the eye where projection lines are parallel.
     parallel_view: Option<Vec3>,
-    /// Towards the eye, by pixel.
+    /// Directions to the eye, by pixel.
     sight: Sight,
     /// The light on the face or at the corners of the latest triangle; for flat and Gouraud.
     reflected: Option<(u32, [Reflected; 3])>,
 }
 
 impl<'a> Lit<'a> {
-    /// For a picture that is made tile by tile.
+    /// Creates the state for a picture that is made tile by tile.
     pub fn new(shared: Lighting<'a>) -> Self {
         Self::keeping(shared, OF_TILES)
     }
 
-    /// For a picture that is made row by row.
+    /// Creates the state for a picture that is made row by row.
     pub fn by_rows(shared: Lighting<'a>) -> Self {
         Self::keeping(shared, OF_ROWS)
     }
@@ -112,7 +112,7 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// Makes the expected triangles ready.
+    /// Prepares the expected triangles.
     pub fn make_ready(&mut self) {
         self.triangles.make_ready();
     }
@@ -120,7 +120,7 @@ impl<'a> Lit<'a> {
     /// Returns linear RGBA, straight alpha, of a point of an item under given lights.
     pub fn color_under(&mut self, item: u32, seen: Seen, lights: &PreparedLights) -> Vec4 {
         self.with_surface_seen(item, seen, |surface, material, _, shading| {
-            // Light on corners or faces would not know what lights reach the point.
+            // Light computed at corners or for faces cannot depend on the lights that reach the point.
             let surface = Surface { lit: None, ..*surface };
             match seen {
                 Seen::Pixel(..) => shade_seen(&surface, material, lights, shading),
@@ -251,7 +251,7 @@ impl<'a> Lit<'a> {
         material: &PreparedMaterial<'_>,
         shading: Shading,
     ) -> Option<[Reflected; 3]> {
-        // Light on corners or faces would not know where shadows fall.
+        // Light computed at corners or for faces cannot depend on shadows.
         let interpolated = matches!(shading, Shading::Flat | Shading::Gouraud);
         if !interpolated || !self.shared.lights.shadows.is_empty() {
             return None;
@@ -280,7 +280,7 @@ impl<'a> Lit<'a> {
     }
 }
 
-/// Texture coordinates at a pixel, and their change to the pixels beside and below it.
+/// Returns texture coordinates at a pixel, and their change to the pixels beside and below it.
 fn tex_coord(corners: &[Vec2; 3], w: Weights, right: Weights, down: Weights) -> TexCoord {
     let at = |w: Weights| corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2];
     let uv = at(w);

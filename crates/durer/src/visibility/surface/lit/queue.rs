@@ -1,4 +1,5 @@
-//! Points of items from anywhere in a picture: lit when there are enough of them, and added to the pixels that show them.
+//! Points of items from anywhere in a picture: lit when there are enough of them, and added to the pixels that show
+//! them.
 
 use super::Lit;
 use crate::math::Vec4;
@@ -72,7 +73,7 @@ impl PointQueue {
     }
 
     /// Adds a point of an item, which is lit now or at the latest by [`Self::flush`]; its normal is given if it is
-    /// known, settled, and all that lighting asks for.
+    /// known, settled, and all that lighting needs.
     #[inline(always)]
     pub fn add<S: Simd>(
         &mut self,

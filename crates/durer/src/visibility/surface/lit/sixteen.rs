@@ -14,7 +14,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
 use fearless_simd_macros::simd;
 
-/// Red, green and blue.
+/// Returns red, green and blue.
 #[inline(always)]
 pub fn opaque<S: Simd>(simd: S, [r, g, b, _]: &[[f32; 16]; 4]) -> [f32x16<S>; 3] {
     let (r, g) = (f32x16::from_slice(simd, r), f32x16::from_slice(simd, g));
@@ -33,7 +33,7 @@ fn chosen<S: Simd>(
 }
 
 impl<'a> Lit<'a> {
-    /// Linear RGBA, straight alpha, of the pixels of a patch: of those with an item, of which there is one.
+    /// Computes the colours, linear RGBA with straight alpha, of the pixels of a patch that have an item, at least one.
     ///
     /// Where the material allows it they are lit together, else one by one; the bits are the same.
     #[simd]
@@ -64,7 +64,7 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// Colours as in [`Self::colors_x16`] of the pixels of a set, all of one run.
+    /// Returns colours as in [`Self::colors_x16`] of the pixels of a set, all of one run.
     #[inline(always)]
     fn colors_of_run<S: Simd>(
         &mut self,
@@ -96,7 +96,8 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// Colours as in [`Self::colors_x16`] of the pixels of a set, all of a run whose textures are looked up together.
+    /// Returns colours as in [`Self::colors_x16`] of the pixels of a set, all of a run whose textures are looked up
+    /// together.
     #[inline(always)]
     fn looked_up_x16<S: Simd>(
         &mut self,
@@ -107,7 +108,7 @@ impl<'a> Lit<'a> {
         patch: Patch,
     ) -> [[f32; 16]; 4] {
         let points = if info.shading == Shading::Unlit {
-            // Nothing is asked of them.
+            // Unlit shading uses none of these vectors.
             let none = Vec3Lane::splat(f32x16::splat(simd, 0.0), Vec3::ZERO);
             Points { position: none, view: none, normal: none, faces: Faces::Settled }
         } else {
@@ -124,7 +125,7 @@ impl<'a> Lit<'a> {
         [color.x.into(), color.y.into(), color.z.into(), alpha.into()]
     }
 
-    /// Returns the same of a run that is lit together after its textures were looked up one by one.
+    /// Returns the colours of a run that is lit together after its textures were looked up one by one.
     #[inline(always)]
     fn sampled_x16<S: Simd>(
         &mut self,
@@ -199,7 +200,8 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// [`Self::points`] where some of the normals may be known; of these, positions are not requested.
+    /// Returns the points as [`Self::points`] does, where some of the normals may be known; of these, positions are
+    /// not requested.
     #[inline(always)]
     pub(super) fn points_known<S: Simd>(
         &mut self,
@@ -221,7 +223,7 @@ impl<'a> Lit<'a> {
         if let Some((known, normal)) = known {
             points.normal = chosen(known, normal, points.normal);
             if let Faces::Seen(faces) = &mut points.faces {
-                // Settled normals are on the side that they show themselves.
+                // Settled normals are on the visible side.
                 *faces = chosen(known, normal, *faces);
             }
         }
@@ -264,7 +266,7 @@ impl<'a> Lit<'a> {
         let faces = if unsettled == 0 {
             Faces::Settled
         } else {
-            // Settled normals are on the side that they show themselves.
+            // Settled normals are on the visible side.
             let mut left = there & !unsettled;
             while left != 0 {
                 let i = left.trailing_zeros() as usize % 16;
@@ -318,7 +320,7 @@ impl<'a> Lit<'a> {
         let faces = if unsettled == 0 {
             Faces::Settled
         } else {
-            // Settled normals are on the side that they show themselves.
+            // Settled normals are on the visible side.
             Faces::Seen(self.face_normals(simd, run, (shown, items), unsettled, normal))
         };
         Points { position, view, normal, faces }

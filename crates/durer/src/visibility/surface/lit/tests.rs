@@ -16,7 +16,7 @@ use crate::visibility::surface::setup::runs;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, u32x16};
 
-/// Options for the camera.
+/// Position of the eye.
 const EYE: DVec3 = DVec3::new(0.3, 0.2, 4.0);
 
 /// Triangles of a run.
@@ -174,7 +174,7 @@ fn light_samples<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> 
     found
 }
 
-/// In every way, what each pixel of patches shows; gives how many of those pixels are settled.
+/// Lights each pixel of patches in every way; returns the number of pixels that are settled.
 fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usize {
     let (mut batch, mut settled) = (Batch::default(), 0);
     let (mut codes, mut expected) = ([0; 16 * 64], [0; 16 * 64]);

@@ -13,7 +13,7 @@ pub struct Box3 {
 }
 
 impl Box3 {
-    /// Contains nothing; the union's neutral element.
+    /// Empty box, the neutral element of the union.
     pub const EMPTY: Self =
         Self { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
 
@@ -33,12 +33,12 @@ impl Box3 {
 /// Probability that a ray meets a box of this extent, up to a factor.
 pub type Likelihood = fn(Vec3) -> f32;
 
-/// For rays of all directions: the surface.
+/// Returns the likelihood for rays of all directions: the surface.
 pub fn surface(e: Vec3) -> f32 {
     e.x * e.y + e.y * e.z + e.z * e.x
 }
 
-/// For rays along z: the face across.
+/// Returns the likelihood for rays along z: the face across.
 pub fn face(e: Vec3) -> f32 {
     e.x * e.y
 }
@@ -107,9 +107,9 @@ impl Bvh {
         Self { nodes, order }
     }
 
-    /// Visits boxes that a ray meets, near ones first. `enter` gives where the ray enters a box, if
-    /// it does; `visit` looks at a box's content and may lower the limit, beyond which nothing is
-    /// visited any more. `stack` is scratch space.
+    /// Visits boxes that a ray meets, near ones first. `enter` returns where the ray enters a box, if it does; `visit`
+    /// tests a box's content and may lower the limit, beyond which nothing is visited any more. `stack` is scratch
+    /// space.
     #[inline]
     pub fn visit(
         &self,
@@ -145,7 +145,7 @@ impl Bvh {
     }
 }
 
-/// Divides boxes in two; gives how many are in the first part. `None` if there is no way to.
+/// Divides boxes in two; returns how many are in the first part. `None` if there is no way to.
 fn split(boxes: &[Box3], part: &mut [u32], depth: u32, likelihood: Likelihood) -> Option<usize> {
     let middle = |i: u32| boxes[i as usize].middle();
     let (lo, hi) = part
@@ -160,7 +160,7 @@ fn split(boxes: &[Box3], part: &mut [u32], depth: u32, likelihood: Likelihood) -
     } else {
         1 + usize::from(extent.z > extent.y)
     };
-    // Also where the extent is not a number.
+    // This is also the case if the extent is NaN.
     if !(extent[axis] > 0.0 && extent[axis] < f32::INFINITY) {
         return None;
     }

@@ -21,8 +21,8 @@ impl<'a> Eye<'a> {
         Self { caster, masks, stack: Vec::new(), layers: Vec::new() }
     }
 
-    /// Casts a ray through a point `offset` (1/256 pixel) from a pixel's centre and gives what is
-    /// opaque; what blends before it is kept until the next one.
+    /// Casts a ray through a point `offset` (1/256 pixel) from a pixel's centre and returns the first opaque hit;
+    /// blended hits before it are kept until the next ray.
     pub fn cast(
         &mut self,
         [x, y]: [i32; 2],
@@ -52,14 +52,14 @@ impl<'a> Eye<'a> {
         opaque
     }
 
-    /// Returns the depth and item of what the latest ray, which found `opaque`, meets first.
+    /// Returns the depth and item of the first hit of the latest ray, which found `opaque`.
     pub fn nearest(&self, opaque: Option<ScreenHit>) -> Option<(f32, u32)> {
         let blended = self.layers.last().map(|l| (l.depth, l.item));
         blended.or(opaque.map(|o| (o.depth, o.item)))
     }
 
-    /// Returns all that the latest ray, which found `opaque`, sees: first what is opaque,
-    /// [`NO_ITEM`] where nothing is, then what blends, far ones first.
+    /// Returns all hits of the latest ray, which found `opaque`: first the opaque item, or [`NO_ITEM`] if there is
+    /// none, then the blended ones, far ones first.
     pub fn items(&self, opaque: Option<ScreenHit>) -> Vec<u32> {
         let opaque = opaque.map_or(NO_ITEM, |o| o.item);
         std::iter::once(opaque).chain(self.layers.iter().map(|l| l.item)).collect()

@@ -39,7 +39,7 @@ use report::Report;
 use whitted::Whitted;
 use world::{Ray, WorldHit, WorldTriangles};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "ray",
     title: "Ray casting and tracing",
@@ -70,12 +70,12 @@ pub const INFO: Info = Info {
 pub(super) const PER_TRIANGLE: u64 = Bvh::PER_BOX;
 pub(super) const PER_PIXEL: u64 = size_of::<([i32; 2], (f32, u32), [u8; 4])>() as u64;
 
-/// Options for the planes of the picture.
+/// Options for rendering with ray casting and ray tracing.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// Shading and background.
     pub look: picture::Options,
-    /// Method that computes shadows.
+    /// True if rays to the lights find shadows.
     pub shadows: bool,
     /// True if rays are followed that mirrors reflect and transparent surfaces refract.
     pub reflections: bool,
@@ -88,7 +88,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Ray casting with one ray per pixel; five generations if reflections are switched on.
+    /// Returns the default: ray casting with one ray per pixel; five generations if reflections are switched on.
     fn default() -> Self {
         Self {
             look: picture::Options::default(),
@@ -104,15 +104,15 @@ impl Default for Options {
 /// Purpose of a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RayKind {
-    /// From the eye through a pixel's centre.
+    /// Ray from the eye through a pixel's centre.
     Primary,
-    /// From the eye through another point of the pixel.
+    /// Ray from the eye through another point of the pixel.
     Sample,
-    /// To a light.
+    /// Ray to a light.
     Shadow,
-    /// Reflected.
+    /// Reflected ray.
     Mirror,
-    /// Through a transparent surface.
+    /// Ray through a transparent surface.
     Refraction,
 }
 
@@ -179,7 +179,7 @@ pub fn render(
             return;
         }
         let world = secondary.then(|| WorldTriangles::new(input));
-        // Secondary rays find for themselves what is behind glass.
+        // Secondary rays find the surfaces behind glass themselves.
         let blended = Some(input.having(Coverage::Blended));
         let blended = blended.filter(|set| !secondary && !set.is_empty());
         let report = listens.then(|| Report::new(input.view));
@@ -198,7 +198,7 @@ pub fn render(
             write(&visible, lighting, &options.look, framebuffer);
         } else {
             write_planes(&visible, lighting, &options.look, framebuffer);
-            // Fewer where the work was stopped.
+            // Fewer if the work was stopped.
             let pixels = framebuffer.color.data_mut();
             pixels.iter_mut().zip(colors).for_each(|(to, color)| *to = color);
         }
@@ -243,7 +243,7 @@ const BAND: i32 = 16;
 struct Band {
     /// Depth and item of the nearest surface at pixels' centres.
     hits: Vec<([i32; 2], (f32, u32))>,
-    /// Empty if rays are only cast to find what is visible.
+    /// Empty if rays are only cast to find visible surfaces.
     colors: Vec<[u8; 4]>,
     steps: Vec<Step>,
 }

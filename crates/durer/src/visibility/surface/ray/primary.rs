@@ -33,8 +33,8 @@ impl<'a> ScreenRays<'a> {
         Self { triangles, bvh: Bvh::new(&boxes, face) }
     }
 
-    /// Returns the nearest triangle at a point `offset` (1/256 pixel) from a pixel's centre of those that
-    /// `hides` says hide what is behind them; it is asked of hits before the nearest so far.
+    /// Returns the nearest triangle at a point `offset` (1/256 pixel) from a pixel's centre of those for which `hides`
+    /// returns that they hide what is behind them. It is called for hits nearer than the nearest so far.
     #[inline]
     pub fn cast(
         &self,

@@ -24,7 +24,7 @@ impl Report {
     }
 
     /// Returns the step of a ray from the eye through a point `offset` (1/256 pixel) from a pixel's centre, with the
-    /// window depth and the item of what it hits.
+    /// window depth and the item of its hit.
     pub fn primary(&self, [x, y]: [i32; 2], offset: [i32; 2], hit: Option<(f32, u32)>) -> Step {
         let place = |v: i32, o: i32| f64::from(v) + 0.5 + f64::from(o) / f64::from(SUBPIXELS);
         let (px, py) = (place(x, offset[0]), place(y, offset[1]));

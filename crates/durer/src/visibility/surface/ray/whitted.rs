@@ -28,7 +28,7 @@ const MOST_LAYERS: usize = 1024;
 /// rounding of its origin.
 const CLEARANCE: f32 = 1.0 / (1 << 18) as f32;
 
-/// Hears of each ray that is cast.
+/// Callback for each ray that is cast.
 type Hear<'h> = &'h mut dyn FnMut(RayKind, u32, &Ray, Option<WorldHit>);
 
 /// One thread's light.
@@ -85,9 +85,8 @@ impl<'a> Whitted<'a> {
         }
     }
 
-    /// Returns linear premultiplied colour at a pixel's centre of what a ray from the eye sees: an
-    /// item, or [`crate::target::NO_ITEM`], and what was seen through without secondary rays, far
-    /// ones first.
+    /// Returns the linear premultiplied colour at a pixel's centre along a ray from the eye: of an item, or
+    /// [`crate::target::NO_ITEM`], and of the items that the ray passed through without secondary rays, far ones first.
     pub fn at_pixel(
         &mut self,
         stack: &[u32],
@@ -248,7 +247,7 @@ impl<'a> Whitted<'a> {
         for (i, light) in lights.points.iter().enumerate() {
             let way = light.position - p.position;
             let (distance, direction) = (way.length(), way.normalize_or_zero());
-            // Not as far as a lamp's own surface around the light.
+            // The ray ends before a lamp's own surface around the light.
             let reach = distance * (1.0 - 16.0 * CLEARANCE);
             let dark = self.in_shadow(world, p, direction, reach, generation, hear);
             self.reaching.points[i].color = if dark { Vec3::ZERO } else { light.color };
@@ -264,7 +263,7 @@ impl<'a> Whitted<'a> {
         generation: u32,
         hear: Hear<'_>,
     ) -> bool {
-        // What faces away from the light is dark without a ray.
+        // A surface that faces away from the light is dark without a ray.
         if direction.dot(p.face_normal) <= 0.0 {
             return false;
         }

@@ -14,9 +14,9 @@ pub struct Ray {
     pub origin: Vec3,
     /// Unit vector.
     pub direction: Vec3,
-    /// Hits nearer than this are left out.
+    /// Smallest distance of a hit; nearer ones are left out.
     pub from: f32,
-    /// Hits farther than this are left out.
+    /// Largest distance of a hit; farther ones are left out.
     pub to: f32,
     /// The item from which it starts, which it cannot hit.
     pub leaves: u32,

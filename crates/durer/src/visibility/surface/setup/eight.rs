@@ -13,20 +13,20 @@ use fearless_simd::{Simd, f32x4, f32x8, f64x8, i32x8, mask32x8, u32x4, u32x8};
 /// Eight triangles after set-up. Bit i of a mask is triangle i's.
 #[derive(Default)]
 pub struct Eight {
-    /// Those with a vertex that is not finite.
+    /// Triangles with a vertex that is not finite.
     pub non_finite: u64,
     /// Finite triangles that extend beyond the near plane or the guard band, so that they must be cut
     /// first; they are left out here.
     pub uncut: u64,
-    /// Those of the others that may be seen.
+    /// Other triangles that may be seen.
     pub seen: u64,
-    /// Those that are seen and were sampled at once; the others may be requested by [`Self::triangle`].
+    /// Triangles that are seen and were sampled at once; the others may be requested by [`Self::triangle`].
     pub sampled: Sampled,
     rows: [[[u32; EIGHT]; EIGHT]; 2],
 }
 
 impl Eight {
-    /// Triangle `i`, which is among those seen and not sampled.
+    /// Returns triangle `i`, which is among those seen and not sampled.
     #[inline(always)]
     pub fn triangle(&self, i: usize, item: u32) -> ScreenTriangle {
         let [first, second] = &self.rows;
@@ -52,7 +52,7 @@ impl<S: Simd> Corner<S> {
         Self { x: x.bitcast(), y: y.bitcast(), code: code.bitcast(), depth }
     }
 
-    /// This corner where `mask` is set, the other elsewhere.
+    /// Returns this corner where `mask` is set, the other elsewhere.
     #[inline(always)]
     fn where_set(self, mask: mask32x8<S>, other: Self) -> Self {
         Self {
@@ -94,7 +94,8 @@ fn four_columns<S: Simd>(simd: S, of: &[&ScreenVertex; EIGHT], from: usize) -> [
     gather::four_columns(simd, rows)
 }
 
-/// Back-face and area test, bounding box test, depth plane; of small triangles, if requested, which pixels they cover.
+/// Sets up eight triangles: back-face and area test, bounding box test, depth plane; of small triangles, if requested,
+/// which pixels they cover.
 #[inline(always)]
 pub fn set_up<S: Simd>(
     simd: S,
@@ -148,7 +149,7 @@ pub fn set_up<S: Simd>(
     let rest = Rest::new(simd, [of_a, of_b, of_c], negative);
     let [depth, depth_dx, depth_dy] = depth_planes(simd, [a, b, c], rest, area.abs());
     let nothing = simd.splat_f32x8(0.0);
-    // Adding 0 makes a 0 of −0, whose bits are another order.
+    // Adding 0 turns −0, whose bits have another order, into 0.
     let depth_min = a.depth.min(b.depth).min(c.depth).max(nothing) + nothing;
     let depth_max = a.depth.max(b.depth).max(c.depth).max(nothing) + nothing;
     if eight.sampled.which != 0 {
@@ -206,13 +207,13 @@ fn depth_planes<S: Simd>(
         (integers_widened(simd, b.x - a.x), integers_widened(simd, b.y - a.y));
     let (snapped_x2, snapped_y2) =
         (integers_widened(simd, c.x - a.x), integers_widened(simd, c.y - a.y));
-    // Through the places before snapping, which are exact.
+    // The plane goes through the places before snapping, which are exact.
     let mut x1 = snapped_x1 + (rest_x1 - rest_x);
     let mut y1 = snapped_y1 + (rest_y1 - rest_y);
     let mut x2 = snapped_x2 + (rest_x2 - rest_x);
     let mut y2 = snapped_y2 + (rest_y2 - rest_y);
     let mut area = x1 * y2 - x2 * y1;
-    // A sliver that only snapping gives its area: its plane is that of the snapped triangle.
+    // A sliver that gets its area only by snapping: its plane is that of the snapped triangle.
     let sliver = area.simd_lt(snapped_area * 0.25);
     (x1, y1) = (sliver.select(snapped_x1, x1), sliver.select(snapped_y1, y1));
     (x2, y2) = (sliver.select(snapped_x2, x2), sliver.select(snapped_y2, y2));
@@ -228,7 +229,7 @@ fn depth_planes<S: Simd>(
     [narrowed(simd, depth), narrowed(simd, depth_dx), narrowed(simd, depth_dy)]
 }
 
-/// From coordinates to the centres of the pixels that hold their snapped places, in pixels.
+/// Returns the offsets from coordinates to the centres of the pixels that hold their snapped places, in pixels.
 #[inline(always)]
 fn to_center<S: Simd>(simd: S, v: i32x8<S>, rest: f64x8<S>) -> f64x8<S> {
     const PIXELS: f64 = 1.0 / SUBPIXELS as f64;

@@ -42,7 +42,7 @@ use vertex::{Behind, Transform};
 /// Counts of what happened to triangles.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// With a vertex that is not finite.
+    /// Triangles with a vertex that is not finite.
     pub non_finite: u64,
     /// Cut by the near plane or the guard band.
     pub clipped: u64,
@@ -91,9 +91,9 @@ impl Filter {
     }
 }
 
-/// Takes triangles as they come.
+/// Receiver of triangles as they come.
 pub trait Sink {
-    /// Takes one.
+    /// Takes one triangle.
     fn take(&mut self, triangle: ScreenTriangle);
 
     /// Returns the samples, as offsets from pixels' centres in 1/256 pixel, at which small triangles are sampled at
@@ -102,8 +102,8 @@ pub trait Sink {
         &[]
     }
 
-    /// Takes what those of eight triangles cover whose bits are set in `which`. Of each `primitive` gives the item and
-    /// the vertices in the mesh.
+    /// Takes the samples that those of eight triangles cover whose bits are set in `which`. `primitive` returns the
+    /// item of each and its vertices in the mesh.
     fn take_sampled<S: Simd>(
         &mut self,
         _simd: S,
@@ -124,7 +124,7 @@ impl Sink for Vec<ScreenTriangle> {
 /// Triangles without indices whose vertices are transformed at a time.
 const UNINDEXED: u32 = 512;
 
-/// Transforms, clips and sets up the triangles of runs.
+/// Assembler that transforms, clips and sets up the triangles of runs.
 pub struct Assembler<'a> {
     scene: &'a Scene,
     view: &'a View,
@@ -141,8 +141,7 @@ impl<'a> Assembler<'a> {
         Self { scene, view, filter, level, vertices: Vec::new(), counts: Counts::default() }
     }
 
-    /// Creates the same with memory for vertices that was used before, and is given back by
-    /// [`Self::into_memory`].
+    /// Returns the assembler with memory for vertices that was used before, and that [`Self::into_memory`] returns.
     pub(crate) fn with_memory(self, vertices: Vec<ScreenVertex>) -> Self {
         Self { vertices, ..self }
     }
@@ -152,8 +151,8 @@ impl<'a> Assembler<'a> {
         self.vertices
     }
 
-    /// Hands the screen triangles of primitives `range` of a run to `sink`, in order. Lines become
-    /// strips and points squares, of the size of [`Filter::marks`].
+    /// Passes the screen triangles of primitives `range` of a run to `sink`, in order. Lines become strips and points
+    /// squares, of the size of [`Filter::marks`].
     pub fn primitives(&mut self, run: &Run, range: Range<u32>, sink: &mut impl Sink) {
         let mesh = &self.scene.meshes[run.mesh];
         let world_from_mesh = self.scene.instances[run.instance].world_from_mesh;
@@ -191,7 +190,7 @@ impl<'a> Assembler<'a> {
         sink: &mut impl Sink,
     ) {
         let mut vertices = std::mem::take(&mut self.vertices);
-        // Without indices no vertex serves two triangles, and a few at a time stay in the cache.
+        // Without indices, triangles share no vertices, and a few at a time stay in the cache.
         let most = if mesh.indices.is_none() { UNINDEXED } else { u32::MAX };
         let mut start = range.start;
         while start < range.end {
@@ -285,7 +284,7 @@ impl<'a> Assembler<'a> {
         Rules { filter: self.filter, size, behind, cull_back, sampled }
     }
 
-    /// The strip around a line, or the square around a point (whose ends are the same).
+    /// Sets up the strip around a line, or the square around a point (whose ends are equal).
     fn strip(
         &mut self,
         transform: &Transform,

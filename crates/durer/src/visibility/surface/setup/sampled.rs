@@ -23,13 +23,13 @@ pub const PIXELS: usize = (SIDE * SIDE) as usize;
 /// Coverage of the small ones among eight triangles, by pixel of their boxes.
 #[derive(Default)]
 pub struct Sampled {
-    /// Those that cover any sample on the screen, as bits.
+    /// Triangles that cover any sample on the screen, as bits.
     pub which: u64,
-    /// Those whose backs are seen, as bits.
+    /// Triangles whose backs are seen, as bits.
     pub from_behind: u64,
     /// Columns and rows of the upper left pixels of their boxes, by triangle.
     pub first: [[i32; EIGHT]; 2],
-    /// By sample which pixels of its box each covers, as bits.
+    /// Pixels of its box that each triangle covers, as bits, by sample.
     pub covered: [[u32; EIGHT]; MOST_SAMPLES],
     /// Columns and rows of the pixels that depths are counted from.
     pub origin: [[i32; EIGHT]; 2],
@@ -37,7 +37,7 @@ pub struct Sampled {
     pub depth: [[f32; EIGHT]; 5],
 }
 
-/// Along one axis the pixels of the screen whose samples may lie between the corners of eight triangles.
+/// Range, along one axis, of the pixels of the screen whose samples may lie between the corners of eight triangles.
 #[derive(Clone, Copy)]
 pub struct Span<S: Simd> {
     /// The first.
@@ -112,8 +112,8 @@ pub fn cover<S: Simd>(
     first[1].store_slice(&mut sampled.first[1]);
 }
 
-/// An edge function of eight triangles at the centres of the first pixels of their boxes, at least 0 inside, and how the
-/// edge runs.
+/// An edge function of eight triangles at the centres of the first pixels of their boxes, at least 0 inside, and how
+/// the edge runs.
 #[derive(Clone, Copy)]
 struct Edge<S: Simd> {
     at: i32x8<S>,

@@ -49,7 +49,7 @@ pub enum Behind {
     Negative,
 }
 
-/// Transforms mesh space to homogeneous screen space, and computes outcodes.
+/// Transform from mesh space to homogeneous screen space, with outcodes.
 #[derive(Debug, Clone, Copy)]
 pub struct Transform {
     pub clip_from_mesh: DMat4,
@@ -79,7 +79,7 @@ impl Transform {
         if self.mirrored { Behind::Negative } else { Behind::Positive }
     }
 
-    /// x and y in pixels and the depth of a vertex with w > 0.
+    /// Returns x and y in pixels and the depth of a vertex with w > 0.
     pub fn to_screen(self, v: &ClipVertex) -> (DVec2, f32) {
         let p = v.position;
         let (x, y, z) = (p.x / p.w, p.y / p.w, p.z / p.w);
@@ -94,7 +94,7 @@ impl Transform {
     }
 }
 
-/// [`Transform::vertices`], eight at a time.
+/// Transforms positions as [`Transform::vertices`] does, eight at a time.
 #[simd]
 fn transform<S: Simd>(simd: S, by: &Transform, from: &[Vec3], to: &mut [ScreenVertex]) {
     let (eights, rest) = from.as_chunks::<8>();
@@ -126,7 +126,7 @@ fn transform_eight<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 8], to: &mut [Sc
     let zero = simd.splat_f64x8(0.0);
     let inv_w = simd.splat_f64x8(1.0) / hw;
     let (x, y, z) = (hx * inv_w, hy * inv_w, hz * inv_w);
-    // Every bit is set where a comparison fails too, so NaN is beyond everything.
+    // A bit is also set if its comparison fails, so NaN is beyond all borders.
     let left = !hx.simd_ge(zero).to_bitmask();
     let right = !hx.simd_le(hw * by.width).to_bitmask();
     let top = !hy.simd_ge(zero).to_bitmask();
@@ -162,8 +162,8 @@ fn transform_eight<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 8], to: &mut [Sc
     }
 }
 
-/// From masks whose bit i is set where vertex i is beyond a border, in the order of the bits of [`code`],
-/// to the codes of the eight vertices.
+/// Converts masks whose bit i is set where vertex i is beyond a border, in the order of the bits of [`code`], to the
+/// codes of the eight vertices.
 #[inline(always)]
 fn codes(beyond: [u64; 8]) -> [u32; 8] {
     // Rows of bits to columns: exchange single bits, then blocks of two by two, then of four by four.

@@ -33,17 +33,17 @@ struct RunTransform {
     handedness: f64,
     /// All that is seen has at least this w.
     least_w: f64,
-    /// By how much edge functions may change from one pixel to the next for a triangle to be settled.
+    /// Largest change of edge functions from one pixel to the next for a triangle to be settled.
     most_change: f32,
 }
 
-/// Finds visible triangles by item; keeps the latest ones.
+/// Visible triangles by item; the latest ones are kept.
 pub struct Triangles<'a> {
     scene: &'a Scene,
     view: &'a View,
     runs: &'a [Run],
     level: Level,
-    /// By how much edge functions may change from one pixel to the next for a triangle to be settled.
+    /// Largest change of edge functions from one pixel to the next for a triangle to be settled.
     most_change: f32,
     transform: Option<RunTransform>,
     /// Prepared triangles; as many as `normals`.
@@ -138,7 +138,7 @@ impl<'a> Triangles<'a> {
         &self.normals[place(item, &self.normals)]
     }
 
-    /// Returns whether a part of an item is kept or wanted.
+    /// Returns whether a part of an item is kept or requested.
     #[inline(always)]
     pub fn has(&self, item: u32, part: Part) -> bool {
         match part {
@@ -147,8 +147,8 @@ impl<'a> Triangles<'a> {
         }
     }
 
-    /// Has a part of an item made ready, at the latest by [`Self::make_ready`], which comes before [`Self::get`] and
-    /// [`Self::normals`].
+    /// Requests a part of an item, which is ready at the latest after [`Self::make_ready`]; that comes before
+    /// [`Self::get`] and [`Self::normals`].
     #[inline(never)]
     pub fn want(&mut self, item: u32, run: usize, part: Part) {
         let Wanted { items, count, run: of, part: of_part, .. } = &self.wanted;
@@ -179,7 +179,7 @@ impl<'a> Triangles<'a> {
         [a, b, a]
     }
 
-    /// Makes all items ready that are wanted.
+    /// Prepares all requested items.
     pub fn make_ready(&mut self) {
         let Wanted { items, corners, read, count, run: index, part } = &mut self.wanted;
         let (count, index, part) = (std::mem::take(count), *index, *part);
@@ -209,7 +209,7 @@ impl<'a> Triangles<'a> {
             }
         });
         if part == Part::Normals && !first {
-            // Where some are not settled, more are not that follow, and all would be made ready twice.
+            // If some are not settled, more of the following are not, and all would be prepared twice.
             self.settled = true;
             for &item in items {
                 let of_item = self.kept[place(item, &self.kept)].normals;
@@ -220,8 +220,9 @@ impl<'a> Triangles<'a> {
     }
 }
 
-/// By how much edge functions may change from one pixel to the next for a triangle to be settled, where samples are up
-/// to `reach`/256 pixels from pixels' centres: vertices were rounded to 1/256 pixel before samples were found.
+/// Returns the largest change of edge functions from one pixel to the next with which a triangle is settled, where
+/// samples are up to `reach`/256 pixels from pixels' centres: vertices were rounded to 1/256 pixel before samples were
+/// found.
 fn most_change(reach: i32) -> f32 {
     LEAST_WEIGHT * SUBPIXELS as f32 / (reach + 1) as f32
 }
@@ -253,7 +254,7 @@ impl<'a> RunNormals<'a> {
     }
 }
 
-/// Towards the eye where projection lines are parallel, world axes.
+/// Returns the direction to the eye if projection lines are parallel, world axes.
 pub fn parallel_view(view: &View) -> Option<Vec3> {
     let camera = view.camera();
     match camera.projection {
@@ -273,7 +274,7 @@ impl RunTransform {
         let eye_from_world = DMat4::from_translation(-view.camera().eye);
         let linear = DMat3::from_mat4(world_from_mesh);
         let determinant = linear.determinant();
-        // The cofactor matrix takes normals along, also where the inverse does not exist.
+        // The cofactor matrix transforms normals even if the inverse does not exist.
         let cofactors = DMat3::from_cols(
             linear.y_axis.cross(linear.z_axis),
             linear.z_axis.cross(linear.x_axis),

@@ -11,7 +11,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, f64x8, i32x8, mask32x8};
 use fearless_simd_macros::simd;
 
-/// Makes the normals of eight primitives of a mesh ready; gives whether all are settled.
+/// Prepares the normals of eight primitives of a mesh; returns whether all are settled.
 #[simd]
 pub(super) fn prepare_normals<S: Simd>(
     simd: S,
@@ -39,7 +39,7 @@ pub(super) fn normal_planes<S: Simd>(
     OnScreen::new(simd, t, mesh, &at, normals.as_ref()).normal_planes(simd)
 }
 
-/// Makes eight primitives of a mesh ready to be interpolated, side by side.
+/// Prepares eight primitives of a mesh to be interpolated, side by side.
 #[simd]
 pub(super) fn prepare<S: Simd>(
     simd: S,
@@ -103,7 +103,7 @@ fn fronts<S: Simd>(simd: S, t: &RunTransform, mesh: &Mesh, read: &Read) -> Optio
     Some(fronts)
 }
 
-/// Normals of a mesh along world axes.
+/// Returns the normals of a mesh along world axes.
 #[inline(always)]
 fn along_world_axes<S: Simd>(t: &RunTransform, [x, y, z]: Vectors<S>) -> Vectors<S> {
     let m = &t.normal_from_mesh;
@@ -114,7 +114,7 @@ fn along_world_axes<S: Simd>(t: &RunTransform, [x, y, z]: Vectors<S>) -> Vectors
     ]
 }
 
-/// Normals of fronts turned to the side that is seen.
+/// Turns normals of fronts to the side that is seen.
 #[inline(always)]
 fn seen<S: Simd>([x, y, z]: Vectors<S>, sides: f32x8<S>) -> Vectors<S> {
     [x * sides, y * sides, z * sides]
@@ -156,7 +156,7 @@ struct Normals<S: Simd> {
 }
 
 impl<'n, S: Simd> OnScreen<'n, S> {
-    /// Primitives by the positions of their corners in the mesh, and the normals there.
+    /// Creates primitives from the positions of their corners in the mesh, and the normals there.
     #[inline(always)]
     fn new(
         simd: S,
@@ -177,7 +177,7 @@ impl<'n, S: Simd> OnScreen<'n, S> {
         if !is_triangle {
             (x[2], y[2]) = beside_the_line(simd, &x, &y, &w);
         }
-        // Count from the farthest vertex, which has a place on the screen if any has.
+        // Coordinates relative to the farthest vertex, which is on the screen if any vertex is.
         let (mut ax, mut ay, mut aw, mut least_w) = (x[0], y[0], w[0], w[0]);
         for i in 1..3 {
             let farther = simd.simd_gt_f64x8(w[i], zero) & simd.simd_gt_f64x8(w[i], aw);
@@ -193,7 +193,7 @@ impl<'n, S: Simd> OnScreen<'n, S> {
             lx[i] = x[i] - center_x * w[i];
             ly[i] = y[i] - center_y * w[i];
         }
-        // The cross products of the vertices after each and before it.
+        // Cross products of the vertex after each with the one before it.
         let (mut cross_x, mut cross_y, mut cross_w) = ([zero; 3], [zero; 3], [zero; 3]);
         for i in 0..3 {
             let (u, v) = ((i + 1) % 3, (i + 2) % 3);
@@ -213,7 +213,7 @@ impl<'n, S: Simd> OnScreen<'n, S> {
                 *to = narrowed(simd, simd.select_f64x8(flat, without, from * inverse));
             }
         }
-        // Of triangles whose front is seen the determinant is negative, for y goes downwards.
+        // The determinant of triangles seen from the front is negative, because y goes downwards.
         let behind = simd.simd_gt_f64x8(determinant * t.handedness, zero);
         let behind = narrowed(simd, simd.select_f64x8(behind, one, zero));
         let behind = simd.simd_gt_f32x8(behind, none);
@@ -240,7 +240,7 @@ impl<'n, S: Simd> OnScreen<'n, S> {
     #[inline(always)]
     fn normal_planes(&self, simd: S) -> NormalPlanes<S> {
         let none = simd.splat_f32x8(0.0);
-        // Without normals at the corners they are the same everywhere.
+        // Without normals at the corners, the normal is the same everywhere.
         let mut planes = [seen(self.front, self.sides), [none; 3], [none; 3]];
         if let Some(normals) = self.normals {
             for (to, edges) in planes.iter_mut().zip(&self.edges) {
@@ -290,8 +290,8 @@ const MOST_RANGE: f32 = 1e5;
 /// Between these are the squared lengths of a settled triangle's normals.
 const LENGTHS2: [f32; 2] = [1e-20, 1e20];
 
-/// Returns for which triangles points beside them, at which samples of their pixels may lie, have
-/// weights of at least −[`LEAST_WEIGHT`](super::LEAST_WEIGHT), with a sum of at least nine tenths.
+/// Returns the triangles for which points beside them, at which samples of their pixels may lie, have weights of at
+/// least −[`LEAST_WEIGHT`](super::LEAST_WEIGHT), with a sum of at least nine tenths.
 #[inline(always)]
 fn gentle<S: Simd>(simd: S, t: &RunTransform, [_, dx, dy]: &[Vectors<S>; 3]) -> mask32x8<S> {
     let most = simd.splat_f32x8(t.most_change);
@@ -304,14 +304,15 @@ fn gentle<S: Simd>(simd: S, t: &RunTransform, [_, dx, dy]: &[Vectors<S>; 3]) -> 
     gentle & simd.simd_le_f32x8(sum_change, most * 0.2)
 }
 
-/// Returns for which triangles normals at the corners have lengths, and are all on the side of a unit normal, by more than
-/// seven tenths of the longest: then sums with weights of [`gentle`] triangles are on its side too, by three tenths.
+/// Returns the triangles whose normals at the corners have lengths, and are all on the side of a unit normal, by more
+/// than seven tenths of the longest: then sums with weights of [`gentle`] triangles are on its side too, by three
+/// tenths.
 #[inline(always)]
 fn agreeing<S: Simd>(simd: S, front: Vectors<S>, &[a, b, c]: &[Vectors<S>; 3]) -> mask32x8<S> {
     let longest = dot(a, a).max(dot(b, b)).max(dot(c, c));
     let [shortest, most] = LENGTHS2;
     let mut agreeing = simd.simd_lt_f32x8(longest, simd.splat_f32x8(most));
-    // Each by itself, for of a maximum with NaN it is not known what it is.
+    // Each by itself, because the maximum with a NaN is not specified.
     for normal in [a, b, c] {
         let product = dot(front, normal);
         agreeing &= simd.simd_gt_f32x8(product, simd.splat_f32x8(0.0));

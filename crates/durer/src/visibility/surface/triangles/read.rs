@@ -39,7 +39,7 @@ impl Read {
     }
 }
 
-/// The values that were read, side by side.
+/// Returns the values that were read, side by side.
 #[inline(always)]
 pub fn at_corners<S: Simd>(simd: S, read: &[[[f32; 4]; 8]; 3]) -> AtCorners<S> {
     let mut at = [[simd.splat_f32x8(0.0); 3]; 3];

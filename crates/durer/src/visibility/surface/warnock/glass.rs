@@ -24,7 +24,7 @@ impl Glass {
         (self.layers.capacity() * size_of::<Layer>()) as u64
     }
 
-    /// A layer at a place of the window; parts beyond the far plane are not seen.
+    /// Adds a layer at a place of the window; parts beyond the far plane are not seen.
     pub fn put(&mut self, place: usize, depth: f32, item: u32) {
         if depth < 1.0 {
             self.layers.push(Layer { place: place as u32, item, depth });
@@ -131,11 +131,11 @@ impl<'a> Bands<'a> {
     }
 }
 
-/// Depth, item and normal of the nearest surface, blended or not.
+/// Writes depth, item and normal of the nearest surface, blended or not.
 fn write_planes(visible: &Visible, glass: &Glass, picture: &mut Picture<'_>) {
     let mut nearest = visible.clone();
     for layer in &glass.layers {
-        // The last of a place is the nearest.
+        // The last one at a place is the nearest.
         let place = layer.place as usize;
         (nearest.depth[place], nearest.item[place]) = (layer.depth, layer.item);
     }

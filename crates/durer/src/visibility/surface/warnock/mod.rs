@@ -34,7 +34,7 @@ use crate::work::{Charge, Work};
 use depth::{farthest, hides};
 use glass::Glass;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "warnock",
     title: "Warnock's area subdivision",
@@ -64,14 +64,14 @@ pub(super) const PER_TRIANGLE: u64 = (size_of::<Cover>() + 2 * size_of::<Entry>(
 /// Place at which a window is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Division {
-    /// In the middle of both sides.
+    /// The middle of both sides.
     #[default]
     Regular,
-    /// At a vertex in the window, as near to its middle as can be found quickly.
+    /// A vertex in the window, as near to its middle as can be found quickly.
     Vertices,
 }
 
-/// Options for the planes of the picture.
+/// Options for rendering with Warnock's subdivision.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Options {
     /// Shading and background.
@@ -292,7 +292,7 @@ impl<'a> Solver<'a> {
         self.glass.as_ref().is_some_and(|glass| glass.blended.contains(triangle))
     }
 
-    /// Looks at windows from a stack; the windows of a stack share one list of entries.
+    /// Examines windows from a stack; the windows of a stack share one list of entries.
     fn run(&mut self, whole: Window, division: Division, t: &mut impl Tracer<Step>) {
         t.step(|| Step::Begin { window: whole, per_pixel: self.grid.per_pixel() });
         let mut list = Vec::new();
@@ -362,8 +362,8 @@ impl<'a> Solver<'a> {
         });
     }
 
-    /// Draws a window that is empty, has one triangle or one sample, or in which no division would tell
-    /// blended surfaces apart; gives whether it was so.
+    /// Draws a window that is empty, has one triangle or one sample, or in which no division would tell blended
+    /// surfaces apart; returns whether it was such a window.
     fn draw_simple(
         &mut self,
         window: &Window,
@@ -393,7 +393,7 @@ impl<'a> Solver<'a> {
         true
     }
 
-    /// Scan converts one triangle in a window.
+    /// Scan-converts one triangle in a window.
     fn draw(&mut self, window: &Window, triangle: usize) {
         let blended = self.is_blended(triangle);
         let Self { triangles, covers, grid, masks, visible, glass, .. } = self;
@@ -417,7 +417,7 @@ impl<'a> Solver<'a> {
     /// Decides one sample by depth.
     fn decide(&mut self, entries: &[Entry], [x, y]: [i32; 2], t: &mut impl Tracer<Step>) {
         let n = self.grid.per_pixel();
-        // The nearest of the opaque surfaces, and of all.
+        // The nearest of the opaque surfaces, and the nearest of all surfaces.
         let [mut best, mut front]: [Option<(f32, u32, u32)>; 2] = [None, None];
         let place = self.visible.index(x, y);
         let first = self.glass.as_ref().map_or(0, |glass| glass.layers.len());
@@ -450,7 +450,7 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Before which column and row a window is divided.
+    /// Returns the column and row before which a window is divided.
     fn division(&self, w: &Window, entries: &[Entry], division: Division) -> (i32, i32) {
         let middle = ((w.x0 + w.x1) / 2, (w.y0 + w.y1) / 2);
         if division == Division::Regular {

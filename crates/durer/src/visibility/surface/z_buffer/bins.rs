@@ -14,8 +14,8 @@ use crate::work::{Charge, Work};
 use fearless_simd::Simd;
 use std::ops::Range;
 
-/// The least triangles per job, enough to keep a thread busy for about a tenth of a millisecond, and the most, whose vertices
-/// stay in the second-level cache: those at the borders of jobs are transformed twice.
+/// The least triangles per job, enough to keep a thread busy for about a tenth of a millisecond, and the most, whose
+/// vertices stay in the second-level cache: those at the borders of jobs are transformed twice.
 const JOB_TRIANGLES: [u32; 2] = [8192, 32768];
 
 /// Number of jobs that share the work evenly, unless they are too small.
@@ -58,15 +58,15 @@ pub fn jobs(runs: &[Run]) -> Vec<Job> {
 pub struct Bins {
     /// Treatment of the fragments of the job's triangles.
     pub coverage: Coverage,
-    /// Report on the work.
+    /// Counts of the job's triangles.
     pub counts: Counts,
     triangles: Vec<ScreenTriangle>,
     /// Triangles that touch each tile, in item order.
     touching: ByTile,
 }
 
-/// Buffers for making [`Bins`], which are used again; and the fragments of small triangles, of all jobs that were done with
-/// them.
+/// Buffers for making [`Bins`], which are used again; and the fragments of small triangles, of all jobs that were done
+/// with them.
 #[derive(Default)]
 pub struct Scratch {
     /// Tile and triangle.
@@ -82,7 +82,7 @@ pub struct Scratch {
 pub const STAGE: &str = "triangles on the screen";
 
 impl Scratch {
-    /// Takes what the fragments have grown by from a budget.
+    /// Charges the growth of the fragments to a budget.
     pub fn charge(&mut self, work: &Work) -> Result<()> {
         let charge = match &mut self.charge {
             Some(charge) => charge,
@@ -135,7 +135,7 @@ impl Bins {
         }
         let mut triangles = sorter.triangles;
         if triangles.len() < most / 2 {
-            // Most were sampled or left out, and what was reserved for them would stay.
+            // Most triangles were sampled or left out; the space reserved for them would stay.
             triangles.shrink_to_fit();
         }
         let (coverage, counts) = (job.coverage, assembler.counts);
@@ -157,7 +157,7 @@ impl Bins {
     }
 }
 
-/// Keeps triangles, and finds the tiles that they touch.
+/// Sorter that keeps triangles, and finds the tiles that they touch.
 struct Sorter<'s> {
     screen: TileGrid,
     reach: i32,
@@ -219,7 +219,7 @@ pub struct ByTile {
 }
 
 impl ByTile {
-    /// Returns those of a tile.
+    /// Returns the entries of a tile.
     pub fn of(&self, tile: u32) -> &[u32] {
         match self.starts.binary_search_by_key(&tile, |s| s.0) {
             Ok(i) => {

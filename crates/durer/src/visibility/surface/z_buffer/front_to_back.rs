@@ -64,13 +64,13 @@ impl<'a> FrontToBack<'a> {
         &self.given
     }
 
-    /// A counting sort by the depth of the nearest vertex.
+    /// Sorts by the depth of the nearest vertex, by counting.
     fn sort(&mut self) {
         self.depths.clear();
         self.depths.extend(self.given.iter().map(|t| t.depth_min));
         let nearest = self.depths.iter().copied().fold(f32::INFINITY, f32::min);
         let farthest = self.depths.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        // Where all are equally near the product is not a number, and the cast gives bucket 0.
+        // If all are equally near, the product is NaN, and the cast yields bucket 0.
         let scale = BUCKETS as f32 / (farthest - nearest);
         let bucket = |depth: f32| (((depth - nearest) * scale) as usize).min(BUCKETS - 1);
         let mut next = [0; BUCKETS + 1];
@@ -106,8 +106,8 @@ mod tests {
     use crate::visibility::surface::setup::{Filter, runs};
     use crate::visibility::surface::{Cull, Samples};
 
-    /// Far triangles, then a wall of many small ones before most of them; on the right half of the last
-    /// rows nothing hides them.
+    /// Creates far triangles, then a wall of many small ones before most of them; on the right half of the last rows
+    /// nothing hides them.
     fn scene() -> (Scene, View) {
         let mut positions = Vec::new();
         for i in 0..300_u32 {
@@ -180,7 +180,7 @@ mod tests {
             for (a, b) in sorted.iter().zip(&plain) {
                 assert!(a.item == b.item && a.depth == b.depth, "{samples:?}");
             }
-            // Some of the far ones are seen, some hidden.
+            // Some of the far triangles are visible, some hidden.
             assert!(plain[0].item.iter().any(|&item| item < 300));
         }
     }

@@ -46,7 +46,7 @@ use resolve::{MaskTest, resolve};
 use tile::{SamplePlane, TILE, TILE_PIXELS};
 use tile_grid::TileGrid;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "z-buffer",
     title: "z-buffer",
@@ -61,7 +61,7 @@ pub const INFO: Info = Info {
     pseudocode: &[],
 };
 
-/// Options for the planes of the picture.
+/// Options for rendering with the z-buffer.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Samples per pixel of the colour plane.
@@ -70,11 +70,11 @@ pub struct Options {
     pub cull: Cull,
     /// The size of lines and points.
     pub marks: Marks,
-    /// `None` = by material.
+    /// Shading; `None` = by material.
     pub shading: Option<Shading>,
     /// Background of the picture.
     pub background: Background,
-    /// The SIMD level to work at; all give the same bytes.
+    /// SIMD level; all levels produce the same bytes.
     pub level: Level,
     /// Budget of the work, and its cancellation.
     pub work: Work,
@@ -109,8 +109,8 @@ pub struct Report {
 /// Renders a scene that has passed [`Scene::check`] into the planes that the framebuffer has.
 ///
 /// # Errors
-/// [`crate::Error::Limit`] where the scene has too many primitives to number, [`crate::Error::Memory`] where the budget has no
-/// room for its triangles on the screen, and what stops the work.
+/// [`crate::Error::Limit`] where the scene has too many primitives to number, [`crate::Error::Memory`] where the budget
+/// has no room for its triangles on the screen, and what stops the work.
 pub fn render(
     scene: &Scene,
     view: &View,
@@ -270,7 +270,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Draws a tile's part of the triangles that were sampled at once; gives whether there is anything.
+    /// Draws a tile's part of the triangles that were sampled at once; returns whether there is anything.
     fn draw_fragments(
         &self,
         planes: &mut [SamplePlane],
@@ -278,7 +278,7 @@ impl<'a> Frame<'a> {
         index: u32,
     ) -> bool {
         let mut any = false;
-        // There are none if pixels have more samples than a plane holds.
+        // There are no fragments if pixels have more samples than a plane contains.
         let [plane] = planes else { return any };
         for fragments in self.fragments {
             dispatch!(self.options.level, simd =>
@@ -297,7 +297,7 @@ impl<'a> Frame<'a> {
         index: u32,
     ) {
         let mut drawn = self.draw_fragments(planes, Some(known), index);
-        // Without the faces that look away little is hidden, and an order would not pay.
+        // Without faces seen from behind little is hidden, and an order would not pay off.
         if self.options.cull == Cull::Back {
             return self.rasterize(Coverage::Opaque, planes, area, index, None::<&mut AllPass>);
         }
@@ -314,7 +314,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The colours of a tile that shows nothing but the background.
+    /// Fills a tile that shows nothing but the background.
     fn empty_tile(&self, band: &mut Band<'_>, [tile, size]: [[i32; 2]; 2]) {
         let background = background_rows(self.options.background, self.view.height());
         for (y, row) in band.rows_of(tile[0], size) {
@@ -354,7 +354,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Depth, item and normal: one sample at the centre, where blended surfaces count as opaque.
+    /// Draws depth, item and normal of a tile: one sample at the centre, where blended surfaces count as opaque.
     fn center_tile(
         &self,
         band: &mut Band<'_>,

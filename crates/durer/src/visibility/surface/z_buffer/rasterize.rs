@@ -27,7 +27,7 @@ pub trait FragmentTest {
     ) -> S::i32s;
 }
 
-/// Lets every fragment pass.
+/// Test that every fragment passes.
 pub struct AllPass;
 
 impl FragmentTest for AllPass {
@@ -59,13 +59,13 @@ struct LaneEdges<S: Simd> {
 }
 
 impl<S: Simd> LaneEdges<S> {
-    /// Sign bit set where the sample is outside an edge.
+    /// Returns numbers whose sign bit is set where the sample is outside an edge.
     #[inline(always)]
     fn outside(&self) -> S::i32s {
         self.row[0] | self.row[1] | self.row[2]
     }
 
-    /// [`Self::outside`] this many rows further down.
+    /// Returns the numbers of [`Self::outside`] `row` rows further down.
     #[inline(always)]
     fn outside_in_row(&self, row: i32) -> S::i32s {
         let [a, b, c] = &self.row;
@@ -98,7 +98,7 @@ pub fn rasterize<'a, S: Simd, T: FragmentTest>(
         let (y_min, y_max) = (t.y[0].min(t.y[1]).min(t.y[2]), t.y[0].max(t.y[1]).max(t.y[2]));
         let small = x_max - x_min < SMALL_EXTENT && y_max - y_min < SMALL_EXTENT;
         for plane in planes.iter_mut() {
-            // First and last pixel with a sample between the coordinates.
+            // First and last pixel that has a sample between the triangle's extreme coordinates.
             let [[left, right], [up, down]] = plane.reach;
             let x0 = (x_min - HALF_PIXEL - right + SUBPIXELS - 1) >> SUBPIXEL_BITS;
             let x1 = (x_max - HALF_PIXEL - left) >> SUBPIXEL_BITS;
@@ -106,7 +106,7 @@ pub fn rasterize<'a, S: Simd, T: FragmentTest>(
             let y1 = (y_max - HALF_PIXEL - up) >> SUBPIXEL_BITS;
             let (x0, x1) = ((x0 - tile[0]).max(0), (x1 - tile[0]).min(size[0] - 1));
             let (y0, y1) = ((y0 - tile[1]).max(0), (y1 - tile[1]).min(size[1] - 1));
-            // Most triangles of a fine mesh lie between the samples.
+            // Most triangles of a fine mesh are between the samples.
             if x0 > x1 || y0 > y1 {
                 continue;
             }
@@ -122,7 +122,7 @@ pub fn rasterize<'a, S: Simd, T: FragmentTest>(
     }
 }
 
-/// Small triangles: all rows of their bounding box.
+/// Rasterizes a small triangle: all rows of its bounding box.
 #[inline(always)]
 fn rasterize_box<S: Simd, T: FragmentTest>(
     simd: S,
@@ -133,7 +133,7 @@ fn rasterize_box<S: Simd, T: FragmentTest>(
     test: &mut Option<&mut T>,
 ) {
     let columns = lanes::<S>() as i32 >> plane.shift;
-    // Not on a multiple of the columns, so that fewer steps reach over a small box.
+    // The start is not aligned to a multiple of the columns, so that fewer steps cover a small box.
     let mut x = x0.min(TILE - columns);
     let px = (tile[0] + x) * SUBPIXELS + HALF_PIXEL;
     let py = (tile[1] + y0) * SUBPIXELS + HALF_PIXEL;
@@ -164,8 +164,8 @@ fn rasterize_box<S: Simd, T: FragmentTest>(
     }
 }
 
-/// Large triangles: whole blocks of 8 × 8 pixels, or wider ones where more are tested at a time, are rejected
-/// or accepted by their corners.
+/// Rasterizes a large triangle: whole blocks of 8 × 8 pixels, or wider ones where more are tested at a time, are
+/// rejected or accepted by their corners.
 #[inline(always)]
 fn rasterize_blocks<S: Simd, T: FragmentTest>(
     simd: S,
@@ -179,12 +179,12 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
     let columns = lanes::<S>() as i32 >> plane.shift;
     let width = columns.max(BLOCK);
     let [[left, right], [up, down]] = plane.reach;
-    // Edge functions divided by 256 and rounded down keep their signs, for whole pixels change them
-    // by multiples of 256. What they are more at the samples than at the pixel's centre:
+    // Edge functions divided by 256 and rounded down keep their signs, because whole pixels change them by multiples of
+    // 256. These are their differences between the samples and the pixel's centre.
     let mut at_lanes = [S::i32s::splat(simd, 0); 3];
-    // What they change at least and at most from the centre of a block's first pixel to its samples.
+    // The smallest and the largest change from the centre of a block's first pixel to the block's samples.
     let (mut lowest, mut highest) = ([0; 3], [0; 3]);
-    // What they are at most among the samples in each row of a block, from the same place.
+    // The largest change to the samples in each row of a block, from the same centre.
     let mut rows = [i32x8::splat(simd, 0); 3];
     let row_numbers = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
     for i in 0..3 {
@@ -208,7 +208,7 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
     }
     let (x0, mut y) = (x0 & -width, y0 & -BLOCK);
     let nearest = t.depth_min.to_bits() as i32;
-    // From a block to the one beside it, and to the one below.
+    // Changes from a block to the one beside it, and to the one below.
     let beside = dx.map(|dx| i64::from(dx) * i64::from(width * SUBPIXELS));
     let below = dy.map(|dy| i64::from(dy) * i64::from(BLOCK * SUBPIXELS));
     let mut first = [0; 3];
@@ -220,7 +220,7 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
         let (mut x, mut here, mut entered) = (x0, first, false);
         while x <= x1 {
             let outside = (0..3).any(|i| here[i] + highest[i] < 0);
-            // Those that are not outside lie side by side.
+            // Blocks that are not outside are side by side.
             if outside && entered {
                 break;
             }
@@ -230,7 +230,7 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
                 let mut most = [i32x8::splat(simd, 0); 3];
                 let mut step_x = [0; 3];
                 for i in 0..3 {
-                    // An edge that the whole block lies inside of is left out; the others fit i32.
+                    // An edge with the whole block inside is left out; the values of the others fit i32.
                     if here[i] + lowest[i] < 0 {
                         edges.row[i] = at_lanes[i] + (here[i] >> SUBPIXEL_BITS) as i32;
                         most[i] = rows[i] + (here[i] >> SUBPIXEL_BITS) as i32;
@@ -264,7 +264,7 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
     }
 }
 
-/// One step wide from column x, rows y0 … y1: coverage, depth test, write.
+/// Fills one step wide from column x, rows y0 … y1: coverage, depth test, write.
 #[inline(always)]
 fn fill_rows<S: Simd, T: FragmentTest>(
     simd: S,
@@ -286,7 +286,7 @@ fn fill_rows<S: Simd, T: FragmentTest>(
     }
 }
 
-/// One step wide from column x, the rows from y on whose bits are set in `rows`.
+/// Fills one step wide from column x, the rows from y on whose bits are set in `rows`.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "one call, all of it a block's state")]
 fn fill_found<S: Simd, T: FragmentTest>(
@@ -313,7 +313,7 @@ fn fill_found<S: Simd, T: FragmentTest>(
     }
 }
 
-/// A step's samples of row y from column x, some of which lie inside all edges: depth test, write.
+/// Fills a step's samples of row y from column x, some of which are inside all edges: depth test, write.
 #[inline(always)]
 fn fill_row<S: Simd, T: FragmentTest>(
     simd: S,
@@ -336,19 +336,19 @@ fn fill_row<S: Simd, T: FragmentTest>(
     let items = &mut plane.item[index..index + lanes::<S>()];
     let old_item: S::i32s = S::u32s::from_slice(simd, items).bitcast();
     let item = t.item as i32;
-    // At equal depths the lower item wins, whatever the order of drawing.
+    // At equal depths the lower item wins, regardless of the order of drawing.
     let tie_lost = !(depth - old) & ((old_item - item) >> 31u32);
     write &= !(tie_lost >> 31u32);
     if let Some(test) = test.as_mut() {
         write = test.pass(simd, write, t, [x, y], (plane.first, plane.shift));
     }
-    // Not a select: that would become a masked store, which is far slower.
+    // Not a select, which would become a masked store, far slower.
     (old ^ ((old ^ depth) & write)).store_slice(stored);
     let new_item: S::u32s = (old_item ^ ((old_item ^ item) & write)).bitcast();
     new_item.store_slice(items);
 }
 
-/// Asks for each of the samples in `write` whether it passes: by its pixel and its number in there.
+/// Tests for each of the samples in `write` whether it passes; `passes` gets its pixel and its number within the pixel.
 #[inline(never)]
 pub fn one_by_one<S: Simd>(
     simd: S,

@@ -42,7 +42,7 @@ impl Behind {
     }
 }
 
-/// Lets the fragments of masked surfaces pass where they are.
+/// Test that the fragments of masked surfaces pass outside of holes.
 pub struct MaskTest<'t, 'a> {
     pub lit: &'t mut Lit<'a>,
     pub tile: [i32; 2],
@@ -80,7 +80,7 @@ pub fn resolve<S: Simd>(
     }
 }
 
-/// All pixels of a tile without blended surfaces.
+/// Resolves all pixels of a tile without blended surfaces.
 #[simd]
 fn resolve_opaque<S: Simd>(
     simd: S,
@@ -91,7 +91,7 @@ fn resolve_opaque<S: Simd>(
     codes: &mut Codes,
 ) {
     let Behind { linear: behind, encoded } = Behind::new(area);
-    // Filled anew for each block, but not cleared.
+    // Filled again for each block, but not cleared.
     let mut samples = [u32x16::splat(simd, NO_ITEM); MOST_SAMPLES];
     // Two rows of eight pixels at a time, and then those below: they show mostly the same triangles.
     for x in (0..area.size[0]).step_by(8) {
@@ -103,7 +103,7 @@ fn resolve_opaque<S: Simd>(
             let [first, second] = [y, y + 1].map(|y| (y * TILE + x) as usize);
             let row = y as usize % TILE as usize;
             let count = samples_of_block(simd, planes, first, &mut samples);
-            // Of the last row there may be none below; then what is written there is not copied.
+            // The last row may have none below; then the pixels written there are not copied.
             let places = [first, second];
             let samples = &samples[..count];
             let few = samples.first().is_some_and(|first| patch.shows_few(simd, *first));
@@ -140,7 +140,7 @@ fn resolve_opaque<S: Simd>(
     }
 }
 
-/// Makes the items that a column of eight pixels shows ready to be lit.
+/// Prepares the items that a column of eight pixels shows for lighting.
 #[inline(always)]
 fn expect_column<S: Simd>(
     simd: S,
@@ -152,7 +152,7 @@ fn expect_column<S: Simd>(
     let none = u32x16::splat(simd, NO_ITEM);
     let any_known = known.any();
     for plane in planes {
-        // Rows with 64 items in all: a bit of each says whether it is requested.
+        // Rows with 64 items in all: a bit for each item tells whether it is requested.
         let (rows, across) = if plane.shift > 0 { (2, 32) } else { (8, 8) };
         let (mut before, mut before_that) = (none, none);
         for y in (0..height as usize).step_by(rows) {

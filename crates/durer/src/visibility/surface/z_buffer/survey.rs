@@ -1,8 +1,8 @@
 //! Survey of the visible items of a scene that comes in pieces and is never held as a whole.
 //!
-//! Depth and item of the nearest triangle are kept for all samples of the picture, so that memory follows the picture and
-//! not the scene. What is seen then is a scene by itself, of which the ordinary renderer makes the same picture: opaque
-//! surfaces that are nowhere in front do not change it.
+//! Depth and item of the nearest triangle are kept for all samples of the picture, so that memory follows the picture
+//! and not the scene. What is seen then is a scene by itself, of which the ordinary renderer makes the same picture:
+//! opaque surfaces that are nowhere in front do not change it.
 
 use super::bins::{ByTile, STAGE, sort_by_tile};
 use super::early_samples;
@@ -39,7 +39,7 @@ pub struct Options {
     pub centers: bool,
     /// Triangles to leave out, and the size of points and lines.
     pub filter: Filter,
-    /// The SIMD level to work at.
+    /// SIMD level.
     pub level: Level,
     /// Budget of the work, and its cancellation.
     pub work: Work,
@@ -76,7 +76,7 @@ struct Binned {
     _charge: Charge,
 }
 
-/// Takes triangles; small ones are sampled at once, where pixels have one sample, as in a picture.
+/// Sink of triangles; small ones are sampled at once, where pixels have one sample, as in a picture.
 struct Taken<'f> {
     triangles: Vec<ScreenTriangle>,
     early: &'static [[i32; 2]],
@@ -118,7 +118,7 @@ impl Survey {
         count += u64::from(with_centers);
         let tiles = TileGrid::new(view.width(), view.height()).count();
         let samples = u64::from(tiles) * TILE_PIXELS as u64 * count;
-        // A depth and an item each.
+        // One depth and one item for each sample.
         let charge = options.work.charge("samples of the picture", samples.saturating_mul(8))?;
         let planes = || {
             let mut planes = SamplePlane::of(offsets);
@@ -132,7 +132,7 @@ impl Survey {
         Ok(Self { view: *view, options, tiles, count: 0, counts, charge })
     }
 
-    /// Looks at the next piece: a scene that has passed [`Scene::check`], all of whose surfaces are opaque.
+    /// Examines the next piece: a scene that has passed [`Scene::check`], all of whose surfaces are opaque.
     ///
     /// # Errors
     /// [`Error::Limit`] for more than [`MOST_ITEMS`], [`Error::Unsupported`] for surfaces that are not opaque,
@@ -158,7 +158,7 @@ impl Survey {
         Ok(())
     }
 
-    /// Runs whose items go on from those of the pieces before.
+    /// Returns the runs with items that go on from those of the pieces before.
     fn numbered(&mut self, mut runs: Vec<Run>) -> Result<Vec<Run>> {
         if runs.iter().any(|run| run.coverage != Coverage::Opaque) {
             let what = "a picture in pieces of surfaces that are not opaque";
@@ -226,7 +226,7 @@ impl Survey {
     }
 }
 
-/// Pieces of runs that one thread sets up at a time.
+/// Returns the pieces of runs that one thread sets up at a time.
 fn jobs(runs: &[Run]) -> Vec<(&Run, Range<u32>)> {
     let of_run = |run: &'_ Run| {
         let end = run.range.end;
@@ -249,7 +249,7 @@ fn draw(
     let area = [tile, sides.map(|side| side.min(TILE))];
     let mut drawn = false;
     for fragments in small {
-        // There are none if pixels have more samples than a plane holds.
+        // There are no fragments if pixels have more samples than a plane contains.
         if let [plane] = planes {
             dispatch!(level, simd => Fragments::draw(simd, fragments, plane, None, index));
         }
@@ -261,7 +261,7 @@ fn draw(
         dispatch!(level, simd => rasterize(simd, planes, area, triangles, None::<&mut AllPass>));
     }
     if drawn {
-        // What lies behind is left out of the pieces that follow.
+        // Triangles behind the farthest depth are left out of the following pieces.
         dispatch!(level, simd => planes.iter_mut().for_each(|plane| plane.find_farthest(simd)));
     }
 }

@@ -54,7 +54,7 @@ pub struct SamplePlane {
 }
 
 impl SamplePlane {
-    /// Planes for this many samples, each for one of them or for four.
+    /// Creates planes for this many samples, each for one of them or for four.
     pub fn of(offsets: &[SampleOffset]) -> Vec<Self> {
         let chunk = if offsets.len().is_multiple_of(4) { 4 } else { 1 };
         let chunks = offsets.chunks(chunk).enumerate();
@@ -91,7 +91,7 @@ impl SamplePlane {
         self.item.fill(NO_ITEM);
     }
 
-    /// Brings [`Self::farthest`] up to date; what was right stays right, for depths only shrink.
+    /// Updates [`Self::farthest`]; values that were right stay right, because depths only shrink.
     pub fn find_farthest<S: Simd>(&mut self, simd: S) {
         find_farthest(simd, &self.depth, self.shift, &mut self.farthest);
     }
@@ -142,7 +142,8 @@ impl SamplePlane {
     }
 }
 
-/// By sample the items of a block of a plane: of eight pixels in a row from the given one on, and of the eight below them.
+/// Sets `samples` to the items, by sample, of a block of a plane: of eight pixels in a row from the given one on, and
+/// of the eight below them.
 #[inline(always)]
 pub fn block_of<S: Simd>(simd: S, items: &[u32], pixel: usize, samples: &mut [u32x16<S>]) {
     let below = pixel + TILE as usize;
@@ -176,7 +177,7 @@ fn four_of_eight<S: Simd>(simd: S, items: &[u32], pixel: usize) -> [u32x8<S>; 4]
     [first, second, third, fourth]
 }
 
-/// The largest depth of each block.
+/// Finds the largest depth of each block.
 #[simd]
 fn find_farthest<S: Simd>(simd: S, depth: &[i32], shift: u32, farthest: &mut [i32; BLOCKS]) {
     const COLUMNS: usize = (TILE / BLOCK) as usize;

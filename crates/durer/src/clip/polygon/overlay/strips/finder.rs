@@ -57,8 +57,8 @@ impl<C: Coord> Strips<C> {
 }
 
 impl<C: Coord, F: FnMut(usize, u32)> Finder<'_, C, F> {
-    /// Looks for the open pixels from `start` on in one strip, then in its groups. Neighbours mostly
-    /// follow one another, so that each search begins where the one before ended.
+    /// Searches for the open pixels from `start` on in one strip, then in its groups. Neighbours mostly follow one
+    /// another, so that each search begins where the one before ended.
     fn strip(&mut self, index: u32, start: usize) {
         let Strip { stairs, groups } = self.strips.strips[index as usize];
         self.stairs(stairs, groups, start);
@@ -97,7 +97,7 @@ impl<C: Coord, F: FnMut(usize, u32)> Finder<'_, C, F> {
         }
     }
 
-    /// Looks for the open pixels from `start` on in a group.
+    /// Searches for the open pixels from `start` on in a group.
     fn group(&mut self, index: u32, start: usize) {
         let end = self.open.len();
         let Group { middle, halves, rest, .. } = self.strips.groups[index as usize];

@@ -27,11 +27,11 @@ struct Fragment {
 /// Number of fragments that are collected before those that nothing can precede are lit.
 const MANY: usize = if cfg!(test) { 64 } else { 4 * TILE_PIXELS };
 
-/// After this many triangles it is asked whether anything comes through.
+/// Number of triangles after which it is tested whether anything shines through.
 const AT_ONCE: usize = 8;
 
-/// Lights the first triangles, at least this many and as many as their depths do not tell from the others, sorted pixel
-/// by pixel: how many they are.
+/// Lights the first triangles, at least this many, and those whose depths overlap theirs, sorted pixel by pixel;
+/// returns how many they are.
 #[inline(always)]
 pub fn light_sorted<S: Simd>(
     simd: S,
@@ -83,15 +83,15 @@ pub struct Fragments {
 }
 
 impl Fragments {
-    /// None yet, of pixels with these samples.
+    /// Creates an empty list of fragments of pixels with these samples.
     pub fn new(offsets: &'static [[i32; 2]]) -> Self {
         Self { list: Vec::new(), by_place: Vec::new(), offsets, tile: [0; 2] }
     }
 
-    /// Brings the fragments of each pixel together, near ones first; of equally near ones the lower
-    /// item first, which is seen. Mostly they came in that order.
+    /// Sorts the fragments of each pixel, near ones first; of equally near ones the lower item, which is visible,
+    /// first. Mostly they are in that order already.
     fn sort(&mut self) {
-        // They came triangle by triangle, so those of one item at one pixel follow each other.
+        // Fragments come triangle by triangle, so those of one item at one pixel follow each other.
         let mut next = [0; TILE_PIXELS + 1];
         for f in &self.list {
             next[f.place as usize + 1] += 1;
@@ -106,8 +106,8 @@ impl Fragments {
             *slot += 1;
         }
         std::mem::swap(&mut self.list, &mut self.by_place);
-        // The samples of one item at one pixel become one fragment. With one sample too there may be several
-        // entries, for the rasterizer may come to a pixel of a triangle twice.
+        // The samples of one item at one pixel become one fragment. Even with one sample there may be several entries,
+        // because the rasterizer may visit a pixel of a triangle twice.
         self.list.dedup_by(|next, kept| {
             let same = (next.place, next.item) == (kept.place, kept.item);
             if same {
@@ -130,7 +130,7 @@ struct Open<'a> {
 }
 
 impl FragmentTest for Open<'_> {
-    /// Takes note of the fragments and lets nothing be written.
+    /// Records the fragments and lets nothing be written.
     fn pass<S: Simd>(
         &mut self,
         simd: S,

@@ -29,7 +29,7 @@ pub struct Layers {
     pub closed: Vec<u32>,
     /// Number of those that are in the picture.
     closed_count: usize,
-    /// Samples of a pixel.
+    /// Number of samples of a pixel.
     pub count: usize,
     tile: [i32; 2],
 }
@@ -38,7 +38,7 @@ pub struct Layers {
 type Colors = [[f32; LANES]; 4];
 
 impl Layers {
-    /// For pixels of this many samples.
+    /// Creates empty layers for pixels of this many samples.
     pub fn new(count: usize) -> Self {
         Self {
             all: Vec::new(),
@@ -133,7 +133,7 @@ impl Layers {
         let touched = there.to_bitmask();
         let first = block * LANES;
         let closed = &mut self.closed[first..first + LANES];
-        // What is not there may have been shaded as well.
+        // Pixels without a surface may have been shaded as well.
         let zero = f32x16::splat(simd, 0.0);
         let alpha = there.select(alpha, zero);
         let mut colors = [[0.0; LANES]; 4];
@@ -177,7 +177,7 @@ impl Layers {
             for (i, under) in under.iter_mut().enumerate() {
                 for (over, under) in layer.iter().zip(under) {
                     let sum = f32x16::from_slice(simd, over) + *under * (1.0 - alpha);
-                    // Without samples it is 0 where nothing is, which changes nothing.
+                    // Without samples, it is 0 where there is no surface, which changes nothing.
                     *under = match covered {
                         Some(covered) => {
                             let bit = u32x16::from_slice(simd, covered) & (1 << i);

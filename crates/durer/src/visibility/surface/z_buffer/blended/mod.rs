@@ -60,7 +60,7 @@ pub struct Blended {
 }
 
 impl Blended {
-    /// For pixels with these samples.
+    /// Creates the state for pixels with these samples.
     pub fn new(offsets: &'static [[i32; 2]]) -> Self {
         Self {
             sheet: Sheet::new(offsets.len()),
@@ -69,7 +69,7 @@ impl Blended {
         }
     }
 
-    /// Begins with another tile, of which nothing is lit.
+    /// Begins another tile, with nothing lit.
     pub fn clear(&mut self) {
         self.layers.clear();
     }
@@ -103,8 +103,8 @@ pub fn light_blended<S: Simd>(
     }
 }
 
-/// Lights the first triangles, as many as do not cover each other, if all others are behind them: how many they
-/// are; otherwise it lights none and returns how many it has examined.
+/// Lights the first triangles, as many as do not cover each other, if all others are behind them, and returns how many
+/// they are; otherwise lights none and returns how many it has examined.
 #[inline(always)]
 fn light_sheet<S: Simd>(
     simd: S,
@@ -117,16 +117,16 @@ fn light_sheet<S: Simd>(
 ) -> Result<usize, usize> {
     sheet.clear();
     let (mut taken, mut farthest) = (0, f32::NEG_INFINITY);
-    // The item that covers others, of which the rest is in the sheet.
+    // The item that covers others; the rest of it is in the sheet.
     let mut over = NO_ITEM;
     for t in triangles {
-        // What is behind all of the sheet can as well begin another: it does where it is likely to cover much of it.
+        // A surface behind all of the sheet may begin another one: it does if it is likely to cover much of it.
         if t.depth_min > farthest && sheet.begun().len() > MANY_BLOCKS && is_large(t, area) {
             break;
         }
         rasterize(simd, planes, area, std::iter::once(*t), Some(&mut *sheet));
         if sheet.covers_another {
-            // Of an item that was cut, a part may be among the others.
+            // A part of an item that was cut may be among the others.
             let in_parts = || triangles[..taken].iter().any(|other| other.item == t.item);
             if t.depth_min <= farthest || in_parts() {
                 return Err(taken + 1);
@@ -147,7 +147,7 @@ fn light_sheet<S: Simd>(
         for items in samples.iter_mut() {
             *items = items.simd_eq(over).select(none, *items);
         }
-        // Each item at a time of those that the samples of a pixel show, which are no more than samples.
+        // One of the items that the samples of a pixel show at a time; there are no more items than samples.
         for _ in 0..layers.count {
             let mut items = none;
             for of_sample in samples.iter() {
@@ -178,7 +178,7 @@ fn is_large(t: &ScreenTriangle, [tile, size]: [[i32; 2]; 2]) -> bool {
     })
 }
 
-/// Lays what is lit over what is behind it, block by block.
+/// Lays the lit surfaces over what is behind them, block by block.
 #[simd]
 pub fn resolve_blended<S: Simd>(
     simd: S,
@@ -225,7 +225,7 @@ pub fn resolve_blended<S: Simd>(
     }
 }
 
-/// The colours behind the blended surfaces at each sample of a block; each item is lit once.
+/// Finds the colours behind the blended surfaces at each sample of a block; each item is lit once.
 #[inline(always)]
 fn behind_block<S: Simd>(
     simd: S,
@@ -238,7 +238,7 @@ fn behind_block<S: Simd>(
     let [x, y] = block_at(block);
     let at = [area.tile[0] + x, area.tile[1] + y];
     let patch = Patch::block(at);
-    // Of the last row there may be none below.
+    // The last row may have none below.
     let below = (y + 1).min(area.size[1] - 1) + area.tile[1];
     let above = premultiply((area.background)(at[1])).to_array();
     let below = premultiply((area.background)(below)).to_array();

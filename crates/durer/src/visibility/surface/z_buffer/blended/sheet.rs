@@ -15,7 +15,7 @@ use fearless_simd::{Simd, u32x16};
 pub struct Sheet {
     /// Laid out as [`super::super::tile::SamplePlane::item`], plane after plane.
     items: Vec<u32>,
-    /// Samples of a pixel.
+    /// Number of samples of a pixel.
     count: usize,
     /// The blocks with an item, and for each whether it is among them.
     begun: Vec<u32>,
@@ -57,7 +57,7 @@ impl Sheet {
         &self.begun
     }
 
-    /// The items of a block by sample.
+    /// Sets `samples` to the items of a block by sample.
     #[inline(always)]
     pub fn block<S: Simd>(&self, simd: S, block: usize, samples: &mut [u32x16<S>]) {
         let [x, y] = block_at(block);
@@ -76,7 +76,7 @@ fn planes(count: usize) -> impl Iterator<Item = (usize, u32)> {
 }
 
 impl FragmentTest for Sheet {
-    /// Takes note of the samples and lets nothing be written.
+    /// Records the samples and lets nothing be written.
     #[inline(always)]
     fn pass<S: Simd>(
         &mut self,

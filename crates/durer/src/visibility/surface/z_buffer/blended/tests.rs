@@ -11,7 +11,7 @@ use crate::visibility::surface::lit::Lighting;
 use crate::visibility::surface::setup::{Coverage, Filter, runs};
 use crate::visibility::surface::{Cull, Samples};
 
-/// Sheets one behind another, each of many triangles that share their edges; before and between them some that
+/// Creates sheets one behind another, each of many triangles that share their edges; before and between them some that
 /// cross, and something opaque.
 fn scene() -> Scene {
     let mut positions = Vec::new();

@@ -8,7 +8,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, i32x4, u32x4};
 use fearless_simd_macros::simd;
 
-/// Stands for the bits of a depth where a sample is not covered: no depth is farther.
+/// Bits of a depth where a sample is not covered: no depth is farther.
 pub const UNCOVERED: i32 = i32::MAX;
 
 /// A pixel of a tile, and in the lower bits those of an item.
@@ -205,7 +205,7 @@ impl Fragments {
         if samples == 1 { self.one.have(tiles) } else { self.four.have(tiles) }
     }
 
-    /// Draws those in a tile; in `known` the normals of what is seen.
+    /// Draws the fragments of a tile; stores the normals of visible ones in `known`.
     #[simd]
     pub fn draw<S: Simd>(
         simd: S,
@@ -220,7 +220,7 @@ impl Fragments {
         draw_all(simd, &this.four.samples, plane, None, tile);
     }
 
-    /// Returns what they take, in bytes.
+    /// Returns the memory of the fragments in bytes.
     pub fn bytes(&self) -> u64 {
         self.one.bytes() + self.four.bytes()
     }

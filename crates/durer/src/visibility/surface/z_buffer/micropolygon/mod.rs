@@ -85,8 +85,8 @@ impl Queue {
         let lines = this.lines(simd, normals);
         let (halves, _) = this.touched.as_chunks::<{ EIGHT / 2 }>();
         for (half, touched) in halves.iter().enumerate() {
-            // Which pixels of which triangles, one after the other: this many in one loop, for where it ends is not
-            // foreseen.
+            // The pixels of the triangles, one after the other; this many in one loop, because the end of a loop is not
+            // predicted.
             let mut left = 0;
             for (i, &touched) in touched.iter().enumerate() {
                 left |= u64::from(touched) << (PIXELS * i);
@@ -152,7 +152,7 @@ impl Queue {
     }
 }
 
-/// By what the normals of eight triangles and their depths are found, row by row; the fourth number of each is the depth's.
+/// Data that determine the normals and depths of eight triangles, row by row; the fourth number of each is the depth's.
 struct Lines {
     /// Start of the boxes, counted from where the planes' constants are.
     from: [[[f32; 4]; EIGHT]; 2],
@@ -235,9 +235,9 @@ impl Screen {
     }
 }
 
-/// Makes fragments of small triangles.
+/// Maker of fragments from small triangles.
 pub struct Micropolygons<'f> {
-    /// Those whose fronts are seen.
+    /// Triangles whose fronts are seen.
     fronts: Queue,
     /// The others: mostly hidden, so their normals are not needed.
     backs: Queue,
@@ -246,7 +246,8 @@ pub struct Micropolygons<'f> {
 }
 
 impl<'f> Micropolygons<'f> {
-    /// For a screen whose pixels have samples at these places; none if nothing is sampled before its time.
+    /// Creates the state for a screen whose pixels have samples at `offsets`, which is empty if nothing is sampled in
+    /// advance.
     pub fn new(grid: TileGrid, offsets: &[[i32; 2]], fragments: &'f mut Fragments) -> Self {
         if !offsets.is_empty() {
             fragments.have(grid.count() as usize, offsets.len());

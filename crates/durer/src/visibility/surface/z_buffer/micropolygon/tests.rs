@@ -46,7 +46,7 @@ fn scene() -> Scene {
     Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
 }
 
-/// By sample of a tile the nearest item and the bits of its depth.
+/// Returns for each sample of a tile the nearest item and the bits of its depth.
 fn nearest(
     (level, samples): (Level, Samples),
     (bins, fragments): (&Bins, &Fragments),

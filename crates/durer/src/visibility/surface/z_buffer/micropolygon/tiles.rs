@@ -54,7 +54,7 @@ impl<T> Tiles<T> {
         tile.open.push(thing);
     }
 
-    /// Returns what all blocks take, in bytes.
+    /// Returns the memory of all blocks in bytes.
     pub fn bytes(&self) -> u64 {
         (self.room * size_of::<T>() + self.by_tile.capacity() * size_of::<Blocks<T>>()) as u64
     }

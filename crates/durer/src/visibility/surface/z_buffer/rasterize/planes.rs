@@ -16,7 +16,7 @@ pub struct Edges {
 }
 
 impl Edges {
-    /// At the centre of tile pixel (0, 0).
+    /// Creates the edge functions at the centre of tile pixel (0, 0).
     #[inline(always)]
     pub fn new(t: &ScreenTriangle, tile: [i32; 2]) -> Self {
         let x = i64::from(tile[0] * SUBPIXELS + HALF_PIXEL);
@@ -34,7 +34,7 @@ impl Edges {
     }
 }
 
-/// Pixels on a top or left edge belong to the triangle, on others they do not.
+/// Returns whether an edge is a top or left one: pixels on those belong to the triangle, on others they do not.
 #[inline(always)]
 pub fn top_left(dx: i32, dy: i32) -> bool {
     // dy < 0, or it is 0 and dx > 0; as one sign, for edges take turns and cannot be foreseen.
@@ -52,7 +52,7 @@ pub struct LaneDepths<S: Simd> {
 }
 
 impl<S: Simd> LaneDepths<S> {
-    /// From column `x` on, with the first row of the tile.
+    /// Creates the depths from column `x` on, with the first row of the tile.
     #[inline(always)]
     pub fn new(simd: S, plane: &SamplePlane, t: &ScreenTriangle, [x, tile_y]: [i32; 2]) -> Self {
         let origin = t.origin();
