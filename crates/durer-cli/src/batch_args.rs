@@ -1,5 +1,6 @@
 //! The options of `durer batch`.
 
+use crate::sandbox::Sandbox;
 use crate::values;
 use clap::{Args, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -79,6 +80,13 @@ pub struct BatchArgs {
     /// of the machine's, divided by --jobs, at most 4G]
     #[arg(long, value_name = "SIZE", allow_hyphen_values = true, value_parser = values::bytes)]
     pub max_memory: Option<u64>,
+    /// Restrict the processes of rows to the folders of their inputs and OUT, by Landlock (Linux)
+    ///
+    /// A fault in a reader can then neither read nor change other files, nor open connections. Folders are those of all rows of
+    /// the shard, and of the files that their options name. If the system does not support it, the command stops with an error,
+    /// or with `best-effort` continues with a warning.
+    #[arg(long, value_name = "HOW", num_args = 0..=1, require_equals = true, default_missing_value = "strict")]
+    pub sandbox: Option<Sandbox>,
     /// Print no progress, and no errors of rows
     #[arg(short, long)]
     pub quiet: bool,

@@ -87,7 +87,7 @@ pub fn wanted(args: &RenderArgs, kind: Kind) -> Result<Option<Plan>, Failure> {
         _ => return Ok(None),
     };
     let options = Options {
-        size: (picture.size.width, picture.size.height),
+        size: (picture.rendered_size().width, picture.rendered_size().height),
         frames,
         seconds: seconds(format, frames, picture.fps, picture.duration)?,
         alpha: !is_opaque(&picture.background),

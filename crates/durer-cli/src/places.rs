@@ -5,6 +5,7 @@ use crate::sandbox::{self, Sandbox};
 use clap::ArgMatches;
 use std::ffi::OsStr;
 use std::fs::{self, Metadata};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The argument that means standard input or output.
@@ -21,8 +22,11 @@ const OUTPUTS: [&str; 4] = ["output", "item", "depth", "normal"];
 /// The command that reads depths.
 const WARP: &str = "warp";
 
+/// The command whose rows are run by other processes.
+const BATCH: &str = "batch";
+
 /// Options that name what is read, though they are no mere paths.
-const OTHER_INPUTS: [&str; 2] = ["environment", "annotations"];
+pub const OTHER_INPUTS: [&str; 2] = ["environment", "annotations"];
 
 /// A place for a file, whether there is one or not.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -71,9 +75,14 @@ fn full(path: &Path) -> PathBuf {
 /// Confines the process to the folders of the files that a command names, if requested. Comes before any other thread.
 pub fn settle(name: &str, given: &ArgMatches) -> Result<(), Failure> {
     match given.try_get_one::<Sandbox>("sandbox") {
-        Ok(Some(&how)) => {
+        // Its workers are confined.
+        Ok(Some(&how)) if name != BATCH => {
             let (inputs, outputs) = named(name, given);
-            sandbox::confine(how, &inputs, &outputs)
+            if let Some(warning) = sandbox::confine(how, &inputs, &outputs)? {
+                // A closed standard error leaves nobody to tell.
+                let _ = writeln!(std::io::stderr().lock(), "durer: warning: {warning}");
+            }
+            Ok(())
         }
         _ => Ok(()),
     }

@@ -26,7 +26,7 @@ use crate::watch;
 use cells::shots;
 pub use cells::{Cell, assemble};
 pub use check::check;
-use check::{algorithm, asks_for_rays, check_size, wanted};
+use check::{algorithm, asks_for_rays, check_size, check_tile, wanted};
 use durer::math::{DVec2, Vec4};
 use durer::pipeline::{self, Lighting, Marks, Mask, RenderOptions, SurfaceMethod};
 use durer::scene::{AlphaMode, Camera, Material, Scene};
@@ -295,6 +295,7 @@ pub fn with_open_side(
     }
     let shape = drawing::shape(args, scene);
     let found = sized(args, shape.map_err(|f| input::blamed(name, scene, f))?);
+    check_tile(&found)?;
     check_size(&found)?;
     Ok(Some(found))
 }
@@ -559,6 +560,7 @@ fn picture_options(
         },
         width: shot.size.width,
         height: shot.size.height,
+        window: args.picture.tile,
         shading: args.look.shading.map(Into::into),
         lighting,
         exposure: args.look.exposure,

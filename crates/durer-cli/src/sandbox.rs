@@ -2,10 +2,11 @@
 
 use crate::failure::Failure;
 use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// The answer to a system that cannot confine the process.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 pub enum Sandbox {
     /// The command ends with an error.
     Strict,
@@ -21,23 +22,24 @@ const SYSTEM: [&str; 4] =
 /// Confines the process: from here on it opens nothing but what is in the folders of its inputs, or in folders that it
 /// was given, and makes and replaces files in the folders of its outputs only. It opens no connections.
 ///
+/// Returns a warning where the system cannot do it, and need not.
+///
 /// # Errors
-/// A system that cannot do that.
-pub fn confine(how: Sandbox, inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<(), Failure> {
+/// A system that cannot do it, but must.
+pub fn confine(
+    how: Sandbox,
+    inputs: &[PathBuf],
+    outputs: &[PathBuf],
+) -> Result<Option<String>, Failure> {
     let read: Vec<PathBuf> = inputs.iter().filter_map(|input| folder(input)).collect();
     let written: Vec<PathBuf> = outputs.iter().filter_map(|output| folder(output)).collect();
     match (landlocked(&read, &written), how) {
-        (Ok(()), _) => Ok(()),
+        (Ok(()), _) => Ok(None),
         (Err(why), Sandbox::Strict) => {
             let hint = "--sandbox=best-effort continues without it";
             Err(Failure::Usage(format!("--sandbox: {why}; {hint}")))
         }
-        (Err(why), Sandbox::BestEffort) => {
-            use std::io::Write;
-            // A closed standard error leaves nobody to tell.
-            let _ = writeln!(std::io::stderr().lock(), "durer: warning: --sandbox: {why}");
-            Ok(())
-        }
+        (Err(why), Sandbox::BestEffort) => Ok(Some(format!("--sandbox: {why}"))),
     }
 }
 

@@ -5,6 +5,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use durer::math::{DVec2, DVec3, Rect};
 use durer::pipeline::SurfaceMethod;
 use durer::simd::{self, Level};
+use durer::view::window::PixelRect;
 use durer::visibility::wireframe;
 use durer_formats::picture::PictureFormat;
 
@@ -25,6 +26,22 @@ pub fn size(text: &str) -> Result<Size, String> {
         _ => Err("a size is WIDTHxHEIGHT in whole pixels from 1, e.g. 1920x1080".to_owned()),
     };
     Ok(Size { width: side(width)?, height: side(height)? })
+}
+
+/// `X,Y,WIDTH,HEIGHT`, pixels of a picture.
+pub fn tile(text: &str) -> Result<PixelRect, String> {
+    let wrong = || {
+        "a tile is X,Y,WIDTH,HEIGHT in whole pixels of the picture, X and Y from 0 of the upper left corner, e.g. \
+         1024,0,512,512"
+            .to_owned()
+    };
+    let numbers = text.split(',').map(|n| n.trim().parse::<u32>());
+    let numbers: Vec<u32> = numbers.collect::<Result<_, _>>().map_err(|_| wrong())?;
+    let [x, y, width, height] = numbers[..] else { return Err(wrong()) };
+    let end = |start: u32, side: u32| start.checked_add(side).and_then(|v| v.try_into().ok());
+    let (Some(x1), Some(y1)) = (end(x, width), end(y, height)) else { return Err(wrong()) };
+    let tile = PixelRect::spanning(x.cast_signed(), y.cast_signed(), x1, y1);
+    if tile.is_empty() { Err(wrong()) } else { Ok(tile) }
 }
 
 /// Value of `--algorithm`.
@@ -210,6 +227,18 @@ mod tests {
         assert_eq!(size("64"), Ok(Size { width: 64, height: 64 }));
         for wrong in ["", "x", "0x5", "5x0", "NaNxNaN", "1e3x2", "-1x2", "4294967296x1", "1x2x3"] {
             assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn tiles_have_places_and_sizes() {
+        assert_eq!(tile("64,0,32,16"), Ok(PixelRect::spanning(64, 0, 96, 16)));
+        let most = "0,0,2147483647,1";
+        assert_eq!(tile(most), Ok(PixelRect::spanning(0, 0, i32::MAX, 1)));
+        for wrong in
+            ["", "1,2,3", "1,2,3,4,5", "-1,0,1,1", "0,0,0,1", "0,0,1,0", "1,0,2147483647,1"]
+        {
+            assert!(tile(wrong).is_err(), "{wrong}");
         }
     }
 

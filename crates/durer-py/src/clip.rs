@@ -15,8 +15,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-/// Segments handed to a thread at a time.
-const CHUNK: usize = 1 << 14;
+/// Segments handed to a thread at a time: their columns and results stay in the second-level cache, and none is so large that the
+/// allocator asks the system for it each time.
+const CHUNK: usize = 1 << 12;
 
 /// Segments with their flags.
 type Kept<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<bool>>);
@@ -89,7 +90,9 @@ fn clip_segments<'py>(
         let parts = all.par_chunks(CHUNK).zip(out.par_chunks_mut(CHUNK));
         let firsts: Vec<_> = parts
             .zip(kept.par_chunks_mut(CHUNK))
-            .map(|((all, out), kept)| clip_part(&window, all, out, kept))
+            .map_init(Columns::default, |columns, ((all, out), kept)| {
+                columns.clip(&window, all, out, kept)
+            })
             .collect::<durer::Result<_>>()?;
         let first = firsts.iter().enumerate().find_map(|(i, at)| at.map(|at| i * CHUNK + at));
         Ok((out, kept, first))
@@ -108,23 +111,36 @@ fn packed<'py>(py: Python<'py>, out: Vec<[f64; 4]>, kept: Vec<bool>) -> PyResult
     Ok((segments, flat(py, kept)))
 }
 
-/// Clips a part of the segments; returns the first of them that is not finite.
-fn clip_part(
-    window: &Rect,
-    all: &[[f64; 4]],
-    out: &mut [[f64; 4]],
-    kept: &mut [bool],
-) -> durer::Result<Option<usize>> {
-    let column = |i: usize| all.iter().map(|s| s[i]).collect::<Vec<_>>();
-    let (x0, y0, x1, y1) = (column(0), column(1), column(2), column(3));
-    let options = Options { threads: false, ..Options::default() };
-    let mut clipped = Clipped::default();
-    clip(window, Segments { x0: &x0, y0: &y0, x1: &x1, y1: &y1 }, &options, &mut clipped)?;
-    for (i, (out, kept)) in out.iter_mut().zip(kept).enumerate() {
-        *out = [clipped.x0[i], clipped.y0[i], clipped.x1[i], clipped.y1[i]];
-        *kept = clipped.is_accepted(i);
+/// Buffers of a thread, for one part of the segments after the other.
+#[derive(Default)]
+struct Columns {
+    given: [Vec<f64>; 4],
+    clipped: Clipped,
+}
+
+impl Columns {
+    /// Clips a part of the segments; returns the first of them that is not finite.
+    fn clip(
+        &mut self,
+        window: &Rect,
+        all: &[[f64; 4]],
+        out: &mut [[f64; 4]],
+        kept: &mut [bool],
+    ) -> durer::Result<Option<usize>> {
+        let Self { given, clipped } = self;
+        for (i, column) in given.iter_mut().enumerate() {
+            column.clear();
+            column.extend(all.iter().map(|segment| segment[i]));
+        }
+        let [x0, y0, x1, y1] = &*given;
+        let options = Options { threads: false, ..Options::default() };
+        clip(window, Segments { x0, y0, x1, y1 }, &options, clipped)?;
+        for (i, (out, kept)) in out.iter_mut().zip(kept).enumerate() {
+            *out = [clipped.x0[i], clipped.y0[i], clipped.x1[i], clipped.y1[i]];
+            *kept = clipped.is_accepted(i);
+        }
+        Ok(clipped.non_finite.first().copied())
     }
-    Ok(clipped.non_finite.first().copied())
 }
 
 /// Clips segments, each two points, to a convex ring.

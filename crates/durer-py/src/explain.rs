@@ -2,7 +2,7 @@
 
 use crate::args::contiguous;
 use crate::error;
-use durer::explain::{self, Figure, Frame, Grid, Input, Language, Options};
+use durer::explain::{self, Figure, Frame, Grid, Input, Language, Lesson, Options};
 use durer::math::{DVec2, DVec3, Rect};
 use durer_cli::embedded;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
@@ -85,10 +85,7 @@ fn trace(
     cap: usize,
     code: &str,
 ) -> PyResult<String> {
-    let language = language(code)?;
-    let input = input(&given)?;
-    let (lesson, frames) = run(py, algorithm, &input, cap)?;
-    Ok(py.detach(|| explain::json(lesson, &frames, language)))
+    traced(py, algorithm, (&given, cap, code), explain::json)
 }
 
 /// Runs a lesson; returns a page with buttons.
@@ -100,21 +97,24 @@ fn trace_page(
     cap: usize,
     code: &str,
 ) -> PyResult<String> {
-    let language = language(code)?;
-    let input = input(&given)?;
-    let (lesson, frames) = run(py, algorithm, &input, cap)?;
-    Ok(py.detach(|| embedded::page(lesson, &frames, language)))
+    traced(py, algorithm, (&given, cap, code), embedded::page)
 }
 
-fn run(
+/// Runs a lesson; returns what `shown` makes of its frames.
+fn traced(
     py: Python<'_>,
     algorithm: &str,
-    input: &Input,
-    cap: usize,
-) -> PyResult<(&'static explain::Lesson, Vec<Frame>)> {
+    (given, cap, code): (&Given<'_>, usize, &str),
+    shown: fn(&Lesson, &[Frame], Language) -> String,
+) -> PyResult<String> {
+    let language = language(code)?;
+    let input = input(given)?;
     let lesson = explain::lesson(algorithm).map_err(|e| error::of_library(py, &e))?;
-    let frames = py.detach(|| lesson.run(input, &Options::default(), cap));
-    Ok((lesson, frames.map_err(|e| error::of_library(py, &e))?))
+    let run = || {
+        let frames = lesson.run(&input, &Options::default(), cap)?;
+        Ok(shown(lesson, &frames, language))
+    };
+    py.detach(run).map_err(|e| error::of_library(py, &e))
 }
 
 /// Facts of an algorithm: name, title, authors, year, source, cost, limits, class.

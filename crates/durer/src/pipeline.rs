@@ -22,6 +22,7 @@ pub use status::{Places, Status, Unseen, drawing_status, status};
 pub use tone_marks::{ToneMarks, tone_marks};
 
 use crate::math::{Vec4, exp2};
+use crate::raster::fixed::GUARD_BAND;
 use crate::scene::{Camera, Light, Scene};
 use crate::shade::PreparedLights;
 use crate::shade::environment::Mirrored;
@@ -32,6 +33,7 @@ use crate::stopwatch::Stopwatch;
 use crate::target::Framebuffer;
 use crate::trace::NoTrace;
 use crate::view::View;
+use crate::view::window::PixelRect;
 pub use crate::visibility::surface::a_buffer::Mask;
 pub use crate::visibility::surface::ambient_occlusion;
 use crate::visibility::surface::input::SurfaceInput;
@@ -75,6 +77,9 @@ pub struct RenderOptions {
     pub width: u32,
     /// Height in pixels, at least 1.
     pub height: u32,
+    /// Pixels of the picture to render, as they are in the whole one: the framebuffer has their size, and memory follows it.
+    /// `None` = all.
+    pub window: Option<PixelRect>,
     /// Camera that sees the picture.
     pub camera: Camera,
     /// Shading; `None` = by material.
@@ -129,6 +134,7 @@ impl RenderOptions {
             algorithm: SurfaceMethod::ZBuffer,
             width: 1024,
             height: 1024,
+            window: None,
             camera,
             shading: None,
             lighting: Lighting::Auto,
@@ -156,14 +162,17 @@ impl RenderOptions {
     /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a size of zero, [`Error::Limit`] for one above `max_pixels`, [`Error::Unsupported`]
-    /// for secondary rays with an algorithm that casts none.
+    /// [`Error::Parameter`] for a size of zero and a window that is empty or goes beyond the picture, [`Error::Limit`] for
+    /// more pixels than `max_pixels` and a window of a picture with a side above 131,072, [`Error::Unsupported`] for
+    /// secondary rays with an algorithm that casts none, and for a window with ambient occlusion or by depth sort.
     pub fn check(&self) -> Result<()> {
         if self.width == 0 || self.height == 0 {
             let size = format!("{}x{}", self.width, self.height);
             return Err(Error::parameter("size", size, "at least 1x1"));
         }
-        let pixels = u64::from(self.width) * u64::from(self.height);
+        self.check_window()?;
+        let (width, height) = self.rendered_size();
+        let pixels = u64::from(width) * u64::from(height);
         if pixels > self.max_pixels {
             return Err(Error::Limit { what: "pixels", value: pixels, limit: self.max_pixels });
         }
@@ -182,6 +191,45 @@ impl RenderOptions {
             }
         }
         self.camera.check()
+    }
+
+    fn check_window(&self) -> Result<()> {
+        let Some(window) = self.window else { return Ok(()) };
+        let whole = PixelRect::of_size(self.width, self.height)?;
+        if window.is_empty() || window.intersection(&whole) != window {
+            let (x, y) = (window.x0(), window.y0());
+            let value = format!("{x},{y},{},{}", window.width(), window.height());
+            let expected = "not empty, and within the picture";
+            return Err(Error::parameter("window", value, expected));
+        }
+        let (side, limit) = (self.width.max(self.height).into(), GUARD_BAND as u64);
+        if side > limit {
+            let what = "pixels a side of a picture in parts";
+            return Err(Error::Limit { what, value: side, limit });
+        }
+        if self.ambient_occlusion.is_some() {
+            let (what, instead) =
+                ("ambient occlusion in a part of a picture", "it takes the whole");
+            return Err(Error::Unsupported { what, instead });
+        }
+        if self.algorithm == SurfaceMethod::DepthSort {
+            let (what, instead) =
+                ("a part of a picture by depth sort", "all other methods do that");
+            return Err(Error::Unsupported { what, instead });
+        }
+        Ok(())
+    }
+
+    /// Returns the width and height of the framebuffer: those of the window, if there is one.
+    pub fn rendered_size(&self) -> (u32, u32) {
+        let whole = (self.width, self.height);
+        self.window.map_or(whole, |window| (window.width(), window.height()))
+    }
+
+    /// Returns the view of the camera, with the window.
+    fn view(&self) -> Result<View> {
+        let view = View::new(self.camera, self.width, self.height)?;
+        Ok(self.window.map_or(view, |window| view.with_window(window)))
     }
 }
 
@@ -252,7 +300,7 @@ pub fn render_into(
 ) -> Result<Report> {
     options.check()?;
     scene.check()?;
-    let view = View::new(options.camera, options.width, options.height)?;
+    let view = options.view()?;
     make_ready(framebuffer, options)?;
     let (lighting, surroundings) = (&options.lighting, &options.surroundings);
     let mut lights = lights(scene, &options.camera, (lighting, surroundings), options.exposure);
@@ -349,11 +397,12 @@ fn lights(
 /// all of them; everything else is as new.
 fn make_ready(framebuffer: &mut Framebuffer, options: &RenderOptions) -> Result<()> {
     let Framebuffer { color, .. } = std::mem::replace(framebuffer, Framebuffer::new(0, 0));
-    let stays = (color.width(), color.height()) == (options.width, options.height);
+    let (width, height) = options.rendered_size();
+    let stays = (color.width(), color.height()) == (width, height);
     let mut ready = if stays {
         Framebuffer { color, ..Framebuffer::new(0, 0) }
     } else {
-        Framebuffer::within(&options.work, options.width, options.height)?
+        Framebuffer::within(&options.work, width, height)?
     };
     let occlusion = options.ambient_occlusion.is_some();
     let RenderOptions { work, depth, item, normal, .. } = options;

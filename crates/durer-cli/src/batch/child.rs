@@ -28,6 +28,8 @@ pub struct Worker {
     child: Child,
     stdin: Option<ChildStdin>,
     answers: Receiver<String>,
+    /// Warning about what the system cannot do for it.
+    pub warning: Option<String>,
     /// The last that it wrote to standard error.
     told: Arc<Mutex<Vec<u8>>>,
     telling: Option<JoinHandle<()>>,
@@ -82,16 +84,22 @@ impl Worker {
             })
         });
         let stdin = child.stdin.take();
-        let mut worker = Self { child, stdin, answers, told, telling };
+        let mut worker = Self { child, stdin, answers, warning: None, told, telling };
         let said = worker.say(setup).map(|()| worker.answers.recv_timeout(START));
         let ready = match said {
             Ok(Ok(line)) => serde_json::from_str::<Ready>(&line).ok(),
             _ => None,
         };
         match ready {
-            Some(ready) if ready.version == env!("CARGO_PKG_VERSION") => Ok(worker),
+            Some(ready) if ready.version == env!("CARGO_PKG_VERSION") => {
+                worker.warning = ready.warning;
+                Ok(worker)
+            }
             Some(ready) => Err(fail(&format!("it is durer {}; start again", ready.version))),
-            None => Err(fail(&worker.last_words())),
+            None => Err(match worker.last_words() {
+                words if words.starts_with("--sandbox: ") => Failure::Usage(words),
+                words => fail(&words),
+            }),
         }
     }
 

@@ -185,7 +185,7 @@ mod tests {
     fn errors_are_divided_into_place_and_message() {
         let names = ["x/a.obj".to_owned(), String::new()];
         for (message, place, rest) in [
-            ("x/a.obj: line 3: `one` is no number", "x/a.obj: line 3", "`one` is no number"),
+            ("x/a.obj: line 3: `one` is not a number", "x/a.obj: line 3", "`one` is not a number"),
             ("x/a.obj: it is empty", "x/a.obj", "it is empty"),
             ("--size: no", "", "--size: no"),
         ] {

@@ -74,7 +74,7 @@ fn read_lines(
             fail(&format!("column {column}: {what}"))
         })?;
         let Value::Object(cells) = value else {
-            return Err(fail("it is no object; a row is written {\"id\": …, \"input\": …}"));
+            return Err(fail("it is not an object; a row is written {\"id\": …, \"input\": …}"));
         };
         each(Record { place, cells })?;
     }

@@ -84,6 +84,8 @@ pub fn run(args: &BatchArgs) -> Result<(), Failure> {
         threads: args.threads,
         max_memory: args.max_memory.unwrap_or(share),
         timeout: args.timeout_per_row,
+        sandbox: args.sandbox,
+        read: args.sandbox.map_or_else(Vec::new, |_| rows.folders()),
     };
     let ended = Pool::new(args, setup, &rows, known, journal).run(jobs);
     // Nothing in it is needed.

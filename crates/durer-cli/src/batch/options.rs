@@ -4,7 +4,8 @@ use crate::args::Cli;
 use crate::failure::Failure;
 use crate::given::{self, Given, is_by_hand, is_called, is_flag, is_without_value};
 use crate::kind::Kind;
-use clap::{Arg, ArgMatches, Command, CommandFactory};
+use crate::places::OTHER_INPUTS;
+use clap::{Arg, ArgMatches, Command, CommandFactory, ValueHint};
 use durer_formats::geo::GeoFormat;
 use serde_json::Value;
 
@@ -67,6 +68,14 @@ impl Parser {
             id != "output" && !OF_THE_PROCESS.contains(&id)
         };
         self.sub(command)?.get_arguments().filter(of_row).find(|a| is_called(a, name))
+    }
+
+    /// Returns whether the values of an option are files or folders.
+    pub fn names_files(&self, command: &str, given: &Given) -> bool {
+        let mut arguments = self.sub(command).into_iter().flat_map(Command::get_arguments);
+        let hint = arguments.find(|arg| arg.get_id() == &given.id).map(Arg::get_value_hint);
+        matches!(hint, Some(ValueHint::FilePath | ValueHint::DirPath | ValueHint::AnyPath))
+            || OTHER_INPUTS.contains(&given.id.as_str())
     }
 
     /// Parses the words after `--`: a command's name, `render` if it is missing, and options.

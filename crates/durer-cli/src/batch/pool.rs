@@ -64,6 +64,8 @@ pub struct Pool<'a> {
     stopped: AtomicBool,
     /// Running rows are not waited for.
     abandoned: AtomicBool,
+    /// A warning of workers was shown.
+    warned: AtomicBool,
     /// Reason why nothing goes on.
     failure: Mutex<Option<Failure>>,
 }
@@ -93,6 +95,7 @@ impl<'a> Pool<'a> {
             start: Instant::now(),
             stopped: AtomicBool::new(false),
             abandoned: AtomicBool::new(false),
+            warned: AtomicBool::new(false),
             failure: Mutex::new(None),
         }
     }
@@ -214,6 +217,10 @@ impl<'a> Pool<'a> {
                 break;
             }
             started = Worker::start(&self.setup);
+        }
+        let warning = started.as_mut().ok().and_then(|worker| worker.warning.take());
+        if let Some(warning) = warning.filter(|_| !self.warned.swap(true, Ordering::Relaxed)) {
+            self.progress.tell(&format!("durer: warning: {warning}"));
         }
         started
     }

@@ -11,9 +11,9 @@ use crate::given::Given;
 use crate::input::display_name;
 use crate::names;
 use serde_json::Value;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 
 /// A row to run.
 #[derive(Debug)]
@@ -44,7 +44,7 @@ pub struct Rows {
     pub common: Common,
 }
 
-/// Columns that are no options.
+/// Columns that are not options.
 const COLUMNS: [&str; 5] = ["id", "input", "output", "command", "sha256"];
 
 /// Begin of an input that has its bytes in itself.
@@ -75,6 +75,24 @@ impl Rows {
             Ok(())
         })?;
         Ok(Self { rows, parser, common })
+    }
+
+    /// Returns the folders of all files that rows read, as far as they are there, without links.
+    pub fn folders(&self) -> Vec<PathBuf> {
+        let mut folders = BTreeSet::new();
+        let mut add = |path: &str| {
+            let Ok(full) = std::fs::canonicalize(path) else { return };
+            let folder = if full.is_dir() { Some(&*full) } else { full.parent() };
+            folders.extend(folder.map(Path::to_owned));
+        };
+        for row in &self.rows {
+            row.inputs.iter().filter(|input| !input.starts_with(DATA)).for_each(|input| add(input));
+            let joined = self.parser.joined(&self.common, row.command, row.options.clone());
+            let (_, options) = options::planes(row.command, joined);
+            let named = options.iter().filter(|given| self.parser.names_files(row.command, given));
+            named.flat_map(|given| &given.values).for_each(|path| add(path));
+        }
+        folders.into_iter().collect()
     }
 
     /// Returns the row as a worker takes it.
@@ -128,7 +146,7 @@ fn row(
             None | Some(Value::Null) => Ok(None),
             Some(value) => {
                 let text = options::text(value)
-                    .ok_or_else(|| format!("column `{name}`: it is no text"))?;
+                    .ok_or_else(|| format!("column `{name}`: it is not a text"))?;
                 Ok(Some(text).filter(|text| !text.is_empty()))
             }
         }
@@ -197,7 +215,9 @@ fn inputs(
         _ => return Err(format!("column `input`: `durer {command}` has one for each row")),
     }
     if let Some(input) = inputs.iter().find(|i| i.is_empty() || *i == "-" || i.contains('\0')) {
-        return Err(format!("column `input`: `{input}` is no file; name one, or give a data URI"));
+        return Err(format!(
+            "column `input`: `{input}` is not a file; name one, or give a data URI"
+        ));
     }
     Ok(inputs)
 }

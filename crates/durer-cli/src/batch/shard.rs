@@ -58,7 +58,7 @@ impl Shard {
             let text = variable(name).ok_or_else(|| {
                 usage(format!("{index} is set, {name} is not; set it to the number of jobs"))
             })?;
-            text.trim().parse().map_err(|_| usage(format!("{name}={text} is no number")))
+            text.trim().parse().map_err(|_| usage(format!("{name}={text} is not a number")))
         };
         let counted = variable(SHARDS).is_some();
         let least = if first.is_empty() || counted { 0 } else { number(first)? };

@@ -1,6 +1,7 @@
 //! Messages between a process of `durer batch` and its workers: lines of JSON.
 
 use super::entry::{Entry, Reference};
+use crate::sandbox::Sandbox;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -17,6 +18,10 @@ pub struct Setup {
     pub max_memory: u64,
     /// Seconds for a row.
     pub timeout: Option<f64>,
+    /// Restriction of workers to the folders below and that of the outputs.
+    pub sandbox: Option<Sandbox>,
+    /// Folders of what is read.
+    pub read: Vec<PathBuf>,
 }
 
 /// The first line of a worker.
@@ -24,6 +29,8 @@ pub struct Setup {
 pub struct Ready {
     /// Its version of durer.
     pub version: String,
+    /// Warning about what the system cannot do.
+    pub warning: Option<String>,
 }
 
 /// A row to run.

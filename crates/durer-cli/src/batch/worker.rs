@@ -9,7 +9,7 @@ use crate::failure::{Failure, in_words};
 use crate::given::first_paragraph;
 use crate::options::RunningArgs;
 use crate::output::{self, Target};
-use crate::{beside, messages, panics, places, report, resources, threads, watch};
+use crate::{beside, messages, panics, places, report, resources, sandbox, threads, watch};
 use crate::{clip, draw, info, plot, render, tiles};
 use clap::CommandFactory;
 use durer::Error;
@@ -26,17 +26,23 @@ pub const TIMEOUT: &str = "--timeout-per-row";
 
 /// Runs rows until there are no more.
 pub fn work() -> Result<(), Failure> {
-    let lines = lines();
     let broken =
         |what: &str| Failure::Usage(format!("batch-worker: {what}; `durer batch` starts it"));
-    let first = lines.recv().map_err(|_| broken("nothing to do"))?;
+    let mut first = String::new();
+    if io::stdin().lock().read_line(&mut first).unwrap_or(0) == 0 {
+        return Err(broken("nothing to do"));
+    }
     let setup: Setup = serde_json::from_str(&first).map_err(|e| broken(&e.to_string()))?;
+    // Threads that are started from here on are confined, too.
+    let confine = |how| sandbox::confine(how, &setup.read, std::slice::from_ref(&setup.out));
+    let warning = setup.sandbox.map(confine).transpose()?.flatten();
+    let lines = lines();
     beside::keep_apart(setup.temporary.clone());
     watch::start_rows();
     threads::start(&running(&setup))?;
     messages::keep();
     report::keep();
-    say(&Ready { version: env!("CARGO_PKG_VERSION").to_owned() })?;
+    say(&Ready { version: env!("CARGO_PKG_VERSION").to_owned(), warning })?;
     let mut worker = Worker { setup, hashes: Hashes::default() };
     while let Ok(line) = lines.recv() {
         let task: Task = serde_json::from_str(&line).map_err(|e| broken(&e.to_string()))?;

@@ -27,6 +27,7 @@ const OF_PIXELS: &[(&str, &str)] = &[
     ("bounces", "drawings show no reflections; leave it out"),
     ("environment", "drawings show no reflections; leave it out"),
     ("tone_map", "areas of drawings have one colour each; --exposure makes all lighter or darker"),
+    ("tile", "drawings are made as a whole; leave it out"),
     ("viewports", "use --sheet third-angle, or a file for each --view"),
     ("item", "areas of a .geojson with --style regions have the property `item`"),
     ("depth", "write it beside a .png without --style"),

@@ -9,6 +9,7 @@ use clap::Args;
 use durer::pipeline::Background;
 use durer::view::layout::Layout;
 use durer::view::projection::NamedView;
+use durer::view::window::PixelRect;
 
 /// The shape of the output.
 #[derive(Debug, Clone, Args)]
@@ -23,6 +24,13 @@ pub struct PictureArgs {
     /// The same, found where a side was open.
     #[arg(skip)]
     pub size: Size,
+    /// Render only a part of the picture, of this size in pixels, its upper left pixel at X,Y
+    ///
+    /// Tiles joined in any order are the whole picture byte for byte, and memory follows the tile, so that pictures may be
+    /// larger than one machine holds: --size is that of the whole. The algorithms wireframe and depth-sort, edges,
+    /// ambient occlusion, viewports and drawings have no tiles.
+    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, conflicts_with = "viewports", value_parser = values::tile)]
+    pub tile: Option<PixelRect>,
     /// Method that finds visible surfaces [default: z-buffer; a-buffer with --aa 64; ray with --shadows
     /// rays or --bounces]
     #[arg(long, value_name = "NAME", value_parser = values::algorithm())]
@@ -58,6 +66,14 @@ pub struct PictureArgs {
     /// Refuse pictures with more pixels; the default is 16384x16384
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "268435456", value_parser = values::count)]
     pub max_pixels: u64,
+}
+
+impl PictureArgs {
+    /// Returns the size of the file: that of the tile, if there is one.
+    pub fn rendered_size(&self) -> Size {
+        let of_tile = |tile: PixelRect| Size { width: tile.width(), height: tile.height() };
+        self.tile.map_or(self.size, of_tile)
+    }
 }
 
 /// Parses a layout whose cells are named views.

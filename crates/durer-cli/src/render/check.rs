@@ -16,6 +16,9 @@ pub fn check(args: &RenderArgs) -> Result<(), Failure> {
     section::check(&args.section, args.drawing.sheet.is_some())?;
     drawing::check(args, wanted(args).kind)?;
     args.picture.encoding.check(wanted(args).kind)?;
+    if !args.picture.sides.is_open() {
+        check_tile(args)?;
+    }
     check_size(args)?;
     environment::read(&args.look, &args.running.work)?;
     check_algorithm(args)?;
@@ -24,7 +27,7 @@ pub fn check(args: &RenderArgs) -> Result<(), Failure> {
 
 /// Checks that the picture is not too large.
 pub fn check_size(args: &RenderArgs) -> Result<(), Failure> {
-    let Size { width, height } = args.picture.size;
+    let Size { width, height } = args.picture.rendered_size();
     let (kind, side) = (wanted(args).kind, width.max(height));
     if side > kind.max_side() {
         let (most, suffix) = (kind.max_side(), kind.suffix());
@@ -59,6 +62,7 @@ fn check_algorithm(args: &RenderArgs) -> Result<(), Failure> {
         }
         Some(_) => {}
     }
+    check_whole(args)?;
     match args.picture.algorithm {
         None if args.picture.aa == Samples::SixtyFour && rays.is_some() => {
             usage("--aa 64: rays take up to 16 samples".to_owned())
@@ -82,6 +86,45 @@ fn check_algorithm(args: &RenderArgs) -> Result<(), Failure> {
         ),
         _ => Ok(()),
     }
+}
+
+/// Checks that the tile lies in the picture, both of whose sides are known.
+pub fn check_tile(args: &RenderArgs) -> Result<(), Failure> {
+    let Size { width, height } = args.picture.size;
+    let Some(tile) = args.picture.tile else { return Ok(()) };
+    let ends = [tile.x1(), tile.y1()].map(i32::unsigned_abs);
+    if ends[0] <= width && ends[1] <= height {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!(
+        "--tile {},{},{},{}: it ends at {},{}, beyond the picture of {width}x{height} pixels",
+        tile.x0(),
+        tile.y0(),
+        tile.width(),
+        tile.height(),
+        ends[0],
+        ends[1]
+    )))
+}
+
+/// Refuses tiles with what takes the whole picture.
+fn check_whole(args: &RenderArgs) -> Result<(), Failure> {
+    if args.picture.tile.is_none() {
+        return Ok(());
+    }
+    let what = match args.picture.algorithm {
+        Some(Algorithm::All) => "--algorithm all compares whole pictures",
+        Some(Algorithm::Wireframe) => "the algorithm wireframe draws whole lines",
+        Some(Algorithm::Surfaces(SurfaceMethod::DepthSort)) => {
+            "the algorithm depth-sort puts all of a picture in order"
+        }
+        _ if args.stage.has_edges() => "--edges and --look technical draw whole lines",
+        _ if args.stage.has_occlusion() => {
+            "--ambient-occlusion and the looks studio and clay compare pixels with others far away"
+        }
+        _ => return Ok(()),
+    };
+    Err(Failure::Usage(format!("--tile: {what}; render without it, or leave that out")))
 }
 
 fn has_planes(args: &RenderArgs) -> bool {

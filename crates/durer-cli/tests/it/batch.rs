@@ -31,7 +31,7 @@ fn rows_are_run_and_noted() {
     let folder = cubes("b/cube,cube.obj\nbroken,broken.obj\ngone,gone.obj\n");
     let ended = batch(&folder, "--jobs 2");
     ended.fails(3, "durer: broken: broken.obj: line 3").fails(3, "gone: gone.obj: No such file");
-    ended.fails(3, "1 rows done, 2 failed");
+    ended.fails(3, "1 rows done, 1 failed");
     folder.must(&format!("render cube.obj -o direct.png {SMALL}"));
     assert_eq!(folder.read("out/b/cube.png"), folder.read("direct.png"));
     let mut entries = journal(&folder);
@@ -73,11 +73,11 @@ fn manifests_are_checked_before_any_row_is_run() {
         ("id,input\na,cube.obj,8\n", "line 2: it has 3 cells; the header has 2"),
         ("name,input\na,cube.obj\n", "line 1: there is no column `id`"),
         ("id,input\na,\n", "line 2: there is no `input`"),
-        ("id,input\na,-\n", "line 2: column `input`: `-` is no file"),
+        ("id,input\na,-\n", "line 2: column `input`: `-` is not a file"),
         ("id,input,command\na,cube.obj,explain\n", "command `explain` is none of render, clip"),
         ("id,input,sha256\na,cube.obj,12\n", "64 hexadecimal digits"),
         ("{\"id\":\"a\",\"input\":\"cube.obj\"}\n{\"id\":\n", "line 2: column 6: EOF"),
-        ("{\"id\":\"a\",\"input\":\"cube.obj\"}\n[1]\n", "line 2: it is no object"),
+        ("{\"id\":\"a\",\"input\":\"cube.obj\"}\n[1]\n", "line 2: it is not an object"),
         (
             "{\"id\":\"a\",\"input\":\"cube.obj\",\"no-color-bar\":3,\"command\":\"plot\"}\n",
             "it is a flag: true or false",
@@ -326,4 +326,30 @@ fn a_row_that_takes_too_long_is_ended() {
     let ended = batch(&folder, "--jobs 1 --timeout-per-row 0.2");
     ended.fails(3, "1 rows done, 1 failed");
     assert_eq!(journal(&folder)[0]["error"]["kind"], "timeout", "{}", ended.err);
+}
+
+#[cfg(unix)]
+#[test]
+fn confined_rows_write_within_out() {
+    let folder = Folder::with_models();
+    ["in", "out", "away"].iter().for_each(|name| fs::create_dir(folder.path(name)).unwrap());
+    folder.write("in/cube.obj", CUBE);
+    std::os::unix::fs::symlink(folder.path("away"), folder.path("out/link")).unwrap();
+    folder.write("rows.csv", "id,input\nplain,in/cube.obj\nlink/a,cube.obj\n");
+    assert_eq!(batch(&folder, "").code, 0);
+    assert!(folder.path("away/a.png").exists());
+    fs::remove_file(folder.path("away/a.png")).unwrap();
+    let ended = batch(&folder, "--restart --sandbox");
+    if ended.code == 2 {
+        ended.fails(2, "--sandbox=best-effort");
+        let ended = batch(&folder, "--restart --sandbox=best-effort");
+        assert!(ended.code == 0 && ended.err.contains("durer: warning: --sandbox"), "{ended:?}");
+        println!("skipped: the system does not confine processes");
+        return;
+    }
+    ended.fails(3, "1 rows done, 1 failed");
+    assert!(!folder.path("away/a.png").exists());
+    let entries = journal(&folder);
+    let of_link = entries.iter().find(|entry| entry["id"] == "link/a").unwrap();
+    assert_eq!(of_link["error"]["kind"], "write", "{of_link}");
 }

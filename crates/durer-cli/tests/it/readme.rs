@@ -147,6 +147,7 @@ fn links_lead_to_files() {
         "docs/explain.md",
         "docs/plot.md",
         "docs/batch.md",
+        "docs/farm.md",
         "docs/server.md",
         "samples/README.md",
         "peers/render/README.md",

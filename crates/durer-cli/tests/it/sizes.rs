@@ -92,3 +92,68 @@ fn picks_warps_and_plots_know_open_sides() {
     folder.must("plot --formula x*z -o p.png --page 30x20 --size 90x");
     assert_eq!(Picture::decode(&folder.read("p.png")).size(), (90, 60));
 }
+
+/// Returns the bytes of a picture's rows joined of tiles, which are given by their places.
+fn joined(folder: &Folder, tiles: &[[u32; 4]], [width, height]: [u32; 2]) -> Vec<Vec<u8>> {
+    let mut found = vec![Vec::new(); (width * height) as usize];
+    for (number, &[x, y, w, h]) in tiles.iter().enumerate() {
+        let tile = Picture::decode(&folder.read(&format!("out/{number}.png")));
+        assert_eq!(tile.size(), (w, h));
+        for (column, row) in (0..h).flat_map(|row| (0..w).map(move |column| (column, row))) {
+            found[((y + row) * width + x + column) as usize] = tile.pixel(column, row).to_vec();
+        }
+    }
+    found
+}
+
+#[test]
+fn tiles_joined_are_the_picture() {
+    let folder = with_plate();
+    let look = "--size 100x --view iso --background black,white --aa 4 --ground";
+    folder.must(&format!("render plate.obj -o whole.png {look}"));
+    let whole = Picture::decode(&folder.read("whole.png"));
+    let (width, height) = whole.size();
+    let tiles = [[70, 0, width - 70, height], [0, 33, 70, height - 33], [0, 0, 70, 33]];
+    let row =
+        |(i, [x, y, w, h]): (usize, &[u32; 4])| format!("{i},plate.obj,\"{x},{y},{w},{h}\"\n");
+    let rows: String = tiles.iter().enumerate().map(row).collect();
+    folder.write("rows.csv", format!("id,input,tile\n{rows}"));
+    folder.must(&format!("batch rows.csv -o out -q -- render {look}"));
+    let found = joined(&folder, &tiles, [width, height]);
+    assert!(found.iter().map(Vec::as_slice).eq(whole.pixels()));
+    // The first tile again, with its planes.
+    let planes = "--tile 70,0,30,8 --item i.png --depth d.png --normal n.png";
+    folder.must(&format!("render plate.obj -o a.png {look} {planes}"));
+    for name in ["a.png", "i.png", "d.png", "n.png"] {
+        assert_eq!(Picture::decode(&folder.read(name)).size(), (30, 8), "{name}");
+    }
+}
+
+#[test]
+fn a_tile_may_be_of_a_picture_that_is_too_large_itself() {
+    let folder = with_plate();
+    let large = "render plate.obj -o a.png --size 100000 --max-memory 64M";
+    folder.run(large).fails(2, "--max-pixels");
+    folder.must(&format!("{large} --tile 50000,50000,20,10"));
+    assert_eq!(Picture::decode(&folder.read("a.png")).size(), (20, 10));
+    // Paper only, and no warning that nothing is seen.
+    let ended = folder.must(&format!("{large} --tile 0,0,20,10"));
+    assert_eq!(ended.err, "");
+    for (options, error) in [
+        ("--tile 1,2,3", "X,Y,WIDTH,HEIGHT"),
+        ("--tile 0,0,0,5", "X,Y,WIDTH,HEIGHT"),
+        ("--size 64 --tile 60,0,5,5", "it ends at 65,5, beyond the picture of 64x64 pixels"),
+        ("--size 80x --view front --ortho fit --tile 0,0,80,21", "beyond the picture of 80x20"),
+        ("--tile 0,0,5,5 --algorithm wireframe", "--tile: the algorithm wireframe"),
+        ("--tile 0,0,5,5 --algorithm depth-sort", "--tile: the algorithm depth-sort"),
+        ("--tile 0,0,5,5 --algorithm all", "--tile: --algorithm all"),
+        ("--tile 0,0,5,5 --edges", "--tile: --edges"),
+        ("--tile 0,0,5,5 --look studio", "--tile: --ambient-occlusion"),
+        ("--tile 0,0,5,5 --style regions", "--tile"),
+        ("--tile 0,0,5,5 --viewports front,top", "cannot be used with"),
+        ("--size 140000 --tile 0,0,5,5", "131072"),
+    ] {
+        folder.run(&format!("render plate.obj -o b.png {options}")).fails(2, error);
+    }
+    assert!(!folder.path("b.png").exists());
+}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -457,6 +456,9 @@ def tiles(
     """
     given = layers if isinstance(layers, list) else [layers]
     zooms = zoom if isinstance(zoom, str) else str(zoom) if isinstance(zoom, int) else f"{zoom[0]}-{zoom[1]}"
+    # Here, as it takes longer to import than all of this package.
+    import tempfile
+
     with tempfile.TemporaryDirectory() as folder:
         inputs = []
         for number, layer in enumerate(given):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import html
-import json
 import os
 from typing import Any, NamedTuple
 
@@ -53,6 +51,8 @@ class Page:
         _durer.deliver(os.fspath(path), self.html.encode())
 
     def _repr_html_(self) -> str:
+        import html
+
         source = html.escape(self.html)
         return f'<iframe srcdoc="{source}" width="100%" height="640" style="border: 0"></iframe>'
 
@@ -96,6 +96,8 @@ def trace(
     """
     given = _given(input, example, window, clip, points, seed)
     again = (algorithm, given, int(cap), language)
+    import json
+
     return Trace(json.loads(_durer.trace(*again)), again)
 
 

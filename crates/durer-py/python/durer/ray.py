@@ -6,6 +6,9 @@ from typing import Any
 
 from .batch import clip_batch, render_batch
 
+#: Number of actors, or the least and the most; ``None`` is one for each CPU of the cluster.
+Actors = int | tuple[int, int] | None
+
 
 class _Renderer:
     """An actor that stays, so that the module is loaded and its threads are started once."""
@@ -25,23 +28,26 @@ class _Clipper:
         return clip_batch(batch, self.mask, **self.options)
 
 
-def _mapped(dataset: Any, actor: type, arguments: tuple[Any, ...], batch_size: int, concurrency: Any) -> Any:
+def _mapped(dataset: Any, actor: type, arguments: tuple[Any, ...], batch_size: int, concurrency: Actors) -> Any:
+    from ray.data import ActorPoolStrategy
+
+    least, most = concurrency if isinstance(concurrency, tuple) else (concurrency or 1, concurrency)
     return dataset.map_batches(
         actor,
         fn_constructor_args=arguments,
         batch_format="pyarrow",
         batch_size=batch_size,
         num_cpus=1,
-        concurrency=concurrency or (1, 10_000),
+        compute=ActorPoolStrategy(min_size=least, max_size=most),
     )
 
 
-def render(dataset: Any, *, batch_size: int = 32, concurrency: Any = None, **options: Any) -> Any:
+def render(dataset: Any, *, batch_size: int = 32, concurrency: Actors = None, **options: Any) -> Any:
     """Renders each row of a ``ray.data.Dataset``; see ``durer.batch.render_batch`` for its columns."""
     given = ({"threads": 1, **options},)
     return _mapped(dataset, _Renderer, given, batch_size, concurrency)
 
 
-def clip(dataset: Any, mask: Any, *, batch_size: int = 4096, concurrency: Any = None, **options: Any) -> Any:
+def clip(dataset: Any, mask: Any, *, batch_size: int = 4096, concurrency: Actors = None, **options: Any) -> Any:
     """Clips the WKB of each row of a ``ray.data.Dataset``; see ``durer.batch.clip_batch``."""
     return _mapped(dataset, _Clipper, (mask, options), batch_size, concurrency)

@@ -55,7 +55,7 @@ pub fn check_pieces(options: &RenderOptions, have_normals: bool) -> Result<()> {
 /// The errors of [`RenderOptions::check`]; [`Error::Memory`] where the budget has no room for the samples.
 pub fn survey(options: &RenderOptions) -> Result<Survey> {
     options.check()?;
-    let view = View::new(options.camera, options.width, options.height)?;
+    let view = options.view()?;
     let sample_reach = options.samples.reach();
     let filter = Filter { cull: options.cull, sample_reach, marks: options.marks };
     let centers = options.depth || options.item || options.normal;
@@ -109,6 +109,9 @@ pub fn status_of_pieces<E: From<Error>>(
     })?;
     if let Some(status) = places.status() {
         return Ok(status);
+    }
+    if options.window.is_some() {
+        return Ok(Status::Ok);
     }
     if options.cull != Cull::None {
         let mut all = survey(&RenderOptions { cull: Cull::None, ..options.clone() })?;

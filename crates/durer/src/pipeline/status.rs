@@ -60,7 +60,8 @@ impl Status {
     }
 }
 
-/// Returns the status of a picture that [`render`] made by these options: whether anything of its scene is visible.
+/// Returns the status of a picture that [`render`] made by these options: whether anything of its scene is visible. A
+/// window that shows nothing but the background is [`Status::Ok`] if the whole picture may show something.
 ///
 /// Cost: the first rows of most pictures; where a picture is empty, a pass over all vertices and up to
 /// four more renderings.
@@ -74,6 +75,9 @@ pub fn status(scene: &Scene, options: &RenderOptions, picture: &Framebuffer) -> 
     let view = View::new(options.camera, options.width, options.height)?;
     if let Some(status) = status_of_vertices(scene, &view) {
         return Ok(status);
+    }
+    if options.window.is_some() {
+        return Ok(Status::Ok);
     }
     let other = RenderOptions {
         background: Background::Color(other_color(options.background)),

@@ -22,6 +22,7 @@ pub mod window;
 use crate::math::{DMat4, DVec4};
 use crate::scene::Camera;
 use crate::{Error, Result};
+use window::PixelRect;
 
 /// A camera with a screen of pixels behind it.
 ///
@@ -33,6 +34,7 @@ pub struct View {
     camera: Camera,
     width: u32,
     height: u32,
+    window: PixelRect,
     clip_from_world: DMat4,
     screen_from_world: DMat4,
 }
@@ -56,7 +58,8 @@ impl View {
             DVec4::new(0.5 * w, 0.5 * h, 0.5, 1.0),
         );
         let screen_from_world = screen_from_clip * clip_from_world;
-        Ok(Self { camera, width, height, clip_from_world, screen_from_world })
+        let window = screen(width, height);
+        Ok(Self { camera, width, height, window, clip_from_world, screen_from_world })
     }
 
     /// Returns the camera.
@@ -74,6 +77,17 @@ impl View {
         self.height
     }
 
+    /// Returns the same view with a window: pictures have only these pixels of the screen, as they are in the whole one.
+    /// Parts beyond the screen are cut off.
+    pub fn with_window(self, window: PixelRect) -> Self {
+        Self { window: window.intersection(&screen(self.width, self.height)), ..self }
+    }
+
+    /// Returns the pixels of the screen that pictures have: all, unless there is a window.
+    pub fn window(&self) -> PixelRect {
+        self.window
+    }
+
     /// Returns the matrix from world space to clip space, −w ≤ x, y, z ≤ w.
     pub fn clip_from_world(&self) -> DMat4 {
         self.clip_from_world
@@ -83,4 +97,10 @@ impl View {
     pub fn screen_from_world(&self) -> DMat4 {
         self.screen_from_world
     }
+}
+
+/// Returns all pixels of a screen.
+fn screen(width: u32, height: u32) -> PixelRect {
+    let side = |pixels: u32| i32::try_from(pixels).unwrap_or(i32::MAX);
+    PixelRect::spanning(0, 0, side(width), side(height))
 }

@@ -78,6 +78,7 @@ mod surface_methods;
 mod surface_ray;
 mod surface_scenes;
 mod surface_warnock;
+mod surface_window;
 mod tangent_edges;
 mod textbook;
 mod tidy;

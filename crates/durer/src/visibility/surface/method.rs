@@ -179,7 +179,8 @@ pub fn render_with(
     framebuffer: &mut Framebuffer,
     t: &mut impl Tracer<Step>,
 ) -> crate::Result<()> {
-    let (width, height) = (u64::from(input.view.width()), u64::from(input.view.height()));
+    let window = input.view.window();
+    let (width, height) = (u64::from(window.width()), u64::from(window.height()));
     let [per_triangle, per_pixel] = method.bytes();
     let triangles = (input.triangles.len() as u64).saturating_mul(per_triangle);
     let pixels = (width * height).saturating_mul(per_pixel);

@@ -9,6 +9,7 @@ use crate::shade::color::{encode_opaque_x16, encode_premultiplied, encode_rgba8}
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::{Level, default_level, dispatch};
 use crate::target::{Framebuffer, NO_ITEM};
+use crate::view::window::PixelRect;
 use crate::visibility::surface::Background;
 use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::input::SurfaceInput;
@@ -17,6 +18,7 @@ use crate::visibility::surface::patch::Patch;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, u32x16};
 use fearless_simd_macros::simd;
+use std::ops::Range;
 
 /// Options for the planes of a picture with one surface per pixel.
 #[derive(Debug, Clone, Copy)]
@@ -48,6 +50,8 @@ pub(crate) struct Picture<'a> {
     triangle_count: u32,
     /// Rows of the whole picture.
     height: u32,
+    /// Pixels of it that the framebuffer holds.
+    window: PixelRect,
 }
 
 impl<'a> Picture<'a> {
@@ -85,6 +89,7 @@ impl<'a> Picture<'a> {
             lit: Lit::by_rows(lighting),
             triangle_count: lighting.scene.triangle_count() as u32,
             height: lighting.view.height(),
+            window: lighting.view.window(),
         }
     }
 
@@ -98,10 +103,11 @@ impl<'a> Picture<'a> {
     /// Writes the colours of the pixels of row `y` from column `x`, and no other plane.
     pub fn write_color(&mut self, x: u32, y: u32, items: &[u32]) {
         let behind = self.behind(y as i32);
-        let row = self.framebuffer.color.row_mut(y);
-        let out = row.get_mut(x as usize..).unwrap_or_default();
-        let (lit, at) = (&mut self.lit, [x as i32, y as i32]);
-        dispatch!(self.level, simd => color_row(simd, lit, items, behind, at, out));
+        let Some(Part { of, start, row }) = self.part(x, y, items.len()) else { return };
+        let at = [(x as usize + of.start) as i32, y as i32];
+        let row = self.framebuffer.color.row_mut(row);
+        let (lit, out) = (&mut self.lit, row.get_mut(start..).unwrap_or_default());
+        dispatch!(self.level, simd => color_row(simd, lit, &items[of], behind, at, out));
     }
 
     /// Returns the background of row `y`: linear, straight alpha.
@@ -111,10 +117,11 @@ impl<'a> Picture<'a> {
 
     /// Writes row `y` of the colour plane from linear, premultiplied colours.
     pub fn write_sums(&mut self, y: u32, sums: &[Vec4]) {
-        let row = self.framebuffer.color.row_mut(y);
+        let Some(Part { of, start, row }) = self.part(0, y, sums.len()) else { return };
+        let row = self.framebuffer.color.row_mut(row).get_mut(start..).unwrap_or_default();
         // Neighbours are often alike: the background, if one colour fills it.
         let (mut last, mut code) = (Vec4::ZERO, encode_premultiplied(Vec4::ZERO));
-        for (to, &sum) in row.iter_mut().zip(sums) {
+        for (to, &sum) in row.iter_mut().zip(&sums[of]) {
             if sum != last {
                 (last, code) = (sum, encode_premultiplied(sum));
             }
@@ -124,29 +131,46 @@ impl<'a> Picture<'a> {
 
     /// Writes one pixel of the colour plane from a linear, premultiplied colour.
     pub fn set_color(&mut self, x: u32, y: u32, sum: Vec4) {
-        self.framebuffer.color.set(x, y, encode_premultiplied(sum));
+        if let Some(Part { start, row, .. }) = self.part(x, y, 1) {
+            self.framebuffer.color.set(start as u32, row, encode_premultiplied(sum));
+        }
     }
 
     /// Writes depth, item and normal, as far as the framebuffer has them; no colour.
     pub fn write_planes(&mut self, x: u32, y: u32, items: &[u32], depths: &[f32]) {
-        let start = x as usize;
+        let Some(Part { of, start, row: y_in }) = self.part(x, y, items.len()) else { return };
+        let first = x as usize + of.start;
+        let (items, depths) = (&items[of.clone()], depths.get(of).unwrap_or_default());
         if let Some(plane) = &mut self.framebuffer.depth {
-            let row = plane.row_mut(y).get_mut(start..).unwrap_or_default();
+            let row = plane.row_mut(y_in).get_mut(start..).unwrap_or_default();
             row.iter_mut().zip(depths).for_each(|(to, &depth)| *to = depth);
         }
         if let Some(plane) = &mut self.framebuffer.item {
-            let row = plane.row_mut(y).get_mut(start..).unwrap_or_default();
+            let row = plane.row_mut(y_in).get_mut(start..).unwrap_or_default();
             for (to, &item) in row.iter_mut().zip(items) {
                 *to = if item < self.triangle_count { item } else { NO_ITEM };
             }
         }
         if let Some(plane) = &mut self.framebuffer.normal {
-            let row = plane.row_mut(y).get_mut(start..).unwrap_or_default();
+            let row = plane.row_mut(y_in).get_mut(start..).unwrap_or_default();
             let visible = row.iter_mut().zip(items).enumerate();
             for (i, (to, &item)) in visible.filter(|(_, (_, item))| **item != NO_ITEM) {
-                *to = self.lit.normal(item, (start + i) as i32, y as i32).to_array();
+                *to = self.lit.normal(item, (first + i) as i32, y as i32).to_array();
             }
         }
+    }
+
+    /// Returns which of the pixels of row `y` from column `x` the framebuffer holds; `None` if it holds none.
+    fn part(&self, x: u32, y: u32, count: usize) -> Option<Part> {
+        let window = &self.window;
+        let [x, y] = [x, y].map(|v| i32::try_from(v).unwrap_or(i32::MAX));
+        let end = x.saturating_add(i32::try_from(count).unwrap_or(i32::MAX));
+        let pixels = window.intersection(&PixelRect::spanning(x, y, end, y.saturating_add(1)));
+        (!pixels.is_empty()).then(|| Part {
+            of: (pixels.x0() - x) as usize..(pixels.x1() - x) as usize,
+            start: (pixels.x0() - window.x0()) as usize,
+            row: (y - window.y0()) as u32,
+        })
     }
 
     /// Returns whether the framebuffer has planes that show values at the pixels' centres.
@@ -154,6 +178,16 @@ impl<'a> Picture<'a> {
         let planes = &self.framebuffer;
         planes.depth.is_some() || planes.item.is_some() || planes.normal.is_some()
     }
+}
+
+/// Pixels of a row that a framebuffer holds.
+struct Part {
+    /// Their places among the pixels of the row.
+    of: Range<usize>,
+    /// Column of the first in the framebuffer.
+    start: usize,
+    /// Row in the framebuffer.
+    row: u32,
 }
 
 /// Lights the pixels of a row, sixteen at a time.

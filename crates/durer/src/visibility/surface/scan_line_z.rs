@@ -103,14 +103,14 @@ pub fn render(
     t: &mut impl Tracer<Step>,
 ) {
     let materials = PreparedMaterials::new(input.scene).with_ink(options.background.ink());
-    let (width, height) = (input.view.width(), input.view.height());
+    let (width, rows) = (input.view.width(), input.view.window());
     let mut picture = Picture::new(input, &materials, lights, (options, 0), framebuffer);
     let masked = Masked::new(input);
-    let mut list = ActiveList::new(&input.triangles, width, height);
+    let mut list = ActiveList::new(&input.triangles, input.view);
     let mut row = DepthRow::new(width);
     let mut layers = Layers::of(input);
     let mut charge = input.work.charge(METHOD, 0).unwrap_or_default();
-    for y in (0..height as i32).take_while(|_| !input.work.is_stopped()) {
+    for y in (rows.y0()..rows.y1()).take_while(|_| !input.work.is_stopped()) {
         t.step(|| Step::Row { y });
         input.work.advance(1);
         row.clear();

@@ -187,7 +187,7 @@ fn depths(
     let mut depths = Pixels::within(stage, view.width(), view.height(), 1.0)?;
     with_lighting(&input, lights, &picture::Options::default(), |lighting| {
         let (masked, mut lit) = (Masked::new(&input), Lit::new(lighting));
-        let mut list = ActiveList::new(&input.triangles, view.width(), view.height());
+        let mut list = ActiveList::new(&input.triangles, view);
         let mut row = DepthRow::new(view.width());
         work.begin("rows of shadow maps", view.height().into());
         for y in (0..view.height()).take_while(|_| !work.is_stopped()) {

@@ -112,9 +112,9 @@ pub fn render(
     t: &mut impl Tracer<Step>,
 ) {
     let materials = PreparedMaterials::new(input.scene).with_ink(options.background.ink());
-    let (width, height) = (input.view.width(), input.view.height());
+    let (width, rows) = (input.view.width(), input.view.window());
     let mut picture = Picture::new(input, &materials, lights, (options, 0), framebuffer);
-    let mut list = ActiveList::new(&input.triangles, width, height);
+    let mut list = ActiveList::new(&input.triangles, input.view);
     let mut edges = EdgeList::default();
     let mut line = Line {
         triangles: &input.triangles,
@@ -127,7 +127,7 @@ pub fn render(
     };
     let mut layers = Layers::of(input);
     let mut charge = input.work.charge(METHOD, 0).unwrap_or_default();
-    for y in (0..height as i32).take_while(|_| !input.work.is_stopped()) {
+    for y in (rows.y0()..rows.y1()).take_while(|_| !input.work.is_stopped()) {
         t.step(|| Step::Row { y });
         input.work.advance(1);
         line.y = y;

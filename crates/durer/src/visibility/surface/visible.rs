@@ -50,13 +50,12 @@ impl Visible {
         [self.window.x0 + (index % width) as i32, self.window.y0 + (index / width) as i32]
     }
 
-    /// Returns the row number, items and depths of each row of a window that begins at the left
-    /// border.
-    pub fn rows(&self) -> impl Iterator<Item = (u32, &[u32], &[f32])> {
+    /// Returns the first column and row number, the items and the depths of each row.
+    pub fn rows(&self) -> impl Iterator<Item = ([u32; 2], &[u32], &[f32])> {
         let width = ((self.window.x1 - self.window.x0).max(1)) as usize;
         let rows = self.item.chunks(width).zip(self.depth.chunks(width));
-        let first = self.window.y0.max(0) as u32;
-        (first..).zip(rows).map(|(y, (items, depths))| (y, items, depths))
+        let [x, first] = [self.window.x0, self.window.y0].map(|v| v.max(0) as u32);
+        (first..).zip(rows).map(move |(y, (items, depths))| ([x, y], items, depths))
     }
 
     /// Writes a sample, whatever was there; parts beyond the far plane are not seen.
@@ -69,9 +68,10 @@ impl Visible {
     }
 }
 
-/// Returns all pixels of a view.
+/// Returns the pixels of a view's window.
 pub fn pixels_of(view: &crate::view::View) -> Window {
-    Window { x0: 0, y0: 0, x1: view.width() as i32, y1: view.height() as i32 }
+    let window = view.window();
+    Window { x0: window.x0(), y0: window.y0(), x1: window.x1(), y1: window.y1() }
 }
 
 /// Returns whether the first is in front: the smaller depth, of equal ones the lower item.
@@ -133,7 +133,7 @@ pub fn write(
     framebuffer: &mut Framebuffer,
 ) {
     let mut picture = Picture::with_lighting(lighting, look, framebuffer);
-    visible.rows().for_each(|(y, items, depths)| picture.write(0, y, items, depths));
+    visible.rows().for_each(|([x, y], items, depths)| picture.write(x, y, items, depths));
 }
 
 /// Writes depth, item and normal, but no colour.
@@ -144,7 +144,7 @@ pub fn write_planes(
     framebuffer: &mut Framebuffer,
 ) {
     let mut picture = Picture::with_lighting(lighting, look, framebuffer);
-    visible.rows().for_each(|(y, items, depths)| picture.write_planes(0, y, items, depths));
+    visible.rows().for_each(|([x, y], items, depths)| picture.write_planes(x, y, items, depths));
 }
 
 /// Returns the background of a row, linear and premultiplied.

@@ -12,6 +12,8 @@ use fearless_simd::Simd;
 /// picture does not depend on that order, only the work.
 pub struct Faces<'a> {
     input: &'a SurfaceInput<'a>,
+    /// The first row.
+    top: i32,
     /// The triangles by first row.
     waiting: Vec<Active>,
     /// Start of each row's list; one more than there are rows.
@@ -55,14 +57,14 @@ impl<'a> Faces<'a> {
         (active + places + order + self.starts.len() * size_of::<u32>()) as u64
     }
 
-    pub fn new(input: &'a SurfaceInput<'a>, height: u32) -> Self {
+    /// Sorts the triangles by their first row of those from the first to before the end.
+    pub fn new(input: &'a SurfaceInput<'a>, [top, end]: [i32; 2]) -> Self {
         let first_row = |t: &ScreenTriangle| {
             let [first, last] = touched(&t.y);
-            let seen = last >= 0 && i64::from(first) < i64::from(height);
-            seen.then_some(first.max(0) as usize)
+            (last >= top && first < end).then_some((first.max(top) - top) as usize)
         };
         // Counting sort.
-        let mut starts = vec![0; height as usize + 2];
+        let mut starts = vec![0; (end - top).max(0) as usize + 2];
         let (mut in_pieces, mut latest) = (false, None);
         for t in &input.triangles {
             in_pieces |= latest.replace(t.item) == Some(t.item);
@@ -83,6 +85,7 @@ impl<'a> Faces<'a> {
         }
         Self {
             input,
+            top,
             waiting,
             starts,
             active: Vec::new(),
@@ -100,7 +103,7 @@ impl<'a> Faces<'a> {
         let Self { input, waiting, starts, active, before, order, places, free, .. } = self;
         std::mem::swap(active, before);
         active.clear();
-        let [first, end] = [0, 1].map(|i| starts[y as usize + i] as usize);
+        let [first, end] = [0, 1].map(|i| starts[(y - self.top) as usize + i] as usize);
         let new = &mut waiting[first..end];
         for new in new.iter_mut() {
             // All at once, because they have to be waited for.

@@ -166,7 +166,7 @@ pub fn render(
     t: &mut impl Tracer<Step>,
 ) {
     let materials = PreparedMaterials::new(input.scene).with_ink(options.background.ink());
-    let (width, height) = (input.view.width(), input.view.height());
+    let (width, window) = (input.view.width(), input.view.window());
     let Options { shading, background, level, .. } = *options;
     let of_picture = picture::Options { shading, background, level };
     let mut picture =
@@ -177,13 +177,13 @@ pub fn render(
         input,
         table: &table,
         level,
-        faces: Faces::new(input, height),
+        faces: Faces::new(input, [window.y0(), window.y1()]),
         pool: Pool::new(&table, width, options.max_fragments.min(most_within(&input.work))),
         queue: PointQueue::new(width as usize),
         pixel: Pixel::default(),
     };
     let mut charge = input.work.charge(METHOD, 0).unwrap_or_default();
-    for y in (0..height as i32).take_while(|_| !input.work.is_stopped()) {
+    for y in (window.y0()..window.y1()).take_while(|_| !input.work.is_stopped()) {
         input.work.advance(1);
         rows.faces.advance(y);
         rows.row(y, &mut picture, t);
@@ -209,11 +209,10 @@ struct Centers<'a> {
 impl<'a> Centers<'a> {
     /// Creates the values, or nothing if the picture has no such planes.
     fn new(input: &'a SurfaceInput<'a>, picture: &Picture<'_>) -> Option<Self> {
-        let (width, height) = (input.view.width(), input.view.height());
         picture.wants_planes().then(|| Self {
             masked: Masked::new(input),
-            list: ActiveList::new(&input.triangles, width, height),
-            row: DepthRow::new(width),
+            list: ActiveList::new(&input.triangles, input.view),
+            row: DepthRow::new(input.view.width()),
         })
     }
 
@@ -242,7 +241,8 @@ impl Rows<'_> {
     /// Makes a row, in as few parts as the limit of fragments allows.
     fn row(&mut self, y: i32, picture: &mut Picture<'_>, t: &mut impl Tracer<Step>) {
         let behind = premultiply(picture.behind(y));
-        let mut parts = vec![[0, self.input.view.width() as i32]];
+        let window = self.input.view.window();
+        let mut parts = vec![[window.x0(), window.x1()]];
         while let Some([x0, x1]) = parts.pop() {
             t.step(|| Step::Row { y, x0, x1 });
             let (level, lit) = (self.level, &mut picture.lit);

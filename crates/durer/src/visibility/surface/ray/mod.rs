@@ -268,21 +268,22 @@ impl Caster<'_> {
 
     /// Works on all rows, on all threads.
     fn bands(&self) -> Vec<Band> {
-        let height = self.input.view.height() as i32;
-        let tops = (0..height).step_by(BAND as usize).collect();
-        crate::parallel::map(tops, |top| self.band(top, height.min(top + BAND)))
+        let window = self.input.view.window();
+        let tops = (window.y0()..window.y1()).step_by(BAND as usize).collect();
+        crate::parallel::map(tops, |top| self.band(top, window.y1().min(top + BAND)))
     }
 
     fn band(&self, top: i32, bottom: i32) -> Band {
         let mut band = Band { hits: Vec::new(), colors: Vec::new(), steps: Vec::new() };
         let mut eye = Eye::new(self);
         let mut whitted = Whitted::new(self.world.as_ref(), self.lighting, self.options);
-        let columns = self.input.view.width() as i32;
+        let window = self.input.view.window();
+        let columns = window.x0()..window.x1();
         if self.input.work.is_stopped() {
             return band;
         }
         self.input.work.advance((bottom - top) as u64);
-        for at in (top..bottom).flat_map(|y| (0..columns).map(move |x| [x, y])) {
+        for at in (top..bottom).flat_map(|y| columns.clone().map(move |x| [x, y])) {
             let center = eye.cast(at, [0; 2], &mut band.steps);
             band.hits.extend(eye.nearest(center).map(|hit| (at, hit)));
             if self.is_plain() {

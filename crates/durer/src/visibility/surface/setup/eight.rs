@@ -122,10 +122,10 @@ pub fn set_up<S: Simd>(
         (true, Behind::Positive) => area.simd_ge(zero),
         (true, Behind::Negative) => area.simd_le(zero),
     };
-    let ([width, height], reach) = (rules.size, rules.filter.sample_reach);
+    let ([of_columns, of_rows], reach) = (rules.window, rules.filter.sample_reach);
     let columns = Span::new([a.x, b.x, c.x], reach);
     let rows = Span::new([a.y, b.y, c.y], reach);
-    let misses = columns.misses(simd, width) | rows.misses(simd, height);
+    let misses = columns.misses(simd, of_columns) | rows.misses(simd, of_rows);
     eight.seen = !(non_finite | outside | uncut | turned_away.to_bitmask() | misses) & 0xff;
     eight.sampled.which = 0;
     if eight.seen == 0 {

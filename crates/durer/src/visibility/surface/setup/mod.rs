@@ -278,10 +278,11 @@ impl<'a> Assembler<'a> {
 
     /// Returns the rules; marks without sides have no transform here.
     fn rules(&self, transform: Option<&Transform>, sampled: &'static [[i32; 2]]) -> Rules {
-        let size = [self.view.width(), self.view.height()];
+        let window = self.view.window();
+        let window = [[window.x0(), window.x1()], [window.y0(), window.y1()]];
         let behind = transform.map_or(Behind::Positive, Transform::behind);
         let cull_back = transform.is_some_and(|transform| transform.cull_back);
-        Rules { filter: self.filter, size, behind, cull_back, sampled }
+        Rules { filter: self.filter, window, behind, cull_back, sampled }
     }
 
     /// Sets up the strip around a line, or the square around a point (whose ends are equal).

@@ -7,8 +7,8 @@ use super::vertex::Behind;
 #[derive(Debug, Clone, Copy)]
 pub struct Rules {
     pub filter: Filter,
-    /// The screen in pixels.
-    pub size: [u32; 2],
+    /// The pixels of the view's window, along x and y: the first, and the one after the last.
+    pub window: [[i32; 2]; 2],
     /// The sign that the area of those has that are seen from behind.
     pub behind: Behind,
     /// True if these are left out.

@@ -23,7 +23,7 @@ pub const PIXELS: usize = (SIDE * SIDE) as usize;
 /// Coverage of the small ones among eight triangles, by pixel of their boxes.
 #[derive(Default)]
 pub struct Sampled {
-    /// Triangles that cover any sample on the screen, as bits.
+    /// Triangles that cover any sample in the window, as bits.
     pub which: u64,
     /// Triangles whose backs are seen, as bits.
     pub from_behind: u64,
@@ -56,12 +56,11 @@ impl<S: Simd> Span<S> {
         Self { first, end: (high + (HALF_PIXEL + reach)) >> SUBPIXEL_BITS }
     }
 
-    /// Returns which boxes miss a screen of this size, as bits.
+    /// Returns which boxes miss a window, as bits; of the window the first pixel, and the one after the last.
     #[inline(always)]
-    pub fn misses(&self, simd: S, pixels: u32) -> u64 {
-        let pixels = i32::try_from(pixels).unwrap_or(i32::MAX);
-        let nowhere = self.first.simd_ge(self.end) | self.end.simd_le(i32x8::splat(simd, 0));
-        (nowhere | self.first.simd_ge(i32x8::splat(simd, pixels))).to_bitmask()
+    pub fn misses(&self, simd: S, [first, end]: [i32; 2]) -> u64 {
+        let nowhere = self.first.simd_ge(self.end) | self.end.simd_le(i32x8::splat(simd, first));
+        (nowhere | self.first.simd_ge(i32x8::splat(simd, end))).to_bitmask()
     }
 
     /// Returns whether there are so few that triangles are sampled at once: at most [`SIDE`] with one sample per pixel.
@@ -100,10 +99,10 @@ pub fn cover<S: Simd>(
         let top_left = ((dy << 11u32) - dx) >> 31u32;
         *edge = Edge { at: dx * (y - from.y) - dy * (x - from.x) - (top_left + 1), dx, dy };
     }
-    let on_screen = on_screen(simd, first, rules.size);
+    let in_window = in_window(simd, first, rules.window);
     let mut any = i32x8::splat(simd, 0);
     for (offset, to) in rules.sampled.iter().zip(&mut sampled.covered) {
-        let covered = covered_at(simd, &edges, *offset) & on_screen;
+        let covered = covered_at(simd, &edges, *offset) & in_window;
         any |= covered;
         covered.bitcast::<u32x8<S>>().store_slice(to);
     }
@@ -145,12 +144,16 @@ fn covered_at<S: Simd>(simd: S, edges: &[Edge<S>; 3], [right, down]: [i32; 2]) -
     covered
 }
 
-/// Returns the pixels of boxes that lie on the screen, as bits; others may be set too.
+/// Returns the pixels of boxes that lie in a window, as bits; others may be set too.
 #[inline(always)]
-fn on_screen<S: Simd>(simd: S, [x, y]: [i32x8<S>; 2], size: [u32; 2]) -> i32x8<S> {
-    let [width, height] = size.map(|v| i32::try_from(v).unwrap_or(i32::MAX));
+fn in_window<S: Simd>(
+    simd: S,
+    [x, y]: [i32x8<S>; 2],
+    [[left, right], [top, bottom]]: [[i32; 2]; 2],
+) -> i32x8<S> {
     let zero = i32x8::splat(simd, 0);
-    let beyond = x.min(y).simd_lt(zero) | x.simd_gt(width - SIDE) | y.simd_gt(height - SIDE);
+    let beyond =
+        (x.simd_lt(left) | y.simd_lt(top)) | (x.simd_gt(right - SIDE) | y.simd_gt(bottom - SIDE));
     if !beyond.any_true() {
         return !zero;
     }
@@ -158,7 +161,7 @@ fn on_screen<S: Simd>(simd: S, [x, y]: [i32x8<S>; 2], size: [u32; 2]) -> i32x8<S
     for pixel in 0..PIXELS {
         let [column, row] = place_in_box(pixel);
         let (x, y) = (x + column, y + row);
-        let here = x.min(y).simd_ge(zero) & x.simd_lt(width) & y.simd_lt(height);
+        let here = x.simd_ge(left) & y.simd_ge(top) & x.simd_lt(right) & y.simd_lt(bottom);
         bits |= here.select(i32x8::splat(simd, 1 << pixel), zero);
     }
     bits

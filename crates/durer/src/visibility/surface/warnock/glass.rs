@@ -74,21 +74,23 @@ pub fn render(
         let grid = SampleGrid::below_pixel(options.sub_levels);
         let mut samples = Bands::new(input, lighting, grid, pixels.solver.glass);
         let mut lit = Lit::new(lighting);
+        let Window { x0: left, y0: top, .. } = pixels_of(input.view);
         samples.solve(options, t, |visible, glass| {
-            let [x1, y0, y1] = in_pixels(visible, grid);
-            for (x, y) in (y0..y1).flat_map(|y| (0..x1).map(move |x| (x, y))) {
+            let [x0, x1, y0, y1] = in_pixels(visible, grid);
+            for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
                 let behind = background_at(&options.look, input.view.height(), y);
                 let color = of_samples(visible, glass, &mut lit, grid, [x, y], behind);
-                framebuffer.color.set(x as u32, y as u32, encode_premultiplied(color));
+                let (x, y) = ((x - left) as u32, (y - top) as u32);
+                framebuffer.color.set(x, y, encode_premultiplied(color));
             }
         });
     }
 }
 
-/// Returns columns, first row and row after the last, of a window of samples.
-fn in_pixels(visible: &Visible, grid: SampleGrid) -> [i32; 3] {
-    let Window { x1, y0, y1, .. } = visible.window();
-    [x1, y0, y1].map(|v| v / grid.per_pixel())
+/// Returns the first column and the one after the last, and the rows likewise, of a window of samples.
+fn in_pixels(visible: &Visible, grid: SampleGrid) -> [i32; 4] {
+    let Window { x0, x1, y0, y1 } = visible.window();
+    [x0, x1, y0, y1].map(|v| v / grid.per_pixel())
 }
 
 /// A solver that goes down the picture.
@@ -117,10 +119,10 @@ impl<'a> Bands<'a> {
         t: &mut impl Tracer<Step>,
         mut solved: impl FnMut(&Visible, &Glass),
     ) {
-        let (n, Window { x1, y1, .. }) = (self.grid.per_pixel(), self.pixels);
-        for top in (0..y1).step_by(BAND as usize) {
+        let (n, Window { x0, y0, x1, y1 }) = (self.grid.per_pixel(), self.pixels);
+        for top in (y0..y1).step_by(BAND as usize) {
             let bottom = y1.min(top + BAND);
-            let window = Window { x0: 0, y0: top * n, x1: x1 * n, y1: bottom * n };
+            let window = Window { x0: x0 * n, y0: top * n, x1: x1 * n, y1: bottom * n };
             self.solver.restart(window);
             self.solver.run(window, options.division, t);
             if let Some(glass) = &mut self.solver.glass {
@@ -139,11 +141,11 @@ fn write_planes(visible: &Visible, glass: &Glass, picture: &mut Picture<'_>) {
         let place = layer.place as usize;
         (nearest.depth[place], nearest.item[place]) = (layer.depth, layer.item);
     }
-    nearest.rows().for_each(|(y, items, depths)| picture.write_planes(0, y, items, depths));
+    nearest.rows().for_each(|([x, y], items, depths)| picture.write_planes(x, y, items, depths));
 }
 
 fn write_colors(visible: &Visible, glass: &Glass, picture: &mut Picture<'_>) {
-    visible.rows().for_each(|(y, items, _)| picture.write_color(0, y, items));
+    visible.rows().for_each(|([x, y], items, _)| picture.write_color(x, y, items));
     for layers in glass.layers.chunk_by(|a, b| a.place == b.place) {
         let place = layers[0].place as usize;
         let [x, y] = visible.place(place);

@@ -192,17 +192,17 @@ fn anti_aliased(
     t: &mut impl Tracer<Step>,
 ) {
     let grid = SampleGrid::below_pixel(options.sub_levels);
-    let (n, Window { x1, y1, .. }) = (grid.per_pixel(), pixels_of(input.view));
+    let (n, Window { x0, y0, x1, y1 }) = (grid.per_pixel(), pixels_of(input.view));
     let mut lit = Lit::new(lighting);
-    for top in (0..y1).step_by(BAND as usize).take_while(|_| !input.work.is_stopped()) {
+    for top in (y0..y1).step_by(BAND as usize).take_while(|_| !input.work.is_stopped()) {
         let bottom = y1.min(top + BAND);
         input.work.advance((bottom - top) as u64);
-        let window = Window { x0: 0, y0: top * n, x1: x1 * n, y1: bottom * n };
+        let window = Window { x0: x0 * n, y0: top * n, x1: x1 * n, y1: bottom * n };
         let visible = solve(input, lighting, options.division, grid, window, t);
-        for (x, y) in (top..bottom).flat_map(|y| (0..x1).map(move |x| (x, y))) {
+        for (x, y) in (top..bottom).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
             let behind = background_at(&options.look, input.view.height(), y);
             let color = encode_premultiplied(pixel_mean(&visible, &mut lit, n, [x, y], behind));
-            framebuffer.color.set(x as u32, y as u32, color);
+            framebuffer.color.set((x - x0) as u32, (y - y0) as u32, color);
         }
     }
 }

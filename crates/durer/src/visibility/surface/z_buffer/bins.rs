@@ -114,7 +114,7 @@ impl Bins {
         let mut assembler = Assembler::new(scene, view, filter, level);
         assembler = assembler.with_memory(std::mem::take(vertices));
         let most = job.pieces.iter().map(|(_, range)| range.len()).sum();
-        let screen = TileGrid::new(view.width(), view.height());
+        let screen = TileGrid::of(view);
         let is_early = job.coverage == Coverage::Opaque && screen.count() <= MOST_TILES;
         let early = if is_early { early } else { &[] };
         let mut sorter = Sorter {
@@ -202,7 +202,7 @@ impl Sink for Sorter<'_> {
 
 /// Returns, for each tile of the screen, whether it has triangles.
 pub fn occupied(bins: &[Bins], fragments: &[Fragments], view: &View) -> Vec<bool> {
-    let tiles = 0..TileGrid::new(view.width(), view.height()).count();
+    let tiles = 0..TileGrid::of(view).count();
     let has_fragments = |tile: u32| !fragments.iter().all(|of_thread| of_thread.nothing_in(tile));
     let mut occupied: Vec<bool> = tiles.map(has_fragments).collect();
     for (tile, _) in bins.iter().flat_map(|bins| &bins.touching.starts) {

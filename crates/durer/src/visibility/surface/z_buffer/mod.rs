@@ -120,6 +120,7 @@ pub fn render(
 ) -> crate::Result<Report> {
     let start = Stopwatch::start();
     let runs = runs(scene)?;
+    let bands = bands(framebuffer, view);
     let reach = options.samples.reach();
     let filter = Filter { cull: options.cull, sample_reach: reach, marks: options.marks };
     let bytes = PreparedMaterials::bytes(scene);
@@ -137,9 +138,7 @@ pub fn render(
     };
     let prepared = start.seconds();
     let make = bins::Scratch::default;
-    let Framebuffer { depth, item, normal, .. } = &framebuffer;
-    let with_planes = depth.is_some() || item.is_some() || normal.is_some();
-    let early = early_samples(options.samples, with_planes);
+    let early = early_samples(options.samples, bands.iter().any(Band::wants_center));
     let work = &options.work;
     let (bins, mut scratch) = crate::parallel::map_and_keep(jobs(&runs), make, |scratch, job| {
         work.check()?;
@@ -163,7 +162,6 @@ pub fn render(
     let (bins, fragments) = (bins.as_slice(), fragments.as_slice());
     let frame = Frame { view, options, lighting, bins, fragments, occupied, triangle_count };
     let scratch = || Scratch::new(&frame);
-    let bands = bands(framebuffer);
     work.begin("rows of tiles", bands.len() as u64);
     crate::parallel::map_with(bands, scratch, |scratch, band| {
         if !work.is_stopped() {
@@ -233,15 +231,15 @@ impl<'a> Scratch<'a> {
 
 impl<'a> Frame<'a> {
     fn render_band(&self, mut band: Band<'_>, scratch: &mut Scratch<'a>) {
-        let grid = TileGrid::new(self.view.width(), self.view.height());
-        let wants_center = band.depth.is_some() || band.item.is_some() || band.normal.is_some();
-        for column in 0..grid.columns {
-            let tile = [column * TILE, band.row * TILE];
+        let grid = TileGrid::of(self.view);
+        let wants_center = band.wants_center();
+        let first = band.row * grid.columns.cast_unsigned();
+        for index in first..first + grid.columns.cast_unsigned() {
+            let tile = grid.origin(index);
             let size = [
                 TILE.min(self.view.width() as i32 - tile[0]),
                 TILE.min(self.view.height() as i32 - tile[1]),
             ];
-            let index = (band.row * grid.columns + column) as u32;
             if self.occupied[index as usize] {
                 self.color_tile(&mut band, scratch, [tile, size], index);
             } else {
@@ -317,7 +315,7 @@ impl<'a> Frame<'a> {
     /// Fills a tile that shows nothing but the background.
     fn empty_tile(&self, band: &mut Band<'_>, [tile, size]: [[i32; 2]; 2]) {
         let background = background_rows(self.options.background, self.view.height());
-        for (y, row) in band.rows_of(tile[0], size) {
+        for ([_, y], row) in band.rows_of(tile, size) {
             row.fill(encode_premultiplied(premultiply(background(tile[1] + y))));
         }
     }
@@ -346,8 +344,8 @@ impl<'a> Frame<'a> {
         let area = Area { tile, size, background: &background };
         dispatch!(self.options.level, simd =>
             resolve(simd, (planes, known), blended, (batch, queue), lit, &area, codes));
-        for (y, row) in band.rows_of(tile[0], size) {
-            let codes = &codes[(y * TILE) as usize..];
+        for ([x, y], row) in band.rows_of(tile, size) {
+            let codes = &codes[(y * TILE + x) as usize..];
             for (to, code) in row.iter_mut().zip(codes) {
                 *to = code.to_le_bytes();
             }
@@ -377,7 +375,7 @@ impl<'a> Frame<'a> {
         let plane = &center[0];
         for (x, y) in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))) {
             let from = (y * TILE + x) as usize;
-            let to = y as usize * band.width + (tile[0] + x) as usize;
+            let Some(to) = band.place([tile[0] + x, tile[1] + y]) else { continue };
             let item = plane.items(from)[0];
             if let Some(depth) = &mut band.depth {
                 depth[to] = plane.depth(from);

@@ -116,7 +116,7 @@ impl Survey {
         let mut count = offsets.len() as u64;
         let with_centers = options.centers && options.samples != Samples::One;
         count += u64::from(with_centers);
-        let tiles = TileGrid::new(view.width(), view.height()).count();
+        let tiles = TileGrid::of(view).count();
         let samples = u64::from(tiles) * TILE_PIXELS as u64 * count;
         // One depth and one item for each sample.
         let charge = options.work.charge("samples of the picture", samples.saturating_mul(8))?;
@@ -182,7 +182,7 @@ impl Survey {
         small: &mut Fragments,
     ) -> Result<Binned> {
         let Options { filter, level, work, .. } = &self.options;
-        let screen = TileGrid::new(self.view.width(), self.view.height());
+        let screen = TileGrid::of(&self.view);
         let early = early_samples(self.options.samples, self.options.centers);
         let early = if screen.count() <= MOST_TILES { early } else { &[] };
         let small = Micropolygons::new(screen, early, small);
@@ -243,8 +243,7 @@ fn draw(
     index: u32,
     (binned, small): (&[Binned], &[Fragments]),
 ) {
-    let columns = TileGrid::new(view.width(), view.height()).columns;
-    let tile = [index as i32 % columns, index as i32 / columns].map(|at| at * TILE);
+    let tile = TileGrid::of(view).origin(index);
     let sides = [view.width() as i32 - tile[0], view.height() as i32 - tile[1]];
     let area = [tile, sides.map(|side| side.min(TILE))];
     let mut drawn = false;

@@ -207,8 +207,7 @@ impl Lines {
 
 /// The screen in tiles, and the samples of its pixels.
 struct Screen {
-    /// Tiles in a row.
-    columns: i32,
+    grid: TileGrid,
     /// One or four.
     samples: usize,
     /// Positions of four samples from pixels' centres, in pixels; nothing for one sample.
@@ -221,7 +220,7 @@ impl Screen {
             let at = |i: usize| offsets.get(i).map_or(0.0, |o| o[axis] as f32 / SUBPIXELS as f32);
             std::array::from_fn(at)
         };
-        Self { columns: grid.columns, samples: offsets.len(), lanes: [lane(0), lane(1)] }
+        Self { grid, samples: offsets.len(), lanes: [lane(0), lane(1)] }
     }
 
     /// Returns where a pixel of the screen is: the tile, and in the lower bits the pixel in it.
@@ -229,7 +228,7 @@ impl Screen {
     fn place(&self, x: i32, y: i32) -> u32 {
         const SHIFT: u32 = TILE.trailing_zeros();
         let within = TILE - 1;
-        let tile = (y >> SHIFT) * self.columns + (x >> SHIFT);
+        let tile = self.grid.index(x >> SHIFT, y >> SHIFT);
         let pixel = ((y & within) << SHIFT) | (x & within);
         ((tile << PIXEL_BITS) | pixel).cast_unsigned()
     }

@@ -126,7 +126,7 @@ fn fragments_are_what_rasterizing_and_normal_planes_give() {
         };
         let ((bins, fragments), (all, none)) = (bins_for(offsets), bins_for(&[]));
         let mut triangles = Triangles::new(&scene, &view, &runs, level, (OF_ROWS, reach));
-        let grid = TileGrid::new(view.width(), view.height());
+        let grid = TileGrid::of(&view);
         let (mut shown, mut found) = (0, Found::default());
         for tile in 0..grid.count() {
             assert!(none.nothing_in(tile));
