@@ -1,10 +1,10 @@
 // Other algorithms on the same input, each with a stage of its own and a part of the one scrubber.
 
 import { h } from "./dom";
-import { kindsOf, Player } from "./player";
+import { kindName, kindsOf, Player } from "./player";
 import { Stage } from "./stage";
 import type { Family, Lesson } from "./types";
-import { t } from "./words";
+import { of, t } from "./words";
 
 /** The most algorithms beside the page's own. */
 const MOST = 2;
@@ -34,7 +34,7 @@ export class Compare {
       "select",
       { id: "compare-with", onchange: () => this.add(lessons.find((lesson) => lesson.name === this.select.value)) },
       h("option", { value: "" }, "–"),
-      ...lessons.map((lesson) => h("option", { value: lesson.name }, lesson.title)),
+      ...lessons.map((lesson) => h("option", { value: lesson.name }, of(lesson.title))),
     );
     this.element = h(
       "div",
@@ -65,9 +65,10 @@ export class Compare {
     });
   }
 
-  /** The input with its numbers: names of examples belong to one lesson. */
+  /** Returns the input with its numbers: names of examples belong to one lesson. */
   private setup(): Player["setup"] {
-    return { ...this.player.setup, input: this.player.run?.input ?? this.player.setup.input };
+    // Faults belong to one lesson as names of examples do.
+    return { ...this.player.setup, fault: undefined, input: this.player.run?.input ?? this.player.setup.input };
   }
 
   restore(names: string[]): void {
@@ -83,8 +84,8 @@ export class Compare {
     const caption = h("p", { class: "caption" });
     const card = h(
       "section",
-      { class: "card", "aria-label": lesson.title },
-      h("header", {}, h("h3", {}, lesson.title), h("button", { type: "button", class: "quiet", "aria-label": `${t("close")}: ${lesson.title}`, onclick: () => this.remove(other) }, "×")),
+      { class: "card", "aria-label": of(lesson.title) },
+      h("header", {}, h("h3", {}, of(lesson.title)), h("button", { type: "button", class: "quiet", "aria-label": `${t("close")}: ${of(lesson.title)}`, onclick: () => this.remove(other) }, "×")),
       stage.element,
       caption,
     );
@@ -96,7 +97,7 @@ export class Compare {
       this.count();
     });
     other.addEventListener("error", () => {
-      caption.textContent = `${lesson.title} ${t("cannot")}. ${other.error}`;
+      caption.textContent = `${of(lesson.title)} ${t("cannot")}. ${other.error}`;
       this.count();
     });
     this.others.push({ player: other, stage, caption, card });
@@ -127,18 +128,19 @@ export class Compare {
     const all = [this.player, ...this.others.map((other) => other.player)].filter((player) => player.run && player.error === "");
     if (this.others.length === 0) return this.counts.replaceChildren();
     const kinds = [...new Set(all.flatMap((player) => kindsOf(player.lesson)))];
+    const name = (kind: string): string => kindName(all.find((player) => kindsOf(player.lesson).includes(kind))!.lesson, kind);
     const rows = kinds.map((kind) => ({ kind, values: all.map((player) => player.counts().get(kind)) }));
     this.counts.replaceChildren(
       h("h3", {}, t("counts")),
       h(
         "table",
         {},
-        h("thead", {}, h("tr", {}, h("td", {}), ...all.map((player) => h("th", { scope: "col" }, player.lesson.title)))),
+        h("thead", {}, h("tr", {}, h("td", {}), ...all.map((player) => h("th", { scope: "col" }, of(player.lesson.title))))),
         h(
           "tbody",
           {},
           h("tr", {}, h("th", { scope: "row" }, t("steps")), ...all.map((player) => h("td", {}, String(player.steps)))),
-          ...rows.map(({ kind, values }) => h("tr", {}, h("th", { scope: "row" }, kind.replaceAll("-", " ")), ...values.map((value) => h("td", {}, value === undefined ? "–" : String(value))))),
+          ...rows.map(({ kind, values }) => h("tr", {}, h("th", { scope: "row" }, name(kind)), ...values.map((value) => h("td", {}, value === undefined ? "–" : String(value))))),
         ),
       ),
     );

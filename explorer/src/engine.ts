@@ -1,12 +1,14 @@
 // The engine as the pages see it: promises of answers. A trap starts a new engine, and whoever has a run starts it again.
 
-import type { Family, Frame, Input, Language, Run, RunRequest } from "./types";
+import type { Family, Frame, Input, Language, Lesson, Run, RunRequest } from "./types";
 import EngineWorker from "./worker?worker";
 
 /** A request that the engine refused, in its words. */
 export class Refused extends Error {}
 /** A request that stopped the engine. */
 export class Trapped extends Error {}
+/** A request to an engine whose module could not be loaded. */
+export class Unloaded extends Trapped {}
 
 interface Waiting {
   resolve(value: unknown): void;
@@ -31,35 +33,35 @@ export class Engine {
   /** Is called when an engine was started anew. */
   onrestart: (() => void) | undefined;
 
-  constructor(private module: string) {}
+  constructor(readonly module: string) {}
 
   private start(): Worker {
     const worker = new EngineWorker();
     worker.onmessage = (event: MessageEvent<Reply>) => this.take(event.data);
-    worker.onerror = (event) => this.restart(event.message || "the engine could not be loaded");
+    worker.onerror = (event) => this.restart(new Unloaded(event.message || this.module));
     worker.postMessage({ url: new URL(this.module, document.baseURI).href });
     return worker;
   }
 
   private take(reply: Reply): void {
-    if (reply.failed !== undefined) return this.restart(reply.failed);
+    if (reply.failed !== undefined) return this.restart(new Unloaded(reply.failed));
     const waiting = this.waiting.get(reply.id);
     this.waiting.delete(reply.id);
     if (reply.trapped !== undefined) {
       waiting?.reject(new Trapped(reply.trapped));
-      return this.restart(reply.trapped);
+      return this.restart(new Trapped(reply.trapped));
     }
     if (reply.refused) waiting?.reject(new Refused((reply.value as { error: string }).error));
     else waiting?.resolve(reply.bytes ?? reply.value);
   }
 
-  private restart(reason: string): void {
+  private restart(reason: Trapped): void {
     this.worker?.terminate();
     this.worker = undefined;
     this.generation += 1;
     const all = [...this.waiting.values()];
     this.waiting.clear();
-    all.forEach((waiting) => waiting.reject(new Trapped(reason)));
+    all.forEach((waiting) => waiting.reject(reason));
     this.onrestart?.();
   }
 
@@ -71,10 +73,6 @@ export class Engine {
     });
     this.worker.postMessage({ id, request, file }, file ? [file] : []);
     return answer;
-  }
-
-  async lessons(): Promise<Family[]> {
-    return (await this.ask<{ families: Family[] }>({ do: "lessons" })).families;
   }
 
   run(request: RunRequest): Promise<Run> {
@@ -93,13 +91,35 @@ export class Engine {
     return (await this.ask<{ tikz: string }>({ do: "tikz", handle, step, language })).tikz;
   }
 
+  /** Ends the engine with all that it does. */
+  stop(): void {
+    if (this.worker) this.restart(new Trapped("stopped"));
+  }
+
   drop(handle: number): void {
     void this.ask({ do: "drop", handle }).catch(() => undefined);
   }
 }
 
-/** The engine of all lessons. */
-export const engine = new Engine("durer.wasm");
+/** Engines of lessons by their modules: one for those in the plane, one for those in space; each is loaded at its first use. */
+const engines = new Map<string, Engine>();
+
+/** Returns the engine that has a lesson. */
+export function engineOf(lesson: Lesson): Engine {
+  const { module } = lesson;
+  const engine = engines.get(module) ?? new Engine(module);
+  engines.set(module, engine);
+  return engine;
+}
+
+/** Returns the families of lessons: a list that is made from the modules when the pages are built. */
+export async function lessons(): Promise<Family[]> {
+  const response = await fetch(new URL("lessons.json", document.baseURI));
+  if (!response.ok) throw new Error(`lessons.json: ${response.status} ${response.statusText}`);
+  const { families } = (await response.json()) as { families: Family[] };
+  return families;
+}
+
 /** The engine that reads files and renders models; it is larger, and loaded at its first use. */
 export const files = new Engine("durer-files.wasm");
 

@@ -92,7 +92,7 @@ export function galleryPage(): Page {
         first ??= data;
         const url = URL.createObjectURL(blob);
         urls.push(url);
-        cards.append(card(method, url, difference(first, data), time, `durer render ${name} --algorithm ${method.name} --azimuth=${view.azimuth} --elevation=${view.elevation} --size ${SIZE}x${SIZE} -o ${method.name}.png`));
+        cards.append(card(method, url, difference(first, data), time, `durer render ${name} --algorithm ${method.name} --azimuth=${view.azimuth} --elevation=${view.elevation} --aa 1 --size ${SIZE}x${SIZE} -o ${method.name}.png`));
       }
       say("");
     } catch (e) {
@@ -111,7 +111,7 @@ export function galleryPage(): Page {
       h("img", { src: url, alt: `${model?.name ?? ""}, ${method.title}`, width: SIZE, height: SIZE }),
       map,
       h("p", { class: "hint" }, `${Math.round(time)} ms · ${t("differs", { count })}`),
-      h("p", {}, h("a", { class: "button", href: url, download: `${method.name}.png` }, "PNG"), " ", h("button", { type: "button", onclick: () => void navigator.clipboard.writeText(command).catch(() => say(command)) }, t("copyCommand"))),
+      h("p", {}, h("a", { class: "button", href: url, download: `${method.name}.png` }, "PNG"), " ", h("button", { type: "button", "data-command": command, onclick: () => void navigator.clipboard.writeText(command).catch(() => say(command)) }, t("copyCommand"))),
     );
   }
 

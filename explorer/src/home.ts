@@ -12,8 +12,8 @@ const STARTS = ["weiler-atherton", "bresenham", "cohen-sutherland", "depth-sort"
 function entry(lesson: Lesson): HTMLElement {
   return h(
     "li",
-    { "data-text": `${lesson.name} ${lesson.title} ${lesson.authors}`.toLowerCase() },
-    h("a", { href: format({ a: lesson.name, lang: language() }) }, h("strong", {}, lesson.title), h("span", { class: "by" }, `${lesson.authors}, ${lesson.year}`), h("span", { class: "class" }, named(lesson.class))),
+    { "data-text": `${lesson.name} ${lesson.title.en} ${lesson.title.de} ${lesson.authors}`.toLowerCase() },
+    h("a", { href: format({ a: lesson.name, lang: language() }) }, h("strong", {}, of(lesson.title)), h("span", { class: "by" }, `${lesson.authors}, ${lesson.year}`), h("span", { class: "class" }, named(lesson.class))),
   );
 }
 
@@ -40,7 +40,7 @@ export function homePage(families: Family[]): Page {
   const element = h(
     "main",
     { id: "content", class: "home", tabindex: -1 },
-    h("header", { class: "hero" }, h("h1", {}, "durer explorer"), h("p", { class: "lead" }, t("lead")), h("p", { class: "starts" }, h("span", {}, `${t("start")} `), ...starts.map((lesson) => h("a", { class: "button", href: format({ a: lesson.name, lang: language() }) }, lesson.title))), find),
+    h("header", { class: "hero" }, h("h1", {}, "durer explorer"), h("p", { class: "lead" }, t("lead")), h("p", { class: "starts" }, h("span", {}, `${t("start")} `), ...starts.map((lesson) => h("a", { class: "button", href: format({ a: lesson.name, lang: language() }) }, of(lesson.title)))), find),
     nothing,
     h("div", { class: "families" }, ...sections),
   );

@@ -7,6 +7,10 @@ import type { Stage } from "./stage";
 import type { Input } from "./types";
 import { named, of, t } from "./words";
 
+/** Points of a curve, and curves, of a surface by a formula: as many as can be told apart. */
+const COLUMNS = 33;
+const CURVES = 9;
+
 const SNAPS = [0, 0.1, 0.25, 0.5, 1];
 
 /** Returns an input with the window and the clip polygon of another one, where it has none: files of map data have only shapes. */
@@ -61,6 +65,26 @@ export function inputPanel(player: Player, stage: Stage, notice: (text: string) 
     }
     picker.value = "";
   }
+  /** Draws curves of a surface, from a formula in x and z. */
+  const formula = h("input", { type: "text", id: "formula", spellcheck: "false", placeholder: "sin(x) * cos(z)" });
+  async function surface(): Promise<void> {
+    try {
+      const request = { do: "formula", formula: formula.value || formula.placeholder, columns: COLUMNS, curves: CURVES };
+      const { input } = await files.ask<Opened>(request);
+      player.change({ ...player.setup, input }, player.setup, 0);
+      notice("");
+    } catch (e) {
+      if (!(e instanceof Refused || e instanceof Trapped)) throw e;
+      notice(e.message);
+    }
+  }
+  const byFormula = h(
+    "form",
+    { class: "tools formula", hidden: lesson.name !== "horizon-curves", onsubmit: (event: Event) => { event.preventDefault(); void surface(); } },
+    h("label", { for: "formula" }, t("formula")),
+    formula,
+    h("button", { type: "submit" }, t("apply")),
+  );
   const picker = h("input", { type: "file", id: "file", onchange: () => void opened(picker.files), accept: ".svg,.json,.geojson,.wkt,.obj,.stl,.ply,.off,.glb,.gltf,.png,.jpg,.jpeg,.gif,.bmp,.csv,.gpx,.kml" });
 
   function choose(name: "operation" | "rule", values: string[]): HTMLElement | null {
@@ -123,6 +147,7 @@ export function inputPanel(player: Player, stage: Stage, notice: (text: string) 
     h("p", { class: "takes" }, h("strong", {}, `${t("takes")}: `), of(lesson.takes), "."),
     h("div", { class: "examples", role: "group", "aria-label": t("examples") }, ...buttons),
     choices,
+    byFormula,
     tools,
     hint,
     h("div", { class: "file" }, h("label", { for: "file", class: "button" }, t("open")), picker, h("span", { class: "hint" }, t("openHint"))),

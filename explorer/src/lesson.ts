@@ -3,16 +3,18 @@
 import { Compare } from "./compare";
 import { h } from "./dom";
 import { format, pack, type Address } from "./link";
+import { IDEAS } from "./ideas";
 import { inputPanel } from "./inputs";
 import { Code, stateTable, textOfRun } from "./panes";
 import { Player, type Setup } from "./player";
-import { exercises, Quiz } from "./quiz";
+import { Bug, exercises } from "./exercises";
+import { Quiz } from "./quiz";
 import { sharePanel } from "./share";
 import { Stage } from "./stage";
 import { trackBar } from "./tracks";
 import { Transport } from "./transport";
 import type { Family, Lesson } from "./types";
-import { KEYS, language, named, t, type WordName } from "./words";
+import { KEYS, language, named, of, t, type WordName } from "./words";
 
 /** A page that is shown until another one takes its place. */
 export interface Page {
@@ -40,6 +42,25 @@ function facts(lesson: Lesson): HTMLElement {
       ...row("limits", lesson.limits),
     ),
   );
+}
+
+/** Buttons that choose a pane beside the picture, for screens where one has room; others show all. */
+function sideTabsOf(twin: HTMLDetailsElement): HTMLElement {
+  const panes: [WordName, string][] = [
+    ["code", "code"],
+    ["state", "state"],
+    ["text", "text"],
+  ];
+  const element = h("div", { class: "side-tabs", role: "group", "data-shown": "code" });
+  const buttons = panes.map(([name, pane]) => h("button", { type: "button", "data-pane": pane, onclick: () => select(pane) }, t(name)));
+  function select(pane: string): void {
+    element.dataset.shown = pane;
+    if (pane === "text") twin.open = true;
+    buttons.forEach((button) => button.setAttribute("aria-pressed", String(button.dataset.pane === pane)));
+  }
+  element.append(...buttons);
+  select("code");
+  return element;
 }
 
 /** Panels below the picture, one at a time. */
@@ -96,7 +117,8 @@ export function lessonPage(
   const caption = h("p", { class: "caption", "aria-live": "polite" });
   const notice = h("p", { class: "notice", role: "status", "aria-live": "polite", hidden: true });
   const codePane = h("div", { class: "scroll" }, code.element);
-  const quiz = new Quiz(player, transport, code, (hidden) => codePane.classList.toggle("veiled", hidden));
+  const bug = lesson.faults.length > 0 ? new Bug(player) : undefined;
+  const quiz = new Quiz(player, stage, transport, code, (hidden) => codePane.classList.toggle("veiled", hidden));
   let noticeTimer: number | undefined;
 
   function say(text: string, lasting = false): void {
@@ -107,7 +129,7 @@ export function lessonPage(
   }
 
   async function current(): Promise<Address> {
-    const { input, operation, rule } = player.setup;
+    const { input, operation, rule, fault } = player.setup;
     const isExample = "example" in input;
     return {
       a: lesson.name,
@@ -115,6 +137,7 @@ export function lessonPage(
       in: isExample ? undefined : await pack(input),
       op: operation || undefined,
       rule: rule || undefined,
+      bug: fault === undefined ? undefined : fault + 1,
       step: player.step + 1,
       with: compare.names.length > 0 ? compare.names : undefined,
       track: address.track,
@@ -138,7 +161,7 @@ export function lessonPage(
   transport.onnotice = (text) => say(text);
   compare.onchange = settle;
   code.online = (line) => {
-    if (quiz.line(line)) return;
+    if (quiz.line(line) || bug?.line(line)) return;
     const runs = (step: number): boolean => player.run?.lines[step] === line;
     let found = player.find(1, runs);
     // From the end it begins anew.
@@ -167,7 +190,9 @@ export function lessonPage(
   });
   function message(event: MessageEvent<unknown>): void {
     const { data } = event;
-    if (typeof data === "object" && data !== null && "goto" in data) transport.seek(Number(data.goto) - 1);
+    if (typeof data !== "object" || data === null || !("goto" in data)) return;
+    const to = Number(data.goto) - 1;
+    if (Number.isInteger(to)) transport.seek(to);
   }
   if (embedded) window.addEventListener("message", message);
 
@@ -176,27 +201,32 @@ export function lessonPage(
     "header",
     { class: "head" },
     h("p", { class: "crumb" }, h("a", { href: format({ lang: language() }) }, t("overview"))),
-    h("h1", {}, lesson.title),
+    h("h1", {}, of(lesson.title)),
     h("p", { class: "by" }, `${lesson.authors}, ${lesson.year}`, " · ", h("span", { class: "class" }, named(lesson.class))),
+    IDEAS[lesson.name] ? h("p", { class: "idea" }, of(IDEAS[lesson.name]!)) : null,
     facts(lesson),
   );
+  const twin = textOfRun(player);
+  const sideTabs = sideTabsOf(twin);
   const title = (name: WordName): HTMLElement => h("h2", { class: "pane-title" }, t(name));
   const main = h(
     "main",
     { id: "content", class: embedded ? "lesson embedded" : "lesson", tabindex: -1 },
     embedded ? null : trackBar(address, families, go),
-    embedded ? h("h1", { class: "visually-hidden" }, lesson.title) : head,
+    embedded ? h("h1", { class: "visually-hidden" }, of(lesson.title)) : head,
     h(
       "div",
       { class: "board" },
-      h("section", { class: "pane picture-pane", "aria-label": t("picture") }, stage.element, caption, notice, transport.element),
+      h("section", { class: "pane picture-pane", "aria-label": t("picture") }, stage.element, caption, notice, quiz.bar, bug?.bar, transport.element),
       embedded
         ? h("a", { class: "full", href: format({ ...address, embed: undefined }), target: "_blank", rel: "noopener" }, t("seeFull"))
         : h(
             "div",
             { class: "side" },
+            sideTabs,
             h("section", { class: "pane code-pane" }, title("code"), codePane),
             h("section", { class: "pane state-pane" }, title("state"), h("div", { class: "scroll", tabindex: 0, role: "group", "aria-label": t("state") }, stateTable(player))),
+            twin,
           ),
     ),
     embedded
@@ -204,11 +234,10 @@ export function lessonPage(
       : tabs([
           ["input", inputPanel(player, stage, (text) => say(text))],
           ["quiz", quiz.element],
-          ["exercises", exercises(player)],
+          ["exercises", exercises(player, bug)],
           ["compare", compare.element],
           ["share", sharePanel(player, current, (text) => say(text))],
         ]),
-    embedded ? null : textOfRun(player),
     help,
   );
 
@@ -226,13 +255,19 @@ export function lessonPage(
       player.change({ input: { example: "" }, operation: "", rule: "" }, player.setup, 0);
       return true;
     }
+    // A frame has nothing to scroll: presenters' remotes send these.
+    const pages = embedded ? ["PageUp", "PageDown"].indexOf(event.key) : -1;
+    if (pages >= 0) {
+      transport.seek(player.step + (pages === 0 ? -1 : 1));
+      return true;
+    }
     return transport.key(event);
   }
 
   void player.start(start.setup, player.step).then(() => compare.restore(address.with ?? []));
   return {
     element: main,
-    title: lesson.title,
+    title: of(lesson.title),
     key,
     close() {
       closed = true;

@@ -13,6 +13,8 @@ export interface Address {
   step?: number;
   op?: string;
   rule?: string;
+  /** Number of a fault to find, counted from 1. */
+  bug?: number;
   lang?: Language;
   /** Other algorithms to compare with. */
   with?: string[];
@@ -38,6 +40,7 @@ export function parse(hash: string): Address {
     step: number("step"),
     op: text("op"),
     rule: text("rule"),
+    bug: number("bug"),
     lang: lang === "de" || lang === "en" ? lang : undefined,
     with: text("with")?.split(",").slice(0, 2),
     track: text("track"),

@@ -6,7 +6,7 @@ import "./style/lesson.css";
 import "./style/panels.css";
 import "./style/narrow.css";
 import { h } from "./dom";
-import { engine, Trapped } from "./engine";
+import { lessons } from "./engine";
 import { galleryPage } from "./gallery";
 import { homePage } from "./home";
 import { lessonPage, type Page } from "./lesson";
@@ -95,7 +95,7 @@ function skip(event: Event): void {
 }
 
 async function setupOf(address: Address): Promise<{ setup: Setup; notice?: string }> {
-  const own = { operation: address.op ?? "", rule: address.rule ?? "" };
+  const own = { operation: address.op ?? "", rule: address.rule ?? "", fault: address.bug && address.bug - 1 };
   const example: Input = { example: address.ex ?? "" };
   if (!address.in) return { setup: { input: example, ...own } };
   try {
@@ -133,11 +133,11 @@ async function show(): Promise<void> {
   if (!families) {
     app.replaceChildren(h("p", { class: "loading", role: "status" }, t("loading")));
     try {
-      families = await engine.lessons();
+      families = await lessons();
     } catch (e) {
-      if (!(e instanceof Trapped)) throw e;
       const again = h("button", { type: "button", onclick: () => void show() }, t("retry"));
-      app.replaceChildren(h("main", { class: "loading", role: "alert" }, h("p", {}, `${t("failed")}: ${e.message}`), again));
+      const reason = e instanceof Error ? e.message : String(e);
+      app.replaceChildren(h("main", { class: "loading", role: "alert" }, h("p", {}, `${t("failed")}: ${reason}`), again));
       return;
     }
   }

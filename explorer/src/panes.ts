@@ -1,7 +1,7 @@
 // Panes beside the picture: pseudocode, state, and all captions as text.
 
 import { h } from "./dom";
-import { engine, Refused, Trapped } from "./engine";
+import { Refused, Trapped } from "./engine";
 import type { Player } from "./player";
 import { language, t } from "./words";
 
@@ -81,21 +81,23 @@ export function stateTable(player: Player): HTMLElement {
 }
 
 /** The captions around the current step, for readers and screen readers. */
-export function textOfRun(player: Player): HTMLElement {
+export function textOfRun(player: Player): HTMLDetailsElement {
   const list = h("ol", { class: "captions" });
   const note = h("p", { class: "hint" });
   const details = h("details", { class: "text-twin", ontoggle: () => void fill() }, h("summary", {}, t("text")), note, list);
   let shown = "";
+  let of = player.run;
   async function fill(): Promise<void> {
     const { run, step } = player;
     if (!run || !details.open) return;
     const first = Math.floor(step / PAGE) * PAGE;
-    const key = `${run.handle} ${first} ${language()}`;
-    if (key !== shown) {
+    const key = `${first} ${language()}`;
+    if (key !== shown || run !== of) {
       try {
-        const captions = await engine.captions(run.handle, first, PAGE, language());
+        const captions = await player.engine.captions(run.handle, first, PAGE, language());
         if (run !== player.run) return;
         shown = key;
+        of = run;
         note.textContent = t("textHint", { first: first + 1, last: first + captions.length });
         list.start = first + 1;
         list.replaceChildren(

@@ -1,11 +1,12 @@
 // A run of one algorithm on one input, and the step that is shown.
 
-import { engine, Refused, Trapped } from "./engine";
-import type { Frame, Input, Lesson, Run } from "./types";
-import { language, t } from "./words";
+import { Engine, engineOf, Refused, Trapped, Unloaded } from "./engine";
+import type { Frame, Input, Lesson, Run, RunRequest } from "./types";
+import { language, of, t } from "./words";
 
-/** The most steps that a page asks for, and while a vertex is dragged. */
+/** The most steps that a page asks for, those that it shows before there are more, and the most while a vertex is dragged. */
 const CAP = 100_000;
+const FIRST = 4_000;
 const DRAGGED = 2_000;
 /** Frames that are kept, and those that are made ahead. */
 const KEPT = 400;
@@ -16,6 +17,8 @@ export interface Setup {
   input: Input;
   operation: string;
   rule: string;
+  /** Number of the fault of the lesson's program that runs in place of the library's function. */
+  fault?: number;
 }
 
 export class Player extends EventTarget {
@@ -28,6 +31,13 @@ export class Player extends EventTarget {
   /** Longer side of drawings in pixels. */
   longest = 460;
 
+  /** Numbers of steps of each kind, once they are counted. */
+  private known: Map<string, number> | undefined;
+  /** The engine that has the run: one of its own for a run of many steps, which takes its time meanwhile. */
+  engine: Engine;
+  /** The engine of all pages of such lessons. */
+  private shared: Engine;
+  private patient: Engine;
   private frames = new Map<number, Frame>();
   private generation = 0;
   private wanted = 0;
@@ -42,6 +52,8 @@ export class Player extends EventTarget {
     step: number,
   ) {
     super();
+    this.shared = this.engine = engineOf(lesson);
+    this.patient = new Engine(this.shared.module);
     this.setup = setup;
     this.step = step;
   }
@@ -81,26 +93,50 @@ export class Player extends EventTarget {
   }
 
   private async take(setup: Setup, step: number, cap: number): Promise<void> {
-    const { input, operation, rule } = setup;
+    const { input, operation, rule, fault } = setup;
     try {
       const choices = this.run === undefined;
-      const run = await engine.run({ name: this.lesson.name, input, operation, rule, cap, choices });
+      const asked = { name: this.lesson.name, input, operation, rule, fault };
+      // What the last input had under way is of no use any more.
+      this.patient.stop();
+      const run = await this.shared.run({ ...asked, cap: Math.min(cap, FIRST), choices });
       if (run.steps === 0) throw new Refused(t("noState"));
-      const old = this.run;
-      const [before, after] = [this.generation, engine.generation];
-      this.run = run;
-      this.generation = after;
       if (run.choices) this.choices = run.choices;
-      this.frames.clear();
-      if (old && before === after) engine.drop(old.handle);
       this.error = "";
-      this.step = Math.min(step, run.steps - 1);
-      this.tell("run");
+      this.replace(run, this.shared, step);
+      if (cap > FIRST && run.templates.at(-1)! < 0) void this.extend({ ...asked, cap }, run, step);
       await this.show();
     } catch (e) {
       if (!(e instanceof Refused || e instanceof Trapped)) throw e;
-      this.error = e instanceof Trapped ? t("restarted") : e.message;
+      if (e instanceof Unloaded) this.error = `${t("failed")}: ${e.message}`;
+      else this.error = e instanceof Trapped ? t("restarted") : e.message;
       this.tell("error");
+    }
+  }
+
+  private replace(run: Run, host: Engine, step: number): void {
+    const old = this.run;
+    if (old && this.engine === this.shared && this.generation === this.shared.generation) this.shared.drop(old.handle);
+    this.run = run;
+    this.known = undefined;
+    this.engine = host;
+    this.generation = this.shared.generation;
+    this.frames.clear();
+    this.step = Math.min(step, run.steps - 1);
+    this.tell("run");
+  }
+
+  /** Runs all steps in an engine of its own, while the first ones can be looked at already. */
+  private async extend(asked: RunRequest, first: Run, step: number): Promise<void> {
+    try {
+      const run = await this.patient.run(asked);
+      if (this.run !== first) return;
+      // Whoever has gone on to another step stays there.
+      this.replace(run, this.patient, this.step === first.steps - 1 ? step : this.step);
+      await this.show();
+    } catch (e) {
+      // The first steps stay.
+      if (!(e instanceof Refused || e instanceof Trapped)) throw e;
     }
   }
 
@@ -139,11 +175,12 @@ export class Player extends EventTarget {
     }
   }
 
-  private async frameAt(step: number): Promise<Frame> {
+  /** Returns the frame of a step. */
+  async frameAt(step: number): Promise<Frame> {
     const known = this.frames.get(step);
     if (known) return known;
     const { run, longest } = this;
-    const frame = await engine.frame(run!.handle, step, language(), longest);
+    const frame = await this.engine.frame(run!.handle, step, language(), longest);
     if (run === this.run && longest === this.longest) {
       if (this.frames.size >= KEPT) this.frames.clear();
       this.frames.set(step, frame);
@@ -198,6 +235,11 @@ export class Player extends EventTarget {
 
   /** Returns the number of steps of each kind. */
   counts(): Map<string, number> {
+    this.known ??= this.counted();
+    return this.known;
+  }
+
+  private counted(): Map<string, number> {
     const counts = new Map<string, number>();
     for (let step = 0; step < this.steps; step++) {
       const kind = this.kind(step);
@@ -207,9 +249,16 @@ export class Player extends EventTarget {
   }
 
   close(): void {
-    if (this.run) engine.drop(this.run.handle);
+    if (this.run && this.engine === this.shared) this.shared.drop(this.run.handle);
+    this.patient.stop();
     this.run = undefined;
   }
+}
+
+/** Returns the name of a kind of step. */
+export function kindName(lesson: Lesson, kind: string): string {
+  const template = lesson.templates.find((own) => own.kind === kind);
+  return template ? of(template.name).replaceAll("-", " ") : t("more");
 }
 
 /** Returns the kinds of a lesson's steps, each once. */

@@ -1,10 +1,13 @@
-// Ask-mode: what comes next, checked against the run itself. Exercises: inputs whose runs have to be of a kind.
+// Ask-mode: what comes next, checked against the run itself.
 
 import { h } from "./dom";
 import type { Code } from "./panes";
-import { kindsOf, type Player } from "./player";
+import type { Player } from "./player";
+import type { Stage } from "./stage";
+import { asked, hasPixels, hit, placesInWords } from "./targets";
 import type { Transport } from "./transport";
-import { of, t } from "./words";
+import type { Point, Target } from "./types";
+import { of, t, type WordName } from "./words";
 
 /** The most answers to choose from. */
 const ANSWERS = 4;
@@ -14,40 +17,49 @@ export function gapped(text: string): string {
   return text.replace(/\{\w+\}/g, "…");
 }
 
+/** What is asked for: the place in the picture where there is one, the kind of step, or the line that runs. */
+type Mode = "place" | "kind" | "line";
+const MODES: [Mode, WordName][] = [
+  ["place", "byPlace"],
+  ["kind", "byKind"],
+  ["line", "byLine"],
+];
+
 export class Quiz {
+  /** The panel that starts and ends the quiz. */
   readonly element: HTMLElement;
+  /** Question and answers, for a place beside the picture. */
+  readonly bar: HTMLElement;
   private on = false;
-  private byLine = false;
+  private mode: Mode = "place";
   private right = 0;
   private asked = 0;
   /** The step in question; undefined while there is none. */
   private open: number | undefined;
+  /** Counts questions, so that one that comes late is known. */
+  private ticket = 0;
 
   private startButton = h("button", { type: "button", class: "primary", onclick: () => this.toggle() }, t("quizStart"));
-  private modeButton = h("button", { type: "button", onclick: () => this.mode() }, t("byLine"));
-  private question = h("p", { class: "question" });
+  private question = h("p", { class: "question", role: "status", "aria-live": "polite" });
   private answers = h("div", { class: "answers" });
   private verdict = h("p", { class: "verdict", role: "status", "aria-live": "polite" });
   private score = h("p", { class: "score" });
+  private modes = MODES.map(([mode, name]) =>
+    h("button", { type: "button", "data-mode": mode, "aria-pressed": mode === this.mode ? "true" : "false", onclick: () => this.choose(mode) }, t(name)),
+  );
 
   constructor(
     private player: Player,
+    private stage: Stage,
     private transport: Transport,
     private code: Code,
     private veil: (hidden: boolean) => void,
   ) {
-    this.element = h(
-      "div",
-      { class: "panel quiz" },
-      h("p", { class: "hint" }, t("quizHint")),
-      h("div", { class: "tools" }, this.startButton, this.modeButton),
-      this.question,
-      this.answers,
-      this.verdict,
-      this.score,
-    );
+    const end = h("button", { type: "button", class: "quiet", onclick: () => this.toggle() }, t("quizStop"));
+    this.element = h("div", { class: "panel quiz" }, h("p", { class: "hint" }, t("quizHint")), h("div", { class: "tools" }, this.startButton, ...this.modes));
+    this.bar = h("div", { class: "asking quiz-bar", hidden: true }, this.verdict, this.question, this.answers, h("div", { class: "tools" }, this.score, end));
     player.addEventListener("frame", () => {
-      if (this.on && this.open === undefined) this.ask();
+      if (this.on && this.open === undefined) void this.ask();
     });
     player.addEventListener("run", () => {
       this.open = undefined;
@@ -56,53 +68,86 @@ export class Quiz {
 
   /** Returns whether a step may be shown: while it is in question, only the answer shows it. */
   allow(to: number): boolean {
-    return !this.on || this.open === undefined || to < this.open;
+    const allowed = !this.on || this.open === undefined || to < this.open;
+    if (!allowed) this.bar.scrollIntoView({ block: "nearest" });
+    return allowed;
   }
 
   private toggle(): void {
     this.on = !this.on;
     this.startButton.textContent = this.on ? t("quizStop") : t("quizStart");
-    this.element.classList.toggle("on", this.on);
     this.right = this.asked = 0;
     this.verdict.textContent = "";
     this.verdict.className = "verdict";
-    if (this.on) this.ask();
-    else this.end();
+    this.score.textContent = "";
+    this.bar.hidden = !this.on;
+    if (this.on) {
+      void this.ask();
+      this.bar.parentElement?.scrollIntoView({ block: "nearest" });
+    } else this.end();
   }
 
-  private mode(): void {
-    this.byLine = !this.byLine;
-    this.modeButton.textContent = this.byLine ? t("byKind") : t("byLine");
-    if (this.on) this.ask();
+  private choose(mode: Mode): void {
+    this.mode = mode;
+    this.modes.forEach((button) => button.setAttribute("aria-pressed", String(button.dataset.mode === mode)));
+    if (this.on) void this.ask();
   }
 
   private end(): void {
+    this.ticket++;
     this.open = undefined;
     this.question.textContent = "";
     this.answers.replaceChildren();
-    this.score.textContent = "";
+    this.stage.answered("");
+    this.stage.unpick();
     this.veil(false);
   }
 
-  private ask(): void {
+  private async ask(): Promise<void> {
     const { player } = this;
+    const own = ++this.ticket;
     const next = player.step + 1;
+    this.answers.replaceChildren();
     // The last sentence of a run that was cut off is of no step.
     if (next >= player.steps || player.run!.templates[next]! < 0) {
       this.open = undefined;
       this.question.textContent = t("quizEnd");
-      this.answers.replaceChildren();
       return;
     }
     this.open = next;
     this.transport.pause();
-    if (this.byLine) {
+    this.veil(this.mode === "line");
+    if (this.mode === "line") {
+      this.stage.unpick();
       this.question.textContent = t("askLine");
-      this.answers.replaceChildren();
-      this.veil(true);
       return;
     }
-    this.veil(false);
+    const targets = this.mode === "place" ? await this.targets(next) : [];
+    if (own !== this.ticket) return;
+    if (targets.length > 0) return this.askPlace(next, targets);
+    this.stage.unpick();
+    this.askKind(next);
+  }
+
+  /** Returns what the next step is about in the picture. */
+  private async targets(next: number): Promise<Target[]> {
+    const { frame } = this.player;
+    try {
+      return asked(await this.player.frameAt(next), frame);
+    } catch {
+      // The engine is gone, and starts anew with the run.
+      return [];
+    }
+  }
+
+  private askPlace(next: number, targets: Target[]): void {
+    const template = this.player.lesson.templates[this.player.run!.templates[next]!]!;
+    this.question.textContent = `${t("askPlace", { place: placesInWords(targets) })} “${gapped(of(template.text))}”`;
+    this.stage.pick(hasPixels(targets), (at: Point, scale: number) => this.answer(hit(targets, at, scale), undefined, true));
+  }
+
+  private askKind(next: number): void {
+    const { player } = this;
     this.question.textContent = t("askKind");
     const templates = player.lesson.templates;
     const truth = player.run!.templates[next] ?? -1;
@@ -122,18 +167,19 @@ export class Quiz {
 
   /** Takes a click on a line of the pseudocode; returns whether it was an answer. */
   line(line: number): boolean {
-    if (!this.on || !this.byLine || this.open === undefined) return false;
+    if (!this.on || this.mode !== "line" || this.open === undefined) return false;
     const truth = this.player.run?.lines[this.open];
     this.answer(line === truth, truth);
     return true;
   }
 
-  private answer(right: boolean, line?: number): void {
+  private answer(right: boolean, line?: number, onStage = false): void {
     const next = this.open;
     if (next === undefined) return;
     this.open = undefined;
     this.asked += 1;
     this.right += right ? 1 : 0;
+    this.stage.answered(onStage ? (right ? "right" : "wrong") : "");
     this.score.textContent = `${t("score")}: ${this.right} / ${this.asked}`;
     this.verdict.className = `verdict ${right ? "right" : "wrong"}`;
     const words = right ? t("right") : line === undefined ? t("wrong") : `${t("wrongLine")} ${line}.`;
@@ -145,70 +191,4 @@ export class Quiz {
     this.player.addEventListener("frame", told);
     this.player.go(next);
   }
-}
-
-interface Goal {
-  text(): string;
-  solved(): boolean;
-}
-
-/** Returns exercises that any lesson has: goals for the input, which the run of it checks. */
-export function exercises(player: Player): HTMLElement {
-  const { lesson } = player;
-  const list = h("ul", { class: "goals" });
-  const kinds = kindsOf(lesson);
-  /** Counts of the first run, which the goals are about. */
-  let base: { counts: Map<string, number>; steps: number } | undefined;
-
-  function sentence(kind: string): string {
-    const template = lesson.templates.find((own) => own.kind === kind);
-    return template ? gapped(of(template.text)) : kind;
-  }
-  function goals(): Goal[] {
-    if (!base) return [];
-    const { counts, steps } = base;
-    const present = kinds.filter((kind) => counts.has(kind)).sort((a, b) => counts.get(b)! - counts.get(a)!);
-    const most = present[0];
-    const rare = present.at(-1);
-    const all: Goal[] = [];
-    if (most) {
-      const count = counts.get(most)!;
-      all.push({
-        text: () => t("exerciseMore", { count, text: sentence(most) }),
-        solved: () => (player.counts().get(most) ?? 0) > count,
-      });
-    }
-    if (kinds.length > 1) {
-      all.push({
-        text: () => t("exerciseAll", { count: player.counts().size, all: kinds.length }),
-        solved: () => kinds.every((kind) => player.counts().has(kind)),
-      });
-    }
-    if (rare && kinds.length > 2) {
-      all.push({
-        text: () => t("exerciseNone", { text: sentence(rare) }),
-        solved: () => !player.counts().has(rare),
-      });
-    }
-    all.push({ text: () => t("exerciseFew", { count: steps }), solved: () => player.steps < steps });
-    return all;
-  }
-  const done = new Set<number>();
-  player.addEventListener("run", () => {
-    base ??= { counts: player.counts(), steps: player.steps };
-    list.replaceChildren(
-      ...goals().map((goal, index) => {
-        if (goal.solved()) done.add(index);
-        const solved = done.has(index);
-        return h(
-          "li",
-          { class: solved ? "solved" : undefined },
-          h("span", { class: "mark", "aria-hidden": "true" }, solved ? "✓" : "○"),
-          h("span", {}, goal.text()),
-          h("span", { class: "visually-hidden" }, solved ? t("solved") : t("open_")),
-        );
-      }),
-    );
-  });
-  return h("div", { class: "panel" }, h("p", { class: "hint" }, t("exercisesHint")), list);
 }

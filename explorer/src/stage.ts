@@ -29,16 +29,25 @@ class View {
   /** Returns a point's place in the drawing. */
   at([x, y]: Point): Point {
     const [a, b, c, d, e, f] = this.place.input!;
-    const u = (a * x + c * y + e - this.place.min[0]) * this.scale;
-    const v = (b * x + d * y + f - this.place.min[1]) * this.scale;
-    return [u, this.place.down ? v : this.size[1] - v];
+    return this.drawn([a * x + c * y + e, b * x + d * y + f]);
+  }
+
+  /** Returns the place in the drawing of a point of the picture. */
+  drawn([x, y]: Point): Point {
+    const v = (y - this.place.min[1]) * this.scale;
+    return [(x - this.place.min[0]) * this.scale, this.place.down ? v : this.size[1] - v];
+  }
+
+  /** Returns the point of the picture at a place in the drawing. */
+  shown([u, v]: Point): Point {
+    return [u / this.scale + this.place.min[0], (this.place.down ? v : this.size[1] - v) / this.scale + this.place.min[1]];
   }
 
   /** Returns the point of the input at a place in the drawing. */
-  from([u, v]: Point): Point {
+  from(at: Point): Point {
     const [a, b, c, d, e, f] = this.place.input!;
-    const x = u / this.scale + this.place.min[0] - e;
-    const y = (this.place.down ? v : this.size[1] - v) / this.scale + this.place.min[1] - f;
+    const [u, v] = this.shown(at);
+    const [x, y] = [u - e, v - f];
     const size = a * d - b * c;
     return [(d * x - c * y) / size, (a * y - b * x) / size];
   }
@@ -79,6 +88,15 @@ export class Stage {
   chosen: Ref | undefined;
   onchoose: (() => void) | undefined;
   editable = true;
+
+  /** Takes the place that is clicked, in the coordinates of the picture, while the quiz asks for one. */
+  private onpick: ((at: Point, scale: number) => void) | undefined;
+  /** Size of a step of the arrow keys in the picture: a pixel, or none for a share of the width. */
+  private pickStep = 0;
+  /** The place that the arrow keys move. */
+  private cross: Point | undefined;
+  /** The place that was picked last, and whether it was right. */
+  private mark: { at: Point; look: string } | undefined;
 
   private svg = s("svg", { class: "drawing", role: "group" });
   private view: View | undefined;
@@ -139,15 +157,74 @@ export class Stage {
       this.svg.firstElementChild?.replaceWith(picture);
       this.place();
     } else {
-      this.svg.replaceChildren(picture, ...this.handles());
+      this.svg.replaceChildren(picture, ...this.handles(), ...this.crosses(view));
+      this.element.classList.toggle("asks", this.onpick !== undefined);
       if (focused) this.svg.querySelector<SVGElement>(`[data-ref="${focused}"]`)?.focus();
       this.resize();
     }
   }
 
+  /** Asks for a place in the picture: by a click, or by arrow keys and Enter on a cross. */
+  pick(isPixels: boolean, onpick: (at: Point, scale: number) => void): void {
+    this.onpick = onpick;
+    this.pickStep = isPixels ? 1 : 0;
+    this.cross = undefined;
+    this.draw();
+  }
+
+  /** Ends the question. */
+  unpick(): void {
+    if (!this.onpick) return;
+    this.onpick = undefined;
+    this.draw();
+  }
+
+  /** Shows the place that was picked, until the next one is; an empty look takes it away. */
+  answered(look: "" | "right" | "wrong"): void {
+    this.mark = look !== "" && this.cross ? { at: this.cross, look } : undefined;
+  }
+
+  private picked(at: Point): void {
+    const { view, onpick } = this;
+    if (!view || !onpick) return;
+    this.cross = at;
+    onpick(at, view.scale);
+  }
+
+  /** Returns the crosses of the quiz: the place that was picked last, and the one that keys move. */
+  private crosses(view: View): SVGElement[] {
+    const cross = (at: Point, attributes: Record<string, string | number | ((event: KeyboardEvent) => void)>): SVGElement => {
+      const [x, y] = view.drawn(at);
+      return s("g", { transform: `translate(${x} ${y})`, ...attributes }, s("path", { d: "M-11 0H11M0 -11V11" }));
+    };
+    const { place } = view;
+    const last = this.mark ? [cross(this.mark.at, { class: `cross ${this.mark.look}`, "aria-hidden": "true" })] : [];
+    if (!this.onpick) return last;
+    const middle = (k: 0 | 1): number => (place.min[k] + place.max[k]) / 2;
+    const laid = (value: number): number => (this.pickStep === 1 ? Math.floor(value) + 0.5 : value);
+    const at: Point = this.cross ?? [laid(middle(0)), laid(middle(1))];
+    const name = `${t("crossHint")} (${at.map((value) => Number(value.toFixed(2))).join("; ")})`;
+    const onkeydown = (event: KeyboardEvent): void => this.crossKey(event, at, view);
+    return [...last, cross(at, { class: "cross asks", tabindex: 0, role: "button", "aria-label": name, "data-ref": "cross", onkeydown })];
+  }
+
+  private crossKey(event: KeyboardEvent, at: Point, view: View): void {
+    const size = this.pickStep || Math.max(view.place.max[0] - view.place.min[0], view.place.max[1] - view.place.min[1]) / 80;
+    const up = view.place.down ? -size : size;
+    const ways: Record<string, Point> = { ArrowLeft: [-size, 0], ArrowRight: [size, 0], ArrowUp: [0, up], ArrowDown: [0, -up] };
+    const way = ways[event.key];
+    if (event.key === "Enter" || event.key === " ") this.picked(at);
+    else if (way && !event.shiftKey) {
+      this.cross = [at[0] + way[0], at[1] + way[1]];
+      this.draw();
+    } else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
   private handles(): SVGElement[] {
     const { input, view } = this;
-    if (!input || !view?.place.input || !this.editable) return [];
+    if (!input || !view?.place.input || !this.editable || this.onpick) return [];
     return vertices(input).map((vertex) => this.handle(vertex, view));
   }
 
@@ -287,7 +364,7 @@ export class Stage {
 
   private double(event: MouseEvent): void {
     const { view, input } = this;
-    if (!view?.place.input || !input || "grid" in input || !this.editable) return;
+    if (!view?.place.input || !input || "grid" in input || !this.editable || this.onpick) return;
     const at = view.from(this.pointer(event));
     const found = nearest(input, at);
     const scale = Math.hypot(view.place.input[0], view.place.input[1]) * view.scale;
@@ -300,6 +377,7 @@ export class Stage {
 
   private click(event: MouseEvent): void {
     const { view, input } = this;
+    if (view && this.onpick) return this.picked(view.shown(this.pointer(event)));
     const onHandle = (event.target as Element).closest(".handle");
     if (!view?.place.input || !input || !("grid" in input) || onHandle || !this.editable) return;
     const [x, y] = view.from(this.pointer(event));

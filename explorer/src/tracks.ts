@@ -104,7 +104,8 @@ export function trackBar(address: Address, families: Family[], go: (address: Add
   const link = (to: number, name: "previousPage" | "nextPage", arrow: string): HTMLElement | null => {
     const other = track.stops[to];
     if (!other) return null;
-    const title = lessonOf(families, other.lesson)?.title ?? other.lesson;
+    const found = lessonOf(families, other.lesson);
+    const title = found ? of(found.title) : other.lesson;
     const onclick = (event: Event): void => {
       event.preventDefault();
       go(addressOf(track, to));
@@ -136,7 +137,7 @@ export function tracksPage(families: Family[]): Page {
           {},
           ...track.stops.map((stop, index) => {
             const lesson = lessonOf(families, stop.lesson);
-            return h("li", {}, h("a", { href: format(addressOf(track, index)) }, lesson?.title ?? stop.lesson), h("span", { class: "hint" }, ` ${of(stop.text)}`));
+            return h("li", {}, h("a", { href: format(addressOf(track, index)) }, lesson ? of(lesson.title) : stop.lesson), h("span", { class: "hint" }, ` ${of(stop.text)}`));
           }),
         ),
       ),

@@ -1,7 +1,8 @@
 // Buttons, scrubber and keys that go from step to step.
 
 import { h, icon } from "./dom";
-import { kindsOf, type Player } from "./player";
+import { kindName, kindsOf, type Player } from "./player";
+import type { Run } from "./types";
 import { t } from "./words";
 
 /** Colours of kinds, after Okabe and Ito (2008); each kind has a row of its own, too. */
@@ -28,6 +29,9 @@ export class Transport {
   onnotice: ((text: string) => void) | undefined;
 
   private roll = h("canvas", { class: "roll", "aria-hidden": "true" });
+  /** All ticks: a run of many steps is not drawn anew with each step. */
+  private ticks = h("canvas");
+  private drawn: { size: string; run: Run | undefined } = { size: "", run: undefined };
   private range = h("input", { type: "range", min: 0, max: 0, value: 0, class: "scrubber" });
   private place = h("output", { class: "place" });
   private playButton: HTMLButtonElement;
@@ -169,7 +173,7 @@ export class Transport {
             "button",
             { type: "button", disabled: count === 0, onclick: () => this.alike(1, kind), "data-kind": kind },
             h("span", { class: "swatch", style: `background:${color}` }),
-            kind.replaceAll("-", " "),
+            kindName(this.player.lesson, kind),
             h("span", { class: "count" }, String(count)),
           ),
         );
@@ -184,7 +188,7 @@ export class Transport {
     this.range.value = String(player.step);
     this.range.setAttribute("aria-label", t("step"));
     const kind = player.kind(player.step);
-    this.range.setAttribute("aria-valuetext", `${t("step")} ${player.step + 1} ${t("of")} ${player.steps}: ${kind}`);
+    this.range.setAttribute("aria-valuetext", `${t("step")} ${player.step + 1} ${t("of")} ${player.steps}: ${kindName(player.lesson, kind)}`);
     this.place.textContent = `${player.step + 1} / ${player.steps}`;
     this.chips.querySelectorAll<HTMLElement>("button").forEach((chip) => {
       chip.classList.toggle("current", chip.dataset.kind === kind);
@@ -192,15 +196,33 @@ export class Transport {
     this.draw();
   }
 
-  /** Draws a tick for each step in the row of its kind. */
+  /** Draws the ticks and the place of the step among them. */
   private draw(): void {
     const { roll, player } = this;
     const context = roll.getContext("2d");
     const { clientWidth: wide, clientHeight: high } = roll;
     if (!context || wide === 0) return;
     const ratio = devicePixelRatio || 1;
-    roll.width = wide * ratio;
-    roll.height = high * ratio;
+    const size = `${wide} ${high} ${ratio}`;
+    if (size !== this.drawn.size || player.run !== this.drawn.run) {
+      this.drawn = { size, run: player.run };
+      roll.width = this.ticks.width = Math.round(wide * ratio);
+      roll.height = this.ticks.height = Math.round(high * ratio);
+      this.drawTicks(wide, ratio);
+    }
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.clearRect(0, 0, roll.width, roll.height);
+    context.drawImage(this.ticks, 0, 0);
+    context.scale(ratio, ratio);
+    context.fillStyle = getComputedStyle(roll).color;
+    const room = wide - 2 * INSET;
+    context.fillRect(INSET + (player.step / Math.max(1, player.steps - 1)) * room - 0.75, 0, 1.5, high);
+  }
+
+  /** Draws a tick for each step in the row of its kind, once for a run. */
+  private drawTicks(wide: number, ratio: number): void {
+    const { player } = this;
+    const context = this.ticks.getContext("2d")!;
     context.scale(ratio, ratio);
     const room = wide - 2 * INSET;
     const last = Math.max(1, player.steps - 1);
@@ -216,8 +238,6 @@ export class Transport {
       context.fillStyle = COLORS[kind % COLORS.length]!;
       context.fillRect(x - tick / 2, 2 + kind * ROW, tick, ROW - 1);
     }
-    context.fillStyle = getComputedStyle(roll).color;
-    context.fillRect(INSET + (player.step / last) * room - 0.75, 0, 1.5, high);
   }
 
   /** Takes a key; returns whether it was one of its own. */

@@ -10,12 +10,14 @@ export interface Example {
 
 export interface Template {
   kind: string;
+  /** Name of the kind. */
+  name: Words;
   text: Words;
 }
 
 export interface Lesson {
   name: string;
-  title: string;
+  title: Words;
   authors: string;
   year: number;
   source: string;
@@ -27,7 +29,11 @@ export interface Lesson {
   pseudocode: string[];
   takes: Words;
   examples: Example[];
+  /** Lines that the lesson's program can get wrong, and how. */
+  faults: { line: number; wrong: string }[];
   templates: Template[];
+  /** File of the module that runs it. */
+  module: string;
 }
 
 export interface Family {
@@ -87,10 +93,14 @@ export interface Place {
   input: [number, number, number, number, number, number] | null;
 }
 
+/** A mark that a step is about, in the coordinates of its picture. */
+export type Target = { pixel: Point } | { point: Point } | { line: Point[] } | { area: Point[][] };
+
 export interface Frame {
   frame: { line: number; kind: string; caption: string; table: Table };
   svg: string;
   map: Place;
+  targets: Target[];
   /** Longer side of the drawing in pixels. */
   longest: number;
 }
@@ -100,6 +110,7 @@ export interface RunRequest {
   input: Input;
   operation?: string;
   rule?: string;
+  fault?: number;
   cap: number;
   choices?: boolean;
 }

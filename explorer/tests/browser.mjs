@@ -1,11 +1,14 @@
 // A browser on the built pages, served from a folder below the root, as many servers do.
 
-import { createReadStream, existsSync, statSync } from "node:fs";
+import { createReadStream, existsSync, readFileSync, statSync } from "node:fs";
+import assert from "node:assert/strict";
 import { createServer } from "node:http";
+import { createRequire } from "node:module";
 import { extname, join, normalize } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
+const AXE = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
 const DIST = fileURLToPath(new URL("../dist", import.meta.url));
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".wasm": "application/wasm" };
 
@@ -42,3 +45,18 @@ export async function atStep(page, step) {
   await page.waitForFunction((step) => document.querySelector(".place")?.textContent.startsWith(`${step} /`) && document.querySelector(".drawing svg") !== null, step);
   await page.waitForTimeout(60);
 }
+
+/** Returns all lessons, as the pages list them. */
+export function lessonsOf() {
+  return JSON.parse(readFileSync(join(DIST, "lessons.json"), "utf8")).families.flatMap((family) => family.lessons);
+}
+
+/** Fails where axe-core finds something. */
+export async function accessible(page, name) {
+  await page.addScriptTag({ path: AXE });
+  const { violations } = await page.evaluate(() => globalThis.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa", "best-practice"] }));
+  assert.deepEqual(violations.map(({ id, nodes }) => `${name} ${id}: ${nodes[0].html}`), []);
+}
+
+export const caption = (page) => page.textContent(".picture-pane .caption");
+export const drawing = (page) => page.evaluate(() => document.querySelector(".drawing svg").outerHTML);

@@ -2,12 +2,9 @@
 
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
-import { createRequire } from "node:module";
 import { after, before, test } from "node:test";
-import { atStep, browser, open, serve } from "./browser.mjs";
-import { load } from "./engine.mjs";
+import { accessible, atStep, browser, caption, drawing, lessonsOf, open, serve } from "./browser.mjs";
 
-const AXE = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
 let server;
 let chromium;
 let lessons;
@@ -15,24 +12,13 @@ let lessons;
 before(async () => {
   server = await serve();
   chromium = await browser();
-  const answer = await load(new URL("../dist/durer.wasm", import.meta.url));
-  const { bytes } = answer(JSON.stringify({ do: "lessons" }));
-  lessons = JSON.parse(new TextDecoder().decode(bytes)).families.flatMap((family) => family.lessons);
+  lessons = await lessonsOf();
 });
 
 after(async () => {
   await chromium?.close();
   server?.close();
 });
-
-async function accessible(page, name) {
-  await page.addScriptTag({ path: AXE });
-  const { violations } = await page.evaluate(() => globalThis.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa", "best-practice"] }));
-  assert.deepEqual(violations.map(({ id, nodes }) => `${name} ${id}: ${nodes[0].html}`), []);
-}
-
-const caption = (page) => page.textContent(".picture-pane .caption");
-const drawing = (page) => page.evaluate(() => document.querySelector(".drawing svg").outerHTML);
 
 test("the list has every algorithm, finds them, and is accessible", async () => {
   const { page, faults, close } = await open(chromium, `${server.url}#lang=en`);
@@ -51,7 +37,7 @@ test("every lesson opens, steps to the end and back to the same picture", async 
   await page.waitForSelector(".family li");
   for (const { name } of lessons) {
     await page.evaluate((name) => (location.hash = `#a=${name}&lang=en`), name);
-    await page.waitForFunction((title) => document.title.startsWith(title), lessons.find((own) => own.name === name).title);
+    await page.waitForFunction((title) => document.title.startsWith(title), lessons.find((own) => own.name === name).title.en);
     await atStep(page, 1);
     const first = await drawing(page);
     await page.keyboard.press("End");
@@ -79,6 +65,7 @@ test("keys step, and the quiz asks before it shows", async () => {
   await page.keyboard.press("Home");
   await atStep(page, 1);
   await page.click("#tab-quiz");
+  await page.click(".quiz [data-mode=kind]");
   await page.click(".quiz .primary");
   await page.click(".step.next");
   await page.waitForTimeout(100);
@@ -176,16 +163,24 @@ test("wrong addresses and inputs are answered in words", async () => {
 });
 
 test("a frame in another page reports its step and goes where it is sent", async () => {
-  const { page, faults, close } = await open(chromium, "about:blank");
-  const listener = "<script>told = []; addEventListener('message', (event) => told.push(event.data))</script>";
-  const body = `${listener}<iframe src="./#a=bresenham&lang=en&embed=1" width="640" height="560"></iframe>`;
-  await page.route("**/around.html", (route) => route.fulfill({ body, contentType: "text/html" }));
-  await page.goto(`${server.url}around.html`);
-  await page.waitForFunction(() => window.told.some(({ step, algorithm }) => step === 1 && algorithm === "bresenham"));
-  await page.evaluate(() => document.querySelector("iframe").contentWindow.postMessage({ goto: 3 }, "*"));
-  await page.waitForFunction(() => window.told.some(({ step }) => step === 3));
-  assert.deepEqual(faults, []);
-  await close();
+  for (const address of ["./#a=bresenham&lang=en&embed=1", "./?embed#a=bresenham&lang=en"]) {
+    const { page, faults, close } = await open(chromium, "about:blank");
+    const listener = "<script>told = []; addEventListener('message', (event) => told.push(event.data))</script>";
+    const body = `${listener}<iframe src="${address}" width="640" height="560"></iframe>`;
+    await page.route("**/around.html", (route) => route.fulfill({ body, contentType: "text/html" }));
+    await page.goto(`${server.url}around.html`);
+    await page.waitForFunction(() => window.told.some(({ step, algorithm }) => step === 1 && algorithm === "bresenham"));
+    await page.evaluate(() => document.querySelector("iframe").contentWindow.postMessage({ goto: 3 }, "*"));
+    await page.waitForFunction(() => window.told.some(({ step }) => step === 3));
+    const inside = page.frameLocator("iframe");
+    assert.equal(await inside.locator(".bar, .lower, .side").count(), 0, "the frame has the picture only");
+    // What is no number goes nowhere.
+    await page.evaluate(() => document.querySelector("iframe").contentWindow.postMessage({ goto: "x" }, "*"));
+    await page.waitForTimeout(100);
+    assert.match(await inside.locator(".place").textContent(), /^3 \/ /);
+    assert.deepEqual(faults, []);
+    await close();
+  }
 });
 
 test("tracks lead through pages that exist", async () => {
@@ -226,16 +221,31 @@ test("a file becomes the input, in the window of the page", { skip: !existsSync(
   await close();
 });
 
+test("a list or an engine that cannot be loaded is said, and tried again", async () => {
+  const { page, close } = await open(chromium, `${server.url}#lang=en`);
+  await page.waitForSelector("a[href*=bresenham]");
+  for (const file of ["lessons.json", "durer-plane.wasm"]) await page.route(`**/${file}`, (route) => route.abort());
+  await page.goto(`${server.url}?again#a=bresenham&lang=en`);
+  await page.waitForSelector("[role=alert]");
+  await page.unroute("**/lessons.json");
+  await page.getByRole("button").click();
+  await page.waitForFunction(() => document.querySelector(".picture-pane")?.textContent.includes("could not be loaded"));
+  await page.unroute("**/durer-plane.wasm");
+  await page.keyboard.press("r");
+  await atStep(page, 1);
+  await close();
+});
+
 test("a trap starts the engine anew", async () => {
   const { page, close } = await open(chromium, `${server.url}#a=bresenham&lang=en`);
   await atStep(page, 1);
   // The engine's file as a module that traps at once.
   const module = Buffer.from(readFileSync(new URL("./trap.wasm.b64", import.meta.url), "utf8"), "base64");
-  await page.route("**/durer.wasm", (route) => route.fulfill({ body: module, contentType: "application/wasm" }));
+  await page.route("**/durer-plane.wasm", (route) => route.fulfill({ body: module, contentType: "application/wasm" }));
   await page.reload();
-  await page.waitForSelector("[role=alert]");
-  await page.unroute("**/durer.wasm");
-  await page.getByRole("button").click();
+  await page.waitForFunction(() => document.querySelector(".picture-pane")?.textContent.includes("was started anew"));
+  await page.unroute("**/durer-plane.wasm");
+  await page.keyboard.press("r");
   await atStep(page, 1);
   await close();
 });

@@ -1,26 +1,13 @@
-// Prints requests whose answers are compared: the list, runs of many families, and drawings and texts of their frames.
+// Prints requests whose answers are compared: the list of a module, runs of all its lessons, and drawings and texts of their frames.
 
-const NAMES = [
-  "cohen-sutherland",
-  "liang-barsky",
-  "sutherland-hodgman",
-  "weiler-atherton",
-  "vatti",
-  "bresenham",
-  "midpoint-circle",
-  "edge-table",
-  "naive",
-  "gouraud",
-  "phong",
-  "depth-sort",
-  "warnock",
-  "watkins",
-  "horizon-curves",
-];
+import { load } from "./engine.mjs";
+
+const answer = await load(process.argv[2]);
+const { families } = JSON.parse(new TextDecoder().decode(answer(JSON.stringify({ do: "lessons" })).bytes));
 
 console.log(JSON.stringify({ do: "lessons" }));
-NAMES.forEach((name, handle) => {
-  console.log(JSON.stringify({ do: "run", name, input: { example: "" }, cap: 400, choices: true }));
+families.flatMap((family) => family.lessons).forEach(({ name, examples }, handle) => {
+  console.log(JSON.stringify({ do: "run", name, input: { example: examples[0].name }, cap: 400, choices: true }));
   for (const [step, language] of [[0, "en"], [1, "de"], [2, "en"]]) {
     console.log(JSON.stringify({ do: "frame", handle, step, language, longest: 460 }));
   }

@@ -46,6 +46,8 @@ enum Request {
     #[cfg(feature = "files")]
     Methods,
     #[cfg(feature = "files")]
+    Formula(crate::files::FormulaRequest),
+    #[cfg(feature = "files")]
     Read(crate::files::ReadRequest),
     #[cfg(feature = "files")]
     Render(crate::files::RenderRequest),
@@ -65,6 +67,9 @@ pub(crate) struct RunRequest {
     /// Name of a fill rule; the default one if empty.
     #[serde(default)]
     pub rule: String,
+    /// Number of a fault of the lesson's program; none for the library's own function.
+    #[serde(default)]
+    pub fault: Option<usize>,
     /// The most steps.
     pub cap: usize,
     /// True to list the operations and rules that change the run.
@@ -142,6 +147,8 @@ impl Engine {
             }
             #[cfg(feature = "files")]
             Request::Methods => crate::files::methods().to_string(),
+            #[cfg(feature = "files")]
+            Request::Formula(request) => crate::files::formula(&request)?.to_string(),
             #[cfg(feature = "files")]
             Request::Read(request) => crate::files::read(&request, file)?.to_string(),
             #[cfg(feature = "files")]

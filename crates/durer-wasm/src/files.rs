@@ -2,9 +2,11 @@
 
 use crate::answer::Failure;
 use crate::input::InputData;
+use durer::explain::{Figure, Input};
 use durer::math::DVec2;
-use durer::pipeline::{RenderOptions, SurfaceMethod, render as rendered};
+use durer::pipeline::{RenderOptions, Samples, SurfaceMethod, render as rendered};
 use durer::view::projection::{FitOptions, ViewDirection, fit_scene};
+use durer_formats::formula::Formula;
 use durer_formats::png::{Compression, write_color};
 use durer_formats::{Limits, NoResources, ReadOptions, lesson, read_model};
 use serde::Deserialize;
@@ -43,6 +45,65 @@ pub(crate) struct RenderRequest {
     /// Direction to the eye around the up axis and above the horizon, in degrees.
     azimuth: f64,
     elevation: f64,
+}
+
+/// Request for curves of a surface.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FormulaRequest {
+    /// Formula y = f(x, z) in text.
+    formula: String,
+    /// Points of each curve.
+    columns: u32,
+    /// Number of curves.
+    curves: u32,
+}
+
+/// The range of x and z in which a formula is evaluated, as that of `durer plot`.
+const FORMULA_RANGE: f64 = 4.0;
+
+/// The height of a surface on the page, and the part of it by which each curve is shifted up against the one before it, in columns.
+const FORMULA_HEIGHT: f64 = 0.3;
+const FORMULA_RISE: f64 = 0.08;
+
+/// Returns the curves of a surface from the nearest to the farthest, each a little higher than the one before, as an input of
+/// the floating horizon.
+pub(crate) fn formula(request: &FormulaRequest) -> Result<Value, Failure> {
+    let formula = Formula::parse(&request.formula).map_err(|e| e.to_string())?;
+    let columns = request.columns.clamp(2, 60);
+    let curves = request.curves.clamp(1, 24);
+    let along =
+        |k: u32, n: u32| FORMULA_RANGE * (2.0 * f64::from(k) / f64::from((n - 1).max(1)) - 1.0);
+    let mut heights = Vec::new();
+    for curve in 0..curves {
+        // The nearest curve has the largest z.
+        let z = -along(curve, curves);
+        for column in 0..columns {
+            let x = along(column, columns);
+            let y = formula.evaluate(x, z);
+            if !y.is_finite() {
+                return Err(format!("the formula has no value at x = {x:.3}, z = {z:.3}"));
+            }
+            heights.push(y);
+        }
+    }
+    let (low, high) = heights.iter().fold((f64::MAX, f64::MIN), |(l, h), &y| (l.min(y), h.max(y)));
+    if !(high - low).is_finite() {
+        return Err(format!("the values of the formula, {low:e} to {high:e}, differ too much"));
+    }
+    let wide = f64::from(columns);
+    let scale = if high > low { FORMULA_HEIGHT * wide / (high - low) } else { 0.0 };
+    let lines = heights.chunks(columns as usize).zip(0_u32..).map(|(row, curve)| {
+        let rise = f64::from(curve) * FORMULA_RISE * wide;
+        let place = |(x, y): (u32, &f64)| {
+            // Three decimals are enough for a picture, and keep links short.
+            let y = ((y - low) * scale + rise) * 1000.0;
+            DVec2::new(x.into(), y.round() / 1000.0)
+        };
+        (0_u32..).zip(row).map(place).collect()
+    });
+    let figure = Figure { lines: lines.collect(), ..Figure::default() };
+    Ok(json!({ "input": InputData::of_input(&Input::Figure(figure)), "warnings": [] }))
 }
 
 fn limits() -> Limits {
@@ -86,6 +147,8 @@ pub(crate) fn render(request: &RenderRequest, file: &[u8]) -> Result<Vec<u8>, Fa
         width,
         height,
         max_pixels: MOST_PIXELS,
+        // One for all: methods that take only one would differ at every edge otherwise.
+        samples: Samples::One,
         ..RenderOptions::new(camera)
     };
     let (picture, _) = rendered(&scene, &options).map_err(words)?;

@@ -1,15 +1,34 @@
 //! The list of lessons.
 
-use durer::explain::{FAMILIES, Family, Lesson, Word};
+use crate::answer::Failure;
+use durer::explain::{self, Family, Fault, Lesson, Word};
 use serde_json::{Value, json};
 
-/// Returns all families with their lessons.
+/// Families of this engine.
+const FAMILIES: &[&[Family]] = &[
+    #[cfg(feature = "plane")]
+    explain::PLANE,
+    #[cfg(feature = "space")]
+    explain::SPACE,
+];
+
+fn families() -> impl Iterator<Item = &'static Family> {
+    FAMILIES.iter().copied().flatten()
+}
+
+/// Returns a lesson of this engine.
+pub(crate) fn lesson(name: &str) -> Result<&'static Lesson, Failure> {
+    let found = families().flat_map(|family| family.lessons).find(|lesson| lesson.name == name);
+    found.ok_or_else(|| format!("there is no lesson “{name}” in this engine; `lessons` lists those that there are"))
+}
+
+/// Returns the families of this engine with their lessons.
 pub(crate) fn list() -> Value {
-    json!({ "version": env!("CARGO_PKG_VERSION"), "families": FAMILIES.iter().map(family).collect::<Vec<_>>() })
+    json!({ "version": env!("CARGO_PKG_VERSION"), "families": families().map(family).collect::<Vec<_>>() })
 }
 
 fn family(family: &Family) -> Value {
-    let lessons: Vec<Value> = family.lessons.iter().map(lesson).collect();
+    let lessons: Vec<Value> = family.lessons.iter().map(facts).collect();
     json!({ "title": word(family.title), "lessons": lessons })
 }
 
@@ -17,13 +36,14 @@ fn word(word: Word) -> Value {
     json!({ "en": word.en, "de": word.de })
 }
 
-fn lesson(lesson: &Lesson) -> Value {
+fn facts(lesson: &Lesson) -> Value {
     let info = lesson.info;
+    let fault = |fault: &Fault| json!({ "line": fault.line, "wrong": fault.wrong });
     let example = |example: &durer::explain::Example| json!({ "name": example.name, "title": word(example.title) });
-    let template = |template: &&durer::explain::Template| json!({ "kind": template.kind, "text": word(template.text) });
+    let template = |template: &&durer::explain::Template| json!({ "kind": template.kind, "name": word(template.name()), "text": word(template.text) });
     json!({
         "name": lesson.name,
-        "title": info.title,
+        "title": word(lesson.title()),
         "authors": info.authors,
         "year": info.year,
         "source": info.source,
@@ -35,6 +55,12 @@ fn lesson(lesson: &Lesson) -> Value {
         "pseudocode": info.pseudocode,
         "takes": word(lesson.takes),
         "examples": lesson.examples.iter().map(example).collect::<Vec<_>>(),
+        "faults": faults(lesson.name).iter().map(fault).collect::<Vec<_>>(),
         "templates": lesson.templates.iter().map(template).collect::<Vec<_>>(),
     })
+}
+
+/// Returns the faults that a lesson's program can have; only lessons in the plane have programs.
+fn faults(name: &str) -> &'static [Fault] {
+    if cfg!(feature = "plane") { explain::faults(name) } else { &[] }
 }

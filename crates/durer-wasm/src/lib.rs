@@ -6,12 +6,13 @@
 //! | `do` | members | answer |
 //! |---|---|---|
 //! | `lessons` | – | families of lessons with facts, pseudocode, examples and sentences |
-//! | `run` | `name`, `input`, `operation`, `rule`, `cap` | `handle` of the run, and line and template of each step |
-//! | `frame` | `handle`, `step`, `language`, `longest` | caption, table, drawing, and the place of the input in it |
+//! | `run` | `name`, `input`, `operation`, `rule`, `fault`, `cap` | `handle` of the run, and line and template of each step |
+//! | `frame` | `handle`, `step`, `language`, `longest` | caption, table, drawing, the place of the input in it, and the marks that the step is about |
 //! | `captions` | `handle`, `first`, `count`, `language` | captions of a range of steps |
 //! | `tikz` | `handle`, `step`, `language` | the drawing for LaTeX |
 //! | `drop` | `handle` | nothing; the run's memory is free again |
 //! | `read` | `name`, `window`; the file after a zero byte | the file as an input |
+//! | `formula` | `formula`, `columns`, `curves` | curves of a surface y = f(x, z) as an input |
 //! | `methods` | – | names of methods for visible surfaces |
 //! | `render` | `name`, `method`, …; the model after a zero byte | a PNG |
 //!
@@ -26,6 +27,7 @@ mod files;
 mod input;
 mod lessons;
 mod runs;
+mod targets;
 mod tikz;
 
 pub use answer::{Answer, Engine};

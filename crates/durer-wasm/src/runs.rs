@@ -2,6 +2,8 @@
 
 use crate::answer::{Failure, FrameRequest, RunRequest};
 use crate::input::InputData;
+use crate::lessons::lesson;
+use crate::targets::targets;
 use durer::clip::polygon::{BooleanOp, WindingRule};
 use durer::explain::{
     self, Frame, Frames, Input, Language, Lesson, Options, Picture, json_string, picture_of_size,
@@ -32,14 +34,18 @@ impl Runs {
     /// Runs an algorithm and keeps its frames.
     pub fn start(&mut self, request: RunRequest) -> Result<Value, Failure> {
         let words = |e: durer::Error| e.to_string();
-        let lesson = explain::lesson(&request.name).map_err(words)?;
+        let lesson = lesson(&request.name)?;
         let input = match request.input.into_input()? {
             Input::Example(name) => lesson.example(&name).map_err(words)?,
             own => own,
         };
         let options = options(&request.operation, &request.rule)?;
         let cap = request.cap.min(MOST_STEPS);
-        let run = lesson.record(&input, &options, cap).map_err(words)?;
+        let run = match request.fault {
+            Some(fault) => with_fault(lesson, fault, &input, cap),
+            None => lesson.record(&input, &options, cap),
+        };
+        let run = run.map_err(words)?;
         let mut answer = json!({
             "handle": self.next,
             "steps": run.len(),
@@ -69,6 +75,15 @@ impl Runs {
     pub fn drop(&mut self, handle: u32) {
         self.all.remove(&handle);
     }
+}
+
+/// Runs the lesson's program with a fault; only lessons in the plane have programs.
+fn with_fault(lesson: &Lesson, fault: usize, input: &Input, cap: usize) -> durer::Result<Frames> {
+    if cfg!(feature = "plane") {
+        return explain::record_with_fault(lesson.name, fault, input, cap);
+    }
+    let instead = "lessons in the plane have programs";
+    Err(durer::Error::Unsupported { what: "a fault in a lesson in space", instead })
 }
 
 /// Returns the number of a caption's template in the lesson; −1 for one that is of no step.
@@ -114,16 +129,17 @@ pub(crate) fn made(run: &Frames, step: usize) -> Result<Frame, Failure> {
     run.frame(step).ok_or_else(|| format!("step {step}: the run has {} steps", run.len()))
 }
 
-/// Returns a frame as JSON: its texts and table, the drawing, and where the input is in it.
+/// Returns a frame as JSON: its texts and table, the drawing, where the input is in it, and what the step is about.
 pub(crate) fn frame(run: &Frames, request: &FrameRequest) -> Result<String, Failure> {
     let frame = made(run, request.step)?;
     let language = request.language.into();
     let drawing = picture_of_size(&frame.picture, request.longest, language);
     Ok(format!(
-        "{{\"frame\":{},\"svg\":{},\"map\":{}}}",
+        "{{\"frame\":{},\"svg\":{},\"map\":{},\"targets\":{}}}",
         explain::frame_json(&frame, language),
         json_string(&drawing),
-        map(&frame.picture)
+        map(&frame.picture),
+        targets(&frame.picture)
     ))
 }
 

@@ -33,6 +33,8 @@ fn pages_of_a_folder_are_served() {
         reply
     };
     assert!(get("/").ends_with("<title>pages</title>"));
+    // A frame in another page asks for the same file.
+    assert!(get("/?embed").ends_with("<title>pages</title>"));
     let module = get("/durer.wasm");
     assert!(module.contains("application/wasm") && module.ends_with("\0asm"), "{module}");
     assert!(get("/../explore.rs").starts_with("HTTP/1.1 404"));

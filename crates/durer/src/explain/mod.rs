@@ -21,6 +21,7 @@ mod clip_polygons;
 mod clip_volume;
 mod curves;
 mod faces;
+mod faults;
 mod fills;
 mod fragments;
 mod frame;
@@ -31,6 +32,7 @@ mod json;
 mod lesson;
 mod letters;
 mod lines;
+mod names;
 mod packed;
 mod picking;
 mod picture;
@@ -45,6 +47,7 @@ mod warping;
 mod without;
 mod words;
 
+pub use faults::{Fault, faults, record_with_fault};
 pub use input::{Figure, Grid, Input, MAX_POINTS, Options};
 pub use json::{frame_json, json, string as json_string};
 pub use lesson::{Example, Lesson};
@@ -71,26 +74,43 @@ const fn family(en: &'static str, de: &'static str, lessons: &'static [Lesson]) 
     Family { title: Word::new(en, de), lessons }
 }
 
-/// Lessons by families, in the order of the pipeline.
-pub const FAMILIES: &[Family] = &[
+/// Families of lessons in the plane, in the order of the pipeline.
+pub const PLANE: &[Family] = &[
     family("Curves", "Kurven", curves::LESSONS),
     family("Clipping lines", "Linien clippen", clip_lines::LESSONS),
     family("Clipping polygons", "Polygone clippen", clip_polygons::LESSONS),
     family("Simplifying borders", "Grenzen vereinfachen", simplify::LESSONS),
-    family("Clipping in space", "Clippen im Raum", clip_volume::LESSONS),
     family("Window and viewport", "Fenster und Viewport", viewing::LESSONS),
     family("Points for labels", "Punkte für Beschriftungen", &[interior::LESSON]),
-    family("Picking and warping", "Picking und Warping", &[picking::LESSON, warping::LESSON]),
     family("Lines and circles", "Linien und Kreise", lines::LESSONS),
     family("Filling areas", "Flächen füllen", fills::LESSONS),
+    family("Halftones", "Halbtöne", tones::LESSONS),
+];
+
+/// Families of lessons in space, in the order of the pipeline.
+pub const SPACE: &[Family] = &[
+    family("Clipping in space", "Clippen im Raum", clip_volume::LESSONS),
+    family("Picking and warping", "Picking und Warping", &[picking::LESSON, warping::LESSON]),
     family("Shading", "Schattierung", shades::LESSONS),
     family("Shadows", "Schatten", &[shadow::LESSON]),
-    family("Halftones", "Halbtöne", tones::LESSONS),
     family("Fragments", "Fragmente", &[fragments::LESSON]),
     family("Hidden surfaces", "Verdeckte Flächen", faces::LESSONS),
 ];
 
-/// Returns every lesson, in the order of the pipeline.
+/// All lessons by families: those of [`PLANE`], then those of [`SPACE`].
+pub const FAMILIES: &[Family] = &joined::<{ PLANE.len() + SPACE.len() }>();
+
+const fn joined<const N: usize>() -> [Family; N] {
+    let mut all = [PLANE[0]; N];
+    let mut i = 0;
+    while i < N {
+        all[i] = if i < PLANE.len() { PLANE[i] } else { SPACE[i - PLANE.len()] };
+        i += 1;
+    }
+    all
+}
+
+/// Returns every lesson, in the order of [`FAMILIES`].
 pub fn lessons() -> impl Iterator<Item = &'static Lesson> {
     FAMILIES.iter().flat_map(|family| family.lessons)
 }

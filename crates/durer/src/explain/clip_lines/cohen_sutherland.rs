@@ -2,16 +2,17 @@
 
 use super::{BORDERS, CODE, Cutting, END, NO_HEAD, POINT, START, TAKES, end_name, figure, p};
 use crate::Result;
-use crate::clip::line::End;
 use crate::clip::line::cohen_sutherland::{INFO, Step, clip};
+use crate::clip::line::{End, Segment};
 use crate::clip::outcode::Outcode;
 use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
-use crate::explain::picture::{Look, Picture};
+use crate::explain::picture::{Look, Picture, corners};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Word};
-use crate::math::DVec2;
+use crate::math::{DVec2, Rect};
+use crate::trace::Recorder;
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -85,17 +86,38 @@ struct State {
 }
 
 fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
+    by_codes(input, cap, |window, segment, t| clip(window, segment, t).map(drop))
+}
+
+/// Makes the frames of a program that reports steps of outcodes.
+pub(in crate::explain) fn by_codes(
+    input: &Input,
+    cap: usize,
+    program: impl FnOnce(&Rect, Segment<DVec2>, &mut Recorder<Step<DVec2>>) -> Result<()>,
+) -> Result<Frames> {
     let cutting = Cutting::new(input)?;
-    let steps = record(cap, |t| clip(&cutting.window, cutting.whole, t))?;
+    let steps = record(cap, |t| program(&cutting.window, cutting.whole, t))?;
     let mut state = State { cutting, codes: [Outcode::INSIDE; 2] };
     Ok(frames(&steps, |step| state.show(step)))
+}
+
+/// Returns the ends of a window's border.
+fn side(window: &Rect, border: Outcode) -> [DVec2; 2] {
+    let [a, b, c, d] = corners(window);
+    match border {
+        Outcode::LEFT => [a, d],
+        Outcode::RIGHT => [b, c],
+        Outcode::BOTTOM => [a, b],
+        _ => [d, c],
+    }
 }
 
 impl State {
     fn show(&mut self, step: &Step<DVec2>) -> Shown {
         let caption = self.take(step);
         let mut picture = self.picture();
-        if let Step::Cut { point, .. } = *step {
+        if let Step::Cut { border, point, .. } = *step {
+            picture.chain(side(&self.cutting.window, border), Look::Now);
             picture.dot(point, Look::Now);
         }
         if *step == Step::Accepted {

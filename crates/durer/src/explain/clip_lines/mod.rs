@@ -6,6 +6,9 @@ mod nicholl_lee_nicholl;
 mod parametric;
 mod polyline;
 
+pub(super) use cohen_sutherland::by_codes;
+pub(super) use parametric::by_parameters;
+
 use super::input::{Figure, Input};
 use super::lesson::Lesson;
 use super::picture::{Look, Picture};

@@ -13,7 +13,8 @@ use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture, corners};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
-use crate::math::{DVec2, DVec3};
+use crate::math::{DVec2, DVec3, Rect};
+use crate::trace::Recorder;
 
 pub(super) const CYRUS_BECK: Lesson = Lesson {
     name: cyrus_beck::INFO.name,
@@ -153,8 +154,17 @@ fn cyrus_beck(input: &Input, cap: usize) -> Result<Frames> {
 }
 
 fn liang_barsky(input: &Input, cap: usize) -> Result<Frames> {
+    by_parameters(input, cap, |window, segment, t| liang_barsky::clip(window, segment, t).map(drop))
+}
+
+/// Makes the frames of a program that reports steps of parameters at the borders of a window.
+pub(in crate::explain) fn by_parameters(
+    input: &Input,
+    cap: usize,
+    program: impl FnOnce(&Rect, Segment<DVec2>, &mut Recorder<Step<DVec2>>) -> Result<()>,
+) -> Result<Frames> {
     let cutting = Cutting::new(input)?;
-    let steps = record(cap, |t| liang_barsky::clip(&cutting.window, cutting.whole, t))?;
+    let steps = record(cap, |t| program(&cutting.window, cutting.whole, t))?;
     let mut state = State::of_rectangle(cutting.whole, corners(&cutting.window));
     Ok(frames(&steps, |step| state.show(step)))
 }

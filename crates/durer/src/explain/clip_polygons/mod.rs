@@ -8,6 +8,8 @@ mod stages;
 mod sweep;
 mod walks;
 
+pub(super) use stages::by_stages;
+
 use super::input::{Figure, Input};
 use super::lesson::Lesson;
 use super::picture::{Look, Picture, corners};

@@ -12,6 +12,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, Rect};
+use crate::trace::Recorder;
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -100,9 +101,18 @@ struct State {
 }
 
 fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
+    by_stages(input, cap, |borders, ring, t| clip(borders, ring, t).map(drop))
+}
+
+/// Makes the frames of a program that clips a ring to one border after the other.
+pub(in crate::explain) fn by_stages(
+    input: &Input,
+    cap: usize,
+    program: impl FnOnce(&[HalfPlane; 4], &[DVec2], &mut Recorder<Step<DVec2>>) -> Result<()>,
+) -> Result<Frames> {
     let (ring, window) = ring_and_window(input)?;
     let [left, right, bottom, top] = HalfPlane::of_rect(&window);
-    let steps = record(cap, |t| clip(&[top, right, bottom, left], &ring, t))?;
+    let steps = record(cap, |t| program(&[top, right, bottom, left], &ring, t))?;
     let list = ring.clone();
     let mut state = State { ring, window, list, out: Vec::new(), border: 0, lists: Vec::new() };
     Ok(frames(&steps, |step| state.show(step)))

@@ -2,6 +2,7 @@
 
 use super::{EXAMPLES, Filling, TAKES, X, add_row, on_row};
 use crate::Result;
+use crate::curve::Contours;
 use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::grid::{NO_HEAD, letter};
 use crate::explain::input::{Input, Options};
@@ -10,6 +11,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::raster::polygon::edge_table::{Edge, INFO, Step, fill};
+use crate::trace::Recorder;
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -60,11 +62,23 @@ struct State {
 }
 
 fn make(_: &Lesson, input: &Input, options: &Options, cap: usize) -> Result<Frames> {
+    let how = Filling::options(options)?;
+    by_rows(input, cap, |contours, [columns, rows], t| {
+        fill(contours, columns, rows, &how, |_| {}, t);
+    })
+}
+
+/// Makes the frames of a program that fills contours row by row by the two tables.
+pub(in crate::explain) fn by_rows(
+    input: &Input,
+    cap: usize,
+    program: impl FnOnce(&Contours, [u32; 2], &mut Recorder<Step>),
+) -> Result<Frames> {
     let filling = Filling::new(input)?;
-    let (contours, how) = (filling.contours(), Filling::options(options)?);
-    let (columns, rows) = (filling.raster.columns, filling.raster.rows);
+    let contours = filling.contours();
+    let size = [filling.raster.columns, filling.raster.rows];
     let steps = record(cap, |t| {
-        fill(&contours, columns, rows, &how, |_| {}, t);
+        program(&contours, size, t);
         Ok(())
     })?;
     let edges = Vec::new();
@@ -112,11 +126,16 @@ impl State {
         self.told = if y == self.row { self.told + 1 } else { 1 };
         self.row = y;
         let place = self.told - 1;
-        let rest = self.active.iter().skip(place);
-        let found = rest.clone().position(|(_, other)| *other == edge).map(|k| place + k);
-        if let Some(found) = found {
-            let entry = self.active.remove(found);
-            self.active.insert(place, entry);
+        // A faulty program may report entries that another row has, or no row.
+        let rest = || self.active.iter().skip(place).map(|(_, other)| other);
+        let found = rest().position(|other| *other == edge);
+        let found = found.or_else(|| rest().position(|other| is_same(other, &edge)));
+        let number = match found.map(|k| place + k) {
+            Some(found) => Some(self.active.remove(found).0),
+            None => self.edges.iter().position(|other| is_same(other, &edge)),
+        };
+        if let Some(number) = number {
+            self.active.insert(place.min(self.active.len()), (number, edge));
         }
         let name = self.active.get(place).map(|(number, _)| letter(*number)).unwrap_or_default();
         ACTIVE.with([
@@ -163,6 +182,12 @@ impl State {
         }
         picture
     }
+}
+
+/// Returns whether two entries are of one edge, in whatever row.
+fn is_same(a: &Edge, b: &Edge) -> bool {
+    let fixed = |e: &Edge| (e.rows, e.step, e.remainder, e.whole, e.winding);
+    fixed(a) == fixed(b)
 }
 
 /// Returns y_max, x, Δx/Δy and the accumulator of an edge, the last two in parts of a pixel.

@@ -8,6 +8,8 @@ mod seeds;
 mod triangles;
 mod triangulate;
 
+pub(super) use edge_table::by_rows;
+
 use super::grid::Raster;
 use super::input::{Figure, Input, Options};
 use super::lesson::{Example, Lesson};

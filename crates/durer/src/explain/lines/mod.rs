@@ -6,6 +6,8 @@ mod smooth;
 mod thin;
 mod wide;
 
+pub(super) use thin::by_pixels;
+
 use super::input::{Figure, Input};
 use super::lesson::{Example, Lesson};
 use super::words::Word;

@@ -10,6 +10,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, IVec2};
 use crate::raster::line::{self, LineRasterizer, Step, bresenham, dda, equation};
+use crate::trace::Recorder;
 
 pub(super) const EQUATION: Lesson = Lesson {
     name: equation::INFO.name,
@@ -74,11 +75,23 @@ struct State<'a> {
 }
 
 fn make(method: LineRasterizer, input: &Input, cap: usize) -> Result<Frames> {
+    by_pixels(method, input, cap, |from, to, t| {
+        method.draw(from, to, &line::Options::default(), |_| {}, t);
+    })
+}
+
+/// Makes the frames of a program that sets the pixels of a line one after the other.
+pub(in crate::explain) fn by_pixels(
+    method: LineRasterizer,
+    input: &Input,
+    cap: usize,
+    program: impl FnOnce(IVec2, IVec2, &mut Recorder<Step>),
+) -> Result<Frames> {
     let ends = input.figure(TAKES)?.segment(TAKES)?;
     let raster = Raster::around(ends);
     let ends @ [from, to] = ends.map(|end| raster.pixel(end));
     let steps = record(cap, |t| {
-        method.draw(from, to, &line::Options::default(), |_| {}, t);
+        program(from, to, t);
         Ok(())
     })?;
     let all = steps.steps();

@@ -210,7 +210,7 @@ pub(crate) fn table(contours: &Contours, height: u32) -> Vec<Edge> {
 }
 
 /// Emits the spans of one row from its edges in order of x; those that touch are joined.
-fn row(active: &[Edge], y: i32, width: u32, rule: FillRule, mut emit: impl FnMut(Span)) {
+pub(crate) fn row(active: &[Edge], y: i32, width: u32, rule: FillRule, mut emit: impl FnMut(Span)) {
     let width = i64::from(width.min(i32::MAX as u32));
     let (mut winding, mut span) = (0, Span { y, x0: 0, x1: 0 });
     for edge in active {
