@@ -1,9 +1,14 @@
 // Exercises: inputs whose runs have to be of a kind, and programs with a line that is wrong.
 
 import { h } from "./dom";
+import { engine } from "./engine";
 import { kindsOf, type Player } from "./player";
 import { gapped } from "./quiz";
+import type { Input } from "./types";
 import { of, t } from "./words";
+
+/** Sentences by which a run with a fault is compared with the right one. */
+const COMPARED = 1_000;
 
 /** The exercise that runs a program with one wrong line: the student says which. */
 export class Bug {
@@ -19,8 +24,8 @@ export class Bug {
   constructor(private player: Player) {
     const button = (name: "bugStart" | "bugOther" | "bugGiveUp" | "bugEnd", onclick: () => void): HTMLElement =>
       h("button", { type: "button", "data-bug": name, onclick }, t(name));
-    this.element = h("div", { class: "bug" }, h("h3", {}, t("bug")), h("p", { class: "hint" }, t("bugHint")), button("bugStart", () => this.start()));
-    const tools = h("div", { class: "tools" }, button("bugGiveUp", () => this.tell(t("bugTold"))), button("bugOther", () => this.start()), button("bugEnd", () => this.end()));
+    this.element = h("div", { class: "bug" }, h("h3", {}, t("bug")), h("p", { class: "hint" }, t("bugHint")), button("bugStart", () => void this.start()));
+    const tools = h("div", { class: "tools" }, button("bugGiveUp", () => this.tell(t("bugTold"))), button("bugOther", () => void this.start()), button("bugEnd", () => this.end()));
     this.bar = h("div", { class: "asking bug-bar", hidden: true }, this.words, this.verdict, tools);
     player.addEventListener("run", () => this.renew());
   }
@@ -32,11 +37,33 @@ export class Bug {
 
   private renew(): void {
     this.bar.hidden = this.fault === undefined;
+    // A click on a line is an answer meanwhile.
+    this.bar.closest("main")?.classList.toggle("hunting", this.fault !== undefined && !this.solved);
     if (this.fault && !this.solved) this.words.textContent = t("bugAsk");
   }
 
+  /** Returns whether a fault changes what is seen of a run. */
+  private async shows(fault: number, input: Input): Promise<boolean> {
+    const { lesson, setup } = this.player;
+    const sentences = async (own: number | undefined): Promise<string> => {
+      const { handle } = await engine.run({ name: lesson.name, input, operation: setup.operation, rule: setup.rule, fault: own, cap: COMPARED });
+      const captions = await engine.captions(handle, 0, COMPARED, "en");
+      engine.drop(handle);
+      return captions.join("\n");
+    };
+    return (await sentences(fault)) !== (await sentences(undefined));
+  }
+
+  /** Returns the input of the page if a fault is seen on it, else an example on which it is. */
+  private async inputFor(fault: number): Promise<Input> {
+    const { lesson, setup } = this.player;
+    const all: Input[] = [setup.input, ...lesson.examples.map(({ name }) => ({ example: name }))];
+    for (const input of all) if (await this.shows(fault, input)) return input;
+    return setup.input;
+  }
+
   /** Runs a program with another fault than the last one. */
-  private start(): void {
+  private async start(): Promise<void> {
     const { player } = this;
     const count = player.lesson.faults.length;
     const last = player.setup.fault;
@@ -45,7 +72,8 @@ export class Bug {
     this.solved = false;
     this.verdict.textContent = "";
     this.verdict.className = "verdict";
-    player.change({ ...player.setup, fault }, player.setup, 0);
+    const input = await this.inputFor(fault);
+    player.change({ ...player.setup, fault, input }, player.setup, 0);
     this.bar.parentElement?.scrollIntoView({ block: "nearest" });
   }
 

@@ -27,12 +27,19 @@ export interface Page {
 /** Addresses are written no more often than this, in milliseconds. */
 const SETTLED = 250;
 
+/** Returns the idea of an algorithm; on wide screens it is shown in the head, on narrow ones among the facts. */
+function idea(lesson: Lesson): HTMLElement | null {
+  const words = IDEAS[lesson.name];
+  return words ? h("p", { class: "idea" }, of(words)) : null;
+}
+
 function facts(lesson: Lesson): HTMLElement {
   const row = (name: WordName, value: string): HTMLElement[] => [h("dt", {}, t(name)), h("dd", {}, value)];
   return h(
     "details",
     { class: "facts" },
     h("summary", {}, t("facts")),
+    idea(lesson),
     h(
       "dl",
       {},
@@ -148,12 +155,17 @@ export function lessonPage(
   }
 
   let timer: number | undefined;
+  /** The address as this page has it. */
+  let written = location.hash;
   let closed = false;
   function settle(): void {
     clearTimeout(timer);
     timer = window.setTimeout(async () => {
       const text = format(await current());
-      if (!closed) history.replaceState(null, "", text);
+      // Another address was chosen meanwhile: that page is on its way.
+      if (closed || location.hash !== written) return;
+      history.replaceState(null, "", text);
+      written = location.hash;
     }, SETTLED);
   }
 
@@ -203,7 +215,7 @@ export function lessonPage(
     h("p", { class: "crumb" }, h("a", { href: format({ lang: language() }) }, t("overview"))),
     h("h1", {}, of(lesson.title)),
     h("p", { class: "by" }, `${lesson.authors}, ${lesson.year}`, " · ", h("span", { class: "class" }, named(lesson.class))),
-    IDEAS[lesson.name] ? h("p", { class: "idea" }, of(IDEAS[lesson.name]!)) : null,
+    idea(lesson),
     facts(lesson),
   );
   const twin = textOfRun(player);

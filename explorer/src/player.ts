@@ -40,7 +40,9 @@ export class Player extends EventTarget {
   private patient: Engine;
   private frames = new Map<number, Frame>();
   private generation = 0;
-  private wanted = 0;
+  /** True while a frame is on its way, and if another one is wanted after it. */
+  private fetching = false;
+  private late = false;
   private running = false;
   private later: { setup: Setup; step: number; cap: number } | undefined;
   private undos: Setup[] = [];
@@ -153,26 +155,55 @@ export class Player extends EventTarget {
     void this.show();
   }
 
+  private present(frame: Frame): void {
+    this.frame = frame;
+    this.tell("frame");
+  }
+
   private async show(): Promise<void> {
-    const { run } = this;
-    if (!run) return;
-    const ticket = ++this.wanted;
-    const { step } = this;
-    try {
-      const frame = await this.frameAt(step);
-      // Meanwhile another one may be wanted.
-      if (ticket !== this.wanted || run !== this.run) return;
-      this.frame = frame;
-      this.tell("frame");
-      for (let ahead = 1; ahead <= AHEAD; ahead++) {
-        if (step + ahead < run.steps && ticket === this.wanted) await this.frameAt(step + ahead);
+    const known = this.frames.get(this.step);
+    if (known) this.present(known);
+    else await this.fetch();
+    await this.lookAhead();
+  }
+
+  /** Has the frame of the step made: one request at a time, so that a scrubber waits for none that it has left behind. */
+  private async fetch(): Promise<void> {
+    this.late = true;
+    if (this.fetching) return;
+    this.fetching = true;
+    while (this.late && this.run) {
+      this.late = false;
+      const { run, step } = this;
+      try {
+        const frame = await this.frameAt(step);
+        // While the scrubber moves on, frames are shown as they come.
+        if (run === this.run && (step === this.step || !this.frames.has(this.step))) this.present(frame);
+      } catch (e) {
+        if (!(e instanceof Refused || e instanceof Trapped)) this.fetching = false;
+        this.failed(e, run, step);
       }
-    } catch (e) {
-      if (e instanceof Trapped) {
-        // The run is gone with its engine.
-        if (run === this.run) void this.start(this.setup, step);
-      } else if (!(e instanceof Refused)) throw e;
     }
+    this.fetching = false;
+  }
+
+  /** Has the frames of the next steps made. */
+  private async lookAhead(): Promise<void> {
+    const { run, step } = this;
+    for (let ahead = 1; ahead <= AHEAD; ahead++) {
+      if (!run || run !== this.run || step !== this.step || step + ahead >= run.steps) return;
+      try {
+        await this.frameAt(step + ahead);
+      } catch (e) {
+        return this.failed(e, run, step);
+      }
+    }
+  }
+
+  private failed(e: unknown, run: Run | undefined, step: number): void {
+    // The run is gone with its engine.
+    if (e instanceof Trapped && run === this.run) void this.start(this.setup, step);
+    else if (!(e instanceof Refused || e instanceof Trapped)) throw e;
   }
 
   /** Returns the frame of a step. */
@@ -180,7 +211,8 @@ export class Player extends EventTarget {
     const known = this.frames.get(step);
     if (known) return known;
     const { run, longest } = this;
-    const frame = await this.engine.frame(run!.handle, step, language(), longest);
+    if (!run) throw new Refused(t("noState"));
+    const frame = await this.engine.frame(run.handle, step, language(), longest);
     if (run === this.run && longest === this.longest) {
       if (this.frames.size >= KEPT) this.frames.clear();
       this.frames.set(step, frame);

@@ -14,3 +14,9 @@ families.flatMap((family) => family.lessons).forEach(({ name, examples }, handle
   console.log(JSON.stringify({ do: "captions", handle, first: 0, count: 400, language: "de" }));
   console.log(JSON.stringify({ do: "tikz", handle, step: 1, language: "en" }));
 });
+// Programs with faults, on the runs' next numbers.
+["cohen-sutherland", "edge-table"].forEach((name, index) => {
+  const handle = NAMES.length + index;
+  console.log(JSON.stringify({ do: "run", name, input: { example: "" }, cap: 400, fault: 3 }));
+  console.log(JSON.stringify({ do: "frame", handle, step: 1, language: "en", longest: 460 }));
+});

@@ -39,3 +39,27 @@ fn models_are_rendered() {
     let wrong = asked(&request("guess"), teapot);
     assert!(matches!(wrong, Answer::Error(text) if text.contains("guess")));
 }
+
+#[test]
+fn a_formula_gives_curves_from_near_to_far() {
+    let request =
+        |formula: &str| json!({ "do": "formula", "formula": formula, "columns": 5, "curves": 3 });
+    let Answer::Json(text) = asked(&request("x + z"), &[]) else { panic!("no curves") };
+    let read: Value = serde_json::from_str(&text).expect("JSON");
+    let lines = read["input"]["figure"]["lines"].as_array().expect("lines");
+    assert_eq!(lines.len(), 3);
+    // From −8 to 8 in 1.5 columns; the nearest curve has z = 4, the next one lies 0.4 higher.
+    assert_eq!(
+        lines[0],
+        json!([[0.0, 0.75], [1.0, 0.938], [2.0, 1.125], [3.0, 1.313], [4.0, 1.5]])
+    );
+    assert_eq!(lines[1][0], json!([0.0, 0.775]));
+    let mut engine = Engine::default();
+    let run = json!({ "do": "run", "name": "horizon-curves", "input": read["input"], "cap": 500 });
+    let answer = engine.answer(run.to_string().as_bytes());
+    assert!(matches!(&answer, Answer::Json(_)), "{answer:?}");
+    for (formula, words) in [("x +", "column"), ("1/x", "no value"), ("4e307*x", "too much")] {
+        let wrong = asked(&request(formula), &[]);
+        assert!(matches!(&wrong, Answer::Error(text) if text.contains(words)), "{wrong:?}");
+    }
+}

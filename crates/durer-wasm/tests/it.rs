@@ -156,3 +156,46 @@ fn old_runs_make_room() {
     let frame = json!({ "do": "frame", "handle": first, "step": 0, "language": "en" });
     assert!(refused(&mut engine, &frame.to_string()).contains("only the last 16"));
 }
+
+#[test]
+fn frames_say_what_their_step_is_about() {
+    let mut engine = Engine::default();
+    let mut targets = |name: &str, example: &str, step: usize| {
+        let input = json!({ "example": example });
+        let request = json!({ "do": "run", "name": name, "input": input, "cap": 50 });
+        let handle = asked(&mut engine, &request)["handle"].clone();
+        let request = json!({ "do": "frame", "handle": handle, "step": step, "language": "en" });
+        asked(&mut engine, &request)["targets"].clone()
+    };
+    // The cut at the left border: the border and the new end.
+    let cut = json!([{ "line": [[0.0, 0.0], [0.0, 6.0]] }, { "point": [0.0, 1.96875] }]);
+    assert_eq!(targets("cohen-sutherland", "line-eh", 1), cut);
+    assert_eq!(targets("cohen-sutherland", "line-eh", 0), json!([]));
+    assert_eq!(targets("bresenham", "", 0), json!([{ "pixel": [0, 0] }]));
+}
+
+#[test]
+fn programs_with_faults_run_in_place_of_the_library() {
+    let mut engine = Engine::default();
+    let mut captions = |fault: Value| {
+        let input = json!({ "example": "line-eh" });
+        let request = json!({ "do": "run", "name": "cohen-sutherland", "input": input, "cap": 50, "fault": fault });
+        let handle = asked(&mut engine, &request)["handle"].clone();
+        let request = json!({ "do": "captions", "handle": handle, "first": 0, "count": 50, "language": "en" });
+        asked(&mut engine, &request)["captions"].clone()
+    };
+    let right = captions(Value::Null);
+    assert_eq!(right.as_array().unwrap().len(), 4);
+    assert_ne!(captions(json!(0)), right);
+    let list = asked(&mut engine, &json!({ "do": "lessons" }));
+    let families = list["families"].as_array().unwrap().iter();
+    let lessons = families.flat_map(|family| family["lessons"].as_array().unwrap());
+    let faulty = lessons.filter(|lesson| !lesson["faults"].as_array().unwrap().is_empty());
+    assert!(faulty.count() >= 5);
+    let run = |name: &str, fault: usize| {
+        json!({ "do": "run", "name": name, "input": { "example": "" }, "cap": 50, "fault": fault })
+            .to_string()
+    };
+    assert!(refused(&mut engine, &run("cohen-sutherland", 99)).contains("fault"));
+    assert!(refused(&mut engine, &run("vatti", 0)).contains("with faults"));
+}
