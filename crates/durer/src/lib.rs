@@ -54,9 +54,12 @@
 //! | [Cyrus–Beck](clip::line::cyrus_beck) | convex polygon, convex polyhedron | windows that are not rectangles |
 //! | [Liang–Barsky](clip::line::liang_barsky) | rectangle, box, half-planes | most segments crossing the border |
 //! | [Nicholl–Lee–Nicholl](clip::line::nicholl_lee_nicholl) | rectangle | no crossing computed in vain |
+//! | [Skala](clip::line::skala) | rectangle, convex polygon | signs of the window's corners, no crossing in vain |
 //! | [Homogeneous](clip::line::homogeneous) | rectangle | points with a w of any sign |
 //! | [Batches](clip::line::batch) | rectangle | millions of segments |
 //! | [Polylines](clip::polyline) | polygon with holes | chains with attributes, inside or outside part |
+//!
+//! **Where do many segments cross?** [`clip::crossings`]: Bentley and Ottmann's sweep.
 //!
 //! **Which part of a polygon?** [`clip::polygon`]
 //!
@@ -92,7 +95,7 @@
 //!
 //! | shape | ways |
 //! |---|---|
-//! | line, one pixel wide | [equation](raster::line::equation), [DDA](raster::line::dda), [Bresenham](raster::line::bresenham), [many of them by tiles](raster::line::tiled) |
+//! | line, one pixel wide | [equation](raster::line::equation), [DDA](raster::line::dda), [Bresenham](raster::line::bresenham), [run-slice](raster::line::run_slice), [double-step](raster::line::double_step), [many of them by tiles](raster::line::tiled) |
 //! | smooth line | [Wu, Gupta–Sproull](raster::line::anti_aliased) |
 //! | wide line, dashes | [outline of the stroke](raster::line::wide) |
 //! | triangle | [edge functions](raster::triangle::edge_function), [edge walking](raster::triangle::edge_walking), [tiles](raster::triangle::tiles) |
@@ -117,9 +120,10 @@
 //! | [Warnock](visibility::surface::warnock) | dividing the window until it is simple |
 //! | [Rays](visibility::surface::ray) | casting a ray through each sample; shadows, mirrors and refraction too |
 //!
-//! **And as the papers have it?** [`visibility::polygons`]: the z-buffer's loop, Greene's pyramid of depths, the
-//! painter, BSP trees, Watkins' tables, Weiler and Atherton's cuts and Carpenter's shares on plane polygons, a file
-//! each, to be read beside the paper; [`visibility::line::horizon_curves`], [`clip::polygon::scan_beams`] and
+//! **And as the papers have it?** [`visibility::polygons`]: the z-buffer's loop, Greene's pyramid of depths, Meagher's
+//! octree, the painter, depth sort, BSP trees, Warnock's windows, Watkins' tables, Weiler and Atherton's cuts and
+//! Carpenter's shares on plane polygons, a file each, to be read beside the paper; [`visibility::line::roberts`],
+//! [`visibility::line::horizon_curves`], [`clip::polygon::scan_beams`] and
 //! [`clip::polygon::sutherland_hodgman::by_borders`] likewise.
 //!
 //! **Which part of an edge?** [`visibility::line`]: [hidden lines](visibility::line::hidden_line) by

@@ -156,7 +156,8 @@ fn algorithms_are_classified_from_their_facts() {
     assert_eq!(all.len(), durer::explain::ALGORITHMS.len());
     let lines = ["spanning-scan-line", "watkins", "horizon-curves"];
     assert_eq!(names("--space image --occluder line"), lines);
-    assert_eq!(names("--space list-priority"), ["depth-sort", "painter", "bsp-tree"]);
+    let lists = ["depth-sort", "painter", "depth-sort-polygons", "bsp-tree"];
+    assert_eq!(names("--space list-priority"), lists);
     assert_eq!(
         names("--coherence span --coherence scan-line --occluder none Romney"),
         ["edge-table"]

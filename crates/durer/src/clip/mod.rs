@@ -2,6 +2,7 @@
 
 pub mod attribute;
 pub mod cells;
+pub mod crossings;
 pub(crate) mod exact;
 pub mod hilbert;
 pub mod line;
@@ -11,6 +12,7 @@ pub mod place;
 pub mod polygon;
 pub mod polyline;
 pub mod simplify;
+mod status;
 pub mod tiles;
 mod touch;
 pub mod volume;

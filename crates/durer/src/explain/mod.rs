@@ -16,9 +16,11 @@
 //! # Ok::<(), durer::Error>(())
 //! ```
 
+mod barycentric;
 mod clip_lines;
 mod clip_polygons;
 mod clip_volume;
+mod crossings;
 mod curves;
 mod faces;
 mod faults;
@@ -78,6 +80,7 @@ const fn family(en: &'static str, de: &'static str, lessons: &'static [Lesson]) 
 pub const PLANE: &[Family] = &[
     family("Curves", "Kurven", curves::LESSONS),
     family("Clipping lines", "Linien clippen", clip_lines::LESSONS),
+    family("Crossings of segments", "Schnittpunkte von Strecken", &[crossings::LESSON]),
     family("Clipping polygons", "Polygone clippen", clip_polygons::LESSONS),
     family("Simplifying borders", "Grenzen vereinfachen", simplify::LESSONS),
     family("Window and viewport", "Fenster und Viewport", viewing::LESSONS),
@@ -156,9 +159,11 @@ pub const ALGORITHMS: &[&Info] = &[
     &clip::line::cyrus_beck::INFO,
     &clip::line::liang_barsky::INFO,
     &clip::line::nicholl_lee_nicholl::INFO,
+    &clip::line::skala::INFO,
     &clip::line::homogeneous::INFO,
     &clip::line::batch::INFO,
     &clip::polyline::INFO,
+    &clip::crossings::bentley_ottmann::INFO,
     &clip::polygon::sutherland_hodgman::INFO,
     &clip::polygon::liang_barsky::INFO,
     &clip::polygon::weiler_atherton::INFO,
@@ -189,6 +194,8 @@ pub const ALGORITHMS: &[&Info] = &[
     &raster::line::equation::INFO,
     &raster::line::dda::INFO,
     &raster::line::bresenham::INFO,
+    &raster::line::run_slice::INFO,
+    &raster::line::double_step::INFO,
     &raster::line::anti_aliased::WU,
     &raster::line::anti_aliased::INFO,
     &raster::line::wide::INFO,
@@ -235,13 +242,17 @@ pub const ALGORITHMS: &[&Info] = &[
     &visibility::surface::ray::INFO,
     &visibility::polygons::z_buffer::INFO,
     &visibility::polygons::hierarchical_z::INFO,
+    &visibility::polygons::octree::INFO,
     &visibility::polygons::a_buffer::INFO,
     &visibility::polygons::painter::INFO,
+    &visibility::polygons::depth_sort::INFO,
     &visibility::polygons::bsp::INFO,
+    &visibility::polygons::warnock::INFO,
     &visibility::polygons::watkins::INFO,
     &visibility::polygons::regions::INFO,
     &visibility::region::planar_map::INFO,
     &visibility::region::SHADOWS,
+    &visibility::line::roberts::INFO,
     &visibility::line::hidden_line::INFO,
     &visibility::line::wireframe::INFO,
     &visibility::line::floating_horizon::INFO,

@@ -1,4 +1,4 @@
-//! Lessons of shading by interpolation: Gouraud, Phong, perspective-correct values.
+//! Lessons of shading: flat, Gouraud, Phong, perspective-correct values.
 
 use super::frame::{Frames, Shown, frames, record};
 use super::grid::{NO_HEAD, Raster, grey};
@@ -11,11 +11,20 @@ use crate::math::{DVec2, DVec3, IVec2};
 use crate::raster::interpolate;
 use crate::raster::interpolate::rows::{Corner, Step};
 use crate::raster::triangle::Options;
-use crate::shade::{gouraud, phong};
+use crate::shade::{flat, gouraud, phong};
 use crate::view::window::PixelRect;
 use crate::{Error, Result};
 
-pub(super) const LESSONS: &[Lesson] = &[GOURAUD, PHONG, PERSPECTIVE];
+pub(super) const LESSONS: &[Lesson] =
+    &[super::barycentric::LESSON, FLAT, GOURAUD, PHONG, PERSPECTIVE];
+
+const FLAT: Lesson = Lesson {
+    name: flat::INFO.name,
+    info: &flat::INFO,
+    templates: &[&ONE, &SAME],
+    make: |_, input, _, cap| make(Kind::Flat, input, cap),
+    ..GOURAUD
+};
 
 const GOURAUD: Lesson = Lesson {
     name: gouraud::INFO.name,
@@ -84,6 +93,16 @@ const DEEP: &[Example] = &[
     },
 ];
 
+static ONE: Template = Template::new(
+    "ends",
+    "Row {row} from x = {x0} to x = {x1}: all of the face has the intensity at its centre, {a}.",
+    "Zeile {row} von x = {x0} bis x = {x1}: Die ganze Fläche hat die Helligkeit ihrer Mitte, {a}.",
+);
+static SAME: Template = Template::new(
+    "pixel",
+    "Pixel {pixel}: {value}, as everywhere on the face; nothing is interpolated.",
+    "Pixel {pixel}: {value}, wie überall auf der Fläche; nichts wird interpoliert.",
+);
 static INTENSITIES: Template = Template::new(
     "ends",
     "Row {row}: along the edges the intensities are {a} at x = {x0} and {b} at x = {x1}.",
@@ -121,6 +140,7 @@ fn face(corners: [(f64, f64, f64); 3]) -> Input {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
+    Flat,
     Gouraud,
     Phong,
     Perspective,
@@ -172,9 +192,12 @@ fn corners(kind: Kind, raster: &Raster, points: [DVec3; 3]) -> [Corner; 3] {
     let reach = at.iter().map(|p| p.distance(middle)).fold(1.0, f64::max);
     let nearest = points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max);
     let eye = if nearest < 0.0 { 0.0 } else { nearest + 1.0 };
+    let face = (points[1] - points[0]).cross(points[2] - points[0]).normalize_or(DVec3::Z);
+    let face = if face.z < 0.0 { -face } else { face };
     std::array::from_fn(|k| {
         let normal = ((at[k] - middle) / reach).extend(1.0).normalize();
         let (inv_w, value) = match kind {
+            Kind::Flat => (1.0, DVec3::splat(light(face))),
             Kind::Gouraud => (1.0, DVec3::splat(light(normal))),
             Kind::Phong => (1.0, normal),
             Kind::Perspective => (1.0 / (eye - points[k].z), DVec3::splat(COORDINATES[k])),
@@ -200,6 +223,7 @@ impl State {
                 let [a, b] = [("a", self.value(a)), ("b", self.value(b))];
                 let [row, x0, x1] = [("row", y.into()), ("x0", x0.into()), ("x1", x1.into())];
                 match self.kind {
+                    Kind::Flat => ONE.with([row, a, x0, x1]),
                     Kind::Gouraud => INTENSITIES.with([row, a, b, x0, x1]),
                     Kind::Phong => NORMALS.with([row, a, b, x0, x1]),
                     Kind::Perspective => {
@@ -214,6 +238,7 @@ impl State {
                 self.pixels.push((pixel, shown));
                 let result = ("value", shown.into());
                 match self.kind {
+                    Kind::Flat => SAME.with([at, result]),
                     Kind::Gouraud => INTENSITY.with([at, result]),
                     Kind::Phong => {
                         let length = ("length", value.length().into());

@@ -22,7 +22,16 @@ pub const BARYCENTRIC: Info = Info {
     coherence: &[],
     cost: "O(1)",
     limits: "triangles with an area",
-    pseudocode: &[],
+    pseudocode: &[
+        "d ← (B − A) × (C − A), twice the area of ABC",
+        "d = 0: the triangle has no area, stop",
+        "for each corner:",
+        "    the triangle of P and the opposite side: (B − P) × (C − P) for A",
+        "    its weight ← this area / d",
+        "// the weights add up to 1",
+        "P = λ_A A + λ_B B + λ_C C; a value of the corners likewise",
+        "P is in the triangle if no weight is negative",
+    ],
 };
 
 /// The facts of perspective-correct interpolation.

@@ -6,6 +6,7 @@ pub(crate) mod bands;
 pub(crate) mod clipped;
 pub mod conic;
 pub mod coverage;
+pub mod ear_clipping;
 pub mod fixed;
 pub mod interpolate;
 pub mod line;

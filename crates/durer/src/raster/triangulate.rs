@@ -2,7 +2,8 @@
 //! theorem, with the z-order search of V. Agafonkin's earcut, whose Rust form does the work).
 //!
 //! Cost: O(n log n) on ordinary input, O(n²) at worst. Limits: crossing contours give triangles that need
-//! not cover exactly the even-odd area; with a winding rule ([`triangulate_by_rule`]) they do.
+//! not cover exactly the even-odd area; with a winding rule ([`triangulate_by_rule`]) they do. The search as published,
+//! corner by corner, is [`super::ear_clipping`].
 
 use earcut::Earcut;
 
@@ -57,11 +58,27 @@ impl Triangulation {
     }
 }
 
-/// One step.
+/// One step. [`triangulate`] reports points and triangles, [`ears`](super::ear_clipping::ears) all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// The next of the points that triangles name.
     Point(DVec2),
+    /// A hole is joined to the ring: corners of the hole and of the ring.
+    Bridge([u32; 2]),
+    /// A corner is no ear, as it is reflex.
+    Reflex {
+        /// The corner between its neighbours.
+        corners: [u32; 3],
+        /// (B − A) × (C − B), not positive.
+        cross: f64,
+    },
+    /// A corner is no ear, as another one is in its triangle.
+    Blocked {
+        /// The corner between its neighbours.
+        corners: [u32; 3],
+        /// The other one.
+        by: u32,
+    },
     /// An ear is cut off: its corners.
     Triangle([u32; 3]),
 }
@@ -71,6 +88,9 @@ impl Step {
     pub fn line(&self) -> usize {
         match self {
             Self::Point(_) => 1,
+            Self::Bridge(_) => 3,
+            Self::Reflex { .. } => 6,
+            Self::Blocked { .. } => 7,
             Self::Triangle(_) => 8,
         }
     }

@@ -24,7 +24,16 @@ pub const INFO: Info = Info {
     coherence: &[Coherence::Face],
     cost: "O(l) per face, l lights; O(1) per pixel",
     limits: "curved surfaces look faceted",
-    pseudocode: &[],
+    pseudocode: &[
+        "N ← normal of the face",
+        "M ← mean of its corners",
+        "I ← ambient light + what each light adds at M with N, once for the face",
+        "for each row that the face covers:",
+        "    for each pixel between its edges:",
+        "        set the pixel to I",
+        "// nothing is interpolated: pixels of a face are alike,",
+        "// and at an edge between two faces the intensity jumps",
+    ],
 };
 
 /// Returns the light on a whole face, for [`super::Surface::lit`].

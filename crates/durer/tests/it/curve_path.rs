@@ -75,6 +75,7 @@ fn triangles_leave_holes_open() {
         match *step {
             Step::Point(p) => replayed.points.push(p),
             Step::Triangle(corners) => replayed.triangles.push(corners),
+            _ => {}
         }
     }
     assert_eq!(replayed, found);

@@ -130,8 +130,12 @@ fn areas_of_faces_sum_to_one_where_they_meet() {
 #[test]
 fn ears_of_the_page_are_cut_off_in_its_order() {
     let frames = frames("triangulate", "arrow");
-    assert_eq!(rows(frames.last().unwrap()), ["1: D E A 4", "2: D A B 2", "3: D B C 4"]);
+    assert_eq!(rows(frames.last().unwrap()), ["1: B C D 4", "2: D E A 4", "3: D A B 2"]);
     assert_eq!(numbers(&frames, "sum"), [10.0]);
+    // A and B hold D in their triangles; D is reflex once C is cut off.
+    let kinds: Vec<&str> = frames.iter().skip(5).map(|frame| frame.kind).collect();
+    assert_eq!(kinds, ["blocked", "blocked", "triangle", "reflex", "triangle", "triangle"]);
+    assert_eq!(numbers(&frames, "cross"), [8.0, -4.0, 8.0]);
 }
 
 #[test]

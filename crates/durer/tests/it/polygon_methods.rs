@@ -8,8 +8,10 @@ use durer::visibility::back_face::Eye;
 use durer::visibility::polygons::bsp::{self, Tree};
 use durer::visibility::polygons::regions::{self, Region, regions};
 use durer::visibility::polygons::{
-    Face, PolygonMethod, Screen, hierarchical_z, painter, watkins, z_buffer,
+    Face, PolygonMethod, Screen, depth_sort, hierarchical_z, octree, painter, warnock, watkins,
+    z_buffer,
 };
+use durer::visibility::surface::warnock::Division;
 
 fn screen() -> Screen {
     Screen { width: 32, height: 32, ..Screen::default() }
@@ -127,6 +129,27 @@ fn the_steps_rebuild_the_pictures() {
     let found = hierarchical_z::items(&faces, &screen, &how, &mut steps).unwrap();
     assert_eq!(hierarchical_z::replay(&screen, steps.steps()).unwrap(), found);
     assert_eq!(hierarchical_z::items(&faces, &screen, &how, &mut NoTrace).unwrap(), found);
+    for division in [Division::Regular, Division::Vertices] {
+        let (how, mut steps) = (warnock::Options { division }, Recorder::default());
+        let found = warnock::items(&faces, &screen, &how, &mut steps).unwrap();
+        assert_eq!(warnock::replay(&screen, steps.steps()).unwrap(), found);
+        assert_eq!(warnock::items(&faces, &screen, &how, &mut NoTrace).unwrap(), found);
+        assert!(same(&faces, &found, &z_buffer::items(&faces, &screen, &mut NoTrace).unwrap()));
+    }
+    let (how, mut steps) = (depth_sort::Options::default(), Recorder::default());
+    let found = depth_sort::items(&faces, &screen, &how, &mut steps).unwrap();
+    assert_eq!(depth_sort::replay(&screen, steps.steps()).unwrap(), found);
+    assert_eq!(depth_sort::items(&faces, &screen, &how, &mut NoTrace).unwrap(), found);
+    for how in [
+        octree::Options::default(),
+        octree::Options { capacity: 0, depth: 3, ..Default::default() },
+    ] {
+        let mut steps = Recorder::default();
+        let found = octree::items(&faces, &screen, &how, &mut steps).unwrap();
+        assert_eq!(octree::replay(&screen, steps.steps()).unwrap(), found);
+        assert_eq!(octree::items(&faces, &screen, &how, &mut NoTrace).unwrap(), found);
+        assert!(same(&faces, &found, &z_buffer::items(&faces, &screen, &mut NoTrace).unwrap()));
+    }
     let mut steps = Recorder::default();
     let how = painter::Options { key: painter::Key::Mean };
     let found = painter::items(&faces, &screen, &how, &mut steps).unwrap();
@@ -188,6 +211,27 @@ fn painting_in_order_of_depth_fails_where_beams_overlap_in_a_ring() {
     assert_eq!(painted, z_buffer::items(&apart, &screen, &mut NoTrace).unwrap());
 }
 
+/// The key decides on the order, and of equal keys the first face is painted last.
+#[test]
+fn the_painter_sorts_by_the_key_that_is_chosen() {
+    let strip = |z0: f64, z1: f64| {
+        let corners = [(0.0, 0.0, z0), (8.0, 0.0, z1), (8.0, 8.0, z1), (0.0, 8.0, z0)];
+        Face::new(&corners.map(DVec3::from)).unwrap()
+    };
+    let faces = [strip(5.0, 5.0), strip(1.0, 9.0), strip(5.0, 5.0)];
+    let order = |key| {
+        let mut steps = Recorder::default();
+        painter::items(&faces, &screen(), &painter::Options { key }, &mut steps).unwrap();
+        let sorted = |step: &painter::Step| match *step {
+            painter::Step::Sorted { face, z } => Some((face, z)),
+            painter::Step::Paint { .. } => None,
+        };
+        steps.steps().iter().filter_map(sorted).collect::<Vec<_>>()
+    };
+    assert_eq!(order(painter::Key::Farthest), [(1, 9.0), (2, 5.0), (0, 5.0)]);
+    assert_eq!(order(painter::Key::Mean), [(2, 5.0), (1, 5.0), (0, 5.0)]);
+}
+
 #[test]
 fn trees_order_pieces_for_every_eye() {
     let mut random = Random(13);
@@ -236,6 +280,9 @@ fn too_many_pieces_are_refused() {
     let crossing: Vec<Face> = scene(&mut Random(14), 9);
     let refused = Tree::new(&crossing, &how, &mut NoTrace).unwrap_err();
     assert!(refused.to_string().contains("pieces of a tree"), "{refused}");
+    let how = depth_sort::Options { max_pieces: 10 };
+    let refused = depth_sort::items(&crossing, &screen(), &how, &mut NoTrace).unwrap_err();
+    assert!(refused.to_string().contains("pieces of polygons"), "{refused}");
     let how = regions::Options { max_cuts: 3 };
     assert!(regions(&crossing, &how, &mut NoTrace).is_err());
 }
@@ -368,6 +415,48 @@ fn a_pyramid_of_depths_hides_cells() {
     let divided = Options { capacity: 0, depth: 1 };
     let found = hierarchical_z::items(&tied, &small, &divided, &mut NoTrace).unwrap();
     assert_eq!(found.data(), [0, 1, 1, 1]);
+}
+
+/// Cells come from near to far, pixels are filled once, and cells behind filled pixels are left out.
+#[test]
+fn an_octree_is_filled_from_front_to_back() {
+    use octree::{Options, Step};
+    let square = |x: f64, y: f64, side: f64, z: f64| {
+        let corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)];
+        Face::new(&corners.map(|(u, v)| DVec3::new(x + u, y + v, z))).unwrap()
+    };
+    let far =
+        |k: u32| square(f64::from(k % 8) * 4.0 + 1.0, f64::from(k / 8) * 4.0 + 1.0, 2.0, 50.0);
+    let mut faces: Vec<Face> = (0..64).map(far).collect();
+    faces.push(square(0.0, 0.0, 32.0, 5.0));
+    let mut steps = Recorder::default();
+    let found = octree::items(&faces, &screen(), &Options::default(), &mut steps).unwrap();
+    assert!(found.data().iter().all(|item| *item == 64));
+    let (mut compared, mut left_out, mut pixels) = (0, 0, std::collections::BTreeSet::new());
+    let mut cells = Vec::new();
+    let mut depth = f64::NEG_INFINITY;
+    for step in steps.steps() {
+        match step {
+            Step::Cell { corners, .. } => cells.push(*corners),
+            Step::Leaf { cell, faces } => {
+                compared += faces.iter().filter(|face| **face != 64).count();
+                // Of two cells over the same pixels the near one comes first; here that is all near ones.
+                assert!(cells[*cell][0].z >= depth);
+                depth = cells[*cell][0].z;
+            }
+            Step::LeaveOut { cells, .. } => left_out += cells,
+            Step::Store { pixel, .. } => assert!(pixels.insert(*pixel), "{pixel:?} twice"),
+            Step::Visit { .. } => {}
+        }
+    }
+    assert_eq!((compared, pixels.len()), (0, 32 * 32));
+    assert!(left_out > 20, "{left_out}");
+    // Parts of faces are limited: a steep face is in many cells.
+    let steep = [(0.0, 0.0, 0.0), (32.0, 0.0, 30.0), (0.0, 32.0, 30.0)].map(DVec3::from);
+    let steep = [Face::new(&steep).unwrap()];
+    let few = Options { capacity: 0, depth: 5, max_parts: 500 };
+    let refused = octree::items(&steep, &screen(), &few, &mut NoTrace).unwrap_err();
+    assert!(refused.to_string().contains("octree"), "{refused}");
 }
 
 #[test]

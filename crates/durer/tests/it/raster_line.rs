@@ -1,8 +1,10 @@
-//! Lines: all three ways light the same pixels, from both ends, within half a pixel, clipped or not.
+//! Lines: all ways light the same pixels, from both ends, within half a pixel, clipped or not.
 
 use crate::raster_coverage::Random;
 use durer::math::IVec2;
 use durer::raster::line::anti_aliased::{self, SmoothLine};
+use durer::raster::line::double_step::{self, Pattern};
+use durer::raster::line::run_slice::{self, Run};
 use durer::raster::line::tiled::{self, Line};
 use durer::raster::line::{LineRasterizer, Options, Step, bresenham};
 use durer::target::Pixels;
@@ -106,6 +108,80 @@ fn the_steps_of_a_line_rebuild_it() {
             }
         }
     }
+}
+
+#[test]
+fn runs_have_the_lengths_that_their_decisions_say() {
+    let mut steps = Recorder::default();
+    let (a, b) = (IVec2::ZERO, IVec2::new(15, 4));
+    run_slice::draw(a, b, &Options::default(), |_| {}, &mut steps);
+    let runs: Vec<_> =
+        steps.steps().iter().map(|s| (s.run, s.e, s.pixels().count(), s.is_cut)).collect();
+    let expected = [
+        (Run::First, 0, 2, false),
+        (Run::Long, -6, 4, false),
+        (Run::Long, -4, 4, false),
+        (Run::Long, -2, 4, false),
+        (Run::Short, 0, 2, true),
+    ];
+    assert_eq!(runs, expected);
+    let mut random = Random(6);
+    for _ in 0..300 {
+        let (a, b) = (point(&mut random, 60.0), point(&mut random, 60.0));
+        let options = Options { window: Some((IVec2::splat(-30), IVec2::splat(40))) };
+        for options in [options, Options::default()] {
+            let (mut steps, mut found) = (Recorder::default(), Vec::new());
+            run_slice::draw(a, b, &options, |p| found.push(p), &mut steps);
+            assert_eq!(run_slice::replay(steps.steps()), found);
+            let d = (b - a).abs();
+            assert!(steps.steps().len() as i32 <= d.min_element() + 1, "{a} {b}");
+            let whole = steps.steps().iter().filter(|s| s.run != Run::First && !s.is_cut);
+            let q = d.max_element() / d.min_element().max(1);
+            for step in whole {
+                let expected = if step.e < 0 { q + 1 } else { q };
+                assert_eq!(step.pixels().count() as i32, expected, "{a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn two_steps_have_one_of_four_patterns() {
+    let mut steps = Recorder::default();
+    double_step::draw(IVec2::ZERO, IVec2::new(5, 3), &Options::default(), |_| {}, &mut steps);
+    let at = IVec2::new;
+    let pair = |pattern, d, pixels| double_step::Step::Pair { pattern, d, pixels };
+    let expected = [
+        double_step::Step::Start { pixel: at(0, 0), d: -3 },
+        pair(Pattern::First, -3, [at(1, 1), at(2, 1)]),
+        pair(Pattern::First, -1, [at(3, 2), at(4, 2)]),
+        // The last E of the lecture.
+        double_step::Step::Last { e: 5, pixel: at(5, 3) },
+    ];
+    assert_eq!(steps.steps(), expected);
+    let mut random = Random(7);
+    for _ in 0..300 {
+        let (a, b) = (point(&mut random, 60.0), point(&mut random, 60.0));
+        let (mut steps, mut found) = (Recorder::default(), Vec::new());
+        double_step::draw(a, b, &Options::default(), |p| found.push(p), &mut steps);
+        assert_eq!(double_step::replay(steps.steps()), found);
+        let d = (b - a).abs();
+        let is_flat = 2 * d.min_element() < d.max_element();
+        let mut decisions = 0;
+        for step in steps.steps() {
+            let double_step::Step::Pair { pattern, .. } = step else { continue };
+            assert!(*pattern != if is_flat { Pattern::Aslant } else { Pattern::Straight });
+            decisions += pattern.decisions();
+        }
+        assert!(decisions as i32 <= d.max_element());
+    }
+    // A slope of 1 / 8: one decision for two pixels but once in eight.
+    let mut steps = Recorder::default();
+    double_step::draw(at(0, 0), at(80, 10), &Options::default(), |_| {}, &mut steps);
+    let simple = |step: &&double_step::Step| {
+        matches!(step, double_step::Step::Pair { pattern: Pattern::Straight, .. })
+    };
+    assert_eq!(steps.steps().iter().filter(simple).count(), 30);
 }
 
 #[test]

@@ -8,8 +8,10 @@ use durer::fragment::fog::Fog;
 use durer::fragment::halftone::{as_light, clustered_dot, error_diffusion};
 use durer::math::{DVec2, IVec2, Rect, Vec4};
 use durer::raster::conic::{self, MAX_RADIUS, Region, circle, ellipse};
+use durer::raster::ear_clipping::ears;
+use durer::raster::interpolate::barycentric_2d;
 use durer::raster::line::pattern::{self, Pen};
-use durer::raster::triangulate::triangulate_by_rule;
+use durer::raster::triangulate::{Step as Ear, triangulate_by_rule};
 use durer::target::Pixels;
 use durer::trace::{NoTrace, Recorder};
 
@@ -424,4 +426,68 @@ fn a_beam_tells_minima_crossings_and_contributing_edges() {
     let expected = [([0, 1], false), ([1, 1], true), ([0, 1], true), ([0, 0], false)];
     assert_eq!(active[4..], expected);
     assert_eq!(parts.iter().map(|part| part.area()).sum::<f64>(), 4.0);
+}
+
+fn area_of(ring: &[DVec2]) -> f64 {
+    signed_area(ring).abs()
+}
+
+/// Ears cover the polygon, as many as the formula says, whatever the direction of the rings; rejected corners are named.
+#[test]
+fn ears_cover_polygons_with_holes() {
+    let mut random = Random(31);
+    for round in 0..60 {
+        // A star around the origin, and square holes within its smallest radius.
+        let count = 5 + round % 9;
+        let star: Vec<DVec2> = (0..count)
+            .map(|k| {
+                let turn = f64::from(k) / f64::from(count) * std::f64::consts::TAU;
+                DVec2::from_angle(turn) * (10.0 + random.point(0.0, 12.0).x)
+            })
+            .collect();
+        let square = |x: f64, y: f64| {
+            [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(u, v)| DVec2::new(x + u, y + v))
+        };
+        let holes: Vec<[DVec2; 4]> = [square(-2.5, -0.5), square(0.5, 1.0), square(1.0, -2.0)]
+            [..(round % 4) as usize]
+            .to_vec();
+        let mut contours = Contours::new();
+        let ring = |points: &[DVec2], turned: bool| -> Vec<DVec2> {
+            if turned { points.iter().rev().copied().collect() } else { points.to_vec() }
+        };
+        contours.push(ring(&star, round % 2 == 1), true);
+        holes.iter().for_each(|hole| contours.push(ring(hole, round % 3 == 1), true));
+        let mut steps = Recorder::default();
+        let found = ears(&contours, &mut steps);
+        assert_eq!(ears(&contours, &mut NoTrace), found);
+        let corners = star.len() + 4 * holes.len();
+        assert_eq!(found.triangles.len(), corners + 2 * holes.len() - 2, "round {round}");
+        let expected = area_of(&star) - holes.len() as f64;
+        assert!((found.area() - expected).abs() < 1e-9 * expected, "round {round}");
+        let at = |corners: [u32; 3]| corners.map(|corner| found.points[corner as usize]);
+        let mut triangles = Vec::new();
+        for step in steps.steps() {
+            match *step {
+                Ear::Triangle(corners) => triangles.push(corners),
+                Ear::Reflex { corners, cross } => {
+                    let [a, b, c] = at(corners);
+                    assert!(cross <= 0.0 && ((b - a).perp_dot(c - b) - cross).abs() < 1e-9);
+                }
+                Ear::Blocked { corners, by } => {
+                    let weights = barycentric_2d(at(corners), found.points[by as usize]).unwrap();
+                    assert!(weights.iter().all(|weight| *weight >= -1e-9));
+                }
+                Ear::Bridge(_) | Ear::Point(_) => {}
+            }
+        }
+        assert_eq!(triangles, found.triangles);
+        // No triangle is turned over or covers another one.
+        assert!(triangles.iter().all(|corners| signed_area(&at(*corners)) > 0.0), "round {round}");
+    }
+    // Rings that cross come to an end, too.
+    let bow = [(0.0, 0.0), (4.0, 4.0), (4.0, 0.0), (0.0, 4.0)].map(DVec2::from);
+    assert_eq!(ears(&Contours::polygon(bow), &mut NoTrace).triangles.len(), 2);
+    let line = [(0.0, 0.0), (1.0, 1.0), (2.0, 2.0), (3.0, 3.0)].map(DVec2::from);
+    assert_eq!(ears(&Contours::polygon(line), &mut NoTrace).triangles.len(), 2);
+    assert!(ears(&Contours::new(), &mut NoTrace).triangles.is_empty());
 }

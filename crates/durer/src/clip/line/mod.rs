@@ -29,6 +29,7 @@ pub mod liang_barsky;
 pub mod midpoint;
 pub mod nicholl_lee_nicholl;
 mod passage;
+pub mod skala;
 
 pub use border::{ClipBox, End};
 pub use convex::{ConvexPolygon, Edge, HalfPlane, HalfSpace};
@@ -72,6 +73,8 @@ crate::info::family! {
         LiangBarsky => liang_barsky::INFO,
         /// Regions around the first end point.
         NichollLeeNicholl => nicholl_lee_nicholl::INFO,
+        /// Signs of the window's corners against the line.
+        Skala => skala::INFO,
         /// Boundary coordinates before the division by w.
         Homogeneous => homogeneous::INFO,
     }
@@ -90,6 +93,7 @@ impl LineClipper {
             Self::CyrusBeck => cyrus_beck::clip(window, segment, t),
             Self::LiangBarsky => liang_barsky::clip(window, segment, t),
             Self::NichollLeeNicholl => nicholl_lee_nicholl::clip(window, segment, t),
+            Self::Skala => skala::clip(window, segment, t),
             Self::Homogeneous => homogeneous::clip(window, segment, t),
             Self::Midpoint => Err(Error::Unsupported {
                 what: "midpoint subdivision on floating-point coordinates",

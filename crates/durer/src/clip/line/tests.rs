@@ -7,11 +7,12 @@ use crate::trace::Recorder;
 use proptest::prelude::*;
 use std::cmp::Ordering;
 
-const FLOAT: [LineClipper; 5] = [
+const FLOAT: [LineClipper; 6] = [
     LineClipper::CohenSutherland,
     LineClipper::CyrusBeck,
     LineClipper::LiangBarsky,
     LineClipper::NichollLeeNicholl,
+    LineClipper::Skala,
     LineClipper::Homogeneous,
 ];
 
@@ -137,6 +138,9 @@ proptest! {
         let got = nicholl_lee_nicholl::clip(&w, s, &mut steps).unwrap();
         prop_assert_eq!(bits(nicholl_lee_nicholl::replay(s, steps.steps())), bits(got));
         let mut steps = Recorder::default();
+        let got = skala::clip(&w, s, &mut steps).unwrap();
+        prop_assert_eq!(bits(skala::replay(s, steps.steps())), bits(got));
+        let mut steps = Recorder::default();
         let got = homogeneous::clip(&w, s, &mut steps).unwrap();
         let lifted = Segment::new(s.start.extend(1.0), s.end.extend(1.0));
         let rebuilt = homogeneous::replay(lifted, steps.steps());
@@ -237,6 +241,15 @@ proptest! {
         prop_assert_eq!(got.is_some(), meets_polygon(&window, &s));
         let back = cyrus_beck::clip_polygon(&window, s.reversed(), t).unwrap().map(Segment::reversed);
         prop_assert_eq!(got, back);
+        let mut steps = Recorder::default();
+        let by_signs = skala::clip_polygon(&window, s, &mut steps).unwrap();
+        prop_assert_eq!(skala::replay(s, steps.steps()), by_signs);
+        prop_assert_eq!(by_signs.is_some(), got.is_some());
+        if let (Some(a), Some(b)) = (by_signs, got) {
+            let largest = p.abs().max(q.abs()).max_element();
+            let off = (a.start - b.start).abs().max((a.end - b.end).abs()).max_element();
+            prop_assert!(off <= largest * 64.0 * f64::EPSILON || !is_thick(&window), "{:?} {:?}", a, b);
+        }
         if let Some(got) = got {
             if is_thick(&window) {
                 let twice = cyrus_beck::clip_polygon(&window, got, t).unwrap();

@@ -20,7 +20,6 @@ pub mod point;
 pub mod rectangle;
 pub mod scan_beams;
 mod shapes;
-mod status;
 mod steps;
 pub mod sutherland_hodgman;
 pub mod validity;

@@ -2,8 +2,9 @@
 
 use std::cmp::Ordering;
 
-use super::status::{Edge, Status};
 use super::{Shapes, Vertex};
+use crate::clip::status::Status;
+use crate::math::Orientation;
 
 /// The rings of valid [`Shapes`] as a tree: the parent of a hole is the outer ring of its polygon,
 /// the parent of an outer ring is the hole that it lies in.
@@ -142,6 +143,30 @@ impl Place {
     }
 }
 
+/// An edge of a ring, from its smaller to its larger point.
+#[derive(Debug, Clone, Copy)]
+struct Edge<P> {
+    a: P,
+    b: P,
+    ring: usize,
+}
+
+impl<P: Vertex> Edge<P> {
+    /// Returns whether it passes above another one, where one line of the sweep cuts both and they
+    /// do not cross; upright edges count as leaning to the right.
+    fn is_above(&self, other: &Self) -> bool {
+        let side = |of: &Self, from: &Self| match P::turn(from.a, from.b, of.a) {
+            Orientation::Collinear => P::turn(from.a, from.b, of.b),
+            side => side,
+        };
+        if self.a.order(other.a).is_lt() {
+            side(other, self) == Orientation::Clockwise
+        } else {
+            side(self, other) == Orientation::CounterClockwise
+        }
+    }
+}
+
 struct Sweep<P> {
     edges: Vec<Edge<P>>,
     /// True for each edge along which its ring runs from the smaller to the larger point.
@@ -201,7 +226,7 @@ impl<P: Vertex> Sweep<P> {
                 status.remove(i);
             }
             for &i in group {
-                status.insert(&self.edges, i);
+                status.insert(i, |other| self.edges[i].is_above(&self.edges[other]));
             }
             // A ring comes here for the first time, with its two edges in one group.
             let new = |i: &usize| self.lowest[self.edges[*i].ring].is_none();

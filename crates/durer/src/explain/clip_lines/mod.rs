@@ -5,6 +5,7 @@ mod midpoint;
 mod nicholl_lee_nicholl;
 mod parametric;
 mod polyline;
+mod skala;
 
 pub(super) use cohen_sutherland::by_codes;
 pub(super) use parametric::by_parameters;
@@ -23,6 +24,7 @@ pub(super) const LESSONS: &[Lesson] = &[
     parametric::CYRUS_BECK,
     parametric::LIANG_BARSKY,
     nicholl_lee_nicholl::LESSON,
+    skala::LESSON,
     parametric::HOMOGENEOUS,
     polyline::LESSON,
 ];

@@ -92,7 +92,7 @@ const RECTANGLES: &[Example] = &[
 ];
 
 /// Returns a convex window of five corners and a segment.
-fn pentagon(start: (f64, f64), end: (f64, f64)) -> Input {
+pub(super) fn pentagon(start: (f64, f64), end: (f64, f64)) -> Input {
     let corners = vec![p(1.0, 0.5), p(6.5, 0.0), p(9.0, 3.5), p(5.5, 6.5), p(0.5, 5.0)];
     let lines = vec![vec![start.into(), end.into()]];
     Input::Figure(Figure { lines, clip: vec![corners], ..Figure::default() })
@@ -362,7 +362,7 @@ const SIDES: [Word; 4] = [
 ];
 
 /// Names of the borders of a polygon.
-const NUMBERED: [Word; 8] = [
+pub(super) const NUMBERED: [Word; 8] = [
     Word::new("first", "ersten"),
     Word::new("second", "zweiten"),
     Word::new("third", "dritten"),

@@ -1,7 +1,6 @@
-//! The lesson of depth sort, on the triangles of faces.
+//! The lesson of depth sort.
 
-use super::triangles::Triangles;
-use super::{Scene, TAKES, beams, slab};
+use super::{Scene, TAKES, beams, name, slab};
 use crate::Result;
 use crate::explain::frame::{Frames, Shown, frames, record};
 use crate::explain::input::Input;
@@ -10,17 +9,15 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
-use crate::visibility::surface::Cull;
-use crate::visibility::surface::depth_sort::{INFO, Step, Test, order};
-use crate::visibility::surface::input::SurfaceInput;
-use crate::visibility::surface::setup::Filter;
+use crate::visibility::polygons::depth_sort::{INFO, Options, Step, items};
+use crate::visibility::surface::depth_sort::Test;
 
 pub(super) const LESSON: Lesson = Lesson {
-    name: INFO.name,
+    name: "depth-sort",
     info: &INFO,
     takes: TAKES,
     examples: EXAMPLES,
-    templates: &[&LOOK, &PASSED, &FAILED, &MOVE, &SPLIT, &PLACE],
+    templates: &[&LOOK, &PASSED, &FAILED, &MOVE, &SPLIT, &PAINT, &PIXEL],
     unreached: &[],
     make: |_, input, _, cap| make(input, cap),
 };
@@ -29,8 +26,8 @@ const EXAMPLES: &[Example] = &[
     Example {
         name: "cyclic",
         title: Word::new(
-            "three beams, each before the next: a split",
-            "drei Balken, jeder vor dem nächsten: eine Teilung",
+            "three beams, each before the next: they are split",
+            "drei Balken, jeder vor dem nächsten: Sie werden geteilt",
         ),
         input: || Input::Faces(beams()),
     },
@@ -67,53 +64,43 @@ static MOVE: Template = Template::new(
 );
 static SPLIT: Template = Template::new(
     "split",
-    "{p} was marked already: they overlap cyclically, so it is split into {a} and {b}.",
-    "{p} war schon markiert: Sie überlappen sich zyklisch, es wird in {a} und {b} geteilt.",
+    "The other was marked already: they overlap cyclically, so {p} is split along {q} into {a} and {b}.",
+    "Das andere war schon markiert: Sie überlappen sich zyklisch, {p} wird an {q} in {a} und {b} geteilt.",
 );
-static PLACE: Template = Template::new(
-    "place",
+static PAINT: Template = Template::new(
+    "paint",
     "{p} is painted next, over what is there.",
     "{p} wird als Nächstes gemalt, über alles, was da ist.",
 );
+static PIXEL: Template =
+    Template::new("pixel", "Pixel {pixel} gets {face}.", "Pixel {pixel} bekommt {face}.");
 
 /// The list of polygons and verdicts.
 struct Sorting {
     scene: Scene,
-    triangles: Triangles,
-    items: Vec<u32>,
-    /// Names and triangles of pieces, after the triangles.
+    /// Names and faces of pieces, by their numbers after the faces.
     pieces: Vec<(u32, String, u32)>,
     verdicts: Vec<(String, String, Value)>,
-    painted: Vec<u32>,
+    painted: Vec<String>,
     now: [Option<u32>; 2],
 }
 
 fn make(input: &Input, cap: usize) -> Result<Frames> {
     let scene = Scene::new(input)?;
-    let triangles = Triangles::new(&scene)?;
-    let (model, view) = triangles.prepared(&scene)?;
-    let surfaces = SurfaceInput::new(&model, &view, Filter::new(Cull::None, 0))?;
-    let steps = record(cap, |t| order(&surfaces, t))?;
-    let items = surfaces.triangles.iter().map(|triangle| triangle.item).collect();
+    let steps = record(cap, |t| items(&scene.faces, &scene.screen(), &Options::default(), t))?;
     let (pieces, verdicts, painted) = (Vec::new(), Vec::new(), Vec::new());
-    let mut sorting =
-        Sorting { scene, triangles, items, pieces, verdicts, painted, now: [None; 2] };
-    Ok(frames(&steps, |step| sorting.show(step)))
+    let mut sorting = Sorting { scene, pieces, verdicts, painted, now: [None; 2] };
+    Ok(frames(&steps, |step| {
+        let caption = sorting.take(step);
+        Shown { line: step.line(), caption, table: sorting.table(), picture: sorting.picture() }
+    }))
 }
 
 impl Sorting {
-    fn show(&mut self, step: &Step) -> Shown {
-        let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture() }
-    }
-
-    /// Returns the name of a polygon and its triangle's item.
+    /// Returns the name of a polygon and its face.
     fn polygon(&self, number: u32) -> (String, u32) {
-        if let Some((_, name, item)) = self.pieces.iter().find(|piece| piece.0 == number) {
-            return (name.clone(), *item);
-        }
-        let item = self.items.get(number as usize).copied().unwrap_or_default();
-        (self.triangles.name(item), item)
+        let piece = self.pieces.iter().find(|piece| piece.0 == number);
+        piece.map_or_else(|| (name(number), number), |(_, name, face)| (name.clone(), *face))
     }
 
     fn take(&mut self, step: &Step) -> Caption {
@@ -121,20 +108,23 @@ impl Sorting {
         | Step::Tested { polygon, .. }
         | Step::Move { polygon }
         | Step::Split { polygon, .. }
-        | Step::Place { polygon }) = *step;
-        let (name, item) = self.polygon(polygon);
-        self.now = [Some(item), None];
-        let p = ("p", Value::from(name.clone()));
+        | Step::Paint { polygon, .. }) = *step
+        else {
+            return self.pixel(step);
+        };
+        let (own, face) = self.polygon(polygon);
+        self.now = [Some(face), None];
+        let p = ("p", Value::from(own.clone()));
         match *step {
-            Step::Look { .. } => {
+            Step::Look { .. } | Step::Pixel { .. } => {
                 self.verdicts.clear();
                 LOOK.with([p])
             }
             Step::Tested { other, passed, .. } => {
-                let (other, item) = self.polygon(other);
-                self.now[1] = Some(item);
+                let (other, face) = self.polygon(other);
+                self.now[1] = Some(face);
                 let number = passed.map_or("–", Test::number);
-                self.verdicts.push((name, other.clone(), number.into()));
+                self.verdicts.push((own, other.clone(), number.into()));
                 let q = ("q", Value::from(other));
                 match passed {
                     Some(test) => {
@@ -144,17 +134,25 @@ impl Sorting {
                 }
             }
             Step::Move { .. } => MOVE.with([p]),
-            Step::Split { pieces, .. } => {
-                let names = ["′", "″"].map(|sign| format!("{name}{sign}"));
+            Step::Split { pieces, along, .. } => {
+                let names = ["′", "″"].map(|sign| format!("{own}{sign}"));
                 let [a, b] = names.clone().map(Value::from);
-                self.pieces.extend(pieces.into_iter().zip(names).map(|(n, name)| (n, name, item)));
-                SPLIT.with([p, ("a", a), ("b", b)])
+                let q = ("q", Value::from(self.polygon(along).0));
+                self.pieces.extend(pieces.into_iter().zip(names).map(|(n, name)| (n, name, face)));
+                SPLIT.with([p, q, ("a", a), ("b", b)])
             }
-            Step::Place { .. } => {
-                self.painted.push(polygon);
-                PLACE.with([p])
+            Step::Paint { .. } => {
+                self.painted.push(own);
+                PAINT.with([p])
             }
         }
+    }
+
+    fn pixel(&mut self, step: &Step) -> Caption {
+        let Step::Pixel { pixel, face } = *step else { return PIXEL.with([]) };
+        self.scene.set(pixel, face);
+        let at = DVec2::new(pixel[0].into(), pixel[1].into());
+        PIXEL.with([("pixel", at.into()), ("face", name(face).into())])
     }
 
     fn table(&self) -> Table {
@@ -163,27 +161,16 @@ impl Sorting {
         for (p, q, test) in &self.verdicts {
             table.row(p.as_str(), [q.as_str().into(), test.clone()]);
         }
-        let painted: Vec<String> =
-            self.painted.iter().map(|number| self.polygon(*number).0).collect();
-        table.row(Word::new("painted", "gemalt"), [Value::from(painted)]);
+        table.row(Word::new("painted", "gemalt"), [Value::from(self.painted.clone())]);
         table
     }
 
     fn picture(&self) -> Picture {
-        let mut picture = self.scene.raster.picture();
-        picture.grid = None;
-        for item in 0..self.triangles.corners.len() as u32 {
-            picture.chain(self.triangles.outline(item), Look::Pale);
-            let outline = self.triangles.outline(item);
-            let middle = outline.iter().take(3).sum::<DVec2>() / 3.0;
-            picture.label(middle, (0.0, 0.0), self.triangles.name(item));
-        }
-        for number in &self.painted {
-            let outline = self.triangles.outline(self.polygon(*number).1);
-            picture.ring(outline, Look::Result);
-        }
-        for (item, look) in self.now.iter().zip([Look::First, Look::Second]) {
-            item.iter().for_each(|item| picture.ring(self.triangles.outline(*item), look));
+        let mut picture = self.scene.picture();
+        for (face, look) in self.now.iter().zip([Look::First, Look::Second]) {
+            face.iter().for_each(|face| {
+                self.scene.outline(&mut picture, *face as usize, look);
+            });
         }
         picture
     }

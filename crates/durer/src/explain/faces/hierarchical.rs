@@ -69,7 +69,7 @@ static LOWER: Template = Template::new(
 );
 
 /// Returns a wall over the whole picture, and small things behind it and one before.
-fn wall() -> Vec<Vec<DVec3>> {
+pub(super) fn wall() -> Vec<Vec<DVec3>> {
     let small = |x: f64, y: f64, depth: f64| slab((x, y), (x + 1.0, y + 1.0), (depth, depth));
     let mut faces = vec![
         small(0.5, 0.5, 7.0),

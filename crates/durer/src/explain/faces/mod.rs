@@ -8,9 +8,11 @@ mod depth_sort;
 mod hidden_line;
 mod hierarchical;
 mod horizon;
+mod octree;
 mod orientation;
 mod ray;
 mod regions;
+mod roberts;
 mod row;
 mod scan_line_z;
 mod triangles;
@@ -35,6 +37,7 @@ pub(super) const LESSONS: &[Lesson] = &[
     orientation::LESSON,
     depth::Z_BUFFER,
     hierarchical::LESSON,
+    octree::LESSON,
     depth::PAINTER,
     depth_sort::LESSON,
     bsp::LESSON,
@@ -44,6 +47,7 @@ pub(super) const LESSONS: &[Lesson] = &[
     a_buffer::LESSON,
     ray::LESSON,
     regions::LESSON,
+    roberts::LESSON,
     hidden_line::LESSON,
     horizon::LESSON,
 ];

@@ -11,14 +11,15 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
-use crate::raster::triangulate::{INFO, Step, triangulate};
+use crate::raster::ear_clipping::ears;
+use crate::raster::triangulate::{INFO, Step};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
     info: &INFO,
     takes: TAKES,
     examples: &[ARROW, FRAME, EXAMPLES[0]],
-    templates: &[&POINT, &TRIANGLE, &LAST],
+    templates: &[&POINT, &BRIDGE, &REFLEX, &BLOCKED, &TRIANGLE, &LAST],
     unreached: &[],
     make: |_, input, _, cap| make(input, cap),
 };
@@ -47,6 +48,21 @@ const FRAME: Example = Example {
 
 static POINT: Template =
     Template::new("point", "Corner {name} is at {point}.", "Ecke {name} liegt bei {point}.");
+static BRIDGE: Template = Template::new(
+    "bridge",
+    "{a} of the hole is joined to {b}, the nearest corner that it sees.",
+    "{a} vom Loch wird mit {b} verbunden, der nächsten Ecke, die es sieht.",
+);
+static REFLEX: Template = Template::new(
+    "reflex",
+    "{b} is no ear: ({b} − {a}) × ({c} − {b}) = {cross}, it is not convex.",
+    "{b} ist kein Ohr: ({b} − {a}) × ({c} − {b}) = {cross}, die Ecke ist nicht konvex.",
+);
+static BLOCKED: Template = Template::new(
+    "blocked",
+    "{b} is no ear: corner {by} lies in the triangle {a} {b} {c}.",
+    "{b} ist kein Ohr: Ecke {by} liegt im Dreieck {a} {b} {c}.",
+);
 static TRIANGLE: Template = Template::new(
     "triangle",
     "The ear at {b} is cut off, triangle {a} {b} {c}: ({b} − {a}) × ({c} − {b}) = {cross}, area {area}.",
@@ -63,6 +79,7 @@ struct State {
     rings: Vec<Vec<DVec2>>,
     points: Vec<DVec2>,
     triangles: Vec<[u32; 3]>,
+    bridges: Vec<[u32; 2]>,
     /// Number of triangles in the end.
     count: usize,
 }
@@ -76,10 +93,11 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     rings.iter().for_each(|ring| contours.push(ring.iter().copied(), true));
     let mut count = 0;
     let steps = record(cap, |t| {
-        count = triangulate(&contours, t).triangles.len();
+        count = ears(&contours, t).triangles.len();
         Ok(())
     })?;
-    let mut state = State { rings, points: Vec::new(), triangles: Vec::new(), count };
+    let (points, triangles, bridges) = (Vec::new(), Vec::new(), Vec::new());
+    let mut state = State { rings, points, triangles, bridges, count };
     Ok(frames(&steps, |step| state.show(step)))
 }
 
@@ -105,14 +123,25 @@ impl State {
                 let name = letter(self.points.len() - 1);
                 POINT.with([("name", name.into()), ("point", point.into())])
             }
+            Step::Bridge(ends) => {
+                self.bridges.push(ends);
+                let [a, b] = ends.map(|corner| Value::from(letter(corner as usize)));
+                BRIDGE.with([("a", a), ("b", b)])
+            }
+            Step::Reflex { corners, cross } => {
+                let [a, b, c] = names(corners);
+                REFLEX.with([a, b, c, ("cross", cross.into())])
+            }
+            Step::Blocked { corners, by } => {
+                let [a, b, c] = names(corners);
+                BLOCKED.with([a, b, c, ("by", letter(by as usize).into())])
+            }
             Step::Triangle(triangle) => {
                 self.triangles.push(triangle);
                 let [p, q, r] = self.corners(triangle);
                 let cross = (q - p).perp_dot(r - q);
-                let [a, b, c] = triangle.map(|corner| Value::from(letter(corner as usize)));
                 let area = ("area", self.area(triangle).into());
-                let names = [("a", a), ("b", b), ("c", c)];
-                let [a, b, c] = names;
+                let [a, b, c] = names(triangle);
                 if self.triangles.len() < self.count {
                     return TRIANGLE.with([a, b, c, ("cross", cross.into()), area]);
                 }
@@ -139,7 +168,7 @@ impl State {
         let mut picture = Picture::around(self.rings.iter().flatten().copied(), 0.12);
         picture.rings(&self.rings, Look::First);
         for (number, &triangle) in self.triangles.iter().enumerate() {
-            let is_now = number + 1 == self.triangles.len();
+            let is_now = number + 1 == self.triangles.len() && matches!(step, Step::Triangle(_));
             let corners = self.corners(triangle);
             picture.ring(corners, if is_now { Look::Now } else { Look::Result });
         }
@@ -150,9 +179,28 @@ impl State {
             picture.dot(point, Look::First);
             picture.label(point, (out.x, -out.y), letter(number));
         }
-        if let Step::Point(point) = *step {
-            picture.dot(point, Look::Now);
+        for &[a, b] in &self.bridges {
+            let [a, b, _] = self.corners([a, b, b]);
+            picture.chain([a, b], Look::Dashed);
+        }
+        match *step {
+            Step::Point(point) => picture.dot(point, Look::Now),
+            Step::Reflex { corners, .. } | Step::Blocked { corners, .. } => {
+                picture.ring(self.corners(corners), Look::Second);
+                let [_, corner, _] = self.corners(corners);
+                picture.dot(corner, Look::Now);
+                if let Step::Blocked { by, .. } = *step {
+                    picture.dot(self.corners([by; 3])[0], Look::Now);
+                }
+            }
+            Step::Bridge(_) | Step::Triangle(_) => {}
         }
         picture
     }
+}
+
+/// Returns the letters of a triangle's corners.
+fn names(corners: [u32; 3]) -> [(&'static str, Value); 3] {
+    let [a, b, c] = corners.map(|corner| Value::from(letter(corner as usize)));
+    [("a", a), ("b", b), ("c", c)]
 }

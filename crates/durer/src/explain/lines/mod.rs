@@ -2,6 +2,7 @@
 
 mod conics;
 mod pattern;
+mod slices;
 mod smooth;
 mod thin;
 mod wide;
@@ -16,6 +17,8 @@ pub(super) const LESSONS: &[Lesson] = &[
     thin::EQUATION,
     thin::DDA,
     thin::BRESENHAM,
+    slices::RUN_SLICE,
+    slices::DOUBLE_STEP,
     smooth::WU,
     smooth::GUPTA_SPROULL,
     pattern::LESSON,

@@ -151,8 +151,8 @@ impl State<'_> {
                 COMPUTED.with([("from", from.into()), ("m", m.into()), done, across, pixel])
             }
             (LineRasterizer::Dda, _) => SUMMED.with([across, pixel, ("m", m.into())]),
-            (LineRasterizer::Bresenham, None) => LAST.with([pixel]),
-            (LineRasterizer::Bresenham, Some(next)) => {
+            (_, None) => LAST.with([pixel]),
+            (_, Some(next)) => {
                 let aslant = is_aslant(step.pixel, next);
                 let add = if aslant { 2 * rise - 2 * run } else { 2 * rise };
                 let template = if aslant { &ASLANT } else { &STRAIGHT };

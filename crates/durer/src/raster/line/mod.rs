@@ -1,21 +1,23 @@
-//! Lines: three ways to the pixels of a thin one, smooth ones, and the outline of a wide one.
+//! Lines: five ways to the pixels of a thin one, smooth ones, and the outline of a wide one.
 //!
 //! The thin ones light one pixel per step along the longer axis: the one nearest to the line, of two equally
-//! near ones that with the smaller coordinate across. All three light the same pixels, from either end.
+//! near ones that with the smaller coordinate across. All five light the same pixels, from either end.
 
 pub mod anti_aliased;
 pub mod bresenham;
 pub mod dda;
+pub mod double_step;
 pub mod equation;
 pub mod pattern;
 mod pieces;
 pub(crate) mod projected;
+pub mod run_slice;
 pub mod tiled;
 pub mod wide;
 
 use crate::info::family;
 use crate::math::IVec2;
-use crate::trace::Tracer;
+use crate::trace::{NoTrace, Tracer};
 
 family! {
     /// The ways to the pixels of a thin line.
@@ -26,11 +28,16 @@ family! {
         Dda => dda::INFO,
         /// Bresenham's algorithm.
         Bresenham => bresenham::INFO,
+        /// Bresenham's runs.
+        RunSlice => run_slice::INFO,
+        /// Wu and Rokne's patterns of two pixels.
+        DoubleStep => double_step::INFO,
     }
 }
 
 impl LineRasterizer {
-    /// Calls `plot` for the line's pixels within the window, along its longer axis.
+    /// Calls `plot` for the line's pixels within the window, along its longer axis. Of the run-slice and the double-step
+    /// line, too, the tracer gets a step per pixel; [`run_slice::draw`] and [`double_step::draw`] have steps of their own.
     pub fn draw(
         self,
         from: IVec2,
@@ -43,6 +50,14 @@ impl LineRasterizer {
             Self::Equation => equation::draw(from, to, options, plot, t),
             Self::Dda => dda::draw(from, to, options, plot, t),
             Self::Bresenham => bresenham::draw(from, to, options, plot, t),
+            Self::RunSlice => {
+                Course::new(from, to, options).report(t);
+                run_slice::draw(from, to, options, plot, &mut NoTrace);
+            }
+            Self::DoubleStep => {
+                Course::new(from, to, options).report(t);
+                double_step::draw(from, to, options, plot, &mut NoTrace);
+            }
         }
     }
 }
@@ -72,7 +87,7 @@ pub struct Step {
 }
 
 impl Step {
-    /// Returns the line of the pseudocode that sets a pixel; it is the same in all three algorithms.
+    /// Returns the line of the pseudocode that sets a pixel; it is the same in the first three algorithms.
     pub fn line(&self) -> usize {
         6
     }

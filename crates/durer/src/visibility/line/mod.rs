@@ -17,6 +17,7 @@ mod overlap;
 mod page;
 mod piece;
 mod planes;
+pub mod roberts;
 mod roundness;
 mod simplify;
 mod smooth_silhouette;

@@ -10,6 +10,7 @@
 
 mod tree;
 
+pub use super::pieces::Side;
 pub use tree::Tree;
 
 use super::{Face, Screen};
@@ -63,19 +64,6 @@ impl Default for Options {
     fn default() -> Self {
         Self { candidates: 5, max_pieces: 1 << 20 }
     }
-}
-
-/// The side of a node's plane on which a polygon lies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Side {
-    /// Side that the normal points to.
-    Front,
-    /// Behind it.
-    Back,
-    /// In the plane itself.
-    On,
-    /// On both sides: it is split.
-    Both,
 }
 
 /// Step of the algorithm. Pieces have numbers: first the faces, then the parts that splitting

@@ -11,17 +11,14 @@
 //! temporal coherence (the faces seen last time first) is left out. What is equally near goes to the first face, as in
 //! the family.
 
-mod octree;
-mod pyramid;
-
+use super::octree::tree::{self, Division, Holding, Octree};
+use super::pyramid::{Entry, Pyramid};
 use super::{Face, Screen};
 use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
-use octree::Octree;
-use pyramid::{Entry, Pyramid};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -184,7 +181,10 @@ pub fn items(
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Result<Pixels<u32>> {
-    let octree = Octree::new(faces, options);
+    let Options { capacity, depth } = *options;
+    // Each face is in one cell.
+    let division = Division { holding: Holding::Whole, capacity, depth, most: faces.len() };
+    let octree = Octree::new(faces, &division)?;
     for (cell, own) in octree.cells.iter().enumerate() {
         t.step(|| Step::Cell { cell, corners: [own.low, own.high], faces: own.faces.len() });
     }
@@ -226,7 +226,7 @@ impl Picture<'_> {
 
     fn draw(&mut self, number: u32, t: &mut impl Tracer<Step>) {
         let face = &self.faces[number as usize];
-        let [low, high] = octree::bounds(face);
+        let [low, high] = tree::bounds(face);
         let Some(test) = self.test(low, high) else { return };
         t.step(|| Step::Face { face: number, test });
         if test.is_hidden() {

@@ -24,10 +24,15 @@
 
 pub mod a_buffer;
 pub mod bsp;
+pub mod depth_sort;
 mod face;
 pub mod hierarchical_z;
+pub mod octree;
 pub mod painter;
+mod pieces;
+mod pyramid;
 pub mod regions;
+pub mod warnock;
 pub mod watkins;
 pub mod z_buffer;
 
@@ -65,8 +70,14 @@ crate::info::family! {
         ZBuffer => z_buffer::INFO,
         /// [`hierarchical_z`]
         HierarchicalZ => hierarchical_z::INFO,
+        /// [`octree`]
+        Octree => octree::INFO,
+        /// [`depth_sort`]
+        DepthSort => depth_sort::INFO,
         /// [`bsp`]
         Bsp => bsp::INFO,
+        /// [`warnock`]
+        Warnock => warnock::INFO,
         /// [`watkins`]
         Watkins => watkins::INFO,
     }
@@ -84,7 +95,10 @@ impl PolygonMethod {
             Self::HierarchicalZ => {
                 hierarchical_z::items(faces, screen, &Default::default(), &mut NoTrace)
             }
+            Self::Octree => octree::items(faces, screen, &Default::default(), &mut NoTrace),
+            Self::DepthSort => depth_sort::items(faces, screen, &Default::default(), &mut NoTrace),
             Self::Bsp => bsp::items(faces, screen, &Default::default(), &mut NoTrace),
+            Self::Warnock => warnock::items(faces, screen, &Default::default(), &mut NoTrace),
             Self::Watkins => watkins::items(faces, screen, &mut NoTrace),
         }
     }

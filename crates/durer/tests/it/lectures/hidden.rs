@@ -3,8 +3,9 @@
 use super::p;
 use durer::math::{DVec2, DVec3};
 use durer::trace::{NoTrace, Recorder};
-use durer::view::cull::newell_area;
+use durer::view::cull::{Face, face_along, newell_area};
 use durer::visibility::line::horizon_curves::{Curve, Options, Piece, Seen, Step, draw, replay};
+use durer::visibility::object::orientation::{self, Outward, orient};
 
 fn curves(all: &[(usize, &[f64])]) -> Vec<Curve> {
     all.iter().map(|(first, heights)| Curve { first: *first, heights: heights.to_vec() }).collect()
@@ -110,4 +111,47 @@ fn newells_sums_are_the_normal_and_its_length_the_area() {
     // Outward from a convex body: P the mean of the corners, v = P_k − P, N · v > 0.
     let body_middle = DVec3::new(2.0, 1.5, -3.0);
     assert!(n.dot(ring[0] - body_middle) > 0.0);
+}
+
+/// N · (P_k − P) for the faces of a cube of side 2: area 4 times distance 1, negative for what is turned inwards; what the
+/// eye culls afterwards is right for any of them.
+#[test]
+fn outward_faces_have_a_positive_product() {
+    let corner = |n: usize| DVec3::from([0, 1, 2].map(|k| if n >> k & 1 == 1 { 2.0 } else { 0.0 }));
+    let points: Vec<DVec3> = (0..8).map(corner).collect();
+    let right =
+        [[4, 5, 7, 6], [0, 2, 3, 1], [1, 3, 7, 5], [0, 4, 6, 2], [2, 6, 7, 3], [0, 1, 5, 4]];
+    let flipped = |which: &[usize]| {
+        let mut faces = right;
+        which.iter().for_each(|face| faces[*face].reverse());
+        faces
+    };
+    let cases: [(&[usize], bool, usize); 3] =
+        [(&[], false, 0), (&[0, 1, 2, 3, 4, 5], true, 0), (&[3], false, 1)];
+    for (which, inside_out, count) in cases {
+        let mut faces = flipped(which);
+        let options = orientation::Options { outward: Outward::Centroid };
+        let mut steps = Recorder::default();
+        let found = orient(&points, &faces, &options, &mut steps).unwrap();
+        let mut products = [0.0; 6];
+        for step in steps.steps() {
+            if let orientation::Step::Compared { face, product } = *step {
+                products[face] = product;
+            }
+        }
+        let expected: Vec<f64> =
+            (0..6).map(|face| if which.contains(&face) { -4.0 } else { 4.0 }).collect();
+        assert_eq!(products[..], expected, "{which:?}");
+        assert_eq!((found.pieces[0].inside_out, found.pieces[0].flipped), (inside_out, count));
+        for (ring, _) in faces.iter_mut().zip(&found.turned).filter(|(_, turned)| **turned) {
+            ring.reverse();
+        }
+        // Seen along (−1, −2, −3) the faces at x = 2, y = 2 and z = 2 are fronts.
+        let front = |ring: &[usize; 4]| {
+            let ring = ring.map(|corner| points[corner]);
+            face_along(newell_area(&ring), DVec3::new(-1.0, -2.0, -3.0)) == Face::Front
+        };
+        let fronts: Vec<bool> = faces.iter().map(front).collect();
+        assert_eq!(fronts, [true, false, true, false, true, false], "{which:?}");
+    }
 }

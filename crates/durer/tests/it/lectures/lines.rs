@@ -87,6 +87,15 @@ fn short_ways_cut_no_more_than_they_must() {
     assert_eq!(cuts(p(5.0, 5.0), p(15.0, 30.0)), 2, "beyond two borders");
 }
 
+/// From 8 to 4 to 2 to 3: the last visible pixel is at x = 3, where y = 1.5 rounds up.
+#[test]
+fn halving_ends_at_the_last_visible_pixel() {
+    let window = midpoint::PixelWindow::new(IVec2::ZERO, IVec2::new(3, 9)).unwrap();
+    let line = Segment::new(IVec2::ZERO, IVec2::new(8, 4));
+    let found = midpoint::clip(&window, line, &mut durer::trace::NoTrace);
+    assert_eq!(found, Some(Segment::new(IVec2::ZERO, IVec2::new(3, 2))));
+}
+
 #[test]
 fn halving_a_thousand_pixels_takes_ten_turns_an_end() {
     let screen = midpoint::PixelWindow::new(IVec2::ZERO, IVec2::splat(1023)).unwrap();

@@ -8,9 +8,12 @@ use durer::fragment::{
     StencilOp, Step, apply, apply_traced, replay,
 };
 use durer::info::{Coherence, Occluder};
-use durer::math::{DVec4, Rect, Vec4};
+use durer::math::{DVec3, DVec4, Rect, Vec4};
 use durer::target::Framebuffer;
 use durer::trace::Recorder;
+use durer::visibility::polygons::warnock::{self, Rule, Step as Rules};
+use durer::visibility::polygons::{Face, Screen};
+use durer::visibility::surface::cover::{Relation, Window};
 use durer::visibility::surface::depth_sort::Test;
 use std::collections::BTreeSet;
 
@@ -57,9 +60,70 @@ fn depth_sort_has_its_tests_in_order() {
     let count = |example: &str, kind: &str| {
         frames("depth-sort", example).iter().filter(|frame| frame.kind == kind).count()
     };
-    // Triangles of the three beams have an order; faces that pierce each other have none.
-    assert_eq!([count("cyclic", "move"), count("cyclic", "split")], [3, 0]);
+    // Three beams, each over the next: two splits. Faces that pierce each other have no order either.
+    assert_eq!(count("cyclic", "split"), 2);
     assert_eq!(count("penetration", "split"), 1);
+}
+
+/// Outside, inside, crossing, surrounding; rules 1 to 4 in their order, and one look at a quad around the window.
+#[test]
+fn warnock_has_four_relations_and_four_rules() {
+    let look = |faces: &[Face], size: u32| {
+        let screen = Screen { width: size, height: size, ..Screen::default() };
+        let mut steps = Recorder::default();
+        warnock::items(faces, &screen, &warnock::Options::default(), &mut steps).unwrap();
+        steps.into_steps()
+    };
+    let face = |corners: &[(f64, f64)], z: f64| {
+        let corners: Vec<DVec3> = corners.iter().map(|(x, y)| DVec3::new(*x, *y, z)).collect();
+        Face::new(&corners).unwrap()
+    };
+    let quad = face(&[(-1.0, -1.0), (17.0, -1.0), (17.0, 17.0), (-1.0, 17.0)], 5.0);
+    let alone = look(std::slice::from_ref(&quad), 16);
+    let whole = Window { x0: 0, y0: 0, x1: 16, y1: 16 };
+    let surrounding = vec![(0, Relation::Surrounding)];
+    assert_eq!(alone[0], Rules::Look { window: whole, relations: surrounding });
+    assert_eq!(alone[1], Rules::Simple { window: whole, rule: Rule::Single, face: Some(0) });
+    assert!(alone[2..].iter().all(|step| matches!(step, Rules::Draw { .. })));
+    // A small triangle before it in one quarter: three quarters by rule 2, the fourth is divided on.
+    let triangle = face(&[(1.0, 9.0), (7.5, 9.0), (1.0, 15.5)], 2.0);
+    let steps = look(&[quad.clone(), triangle], 16);
+    let both = vec![(0, Relation::Surrounding), (1, Relation::Inside)];
+    assert_eq!(steps[0], Rules::Look { window: whole, relations: both });
+    assert_eq!(steps[1], Rules::Divide { window: whole, x: 8, y: 8 });
+    let simple = |rule: Rule| -> Vec<(Window, Option<u32>)> {
+        let of_rule = |step: &Rules| match *step {
+            Rules::Simple { window, rule: own, face } if own == rule => Some((window, face)),
+            _ => None,
+        };
+        steps.iter().filter_map(of_rule).collect()
+    };
+    let large = |w: &&(Window, Option<u32>)| w.0.x1 - w.0.x0 == 8 && w.1 == Some(0);
+    assert_eq!(simple(Rule::Single).iter().filter(large).count(), 3);
+    assert!(!simple(Rule::Surrounded).is_empty());
+    assert!(simple(Rule::Surrounded).iter().chain(&simple(Rule::Pixel)).all(|w| w.1 == Some(1)));
+    assert!(simple(Rule::Empty).is_empty());
+    let crossing = steps.iter().any(|step| {
+        matches!(step, Rules::Look { relations, .. } if relations.contains(&(1, Relation::Crossing)))
+    });
+    assert!(crossing);
+    // Two that pierce each other in a single pixel: no window is simple before it. Beside them is nothing.
+    let sloped = |z: [f64; 2]| {
+        let corners = [(3.0, 3.0, z[0]), (5.0, 3.0, z[1]), (5.0, 5.0, z[1]), (3.0, 5.0, z[0])];
+        Face::new(&corners.map(DVec3::from)).unwrap()
+    };
+    let steps = look(&[sloped([1.0, 3.0]), sloped([3.0, 1.0])], 8);
+    let numbers: BTreeSet<u8> = steps
+        .iter()
+        .filter_map(
+            |step| if let Rules::Simple { rule, .. } = step { Some(rule.number()) } else { None },
+        )
+        .collect();
+    assert!(numbers.contains(&1) && numbers.contains(&4), "{numbers:?}");
+    assert_eq!(
+        [Rule::Empty, Rule::Single, Rule::Surrounded, Rule::Pixel].map(Rule::number),
+        [1, 2, 3, 4]
+    );
 }
 
 fn fragment(depth: f32, alpha: f32) -> Fragment {

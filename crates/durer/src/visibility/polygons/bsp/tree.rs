@@ -1,33 +1,13 @@
 //! The tree, and the walk through it.
 
 use super::{Options, Side, Step};
+use crate::Result;
 use crate::math::{DVec3, Plane};
 use crate::trace::Tracer;
 use crate::view::cull::Face as Seen;
 use crate::visibility::back_face::Eye;
 use crate::visibility::polygons::Face;
-use crate::{Error, Result};
-
-/// So near to a plane, in units of the largest coordinate, a corner lies in it: corners that splitting made are
-/// rounded.
-const IN_PLANE: f64 = 1e-10;
-
-/// Part of a face after splitting.
-#[derive(Debug, Clone)]
-struct Piece {
-    face: u32,
-    corners: Vec<DVec3>,
-    /// The last cut that made it.
-    cut: Option<u32>,
-}
-
-/// A side of a plane that pieces keep to, and the cut before it.
-#[derive(Debug, Clone, Copy)]
-struct Cut {
-    plane: Plane,
-    front: bool,
-    before: Option<u32>,
-}
+use crate::visibility::polygons::pieces::Pieces;
 
 /// A plane, the polygons in it, and the halves.
 #[derive(Debug, Clone)]
@@ -59,28 +39,17 @@ struct Node {
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct Tree {
-    pieces: Vec<Piece>,
-    cuts: Vec<Cut>,
+    pieces: Pieces,
     nodes: Vec<Node>,
-    /// So near to a plane corners lie in it.
-    tolerance: f64,
 }
 
 impl Tree {
     /// Creates the tree of polygons.
     ///
     /// # Errors
-    /// [`Error::Limit`] for more pieces than the options allow.
+    /// [`crate::Error::Limit`] for more pieces than the options allow.
     pub fn new(faces: &[Face], options: &Options, t: &mut impl Tracer<Step>) -> Result<Self> {
-        let piece =
-            |(face, own): (u32, &Face)| Piece { face, corners: own.corners().to_vec(), cut: None };
-        let largest = faces.iter().flat_map(Face::corners);
-        let largest = largest.fold(0.0, |all: f64, c| all.max(c.abs().max_element()));
-        let mut tree = Self {
-            pieces: (0..).zip(faces).map(piece).collect(),
-            tolerance: largest * IN_PLANE,
-            ..Self::default()
-        };
+        let mut tree = Self { pieces: Pieces::new(faces), nodes: Vec::new() };
         let mut lists = vec![((0..faces.len() as u32).collect::<Vec<u32>>(), None)];
         while let Some((list, below)) = lists.pop() {
             let Some(root) = tree.root(faces, &list, options, t) else { continue };
@@ -106,7 +75,7 @@ impl Tree {
         }
         let mut splits = |&piece: &u32| {
             let plane = faces[self.face(piece) as usize].plane();
-            let split = |other: &&u32| self.side(plane, **other) == Side::Both;
+            let split = |other: &&u32| self.pieces.side(plane, **other) == Side::Both;
             let splits = list.iter().filter(split).count();
             t.step(|| Step::Tried { piece, splits });
             splits
@@ -147,14 +116,15 @@ impl Tree {
         let plane = self.nodes[node as usize].plane;
         let mut halves = [Vec::new(), Vec::new()];
         for piece in list.into_iter().filter(|&piece| piece != root) {
-            let side = self.side(&plane, piece);
+            let side = self.pieces.side(&plane, piece);
             t.step(|| Step::Sorted { piece, side });
             match side {
                 Side::Front => halves[0].push(piece),
                 Side::Back => halves[1].push(piece),
                 Side::On => self.nodes[node as usize].on.push(piece),
                 Side::Both => {
-                    let into = self.split(&plane, piece, options)?;
+                    let limit = ("pieces of a tree", options.max_pieces);
+                    let into = self.pieces.split(&plane, piece, limit)?;
                     t.step(|| Step::Split { piece, into });
                     halves.iter_mut().zip(into).for_each(|(half, piece)| half.push(piece));
                 }
@@ -163,48 +133,15 @@ impl Tree {
         Ok(halves)
     }
 
-    fn side(&self, plane: &Plane, piece: u32) -> Side {
-        let (mut front, mut back) = (false, false);
-        for corner in &self.pieces[piece as usize].corners {
-            let distance = plane.evaluate(*corner);
-            front |= distance > self.tolerance;
-            back |= distance < -self.tolerance;
-        }
-        match (front, back) {
-            (true, true) => Side::Both,
-            (true, false) => Side::Front,
-            (false, true) => Side::Back,
-            (false, false) => Side::On,
-        }
-    }
-
-    /// Splits a piece into its parts in front of a plane and behind it.
-    fn split(&mut self, plane: &Plane, piece: u32, options: &Options) -> Result<[u32; 2]> {
-        let limit = options.max_pieces as u64;
-        if self.pieces.len() as u64 + 2 > limit {
-            let value = self.pieces.len() as u64 + 2;
-            return Err(Error::Limit { what: "pieces of a tree", value, limit });
-        }
-        let Piece { face, ref corners, cut: before } = self.pieces[piece as usize];
-        let parts = [1.0, -1.0].map(|sign| part(plane, sign, corners));
-        let first = self.pieces.len() as u32;
-        for (corners, front) in parts.into_iter().zip([true, false]) {
-            let cut = Some(self.cuts.len() as u32);
-            self.cuts.push(Cut { plane: *plane, front, before });
-            self.pieces.push(Piece { face, corners, cut });
-        }
-        Ok([first, first + 1])
-    }
-
     /// Returns the face that a piece is of.
     pub fn face(&self, piece: u32) -> u32 {
-        self.pieces[piece as usize].face
+        self.pieces.face(piece)
     }
 
     /// Returns the corners of a piece; where it was concave, they may be joined by edges to and fro
     /// along a cut.
     pub fn corners(&self, piece: u32) -> &[DVec3] {
-        &self.pieces[piece as usize].corners
+        self.pieces.corners(piece)
     }
 
     /// Returns the number of nodes.
@@ -214,14 +151,7 @@ impl Tree {
 
     /// Returns whether a point of a piece's face belongs to the piece.
     pub fn holds(&self, piece: u32, point: DVec3) -> bool {
-        let mut next = self.pieces[piece as usize].cut;
-        while let Some(cut) = next.and_then(|cut| self.cuts.get(cut as usize)) {
-            if (cut.plane.evaluate(point) >= 0.0) != cut.front {
-                return false;
-            }
-            next = cut.before;
-        }
-        true
+        self.pieces.holds(piece, point)
     }
 
     /// Returns the pieces from back to front as an eye sees them: each may be painted over those before it.
@@ -250,20 +180,4 @@ impl Tree {
         }
         order
     }
-}
-
-/// Returns the corners of what lies on one side of a plane, by Sutherland and Hodgman.
-fn part(plane: &Plane, sign: f64, corners: &[DVec3]) -> Vec<DVec3> {
-    let mut part = Vec::with_capacity(corners.len() + 1);
-    let next = corners.iter().cycle().skip(1);
-    for (&a, &b) in corners.iter().zip(next) {
-        let [da, db] = [a, b].map(|p| plane.evaluate(p) * sign);
-        if da >= 0.0 {
-            part.push(a);
-        }
-        if (da > 0.0 && db < 0.0) || (da < 0.0 && db > 0.0) {
-            part.push(a + (b - a) * (da / (da - db)));
-        }
-    }
-    part
 }

@@ -1,9 +1,9 @@
 //! A pyramid of depths.
 
+use super::Screen;
 use crate::Result;
 use crate::math::DVec2;
 use crate::target::Pixels;
-use crate::visibility::polygons::Screen;
 
 /// Levels of depths: the z-buffer, and levels of half the size, whose entries are the farthest of four, up to a single
 /// one.

@@ -1,34 +1,7 @@
-//! The edges that a sweep line cuts, from below to above, in a balanced tree.
+//! The edges or segments that a sweep line cuts, from below to above, in a balanced tree.
 //!
 //! A treap (C. R. Aragon, R. G. Seidel, *Randomized search trees*, 1989) whose priorities are hashes
 //! of the edges' numbers, so that it is the same for the same input.
-
-use super::Vertex;
-use crate::math::Orientation;
-
-/// An edge of a ring, from its smaller to its larger point.
-#[derive(Debug, Clone, Copy)]
-pub struct Edge<P> {
-    pub a: P,
-    pub b: P,
-    pub ring: usize,
-}
-
-impl<P: Vertex> Edge<P> {
-    /// Returns whether it passes above another one, where one line of the sweep cuts both and they
-    /// do not cross; upright edges count as leaning to the right.
-    pub fn is_above(&self, other: &Self) -> bool {
-        let side = |of: &Self, from: &Self| match P::turn(from.a, from.b, of.a) {
-            Orientation::Collinear => P::turn(from.a, from.b, of.b),
-            side => side,
-        };
-        if self.a.order(other.a).is_lt() {
-            side(other, self) == Orientation::Clockwise
-        } else {
-            side(self, other) == Orientation::CounterClockwise
-        }
-    }
-}
 
 const NONE: usize = usize::MAX;
 
@@ -53,11 +26,11 @@ impl Status {
         Self { nodes: vec![Node { parent: NONE, children: [NONE; 2] }; edges], root: NONE }
     }
 
-    /// Inserts an edge that is not on the line.
-    pub fn insert<P: Vertex>(&mut self, edges: &[Edge<P>], edge: usize) {
+    /// Inserts an edge that is not on the line; `is_above` returns whether it is above another one.
+    pub fn insert(&mut self, edge: usize, mut is_above: impl FnMut(usize) -> bool) {
         let (mut parent, mut side, mut at) = (NONE, 0, self.root);
         while at != NONE {
-            (parent, side) = (at, usize::from(edges[edge].is_above(&edges[at])));
+            (parent, side) = (at, usize::from(is_above(at)));
             at = self.nodes[at].children[side];
         }
         self.nodes[edge] = Node { parent, children: [NONE; 2] };
@@ -89,10 +62,41 @@ impl Status {
 
     /// Returns the edge next below one that is on the line.
     pub fn below(&self, edge: usize) -> Option<usize> {
-        let mut at = self.nodes[edge].children[0];
+        self.next(edge, 0)
+    }
+
+    /// Returns the edge next above one that is on the line.
+    pub fn above(&self, edge: usize) -> Option<usize> {
+        self.next(edge, 1)
+    }
+
+    /// Returns the lowest edge of which a predicate is true that is false for all below it and true for all above it.
+    pub fn first(&self, mut is_late: impl FnMut(usize) -> bool) -> Option<usize> {
+        let (mut found, mut at) = (None, self.root);
+        while at != NONE {
+            let late = is_late(at);
+            found = if late { Some(at) } else { found };
+            at = self.nodes[at].children[usize::from(!late)];
+        }
+        found
+    }
+
+    /// Returns the highest edge on the line.
+    pub fn last(&self) -> Option<usize> {
+        let (mut found, mut at) = (None, self.root);
+        while at != NONE {
+            found = Some(at);
+            at = self.nodes[at].children[1];
+        }
+        found
+    }
+
+    /// Returns the edge next to one that is on the line: below it for side 0, above it for side 1.
+    fn next(&self, edge: usize, side: usize) -> Option<usize> {
+        let mut at = self.nodes[edge].children[side];
         if at != NONE {
-            while self.nodes[at].children[1] != NONE {
-                at = self.nodes[at].children[1];
+            while self.nodes[at].children[1 - side] != NONE {
+                at = self.nodes[at].children[1 - side];
             }
             return Some(at);
         }
@@ -100,7 +104,7 @@ impl Status {
         loop {
             let parent = self.nodes[at].parent;
             let node = self.nodes.get(parent)?;
-            if node.children[1] == at {
+            if node.children[1 - side] == at {
                 return Some(parent);
             }
             at = parent;

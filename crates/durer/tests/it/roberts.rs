@@ -1,0 +1,220 @@
+//! Roberts' hidden lines of convex bodies: the numbers by hand, and the same drawing as by quantitative invisibility.
+
+use crate::line_scenes::{Random, Triangle, cuboid, soup, view};
+use durer::math::{DMat3, DVec3};
+use durer::trace::{NoTrace, Recorder};
+use durer::visibility::back_face::Eye;
+use durer::visibility::line::hidden_line;
+use durer::visibility::line::roberts::{self, Body, Line, Options, Step, draw};
+
+const ISO: DVec3 = DVec3::new(1.0, -1.7, 0.9);
+
+fn bodies(triangles: &[Triangle]) -> Vec<Body> {
+    let faces: Vec<Vec<DVec3>> = triangles.iter().map(|t| t.to_vec()).collect();
+    Body::several(&faces).unwrap()
+}
+
+fn lines(bodies: &[Body], eye: Eye) -> Vec<Line> {
+    let mut steps = Recorder::default();
+    let lines = draw(bodies, eye, &Options::default(), &mut steps);
+    assert_eq!(draw(bodies, eye, &Options::default(), &mut NoTrace), lines);
+    assert_eq!(roberts::replay(steps.steps()), lines);
+    lines
+}
+
+/// Returns the length of what is seen, on a plane: across the direction, or at distance 1 from the eye.
+fn length(lines: &[Line], eye: Eye, to_eye: DVec3) -> f64 {
+    let n = to_eye.normalize();
+    let place = |p: DVec3| match eye {
+        Eye::At(at) => (p - at) / (at - p).dot(n),
+        Eye::Along(_) => p - n * p.dot(n),
+    };
+    lines.iter().flat_map(Line::parts).map(|[p, q]| place(p).distance(place(q))).sum()
+}
+
+/// Returns boxes in any position, with corners that are short numbers; some go through each other.
+fn turned_boxes(count: usize, random: &mut Random) -> Vec<Triangle> {
+    let mut all = Vec::new();
+    for _ in 0..count {
+        let mut number = |low: f64, high: f64| low + random.next() * (high - low);
+        let half = [0; 3].map(|_| number(0.5, 2.0));
+        let middle = DVec3::from([0; 3].map(|_| number(0.0, 7.0)));
+        let axis = DVec3::from([0; 3].map(|_| number(-1.0, 1.0))).normalize();
+        let turn = DMat3::from_axis_angle(axis, number(0.0, 6.0));
+        let low = half.map(|v| -v);
+        let placed = cuboid(low, half);
+        // Corners of plane faces, as short as those of models: both methods get the same.
+        all.extend(placed.iter().map(|t| t.map(|p| middle + turn * p)));
+    }
+    all
+}
+
+#[test]
+fn pictures_are_those_of_quantitative_invisibility() {
+    let mut random = Random(4);
+    let middle = DVec3::splat(3.5);
+    let mut scales = Vec::new();
+    for round in 0..12 {
+        let triangles = turned_boxes(2 + round / 3, &mut random);
+        let bodies = bodies(&triangles);
+        for perspective in [false, true] {
+            let view = view(middle, ISO, 12.0, perspective);
+            let eye = Eye::of(view.camera());
+            let lines = lines(&bodies, eye);
+            check_by_rays(&bodies, &lines, eye);
+            let found = length(&lines, eye, ISO);
+            // All that there is, however short.
+            let options = hidden_line::Options { tolerance: 0.0, stubs: 0.0, ..Default::default() };
+            let drawing = hidden_line::draw(&soup(&triangles), &view, &options, &mut NoTrace);
+            let drawing = drawing.unwrap();
+            let expected = drawing.length(|line| line.is_visible());
+            if perspective {
+                // The plane of the drawing is at another distance, always the same one.
+                scales.push(expected / found);
+            } else {
+                let off = (found - expected).abs() / expected;
+                assert!(off < 1e-5, "round {round}: {found} {expected}");
+            }
+        }
+    }
+    let off = scales.iter().map(|s| (s / scales[0] - 1.0).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-5, "{scales:?}");
+}
+
+/// Compares points of lines with rays to the eye, wherever those are not close to an edge of a body.
+fn check_by_rays(bodies: &[Body], lines: &[Line], eye: Eye) {
+    for line in lines {
+        for k in 0..40 {
+            let t = (f64::from(k) + 0.37) / 40.0;
+            let p = line.ends[0].lerp(line.ends[1], t);
+            let to_eye = match eye {
+                Eye::At(at) => at - p,
+                Eye::Along(direction) => -direction,
+            };
+            // Length of the ray's part inside a body; less than a thousandth is too close to tell.
+            let inside = |body: &Body| {
+                let (mut from, mut to) =
+                    (0.0_f64, if matches!(eye, Eye::At(_)) { 1.0 } else { 1e3_f64 });
+                for plane in body.planes() {
+                    let (at, rise) = (plane.evaluate(p), plane.normal.dot(to_eye));
+                    if rise > 0.0 {
+                        from = from.max(-at / rise);
+                    } else if rise < 0.0 {
+                        to = to.min(-at / rise);
+                    } else if at <= 0.0 {
+                        return -1.0;
+                    }
+                }
+                (to - from) * to_eye.length()
+            };
+            let others = bodies.iter().enumerate().filter(|(n, _)| !line.bodies.contains(n));
+            let depths: Vec<f64> = others.map(|(_, body)| inside(body)).collect();
+            if depths.iter().any(|depth| depth.abs() < 1e-3) {
+                continue;
+            }
+            let is_hidden = depths.iter().any(|depth| *depth > 0.0);
+            let is_seen = line.visible.iter().any(|[from, to]| (*from..=*to).contains(&t));
+            assert_eq!(is_seen, !is_hidden, "{t} of {line:?}");
+        }
+    }
+}
+
+#[test]
+fn a_box_hides_the_middle_of_an_edge() {
+    // Seen along −z: the plate before the bar hides x from 2 to 4.
+    let mut triangles = cuboid([0.0, 1.0, 0.0], [10.0, 2.0, 1.0]);
+    triangles.extend(cuboid([2.0, 0.0, 5.0], [4.0, 3.0, 6.0]));
+    let bodies = bodies(&triangles);
+    let mut steps = Recorder::default();
+    let eye = Eye::Along(DVec3::NEG_Z);
+    let found = draw(&bodies, eye, &Options::default(), &mut steps);
+    // Each front face has four edges; the others look away or are seen edge-on.
+    assert_eq!(found.len(), 8);
+    let long: Vec<_> = found.iter().filter(|line| line.visible.len() == 2).collect();
+    assert_eq!(long.len(), 2);
+    for line in long {
+        let mut seen: Vec<[f64; 2]> = line.parts().map(|part| part.map(|p| p.x)).collect();
+        seen.iter_mut().for_each(|part| part.sort_by(f64::total_cmp));
+        seen.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let expected = [[0.0, 2.0], [4.0, 10.0]];
+        let off = seen.iter().flatten().zip(expected.iter().flatten()).map(|(a, b)| (a - b).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-12, "{seen:?}");
+    }
+    let hidden: Vec<_> = steps
+        .steps()
+        .iter()
+        .filter_map(|step| {
+            if let Step::Hidden { body, part, .. } = step { Some((*body, *part)) } else { None }
+        })
+        .collect();
+    assert!(hidden.iter().all(|(body, _)| *body == 1));
+    assert_eq!(hidden.len(), 2);
+    // No edge of the plate is compared by inequalities: the bar is behind its planes.
+    let compared = |step: &&Step| matches!(step, Step::Compare { body: 0, .. });
+    assert_eq!(steps.steps().iter().filter(compared).count(), 0);
+}
+
+#[test]
+fn what_touches_is_seen() {
+    // A small box on a large one, flush with its front, and one beside it.
+    let mut triangles = cuboid([0.0, 0.0, 0.0], [4.0, 4.0, 2.0]);
+    triangles.extend(cuboid([1.0, 0.0, 2.0], [3.0, 2.0, 4.0]));
+    triangles.extend(cuboid([4.0, 1.0, 0.0], [5.0, 3.0, 1.0]));
+    let bodies = bodies(&triangles);
+    let eye = Eye::Along(-ISO);
+    let found = draw(&bodies, eye, &Options { junctions: false }, &mut NoTrace);
+    // The foot of the small box on the large one.
+    let foot = |line: &&Line| line.ends.iter().all(|p| p.z == 2.0) && line.bodies == [1, 1];
+    let seen = found.iter().filter(foot).filter(|line| line.visible == [[0.0, 1.0]]);
+    assert_eq!(seen.count(), 2);
+    // It hides what is behind it of the edge at the back.
+    let back = |line: &&Line| line.ends.iter().all(|p| p.y == 4.0 && p.z == 2.0);
+    let back = found.iter().find(back).unwrap();
+    assert_ne!(back.visible, [[0.0, 1.0]]);
+}
+
+#[test]
+fn a_bar_through_a_box_has_two_rings_of_junctions() {
+    let mut triangles = cuboid([-3.0, -1.0, -1.0], [3.0, 1.0, 1.0]);
+    triangles.extend(cuboid([-0.5, -2.0, -0.5], [0.5, 2.0, 0.5]));
+    let bodies = bodies(&triangles);
+    let eye = Eye::Along(-ISO);
+    let junctions = |junctions| {
+        let lines = draw(&bodies, eye, &Options { junctions }, &mut NoTrace);
+        lines.into_iter().filter(|line| line.bodies[0] != line.bodies[1]).collect::<Vec<_>>()
+    };
+    assert_eq!(junctions(false), []);
+    // The bar comes out towards the eye through one face, of which two of its seen faces meet two edges.
+    let found = junctions(true);
+    assert!(found.iter().all(|line| line.ends.iter().all(|p| p.y == -1.0)), "{found:?}");
+    assert_eq!(found.len(), 2);
+}
+
+#[test]
+fn bodies_must_be_closed_and_convex() {
+    let faces = |triangles: &[Triangle]| -> Vec<Vec<DVec3>> {
+        triangles.iter().map(|t| t.to_vec()).collect()
+    };
+    let cube = faces(&cuboid([0.0; 3], [1.0; 3]));
+    assert!(Body::new(&cube).is_ok());
+    let told = |faces: &[Vec<DVec3>]| Body::new(faces).unwrap_err().to_string();
+    assert!(told(&cube[1..]).contains("closed"));
+    assert!(told(&cube[..2]).contains("volume"));
+    assert!(told(&[]).contains("closed"));
+    let mut dented = cube.clone();
+    let inside = DVec3::splat(0.4);
+    dented.iter_mut().flatten().filter(|p| **p == DVec3::ONE).for_each(|p| *p = inside);
+    assert!(told(&dented).contains("convex"));
+    let mut wrong = cube;
+    wrong[0][0].x = f64::NAN;
+    assert!(Body::several(&wrong).is_err());
+    // Inside out, or with faces in any direction, is the same body.
+    let turned: Vec<Vec<DVec3>> = faces(&cuboid([0.0; 3], [1.0; 3]))
+        .into_iter()
+        .map(|f| f.into_iter().rev().collect())
+        .collect();
+    let body = Body::new(&turned).unwrap();
+    // The two triangles of a side have one plane, and their common edge is none of the body's.
+    assert_eq!((body.planes().len(), body.edges().len(), body.corners().len()), (6, 12, 8));
+    assert_eq!(Body::several(&[]).unwrap(), []);
+}
