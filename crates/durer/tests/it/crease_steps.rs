@@ -82,6 +82,38 @@ fn ticks_within_a_round_part_are_no_creases() {
     assert_eq!(by_angle, by_neighbours);
 }
 
+/// Returns a bar from x = −4 to 4 with a vaulted roof in which a valley at y = 0 has sides of a slope for each of
+/// 16 steps.
+fn valley(slope: impl Fn(usize) -> f64) -> Vec<Triangle> {
+    let ring = |i: usize| {
+        let x = i as f64 / 2.0 - 4.0;
+        let height = |y: f64| 1.0 - y * y / 16.0 + y.abs() * slope(i);
+        let roof = (0..9).map(|k| 2.0 - f64::from(k) / 2.0);
+        let roof = roof.map(|y| DVec3::new(x, y, height(y)));
+        let floor = [-2.0, 2.0].map(|y| DVec3::new(x, y, -1.0));
+        floor.into_iter().chain(roof).collect::<Vec<_>>()
+    };
+    along(&(0..17).map(ring).collect::<Vec<_>>())
+}
+
+#[test]
+fn creases_between_round_parts_go_on_where_they_fade() {
+    let fading = |i: usize| 0.33 * ((16 - i) as f64 / 16.0).powi(2);
+    let mut faded = valley(fading);
+    for _ in 0..2 {
+        let [by_angle, by_neighbours] = [false, true].map(|n| creases(&faded, 40.0, n));
+        // From 36° to less than the facets' own 3.6°.
+        assert!((by_neighbours - by_angle - 8.0).abs() < 0.01, "{by_angle} {by_neighbours}");
+        faded.reverse();
+    }
+    // A vault alone, and one whose valley ends in it before a third of the way to the other side.
+    let ends_early = |i: usize| 0.33 * (1.0 - i as f64 / 5.0).max(0.0);
+    for body in [valley(|_| 0.0), valley(ends_early)] {
+        let [by_angle, by_neighbours] = [false, true].map(|n| creases(&body, 40.0, n));
+        assert_eq!(by_angle, by_neighbours);
+    }
+}
+
 #[test]
 fn slivers_of_fillets_leave_no_ticks() {
     let Some(folder) = data::folder() else { return };

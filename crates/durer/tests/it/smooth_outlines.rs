@@ -292,6 +292,16 @@ fn what_is_modelled_in_few_facets_keeps_them() {
         assert_eq!(auto == drawn(&ball, Smooth::On), round, "{n}");
         assert_eq!(auto == drawn(&ball, Smooth::Off), !round, "{n}");
     }
+    // A ring whose wire has ten sides is round if the wire is thin.
+    for (wire, round) in [(0.05, true), (1.0, false)] {
+        let thinner = |p: DVec3| {
+            let center = DVec3::new(p.x, p.y, 0.0).normalize() * 2.0;
+            (center + (p - center) * wire) * 0.5
+        };
+        let ring: Vec<Triangle> = torus(60, 10).into_iter().map(|t| t.map(thinner)).collect();
+        assert_eq!(drawn(&ring, Smooth::Auto) == drawn(&ring, Smooth::On), round, "{wire}");
+        assert_eq!(drawn(&ring, Smooth::Auto) == drawn(&ring, Smooth::Off), !round, "{wire}");
+    }
     // Nothing of a box bends.
     let cube = bar(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]);
     assert_eq!(drawn(&cube, Smooth::Auto), drawn(&cube, Smooth::Off));

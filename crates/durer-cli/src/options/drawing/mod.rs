@@ -34,7 +34,8 @@ pub struct DrawingArgs {
     ///
     /// By default, and with --smooth, the surroundings of an edge count too: edges from 3 degrees are creases if the
     /// faces beside them are flat, and a few edges of up to 60 degrees that begin and end within a round part are
-    /// not. With any angle other than 40, the angle alone decides.
+    /// not; a crease between round parts that leads from one sharp corner to another is drawn whole, though it
+    /// fades. With any angle other than 40, the angle alone decides.
     #[arg(long, value_name = "FROM[,TO]", allow_hyphen_values = true, default_value = "40", value_parser = crease)]
     pub crease: Crease,
     /// Classes of lines to draw, separated by commas [default: all but tangent, wire and shadow]
@@ -336,7 +337,7 @@ pub enum Fill {
 /// `--smooth`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Smooth {
-    /// On round objects: those whose bent edges mostly turn by less than 25 degrees
+    /// On round objects: those whose bent edges mostly turn by less than 25 degrees, or have narrow facets
     Auto,
     /// Wherever there is no crease
     On,

@@ -7,6 +7,7 @@ mod crease_chain;
 mod crossing;
 pub mod edge_lines;
 mod facing;
+mod fading;
 pub mod floating_horizon;
 pub mod hidden_line;
 pub mod horizon_curves;

@@ -5,6 +5,7 @@
 //! of a thing are drawn alike. O(n).
 
 use super::planes::Planes;
+use crate::math::DVec3;
 use crate::parallel;
 use crate::visibility::object::{Edges, Faces};
 use std::ops::Range;
@@ -16,7 +17,8 @@ pub enum Smooth {
     #[default]
     Off,
     /// They are smooth on objects that the mesh says are round: where most of what bends, by area and without
-    /// creases, turns by less than 25° from facet to facet. Bends of more than 30° are edges on these, too.
+    /// creases, turns by less than 25° from facet to facet, or has facets too narrow to be seen as such. Bends of more
+    /// than 30° are edges on the former, too.
     Auto,
     /// They are smooth wherever the mesh has no creases.
     On,
@@ -36,38 +38,70 @@ const COARSE: f64 = 0.906;
 /// parts have up to 5 %, those of few facets from 20 % on.
 const COARSE_PART: f64 = 0.125;
 
-impl Smooth {
-    /// Returns the angle in radians from which edges of smooth surfaces are sharp, where creases are from
-    /// `crease` on.
-    pub(super) fn sharp_from(self, crease: f64) -> f64 {
-        if self == Self::Auto { crease.min(ROUND) } else { crease }
+/// The part of an object's diagonal within which facets pass for the surface itself: less than a pen's width where the
+/// object fills a page. So a thin wire may have few facets around, and be round.
+const UNSEEN: f64 = 0.002;
+
+/// The items of objects that have smooth outlines.
+pub(super) struct Round {
+    /// True for each of these.
+    pub items: Vec<bool>,
+    /// True for those of objects whose facets are too narrow to be seen; empty if there are none.
+    narrow: Vec<bool>,
+    /// The angle in radians from which edges of the others are sharp, and of the narrow ones.
+    sharp: [f64; 2],
+}
+
+impl Round {
+    /// Returns whether an item is of an object whose facets are too narrow to be seen.
+    pub fn is_narrow(&self, item: u32) -> bool {
+        self.narrow.get(item as usize) == Some(&true)
     }
 
-    /// Returns true for each item of an object that has smooth outlines; `None` if none has.
-    pub(super) fn items(
+    /// Returns the angles in radians from which edges are sharp, and whether they are those of narrow facets.
+    pub fn sharp(&self) -> impl Iterator<Item = (f64, bool)> {
+        let kinds = if self.narrow.is_empty() { 1 } else { 2 };
+        self.sharp.into_iter().zip([false, true]).take(kinds)
+    }
+}
+
+impl Smooth {
+    /// Returns the items of objects that have smooth outlines, where creases are from `crease` on; `None` if none has.
+    pub(super) fn round(
         self,
         (faces, edges): (&Faces, &Edges),
         planes: Option<&Planes>,
         crease: f64,
-    ) -> Option<Vec<bool>> {
+    ) -> Option<Round> {
         let Some(planes) = planes.filter(|_| self == Self::Auto) else {
-            return (self == Self::On).then(|| vec![true; faces.len()]);
+            let (items, narrow) = (vec![true; faces.len()], Vec::new());
+            return (self == Self::On).then_some(Round { items, narrow, sharp: [crease; 2] });
         };
+        let sharp = [crease.min(ROUND), crease];
         let objects = faces.runs().iter().map(|r| r.instance + 1).max().unwrap_or(0);
-        let mut bent = vec![Bent::default(); objects];
-        for (object, part) in bends((faces, edges), planes, libm::cos(crease)) {
-            bent[object].round += part.round;
-            bent[object].coarse += part.coarse;
+        let crease = libm::cos(crease);
+        let bent = sums(bends((faces, edges), planes, (crease, &[])), objects);
+        let mut round: Vec<bool> = bent.iter().map(Bent::is_round).collect();
+        let mut narrow = vec![false; objects];
+        if bent.iter().any(Bent::is_of_few_facets) {
+            let unseen = sizes(faces, objects).into_iter().map(|s| s * UNSEEN).collect::<Vec<_>>();
+            let bent = sums(bends((faces, edges), planes, (crease, &unseen)), objects);
+            narrow =
+                bent.iter().zip(&round).map(|(bent, round)| !round && bent.is_round()).collect();
+            round.iter_mut().zip(&narrow).for_each(|(round, narrow)| *round |= narrow);
         }
-        let is_round = |b: &Bent| b.round > 0.0 && b.coarse <= COARSE_PART * (b.round + b.coarse);
-        if !bent.iter().any(is_round) {
+        if !round.contains(&true) {
             return None;
         }
-        let mut items = vec![false; faces.len()];
-        for run in faces.runs().iter().filter(|r| is_round(&bent[r.instance])) {
-            items[run.items.start as usize..run.items.end as usize].fill(true);
-        }
-        Some(items)
+        let of = |objects: &[bool]| {
+            let mut items = vec![false; faces.len()];
+            for run in faces.runs().iter().filter(|r| objects[r.instance]) {
+                items[run.items.start as usize..run.items.end as usize].fill(true);
+            }
+            items
+        };
+        let narrow = if narrow.contains(&true) { of(&narrow) } else { Vec::new() };
+        Some(Round { items: of(&round), narrow, sharp })
     }
 }
 
@@ -78,23 +112,61 @@ struct Bent {
     coarse: f64,
 }
 
-/// Returns the bends in parts of one object each, in an order that is always the same.
-fn bends((faces, edges): (&Faces, &Edges), planes: &Planes, crease: f64) -> Vec<(usize, Bent)> {
+impl Bent {
+    fn is_of_few_facets(&self) -> bool {
+        self.coarse > COARSE_PART * (self.round + self.coarse)
+    }
+
+    fn is_round(&self) -> bool {
+        self.round > 0.0 && !self.is_of_few_facets()
+    }
+}
+
+/// Returns the sums of bends by object.
+fn sums(parts: Vec<(usize, Bent)>, objects: usize) -> Vec<Bent> {
+    let mut bent = vec![Bent::default(); objects];
+    for (object, part) in parts {
+        bent[object].round += part.round;
+        bent[object].coarse += part.coarse;
+    }
+    bent
+}
+
+/// Returns the diagonal of each object.
+fn sizes(faces: &Faces, objects: usize) -> Vec<f64> {
+    let mut boxes = vec![[DVec3::INFINITY, DVec3::NEG_INFINITY]; objects];
+    for run in faces.runs() {
+        let [min, max] = &mut boxes[run.instance];
+        for corner in run.items.clone().filter_map(|item| faces.corners(item)).flatten() {
+            (*min, *max) = (min.min(corner), max.max(corner));
+        }
+    }
+    boxes.into_iter().map(|[min, max]| (max - min).max(DVec3::ZERO).length()).collect()
+}
+
+/// Returns the bends in parts of one object each, in an order that is always the same. Facets that are no further from
+/// a round surface than what is `unseen` of their object, if that is given, are not coarse.
+fn bends(
+    (faces, edges): (&Faces, &Edges),
+    planes: &Planes,
+    (crease, unseen): (f64, &[f64]),
+) -> Vec<(usize, Bent)> {
     let count = faces.points().len() as u32;
     let jobs: Vec<_> = (0..count).step_by(1 << 15).map(|v| v..(v + (1 << 15)).min(count)).collect();
-    parallel::map(jobs, |vertices| bends_from((faces, edges), planes, crease, vertices)).concat()
+    let of = |vertices| bends_from((faces, edges), planes, (crease, unseen), vertices);
+    parallel::map(jobs, of).concat()
 }
 
 /// Returns the same of the edges whose smaller vertices lie in a range.
 fn bends_from(
     (faces, edges): (&Faces, &Edges),
     planes: &Planes,
-    crease: f64,
+    (crease, unseen): (f64, &[f64]),
     vertices: Range<u32>,
 ) -> Vec<(usize, Bent)> {
     let mut found: Vec<(usize, Bent)> = Vec::new();
     let (mut items, mut object) = (0..0, 0);
-    for (_, sides) in edges.from_vertices(vertices) {
+    for (ends, sides) in edges.from_vertices(vertices) {
         let [a, b] = sides else { continue };
         let cosine = planes.cosine(*a, *b);
         if !(cosine < FLAT && cosine >= crease) {
@@ -109,7 +181,17 @@ fn bends_from(
         }
         let Some((_, bent)) = found.last_mut() else { continue };
         let area = planes.area(a.item()) + planes.area(b.item());
-        *(if cosine < COARSE { &mut bent.coarse } else { &mut bent.round }) += area;
+        let is_unseen = |unseen: &f64| {
+            // The sagitta of a chord as wide as the facets, which is θ/8 of its width.
+            let width = area / (2.0 * length(faces, ends));
+            width * (2.0 * (1.0 - cosine)).sqrt() / 8.0 <= *unseen
+        };
+        let coarse = cosine < COARSE && !unseen.get(object).is_some_and(is_unseen);
+        *(if coarse { &mut bent.coarse } else { &mut bent.round }) += area;
     }
     found
+}
+
+fn length(faces: &Faces, [a, b]: [u32; 2]) -> f64 {
+    faces.points()[a as usize].distance(faces.points()[b as usize])
 }

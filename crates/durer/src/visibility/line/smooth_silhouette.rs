@@ -17,6 +17,7 @@
 use super::bend::{Bend, Bends};
 use super::crossing::{Crossing, crossings};
 use super::planes::Planes;
+use super::roundness::Round;
 use super::smooth_surface::SmoothSurface;
 use crate::math::DVec3;
 use crate::scene::Scene;
@@ -109,14 +110,14 @@ struct Part {
 /// A corner of a part of a triangle: its vertex, and where it lies on the flat triangle.
 type Corner = (u32, DVec3);
 
-/// Divides the faces that are said to be `round`, item by item; edges are sharp from an angle on, radians.
+/// Divides the faces that are said to be `round`.
 pub(super) fn divided(
     scene: &Scene,
     (whole, edges, planes): (Faces, &Edges, Planes),
     plane: &PicturePlane,
-    (round, sharp): (&[bool], f64),
+    round: &Round,
 ) -> Divided {
-    let surface = SmoothSurface::new(scene, (&whole, edges, &planes), plane, (round, sharp));
+    let surface = SmoothSurface::new(scene, (&whole, edges, &planes), plane, round);
     drop(planes);
     let mut crossings = crossings(&whole, &surface);
     crossings.sort_unstable_by(|a, b| {

@@ -6,6 +6,7 @@
 //! for k triangles there.
 
 use super::planes::Planes;
+use super::roundness::Round;
 use super::vertex_normals::{Directions, direction, each_normal};
 use crate::math::{DMat3, DVec3};
 use crate::scene::{Mesh, Scene};
@@ -54,18 +55,22 @@ struct Seen<'a> {
 }
 
 impl SmoothSurface {
-    /// Creates the surface of the faces that are said to be `round`, item by item, with edges from the angle
-    /// `sharp` on, radians.
+    /// Creates the surface of the faces that are said to be `round`.
     pub fn new(
         scene: &Scene,
         (faces, edges, planes): (&Faces, &Edges, &Planes),
         plane: &PicturePlane,
-        (round, sharp): (&[bool], f64),
+        round: &Round,
     ) -> Self {
-        let seen = Seen { scene, faces, planes, plane, round };
-        let without = seen.without_normals();
-        let directions = Directions::new((faces, edges), planes, sharp, &without);
-        let near = seen.near_outlines(&directions);
+        let seen = Seen { scene, faces, planes, plane, round: &round.items };
+        let kind = |(sharp, narrow): (f64, bool)| {
+            let mut items = seen.without_normals();
+            items.retain(|item| round.is_narrow(*item) == narrow);
+            (Directions::new((faces, edges), planes, sharp, &items), items)
+        };
+        let kinds: Vec<_> = round.sharp().map(kind).collect();
+        let turned = || kinds.iter().flat_map(|(directions, _)| &directions.turned).copied();
+        let near = seen.near_outlines(turned().map(|t| t.0));
         let mut found = Self {
             corners: vec![[NONE; 3]; faces.len()],
             first: vec![NONE; faces.points().len()],
@@ -77,8 +82,10 @@ impl SmoothSurface {
                 found.add_given(&seen, run, mesh, &near);
             }
         }
-        found.add_averages(&seen, &directions, &without, &near);
-        found.turned.extend_from_slice(&directions.turned);
+        for (directions, items) in &kinds {
+            found.add_averages(&seen, directions, items, &near);
+        }
+        found.turned.extend(turned());
         found.turned.sort_by_key(|t| t.0);
         found
     }
@@ -192,11 +199,11 @@ impl Seen<'_> {
     }
 
     /// Returns true for each item that is at most two triangles away from where faces of both sides meet, or
-    /// normals of both, or from a sliver of unknown side: outlines run there, and curvatures are averaged
-    /// around them.
-    fn near_outlines(&self, directions: &Directions<'_>) -> Vec<bool> {
+    /// normals of both, or from a sliver of unknown side, which are given: outlines run there, and curvatures are
+    /// averaged around them.
+    fn near_outlines(&self, slivers: impl Iterator<Item = u32>) -> Vec<bool> {
         let mut sides = self.sides_at_vertices();
-        for t in directions.turned.iter().filter_map(|t| self.faces.triangle(t.0)) {
+        for t in slivers.filter_map(|item| self.faces.triangle(item)) {
             t.iter().for_each(|v| sides[*v as usize] = BOTH);
         }
         let mut near: Vec<bool> = sides.into_iter().map(|s| s == BOTH).collect();

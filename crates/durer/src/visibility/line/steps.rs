@@ -10,6 +10,7 @@
 //! Flat faces are of two triangles or more: single ones that are turned against each other are what scanned meshes are
 //! made of.
 
+use super::fading::{FIRST_COSINE, Fading};
 use super::planes::Planes;
 use super::roundness::FLAT;
 use super::vertex_normals::Directions;
@@ -45,16 +46,23 @@ impl Steps {
         let mut turns = Turns::default();
         seen.each_job(|vertices| seen.turns(vertices)).into_iter().for_each(|t| turns.add(t));
         let blunt = seen.blunt(&turns.flat);
-        let loose = turns.loose(faces.points().len());
-        if blunt.is_empty() && loose.is_empty() {
+        let count = faces.points().len();
+        let loose = turns.loose(count);
+        let fading = turns.fading(count);
+        if blunt.is_empty() && loose.is_empty() && fading.is_empty() {
             return Self { creases: Vec::new(), facets: Vec::new(), items: Vec::new() };
         }
         // Slivers that rounding has turned lie in no plane with others, and are few along lines.
         let directions = |crease| Directions::new((faces, edges), planes, crease, &[]);
         let fine = directions(crease);
         let blunt = blunt.into_iter().filter(|t| !fine.is_round(t.ends, t.items));
-        let creases = turns.held(blunt.map(|t| t.ends).collect(), faces.points().len());
+        let mut creases = turns.held(blunt.map(|t| t.ends).collect(), count);
+        let sharp = turns.sharp_at(&creases, count);
         let coarse = directions(NO_STEP);
+        let fades = Fading { faces, edges, directions: &coarse, sharp: &sharp };
+        creases.extend(fades.creases(&fading));
+        creases.sort_unstable();
+        creases.dedup();
         let bends_on = |line: &Vec<Turn>| {
             let on = line.iter().filter(|t| coarse.bends_on(t.ends, t.items));
             2 * on.count() >= line.len()
@@ -104,6 +112,8 @@ struct Turns {
     coarse: Vec<Turn>,
     /// Vertices of others that are not smooth surface.
     sharp: Vec<u32>,
+    /// Edges that may be the first of a crease that fades; some are `coarse`, too.
+    first: Vec<Ends>,
 }
 
 impl Turns {
@@ -111,6 +121,7 @@ impl Turns {
         self.flat.append(&mut more.flat);
         self.coarse.append(&mut more.coarse);
         self.sharp.append(&mut more.sharp);
+        self.first.append(&mut more.first);
     }
 
     /// Returns the edges without those that begin or end in the open, where neither one of them goes on nor a
@@ -141,6 +152,26 @@ impl Turns {
             }
         }
         edges.into_iter().zip(kept).filter(|(_, kept)| *kept).map(|(ends, _)| ends).collect()
+    }
+
+    /// Returns the number of sharp edges at each vertex, these included.
+    fn sharp_at(&self, creases: &[Ends], vertices: usize) -> Vec<u8> {
+        let mut count = vec![0_u8; vertices];
+        for v in self.sharp.iter().chain(creases.iter().flatten()) {
+            let count = &mut count[*v as usize];
+            *count = count.saturating_add(1);
+        }
+        count
+    }
+
+    /// Returns the edges of which one end alone is a sharp edge's, and which may be the first of a crease that fades.
+    fn fading(&self, vertices: usize) -> Vec<Ends> {
+        if self.first.is_empty() || self.sharp.is_empty() {
+            return Vec::new();
+        }
+        let sharp = self.sharp_at(&[], vertices);
+        let is_first = |[a, b]: &Ends| (sharp[*a as usize] > 0) != (sharp[*b as usize] > 0);
+        self.first.iter().copied().filter(is_first).collect()
     }
 
     /// Returns lines of edges, in any number at a vertex, that meet no sharp edge and no loop.
@@ -209,7 +240,12 @@ impl Seen<'_> {
             };
             if cosine >= FLAT {
                 found.flat.extend(items);
-            } else if cosine < self.crease && cosine >= NO_STEP_COSINE {
+                continue;
+            }
+            if cosine < FIRST_COSINE && cosine >= NO_STEP_COSINE {
+                found.first.push(ends);
+            }
+            if cosine < self.crease && cosine >= NO_STEP_COSINE {
                 found.coarse.push(Turn { ends, items });
             } else if cosine < self.crease {
                 found.sharp.extend(ends);

@@ -56,9 +56,10 @@ fn is_tangent(directions: &Directions<'_>, ends: [u32; 2], sides: &[Side], creas
     let [a, b] = items.map(|item| directions.next_bend(ends, item));
     let meets = |round: (f64, Option<f64>), flat: (f64, Option<f64>)| {
         let (width, Some(curvature)) = round else { return false };
-        let own = turn / (curvature * width);
+        let own = turn / (curvature.abs() * width);
+        let is_flatter = |o: f64| o.abs() * UNEVEN <= curvature.abs();
         // What meets it is wider than one facet of it, or it would be as round.
-        TURN.contains(&own) && width < flat.0 && flat.1.is_none_or(|o| o * UNEVEN <= curvature)
+        TURN.contains(&own) && width < flat.0 && flat.1.is_none_or(is_flatter)
     };
     meets(a, b) || meets(b, a)
 }

@@ -207,9 +207,9 @@ impl<'a> Directions<'a> {
         next.is_some_and(|curvature| curvature * curvature >= 2.0 * least)
     }
 
-    /// Returns the width of the flat face that a triangle is a part of, straight across from the edge `ends`, as far as
-    /// that is followed, and the bend of the surface in that direction at its other end: the turn over the mean width
-    /// of the faces there, if it is round.
+    /// Returns the width of the flat face that a triangle is a part of, straight across from the edge `ends`, as far as that
+    /// is followed, and the bend of the surface in that direction at its other end: the turn over the mean width of the
+    /// faces there, if it is round; above 0 where it is convex.
     pub fn next_bend(&self, ends: [u32; 2], item: u32) -> (f64, Option<f64>) {
         self.next_turn(ends, item, FLAT)
     }
@@ -237,7 +237,7 @@ impl<'a> Directions<'a> {
             let cosine = own.dot(self.of(beside));
             if cosine < until {
                 let width = (far + self.height(side, beside)) / 2.0;
-                let turn = self.of(beside).dot(along).abs();
+                let turn = self.of(beside).dot(along) * (exit - at).dot(along).signum();
                 return (far, (cosine >= self.crease).then(|| turn / width));
             }
             (item, ends, at) = (beside, side, exit);

@@ -96,7 +96,8 @@ pub struct Options {
     pub crease_end: f64,
     /// True if the surroundings of an edge may decide against `crease`: edges from 3° on between
     /// flat faces that bend no further are creases, too, and a few edges of up to 60° that begin
-    /// and end within round faces are none.
+    /// and end within round faces are none. A crease between round faces goes on where it fades, if it leads
+    /// from one sharp corner to another.
     pub neighbours: bool,
     /// Penetrating faces to look for, if [`LineClass::Intersection`] is among the classes.
     pub intersections: Intersections,
@@ -239,10 +240,9 @@ pub fn draw(
         tangents: tangents.as_ref(),
         steps: steps.as_ref().filter(|s| !s.is_empty()),
     };
-    let round = options.smooth.items(mesh, planes.as_ref(), options.crease);
+    let round = options.smooth.round(mesh, planes.as_ref(), options.crease);
     let found = if let Some((round, planes)) = round.zip(planes) {
-        let sharp = options.smooth.sharp_from(options.crease);
-        let mut divided = divided(scene, (faces, &edges, planes), &plane, (&round, sharp));
+        let mut divided = divided(scene, (faces, &edges, planes), &plane, &round);
         edges = divided.faces.take_edges();
         let known = Known { whole: Whole(Some(&divided)), ..known };
         on_page(&divided.faces, plane, |p| pieces(&divided.faces, edges, known, p, options, t))
