@@ -28,7 +28,7 @@ pub fn size(text: &str) -> Result<Size, String> {
     Ok(Size { width: side(width)?, height: side(height)? })
 }
 
-/// `X,Y,WIDTH,HEIGHT`, pixels of a picture.
+/// Parses `X,Y,WIDTH,HEIGHT`, pixels of a picture.
 pub fn tile(text: &str) -> Result<PixelRect, String> {
     let wrong = || {
         "a tile is X,Y,WIDTH,HEIGHT in whole pixels of the picture, X and Y from 0 of the upper left corner, e.g. \

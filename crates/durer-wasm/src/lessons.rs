@@ -19,7 +19,9 @@ fn families() -> impl Iterator<Item = &'static Family> {
 /// Returns a lesson of this engine.
 pub(crate) fn lesson(name: &str) -> Result<&'static Lesson, Failure> {
     let found = families().flat_map(|family| family.lessons).find(|lesson| lesson.name == name);
-    found.ok_or_else(|| format!("there is no lesson “{name}” in this engine; `lessons` lists those that there are"))
+    found.ok_or_else(|| {
+        format!("there is no lesson “{name}” in this engine; `lessons` lists those that there are")
+    })
 }
 
 /// Returns the families of this engine with their lessons.

@@ -158,7 +158,7 @@ impl Cutting {
         triangles
     }
 
-    /// (B − A) × (C − B) of the corner at a place; its sign is exact.
+    /// Returns (B − A) × (C − B) of the corner at a place; its sign is exact.
     fn cross(&self, place: usize) -> f64 {
         let [a, b, c] = self.around(place).map(|corner| self.at(corner));
         orient2d_value(a, b, c)

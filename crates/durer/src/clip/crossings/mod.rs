@@ -39,7 +39,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// At most a million.
+    /// Returns the default: at most a million crossings.
     fn default() -> Self {
         Self { max_crossings: 1 << 20 }
     }

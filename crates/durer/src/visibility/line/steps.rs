@@ -242,7 +242,7 @@ impl Seen<'_> {
                 found.flat.extend(items);
                 continue;
             }
-            if cosine < FIRST_COSINE && cosine >= NO_STEP_COSINE {
+            if (NO_STEP_COSINE..FIRST_COSINE).contains(&cosine) {
                 found.first.push(ends);
             }
             if cosine < self.crease && cosine >= NO_STEP_COSINE {

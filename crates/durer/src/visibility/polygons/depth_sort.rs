@@ -56,7 +56,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// At most 65,536.
+    /// Returns the default: at most 65,536 pieces.
     fn default() -> Self {
         Self { max_pieces: 1 << 16 }
     }
@@ -169,10 +169,10 @@ pub fn items(
     sorter.sort();
     while let Some(&(polygon, _)) = sorter.list.first() {
         t.step(|| Step::Look { polygon });
-        if let Some(place) = sorter.hidden_by(polygon, t) {
-            if sorter.give_way(polygon, place, options, t)? {
-                continue;
-            }
+        if let Some(place) = sorter.hidden_by(polygon, t)
+            && sorter.give_way(polygon, place, options, t)?
+        {
+            continue;
         }
         sorter.list.remove(0);
         let face = sorter.pieces.face(polygon);

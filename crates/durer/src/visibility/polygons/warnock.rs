@@ -204,7 +204,7 @@ fn simple(
     surrounding
         .clone()
         .find(in_front)
-        .or(surrounding.last().filter(|_| is_pixel))
+        .or(surrounding.clone().next_back().filter(|_| is_pixel))
         .map(|f| (rule, Some(f)))
 }
 

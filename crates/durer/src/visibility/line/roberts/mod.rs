@@ -63,7 +63,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// With junction lines.
+    /// Returns the default: with junction lines.
     fn default() -> Self {
         Self { junctions: true }
     }

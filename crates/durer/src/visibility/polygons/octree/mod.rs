@@ -60,7 +60,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Cells of at most two faces, six divisions deep, four million parts of faces.
+    /// Returns the default: cells of at most two faces, six divisions deep, four million parts of faces.
     fn default() -> Self {
         Self { capacity: 2, depth: 6, max_parts: 1 << 22 }
     }
