@@ -31,7 +31,7 @@ pub(crate) type Failure = String;
 #[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
 enum Request {
     Lessons,
-    Run(RunRequest),
+    Run(Box<RunRequest>),
     Frame(FrameRequest),
     Captions {
         handle: u32,
@@ -131,7 +131,7 @@ impl Engine {
     fn done(&mut self, request: Request, file: &[u8]) -> Result<Answer, Failure> {
         let text = match request {
             Request::Lessons => lessons::list().to_string(),
-            Request::Run(request) => self.runs.start(request)?.to_string(),
+            Request::Run(request) => self.runs.start(*request)?.to_string(),
             Request::Frame(request) => runs::frame(self.runs.of(request.handle)?, &request)?,
             Request::Captions { handle, first, count, language } => {
                 let run = self.runs.of(handle)?;
