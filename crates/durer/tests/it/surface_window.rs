@@ -102,9 +102,7 @@ fn windows_of_scenes_in_pieces_are_the_whole() {
         let mesh = &scene.meshes[0];
         let corners = seen.items.iter().flat_map(|&i| 3 * i as usize..3 * i as usize + 3);
         let mut only = scene.clone();
-        let corners: Vec<usize> = corners.collect();
-        let of = |all: &Vec<_>| corners.iter().filter_map(|&c| all.get(c).copied()).collect();
-        only.meshes[0].positions = of(&mesh.positions);
+        only.meshes[0].positions = corners.filter_map(|c| mesh.positions.get(c).copied()).collect();
         render_seen(&only, 400, &seen, &options).expect("picture").0
     });
     assert!(found == whole);
