@@ -136,7 +136,7 @@ test("narrow screens show one pane at a time, with targets for fingers", async (
   assert.deepEqual(await shown(), [false, true, false]);
   await page.click("[data-pane=text]");
   assert.deepEqual(await shown(), [false, false, true]);
-  assert.ok((await page.locator(".captions button").count()) > 3);
+  await page.waitForFunction(() => document.querySelectorAll(".captions button").length > 3);
   const small = await page.evaluate(() =>
     [...document.querySelectorAll("main button, main select, main .button")].filter((one) => one.offsetHeight > 0 && one.getBoundingClientRect().height < 43.5).map((one) => one.textContent),
   );

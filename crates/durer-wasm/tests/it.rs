@@ -32,7 +32,10 @@ fn every_lesson_is_listed_and_has_the_parts_of_a_page() {
     }
     for lesson in lessons {
         let name = &lesson["name"];
-        for part in ["title", "authors", "source", "cost", "limits"] {
+        for language in ["en", "de"] {
+            assert!(!lesson["title"][language].as_str().unwrap().is_empty(), "{name}: title");
+        }
+        for part in ["authors", "source", "cost", "limits"] {
             assert!(!lesson[part].as_str().unwrap().is_empty(), "{name}: {part}");
         }
         for part in ["pseudocode", "examples", "templates"] {
