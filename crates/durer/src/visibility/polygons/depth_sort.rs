@@ -30,7 +30,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::Area,
     coherence: &[Coherence::Face, Coherence::Depth],
     cost: "O(n²) tests for n polygons and pieces; memory O(pixels of all pieces)",
-    limits: "one sample per pixel; plane polygons; at most so many pieces as the options say",
+    limits: "one sample per pixel; plane polygons; at most as many pieces as the options say",
     pseudocode: &[
         "sort the polygons by their farthest corner, the farthest first",
         "while polygons are left:",

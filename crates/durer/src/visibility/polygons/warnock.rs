@@ -197,14 +197,14 @@ fn simple(
     }
     let is_surrounding = |(_, relation): &&(u32, Relation)| *relation == Relation::Surrounding;
     let in_front = |face: &u32| concerned.iter().all(|other| hides(faces, window, *face, *other));
-    let surrounding = relations.iter().filter(is_surrounding).map(|(face, _)| *face);
+    let mut surrounding = relations.iter().filter(is_surrounding).map(|(face, _)| *face);
     let is_pixel = window.x1 - window.x0 == 1 && window.y1 - window.y0 == 1;
     let rule = if is_pixel { Rule::Pixel } else { Rule::Surrounded };
     // What covers the only centre of a pixel surrounds it.
     surrounding
         .clone()
         .find(in_front)
-        .or(surrounding.clone().next_back().filter(|_| is_pixel))
+        .or(surrounding.next_back().filter(|_| is_pixel))
         .map(|f| (rule, Some(f)))
 }
 

@@ -17,7 +17,7 @@ pub struct Values {
 /// A restriction of the part of a line that may be hidden.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bound {
-    /// The planes whose equations are solved together: one that bounds α from below, where none stands for α = 0, and one
+    /// The planes whose equations are solved together: one that bounds α from below, where none means α = 0, and one
     /// that bounds it from above.
     pub planes: [Option<usize>; 2],
     /// Parameter of the solution; none if the two exclude each other along the whole line.
