@@ -1,7 +1,7 @@
 // Exercises: inputs whose runs have to be of a kind, and programs with a line that is wrong.
 
 import { h } from "./dom";
-import { engine } from "./engine";
+import { engineOf } from "./engine";
 import { kindsOf, type Player } from "./player";
 import { gapped } from "./quiz";
 import type { Input } from "./types";
@@ -46,6 +46,7 @@ export class Bug {
   private async shows(fault: number, input: Input): Promise<boolean> {
     const { lesson, setup } = this.player;
     const sentences = async (own: number | undefined): Promise<string> => {
+      const engine = engineOf(lesson);
       const { handle } = await engine.run({ name: lesson.name, input, operation: setup.operation, rule: setup.rule, fault: own, cap: COMPARED });
       const captions = await engine.captions(handle, 0, COMPARED, "en");
       engine.drop(handle);
