@@ -151,4 +151,212 @@ export const IDEAS: Record<string, Words> = {
     en: "Draws a surface as curves from near to far: a curve is seen where it rises above all before it, or falls below them.",
     de: "Zeichnet eine Fläche als Kurven von nah nach fern: Eine Kurve ist sichtbar, wo sie über alle vor ihr steigt oder unter sie fällt.",
   },
+  "de-boor": {
+    en: "A point of a B-spline is found like one of a Bézier curve, by mixing control points that are neighbours; the ratios follow from the knots, and only the few points whose curves reach there take part.",
+    de: "Ein Punkt einer B-Spline-Kurve entsteht wie bei Bézier durch Mischen benachbarter Kontrollpunkte; die Verhältnisse folgen aus den Knoten, und nur die wenigen Punkte, die dort wirken, nehmen teil.",
+  },
+  boehm: {
+    en: "Adds a knot to a B-spline without changing the curve: the control points near it are replaced by mixtures of neighbours, one more than before.",
+    de: "Fügt einer B-Spline-Kurve einen Knoten hinzu, ohne sie zu ändern: Die Kontrollpunkte in der Nähe werden durch Mischungen von Nachbarn ersetzt, einer mehr als zuvor.",
+  },
+  oslo: {
+    en: "Adds many knots to a B-spline at once: each new control point is computed by itself, from the old ones, by a recursion over the degree.",
+    de: "Fügt einer B-Spline-Kurve viele Knoten auf einmal hinzu: Jeder neue Kontrollpunkt wird für sich aus den alten berechnet, rekursiv über den Grad.",
+  },
+  "catmull-rom": {
+    en: "A curve through all its points: the direction at each point is that from its predecessor to its successor.",
+    de: "Eine Kurve durch alle ihre Punkte: Die Richtung an jedem Punkt ist die vom Vorgänger zum Nachfolger.",
+  },
+  "forward-differences": {
+    en: "Points of a cubic curve at equal steps of its parameter take three additions each: the differences of the differences stay constant.",
+    de: "Punkte einer kubischen Kurve in gleichen Schritten des Parameters kosten je drei Additionen: Die Differenzen der Differenzen bleiben gleich.",
+  },
+  flatten: {
+    en: "A curve becomes a chain of lines: where it is farther from its chord than allowed, it is divided, and the halves are tested again.",
+    de: "Eine Kurve wird zum Streckenzug: Wo sie weiter von ihrer Sehne liegt als erlaubt, wird sie geteilt, und die Hälften werden wieder geprüft.",
+  },
+  evaluator: {
+    en: "Computes vertices of a Bézier patch on a grid of parameters, as OpenGL's evaluators do.",
+    de: "Berechnet Ecken einer Bézierfläche auf einem Gitter von Parametern, wie die Auswerter von OpenGL.",
+  },
+  skala: {
+    en: "Clips a line to a convex window in homogeneous coordinates: the signs of the corners beside the line say which two borders it crosses, before anything is divided.",
+    de: "Clippt eine Strecke an einem konvexen Fenster in homogenen Koordinaten: Die Vorzeichen der Ecken neben der Geraden sagen, welche zwei Ränder sie kreuzt, bevor etwas dividiert wird.",
+  },
+  homogeneous: {
+    en: "Clips a line before the perspective division, by six borders that are inequalities of x, y, z and w: points behind the eye make no trouble.",
+    de: "Clippt eine Strecke vor der perspektivischen Division, an sechs Rändern, die Ungleichungen in x, y, z und w sind: Punkte hinter dem Auge stören nicht.",
+  },
+  polyline: {
+    en: "Cuts a chain of lines at the border of a polygon and keeps the parts inside, or those outside.",
+    de: "Schneidet einen Streckenzug am Rand eines Polygons und behält die Teile innen oder außen.",
+  },
+  "bentley-ottmann": {
+    en: "Finds all crossings of segments with a line that sweeps over them: only segments that are neighbours on that line can cross next, so few pairs are tested.",
+    de: "Findet alle Schnittpunkte von Strecken mit einer Geraden, die über sie hinwegstreicht: Nur Nachbarn auf ihr können sich als Nächste kreuzen, also werden wenige Paare geprüft.",
+  },
+  "liang-barsky-polygon": {
+    en: "Clips a polygon to a window in one pass: each edge emits what is visible of it, and corners of the window where the polygon turns around them.",
+    de: "Clippt ein Polygon in einem Durchgang an einem Fenster: Jede Kante gibt aus, was von ihr sichtbar ist, und Ecken des Fensters, wo das Polygon um sie herumgeht.",
+  },
+  "scan-beams": {
+    en: "Clips any polygons: between the heights of all vertices and crossings lie beams in which edges only run side by side; each beam is filled by trapezoids.",
+    de: "Clippt beliebige Polygone: Zwischen den Höhen aller Ecken und Schnittpunkte liegen Streifen, in denen Kanten nur nebeneinander laufen; jeder wird mit Trapezen gefüllt.",
+  },
+  overlay: {
+    en: "Combines any two sets of polygons robustly: all edges are divided where they meet, points are snapped to a grid, and winding numbers decide what belongs to the result.",
+    de: "Verschneidet zwei beliebige Mengen von Polygonen robust: Alle Kanten werden an ihren Treffpunkten geteilt, Punkte auf ein Gitter gerundet, und Windungszahlen entscheiden, was zum Ergebnis gehört.",
+  },
+  rectangle: {
+    en: "Clips a polygon to a rectangle in the time of a walk around it: chains inside are joined along the border of the window.",
+    de: "Clippt ein Polygon an einem Rechteck in der Zeit eines Umlaufs: Die Stücke im Inneren werden entlang des Fensterrands verbunden.",
+  },
+  "point-in-polygon": {
+    en: "Counts how often a polygon goes around a point: edges that cross a ray from it upwards count +1, downwards −1.",
+    de: "Zählt, wie oft ein Polygon um einen Punkt läuft: Kanten, die einen Strahl von ihm aus nach oben kreuzen, zählen +1, nach unten −1.",
+  },
+  visvalingam: {
+    en: "Simplifies a line by leaving out, again and again, the vertex whose triangle with its neighbours has the smallest area.",
+    de: "Vereinfacht eine Linie, indem immer wieder die Ecke wegfällt, deren Dreieck mit ihren Nachbarn die kleinste Fläche hat.",
+  },
+  coverage: {
+    en: "Simplifies areas that share borders so that they still share them: each border is simplified once.",
+    de: "Vereinfacht Flächen mit gemeinsamen Grenzen so, dass sie gemeinsam bleiben: Jede Grenze wird einmal vereinfacht.",
+  },
+  "interior-point": {
+    en: "Finds the point of a polygon that is farthest from its border, for a label: cells are divided where they may hold a better one.",
+    de: "Findet den Punkt eines Polygons, der am weitesten vom Rand liegt, für eine Beschriftung: Zellen werden geteilt, wo sie einen besseren enthalten können.",
+  },
+  "run-slice": {
+    en: "Draws Bresenham's line run by run: a flat line has long rows of pixels, and one division tells how long each is.",
+    de: "Zeichnet Bresenhams Linie Lauf um Lauf: Eine flache Linie hat lange Reihen von Pixeln, und eine Division sagt, wie lang jede ist.",
+  },
+  "double-step": {
+    en: "Draws Bresenham's line two pixels at a time: of the four patterns that two steps can have, one test chooses.",
+    de: "Zeichnet Bresenhams Linie zwei Pixel auf einmal: Unter den vier Mustern, die zwei Schritte haben können, wählt ein Test.",
+  },
+  "gupta-sproull": {
+    en: "Draws a smooth line: the intensity of a pixel follows from its distance to the line, by a table.",
+    de: "Zeichnet eine geglättete Linie: Die Helligkeit eines Pixels folgt aus seinem Abstand zur Linie, nach einer Tabelle.",
+  },
+  "line-pattern": {
+    en: "Draws dashed lines on pixels: a pattern of bits is read step by step, and it goes on around corners.",
+    de: "Zeichnet gestrichelte Linien auf Pixeln: Ein Muster aus Bits wird Schritt um Schritt gelesen und läuft um Ecken weiter.",
+  },
+  stroke: {
+    en: "Turns a wide line into an area: an outline of its sides, joins at the corners, and caps at the ends.",
+    de: "Macht aus einer breiten Linie eine Fläche: ein Umriss aus ihren Seiten, Verbindungen an den Ecken und Abschlüssen an den Enden.",
+  },
+  "midpoint-ellipse": {
+    en: "Draws an ellipse by integers: a decision at the midpoint between two candidates chooses each pixel, first where the slope is flat, then where it is steep.",
+    de: "Zeichnet eine Ellipse mit ganzen Zahlen: Eine Entscheidung am Mittelpunkt zwischen zwei Kandidaten wählt jedes Pixel, erst im flachen, dann im steilen Teil.",
+  },
+  "fence-fill": {
+    en: "Fills a polygon by inverting, for each edge, the pixels between it and a fence; what is inverted an odd number of times is inside.",
+    de: "Füllt ein Polygon, indem für jede Kante die Pixel zwischen ihr und einem Zaun umgekehrt werden; was ungerade oft umgekehrt wurde, liegt innen.",
+  },
+  "edge-flag": {
+    en: "Fills a polygon in two passes: the pixels of its edges are flagged, then each row is read, and every flag switches between inside and outside.",
+    de: "Füllt ein Polygon in zwei Durchgängen: Die Pixel der Kanten werden markiert, dann wird jede Zeile gelesen, und jede Marke wechselt zwischen innen und außen.",
+  },
+  "edge-walking": {
+    en: "Fills a triangle row by row: two edges are followed downwards, and the pixels between them are set.",
+    de: "Füllt ein Dreieck Zeile um Zeile: Zwei Kanten werden nach unten verfolgt, und die Pixel dazwischen gesetzt.",
+  },
+  tiles: {
+    en: "Fills a triangle by blocks of pixels: a block is outside, inside, or is divided, by the edge functions at one corner each.",
+    de: "Füllt ein Dreieck in Blöcken: Ein Block liegt außen, innen oder wird geteilt, nach den Kantenfunktionen an je einer Ecke.",
+  },
+  "cell-sums": {
+    en: "Computes exactly how much of each pixel an area covers: edges leave their heights and areas in the cells they cross, and a sum along each row gives the coverage.",
+    de: "Berechnet genau, wie viel eine Fläche von jedem Pixel bedeckt: Kanten hinterlassen Höhe und Fläche in den Zellen, die sie kreuzen, und die Summe entlang der Zeile ergibt die Bedeckung.",
+  },
+  partition: {
+    en: "Faces that share edges leave no seam between them: each adds its colour to a pixel by its exact area there, and the sum is divided by the area of all.",
+    de: "Flächen mit gemeinsamen Kanten lassen keine Naht: Jede trägt ihre Farbe mit ihrer genauen Fläche im Pixel bei, und die Summe wird durch die Fläche aller geteilt.",
+  },
+  "floyd-steinberg": {
+    en: "Shows greys with black and white: the error of each pixel is handed on to its neighbours that are still to come.",
+    de: "Zeigt Grau mit Schwarz und Weiß: Der Fehler jedes Pixels wird an die Nachbarn weitergegeben, die noch kommen.",
+  },
+  "clustered-dot": {
+    en: "Shows greys with black and white by dots that grow with the darkness, as in print.",
+    de: "Zeigt Grau mit Schwarz und Weiß durch Punkte, die mit der Dunkelheit wachsen, wie im Druck.",
+  },
+  "homogeneous-volume": {
+    en: "Clips polygons in space before the perspective division, border after border.",
+    de: "Clippt Polygone im Raum vor der perspektivischen Division, Rand um Rand.",
+  },
+  world: {
+    en: "Clips against the six planes of the view before the camera's transformation: planes are moved to the objects, not objects to the planes.",
+    de: "Clippt an den sechs Ebenen der Sicht vor der Kameratransformation: Die Ebenen kommen zu den Objekten, nicht umgekehrt.",
+  },
+  "clip-space": {
+    en: "Clips after the projection, before the division: all six borders are simple inequalities there.",
+    de: "Clippt nach der Projektion, vor der Division: Dort sind alle sechs Ränder einfache Ungleichungen.",
+  },
+  "after-division": {
+    en: "Clips after the division, to a cube; what is behind the eye has to be removed before.",
+    de: "Clippt nach der Division, an einem Würfel; was hinter dem Auge liegt, muss vorher weg.",
+  },
+  viewport: {
+    en: "Clips last of all, in two dimensions, to the window on the screen.",
+    de: "Clippt ganz zuletzt, in zwei Dimensionen, am Fenster auf dem Bildschirm.",
+  },
+  "per-pixel": {
+    en: "Does not clip at all: each pixel is tested when it is written.",
+    de: "Clippt gar nicht: Jedes Pixel wird geprüft, wenn es geschrieben wird.",
+  },
+  pick: {
+    en: "Finds what is under a point or in a rectangle of the picture: objects are clipped to the small view volume behind it.",
+    de: "Findet, was unter einem Punkt oder in einem Rechteck des Bildes liegt: Objekte werden am kleinen Sichtvolumen dahinter geclippt.",
+  },
+  "forward-warp": {
+    en: "Makes the picture of a nearby camera from a picture with depths: each pixel is moved to its new place, the nearest one wins, and holes stay where nothing was known.",
+    de: "Macht aus einem Bild mit Tiefen das einer nahen Kamera: Jedes Pixel wandert an seinen neuen Ort, das nächste gewinnt, und Löcher bleiben, wo nichts bekannt war.",
+  },
+  barycentric: {
+    en: "Three weights say where a point is in a triangle; whatever is known at the corners is mixed by them.",
+    de: "Drei Gewichte sagen, wo ein Punkt im Dreieck liegt; mit ihnen wird gemischt, was an den Ecken bekannt ist.",
+  },
+  flat: {
+    en: "One colour for each face: light is computed once, with the normal of the face.",
+    de: "Eine Farbe je Fläche: Das Licht wird einmal berechnet, mit der Normalen der Fläche.",
+  },
+  "perspective-correct": {
+    en: "Values on a surface do not change evenly across the screen: value/w and 1/w do, so these are interpolated and divided at each pixel.",
+    de: "Werte auf einer Fläche ändern sich auf dem Bildschirm nicht gleichmäßig, Wert/w und 1/w aber schon: Sie werden interpoliert und an jedem Pixel dividiert.",
+  },
+  "fragment-operations": {
+    en: "What happens to a fragment before it becomes a pixel: scissor, alpha, stencil and depth tests, blending, and masks, in this order.",
+    de: "Was mit einem Fragment geschieht, bevor es ein Pixel wird: Scissor-, Alpha-, Stencil- und Tiefentest, Mischen und Masken, in dieser Reihenfolge.",
+  },
+  orientation: {
+    en: "Makes all faces of a body look outwards: neighbours are turned alike over their common edges, and the volume says whether all of them have to be turned.",
+    de: "Lässt alle Flächen eines Körpers nach außen zeigen: Nachbarn werden über gemeinsame Kanten gleich gerichtet, und das Volumen sagt, ob alle zu wenden sind.",
+  },
+  "hierarchical-z-buffer": {
+    en: "A z-buffer with a pyramid of farthest depths above it: boxes that are behind a cell of the pyramid are left out with all faces in them.",
+    de: "Ein z-Puffer mit einer Pyramide der größten Tiefen darüber: Kästen, die hinter einer Zelle der Pyramide liegen, fallen mit all ihren Flächen weg.",
+  },
+  octree: {
+    en: "Space is divided into boxes, which are visited from front to back: a pixel that is filled needs no more, and boxes behind filled pixels are left out.",
+    de: "Der Raum wird in Kästen geteilt, die von vorn nach hinten besucht werden: Ein gefülltes Pixel braucht nichts mehr, und Kästen hinter gefüllten Pixeln fallen weg.",
+  },
+  watkins: {
+    en: "Goes through the picture row by row, and through a row span by span: depths are compared once for each span, not at each pixel.",
+    de: "Geht das Bild Zeile um Zeile durch und jede Zeile Abschnitt um Abschnitt: Tiefen werden je Abschnitt verglichen, nicht je Pixel.",
+  },
+  "a-buffer-shares": {
+    en: "Keeps a list of fragments for each pixel, each with a mask of what it covers, and shares the pixel's colour out from the nearest to the farthest.",
+    de: "Hält für jedes Pixel eine Liste von Fragmenten mit Masken dessen, was sie bedecken, und teilt die Farbe des Pixels vom nächsten zum fernsten auf.",
+  },
+  "area-sorting": {
+    en: "Finds visible areas exactly: the picture is cut along the nearest polygon, what lies behind it is removed, and the rest is treated alike.",
+    de: "Findet sichtbare Flächen genau: Das Bild wird entlang des nächsten Polygons geschnitten, was dahinter liegt, fällt weg, und der Rest wird ebenso behandelt.",
+  },
+  roberts: {
+    en: "The first exact hidden lines, for convex bodies: a line is hidden where a ray from it to the eye runs inside a body, which inequalities of its planes decide.",
+    de: "Die ersten exakten verdeckten Linien, für konvexe Körper: Eine Linie ist verdeckt, wo ein Strahl von ihr zum Auge im Inneren eines Körpers läuft; das entscheiden Ungleichungen seiner Ebenen.",
+  },
 };

@@ -48,6 +48,7 @@ test("every lesson opens, steps to the end and back to the same picture", async 
     await atStep(page, 1);
     assert.equal(await drawing(page), first, name);
     assert.equal(await page.locator(".line.runs").count(), 1, name);
+    assert.ok((await page.locator(".idea").count()) > 0, `${name} has no idea`);
   }
   assert.deepEqual(faults, []);
   await close();

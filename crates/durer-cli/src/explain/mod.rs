@@ -108,7 +108,14 @@ fn list<'a>(lessons: impl IntoIterator<Item = &'a Lesson>, language: Language) -
     let mut out = String::new();
     for lesson in lessons {
         let info = lesson.info;
-        let _ = writeln!(out, "{}  ({}: {}, {})", lesson.name, info.title, info.authors, info.year);
+        let _ = writeln!(
+            out,
+            "{}  ({}: {}, {})",
+            lesson.name,
+            lesson.title().text(language),
+            info.authors,
+            info.year
+        );
         for example in lesson.examples {
             let _ = writeln!(
                 out,

@@ -54,7 +54,7 @@ pub fn page(lesson: &Lesson, frames: &[Frame], language: Language) -> String {
         .collect();
     let values = [
         ("{{lang}}", language.code().to_owned()),
-        ("{{title}}", text(lesson.info.title)),
+        ("{{title}}", text(lesson.title().text(language))),
         ("{{by}}", text(&format!("{}, {}", lesson.info.authors, lesson.info.year))),
         ("{{source}}", text(lesson.info.source)),
         ("{{code}}", text(words.code)),

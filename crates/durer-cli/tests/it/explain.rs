@@ -23,6 +23,8 @@ fn algorithms_and_examples_are_listed() {
         one.contains("line-eh") && one.contains("der Vorlesung") && !one.contains("liang-barsky"),
         "{one}"
     );
+    let german = text(&folder, "explain back-face-removal --list --lang de");
+    assert!(german.contains("(Entfernen von Rückseiten: "), "{german}");
 }
 
 #[test]

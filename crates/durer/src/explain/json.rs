@@ -14,7 +14,7 @@ pub fn json(lesson: &Lesson, frames: &[Frame], language: Language) -> String {
     let info = lesson.info;
     let texts = [
         ("algorithm", lesson.name),
-        ("title", info.title),
+        ("title", lesson.title().text(language)),
         ("authors", info.authors),
         ("source", info.source),
         ("cost", info.cost),

@@ -65,6 +65,8 @@ const TITLES: &[(&str, &str)] = &[
     ("Equation of the line", "Geradengleichung"),
     ("Digital differential analyzer", "DDA-Algorithmus"),
     ("Bresenham's algorithm", "Bresenham-Algorithmus"),
+    ("Run-slice line", "Linie in Läufen (Run-Slice)"),
+    ("Double-step line", "Linie in Doppelschritten"),
     ("Wu's anti-aliased lines", "Geglättete Linien nach Wu"),
     ("Gupta–Sproull lines", "Geglättete Linien nach Gupta und Sproull"),
     ("Outlines of strokes", "Umrisse breiter Linien"),
@@ -119,6 +121,13 @@ const TITLES: &[(&str, &str)] = &[
     ),
     ("Floating horizon", "Floating Horizon"),
     ("Floating horizon, curve by curve", "Floating Horizon, Kurve für Kurve"),
+    ("Octree from front to back", "Octree von vorn nach hinten"),
+    (
+        "Newell–Newell–Sancha depth sort of polygons",
+        "Tiefensortierung von Polygonen nach Newell, Newell und Sancha",
+    ),
+    ("Warnock's area subdivision of polygons", "Warnocks Flächenunterteilung mit Polygonen"),
+    ("Roberts' algorithm", "Roberts-Algorithmus"),
 ];
 
 /// German names of kinds of steps.
