@@ -12,16 +12,13 @@ const FAMILIES: &[&[Family]] = &[
     explain::SPACE,
 ];
 
-fn families() -> impl Iterator<Item = &'static Family> {
+fn families() -> impl Iterator<Item = &'static Family> + Clone {
     FAMILIES.iter().copied().flatten()
 }
 
 /// Returns a lesson of this engine.
 pub(crate) fn lesson(name: &str) -> Result<&'static Lesson, Failure> {
-    let found = families().flat_map(|family| family.lessons).find(|lesson| lesson.name == name);
-    found.ok_or_else(|| {
-        format!("there is no lesson “{name}” in this engine; `lessons` lists those that there are")
-    })
+    explain::find(families(), name).map_err(|e| e.to_string())
 }
 
 /// Returns the families of this engine with their lessons.

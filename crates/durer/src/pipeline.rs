@@ -162,9 +162,9 @@ impl RenderOptions {
     /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a size of zero and a window that is empty or goes beyond the picture, [`Error::Limit`] for
-    /// more pixels than `max_pixels` and a window of a picture with a side above 131,072, [`Error::Unsupported`] for
-    /// secondary rays with an algorithm that casts none, and for a window with ambient occlusion or by depth sort.
+    /// [`Error::Parameter`] for a size of zero, a window that is empty or goes beyond the picture, and a window of a picture
+    /// with a side above 131,072; [`Error::Limit`] for more pixels than `max_pixels`; [`Error::Unsupported`] for secondary
+    /// rays with an algorithm that casts none, and for a window with ambient occlusion or by depth sort.
     pub fn check(&self) -> Result<()> {
         if self.width == 0 || self.height == 0 {
             let size = format!("{}x{}", self.width, self.height);
@@ -202,10 +202,10 @@ impl RenderOptions {
             let expected = "not empty, and within the picture";
             return Err(Error::parameter("window", value, expected));
         }
-        let (side, limit) = (self.width.max(self.height).into(), GUARD_BAND as u64);
-        if side > limit {
-            let what = "pixels a side of a picture in parts";
-            return Err(Error::Limit { what, value: side, limit });
+        if self.width.max(self.height) > GUARD_BAND as u32 {
+            let expected = "at most 131,072 pixels a side for a picture in parts";
+            let size = format!("{}x{}", self.width, self.height);
+            return Err(Error::parameter("size", size, expected));
         }
         if self.ambient_occlusion.is_some() {
             let (what, instead) =

@@ -141,7 +141,8 @@ fn known(args: &BatchArgs, out: &Path, rows: &Rows) -> Result<Known, Failure> {
 /// Describes what became of the rows.
 fn summary(counts: &Counts, seconds: f64) -> String {
     let Counts { done, same, failed, left } = *counts;
-    let mut parts = vec![format!("{done} rows done")];
+    let rows = if done == 1 { "row" } else { "rows" };
+    let mut parts = vec![format!("{done} {rows} done")];
     let mut some = |count: u64, what: &str| {
         if count > 0 {
             parts.push(format!("{count} {what}"));

@@ -31,7 +31,7 @@ fn rows_are_run_and_noted() {
     let folder = cubes("b/cube,cube.obj\nbroken,broken.obj\ngone,gone.obj\n");
     let ended = batch(&folder, "--jobs 2");
     ended.fails(3, "durer: broken: broken.obj: line 3").fails(3, "gone: gone.obj: No such file");
-    ended.fails(3, "1 rows done, 1 failed");
+    ended.fails(3, "1 row done, 2 failed");
     folder.must(&format!("render cube.obj -o direct.png {SMALL}"));
     assert_eq!(folder.read("out/b/cube.png"), folder.read("direct.png"));
     let mut entries = journal(&folder);
@@ -126,7 +126,7 @@ fn a_row_fails_alone() {
         "{\"id\":\"fine\",\"input\":\"cube.obj\"}".to_owned(),
     ];
     folder.write("rows.csv", rows.join("\n"));
-    batch(&folder, "--jobs 1 --max-memory 20M").fails(3, "1 rows done, 5 failed");
+    batch(&folder, "--jobs 1 --max-memory 20M").fails(3, "1 row done, 5 failed");
     let entries = journal(&folder);
     let of = |id: &str| entries.iter().find(|e| e["id"] == id).unwrap();
     for (id, kind) in [
@@ -220,17 +220,17 @@ fn files_that_inputs_refer_to_count() {
     fs::create_dir(folder.path("x")).unwrap();
     folder.write("x/cube.obj", format!("mtllib cube.mtl\nusemtl one\n{CUBE}"));
     let run = || batch(&folder, "--jobs 1 --resume").err;
-    assert!(run().contains("1 rows done"));
+    assert!(run().contains("1 row done"));
     assert_eq!(
         journal(&folder)[0]["read"],
         serde_json::json!([{"path": "cube.mtl", "sha256": null}])
     );
     assert!(run().contains("1 done before"));
     folder.write("x/cube.mtl", "newmtl one\nKd 1 0 0\n");
-    assert!(run().contains("1 rows done"));
+    assert!(run().contains("1 row done"));
     assert!(run().contains("1 done before"));
     folder.write("x/cube.mtl", "newmtl one\nKd 0 0.5 0\n");
-    assert!(run().contains("1 rows done"));
+    assert!(run().contains("1 row done"));
 }
 
 #[test]
@@ -324,7 +324,7 @@ fn a_row_that_takes_too_long_is_ended() {
     assert!(made.unwrap().success());
     folder.write("rows.csv", "id,input\na,pipe.obj\nb,cube.obj\n");
     let ended = batch(&folder, "--jobs 1 --timeout-per-row 0.2");
-    ended.fails(3, "1 rows done, 1 failed");
+    ended.fails(3, "1 row done, 1 failed");
     assert_eq!(journal(&folder)[0]["error"]["kind"], "timeout", "{}", ended.err);
 }
 
@@ -347,7 +347,7 @@ fn confined_rows_write_within_out() {
         println!("skipped: the system does not confine processes");
         return;
     }
-    ended.fails(3, "1 rows done, 1 failed");
+    ended.fails(3, "1 row done, 1 failed");
     assert!(!folder.path("away/a.png").exists());
     let entries = journal(&folder);
     let of_link = entries.iter().find(|entry| entry["id"] == "link/a").unwrap();

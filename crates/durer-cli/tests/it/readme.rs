@@ -48,6 +48,9 @@ fn made_small(mut arguments: Vec<String>) -> Vec<String> {
     if let Some(at) = arguments.iter().position(|a| a == "--size") {
         arguments.drain(at..at + 2);
     }
+    if let Some(at) = arguments.iter().position(|a| a == "--tile") {
+        arguments[at + 1] = "0,0,96,64".to_owned();
+    }
     arguments.extend(["--size", "96x64"].map(str::to_owned));
     arguments
 }

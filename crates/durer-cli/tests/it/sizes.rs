@@ -151,7 +151,7 @@ fn a_tile_may_be_of_a_picture_that_is_too_large_itself() {
         ("--tile 0,0,5,5 --look studio", "--tile: --ambient-occlusion"),
         ("--tile 0,0,5,5 --style regions", "--tile"),
         ("--tile 0,0,5,5 --viewports front,top", "cannot be used with"),
-        ("--size 140000 --tile 0,0,5,5", "131072"),
+        ("--size 140000 --tile 0,0,5,5", "131,072"),
     ] {
         folder.run(&format!("render plate.obj -o b.png {options}")).fails(2, error);
     }

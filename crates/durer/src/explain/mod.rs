@@ -123,10 +123,21 @@ pub fn lessons() -> impl Iterator<Item = &'static Lesson> {
 /// # Errors
 /// [`crate::Error::Unknown`] where no lesson has this name; the error lists those that are like it.
 pub fn lesson(name: &str) -> Result<&'static Lesson> {
-    let names = || lessons().map(|lesson| lesson.name);
-    lessons()
-        .find(|l| l.name == name)
-        .ok_or_else(|| lesson::unknown("algorithm to explain", name, names()))
+    find(FAMILIES.iter(), name)
+}
+
+/// Finds the lesson of an algorithm in some families: a binary that asks for no others need not contain them.
+///
+/// # Errors
+/// As [`lesson()`].
+pub fn find(
+    families: impl Iterator<Item = &'static Family> + Clone,
+    name: &str,
+) -> Result<&'static Lesson> {
+    let lessons = families.flat_map(|family| family.lessons);
+    let names = lessons.clone().map(|lesson| lesson.name);
+    let mut found = lessons.filter(|lesson| lesson.name == name);
+    found.next().ok_or_else(|| lesson::unknown("algorithm to explain", name, names))
 }
 
 /// Runs an algorithm and returns a frame for each of its steps, at most `cap`, and one more with the number of missing

@@ -23,7 +23,7 @@ use crate::trace::Tracer;
 ///
 /// let arrow = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 1.0), (0.0, 4.0)].map(DVec2::from);
 /// let found = ears(&Contours::polygon(arrow), &mut NoTrace);
-/// assert_eq!(found.triangles, [[1, 2, 3], [3, 4, 0], [0, 1, 3]]);
+/// assert_eq!(found.triangles, [[1, 2, 3], [3, 4, 0], [3, 0, 1]]);
 /// ```
 pub fn ears(polygon: &Contours, t: &mut impl Tracer<Step>) -> Triangulation {
     let (mut points, mut rings) = (Vec::new(), Vec::new());

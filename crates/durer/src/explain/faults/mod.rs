@@ -78,11 +78,9 @@ pub fn record_with_fault(lesson: &str, fault: usize, input: &Input, cap: usize) 
 
 fn record(program: &Program, line: usize, input: &Input, cap: usize) -> Result<Frames> {
     if let Input::Example(name) = input {
-        // Programs are of lessons in the plane: the others need not be a part of a binary that only has these.
-        let mut lessons = super::PLANE.iter().flat_map(|family| family.lessons);
-        if let Some(lesson) = lessons.find(|lesson| lesson.name == program.lesson) {
-            return (program.frames)(&lesson.example(name)?, line, cap);
-        }
+        // Programs are of lessons in the plane: a binary that only has these need not contain the others.
+        let lesson = super::find(super::PLANE.iter(), program.lesson)?;
+        return (program.frames)(&lesson.example(name)?, line, cap);
     }
     input.check()?;
     (program.frames)(input, line, cap)
