@@ -244,7 +244,8 @@ fn torn_lines_are_rows_that_were_not_run() {
         folder.write(name, torn);
         let begun = torn.iter().filter(|&&b| b == b'\n').count();
         let ended = batch(&folder, "--jobs 1 --resume");
-        assert!(ended.err.contains(&format!("{} rows done", 2 - begun)), "{}", ended.err);
+        let done = ["2 rows done", "1 row done"][begun];
+        assert!(ended.err.contains(done), "{}", ended.err);
         assert_eq!(journal(&folder).len(), 2);
     }
 }
