@@ -94,21 +94,19 @@ impl Turn {
 impl Fading<'_> {
     /// Returns the edges of lines that begin with some of these, in order.
     pub fn creases(&self, first: &[Ends]) -> Vec<Ends> {
-        let mut found = Vec::new();
-        for &[a, b] in first {
-            for [from, to] in [[a, b], [b, a]] {
-                if self.sharp[from as usize] > 0 && self.sharp[to as usize] == 0 {
-                    self.line(from, to).into_iter().for_each(|line| found.extend(line));
-                }
-            }
-        }
+        let both = first.iter().flat_map(|&[a, b]| [[a, b], [b, a]]);
+        let from_corners = both
+            .filter(|[from, to]| self.sharp[*from as usize] > 0 && self.sharp[*to as usize] == 0);
+        let lines = from_corners.filter_map(|[from, to]| self.line(from, to));
+        let mut found: Vec<Ends> =
+            apart(lines.collect()).iter().flat_map(|line| edges(line)).collect();
         found.sort_unstable();
         found.dedup();
         found
     }
 
-    /// Returns the edges of the line that begins with one, if it is a crease.
-    fn line(&self, from: u32, to: u32) -> Option<Vec<Ends>> {
+    /// Returns the vertices of the line that begins with an edge, if it is a crease.
+    fn line(&self, from: u32, to: u32) -> Option<Vec<u32>> {
         let first = self.turn(sorted(from, to))?;
         if first.unexplained < FIRST || !first.is_clear() || first.is_of_sliver {
             return None;
@@ -125,8 +123,7 @@ impl Fading<'_> {
             self.go_on(&mut line)?;
         }
         let fades = line.last <= FADED * first.angle.abs();
-        let edges = line.vertices.windows(2).map(|ends| sorted(ends[0], ends[1]));
-        (fades && line.clear >= CLEAR_PART * line.length).then(|| edges.collect())
+        (fades && line.clear >= CLEAR_PART * line.length).then_some(line.vertices)
     }
 
     /// Adds the next edge to a line, if one continues it.
@@ -238,6 +235,43 @@ impl Fading<'_> {
     }
 }
 
+/// Returns the lines of which no other one passes a vertex between their ends: on a mesh so coarse that lines cross, they
+/// cannot be told from facets.
+fn apart(mut lines: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
+    for line in &mut lines {
+        if line.first() > line.last() {
+            line.reverse();
+        }
+    }
+    lines.sort_unstable();
+    lines.dedup();
+    let between = |line: &[u32]| line.get(1..line.len() - 1).unwrap_or_default().to_vec();
+    let mut passed: Vec<u32> = lines.iter().flat_map(|line| between(line)).collect();
+    passed.sort_unstable();
+    let times = |v: u32| passed.partition_point(|p| *p <= v) - passed.partition_point(|p| *p < v);
+    lines.retain(|line| between(line).into_iter().all(|v| times(v) == 1));
+    lines
+}
+
+/// Returns the edges of a line.
+fn edges(line: &[u32]) -> impl Iterator<Item = Ends> {
+    line.windows(2).map(|ends| sorted(ends[0], ends[1]))
+}
+
 fn sorted(a: u32, b: u32) -> Ends {
     [a.min(b), a.max(b)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_cross_are_left_out() {
+        // The second one is the first from its other end; the last two meet in vertex 8.
+        let lines =
+            vec![vec![1, 2, 3], vec![3, 2, 1], vec![4, 5], vec![6, 8, 9], vec![11, 8, 10, 7]];
+        assert_eq!(apart(lines), [vec![1, 2, 3], vec![4, 5]]);
+        assert_eq!(apart(vec![vec![1, 2, 3], vec![1, 4, 3]]).len(), 2);
+    }
 }
