@@ -8,6 +8,7 @@ use crate::options::{Samples, Shadows};
 use crate::values::{Algorithm, Size};
 use crate::{camera, drawing, environment, input, section};
 use durer::pipeline::SurfaceMethod;
+use durer::raster::coverage::MAX_SIDE;
 
 /// Checks options that the parser cannot check, before anything is read.
 pub fn check(args: &RenderArgs) -> Result<(), Failure> {
@@ -33,6 +34,12 @@ pub fn check_size(args: &RenderArgs) -> Result<(), Failure> {
         let (most, suffix) = (kind.max_side(), kind.suffix());
         let message =
             format!("--size {width}x{height}: a .{suffix} has room for {most} pixels along a side");
+        return Err(Failure::Usage(message));
+    }
+    if args.stage.has_edges() && side > MAX_SIDE {
+        let message = format!(
+            "--size {width}x{height}: --edges are drawn on at most {MAX_SIDE} pixels a side"
+        );
         return Err(Failure::Usage(message));
     }
     let (pixels, limit) = (u64::from(width) * u64::from(height), args.picture.max_pixels);

@@ -157,3 +157,14 @@ fn a_tile_may_be_of_a_picture_that_is_too_large_itself() {
     }
     assert!(!folder.path("b.png").exists());
 }
+
+#[test]
+fn edges_have_a_largest_picture() {
+    let folder = Folder::with_models();
+    for options in ["--size 40000x2 --edges", "--size 2x32768 --look technical"] {
+        folder
+            .run(&format!("render cube.obj -o a.png {options}"))
+            .fails(2, "at most 32767 pixels a side");
+    }
+    assert!(!folder.path("a.png").exists());
+}

@@ -234,8 +234,8 @@ fn edges(ring: &[DVec2], operand: usize) -> impl Iterator<Item = Edge> + '_ {
     })
 }
 
-/// Sorts the active edges by x at the beam's lower side, and tells at which heights they change places within it; both
-/// sides of the beam are among these.
+/// Sorts the active edges by x at the beam's lower side, and returns the heights at which they change places within it, with
+/// both sides of the beam.
 fn cuts(active: &mut [Edge], y: [f64; 2], t: &mut impl Tracer<Step>) -> Vec<f64> {
     let ends = |e: &Edge| [e.at(y[0]), e.at(y[1])];
     active.sort_by(|a, b| {

@@ -9,8 +9,8 @@ use crate::math::DVec2;
 pub(crate) const BITS: u32 = 16;
 /// One pixel, and one whole pixel's area.
 pub(crate) const ONE: i32 = 1 << BITS;
-/// Sides of a target in pixels: coordinates are 16.16.
-pub(crate) const MAX_SIDE: u32 = 32_767;
+/// Largest side of a target in pixels: coordinates are 16.16.
+pub const MAX_SIDE: u32 = 32_767;
 
 /// The edge goes upwards in the path (horizontal: to the left).
 const REVERSED: u32 = 1;

@@ -43,7 +43,8 @@ use crate::target::Pixels;
 use crate::trace::Tracer;
 use crate::{Error, Result};
 use band::{BandFiller, PathEdges};
-use edge::{Edge, MAX_SIDE};
+use edge::Edge;
+pub use edge::MAX_SIDE;
 use sweep::Sink;
 
 /// Rule that decides which winding numbers are inside.
