@@ -22,16 +22,16 @@ that is compared with others to find what is hidden. Coherence: the likeness of 
 /// The options of `durer algorithms`.
 #[derive(Debug, Args)]
 pub struct AlgorithmsArgs {
-    /// Only those with all of these words in name, title or authors
+    /// Only algorithms with all of these words in name, title or authors
     #[arg(value_name = "WORD")]
     pub words: Vec<String>,
-    /// Only those that decide in this space
+    /// Only algorithms that decide in this space
     #[arg(long, value_parser = among(Class::ALL, |c| c.name()))]
     pub space: Option<Class>,
-    /// Only those that compare this part of surfaces
+    /// Only algorithms that compare this part of surfaces
     #[arg(long, value_parser = among(Occluder::ALL, |o| o.name()))]
     pub occluder: Option<Occluder>,
-    /// Only those that use this coherence; given several times, all of them
+    /// Only algorithms that use this coherence; if given several times, all of them
     #[arg(long, value_parser = among(Coherence::ALL, |c| c.name()))]
     pub coherence: Vec<Coherence>,
     /// Write JSON: an array of objects

@@ -101,7 +101,8 @@ pub enum Command {
 }
 
 impl Command {
-    /// Returns the command of a parsed line, with its budget; what was given by hand is noted where that matters.
+    /// Returns the command of a parsed line, with its budget; where it matters, records which options were given by
+    /// hand.
     pub fn of(matches: &ArgMatches) -> clap::error::Result<Self> {
         let mut command = Cli::from_arg_matches(matches)?.command;
         let Some((_, given)) = matches.subcommand() else { return Ok(command) };
@@ -119,7 +120,7 @@ impl Command {
         Ok(command)
     }
 
-    /// Returns the options about threads, limits and messages, where it has them.
+    /// Returns the options about threads, limits and messages, if the command has them.
     pub fn running(&mut self) -> Option<&mut RunningArgs> {
         Some(match self {
             Self::Render(args) => &mut args.running,

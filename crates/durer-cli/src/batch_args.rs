@@ -18,12 +18,13 @@ Examples:
 
 The manifest is CSV with a header, JSON Lines, or Parquet (if durer is built with --features geoparquet); one row is one output. \
 Columns: `id` (letters, digits, `.`, `_`, `-` and `/`; each one once), `input` (a path, or a data URI), `output` (the \
-file's name in OUT; by default --name), `command` (render, clip, draw, plot, tiles or info; by default that after `--`), \
+file's name in OUT; by default --name), `command` (render, clip, draw, plot, tiles or info; by default the one after `--`), \
 `sha256` (of the input, to be checked), and options of the command by their long names. A row's option takes the place of \
 the same one after `--`. An empty cell is an option that is not given.
 
-What was done is in OUT/.durer, a line for each row, so that --resume goes on after an interruption and \
-repeats only rows whose input, options or output changed. SIGTERM and Ctrl-C let the running rows finish, at most 25 seconds.
+The journal in OUT/.durer has a line for each finished row, so that --resume continues after an \
+interruption and repeats only rows whose input, options or output changed. SIGTERM and Ctrl-C let the \
+running rows finish, at most 25 seconds.
 
 Exit codes: 0 all rows done; 1 the manifest or OUT cannot be read or written, or another process works on the shard; \
 2 wrong usage; 3 some rows failed, or were not run.";
@@ -38,7 +39,7 @@ pub struct BatchArgs {
     /// standard output
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
-    /// Join what was noted about all rows in this folder to one report, ordered by id
+    /// Merge the journals in this folder into one report, ordered by id
     #[arg(long, value_name = "OUT", value_hint = ValueHint::DirPath, conflicts_with_all = ["manifest", "shard", "resume", "restart", "retry", "words"])]
     pub merge: Option<PathBuf>,
     /// Names of the outputs in OUT, without a column `output`: {id}, and {stem}, {name} and {folder} of the input
@@ -58,13 +59,13 @@ pub struct BatchArgs {
     /// not be written or the process was killed.
     #[arg(long, conflicts_with = "restart")]
     pub resume: bool,
-    /// Forget what was done in OUT, and run all rows
+    /// Ignore the journals in OUT and run all rows
     #[arg(long)]
     pub restart: bool,
     /// Continue as --resume does, and run rows again that failed
     #[arg(long, value_name = "WHICH", conflicts_with = "restart")]
     pub retry: Option<Retry>,
-    /// Rows to run at the same time, each in a process of its own [default: the number of processors]
+    /// Number of rows to run at the same time, each in a separate process [default: the number of processors]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
     /// Threads of each row; the output does not depend on them
@@ -82,9 +83,9 @@ pub struct BatchArgs {
     pub max_memory: Option<u64>,
     /// Restrict the processes of rows to the folders of their inputs and OUT, by Landlock (Linux)
     ///
-    /// A fault in a reader can then neither read nor change other files, nor open connections. Folders are those of all rows of
-    /// the shard, and of the files that their options name. If the system does not support it, the command stops with an error,
-    /// or with `best-effort` continues with a warning.
+    /// A fault in a reader can then neither read nor change other files, nor open connections. The folders are those of
+    /// the inputs of all rows of the shard and of the files named by their options. If the system does not support it,
+    /// the command stops with an error, or with `best-effort` continues with a warning.
     #[arg(long, value_name = "HOW", num_args = 0..=1, require_equals = true, default_missing_value = "strict")]
     pub sandbox: Option<Sandbox>,
     /// Print no progress, and no errors of rows

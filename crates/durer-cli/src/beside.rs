@@ -12,8 +12,8 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 /// The files that are being written now, for interruptions of the process.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// The folder of all files that are not whole, where they are to be apart from the whole ones, and safe on the disk
-/// before they take their place.
+/// The folder for unfinished files, if they are to be separate from finished ones and flushed to the disk before they
+/// are renamed.
 static APART: OnceLock<PathBuf> = OnceLock::new();
 
 /// Makes files be written in a folder of their own, on the disk that they are to be on, and safe there before they take
@@ -62,7 +62,7 @@ impl Beside {
         Err(io::ErrorKind::AlreadyExists.into())
     }
 
-    /// Returns another handle of the file, for a writer that keeps it; both write at the same place.
+    /// Returns another handle of the file, for a writer that keeps it; both share the position.
     pub fn file(&self) -> io::Result<File> {
         self.file.try_clone()
     }
@@ -102,7 +102,7 @@ impl Seek for Beside {
 impl Drop for Beside {
     fn drop(&mut self) {
         if !self.committed {
-            // What was written is of no use; one that cannot be removed stays.
+            // The file is useless; if it cannot be removed, it stays.
             let _ = fs::remove_file(&self.path);
             unfinished().remove(&self.path);
         }
@@ -126,8 +126,8 @@ fn unfinished() -> std::sync::MutexGuard<'static, BTreeSet<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes what is unfinished and ends the process with the exit code that `last` gives; nothing is put in its place
-/// after that has begun.
+/// Removes unfinished files and ends the process with the exit code that `last` returns; from then on, no file is
+/// renamed to its final name.
 pub fn end(last: impl FnOnce() -> i32) -> ! {
     let unfinished = unfinished();
     for path in unfinished.iter() {

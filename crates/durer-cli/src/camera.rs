@@ -1,4 +1,4 @@
-//! The camera that the options ask for.
+//! The camera for the options.
 
 use crate::failure::Failure;
 use crate::options::{Ortho, PictureArgs, ViewArgs};
@@ -14,7 +14,7 @@ pub const FOV: f64 = 30.0;
 /// The part of the picture that a fitted model leaves free at each border.
 const MARGIN: f64 = 0.03;
 
-/// Selection of one picture of those that the options request.
+/// Selection of one of the pictures that the options request.
 #[derive(Debug, Clone, Copy)]
 pub struct Shot {
     /// The view of a viewport; `None` = the one of the view options.
@@ -138,8 +138,7 @@ pub fn camera_by(args: &ViewArgs, scene: &mut impl Sights, shot: &Shot) -> Resul
     Ok(camera)
 }
 
-/// Moves the clipping distance that comes from the model where the other one, given by the user, lies
-/// beyond it.
+/// Moves the clipping distance fitted to the model if the other one, given by the user, is beyond it.
 fn keep_order(args: &ViewArgs, camera: &mut Camera) {
     if camera.near < camera.far {
         return;

@@ -7,7 +7,7 @@ use durer::shade::color::LINEAR_FROM_SRGB;
 /// Colours of `--background gradient`: a bright sky over a light grey.
 const GRADIENT: (&str, &str) = ("#9fb7d4", "#f2f4f7");
 
-/// Returns a linear RGBA colour from what [`bytes`] takes.
+/// Parses a linear RGBA colour; takes the same texts as [`bytes`].
 pub fn color(text: &str) -> Result<Vec4, String> {
     let [r, g, b, a] = bytes(text)?;
     let linear = |channel: u8| LINEAR_FROM_SRGB[usize::from(channel)];

@@ -1,4 +1,4 @@
-//! Pictures besides those of one algorithm: the contact sheet of all, and the wireframe.
+//! Pictures other than a single algorithm's: the contact sheet of all algorithms, and the wireframe.
 
 use crate::failure::Failure;
 use crate::report::{ComparedReport, PictureReport};
@@ -120,7 +120,7 @@ fn lay_out(compared: &[Compared], options: &RenderOptions) -> durer::Result<Fram
     Ok(sheet)
 }
 
-/// Writes a line of text with its base line at a place, smaller where it would be too wide.
+/// Writes a line of text with its base line at a place, smaller if it would be too wide.
 fn write(canvas: &mut Canvas, text: &str, at: DVec2, width: f64, ink: Color) -> durer::Result<()> {
     let whole = stroke_font::line(text, LETTERS).advance;
     let size = LETTERS * ((width - 4.0) / whole.max(1.0)).clamp(0.2, 1.0);

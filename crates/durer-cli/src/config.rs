@@ -1,5 +1,5 @@
-//! A file of options, `durer.toml`: its keys become defaults of the parser, so that values are checked as on
-//! the command line, which has the last word.
+//! A file of options, `durer.toml`: its keys become defaults of the parser, so that values are checked as on the
+//! command line, which takes precedence.
 
 mod settings;
 
@@ -44,19 +44,19 @@ pub struct ConfigArgs {
 pub struct Configured {
     /// Parser that knows the defaults.
     pub command: Command,
-    /// Arguments as given, except for values that a file can only write in its own words.
+    /// Arguments as given, except for values that a file writes differently.
     pub line: Vec<OsString>,
     /// The file, if there is one.
     pub file: Option<PathBuf>,
 }
 
-/// Puts the options of the file, if there is one, behind those of a command line.
+/// Makes the options of the file, if there is one, defaults of a command line.
 pub fn configured(command: Command, line: Vec<OsString>) -> Result<Configured, Failure> {
     let named = line.iter().any(|word| word.to_string_lossy().starts_with("--config"));
     if !named && !Path::new(NAME).is_file() {
         return Ok(Configured { command, line, file: None });
     }
-    // What is wrong with the line is told when all is known.
+    // Errors of the line are reported later, when the file's options are known.
     let given = command.clone().ignore_errors(true).try_get_matches_from(&line);
     let given = given.ok().and_then(|mut matches| matches.remove_subcommand());
     let Some((name, given)) = given else { return Ok(Configured { command, line, file: None }) };
@@ -111,7 +111,7 @@ fn check_pairs(file: &Path, settings: &[Setting], sub: &Command) -> Result<(), F
 /// Returns the command line with settings right behind the command's name.
 fn with_words(mut line: Vec<OsString>, name: &str, settings: &[Setting]) -> Vec<OsString> {
     let words = settings.iter().flat_map(|s| s.given.words()).map(OsString::from);
-    // The name is the first word that is not an option, nor the file of --config.
+    // The name is the first word that is neither an option nor the file of --config.
     let mut after_config = false;
     let place = line.iter().skip(1).position(|word| {
         let found = !after_config && word == name;

@@ -1,7 +1,7 @@
-//! The command's options over values in memory: what bindings to other languages call.
+//! The command's options over values in memory, for bindings to other languages.
 //!
-//! Options are words as on the command line, without the inputs and the output. Nothing is printed; files are read only
-//! where an option names one.
+//! Options are arguments as on the command line, without the inputs and the output. Nothing is printed; files are read
+//! only if an option names one.
 
 use crate::camera::{self, Shot};
 use crate::draw::{self, DrawArgs};
@@ -40,7 +40,7 @@ pub struct InMemory<'a> {
     pub scene: &'a Scene,
     /// Title of its drawings.
     pub name: &'a str,
-    /// Name of the format that it was read from, which decides about its unit; empty if there is none.
+    /// Name of the format that it was read from, which determines its unit; empty if there is none.
     pub format: &'a str,
 }
 
@@ -51,14 +51,14 @@ pub struct Rendered {
     pub planes: Framebuffer,
     /// The camera; `None` of a picture that was painted from a drawing.
     pub camera: Option<Camera>,
-    /// Reason why nothing of the model is visible, if that is so.
+    /// Reason why nothing of the model is visible, if nothing is.
     pub unseen: Option<String>,
 }
 
 /// Parsers that have been built, by the name of their command.
 static PARSERS: Mutex<Option<HashMap<&'static str, clap::Command>>> = Mutex::new(None);
 
-/// Parses words; returns the options and the names of those that were given.
+/// Parses arguments; returns the options and the names of the given ones.
 fn parse<A: Args>(
     name: &'static str,
     words: impl IntoIterator<Item = String>,
@@ -138,8 +138,8 @@ fn blamed<T>(model: &InMemory, result: Result<T, Failure>) -> Result<T, Failure>
     result.map_err(|failure| input::blamed(model.name, model.scene, failure))
 }
 
-/// Renders a picture with the options of `durer render`; `planes` are those of depth, item and normal that it gets,
-/// too.
+/// Renders a picture with the options of `durer render`; `planes` are the planes (depth, item, normal) that the result
+/// gets besides the colours.
 ///
 /// # Errors
 /// [`Failure::Usage`] for options that are wrong, others for a scene that cannot be shown by them.
@@ -196,7 +196,7 @@ fn made(ready: &Ready, model: &InMemory, kind: Kind) -> Result<Made, Failure> {
 /// Draws a model with the options of `durer render`, and returns the file in a format of drawings, by its suffix.
 ///
 /// # Errors
-/// As [`render`]; also [`Failure::Usage`] for a format that is none of drawings.
+/// As [`render`]; also [`Failure::Usage`] for a format that is not a drawing's.
 pub fn draw(options: &[String], model: &InMemory, suffix: &str) -> Result<Vec<u8>, Failure> {
     let format = drawing_format(suffix)?;
     let ready = ready(model, render_args(options, suffix)?)?;
@@ -263,7 +263,7 @@ fn plotted(
     Ok((args, plot))
 }
 
-/// Draws an SVG, or layers of a map, with the words of `durer draw`, whose inputs name the layers in their order.
+/// Draws an SVG, or layers of a map, with the arguments of `durer draw`, whose inputs name the layers in order.
 ///
 /// # Errors
 /// [`Failure::Usage`] for options that are wrong, [`Failure::Data`] for bytes that cannot be drawn.
@@ -274,7 +274,7 @@ pub fn draw_layers(words: &[String], layers: Vec<Vec<u8>>) -> Result<Pixels<[u8;
     draw::pixels(&args, layers)
 }
 
-/// Cuts files of map data into tiles, with the words of `durer tiles`.
+/// Cuts files of map data into tiles, with the arguments of `durer tiles`.
 ///
 /// # Errors
 /// As the command.
@@ -296,7 +296,7 @@ pub fn page(lesson: &Lesson, frames: &[Frame], language: Language) -> String {
 /// Writes a file as a whole or not at all: beside its place, then renamed.
 ///
 /// # Errors
-/// [`Failure::Data`] where it cannot be written.
+/// [`Failure::Data`] if it cannot be written.
 pub fn deliver(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     crate::output::deliver_bytes(&crate::output::Target::File(path.to_owned()), bytes).map(drop)
 }

@@ -55,7 +55,7 @@ impl From<Compression> for durer_formats::png::Compression {
 }
 
 impl EncodingArgs {
-    /// Refuses what the format has nothing for.
+    /// Refuses options that the format has no use for.
     pub fn check(&self, kind: Kind) -> Result<(), Failure> {
         if self.quality_given && kind != Kind::Picture(PictureFormat::Jpeg) {
             let message = "--quality: only a JPEG has one, other formats keep the pixels as they are; \

@@ -26,7 +26,7 @@ pub fn read(look: &LookArgs, work: &Work) -> Result<(), Failure> {
             Surroundings::Panorama(Arc::new(panorama))
         }
     };
-    // It is read once, whoever comes first.
+    // It is read once, by the first caller.
     let _ = look.surroundings.set(surroundings);
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! The ways in which the command fails.
+//! The kinds of failure of the command.
 
 use durer_formats::told::{message, shown_path};
 use std::fmt;
@@ -12,11 +12,11 @@ pub enum Failure {
     Data(String),
     /// Work that would cost more than is allowed; who knows the file adds its name ([`Self::named`]).
     Refused(String),
-    /// Options that are wrong, or do not go together.
+    /// Options that are wrong, or cannot be combined.
     Usage(String),
     /// Some models failed and were skipped; an error was printed for each.
     Partial,
-    /// Whoever read the output has gone; nothing to tell.
+    /// The reader of the output has closed it; nothing is reported.
     ClosedPipe,
 }
 
@@ -31,15 +31,16 @@ impl Failure {
         }
     }
 
-    /// Returns the failure for an error of the library: wrong options, or work that costs too much. Limits of the
-    /// library are limits of data; those of options, as of the picture's size, are checked before the work begins.
+    /// Returns the failure for an error of the library: wrong options, or work that costs too much. Limits reported by
+    /// the library are limits of data; limits of options, such as the picture's size, are checked before the work
+    /// begins.
     pub fn of_library(error: &durer::Error) -> Self {
         let message = error.to_string();
         let of_data = error.is_of_budget() || matches!(error, durer::Error::Limit { .. });
         if of_data { Self::Refused(message) } else { Self::Usage(message) }
     }
 
-    /// Returns the failure with the file's name, where that is missing.
+    /// Returns the failure with the file's name, if it is missing.
     pub fn named(self, name: &str) -> Self {
         match self {
             Self::Refused(message) => Self::Data(format!("{name}: {message}")),
@@ -72,12 +73,12 @@ impl fmt::Display for Failure {
     }
 }
 
-/// Makes a write beyond the largest size of a file (`ulimit -f`) fail as others do, where it would end the process.
+/// Makes writes beyond the largest size of a file (`ulimit -f`) fail like others, instead of ending the process.
 pub fn tell_of_large_files() {
     #[cfg(unix)]
     {
         let noted = std::sync::Arc::default();
-        // Where that cannot be, all is as it was.
+        // If that fails, the signal keeps its default effect.
         let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, noted);
     }
 }

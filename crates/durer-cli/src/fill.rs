@@ -261,7 +261,7 @@ fn eight_bits(pixels: &Pixels<[u16; 4]>) -> Result<Pixels<[u8; 4]>, Failure> {
         .map_err(|e| Failure::Data(e.to_string()))
 }
 
-/// Returns the pixel in which a point lies.
+/// Returns the pixel that contains a point.
 fn place(at: DVec2, (width, height): (u32, u32)) -> Result<(u32, u32), Failure> {
     let inside = |v: f64, side: u32| v >= 0.0 && v < f64::from(side);
     if inside(at.x, width) && inside(at.y, height) {

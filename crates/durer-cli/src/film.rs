@@ -50,7 +50,7 @@ impl<'a> Film<'a> {
         animation.push(pixels).map_err(|e| Failure::of_file(self.path, e))
     }
 
-    /// Ends the file and puts it in its place.
+    /// Ends the file and renames it to its final name.
     pub fn finish(self) -> Result<(), Failure> {
         let Some((animation, beside)) = self.growing else { return Ok(()) };
         animation.finish().map_err(|e| Failure::of_file(self.path, e))?;
@@ -59,7 +59,7 @@ impl<'a> Film<'a> {
     }
 }
 
-/// Returns a file beside the place, or what is special there itself.
+/// Returns a file beside the final place, or the special file there itself.
 fn open(path: &Path) -> io::Result<(File, Option<Beside>)> {
     if output::is_special(path) {
         return Ok((OpenOptions::new().write(true).open(path)?, None));
@@ -142,7 +142,7 @@ pub fn targets(
 
 /// Destination of a frame.
 pub enum Sink<'a, 'f> {
-    /// A file of its own.
+    /// A separate file.
     File(&'a Target),
     /// The film with the other frames.
     Film(&'a mut Film<'f>),

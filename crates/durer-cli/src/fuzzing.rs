@@ -16,7 +16,7 @@ pub fn options() -> Vec<[String; 2]> {
     command.get_subcommands().flat_map(of).collect()
 }
 
-/// Parses a command line, without running it; returns the error's words, if there is one.
+/// Parses a command line without running it; returns the error's message, if there is one.
 pub fn command_line(words: &[String]) -> Option<String> {
     let line = std::iter::once("durer").chain(words.iter().map(String::as_str));
     let matches = Cli::command().try_get_matches_from(line);
@@ -24,7 +24,7 @@ pub fn command_line(words: &[String]) -> Option<String> {
     cli.err().map(|error| error.to_string())
 }
 
-/// Parses annotations; returns the error's words, if there is one.
+/// Parses annotations; returns the error's message, if there is one.
 pub fn annotations(text: &str) -> Option<String> {
     annotations::parse(text).err()
 }

@@ -9,7 +9,7 @@ pub struct Given {
     pub key: String,
     /// Identifier in the parser.
     pub id: Id,
-    /// Its values, as on the command line; `true` or `false` of a flag, none where it is given without one.
+    /// Its values, as on the command line; `true` or `false` for a flag, none if the option is given without a value.
     pub values: Vec<String>,
     /// True if it takes no value, and whether it takes several at once.
     flag: bool,
@@ -67,7 +67,7 @@ fn takes_several(arg: &Arg) -> bool {
     arg.get_num_args().is_some_and(|n| n.max_values() > 1)
 }
 
-/// Returns the values of a list: as they are where the option can be repeated or takes several, else joined by commas.
+/// Returns the values of a list: unchanged if the option can be repeated or takes several, else joined by commas.
 pub fn list(arg: &Arg, items: Vec<String>) -> Vec<String> {
     let each = matches!(arg.get_action(), ArgAction::Append);
     if each || takes_several(arg) { items } else { vec![items.join(",")] }

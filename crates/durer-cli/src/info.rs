@@ -143,7 +143,7 @@ fn tell_all(args: &InfoArgs, messages: &Messages, infos: &mut Vec<Told>) -> Resu
             let layers = layer::of_layers(path, &args.running.work)?;
             infos.extend(layers.into_iter().map(|layer| Told::Layer(Box::new(layer))));
         } else {
-            // What a model has kept of the budget goes with it.
+            // The model's part of the budget is released with it.
             let options = input::read_options(&args.reading, &args.running.work.part());
             let name = input::given_name(path);
             let info = match input::in_pieces(path, &options) {
@@ -181,11 +181,11 @@ fn of_model(name: String, model: &Model, work: &Work) -> Result<Info, Failure> {
     };
     let mut warnings: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
     let closed = closed(scene, work).unwrap_or_else(|e| {
-        warnings.push(format!("whether it is closed is not looked for: {e}"));
+        warnings.push(format!("whether it is closed is not checked: {e}"));
         None
     });
     let orientation = orientation(scene, work).unwrap_or_else(|e| {
-        warnings.push(format!("whether faces are turned inwards is not looked for: {e}"));
+        warnings.push(format!("whether faces are turned inwards is not checked: {e}"));
         None
     });
     work.check().map_err(|e| Failure::Data(format!("{name}: {e}")))?;
@@ -229,7 +229,7 @@ fn of_pieces(name: String, read: &mut InPieces) -> Result<Info, Failure> {
         passed.map_err(|e| read.failure(&e))?;
     }
     let Facts { mut model, triangles, points, vertices } = facts;
-    let why = "whether it is closed is not looked for: it is read in pieces, for it is larger than its budget";
+    let why = "whether it is closed is not checked: it is larger than the memory budget and read in pieces";
     if triangles > 0 {
         model.warn(Place::Whole, why);
     }
@@ -285,12 +285,12 @@ fn area(scene: &Scene) -> Option<f64> {
         let mesh = scene.meshes.get(instance.mesh)?;
         Some(areas(mesh, instance).sum::<f64>())
     };
-    // A sum of nothing is -0.
+    // An empty sum is -0.
     let sum = scene.instances.iter().filter_map(of_instance).sum::<f64>() + 0.0;
     (scene.triangle_count() > 0).then_some(sum)
 }
 
-/// Returns the areas of an instance's triangles, of those that are finite.
+/// Returns the finite areas of an instance's triangles.
 fn areas(mesh: &Mesh, instance: &Instance) -> impl Iterator<Item = f64> {
     let corner = |v: u32| {
         let p = mesh.positions.get(v as usize).copied().unwrap_or_default();
@@ -324,7 +324,8 @@ fn closed(scene: &Scene, work: &Work) -> durer::Result<Option<bool>> {
     closed_together(scene, work).map(Some)
 }
 
-/// The most triangles whose meshes are examined together: more would take more memory than a picture of them.
+/// Largest number of triangles of meshes that are examined together: more would take more memory than a picture of
+/// them.
 const MOST_TOGETHER: u64 = 1 << 20;
 
 /// Returns the orientation of all faces; `None` if there are none, or more than are examined together.
@@ -337,8 +338,8 @@ fn orientation(scene: &Scene, work: &Work) -> durer::Result<Option<SceneOrientat
     SceneOrientation::of(scene).map(Some)
 }
 
-/// Returns whether the meshes bound bodies together, as those of files with a mesh for each face do; borders that run
-/// along each other are one.
+/// Returns whether the meshes together bound bodies, as in files with a mesh for each face; borders that run along each
+/// other are joined.
 fn closed_together(scene: &Scene, work: &Work) -> durer::Result<bool> {
     let value = scene.triangle_count();
     if value > MOST_TOGETHER {

@@ -28,11 +28,10 @@ pub fn given_name(path: &Path) -> String {
     if is_stream(path) { display_name(path) } else { path.display().to_string() }
 }
 
-/// The squares of larger coordinates are beyond what numbers of double precision hold.
+/// Largest coordinate whose square is a finite number of double precision.
 const FARTHEST: f64 = 1e150;
 
-/// Returns a failure with the file's name, where it comes of a model that lies too far off for any
-/// view.
+/// Returns a failure with the file's name if it is caused by a model too far away for any view.
 pub fn blamed(name: &str, scene: &durer::scene::Scene, failure: Failure) -> Failure {
     let farthest = || scene.bounds().map(|b| b.min.abs().max(b.max.abs()).max_element());
     let too_far = || farthest().is_some_and(|farthest| farthest.is_nan() || farthest > FARTHEST);
@@ -95,7 +94,7 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Model, Failure> {
 
 /// Warns of options that have no effect for a model of its format.
 fn tell_ignored(model: &mut Model, options: &ReadOptions) {
-    // Of a format that has them the reader says so itself.
+    // For formats that have lights, the reader warns itself.
     if !model.format.starts_with("glTF") {
         for (given, what) in [
             (options.pose.is_some(), "animations; --animation and --time do"),
@@ -145,8 +144,8 @@ fn resources(path: &Path, root: Option<&Path>) -> Result<Box<dyn Resources>, Fai
     Ok(folder.map_or_else(|| Box::new(NoResources) as Box<dyn Resources>, |f| Box::new(f)))
 }
 
-/// Reads a binary STL or glTF file without holding its bytes, which are as many as the model's or more;
-/// `None` for anything else.
+/// Reads a binary STL or glTF file without holding its bytes, which take at least as much memory as the model; `None`
+/// for other files.
 fn streamed(
     path: &Path,
     resources: &dyn Resources,

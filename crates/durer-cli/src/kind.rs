@@ -1,4 +1,4 @@
-//! The kind of an output file: that of the option, or that of its name.
+//! The kind of an output file, from the option or from its name.
 
 use crate::failure::Failure;
 use durer_formats::drawing::DrawingFormat;
@@ -51,7 +51,7 @@ impl Kind {
         matches!(self, Self::Drawing(_))
     }
 
-    /// Returns the format of vectors, where it has them.
+    /// Returns the format of vectors, if it has any.
     pub fn drawing(self) -> Option<DrawingFormat> {
         match self {
             Self::Drawing(format) => Some(format),
@@ -59,7 +59,7 @@ impl Kind {
         }
     }
 
-    /// Returns the format of one picture; PNG if it has none of its own.
+    /// Returns the format of a single picture; PNG if the kind has none.
     pub fn picture(self) -> PictureFormat {
         match self {
             Self::Picture(format) => format,
@@ -108,7 +108,7 @@ impl Kind {
 pub struct Wanted {
     /// The kind.
     pub kind: Kind,
-    /// True if an option says so, and not the name.
+    /// True if the kind is from an option, not from the name.
     told: bool,
     /// Suffixes of its files' names.
     suffixes: &'static str,
@@ -136,13 +136,13 @@ impl Wanted {
         Self { kind: Kind::PNG, told: false, suffixes: PLANES }
     }
 
-    /// Refuses a name that ends as those of other kinds do.
+    /// Refuses a name with the suffix of another kind.
     pub fn check_name(&self, option: &str, path: &Path) -> Result<(), Failure> {
         let what = match Kind::of_path(path) {
             Some(kind) if kind == self.kind => return Ok(()),
             None if self.told => return Ok(()),
             Some(_) if self.told => format!(
-                "--format says {}, the name something else; end it in .{}",
+                "--format says {}, but the name has another suffix; end it in .{}",
                 self.kind.name(),
                 self.kind.suffix()
             ),
@@ -199,7 +199,11 @@ mod tests {
         for (path, told, part) in [
             ("a.bmp", None, "pictures are written as PNG"),
             ("a", None, ".png"),
-            ("a.png", Some("jpeg"), "--format says jpeg, the name something else; end it in .jpg"),
+            (
+                "a.png",
+                Some("jpeg"),
+                "--format says jpeg, but the name has another suffix; end it in .jpg",
+            ),
             ("a.svg", Some("png"), "end it in .png"),
         ] {
             assert!(check(path, told).unwrap_err().contains(part), "{path}");

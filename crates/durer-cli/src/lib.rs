@@ -1,4 +1,4 @@
-//! The `durer` command, as a function: the binary calls it, and fuzz targets what it parses.
+//! The `durer` command as a function: the binary calls it, and fuzz targets call its parsers.
 
 mod algorithms;
 mod args;
@@ -86,7 +86,7 @@ pub fn main_with(line: Vec<OsString>) -> ExitCode {
         Err(failure) => {
             let message = failure.to_string();
             if !message.is_empty() {
-                // A closed standard error leaves nobody to tell; the exit code still says it.
+                // If standard error is closed, only the exit code reports the failure.
                 let _ = writeln!(std::io::stderr().lock(), "durer: {message}");
             }
             failure.exit_code()
@@ -100,14 +100,13 @@ fn parse_and_run(line: Vec<OsString>) -> Result<(), Failure> {
     let (command, file) = parse(line)?;
     run(command).map_err(|failure| match (failure, file) {
         (Failure::Usage(what), Some(file)) => {
-            Failure::Usage(format!("{what} (options of {} count, too)", shown_path(&file)))
+            Failure::Usage(format!("{what} (with the options of {})", shown_path(&file)))
         }
         (other, _) => other,
     })
 }
 
-/// Returns the command line, with the options of a file; what was given by hand is noted where that
-/// matters.
+/// Returns the command line, with the options of a file; where it matters, records which options were given by hand.
 fn parse(line: Vec<OsString>) -> Result<(Command, Option<PathBuf>), Failure> {
     let Configured { command, line, file } = config::configured(Cli::command(), line)?;
     let matches = command.try_get_matches_from(line).map_err(answered)?;
@@ -116,7 +115,7 @@ fn parse(line: Vec<OsString>) -> Result<(Command, Option<PathBuf>), Failure> {
     places::settle(name, given)?;
     if let Some(file) = file.as_ref().filter(|_| is_verbose(given)) {
         let message = format!("durer: options are taken from {} too", shown_path(file));
-        // As for errors: nobody is there to be told that it failed.
+        // As for errors: a failure to print cannot be reported.
         let _ = writeln!(std::io::stderr().lock(), "{message}");
     }
     Ok((command, file))

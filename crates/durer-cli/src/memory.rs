@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Component, Path};
 
-/// No more than this is taken without being requested.
+/// Largest budget without an option.
 const MOST: u64 = 4 << 30;
 
 /// Returns the budget if none is given: half of what the machine, its control group or the limits of the
@@ -12,7 +12,7 @@ pub fn usual_budget() -> u64 {
     usual_budget_of(1)
 }
 
-/// Returns the budget of one of several processes that share what there is.
+/// Returns the budget of one of several processes that share the memory.
 pub fn usual_budget_of(processes: u64) -> u64 {
     let read = |path: &str| fs::read_to_string(path).ok();
     let machine = read("/proc/meminfo").and_then(|text| kilobytes(&text, "MemTotal:"));
@@ -23,7 +23,7 @@ pub fn usual_budget_of(processes: u64) -> u64 {
     least.map_or(MOST, |bytes| (bytes / 2 / processes.max(1)).min(MOST))
 }
 
-/// Returns the bytes of memory that the process holds for itself now.
+/// Returns the bytes of memory that the process holds now.
 pub fn held() -> Option<u64> {
     kilobytes(&fs::read_to_string("/proc/self/status").ok()?, "RssAnon:")
 }
@@ -55,7 +55,7 @@ fn group_files(groups: &str) -> Vec<String> {
             _ => continue,
         };
         let path = Path::new(path);
-        // Within a container the path may lead out of what is mounted there.
+        // Within a container the path may lead outside the mounted folders.
         if path.components().any(|part| part == Component::ParentDir) {
             files.push(format!("{root}/{file}"));
             continue;

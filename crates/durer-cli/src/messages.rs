@@ -12,7 +12,7 @@ const WARNINGS: usize = 5;
 /// Warnings that are kept instead of being printed, if requested.
 static KEPT: Mutex<Option<Vec<String>>> = Mutex::new(None);
 
-/// Keeps warnings from now on, and returns those that were kept.
+/// Collects warnings from now on, and returns the ones collected so far.
 pub fn keep() -> Vec<String> {
     KEPT.lock().unwrap_or_else(PoisonError::into_inner).replace(Vec::new()).unwrap_or_default()
 }
@@ -38,7 +38,7 @@ impl Messages {
         self.progress.tell(&told::message(&format!("durer: {message}")));
     }
 
-    /// Prints a warning about a file, other than those of its reader.
+    /// Prints a warning about a file that does not come from its reader.
     pub fn warning(&self, file: &str, message: impl std::fmt::Display) {
         if !self.quiet {
             self.warn(&format!("{file}: {message}"));

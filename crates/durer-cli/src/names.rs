@@ -15,7 +15,7 @@ pub fn is_pattern(path: &Path) -> bool {
 }
 
 /// Returns the path with the placeholders replaced by parts of the input's path. The folder has neither a root nor
-/// `..`, so that the result stays below the part of the pattern in front of it.
+/// `..`, so that the result stays below the pattern's part before it.
 pub fn expand(pattern: &str, input: &Path) -> String {
     let lossy =
         |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();

@@ -49,7 +49,7 @@ pub struct Name {
     pub frame: Option<u32>,
 }
 
-/// Returns one target for each name; creates missing folders for what is to be several files.
+/// Returns one target for each name; creates missing folders for outputs of several files.
 pub fn plan(
     option: &str,
     path: &Path,
@@ -153,8 +153,7 @@ fn stdout_target(option: &str) -> Result<Target, Failure> {
     Ok(Target::Stdout)
 }
 
-/// Returns one file, named as its kind, in a folder that is there; or something special such as a
-/// device.
+/// Returns one file, named as its kind, in an existing folder; or a special file such as a device.
 fn single(option: &str, path: &Path, wanted: &Wanted) -> Result<Target, Failure> {
     if is_special(path) {
         return Ok(Target::File(path.to_owned()));
@@ -195,7 +194,7 @@ fn in_its_folder(path: &Path) -> Result<Target, Failure> {
     }
 }
 
-/// Returns whether the path is there and neither a file nor a folder.
+/// Returns whether the path exists and is neither a file nor a folder.
 pub fn is_special(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir())
 }
@@ -283,7 +282,7 @@ impl Write for Out {
     }
 }
 
-/// Writes a file beside its place and puts it there when it is whole; what goes to a stream is made in memory first.
+/// Writes a file beside its place and renames it when it is complete; output to a stream is collected in memory first.
 /// Returns the number of bytes.
 pub fn deliver(
     target: &Target,

@@ -21,7 +21,7 @@ pub fn told_at_the_end<T>(work: impl FnOnce() -> T) -> T {
     }));
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| {
         let told = LAST.lock().unwrap_or_else(|e| e.into_inner());
-        let _ = writeln!(std::io::stderr().lock(), "durer: this is a fault of durer: {told}");
+        let _ = writeln!(std::io::stderr().lock(), "durer: this is a bug in durer: {told}");
         drop(told);
         resume_unwind(payload)
     })

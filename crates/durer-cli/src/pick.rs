@@ -100,7 +100,7 @@ struct Mark {
     position: [f64; 3],
 }
 
-/// Reads a model and says what is behind a part of the picture.
+/// Reads a model and reports the items behind a part of the picture.
 pub fn run(args: &PickArgs) -> Result<(), Failure> {
     camera::check(&args.view)?;
     let name = input::display_name(&args.model);

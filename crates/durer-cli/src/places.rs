@@ -16,7 +16,7 @@ pub fn is_stream(path: &Path) -> bool {
     path.as_os_str() == OsStr::new(STREAM)
 }
 
-/// Options that name what is written; all others with paths name what is read.
+/// Options that name outputs; all other options with paths name inputs.
 const OUTPUTS: [&str; 4] = ["output", "item", "depth", "normal"];
 
 /// The command that reads depths.
@@ -25,7 +25,7 @@ const WARP: &str = "warp";
 /// The command whose rows are run by other processes.
 const BATCH: &str = "batch";
 
-/// Options that name what is read, though they are no mere paths.
+/// Options that name inputs although their values are more than paths.
 pub const OTHER_INPUTS: [&str; 2] = ["environment", "annotations"];
 
 /// A place for a file, whether there is one or not.
@@ -79,7 +79,7 @@ pub fn settle(name: &str, given: &ArgMatches) -> Result<(), Failure> {
         Ok(Some(&how)) if name != BATCH => {
             let (inputs, outputs) = named(name, given);
             if let Some(warning) = sandbox::confine(how, &inputs, &outputs)? {
-                // A closed standard error leaves nobody to tell.
+                // If standard error is closed, the warning is lost.
                 let _ = writeln!(std::io::stderr().lock(), "durer: warning: {warning}");
             }
             Ok(())
@@ -88,7 +88,7 @@ pub fn settle(name: &str, given: &ArgMatches) -> Result<(), Failure> {
     }
 }
 
-/// Returns the paths that a command reads and those that it writes.
+/// Returns the paths that a command reads and the paths that it writes.
 pub fn named(command: &str, given: &ArgMatches) -> (Vec<PathBuf>, Vec<PathBuf>) {
     let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
     for id in given.ids().map(clap::Id::as_str) {

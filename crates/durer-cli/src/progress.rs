@@ -12,7 +12,7 @@ use std::time::Duration;
 /// Shorter work shows nothing.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// A line on standard error that says what is being done; nothing where that is not a terminal.
+/// A line on standard error that shows the progress; nothing if it is not a terminal.
 #[derive(Debug, Default)]
 pub struct Progress {
     /// Work whose progress is counted.
@@ -43,7 +43,7 @@ impl Progress {
         };
         if let Ok(style) = ProgressStyle::with_template(template) {
             let counted = work.clone();
-            // What is written to is a text, which takes all.
+            // Writing to a text cannot fail.
             let part = move |_: &ProgressState, out: &mut dyn Write| {
                 let _ = out.write_str(&percent(counted.progress()));
             };
@@ -64,7 +64,7 @@ impl Progress {
     /// Shows the current stage of the work.
     pub fn stage(&self, what: impl FnOnce() -> String) {
         let what = what();
-        // What was counted before is over.
+        // The previous stage has ended.
         self.work.begin("", 0);
         if let Some(shown) = &self.shown {
             shown.bar.set_message(what.clone());
@@ -82,7 +82,7 @@ impl Progress {
     /// Writes a line to standard error without tearing the progress line.
     pub fn tell(&self, line: &str) {
         use std::io::Write;
-        // A closed standard error leaves nobody to tell.
+        // If standard error is closed, the line is lost.
         let write = || drop(writeln!(std::io::stderr().lock(), "{line}"));
         match &self.shown {
             Some(shown) => shown.bar.suspend(write),

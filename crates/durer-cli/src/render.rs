@@ -54,7 +54,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     ended.and(printed)
 }
 
-/// Renders models one after the other, up to the first that fails unless such are skipped.
+/// Renders models one after the other, up to the first failure unless failures are skipped.
 fn render_all(
     args: &RenderArgs,
     jobs: &[Job],
@@ -116,7 +116,7 @@ fn sized(args: &RenderArgs, natural: DVec2) -> RenderArgs {
     args
 }
 
-/// A model and what is to be made of it.
+/// A model and the pictures to be made of it.
 struct Job<'a> {
     model: &'a Path,
     /// Its name without folder and suffix.
@@ -154,7 +154,7 @@ impl Job<'_> {
     }
 }
 
-/// Decides where each picture goes, before anything is read, so that a wrong name costs no time.
+/// Determines the place of each picture before anything is read, so that a wrong name is found at once.
 fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
     let frames: Vec<Option<u32>> = match args.picture.turntable {
         Some(count) => (0..count).map(Some).collect(),
@@ -204,7 +204,7 @@ fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
     Ok(jobs)
 }
 
-/// Adds how pictures of models with the same name get different names.
+/// Adds advice on distinguishing pictures of models with the same name.
 fn with_advice(args: &RenderArgs, failure: Failure) -> Failure {
     match failure {
         Failure::Usage(message) if args.models.len() > 1 => {
@@ -227,7 +227,7 @@ fn render_model(
     let name = input::display_name(job.model);
     messages.progress.stage(|| format!("reading {name}"));
     let start = Instant::now();
-    // What the model has kept of the budget goes with it.
+    // The model's part of the budget is released with it.
     let part = args.running.work.part();
     let reading = input::read_options(&args.reading, &part);
     let pieces = input::in_pieces(job.model, &reading).transpose()?;
@@ -302,16 +302,16 @@ pub fn with_open_side(
 
 /// Facts about a scene after the options have changed it.
 pub struct Prepared {
-    /// The kinds of its parts, where they are to be numbered.
+    /// The kinds of its parts, if they are to be numbered.
     pub components: Vec<Component>,
-    /// The material of the caps, where it was cut.
+    /// The material of the caps, if it was cut.
     pub cap_material: Option<usize>,
     /// Memory of copies that were made.
     _copies: Option<Charge>,
 }
 
 impl Prepared {
-    /// Returns what is known of a scene that no option changes.
+    /// Returns the data of a scene that no option changes.
     pub fn unchanged() -> Self {
         Self { components: Vec::new(), cap_material: None, _copies: None }
     }
@@ -341,14 +341,14 @@ pub fn prepare(
     if args.look.orient {
         orient(args, scene, name, messages)?;
     }
-    // What is cut has no meshes in common any more.
+    // Instances that were cut no longer share meshes.
     let components = if args.drawing.callouts { components(scene) } else { Vec::new() };
     let cap_material = section::apply(&args.section, scene, name, messages)?;
     explode::apply(&args.explode, scene).map_err(|f| with_file(name, f))?;
     Ok(Prepared { components, cap_material, _copies: Some(copies) })
 }
 
-/// Reports a picture, and why nothing of the model is visible in it, if that is so.
+/// Reports a picture and, if nothing of the model is visible in it, the reason.
 fn tell_picture(
     name: &str,
     (report, unseen): (PictureReport, Option<String>),
@@ -406,8 +406,8 @@ fn describe(report: &PictureReport) -> String {
     )
 }
 
-/// Adds the file's name to a failure, also where data does not fit the options, such as a camera that the file does
-/// not have.
+/// Adds the file's name to a failure, also if the data do not fit the options, such as a camera that the file does not
+/// have.
 fn with_file(name: &str, failure: Failure) -> Failure {
     match failure {
         Failure::Data(message) if message.starts_with("--") => {
@@ -426,8 +426,7 @@ fn bytes_of_copies(args: &RenderArgs, scene: &Scene, assembles: bool) -> u64 {
     of_cuts.saturating_add(scene.bytes().saturating_mul(times))
 }
 
-/// Renders one picture and writes its files; returns why nothing of the model is visible, if that is
-/// so.
+/// Renders one picture and writes its files; if nothing of the model is visible, returns the reason.
 fn render_picture(
     args: &RenderArgs,
     scene: &Scene,
@@ -447,7 +446,7 @@ pub struct Shown {
     pub cells: Vec<(Cell, Framebuffer)>,
     /// The camera of each cell.
     pub cameras: Vec<Camera>,
-    /// Reason why nothing of the model is visible, if that is so.
+    /// Reason why nothing of the model is visible, if nothing is.
     pub unseen: Option<String>,
 }
 
@@ -493,7 +492,7 @@ pub fn render_cells(
     Ok(Shown { cells, cameras, unseen })
 }
 
-/// Puts the cells of a picture together and writes its files.
+/// Combines the cells of a picture and writes its files.
 fn deliver(
     args: &RenderArgs,
     picture: &Picture,
@@ -511,7 +510,7 @@ fn deliver(
     (report.width, report.height) = (framebuffer.width(), framebuffer.height());
     let start = Instant::now();
     report.files = write_planes(args, picture, &framebuffer)?;
-    // The picture comes last: where it is new, so is the rest.
+    // The picture is written last: if it is new, so are the other files.
     let format = wanted(args).kind.picture();
     report.flattened = sink.put(&framebuffer.color, format, &args.picture.encoding)?;
     report.files.push(sink.name());
@@ -524,8 +523,7 @@ fn usage(e: durer::Error) -> Failure {
     Failure::of_library(&e)
 }
 
-/// Returns the options for the picture of a model, of what the view is fitted to, and of all there
-/// is.
+/// Returns the options for a picture, given the model, the part that the view is fitted to, and the whole scene.
 fn render_options(
     args: &RenderArgs,
     [model, framed, scene]: [&Scene; 3],

@@ -52,7 +52,7 @@ pub struct RenderArgs {
     /// picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
-    /// The format of the output, whatever the suffix of the name [default: by its suffix, else png]
+    /// The format of the output, independent of the name's suffix [default: by the suffix, else png]
     #[arg(long, value_name = "FORMAT", value_parser = values::kind())]
     pub format: Option<Kind>,
     /// The options that were given, by their names in the parser.

@@ -30,7 +30,7 @@ pub struct ModelReport {
 pub struct PictureReport {
     /// Files that were written; `-` is standard output.
     pub files: Vec<String>,
-    /// `ok`, `empty` or `invisible`: whether anything of the model is seen.
+    /// `ok`, `empty` or `invisible`: whether anything of the model is visible.
     pub status: &'static str,
     /// In pixels; 0 for vectors.
     pub width: u32,
@@ -55,7 +55,7 @@ pub struct PictureReport {
     /// True if it was not opaque, and had to become so.
     #[serde(skip)]
     pub flattened: bool,
-    /// Features of the model that the picture does not show, in words.
+    /// Messages about features of the model that the picture does not show.
     #[serde(skip)]
     pub notes: Vec<String>,
     /// For `all`: each algorithm beside the z-buffer.
@@ -101,7 +101,7 @@ impl From<&Camera> for CameraReport {
 pub struct ComparedReport {
     /// Its name.
     pub algorithm: &'static str,
-    /// Pixels whose item is not that of the z-buffer.
+    /// Number of pixels whose item differs from the z-buffer's.
     pub differing_pixels: u64,
     /// Seconds for all of its picture.
     pub seconds: f64,
@@ -133,8 +133,8 @@ pub struct Failed {
 }
 
 impl PictureReport {
-    /// Sets the status from those of all viewports: something of the model is seen if one shows it.
-    /// Returns why nothing is seen, in words.
+    /// Sets the status from the viewports': the model is visible if one shows it. If nothing is visible, returns a
+    /// message with the reason.
     pub fn set_status(&mut self, of_cells: &[Status]) -> Option<String> {
         let shown = of_cells.iter().find(|s| **s == Status::Ok);
         let status = shown.or(of_cells.first()).copied().unwrap_or(Status::Ok);
@@ -146,7 +146,7 @@ impl PictureReport {
         }
     }
 
-    /// Adds what the renderer says about one viewport.
+    /// Adds the renderer's report on one viewport.
     pub fn add(&mut self, report: &pipeline::Report) {
         self.triangles.given += report.triangles_in;
         self.triangles.non_finite += report.non_finite;
@@ -158,7 +158,7 @@ impl PictureReport {
     }
 }
 
-/// Returns advice for a model of which nothing is seen.
+/// Returns advice for a model of which nothing is visible.
 fn hint(why: Unseen) -> &'static str {
     match why {
         Unseen::Culled => "; --cull none shows them",
@@ -188,7 +188,7 @@ pub fn print(value: &impl Serialize) -> Result<(), crate::failure::Failure> {
 /// Text that is kept instead of going to standard output, if requested.
 static KEPT: Mutex<Option<String>> = Mutex::new(None);
 
-/// Keeps text from now on, and returns what was kept.
+/// Collects text from now on, and returns the text collected so far.
 pub fn keep() -> String {
     KEPT.lock().unwrap_or_else(PoisonError::into_inner).replace(String::new()).unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! Finds what a model refers to: in its own folder, or below another one that is given, nowhere else.
+//! Finds the files that a model refers to: in its own folder, or below another given one, nowhere else.
 
 use crate::failure::in_words;
 use durer_formats::{Found, Resources};
@@ -9,10 +9,10 @@ use std::io::{self, ErrorKind, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// Files that were looked for, whether they are there or not, where that is noted.
+/// Files that were searched, existing or not, if they are recorded.
 static NOTED: Mutex<Option<BTreeSet<PathBuf>>> = Mutex::new(None);
 
-/// Records the files that are searched for from now on, and returns those that were recorded.
+/// Records the files searched from now on, and returns the ones recorded so far.
 pub fn note() -> BTreeSet<PathBuf> {
     let mut noted = NOTED.lock().unwrap_or_else(PoisonError::into_inner);
     noted.replace(BTreeSet::new()).unwrap_or_default()
@@ -24,28 +24,28 @@ fn add_note(path: &Path) {
     }
 }
 
-/// The names in a folder by their lower case; of several the first by bytes.
+/// The names in a folder by their lower case; among several, the first by bytes.
 type Names = BTreeMap<String, OsString>;
 
 /// The folder of a model.
 ///
 /// # Guarantees
-/// Only regular files below the folder, or below the one that [`Self::widen`] adds, are read, also where links
-/// or `..` lead elsewhere; never a network address.
+/// Only regular files below the folder, or below the one added by [`Self::widen`], are read, even if links or `..` lead
+/// elsewhere; network addresses are never used.
 #[derive(Debug)]
 pub struct Folder {
-    /// Folder in which relative paths begin; without links and `..`.
+    /// Base folder of relative paths; without links and `..`.
     base: PathBuf,
-    /// Below which folders files may lie; without links and `..`.
+    /// Folders that files must be below; without links and `..`.
     roots: Vec<PathBuf>,
-    /// Advice for a file that lies elsewhere, for the end of the message.
+    /// Advice for a file elsewhere, appended to the message.
     hint: &'static str,
-    /// Folders in which names were looked for in other cases.
+    /// Folders in which names were searched ignoring case.
     names: Mutex<BTreeMap<PathBuf, Names>>,
 }
 
 impl Folder {
-    /// Returns the folder that holds the file; where the file is a link, what it leads to.
+    /// Returns the folder that contains the file; if the file is a link, the folder of its target.
     pub fn of(model: &Path) -> io::Result<Self> {
         let model = fs::canonicalize(model)?;
         Ok(Self::at(model.parent().unwrap_or(Path::new("/")).to_owned()))
@@ -66,7 +66,7 @@ impl Folder {
         Ok(self)
     }
 
-    /// Sets the advice for files that lie elsewhere.
+    /// Sets the advice for files elsewhere.
     pub fn hint(self, hint: &'static str) -> Self {
         Self { hint, ..self }
     }
@@ -195,7 +195,7 @@ impl Resources for Folder {
     fn find(&self, path: &str, limit: u64) -> Result<Found, String> {
         let (full, note) = self.place(path).inspect_err(|_| add_note(&self.base.join(path)))?;
         add_note(&full);
-        // What is checked is what was opened: paths may lead elsewhere a moment later.
+        // The opened file is checked, because its path may lead elsewhere a moment later.
         let file = open(&full).map_err(|e| in_words(&e))?;
         if !self.allows(&place_of(&file, &full)) {
             return Err("it was moved while it was opened".to_owned());

@@ -1,4 +1,4 @@
-//! A process that can open only what it was asked to read and to write, where the system can see to that.
+//! Restriction of the process to the files that it is to read and write, on systems that support it.
 
 use crate::failure::Failure;
 use clap::ValueEnum;
@@ -19,8 +19,8 @@ pub enum Sandbox {
 const SYSTEM: [&str; 4] =
     ["/proc/self", "/proc/meminfo", "/sys/fs/cgroup", "/sys/devices/system/cpu"];
 
-/// Confines the process: from here on it opens nothing but what is in the folders of its inputs, or in folders that it
-/// was given, and makes and replaces files in the folders of its outputs only. It opens no connections.
+/// Confines the process: from now on it can open only files in the folders of its inputs or in given folders, can
+/// create and replace files only in the folders of its outputs, and can open no connections.
 ///
 /// Returns a warning where the system cannot do it, and need not.
 ///
@@ -43,8 +43,8 @@ pub fn confine(
     }
 }
 
-/// Returns the folder of a file without links; a folder itself, and what is neither. Of what is not there,
-/// the folder above it that is: it will be made there.
+/// Returns the folder of a file, without links; for a folder or a special file, the path itself. For a path that does
+/// not exist, the nearest existing folder above it, where it will be created.
 fn folder(path: &Path) -> Option<PathBuf> {
     if let Ok(full) = std::fs::canonicalize(path) {
         let within = if full.is_file() { full.parent() } else { Some(&*full) };
@@ -68,7 +68,7 @@ fn landlocked(read: &[PathBuf], written: &[PathBuf]) -> Result<(), String> {
     let confined = || -> Result<(), RulesetError> {
         let files = AccessFs::from_all(ABI::V3);
         Ruleset::default()
-            // Files at least, or nothing is confined.
+            // At least file access must be confined.
             .set_compatibility(CompatLevel::HardRequirement)
             .handle_access(files)?
             .set_compatibility(CompatLevel::BestEffort)

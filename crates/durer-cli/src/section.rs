@@ -15,13 +15,13 @@ use durer::view::section::{self, Options, Section};
 pub struct SectionArgs {
     /// Cut the model by a plane and keep the side where NX·x + NY·y + NZ·z + D > 0
     ///
-    /// The plane is in the units and axes of the model, as in the box that `durer info` prints. If
-    /// given several times, the part on the right side of all planes is kept. Closed bodies are
-    /// closed again by a cap; open ones show their inside, and a warning says so. The view is
-    /// fitted to the part that is kept. E.g. --section 0,0,1,-5 keeps what is above z = 5.
+    /// The plane is in the units and axes of the model, as in the box that `durer info` prints. If given several times,
+    /// the part on the right side of all planes is kept. Closed bodies are closed again by a cap; open ones show their
+    /// inside, with a warning. The view is fitted to the part that is kept. E.g. --section 0,0,1,-5 keeps the part
+    /// above z = 5.
     ///
-    /// With a letter, a --sheet gets a view of the part that is kept, seen from the side that is cut away, and other
-    /// views show the plane where it is edge on. E.g. --section A:0,1,0,-5 gives the section A–A.
+    /// With a letter, a --sheet has a view of the kept part, seen from the removed side, and other views show the plane
+    /// where it is edge on. E.g. --section A:0,1,0,-5 gives the section A–A.
     #[arg(long, value_name = "[LETTER:]NX,NY,NZ,D", allow_hyphen_values = true, value_parser = section)]
     pub section: Vec<SectionPlane>,
     /// The colour of caps
@@ -70,7 +70,7 @@ impl SectionArgs {
     }
 }
 
-/// Refuses options that the parser accepts one by one but that do not go together.
+/// Refuses combinations of options that the parser accepts separately.
 pub fn check(args: &SectionArgs, sheet: bool) -> Result<(), Failure> {
     match args.views().next() {
         Some((letter, _)) if !sheet => Err(Failure::Usage(format!(

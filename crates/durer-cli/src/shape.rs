@@ -1,4 +1,4 @@
-//! The shape of a picture whose size leaves a side open: that of what is seen.
+//! The shape of a picture whose size leaves a side open: the shape of the model in the view.
 
 use crate::camera::{self, Shot};
 use crate::failure::Failure;
@@ -12,7 +12,7 @@ use durer::view::layout::Layout;
 /// Shapes that are longer than this become this: a line has no height.
 const LONGEST: f64 = 16.0;
 
-/// Pixels along a side of what is divided into viewports, to see their shape.
+/// Pixels along a side of a picture that is divided into viewports, to find their shape.
 const TRIAL: u32 = 1 << 12;
 
 /// Returns the width and height of a picture, up to a factor: square cells of viewports, the aspect ratio of

@@ -1,4 +1,4 @@
-//! Sizes of which one side may be open, and follows from the shape of what is shown.
+//! Sizes of which one side may be open and follows from the shape of the contents.
 
 use crate::values::Size;
 use durer::math::DVec2;
@@ -29,7 +29,7 @@ pub fn sides(text: &str) -> Result<Sides, String> {
 }
 
 impl Sides {
-    /// Returns whether a side has to be found.
+    /// Returns whether a side is open.
     pub fn is_open(self) -> bool {
         self.width.is_none() || self.height.is_none()
     }

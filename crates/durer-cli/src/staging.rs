@@ -14,7 +14,7 @@ use durer::view::fit;
 use durer::view::projection::drawn_bounds;
 use durer::work::{Charge, Work};
 
-/// Distance, as a part of the model's radius, within which things take light from each other.
+/// Distance, as a part of the model's radius, within which surfaces occlude each other.
 const OCCLUSION_RADIUS: f64 = 0.25;
 
 /// Options for the stage.
@@ -126,7 +126,7 @@ pub fn give_materials(args: &StageArgs, asked: Option<Vec4>, scene: &mut Scene) 
     });
 }
 
-/// A model with what is put around it.
+/// A model with its surroundings: floor, grid and axes.
 pub struct Staged {
     /// Scene that the view is fitted to: all but the shadow on the floor, which fades out.
     pub framed: Scene,
@@ -136,7 +136,7 @@ pub struct Staged {
     _charge: Charge,
 }
 
-/// Returns the scene with what is put around the model; `None` if nothing is.
+/// Returns the scene with the surroundings of the model; `None` if there are none.
 pub fn staged(args: &StageArgs, scene: &Scene, work: &Work) -> Result<Option<Staged>, Failure> {
     if !(args.has_ground() || args.grid || args.axes) {
         return Ok(None);
@@ -159,7 +159,7 @@ pub fn staged(args: &StageArgs, scene: &Scene, work: &Work) -> Result<Option<Sta
     Ok(Some(Staged { framed, whole, _charge: charge }))
 }
 
-/// Returns what darkens the picture of a model, if anything is to.
+/// Returns the options of ambient occlusion for a model, if requested.
 pub fn occlusion(args: &StageArgs, model: &Scene) -> Option<ambient_occlusion::Options> {
     let strength = args.occlusion().filter(|s| *s > 0.0)? as f32;
     let radius = model.bounding_sphere()?.radius * OCCLUSION_RADIUS;
@@ -178,7 +178,7 @@ pub fn draw_edges(
     pipeline::draw_edges(model, options, &style, picture).map_err(|e| Failure::of_library(&e))
 }
 
-/// Moves near and far plane of a fitted camera, so that what is put around the model is between them.
+/// Moves the near and far planes of a fitted camera, so that the surroundings of the model are between them.
 pub fn with_depths(view: &ViewArgs, camera: &Camera, staged: &Scene) -> Camera {
     let (near, far) = fit::depth_range(camera, staged);
     let fitted = view.camera.is_none();

@@ -7,11 +7,12 @@ use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::available_parallelism;
 
-/// Starts as many threads as are requested, counting the main one: a single thread needs none beside it. Where the
-/// system allows fewer, which is warned of, those that exist do the work; the pictures are the same.
+/// Starts the requested number of threads, counting the main one: with a single thread, none is started. If the system
+/// allows fewer, the existing ones do the work, with a warning; the pictures are the same.
 pub fn start(args: &RunningArgs) -> Result<(), Failure> {
     let wanted = args.threads.map_or_else(usual, usize::from);
-    // Threads come first and get their part later: a pool that lacks some of its own would wait for them.
+    // Threads are started first and get their part later, because a pool would wait for threads that it failed to
+    // start.
     let (give, take) = channel::<rayon::ThreadBuilder>();
     let take = Arc::new(Mutex::new(take));
     let refused = (1..wanted).find_map(|made| waiting(&take).err().map(|error| (made, error)));
@@ -24,7 +25,7 @@ pub fn start(args: &RunningArgs) -> Result<(), Failure> {
     if let Some((made, error)) = refused.filter(|_| !args.quiet) {
         let threads = if made == 1 { "thread does" } else { "threads do" };
         let why = in_words(&error);
-        // A closed standard error leaves nobody to tell.
+        // If standard error is closed, the warning is lost.
         let _ = writeln!(
             io::stderr().lock(),
             "durer: warning: {made} {threads} the work, not {wanted}: {why}; --threads asks for fewer"

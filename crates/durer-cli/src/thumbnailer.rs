@@ -12,11 +12,11 @@ pub const HELP: &str = "\
 To see models in file managers (GNOME, Xfce, MATE, Cinnamon):
   mkdir -p ~/.local/share/thumbnailers
   durer thumbnailer ~/.local/share/thumbnailers/durer.thumbnailer
-Desktops know most formats by themselves; for those that they do not:
+Desktops know most formats; for the others:
   mkdir -p ~/.local/share/mime/packages
   durer thumbnailer --types ~/.local/share/mime/packages/durer.xml
   update-mime-database ~/.local/share/mime
-Then remove the pictures that failed before: rm -r ~/.cache/thumbnails/fail";
+Then remove the thumbnails that failed before: rm -r ~/.cache/thumbnails/fail";
 
 /// The options of `durer thumbnailer`.
 #[derive(Debug, Args)]
@@ -29,7 +29,7 @@ pub struct ThumbnailerArgs {
     pub types: bool,
 }
 
-/// Formats, by their usual names, and what desktops call them, now and formerly.
+/// Formats by their usual names, with the current and former media types that desktops use.
 const TYPES: &[(&str, &[&str])] = &[
     ("glTF", &["model/gltf-binary", "model/gltf+json"]),
     ("OBJ", &["model/obj", "application/prs.wavefront-obj"]),
@@ -49,11 +49,11 @@ const TYPES: &[(&str, &[&str])] = &[
     ("OFF", &["model/off", "application/x-off"]),
     ("LAS", &["application/vnd.las", "application/vnd.laszip"]),
     ("E57", &["model/e57"]),
-    // Other lists of numbers have these endings too, so only those of points alone.
+    // Other lists of numbers have these suffixes too, so only the type for points is listed.
     ("points as text", &["model/x-pts"]),
 ];
 
-/// Formats that desktops do not know, by what they are called above.
+/// Formats that desktops do not know, with the media types used above.
 const UNKNOWN: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <mime-info xmlns="http://www.freedesktop.org/standards/shared-mime-info">
   <mime-type type="model/ply">

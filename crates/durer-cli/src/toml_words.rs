@@ -1,14 +1,14 @@
-//! Faults of TOML in durer's words: those of the parser are of its insides.
+//! Faults of TOML in durer's words, because the parser's messages describe its internals.
 
 /// Describes a fault of TOML, without its place.
 pub fn fault(message: &str) -> &'static str {
     let any = |words: &[&str]| words.iter().any(|word| message.contains(word));
     if any(&["duplicate key"]) {
-        "a key is there twice"
+        "a key appears twice"
     } else if any(&["recurs"]) {
         "arrays and tables are nested too deep"
     } else if any(&["must be quoted"]) {
-        "a text stands in quotes, as in \"text\""
+        "a text must be in quotes, as in \"text\""
     } else if any(&["escape", "unicode"]) {
         "after `\\` no known letter follows; `\\` itself is written `\\\\`"
     } else if any(&["unclosed", "quote", "basic string", "literal string", "opening", "open"]) {
@@ -20,7 +20,7 @@ pub fn fault(message: &str) -> &'static str {
     } else if any(&["assignment", "value", "extra `=`", "key"]) {
         "`key = value` is needed"
     } else {
-        "neither `key = value`, nor `[table]`, nor a comment after `#` stands here"
+        "`key = value`, `[table]` or a comment after `#` is expected here"
     }
 }
 
@@ -32,11 +32,11 @@ mod tests {
     #[test]
     fn faults_are_told_plainly() {
         for (text, expected) in [
-            ("a = 1\na = 2", "a key is there twice"),
+            ("a = 1\na = 2", "a key appears twice"),
             ("a = [1, 2", "a bracket or a quote is missing"),
             ("a = \"b", "a bracket or a quote is missing"),
             ("[a", "a bracket or a quote is missing"),
-            ("a = b", "a text stands in quotes"),
+            ("a = b", "a text must be in quotes"),
             ("a", "`key = value` is needed"),
             ("a = \"\\q\"", "after `\\` no known letter follows"),
         ] {

@@ -1,4 +1,4 @@
-//! Numbers and vectors as options take them; every message says what would be right.
+//! Numbers and vectors as values of options; every message says what is expected.
 
 use crate::kind::Kind;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -51,7 +51,7 @@ pub enum Algorithm {
     Surfaces(SurfaceMethod),
     /// All edges, hidden or not.
     Wireframe,
-    /// A contact sheet of all that find visible surfaces.
+    /// A contact sheet of all methods for visible surfaces.
     All,
 }
 
@@ -81,7 +81,7 @@ pub fn picture_format() -> impl TypedValueParser<Value = PictureFormat> {
         .map(|name| PictureFormat::of_suffix(&name).unwrap_or_default())
 }
 
-/// Returns a format's name; of some a suffix is as usual.
+/// Returns a format's name, with a suffix as an alias for some.
 fn named(name: &'static str) -> PossibleValue {
     let value = PossibleValue::new(name);
     if name == PictureFormat::Jpeg.name() { value.alias("jpg") } else { value }
@@ -213,7 +213,7 @@ pub fn letter(text: &str) -> Result<String, String> {
     let right = text.chars().count() <= MOST_LETTERS
         && text.starts_with(char::is_alphabetic)
         && text.chars().all(char::is_alphanumeric);
-    let wrong = || format!("`{text}` is not a letter, as in A or B1, to stand before the colon");
+    let wrong = || format!("`{text}` is not a letter; write one before the colon, e.g. A or B1");
     if right { Ok(text.to_owned()) } else { Err(wrong()) }
 }
 

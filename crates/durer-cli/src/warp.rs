@@ -47,10 +47,10 @@ pub struct WarpArgs {
     /// Position of the picture's eye
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector)]
     pub eye: DVec3,
-    /// Point that the picture's eye looked at
+    /// Target of the picture's camera
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector)]
     pub target: DVec3,
-    /// Direction that pointed up in the picture
+    /// Up direction of the picture's camera
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, default_value = "0,1,0", value_parser = values::direction)]
     pub up: DVec3,
     /// Its vertical angle of view in degrees [default: 30, as of `render`]
@@ -86,7 +86,7 @@ pub struct WarpArgs {
     /// Position of the second picture's eye
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, requires = "fill")]
     pub fill_eye: Option<DVec3>,
-    /// Point that the second picture's eye looked at [default: the same]
+    /// Target of the second picture's camera [default: the same]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, requires = "fill")]
     pub fill_target: Option<DVec3>,
     /// Compression and quality of the file.

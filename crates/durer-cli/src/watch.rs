@@ -14,21 +14,21 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// The time that work has to end by itself after it is stopped, and after a signal.
+/// The time that stopped work has to end by itself, and the same after a signal.
 const GRACE: Duration = Duration::from_secs(1);
 const GRACE_OF_SIGNALS: Duration = Duration::from_millis(100);
 
-/// The time between two looks, and the longer one while nothing is near a limit.
+/// The time between two checks, and the longer one while no limit is near.
 const OFTEN: Duration = Duration::from_millis(4);
 const SELDOM: Duration = Duration::from_millis(20);
 
-/// Memory that is held besides what is charged: the program itself, stacks, and what is small.
+/// Memory held besides the charged memory: the program itself, stacks, and small values.
 const BESIDES: u64 = 16 << 20;
 
 /// The process ends at once where it holds this much and an eighth of the budget more than allowed.
 const SLACK: u64 = 8 << 20;
 
-/// The stage that the command is in, for the message of a hard end.
+/// The current stage, for the message of a forced end.
 static NOW: Mutex<String> = Mutex::new(String::new());
 
 /// The file that it works on.
@@ -85,7 +85,7 @@ fn watched() -> MutexGuard<'static, Option<Watched>> {
     WATCHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Watches the command from now on. Where there is no thread to be had, signals end it as they do without.
+/// Watches the command from now on. If no thread can be started, signals end it in the usual way.
 pub fn start(args: &RunningArgs) {
     begin(&args.work, args.timeout, "--timeout");
     spawn(note_signals);
@@ -144,7 +144,7 @@ pub fn take_signal() -> bool {
 fn watch() {
     let mut end_at = None;
     loop {
-        // What is watched may be over while it is examined: it is kept until then.
+        // The watched work may end while it is examined, so the lock is kept.
         let mut guard = watched();
         let wait = match &mut *guard {
             None => OFTEN,
@@ -212,7 +212,7 @@ fn end_with(message: Option<String>, code: i32) -> ! {
     beside::end(|| {
         let mut out = std::io::stderr().lock();
         if let Some(message) = message {
-            // Over what shows progress. A closed standard error leaves nobody to tell.
+            // Overwrites the progress line. If standard error is closed, the message is lost.
             let clear = if out.is_terminal() { "\r\x1b[2K" } else { "" };
             let _ = writeln!(out, "{clear}durer: {message}");
         }

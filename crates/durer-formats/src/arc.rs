@@ -9,7 +9,8 @@ use std::f64::consts::TAU;
 pub(crate) struct Ends {
     pub from: DVec2,
     pub to: DVec2,
-    /// Half the axes of the ellipse, of any sign; where they are too small for the way they grow to what just reaches.
+    /// Half the axes of the ellipse, of any sign; if they are too small to reach both ends, they are enlarged as little
+    /// as possible.
     pub radii: DVec2,
     /// Angle from the x axis to the ellipse's first axis, in radians.
     pub turned: f64,
@@ -35,7 +36,7 @@ pub(crate) struct Arc {
 }
 
 impl Arc {
-    /// Creates the arc between two ends; `None` if it is a line: its ends are the same, or a radius is 0.
+    /// Creates the arc between two ends; `None` if its ends are equal or a radius is 0, so that it is a line.
     pub fn new(ends: &Ends) -> Option<Self> {
         let mut radii = ends.radii.abs();
         if ends.from == ends.to || radii.min_element() == 0.0 {
@@ -65,7 +66,7 @@ impl Arc {
         Some(arc)
     }
 
-    /// Returns a vector of the space where the ellipse is a unit circle, in that of the path.
+    /// Transforms a vector from the space where the ellipse is a unit circle to the path's space.
     pub fn seen(&self, v: DVec2) -> DVec2 {
         let ((sin, cos), v) = (self.turned, v * self.radii);
         DVec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)

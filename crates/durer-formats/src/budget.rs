@@ -8,7 +8,7 @@ pub(crate) const MODEL: &str = "meshes of the model";
 /// Stage of pictures in errors about memory.
 pub(crate) const DECODED: &str = "decoded pictures";
 
-/// Amounts that may still be made of a file.
+/// Amounts that may still be created from a file.
 pub(crate) struct Budget {
     limits: Limits,
     primitives: u64,
@@ -28,7 +28,7 @@ impl Budget {
         take("number of triangles and lines", self.primitives, limit, place)
     }
 
-    /// Charges this many triangles and lines of meshes that are the same but for their materials.
+    /// Charges `count` triangles and lines for copies of meshes that differ only in material.
     pub fn copied(&mut self, count: u64, place: impl FnOnce() -> Place) -> Result<()> {
         self.copies = self.copies.saturating_add(count);
         take("triangles and lines in all materials", self.copies, self.limits.primitives, place)

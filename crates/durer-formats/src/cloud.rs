@@ -1,4 +1,4 @@
-//! Point clouds, whatever format they come in.
+//! Point clouds, for all formats.
 
 use crate::budget::MODEL;
 use crate::model::count_infinite;
@@ -6,7 +6,7 @@ use crate::{Error, Limits, Model, Place, Result, facets, place};
 use durer::math::{DVec3, Vec4};
 use durer::scene::{Instance, Mesh, Topology, UpAxis};
 
-/// The points so far. Colours and intensities are as many as points, or none.
+/// The points so far. There are as many colours and intensities as points, or none.
 #[derive(Debug, Default)]
 pub(crate) struct Cloud {
     pub points: Vec<DVec3>,
@@ -16,13 +16,13 @@ pub(crate) struct Cloud {
     pub full: f32,
     /// Intensities of the echoes, in any unit; shown if there are no colours.
     pub intensities: Vec<f32>,
-    /// Number of points that memory has been taken for.
+    /// Number of points for which memory has been charged.
     pub room: u64,
 }
 
 /// Bytes of a point while it is read: its place, colour and intensity, and its place and colour in the mesh.
 const BYTES: u64 = 72;
-/// Points that memory is taken for at a time.
+/// Number of points for which memory is charged at a time.
 const AT_ONCE: u64 = 1 << 12;
 
 /// The part of all intensities that is as dark, or as bright, as can be: the outliers.
@@ -56,7 +56,7 @@ impl Cloud {
     /// Adds the points to a model: z is up.
     ///
     /// # Errors
-    /// A scene that does not hold together, which would be an error of the reader.
+    /// An inconsistent scene, which would be a bug in the reader.
     pub fn into_model(mut self, mut model: Model) -> Result<Model> {
         model.scene.up_axis = UpAxis::Z;
         if self.points.is_empty() {
@@ -83,7 +83,7 @@ impl Cloud {
     fn linear_colors(self, model: &mut Model) -> Vec<Vec4> {
         let mut colors = self.colors;
         let flat = colors.iter().all(|c| Some(c) == colors.first());
-        // Formats with a place for colours have zeros there if there are none.
+        // Formats with room for colours have zeros there if there are none.
         if flat && self.intensities.iter().any(|i| Some(i) != self.intensities.first()) {
             colors = greys(&self.intensities);
         } else if flat && colors.first().is_some_and(|c| c.truncate().max_element() <= 0.0) {
@@ -97,7 +97,7 @@ impl Cloud {
     }
 }
 
-/// Returns intensities as greys of sRGB: from the least to the greatest, but for outliers.
+/// Returns intensities as greys of sRGB: from the smallest to the largest, ignoring outliers.
 fn greys(intensities: &[f32]) -> Vec<Vec4> {
     let mut sorted: Vec<f32> = intensities.iter().copied().filter(|i| i.is_finite()).collect();
     let outliers = sorted.len() / OUTLIERS;

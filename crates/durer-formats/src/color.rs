@@ -18,7 +18,7 @@ pub(crate) fn linear_bytes() -> [f32; 256] {
     std::array::from_fn(|i| linear(i as f32 / 255.0))
 }
 
-/// Returns linear colour of `#RRGGBB` or `#RRGGBBAA`, sRGB; `None` for what is neither.
+/// Returns the linear colour of `#RRGGBB` or `#RRGGBBAA`, sRGB; `None` for other texts.
 pub(crate) fn hex(text: &str) -> Option<Vec4> {
     let digits = text.strip_prefix('#').filter(|d| matches!(d.len(), 6 | 8))?;
     let digits = Some(digits).filter(|d| d.bytes().all(|b| b.is_ascii_hexdigit()))?;

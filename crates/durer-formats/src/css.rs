@@ -12,8 +12,7 @@ pub(crate) use units::{Units, Whole};
 
 use std::str::FromStr;
 
-/// The one name that CSS 4 adds to the colours of CSS 3, which svgtypes does not know, and the same in words
-/// that it does.
+/// The one colour name that CSS 4 adds to CSS 3, which svgtypes does not know, and its value in a form that it does.
 const REBECCA_PURPLE: (&str, &str) = ("rebeccapurple", "#663399");
 
 /// Returns a colour of CSS as sRGB bytes with straight alpha: a name of CSS 4 or `transparent` in letters of any case,

@@ -40,7 +40,7 @@ pub(crate) fn add_cameras(
     scene: &mut Scene,
     warnings: &mut Vec<Warning>,
 ) {
-    // Found where a camera asks for it: that takes all vertices.
+    // Computed only if a camera needs it, because it takes all vertices.
     let sphere = LazyCell::new(|| scene.bounding_sphere());
     let (mut cameras, mut names) = (Vec::new(), Names::default());
     for eye in eyes {
@@ -61,12 +61,12 @@ pub(crate) fn add_cameras(
 #[derive(Debug, Default)]
 struct Names {
     taken: HashSet<String>,
-    /// The number that was put behind a name last.
+    /// The last number appended to each name.
     last: HashMap<String, usize>,
 }
 
 impl Names {
-    /// Returns the name, or `camera` and a number, with a number more where it is taken.
+    /// Returns the name, or `camera` and a number, with another number appended if it is in use.
     fn unique(&mut self, name: &str) -> String {
         let nameless = || format!("camera{}", self.taken.len());
         let base = Some(name).filter(|n| !n.is_empty()).map_or_else(nameless, str::to_owned);
@@ -87,7 +87,7 @@ fn camera(lens: &Lens, world: DMat4, behind: impl Fn(DVec3) -> f64) -> Result<Na
     let backward = direction(world.z_axis.truncate())?;
     let up = direction(world.y_axis.truncate())?;
     let near = lens.near.unwrap_or_else(|| NEAR * behind(eye));
-    // Infinite: a little behind everything, so that nothing is cut off.
+    // If infinite, a little behind everything, so that nothing is cut off.
     let far = lens.far.unwrap_or_else(|| (behind(eye) * 1.01).max(near * 1000.0));
     let projection = lens.projection;
     let camera = Camera { eye, target: eye - backward, up, projection, near, far };
@@ -104,7 +104,7 @@ pub(crate) fn tell_dark(count: usize, model: &mut Model) {
     }
 }
 
-/// A light of a format that says by itself how light falls off with distance.
+/// A light of a format that specifies the falloff with distance itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Lamp {
     pub kind: LightKind,
@@ -121,13 +121,11 @@ const INSIDE: f64 = 0.25;
 
 /// Returns the lights of a scene. `unit` is the length of a file's unit in the world's.
 ///
-/// The library's lamps fall off with the square of the distance. Points that hardly fall off, and are not
-/// within the scene, become directional lights: as square ones they would burn what is near to
-/// them. Others are made as strong as they are in the middle of the scene, or at its radius where they
-/// are nearer than that.
+/// The library's lamps fall off with the square of the distance. Point lights that hardly fall off and are outside the
+/// scene become directional lights: with square falloff they would overexpose nearby surfaces. Others get the strength
+/// that they have in the middle of the scene, or at its radius if they are nearer than that.
 ///
-/// Lamps that are black are left out, and so are all where nothing but ambient light is left, which
-/// shows no shapes.
+/// Black lamps are left out; all are left out if only ambient light remains, which shows no shapes.
 pub(crate) fn lights(lamps: &[Lamp], unit: f64, scene: &Scene) -> Vec<Light> {
     let sphere = LazyCell::new(|| scene.bounding_sphere());
     let light = |lamp: &Lamp| {
@@ -147,7 +145,7 @@ pub(crate) fn lights(lamps: &[Lamp], unit: f64, scene: &Scene) -> Vec<Light> {
     if shows { lights } else { Vec::new() }
 }
 
-/// Returns the kind of a lamp at a place, and the factor of its colour that makes it right at the scene.
+/// Returns the kind of a lamp at a place, and the factor of its colour that gives the right strength at the scene.
 fn fit(lamp: &Lamp, position: DVec3, unit: f64, scene: BoundingSphere) -> (LightKind, f64) {
     let way = scene.center - position;
     let distance = way.length().max(scene.radius);

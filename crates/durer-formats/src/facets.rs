@@ -52,8 +52,8 @@ impl Facets {
         self.count as usize
     }
 
-    /// Adds a polygon of three corners or more: the numbers of its vertices and, where there are as many,
-    /// of its texture coordinates; and that of its colour, or [`NONE`].
+    /// Adds a polygon of three corners or more: the numbers of its vertices and, if there are equally many, of its
+    /// texture coordinates; and the number of its colour, or [`NONE`].
     pub fn add(&mut self, corners: &[u32], coords: &[u32], color: u32) {
         self.note(corners.len() > 3);
         if color == NONE && coords.is_empty() && !self.triangles.keyed() {
@@ -85,7 +85,7 @@ impl Facets {
     }
 }
 
-/// Attributes of vertices; lists other than that of the positions may be empty. Colours are linear.
+/// Attributes of vertices; all lists except the positions may be empty. Colours are linear.
 #[derive(Debug, Default)]
 pub(crate) struct Attributes {
     pub positions: Vec<Vec3>,
@@ -102,9 +102,8 @@ impl Attributes {
         Mesh { positions, normals, colors, tex_coords, ..Mesh::default() }
     }
 
-    /// Returns the mesh of corners of these vertices: of the vertices as they are, or of one vertex per
-    /// different corner. `palette` and `coords` are what corners name in place of normals and as texture
-    /// coordinates.
+    /// Returns the mesh of corners of these vertices, with the vertices unchanged or with one vertex per different
+    /// corner. Corners refer to `palette` in place of normals, and to `coords` as texture coordinates.
     pub fn joined(
         self,
         model: &mut Model,
@@ -140,7 +139,7 @@ impl Attributes {
         Self { positions, normals: gathered(&self.normals, keys), colors, tex_coords }
     }
 
-    /// Returns whether colours of faces or edges are shown: not where those of vertices say more.
+    /// Returns whether colours of faces or edges are shown: not if the vertices' colours vary.
     fn palette_counts(&self, model: &mut Model, palette: &Palette) -> bool {
         let varied = self.colors.iter().any(|c| Some(c) != self.colors.first());
         if varied && !palette.colors.is_empty() {
@@ -152,16 +151,16 @@ impl Attributes {
     }
 }
 
-/// Returns the values of corners' vertices; none if vertices have none.
+/// Returns the values of corners' vertices; empty if vertices have none.
 fn gathered<T: Copy + Default>(values: &[T], keys: &[Corner]) -> Vec<T> {
     let keys = if values.is_empty() { &[] } else { keys };
     keys.iter().map(|k| values.get(k.position as usize).copied().unwrap_or_default()).collect()
 }
 
-/// Makes the mesh of polygons, cut into triangles that cover them; its parts are what `lay_on` makes.
+/// Creates the mesh of polygons, divided into triangles that cover them; its parts are made by `lay_on`.
 ///
 /// # Errors
-/// [`crate::Error::Limit`] where polygons that cross themselves make too many triangles.
+/// [`crate::Error::Limit`] if polygons that cross themselves make too many triangles.
 pub(crate) fn mesh(
     model: &mut Model,
     vertices: Attributes,
@@ -192,7 +191,7 @@ pub(crate) fn show_colors(model: &mut Model, meshes: &mut [Mesh]) {
     }
 }
 
-/// Returns the part that is all of a mesh.
+/// Returns a part that is the whole mesh.
 pub(crate) fn whole(mesh: &Mesh, material: usize) -> Part {
     let range = 0..mesh.primitive_count() as u32;
     Part { range, material: Some(material), name: String::new() }

@@ -1,4 +1,4 @@
-//! Errors of other crates in durer's words: theirs speak of types of Rust, and may quote a file's text at any length.
+//! Errors of other crates in durer's words: their own mention Rust types and may quote a file's text at any length.
 
 use crate::told::shown;
 use quick_xml::Error as Xml;
@@ -13,7 +13,7 @@ pub(crate) fn xml(error: &Xml) -> String {
         Xml::Syntax(error) => not_closed(error).to_owned(),
         Xml::IllFormed(error) => ill_formed(error),
         Xml::InvalidAttr(_) => {
-            "an attribute is not written as `name=\"value\"`, or is there twice".to_owned()
+            "an attribute is not written as `name=\"value\"`, or appears twice".to_owned()
         }
         Xml::Escape(_) => entity(),
         Xml::Encoding(_) => "the text is not in the encoding that it names".to_owned(),
@@ -42,14 +42,14 @@ fn not_closed(error: &SyntaxError) -> &'static str {
 }
 
 fn mismatched(expected: &str, found: &str) -> String {
-    format!("`</{}>` stands where `</{}>` is needed", shown(found), shown(expected))
+    format!("`</{}>` is found where `</{}>` is expected", shown(found), shown(expected))
 }
 
 fn ill_formed(error: &IllFormedError) -> String {
     match error {
         IllFormedError::MismatchedEndTag { expected, found } => mismatched(expected, found),
         IllFormedError::UnmatchedEndTag(name) => {
-            format!("`</{}>` ends what was not begun", shown(name))
+            format!("`</{}>` closes an element that was not opened", shown(name))
         }
         IllFormedError::MissingEndTag(name) => format!("`</{}>` is missing", shown(name)),
         IllFormedError::MissingDoctypeName => "the DOCTYPE has no name".to_owned(),
@@ -79,14 +79,14 @@ pub(crate) fn markup(error: &Markup) -> String {
         Markup::NonXmlChar(c, _) => {
             format!("the character U+{:04X} is not allowed in XML", u32::from(*c))
         }
-        // In an attribute's value, the end of which is looked for.
+        // In an attribute's value whose end is missing.
         Markup::InvalidChar(b'"' | b'\'', b'<', _) => LESS_IN_VALUE.to_owned(),
         Markup::InvalidChar(expected, found, _) => {
-            format!("`{}` stands where `{}` is needed", byte(*found), byte(*expected))
+            format!("`{}` is found where `{}` is expected", byte(*found), byte(*expected))
         }
         Markup::InvalidChar2(expected, found, _) => {
             let needed = expected.replace('\'', "`");
-            format!("`{}` stands where {needed} is needed", byte(*found))
+            format!("`{}` is found where {needed} is expected", byte(*found))
         }
         Markup::InvalidString(expected, _) => format!("`{expected}` is needed"),
         other => structure(other).to_owned(),
@@ -100,7 +100,7 @@ fn byte(byte: u8) -> String {
     if byte.is_ascii_graphic() { char::from(byte).to_string() } else { format!("\\x{byte:02x}") }
 }
 
-/// Describes a fault of the XML of a drawing that says nothing of the text.
+/// Describes a fault of the XML of a drawing without quoting the text.
 fn structure(error: &Markup) -> &'static str {
     match error {
         Markup::InvalidXmlPrefixUri(_)
@@ -130,7 +130,7 @@ fn structure(error: &Markup) -> &'static str {
         }
         Markup::InvalidComment(_) => "a comment holds `--`, or ends with `-`",
         Markup::InvalidCharacterData(_) => "a text holds `]]>`, which is written `]]&gt;`",
-        _ => "neither an element nor a comment or text stands here; `<` itself is written `&lt;`",
+        _ => "an element, a comment or text is expected here; `<` itself is written `&lt;`",
     }
 }
 
@@ -179,13 +179,13 @@ fn types(text: &str) -> String {
         return format!("`{}` is missing", shown(name));
     }
     if let Some(name) = text.strip_prefix("duplicate field `").and_then(|t| t.strip_suffix('`')) {
-        return format!("`{}` is there twice", shown(name));
+        return format!("`{}` appears twice", shown(name));
     }
     let said = ["invalid type: ", "invalid value: ", "invalid length "];
     let found = said.iter().find_map(|start| text.strip_prefix(start));
     match found.and_then(|rest| rest.rsplit_once(", expected ")) {
         Some((found, needed)) => {
-            format!("{} stands where {} is needed", shown(&value(found)), kind(needed))
+            format!("{} is found where {} is expected", shown(&value(found)), kind(needed))
         }
         None => shown(text).into_owned(),
     }
@@ -203,7 +203,7 @@ fn value(found: &str) -> String {
     kind(found).to_owned()
 }
 
-/// Returns a type of Rust, or of serde, in words of JSON.
+/// Returns the name in JSON of a type of Rust or serde.
 fn kind(name: &str) -> &str {
     match name {
         "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number from 0 on",
@@ -243,7 +243,7 @@ pub(crate) fn inflating(error: &std::io::Error) -> &'static str {
     }
 }
 
-/// The message for a picture that an encoder refuses, failed writes aside.
+/// The message for a picture that an encoder refuses, except for failed writes.
 pub(crate) const REFUSED: &str = "this picture cannot be put into its format; write a PNG";
 
 /// Describes a fault of a PNG, as a predicate of its name.

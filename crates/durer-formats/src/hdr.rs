@@ -1,7 +1,7 @@
 //! Pictures with a wide range of brightness: Radiance's RGBE (.hdr, .pic).
 //!
-//! G. Ward, *Real Pixels*, Graphics Gems II, 1991; the encoding by runs is that of Radiance's `color.c`,
-//! the older one too.
+//! G. Ward, *Real Pixels*, Graphics Gems II, 1991; run-length encoding as in Radiance's `color.c`, including the older
+//! form.
 
 use crate::text::quote;
 use crate::{Error, Limits, Place, Result};
@@ -17,7 +17,7 @@ pub struct HdrPicture {
     pub pixels: Vec<[f32; 3]>,
 }
 
-/// Bytes of decoded pixels, at most, whatever the limits say: a panorama of 8192 × 4096 has 400 MB.
+/// Largest number of bytes of decoded pixels, independent of the limits: a panorama of 8192 × 4096 has 400 MB.
 const MOST_BYTES: u64 = 1 << 30;
 /// Widths whose rows may be encoded channel by channel.
 const WIDTHS_BY_CHANNEL: std::ops::Range<usize> = 8..0x8000;
@@ -25,7 +25,7 @@ const WIDTHS_BY_CHANNEL: std::ops::Range<usize> = 8..0x8000;
 /// Reads a picture whose rows run from the top and from the left, as all panoramas do.
 ///
 /// # Errors
-/// [`Error::Limit`] where a side is above `limits.image_side` or the pixels above `limits.decoded_bytes` or 1 GiB,
+/// [`Error::Limit`] if a side is above `limits.image_side` or the pixels above `limits.decoded_bytes` or 1 GiB,
 /// [`Error::Unsupported`] for CIE colours and other orientations, [`Error::Decode`] for bytes that are no such picture
 /// or end early.
 pub fn read(bytes: &[u8], limits: &Limits) -> Result<HdrPicture> {

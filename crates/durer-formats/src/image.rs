@@ -1,7 +1,8 @@
 //! Pictures that models wear: PNG, JPEG, WebP, GIF, BMP and TGA to 8-bit RGBA; and deep PNG to 16-bit RGBA.
 //!
 //! The format is detected by the first bytes of a file, for TGA by its whole header. Sizes are checked before anything
-//! is allocated, also against what the bytes at hand can hold at all, so a short file cannot ask for a huge picture.
+//! is allocated, also against the largest picture that the file's bytes can contain, so a short file cannot claim a
+//! huge picture.
 
 mod bmp;
 mod bytes;
@@ -26,12 +27,12 @@ type Picture = (u32, u32, Vec<[u8; 4]>);
 
 /// Decodes a PNG, JPEG, WebP, GIF, BMP or TGA file.
 ///
-/// Palettes, greys, CMYK (inverted, as Adobe writes it) and transparency become RGBA with straight
-/// alpha; 16-bit samples are rounded to 8. Of an animation the first picture is taken. Colour
-/// profiles are not applied, nor is the [`Orientation`]. `name` names the picture in the result and in messages.
+/// Palettes, greys, CMYK (inverted, as Adobe writes it) and transparency become RGBA with straight alpha; 16-bit
+/// samples are rounded to 8. The first picture of an animation is used. Neither colour profiles nor the [`Orientation`]
+/// are applied. `name` names the picture in the result and in messages.
 ///
 /// # Errors
-/// [`Error::Limit`] where a side is above `limits.image_side` or the pixels above `limits.decoded_bytes`,
+/// [`Error::Limit`] if a side is above `limits.image_side` or the pixels above `limits.decoded_bytes`,
 /// [`Error::Unsupported`] for other known picture formats, [`Error::Decode`] for broken contents. `Place` is the whole:
 /// the caller knows the rest.
 pub fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Image> {
@@ -75,7 +76,7 @@ fn other_format(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Makes pixels opaque that all have an alpha of 0: many writers leave unset what they do not use.
+/// Makes all pixels opaque if all have an alpha of 0: many writers do not set an alpha that they do not use.
 fn show_if_all_transparent(pixels: &mut [[u8; 4]]) {
     if pixels.iter().all(|pixel| pixel[3] == 0) {
         pixels.iter_mut().for_each(|pixel| pixel[3] = 255);

@@ -1,9 +1,9 @@
 //! LAS, the format of airborne laser scans, and LAZ, which is LAS compressed (feature `laz`).
 //!
-//! Source: ASPRS, *LAS Specification 1.4 – R15*, 2019; earlier versions are read alike. Of a point its
-//! place, colour and intensity are taken; intensity is shown as grey where the file has no colours.
-//! Colours are of 16 bits, and scaled where all are below 256, as some programs write them. Classes,
-//! waveforms, and the coordinate system are ignored. z is up.
+//! Source: ASPRS, *LAS Specification 1.4 – R15*, 2019; earlier versions are read in the same way. The reader takes the
+//! position, colour and intensity of points; intensity is shown as grey if the file has no colours. Colours have 16
+//! bits, and are scaled if all are below 256, as some programs write them. Classes, waveforms, and the coordinate
+//! system are ignored. z is up.
 //!
 //! Cost: one pass. Memory: 24 bytes per point while reading, 20 more for colour and intensity.
 
@@ -41,7 +41,7 @@ pub(crate) fn sniff(bytes: &[u8]) -> bool {
 
 /// Reads a LAS or LAZ file.
 ///
-/// A file that ends too early is read as far as it goes, with a warning.
+/// A truncated file is read up to its end, with a warning.
 ///
 /// # Errors
 /// [`Error::Decode`] for a header that is not LAS's, or compressed data that are broken from the first
@@ -125,7 +125,7 @@ impl Header {
         Ok(Self { color, ..header })
     }
 
-    /// Returns the fields, but for what depends on the format of points.
+    /// Returns the fields that do not depend on the format of points.
     fn fields(bytes: &[u8]) -> Option<Self> {
         bytes.get(..HEADER)?;
         let u16_at = |at| take(bytes, at).map(u16::from_le_bytes);

@@ -1,12 +1,12 @@
 //! The number of digits of a text file's coordinates.
 
-/// Lines that are examined: what the first say holds for all.
+/// Number of lines examined; the first lines are taken as representative.
 const LINES: usize = 4096;
 
-/// Returns what a unit of the last digit is worth of the numbers in the lines that begin with the word `key`, or, where
-/// that is empty, of the first three words of all lines. Of numbers with exponents, which all have as many digits, the
-/// largest counts; of others that with most decimals, for zeros at the end may be left out. 0 if there are no decimals:
-/// whole numbers are whole on purpose.
+/// Returns the value of one unit of the last digit of the numbers in lines that begin with the word `key` or, if that
+/// is empty, of the first three words of all lines. Of numbers with exponents, which all have the same number of
+/// digits, the largest counts; of other numbers the one with most decimals, because trailing zeros may be left out. 0
+/// if there are no decimals: whole numbers are taken as exact.
 pub(crate) fn last_digit(text: &[u8], key: &[u8]) -> f64 {
     let (mut fixed, mut largest, mut decimals) = (0, None::<i32>, 0);
     let mut seen = 0;

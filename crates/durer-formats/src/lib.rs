@@ -1,7 +1,7 @@
 //! File formats of durer: bytes to scenes and shapes, pictures and drawings to bytes.
 //!
-//! Nothing here opens a file: readers take bytes and a [`Resources`] that finds what a file refers
-//! to, writers take a `Write`. So the library and its tests need no files.
+//! The library opens no file: readers take bytes and a [`Resources`] that finds referenced files, writers take a
+//! `Write`. So the library and its tests need no files.
 
 #![forbid(unsafe_code)]
 

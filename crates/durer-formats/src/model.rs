@@ -8,19 +8,19 @@ use durer::work::Work;
 /// Source of the files that a file refers to: buffers, images, material libraries.
 ///
 /// The implementation in the command reads only below the model's own folder and never from a network address; data
-/// URIs do not get here.
+/// URIs are not passed to it.
 pub trait Resources {
     /// Returns the bytes of a file, at most `limit`; `path` is relative, percent-decoded, and has `/` as separator.
     ///
     /// # Errors
-    /// A sentence with the reason, for the reader to put into [`crate::Error::Resource`].
+    /// A sentence with the reason, which the reader puts into [`crate::Error::Resource`].
     fn read(&self, path: &str, limit: u64) -> std::result::Result<Vec<u8>, String>;
 
     /// Returns the bytes of a file by its path as written in the model, percent-decoded and with `/` as separator. The
     /// path may be absolute, lead out of the folder by `..`, or be a network address. Readers call this method.
     ///
-    /// The provided implementation refuses such paths, so that [`Self::read`] never gets one. Another implementation
-    /// decides itself which paths it allows, and may find a file under another spelling.
+    /// The provided implementation refuses such paths, so that [`Self::read`] never receives one. Another
+    /// implementation decides itself which paths it allows, and may find a file under another spelling.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -35,7 +35,7 @@ pub trait Resources {
 pub struct Found {
     /// The file's bytes.
     pub bytes: Vec<u8>,
-    /// A sentence for a warning, if the file is not quite the requested one: its name differs in upper and lower case.
+    /// A sentence for a warning, if the file's name differs from the requested one in upper and lower case.
     pub note: Option<String>,
 }
 
@@ -56,12 +56,12 @@ fn check_inside(path: &str) -> std::result::Result<(), &'static str> {
         return Err("absolute paths are not followed");
     }
     if path.split('/').any(|part| part == "..") {
-        return Err("paths out of the model's folder are not followed");
+        return Err("paths that leave the model's folder are not followed");
     }
     Ok(())
 }
 
-/// Source without any files: for files that must stand alone.
+/// Source without any files, for models that must be self-contained.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoResources;
 
@@ -165,13 +165,13 @@ impl Model {
 
 /// Returns the number of points with a coordinate that is NaN or infinite.
 pub(crate) fn count_infinite(points: &[Vec3]) -> usize {
-    // There is hardly ever one, and whether there is one among many is sooner known than for each.
+    // There is hardly ever one, and testing many together is faster than testing each.
     let count = |some: &[Vec3]| some.iter().filter(|p| !p.is_finite()).count();
     points.chunks(256).filter(|some| any_infinite(some)).map(count).sum()
 }
 
 fn any_infinite(points: &[Vec3]) -> bool {
-    // An exponent of ones, and nothing else, carries into the sign's place. Four points are three registers.
+    // Only an exponent of all ones carries into the sign bit. Four points are three registers.
     let carry = |v: f32| (v.to_bits() & 0x7fff_ffff) + 0x0080_0000;
     let (fours, rest) = points.as_chunks::<4>();
     let mut any = [0; 12];

@@ -1,18 +1,18 @@
 //! The material library of Wavefront OBJ.
 //!
-//! Source: *Wavefront Advanced Visualizer Manual*, appendix B5, and the PBR statements (`Pr`, `Pm`,
-//! `Ke`, `norm` …) that Exocortex proposed in 2014. Nothing here is an error: what is missing or
-//! wrong in a material is a warning, and the model is shown all the same.
+//! Source: *Wavefront Advanced Visualizer Manual*, appendix B5, and the PBR statements (`Pr`, `Pm`, `Ke`, `norm` …)
+//! that Exocortex proposed in 2014. There are no errors: missing or wrong data in a material give a warning, and the
+//! model is shown nevertheless.
 //!
-//! What becomes what: `Kd` and `map_Kd` the base color, `Ks`, `map_Ks` and `Ns` Blinn's highlight
-//! (none where `Ks` is missing, `illum` is 1, or `Ns` below 1), `Ke` and `map_Ke` the emission, `d` or
+//! Correspondence: `Kd` and `map_Kd` the base color, `Ks`, `map_Ks` and `Ns` Blinn's highlight
+//! (none if `Ks` is missing, `illum` is 1, or `Ns` below 1), `Ke` and `map_Ke` the emission, `d` or
 //! 1 − `Tr` and `map_d` the alpha (blended), `norm` the tangent-space normals; `Pr`, `Pm`, `map_Pr`,
 //! `map_Pm` make the material metallic-roughness. `illum 0` is unlit, and other numbers make nothing
 //! transparent. `Ka`, `Ni`, `Tf` and reflection maps have no counterpart and are left out; bump maps too,
 //! with a warning, unless they show normals. Colors are sRGB values; those up to 255 are scaled.
 //!
-//! `Tr 1` without `d` is opaque: so MeshLab, OpenMVS and mvs-texturing have it, and a model that nobody
-//! sees is no use. Where libraries have `Tr 1` and nowhere `Tr 0`, `Tr` is the opacity of all materials.
+//! `Tr 1` without `d` is opaque, as in MeshLab, OpenMVS and mvs-texturing, because an invisible model is of no use. If
+//! libraries have `Tr 1` and never `Tr 0`, `Tr` is the opacity of all materials.
 
 mod convert;
 pub(crate) mod image;
@@ -64,7 +64,7 @@ pub(crate) fn load(
     notes.tell(model);
 }
 
-/// Reads what one `mtllib` names: one file whose name may hold blanks, or else several.
+/// Reads the libraries named by an `mtllib`: one file whose name may contain blanks, or else several.
 fn read_libraries(
     model: &mut Model,
     all: &mut Library,
@@ -113,8 +113,8 @@ fn read_library(
     }
 }
 
-/// Returns the path as [`Resources`] wants it: `/` between folders, no `./`; of an absolute path,
-/// which was right on the writer's machine only, the file's name.
+/// Returns the path in the form for [`Resources`]: `/` between folders, no `./`; for an absolute path, which was valid
+/// only on the writer's machine, the file's name.
 fn relative(path: &str) -> String {
     let path = path.trim_matches('"').replace('\\', "/");
     let drive = path.as_bytes().get(1) == Some(&b':');

@@ -15,8 +15,8 @@ const MAX_DIGITS: usize = 19;
 /// Knows `.5`, `1.`, `+1`, `1e-3`, `nan`, `inf`, `infinity` (any case, signed) and the `1.#IND`,
 /// `1.#INF` that old Microsoft libraries wrote.
 ///
-/// The short way is exact by W. D. Clinger, *How to Read Floating Point Numbers Accurately*, 1990:
-/// one operation on two exact doubles rounds once. Everything longer goes to the standard library.
+/// The fast path is exact by W. D. Clinger, *How to Read Floating Point Numbers Accurately*, 1990:
+/// one operation on two exact doubles rounds once. Longer numbers are parsed by the standard library.
 pub(crate) fn float(text: &[u8]) -> Option<(f64, usize)> {
     let negative = text.first() == Some(&b'-');
     let signed = usize::from(negative || text.first() == Some(&b'+'));

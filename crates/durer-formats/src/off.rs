@@ -1,9 +1,9 @@
 //! OFF, Geomview's object file format, as text.
 //!
-//! Source: The Geometry Center, *Geomview Manual*, 1996, section *OFF Files*; and what later writers
-//! do: no line end after `OFF`, colours of vertices also where the first word does not promise them,
-//! three components of colour instead of four. Faces of two vertices are lines. Colours are sRGB, of
-//! vertices or of faces; numbers of colour maps are not. y is up.
+//! Source: The Geometry Center, *Geomview Manual*, 1996, section *OFF Files*; with the practice of later writers: no
+//! line end after `OFF`, colours of vertices even if the first word does not announce them, three components of colour
+//! instead of four. Faces of two vertices are lines. Colours are sRGB, of vertices or of faces; indices of colour maps
+//! are ignored. y is up.
 //!
 //! Cost: one pass. Memory: 24 bytes per vertex while reading, and the mesh.
 
@@ -18,7 +18,7 @@ use durer::scene::{Instance, Mesh, Topology};
 
 /// Numbers that a vertex may have.
 const NUMBERS: usize = 12;
-/// Number of bytes of a file that are searched for its first word.
+/// Number of bytes at the start of a file in which its first word is searched.
 const PROBE: usize = 4096;
 
 /// Attributes of vertices according to the first word of a file.
@@ -62,7 +62,7 @@ pub(crate) fn sniff(bytes: &[u8]) -> bool {
     if Kind::of(word).is_none() {
         return false;
     }
-    // A count, or nothing more: but not a word of prose.
+    // A count or the end, but not a word of prose.
     let next = next_word(&mut cursor).unwrap_or(b"0");
     next == b"BINARY" || next.iter().all(u8::is_ascii_digit)
 }
@@ -79,8 +79,7 @@ fn next_word<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
 
 /// Reads an OFF file.
 ///
-/// A file that ends too early is read as far as it goes, and faces of vertices that do not exist are
-/// left out, with a warning.
+/// A truncated file is read up to its end, and faces with missing vertices are left out, with a warning.
 ///
 /// # Errors
 /// [`Error::Decode`] with the line for a file that does not begin as OFF, a word that is not a number, or
@@ -103,7 +102,7 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
 /// Returns the first word, and the numbers of vertices and faces.
 fn header<'a>(cursor: &mut Cursor<'a>, text: &'a [u8]) -> Result<(Kind, [u64; 2])> {
     let word = next_word(cursor).unwrap_or_default();
-    // Files without the word exist: they begin with the counts.
+    // Some files lack the word and begin with the counts.
     let kind = Kind::of(word).or(word.iter().all(u8::is_ascii_digit).then(Kind::default));
     let Some(kind) = kind.filter(|_| !word.is_empty()) else {
         let message = format!("an OFF file begins with `OFF`, not with `{}`", quote(word));
@@ -281,7 +280,7 @@ impl Reader {
         Ok(None)
     }
 
-    /// Returns whether there is something to show of a file that breaks off here.
+    /// Returns whether there is something to show if the file ends here.
     fn has_something(&self) -> bool {
         !self.facets.triangles.indices.is_empty() || (self.ended && !self.points.is_empty())
     }

@@ -96,7 +96,7 @@ impl Default for Encoding {
 ///
 /// # Errors
 /// [`Error::Library`] for a picture without pixels, or with more along a side than the format can say;
-/// [`Error::Io`] where writing fails, and where the budget that the picture was charged to has no room for its encoder.
+/// [`Error::Io`] if writing fails, and where the budget that the picture was charged to has no room for its encoder.
 pub fn write<W: Write>(
     out: W,
     format: PictureFormat,

@@ -16,9 +16,9 @@ pub(crate) type Corner = [u32; 3 + SETS];
 
 /// Attributes that the indices of corners refer to.
 pub(crate) trait Values {
-    /// Returns whether there is anything for one of a corner's indices.
+    /// Returns whether there are values for one of a corner's indices.
     fn has(&self, slot: usize) -> bool;
-    /// Returns the numbers behind an index, `fill` where they are fewer; `None` beyond the end.
+    /// Returns the values of an index, with `fill` for missing ones; `None` beyond the end.
     fn get(&self, slot: usize, index: u32, fill: f64) -> Option<[f64; 4]>;
 }
 
@@ -35,7 +35,7 @@ pub(crate) struct Piece {
     pub sets: Vec<u64>,
 }
 
-/// Primitives that share what their indices stand for: one mesh.
+/// Primitives whose indices refer to the same vertices, as one mesh.
 pub(crate) struct Builder {
     topology: Topology,
     /// The file's numbers of the sets of texture coordinates.

@@ -12,7 +12,7 @@ pub type Visit<'a> = &'a mut dyn FnMut(&mut Scene) -> durer::Result<()>;
 /// Pieces are scenes of one instance, with the materials of the model; their primitives follow each other as in the
 /// scene that the format's `read` gives, and have the same bits.
 pub trait Pieces {
-    /// Returns the most bytes that the model takes as a whole, with what a picture of it takes.
+    /// Returns an upper bound of the bytes for the whole model and a picture of it.
     fn whole(&self) -> u64;
 
     /// Returns the axis that points up.
@@ -21,12 +21,12 @@ pub trait Pieces {
     /// Returns whether its vertices have normals.
     fn has_normals(&self) -> bool;
 
-    /// Visits all vertices, with the primitives that use them where those are known: for boxes and cameras. Vertices
+    /// Visits all vertices, with the primitives that use them if known; for boxes and cameras. Vertices
     /// that no primitive uses have NaN as coordinates. All pieces but the last have a multiple of
     /// [`durer::view::projection::PIECE`] vertices.
     ///
     /// # Errors
-    /// [`crate::Error::Io`], those of `visit`, and of a file that makes no sense after all.
+    /// [`crate::Error::Io`], errors of `visit`, and errors for an invalid file.
     fn vertices(&mut self, visit: Visit<'_>) -> Result<()>;
 
     /// Finds the box around all finite vertices, as [`Scene::bounds`] does of the whole.
@@ -44,7 +44,7 @@ pub trait Pieces {
     /// Reads only the primitives of these numbers, which ascend; returns them with the charge of their memory.
     ///
     /// # Errors
-    /// As [`Self::vertices`]; [`durer::Error::Memory`] where the budget has no room for them.
+    /// As [`Self::vertices`]; [`durer::Error::Memory`] if the budget has no room for them.
     fn only(&mut self, numbers: &[u32]) -> Result<(Scene, Charge)>;
 
     /// Returns facts about the model as a whole. Reads the file if that has not been done yet.

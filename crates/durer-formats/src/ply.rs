@@ -1,12 +1,11 @@
 //! PLY, the polygon file format: ascii, binary little endian, binary big endian.
 //!
-//! Source: G. Turk, *The PLY Polygon File Format*, 1994 (file `PLY_FILES.txt` of Stanford's
-//! distribution); names of properties as its many writers use them, in any case. Elements and
-//! properties may come in any order; those without a meaning here are read over, elements that may have
-//! something to show with a warning. Faces are polygons, triangle strips are taken apart; a file without
-//! faces is a point cloud (or lines, where it has edges), or Gaussian splats. Colors are sRGB, of
-//! vertices, faces or edges. Pictures are those of `comment TextureFile`, laid on by texture coordinates
-//! of vertices or of corners (lists `texcoord`). y is up.
+//! Source: G. Turk, *The PLY Polygon File Format*, 1994 (file `PLY_FILES.txt` of Stanford's distribution); names of
+//! properties as its many writers use them, in any case. Elements and properties may come in any order; unknown ones
+//! are skipped, with a warning for elements that might have something to show. Faces are polygons, triangle strips are
+//! divided into triangles; a file without faces is a point cloud (or lines, if it has edges), or Gaussian splats.
+//! Colors are sRGB, of vertices, faces or edges. Pictures named by `comment TextureFile` are mapped by texture
+//! coordinates of vertices or of corners (lists `texcoord`). y is up.
 //!
 //! Positions declared `double` keep their detail far from the origin (see [`durer::scene::Mesh`]);
 //! `float` ones are taken as they are.
@@ -42,8 +41,7 @@ pub(crate) fn sniff(bytes: &[u8]) -> bool {
 
 /// Reads a PLY file.
 ///
-/// A file that ends too early is read as far as it goes, and faces of vertices that do not exist are
-/// left out, with a warning.
+/// A truncated file is read up to its end, and faces with missing vertices are left out, with a warning.
 ///
 /// # Errors
 /// [`Error::Decode`] with the line (header, ascii) or byte offset (binary) for a header that is not
@@ -77,7 +75,7 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     Ok(model)
 }
 
-/// Warns of lines that were skipped, and of what is missing or left over at the end of the file.
+/// Warns of skipped lines, and of missing or surplus data at the end of the file.
 fn warn_of_end(model: &mut Model, header: &Header, end: Option<(Place, String)>) {
     if header.unknown.count > 0 {
         let message =
@@ -89,7 +87,7 @@ fn warn_of_end(model: &mut Model, header: &Header, end: Option<(Place, String)>)
     }
 }
 
-/// Refuses splats of which a vertex is but four words of bits.
+/// Refuses compressed splats, whose vertices are only four words of bits.
 ///
 /// # Errors
 /// [`Error::Unsupported`].
@@ -103,7 +101,7 @@ fn refuse_packed(header: &Header) -> Result<()> {
     Ok(())
 }
 
-/// Reads all elements; what is left over, or missing, is a warning.
+/// Reads all elements; surplus or missing data give a warning.
 fn read_body(
     header: &Header,
     builder: &mut Builder,
@@ -134,7 +132,7 @@ fn room(element: &Element, values: &impl body::Values) -> u64 {
 /// Returns the place and message for a file that ends, or becomes invalid, at a row.
 ///
 /// # Errors
-/// `why`, where there is nothing to show yet.
+/// `why`, if there is nothing to show yet.
 fn missing(element: &Element, row: u64, builder: &Builder, why: Error) -> Result<(Place, String)> {
     if builder.vertices.len() == 0 {
         return Err(why);
@@ -145,7 +143,7 @@ fn missing(element: &Element, row: u64, builder: &Builder, why: Error) -> Result
 /// Returns the place and message for rows of an element that are missing.
 ///
 /// # Errors
-/// `why`, if it is not about what the file holds.
+/// `why`, if it is not about the contents of the file.
 fn missing_rows(element: &Element, row: u64, why: Error) -> Result<(Place, String)> {
     let Error::Decode { place, message } = why else { return Err(why) };
     let Element { name, count, .. } = element;

@@ -1,7 +1,7 @@
 //! Planes of pixels to PNG (ISO/IEC 15948).
 //!
 //! All writers take row 0 as the top row, write no time stamp and give the same bytes for the same
-//! pixels. Memory: one row, and what the compressor keeps (some 100 kB); cost: one pass.
+//! pixels. Memory: one row, and the compressor's state (about 100 kB); cost: one pass.
 
 use crate::budget::DECODED;
 use crate::foreign;
@@ -42,7 +42,7 @@ const CHUNK_BYTES: usize = 256 * 1024;
 /// ```
 ///
 /// # Errors
-/// [`Error::Library`] for a picture without pixels, [`Error::Io`] where writing fails.
+/// [`Error::Library`] for a picture without pixels, [`Error::Io`] if writing fails.
 pub fn write_color<W: Write>(
     out: W,
     pixels: &Pixels<[u8; 4]>,
@@ -50,7 +50,7 @@ pub fn write_color<W: Write>(
 ) -> Result<()> {
     // Row by row, as a loop that may end at any pixel looks at one pixel at a time.
     let mut rows = (0..pixels.height()).map(|y| pixels.row(y));
-    // Whole pixels: parts of them cannot be put together as quickly.
+    // Whole pixels: combining parts of them would be slower.
     let all = |row: &[[u8; 4]]| row.iter().fold(!0, |all, &p| all & u32::from_ne_bytes(p));
     let opaque = rows.all(|row| all(row).to_ne_bytes()[3] == 255);
     let color = if opaque { ColorType::Rgb } else { ColorType::Rgba };
@@ -168,8 +168,8 @@ pub fn read_depth(bytes: &[u8], limits: &Limits) -> Result<Pixels<f32>> {
     Ok(Pixels::from_data(width, height, depths.collect())?)
 }
 
-/// Writes unit normals as 8-bit colours: each component n as (n · 0.5 + 0.5) · 255, rounded. Where
-/// nothing is, the zero vector becomes (128, 128, 128), which no unit normal does.
+/// Writes unit normals as 8-bit colours: each component n as (n · 0.5 + 0.5) · 255, rounded. At background pixels, the
+/// zero vector becomes (128, 128, 128), which no unit normal does.
 ///
 /// # Errors
 /// As [`write_color`].
@@ -183,7 +183,7 @@ pub fn write_normals<W: Write>(
     write(out, pixels, kind, compression, |normal| normal.map(channel))
 }
 
-/// Writes item indices as 8-bit colours R<<16 | G<<8 | B; [`ITEM_BACKGROUND`] where nothing is.
+/// Writes item indices as 8-bit colours R<<16 | G<<8 | B; [`ITEM_BACKGROUND`] at background pixels.
 ///
 /// # Errors
 /// [`Error::Limit`] for an index that does not fit below [`ITEM_BACKGROUND`], else as
@@ -195,7 +195,7 @@ pub fn write_items<W: Write>(out: W, pixels: &Pixels<u32>, compression: Compress
     }
     let kind = Kind { color: ColorType::Rgb, depth: BitDepth::Eight, srgb: false };
     write(out, pixels, kind, compression, |item| {
-        // The lower 24 bits of "no item" are those of the background.
+        // The lower 24 bits of [`NO_ITEM`] are [`ITEM_BACKGROUND`].
         let [_, r, g, b] = item.to_be_bytes();
         [r, g, b]
     })
@@ -217,8 +217,8 @@ struct Kind {
     srgb: bool,
 }
 
-/// Writes row after row, each made of the bytes that `encode` gives for its pixels. That they are as
-/// many for each pixel lets the compiler work on many at once.
+/// Writes row after row, each made of the bytes that `encode` returns for its pixels. Their fixed number per pixel lets
+/// the compiler vectorize.
 fn write<W: Write, T: Copy, const BYTES: usize>(
     out: W,
     pixels: &Pixels<T>,

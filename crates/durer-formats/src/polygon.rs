@@ -1,12 +1,11 @@
 //! Polygons of meshes to triangles.
 //!
-//! Readers add a polygon as a fan: triangles that all have its first corner. That is right where all of
-//! the polygon is seen from that corner, as in convex ones. [`recut`] finds the others, once all
-//! positions are known, and puts the right triangles in their place: ear clipping where the outline
-//! does not cross itself, which includes bridges to holes that are walked twice; else the points
-//! around which the outline winds, by the non-zero rule. Corners that are not in one plane are
-//! projected along Newell's normal (M. E. Newell's, as in I. E. Sutherland, R. F. Sproull and
-//! R. A. Schumacker, *A Characterization of Ten Hidden-Surface Algorithms*, 1974).
+//! Readers add a polygon as a fan: triangles that all have its first corner. That is right if the whole polygon is
+//! visible from that corner, as in convex ones. [`recut`] finds the others, once all positions are known, and replaces
+//! them by the right triangles: ear clipping where the outline does not cross itself, which includes bridges to holes
+//! that are walked twice; else the points around which the outline winds, by the non-zero rule. Corners that are not in
+//! one plane are projected along Newell's normal (M. E. Newell's, as in I. E. Sutherland, R. F. Sproull and R. A.
+//! Schumacker, *A Characterization of Ten Hidden-Surface Algorithms*, 1974).
 //!
 //! Triangles run around as their polygon does. Every corner stays a corner of a triangle, also on a
 //! straight border, so that neighbours meet without gaps; only spikes without area go.
@@ -25,8 +24,8 @@ use plane::Plane;
 use rebuild::Replaced;
 use std::ops::Range;
 
-/// Tests of a point or an edge that may still be made, over all polygons of a mesh: what hostile
-/// outlines would need grows with the cube of their corners.
+/// Number of tests of a point or an edge that may still be made, over all polygons of a mesh: for hostile outlines it
+/// would grow with the cube of their corners.
 #[derive(Debug)]
 struct Budget(u64);
 
@@ -49,12 +48,12 @@ struct Found {
     given_up: Tally,
 }
 
-/// Replaces the fans of [`Mesh::faces`] that are not right by triangles that cover their polygons, and
-/// warns of outlines that cross themselves. Where lines cross, vertices are added, with attributes
-/// interpolated. Meshes whose faces are all triangles are left alone at once.
+/// Replaces the incorrect fans of [`Mesh::faces`] by triangles that cover their polygons, and warns of outlines that
+/// cross themselves. Where lines cross, vertices are added, with interpolated attributes. Meshes whose faces are all
+/// triangles are left alone at once.
 ///
 /// # Errors
-/// [`crate::Error::Limit`] where crossings make more triangles than allowed.
+/// [`crate::Error::Limit`] if crossings make more triangles than allowed.
 pub(crate) fn recut(model: &mut Model, mesh: &mut Mesh, limits: &Limits) -> Result<()> {
     if mesh.faces.is_empty() || mesh.topology != Topology::Triangles {
         return Ok(());
@@ -83,7 +82,7 @@ pub(crate) fn faces(mesh: &Mesh) -> impl Iterator<Item = Range<usize>> + '_ {
     firsts.zip(ends).map(|(first, end)| first..end).chain((0..single).map(|i| i..i + 1))
 }
 
-/// Returns the triangles to be put in the place of fans.
+/// Returns the triangles that replace fans.
 fn replacements(mesh: &Mesh) -> (Replaced, Found) {
     let (mut replaced, mut found) = (Replaced::new(mesh), Found::default());
     let mut budget = Budget(Budget::TESTS);
@@ -108,8 +107,7 @@ fn replacements(mesh: &Mesh) -> (Replaced, Found) {
     (replaced, found)
 }
 
-/// Returns whether the two triangles of a fan lie within a right angle of one plane: then they make
-/// the quad.
+/// Returns whether the two triangles of a fan are within a right angle of one plane, so that they form the quad.
 fn quad_is_flat([a, b, c, d]: [DVec3; 4]) -> bool {
     let (b, c, d) = (b - a, c - a, d - a);
     b.cross(c).dot(c.cross(d)) >= 0.0
@@ -121,7 +119,7 @@ fn fan_is_right(points: &[DVec3]) -> bool {
     let Some((&origin, rest)) = points.split_first() else { return true };
     let normals = || rest.windows(2).map(|w| [w[0] - origin, w[1] - origin]);
     let normal: DVec3 = normals().map(|[a, b]| a.cross(b)).sum();
-    // Corners on a straight border turn either way by rounding.
+    // Corners on a straight border turn in either direction by rounding.
     let runs_along = |[a, b]: [DVec3; 2]| {
         let turn = a.cross(b).dot(normal);
         turn >= 0.0 || turn >= -1e-12 * a.length() * b.length() * normal.length()
@@ -129,7 +127,7 @@ fn fan_is_right(points: &[DVec3]) -> bool {
     normal != DVec3::ZERO && normals().all(runs_along) && !winds_twice(origin, rest, normal)
 }
 
-/// Returns whether directions from the origin that turn one way come around to the first again.
+/// Returns whether directions from the origin that turn in one direction pass the first one again.
 fn winds_twice(origin: DVec3, rest: &[DVec3], normal: DVec3) -> bool {
     let Some(first) = rest.iter().map(|p| *p - origin).find(|d| *d != DVec3::ZERO) else {
         return false;

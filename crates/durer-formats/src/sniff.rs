@@ -112,7 +112,7 @@ impl ModelFormat {
         }
     }
 
-    /// Returns whether a file that begins so has none of the formats that are tested before STL.
+    /// Returns whether a file with this beginning has none of the formats that are tested before STL.
     pub(crate) fn may_be_stl(head: &[u8]) -> bool {
         let other: [&[u8]; 5] =
             [b"glTF", b"PK\x03\x04", b"LASF", e57::MAGIC, b"Kaydara FBX Binary"];

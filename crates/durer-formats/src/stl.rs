@@ -7,7 +7,7 @@
 //! Vertices are not joined and the stored facet normals, which are often wrong, are left out: the
 //! mesh has three vertices per triangle, in the file's order. z is up.
 //!
-//! Cost: one pass, after one that asks for colors. Memory: 0.72 of a binary file, 1.7 with colors;
+//! Cost: one pass, after one that looks for colors. Memory: 0.72 of a binary file, 1.7 with colors;
 //! under 4 times an ascii file.
 
 mod ascii;
@@ -34,8 +34,8 @@ pub(crate) fn sniff(bytes: &[u8]) -> bool {
     has_exact_length(bytes) || is_ascii(bytes)
 }
 
-/// Returns whether a file of `length` bytes that begins with `head`, [`HEADER`] bytes or more, is
-/// binary STL as long as its header says; [`read_binary_stream`] reads such a file.
+/// Returns whether a file of `length` bytes that begins with `head`, [`HEADER`] bytes or more, is binary STL of the
+/// length given by its header; [`read_binary_stream`] reads such a file.
 pub fn is_whole_binary(head: &[u8], length: u64) -> bool {
     is_length_in_header(head, length) && ModelFormat::may_be_stl(head)
 }
@@ -45,8 +45,7 @@ fn count_in_header(bytes: &[u8]) -> Option<u32> {
     Some(u32::from_le_bytes(count.try_into().ok()?))
 }
 
-/// Returns whether the file is as long as a binary header says; such a file is binary whatever it
-/// begins with.
+/// Returns whether the file has the length given by a binary header; such a file is binary regardless of its beginning.
 fn has_exact_length(bytes: &[u8]) -> bool {
     is_length_in_header(bytes, bytes.len() as u64)
 }
@@ -56,7 +55,7 @@ fn is_length_in_header(head: &[u8], length: u64) -> bool {
     count_in_header(head).is_some_and(|count| expected(count) == length)
 }
 
-/// Returns whether the file begins as ascii STL does, and goes on as text.
+/// Returns whether the file begins like ascii STL and continues as text.
 fn is_ascii(bytes: &[u8]) -> bool {
     let text = utf8(bytes.get(..PROBE).unwrap_or(bytes));
     let text = text.trim_ascii_start();

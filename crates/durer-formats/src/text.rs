@@ -12,7 +12,7 @@ pub(crate) struct Cursor<'a> {
     line: u64,
     line_start: usize,
     word_start: usize,
-    /// Numbers with something behind them, e.g. `3.1+e2`: how many, and where the first is.
+    /// Numbers followed by other characters, e.g. `3.1+e2`: their count, and the place of the first.
     pub sloppy: Tally,
 }
 
@@ -32,7 +32,7 @@ impl Tally {
         self.count += 1;
     }
 
-    /// Adds what another one counted after this one.
+    /// Adds the count of a later tally.
     pub fn append(&mut self, other: Self) {
         if self.count == 0 {
             self.first = other.first;
@@ -47,8 +47,7 @@ pub(crate) fn quote(bytes: &[u8]) -> String {
     if text.chars().count() <= 60 { text } else { text.chars().take(60).chain(['…']).collect() }
 }
 
-/// Returns a name in a text: UTF-8, or where it is none, Windows-1252, in which older programs
-/// wrote.
+/// Returns a name in a text: UTF-8 or, if it is invalid, Windows-1252, as written by older programs.
 pub(crate) fn name(bytes: &[u8]) -> Cow<'_, str> {
     match std::str::from_utf8(bytes) {
         Ok(name) => Cow::Borrowed(name),
@@ -56,8 +55,8 @@ pub(crate) fn name(bytes: &[u8]) -> Cow<'_, str> {
     }
 }
 
-/// Returns the character behind a byte of Windows-1252, which is Latin-1 but for the 32 from 0x80 on;
-/// the five that it leaves free are control characters.
+/// Returns the character behind a byte of Windows-1252, which is Latin-1 except for the 32 characters from 0x80 on; the
+/// five unassigned ones are control characters.
 fn windows_1252(byte: u8) -> char {
     const FROM_80: [char; 32] = [
         '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž',
@@ -211,8 +210,8 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.word_start..self.at).unwrap_or_default().trim_ascii_end()
     }
 
-    /// Returns the rest of the line as one name, up to a word from which on `stop` holds of the
-    /// text.
+    /// Returns the rest of the line as one name, up to the first word where `stop` returns true for the text from
+    /// there.
     pub fn rest_before(&mut self, stop: impl Fn(&'a [u8]) -> bool) -> &'a [u8] {
         self.skip_blanks();
         let start = self.at;
@@ -274,7 +273,7 @@ impl<'a> Cursor<'a> {
         Ok(values.len())
     }
 
-    /// Returns the integer at the cursor, right here: nothing is skipped.
+    /// Returns the integer at the cursor, without skipping blanks.
     pub fn integer_here(&mut self) -> Option<i64> {
         let (value, length) = number::integer(self.bytes.get(self.at..)?)?;
         self.at += length;

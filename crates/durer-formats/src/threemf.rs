@@ -4,16 +4,15 @@
 //! Properties Extension* 1.2.1, *Production Extension* (objects in other parts), *Beam Lattice
 //! Extension* 1.2.0.
 //!
-//! Each object is one mesh, placed by the build items and their components; lengths become
-//! millimetres through the matrices of the instances. What looks alike all over shares its vertices;
-//! where triangles differ in colour or texture, each has its own, and those of one material stand
-//! together. Beams become a mesh of their own. z is up.
+//! Each object is one mesh, placed by the build items and their components; lengths become millimetres through the
+//! matrices of the instances. Meshes of uniform appearance share vertices; where triangles differ in colour or texture,
+//! each has its own, and triangles of one material are consecutive. Beams become a separate mesh. z is up.
 //!
 //! Of slicers' projects (Bambu Studio, OrcaSlicer, PrusaSlicer) paint, colours of filaments, and
 //! plates are read; modifiers, holes and places for supports are left out.
 //!
-//! Inflated parts count against `limits.decoded_bytes`, checked before and while they are read, so
-//! that memory is about twice that at most, whatever the archive claims.
+//! Inflated parts count against `limits.decoded_bytes`, checked before and while they are read, so that memory is at
+//! most about twice that, whatever the archive claims.
 
 mod assembly;
 mod extension;
@@ -35,8 +34,8 @@ use package::Package;
 ///
 /// # Errors
 /// [`crate::Error::Decode`] for a broken archive, XML that is not well-formed, objects that are
-/// missing or contain themselves, a plate that is not there; [`crate::Error::Unsupported`] where a
-/// part requires an extension that is not read; [`crate::Error::Limit`] for too much of anything.
+/// missing or contain themselves, a missing plate; [`crate::Error::Unsupported`] if a
+/// part requires an extension that is not read; [`crate::Error::Limit`] for data above a limit.
 pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let mut package = Package::open(bytes, options.limits.clone())?;
     let mut model = Model { format: "3MF".to_owned(), ..Model::default() };

@@ -3,17 +3,17 @@
 use std::borrow::Cow;
 use std::fmt::Write;
 
-/// Characters of a name, or of other words of a file, that are shown.
+/// Largest number of characters of a quoted name, or of other text of a file.
 const WORDS: usize = 120;
 
-/// Characters of a whole message that are shown; durer's own words, and what they quote, are fewer.
+/// Largest number of characters of a whole message; durer's own messages with their quotes are shorter.
 const MESSAGE: usize = 1000;
 
 /// Numbers with more characters than this are written with an exponent.
 const NUMBER: usize = 20;
 
-/// Returns text of a file, such as a name, for a message: what would steer a terminal, end the line or turn the
-/// direction of writing is written as in Rust (`\n`, `\u{202e}`), and text beyond 120 characters is cut off.
+/// Returns text of a file, such as a name, for a message: characters that control a terminal, end the line or reverse
+/// the writing direction are escaped as in Rust (`\n`, `\u{202e}`), and text beyond 120 characters is cut off.
 pub fn shown(text: &str) -> Cow<'_, str> {
     escaped(cut(text))
 }
@@ -31,7 +31,7 @@ fn cut_at(text: &str, most: usize) -> Cow<'_, str> {
     }
 }
 
-/// Returns a path for a message, as [`shown`] does; of a long one the end, where the file's name is.
+/// Returns a path for a message, as [`shown`] does; the end of a long one, which has the file's name.
 pub fn shown_path(path: &std::path::Path) -> String {
     let text = path.to_string_lossy();
     let count = text.chars().count();
@@ -57,8 +57,8 @@ pub fn escaped<'a>(text: impl Into<Cow<'a, str>>) -> Cow<'a, str> {
     Cow::Owned(told)
 }
 
-/// Returns JSON with what would turn the direction of writing, or steer a terminal, written out in its strings, as JSON
-/// itself has it: it says the same.
+/// Returns equivalent JSON in which characters that reverse the writing direction or control a terminal are escaped in
+/// strings.
 pub fn json(text: &str) -> Cow<'_, str> {
     let written_out = |c: char| steers(c) && !matches!(c, '\n' | '\r' | '\t');
     if !text.chars().any(written_out) {
@@ -78,7 +78,7 @@ pub fn json(text: &str) -> Cow<'_, str> {
     Cow::Owned(told)
 }
 
-/// Returns a message that quotes words of a file, safe for a terminal: escaped, with the text between backticks cut as
+/// Returns a message that quotes text of a file, safe for a terminal: escaped, with the text between backticks cut as
 /// by [`shown`], and long numbers written with an exponent.
 pub fn message(text: &str) -> Cow<'_, str> {
     // Nearly all are fine as they are.
@@ -136,7 +136,7 @@ fn with_short_numbers(text: &str) -> Cow<'_, str> {
     Cow::Owned(told)
 }
 
-/// Returns a number of few digits; those of single precision are enough to find it.
+/// Returns a number with few digits: single precision is enough to find it in the file.
 fn short(number: f64) -> String {
     let text = format!("{number:.8e}");
     let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));

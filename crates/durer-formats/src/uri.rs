@@ -1,11 +1,11 @@
-//! References to other files: data URIs, relative paths, and what is refused.
+//! References to other files: data URIs, relative paths, and refused ones.
 
 use crate::{Error, Found, Place, Resources, Result};
 
 /// Returns the bytes behind a URI, at most `limit` of them.
 ///
 /// # Errors
-/// [`Error::Resource`] where the URI cannot be followed or read; [`Error::Decode`] for a broken data URI.
+/// [`Error::Resource`] if the URI cannot be followed or read; [`Error::Decode`] for a broken data URI.
 pub(crate) fn load(uri: &str, at: &str, resources: &dyn Resources, limit: u64) -> Result<Found> {
     if let Some(data) = strip_data_scheme(uri) {
         return decode_data(data, at).map(|bytes| Found { bytes, note: None });
@@ -17,7 +17,7 @@ pub(crate) fn load(uri: &str, at: &str, resources: &dyn Resources, limit: u64) -
 /// Returns the bytes in a data URI (RFC 2397): base64, or percent-encoded.
 ///
 /// # Errors
-/// [`Error::Decode`] where it is broken, or another URI.
+/// [`Error::Decode`] if it is broken, or another URI.
 ///
 /// ```
 /// assert_eq!(durer_formats::data_uri("data:text/plain;base64,aGk=")?, b"hi");
@@ -64,7 +64,7 @@ pub(crate) fn path(uri: &str) -> std::result::Result<String, &'static str> {
     if path.contains('\0') {
         return Err("a zero byte has no place in a path");
     }
-    // What Windows programs write; no glTF names a file with a backslash in it.
+    // Windows programs write backslashes; no glTF file has one in a file's name.
     let path = path.replace('\\', "/");
     let absolute = if path.starts_with('/') { "/" } else { "" };
     let parts = steps(&path);
@@ -77,7 +77,7 @@ pub(crate) fn path(uri: &str) -> std::result::Result<String, &'static str> {
 }
 
 /// Returns the steps of a path with `/` as separator, without `.` and without folders that a `..` leaves
-/// again (RFC 3986, §5.2.4): they need not exist. What is left of `..` is at the beginning.
+/// again (RFC 3986, §5.2.4): they need not exist. Remaining `..` are at the beginning.
 pub(crate) fn steps(path: &str) -> Vec<&str> {
     let mut steps = Vec::new();
     for step in path.split('/').filter(|step| !matches!(*step, "" | ".")) {

@@ -64,7 +64,7 @@ impl Here<'_> {
     /// Reads an attribute that is a whole number from 0 on.
     ///
     /// # Errors
-    /// Where it is there, but something else.
+    /// If it is present, but something else.
     pub fn index(&self, e: &BytesStart<'_>, key: &str) -> Result<Option<u64>> {
         raw(e, key).map(|value| self.whole(key, value.trim_ascii())).transpose()
     }
@@ -72,7 +72,7 @@ impl Here<'_> {
     /// Reads the value of the attribute `key` as a whole number from 0 on.
     ///
     /// # Errors
-    /// Where it is something else.
+    /// If it is something else.
     pub fn whole(&self, key: &str, value: &str) -> Result<u64> {
         match number::integer(value.as_bytes()) {
             Some((n, length)) if length == value.len() && n >= 0 => Ok(n as u64),
@@ -85,7 +85,7 @@ impl Here<'_> {
     /// Reads an attribute that is a whole number and must be there.
     ///
     /// # Errors
-    /// Where it is missing, or something else.
+    /// If it is missing, or something else.
     pub fn needed(&self, e: &BytesStart<'_>, key: &str) -> Result<u64> {
         self.index(e, key)?.ok_or_else(|| self.wrong(format!("the attribute `{key}` is missing")))
     }
@@ -93,7 +93,7 @@ impl Here<'_> {
     /// Reads an attribute that is a number.
     ///
     /// # Errors
-    /// Where it is there, but something else.
+    /// If it is present, but something else.
     pub fn float(&self, e: &BytesStart<'_>, key: &str) -> Result<Option<f64>> {
         let Some(value) = raw(e, key) else { return Ok(None) };
         let value = value.trim_ascii();

@@ -1,12 +1,11 @@
-//! Point clouds as text: a point per line, of three coordinates and what more there is.
+//! Point clouds as text: one point per line, of three coordinates and optional further values.
 //!
-//! There is no standard: the files of scanners and of CloudCompare, MeshLab and Open3D, with the endings
-//! `.xyz`, `.xyzrgb`, `.pts`, `.asc`, `.txt` and `.csv`. Numbers are separated by blanks, commas or
-//! semicolons. A first line of one number is the count of points (Leica's PTS, several times if there
-//! are several scans); other lines without numbers before the first point are comments, and say the
-//! meaning of each column if they name `x`, `y` and `z`. Otherwise columns after the third are
-//! recognized by their values: three from 0 to 255 (or to 1, and not beyond) are colours; of seven
-//! columns the fourth is the intensity. z is up.
+//! There is no standard: the files of scanners and of CloudCompare, MeshLab and Open3D have the suffixes `.xyz`,
+//! `.xyzrgb`, `.pts`, `.asc`, `.txt` and `.csv`. Numbers are separated by blanks, commas or semicolons. A first line of
+//! one number is the count of points (Leica's PTS, several times if there are several scans); other lines without
+//! numbers before the first point are comments, and give the meaning of each column if they name `x`, `y` and `z`.
+//! Otherwise columns after the third are recognized by their values: three from 0 to 255 (or to 1, and not beyond) are
+//! colours; of seven columns the fourth is the intensity. z is up.
 //!
 //! Cost: two passes over the text if there are more than three columns. Memory: 24 bytes per point
 //! while reading, 16 more with colours.
@@ -68,7 +67,7 @@ fn separates(byte: u8) -> bool {
     byte.is_ascii_whitespace() || matches!(byte, b',' | b';')
 }
 
-/// Returns the numbers of a line and how many there are: 0 of a comment; `None` if a word is none.
+/// Returns the numbers of a line and their count, 0 for a comment; `None` if a word is not a number.
 fn numbers(line: &[u8]) -> Option<([f64; COLUMNS], usize)> {
     let (mut values, mut count) = ([0.0; COLUMNS], 0);
     if line.starts_with(b"#") || line.starts_with(b"//") {
@@ -160,7 +159,7 @@ impl Table {
         Ok(())
     }
 
-    /// Reads the names of columns from a line, if it has those of coordinates.
+    /// Reads the names of columns from a line, if it names the coordinates.
     fn name(&mut self, line: &[u8]) {
         let line = line.to_ascii_lowercase();
         let words = line.split(|&b| separates(b) || matches!(b, b'/' | b'#' | b'"'));
@@ -191,7 +190,7 @@ impl Table {
         }
     }
 
-    /// Finds out what the columns after the third are.
+    /// Determines the meaning of the columns after the third.
     fn guess(&mut self) {
         if self.named {
             return;

@@ -40,7 +40,7 @@ pub fn points(py: Python<'_>, points: Vec<DVec2>) -> PyResult<Bound<'_, PyArray2
     rows(py, points.into_iter().map(|p| p.to_array()).collect())
 }
 
-/// Returns the numbers of an array, which must lie one after the other.
+/// Returns the numbers of an array, which must be contiguous.
 pub fn contiguous<'a, T: Element, D: numpy::ndarray::Dimension>(
     array: &'a numpy::PyReadonlyArray<'_, T, D>,
     name: &str,

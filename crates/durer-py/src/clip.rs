@@ -15,8 +15,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-/// Segments handed to a thread at a time: their columns and results stay in the second-level cache, and none is so large that the
-/// allocator asks the system for it each time.
+/// Number of segments handed to a thread at a time: their columns and results stay in the second-level cache, and are
+/// too small for the allocator to request each from the system.
 const CHUNK: usize = 1 << 12;
 
 /// Segments with their flags.
@@ -159,7 +159,7 @@ fn clip_segments_to_ring<'py>(
     let (out, kept): (Vec<_>, Vec<_>) = on_threads(py, threads, || {
         let one = |&[x0, y0, x1, y1]: &[f64; 4]| {
             let segment = Segment::new(DVec2::new(x0, y0), DVec2::new(x1, y1));
-            // What is not finite is no part of anything, and an error below.
+            // Segments that are not finite have no part inside, and are an error below.
             let part = cyrus_beck::clip_polygon(&ring, segment, &mut NoTrace).unwrap_or_default();
             let Segment { start, end } = part.unwrap_or(segment);
             ([start.x, start.y, end.x, end.y], part.is_some())

@@ -34,7 +34,7 @@ pub fn of_failure(py: Python<'_>, failure: &Failure) -> PyErr {
     }
 }
 
-/// Returns a `ReadError` with its place, or what fits better; `name` is that of the source.
+/// Returns a `ReadError` with its place, or a more fitting error; `name` is the source's.
 pub fn of_reader(py: Python<'_>, error: Error, name: &str) -> PyErr {
     let message = match name {
         "" => error.to_string(),

@@ -1,6 +1,6 @@
 //! Geometries from ragged arrays, and back.
 //!
-//! The layout is that of GeoArrow: coordinates, then offsets from the innermost level to the outermost.
+//! The layout is GeoArrow's: coordinates, then offsets from the innermost level to the outermost.
 
 use durer::geometry::{Dimensions, Geometry, Points};
 use durer::math::DVec2;
@@ -66,7 +66,7 @@ impl Ragged<'_> {
             .map_or(self.coords.len() / self.width, |outer| outer.len().saturating_sub(1))
     }
 
-    /// Checks that offsets are within what they refer to and never decrease.
+    /// Checks that offsets are within their targets and never decrease.
     pub fn check(&self) -> Result<(), String> {
         let levels = self.kind.levels();
         if self.offsets.len() != levels {
@@ -164,8 +164,8 @@ pub struct RaggedOut {
 }
 
 impl RaggedOut {
-    /// Puts geometries into arrays; the kind is that given, or its multiple kind where one has several parts. Of one
-    /// that is missing or empty nothing is in the arrays but its place.
+    /// Puts geometries into arrays of the given kind, or of its multiple kind if one has several parts. A missing or
+    /// empty geometry has only its place in the arrays.
     pub fn new(kind: Kind, width: usize, all: &[Option<Geometry>]) -> Result<Self, String> {
         let is_multi = |g: &Geometry| match g {
             Geometry::MultiPoint(points) => points.len() != 1,

@@ -1,4 +1,5 @@
-//! `durer._durer`, the compiled part of the Python package: functions from arrays and words to arrays and bytes.
+//! `durer._durer`, the compiled part of the Python package: functions from arrays and option strings to arrays and
+//! bytes.
 //!
 //! Arrays come in the one layout that each function names, which the package's Python code converts to; arrays that are
 //! returned own their memory, moved into them without a copy. Work is done without the interpreter's lock.
@@ -25,7 +26,7 @@ use std::io::Write;
 fn command(py: Python<'_>, line: Vec<std::ffi::OsString>) -> u8 {
     let code = py.detach(|| {
         let code = durer_cli::main_with(line);
-        // At the end of an interpreter nothing else does; a closed standard output leaves nobody to tell.
+        // The interpreter does not flush it at its end; if standard output is closed, an error cannot be reported.
         let _ = std::io::stdout().flush();
         code
     });

@@ -28,7 +28,7 @@ impl Model {
         Self { scene, name, format: String::new(), warnings: Vec::new(), animations: Vec::new() }
     }
 
-    /// Returns what the command's functions take.
+    /// Returns the model in the form that the command's functions take.
     pub fn subject(&self) -> InMemory<'_> {
         InMemory { scene: &self.scene, name: &self.name, format: &self.format }
     }

@@ -21,7 +21,7 @@ pub fn rules(grid: Option<f64>) -> Rules {
     Rules { grid, ..Rules::default() }
 }
 
-/// Refuses what is not finite.
+/// Refuses coordinates that are not finite.
 pub fn check(geometry: &Geometry) -> Result<(), String> {
     let mut wrong = None;
     geometry.for_each(&mut |points| {
@@ -31,7 +31,7 @@ pub fn check(geometry: &Geometry) -> Result<(), String> {
     wrong.map_or(Ok(()), |p| Err(format!("the coordinate ({}, {}) is not finite", p.x, p.y)))
 }
 
-/// Returns the part of a geometry in a mask; `None` if nothing is.
+/// Returns the part of a geometry in a mask; `None` if it is empty.
 pub fn clip(geometry: &Geometry, mask: &Mask, rules: &Rules) -> Result<Option<Geometry>, String> {
     check(geometry)?;
     let cutter = Cutter { rules: rules.clone(), ..Cutter::new(mask) };
@@ -78,7 +78,7 @@ pub fn overlay(
             cutter.cut(a).map(|cut| cut.geometry).map_err(|e| e.to_string())
         }
         (true, false) if op == BooleanOp::Intersection => overlay(b, a, op, rules),
-        // What has no area takes none away.
+        // Geometries without area take none away.
         (true, false) if op == BooleanOp::Difference => areas(a, &nothing(), op, rules),
         _ => Err(format!(
             "{} of a {} and a {}: one of the two must be a polygon, for union and symmetric_difference both",

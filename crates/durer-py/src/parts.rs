@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 #[derive(FromPyObject)]
 struct MeshArrays<'py> {
     vertices: PyReadonlyArray2<'py, f64>,
-    /// Rows of three vertices, two or one; those of points are rows of one.
+    /// Rows of three vertices for triangles, two for lines, one for points.
     faces: PyReadonlyArray2<'py, i64>,
     normals: Option<PyReadonlyArray2<'py, f32>>,
     /// Linear RGBA of each vertex.
@@ -39,7 +39,7 @@ struct MaterialNumbers<'py> {
     /// False for Phong's formula with the default highlight.
     is_physical: bool,
     double_sided: bool,
-    /// True if the alpha of vertices or textures counts, and not only that of the colour.
+    /// True if the alpha of vertices or textures is used, and not only the colour's.
     is_blended: bool,
     texture: Option<PyReadonlyArray3<'py, u8>>,
 }

@@ -6,8 +6,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Pools by their number of threads, and the process that they belong to: a process that was forked has none of the
-/// threads of its parent.
+/// Pools by their number of threads, and the process that they belong to: a forked process does not have its parent's
+/// threads.
 static POOLS: Mutex<Option<(u32, HashMap<usize, Arc<ThreadPool>>)>> = Mutex::new(None);
 
 fn pool(threads: usize) -> Result<Arc<ThreadPool>, String> {

@@ -15,7 +15,7 @@ use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-/// The planes of a picture, its camera, and the reason why nothing is visible, if that is so.
+/// The planes of a picture, its camera, and the reason why nothing is visible, if nothing is.
 type Planes<'py> = (
     Bound<'py, PyArray3<u8>>,
     Option<Bound<'py, PyArray2<f32>>>,
@@ -25,8 +25,8 @@ type Planes<'py> = (
     Option<String>,
 );
 
-/// Renders a picture; `planes` are those of depth, item and normal, and `linear` has depths be distances along the
-/// axis, 0 where nothing is.
+/// Renders a picture with the given planes (depth, item, normal); if `linear` is set, depths are distances along the
+/// axis, 0 at the background.
 #[pyfunction]
 fn render<'py>(
     py: Python<'py>,
@@ -51,7 +51,7 @@ fn render<'py>(
     Ok((channels(py, color)?, depth, item, normal, camera.as_ref().map(numbers), unseen))
 }
 
-/// Turns window depths into distances along the camera's axis; 0 where nothing is.
+/// Converts window depths to distances along the camera's axis; 0 at the background.
 fn make_linear(depth: &mut Pixels<f32>, camera: &Camera) {
     let (near, far) = (camera.near, camera.far);
     let distance = |d: f64| match camera.projection {

@@ -57,7 +57,7 @@ impl Occluder {
 /// A likeness of neighbours that an algorithm saves work by, after Sutherland, Sproull and Schumacker (1974).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Coherence {
-    /// Whole objects lie apart, so they are compared before their faces.
+    /// Whole objects are apart from each other, so they are compared before their faces.
     Object,
     /// A value changes smoothly over a face, or is one for all of it.
     Face,
@@ -69,7 +69,7 @@ pub enum Coherence {
     Span,
     /// Neighbours within an area of the picture are alike.
     Area,
-    /// Points of one surface lie at nearly one depth, so the next depth follows from the last.
+    /// Neighbouring points of a surface have almost the same depth, so the next depth follows from the last.
     Depth,
     /// The next picture is nearly this one.
     Frame,
@@ -120,7 +120,7 @@ pub struct Info {
     pub class: Class,
     /// Part of a surface that is compared with others to find hidden parts.
     pub occluder: Occluder,
-    /// Likenesses of neighbours that save work; none if every element is treated by itself.
+    /// Kinds of coherence that save work; none if every element is treated alone.
     pub coherence: &'static [Coherence],
     /// The algorithm in 8 to 20 lines, written from the publication; a step's line counts from 1. Empty if it has no
     /// lesson.

@@ -21,7 +21,7 @@
 //! Files are read and written by the crate `durer-formats`, over bytes; this library takes values
 //! and gives values, opens no file and prints nothing.
 //!
-//! # What is here
+//! # Contents
 //!
 //! Each published algorithm has its own module, whose documentation names authors, year, class, cost
 //! and limits; the same facts are in its `INFO`. Families are enums with `ALL`, `name()`, `info()` and
@@ -40,12 +40,12 @@
 //! | Several views in one picture? | [`view::layout`] |
 //! | Can this box be seen at all? Which way does this face look? | [`view::cull`] |
 //! | What does a near camera see of this picture with depth? | [`view::warp`]: forward warping |
-//! | What lies behind this point or rectangle of the picture? | [`view::pick`] |
+//! | What is behind this point or rectangle of the picture? | [`view::pick`] |
 //! | Where does the label of an area go, and which labels have room? | [`view::interior_point`], [`view::label`] |
 //! | Is this mesh the surface of a body, and are its faces turned outwards? | [`view::topology`], [`visibility::object::orientation`] |
 //! | What is inside, if planes cut it open? | [`view::section`] |
 //!
-//! **Which part of a line lies in the window?** [`clip::line`]
+//! **Which part of a line is in the window?** [`clip::line`]
 //!
 //! | algorithm | window | at home with |
 //! |---|---|---|
@@ -53,8 +53,8 @@
 //! | [Midpoint subdivision](clip::line::midpoint) | integer pixels | hardware without division |
 //! | [Cyrus–Beck](clip::line::cyrus_beck) | convex polygon, convex polyhedron | windows that are not rectangles |
 //! | [Liang–Barsky](clip::line::liang_barsky) | rectangle, box, half-planes | most segments crossing the border |
-//! | [Nicholl–Lee–Nicholl](clip::line::nicholl_lee_nicholl) | rectangle | no crossing computed in vain |
-//! | [Skala](clip::line::skala) | rectangle, convex polygon | signs of the window's corners, no crossing in vain |
+//! | [Nicholl–Lee–Nicholl](clip::line::nicholl_lee_nicholl) | rectangle | no unnecessary crossing computed |
+//! | [Skala](clip::line::skala) | rectangle, convex polygon | signs of the window's corners, no unnecessary crossing |
 //! | [Homogeneous](clip::line::homogeneous) | rectangle | points with a w of any sign |
 //! | [Batches](clip::line::batch) | rectangle | millions of segments |
 //! | [Polylines](clip::polyline) | polygon with holes | chains with attributes, inside or outside part |
@@ -69,7 +69,7 @@
 //! | [Weiler–Atherton](clip::polygon::weiler_atherton) | polygons with holes | valid polygons |
 //! | [Greiner–Hormann](clip::polygon::greiner_hormann) | polygons with holes; rings that cross | valid polygons; rings that cross |
 //! | [Vatti](clip::polygon::vatti) | anything | valid polygons, swept |
-//! | [Overlay](mod@clip::polygon::overlay) | anything | valid polygons: the robust door |
+//! | [Overlay](mod@clip::polygon::overlay) | anything | valid polygons: the robust choice |
 //! | [Rectangle](clip::polygon::rectangle) | polygons and polylines, a rectangle | the fast path for map tiles |
 //!
 //! [Overlay](mod@clip::polygon::overlay) and [Vatti](clip::polygon::vatti) take coordinates of f64 or whole numbers;
@@ -87,9 +87,9 @@
 //! **How does a map become tiles?** [`clip::tiles`].
 //!
 //! **And in three dimensions?** [`clip::volume`] clips in homogeneous coordinates, whatever the sign of w, [many
-//! triangles](clip::volume::clip_triangles) at a time; [`clip::outcode`] sorts points by the borders they are beyond;
-//! [`clip::place`] clips before the camera transform, in clip space, after the division, in the viewport or per pixel,
-//! with the same picture.
+//! triangles](clip::volume::clip_triangles) at a time; [`clip::outcode`] classifies points by the borders they are
+//! beyond; [`clip::place`] clips before the camera transform, in clip space, after the division, in the viewport or per
+//! pixel, with the same picture.
 //!
 //! **Which pixels does it cover?** [`raster`]
 //!
@@ -116,7 +116,8 @@
 //! | [A-buffer](visibility::surface::a_buffer) | lists of fragments with masks of samples |
 //! | [Scan-line z-buffer](visibility::surface::scan_line_z) | a depth per pixel of one row |
 //! | [Spanning scan line](visibility::surface::spanning_scan_line) | spans between edges of a row, no depth per pixel |
-//! | [Depth sort](visibility::surface::depth_sort) | painting from back to front, splitting what has no order |
+//! | [Depth sort](visibility::surface::depth_sort) | painting from back to front, splitting polygons that have no order
+//! |
 //! | [Warnock](visibility::surface::warnock) | dividing the window until it is simple |
 //! | [Rays](visibility::surface::ray) | casting a ray through each sample; shadows, mirrors and refraction too |
 //!
@@ -134,9 +135,9 @@
 //! **What of each face can be seen, exactly?** [`visibility::region`]: regions of one colour with exact shadows,
 //! by a [planar map](visibility::region::planar_map); [hatching](visibility::region::hatch) for pens.
 //!
-//! [Back-face removal](visibility::back_face) leaves out what looks away before anything else is done;
-//! [wireframe](visibility::wireframe) draws all edges, hidden ones too. [`pipeline::status`] says why nothing
-//! of a scene is seen.
+//! [Back-face removal](visibility::back_face) leaves out faces that look away before any other step;
+//! [wireframe](visibility::wireframe) draws all edges, hidden ones too. [`pipeline::status`] tells why nothing of a
+//! scene is visible.
 //!
 //! **How does a drawing come onto paper?** [`paper`]: page, scale, pens, dashes, sheets of four views;
 //! letters from the [single-stroke font](curve::stroke_font).
@@ -154,17 +155,17 @@
 //! [palette](fragment::Palette). [`commands`] drives them: the classic pipeline's
 //! state, display lists, evaluators, lights, textures, and rectangles of pixels.
 //!
-//! **How does an algorithm come to its result?** Those that take a [`trace::Tracer`] as their last
-//! argument tell it every step.
+//! **How does an algorithm come to its result?** Algorithms that take a [`trace::Tracer`] as their last argument report
+//! every step to it.
 //!
 //! **What may it cost?** Options hold a [`work::Work`]: a budget of memory that large buffers are charged to, and a way
-//! to stop what takes too long.
+//! to stop work that takes too long.
 //!
-//! # What holds everywhere
+//! # Guarantees
 //!
 //! - The same input gives the same bytes: on every CPU, SIMD level ([`simd`]) and number of threads.
-//! - Algorithms on valid values cannot fail; what makes a value valid is checked once, with a typed
-//!   [`Error`], and nothing panics on any input.
+//! - Algorithms on valid values cannot fail. Values are validated once, with a typed [`Error`], and nothing panics on
+//!   any input.
 //! - World space is right-handed, the camera looks down −z, clip space is −w ≤ x, y, z ≤ w. Pixel (i, j)
 //!   covers [i, i + 1) × [j, j + 1), its sample is the centre, row 0 is on top.
 //! - Geometry is f64, exact predicates decide topology ([`math`]), coverage is decided with integers of

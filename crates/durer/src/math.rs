@@ -8,11 +8,11 @@ pub use glam::{
 /// Side of a directed line on which a point is; decided exactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Orientation {
-    /// The three points turn to the left (y up): the third lies left of the line first → second.
+    /// The three points turn to the left (y up): the third is left of the line first → second.
     CounterClockwise,
     /// The three points turn to the right (y up).
     Clockwise,
-    /// The three points lie on one line.
+    /// The three points are on one line.
     Collinear,
 }
 
@@ -35,8 +35,8 @@ pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> Orientation {
     }
 }
 
-/// Returns whether x lies in the open sector around an apex from the ray through one point counter-clockwise to the ray
-/// through another; exact as [`orient2d`] is. Where both rays are the same, everything but that ray is in it.
+/// Returns whether x is in the open sector around an apex, from the ray through one point counter-clockwise to the ray
+/// through another; exact like [`orient2d`]. If both rays are the same, everything except that ray is in the sector.
 ///
 /// ```
 /// use durer::math::{DVec2, in_sector};
@@ -100,7 +100,7 @@ impl Rect {
     /// Returns the rectangle between two corners.
     ///
     /// # Errors
-    /// [`crate::Error::Parameter`] where a number is not finite or `min > max` on an axis.
+    /// [`crate::Error::Parameter`] if a number is not finite or `min > max` on an axis.
     pub fn new(min: DVec2, max: DVec2) -> crate::Result<Self> {
         if min.is_finite() && max.is_finite() && min.x <= max.x && min.y <= max.y {
             Ok(Self { min, max })
@@ -136,7 +136,7 @@ impl Rect {
         self.max - self.min
     }
 
-    /// Returns whether the point lies inside or on the border.
+    /// Returns whether the point is inside or on the border.
     pub fn contains(&self, p: DVec2) -> bool {
         p.x >= self.min.x && p.x <= self.max.x && p.y >= self.min.y && p.y <= self.max.y
     }

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 ///
 /// Runs on the current rayon pool where the feature `parallel` is on, else one after the other.
 pub fn map<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
-    // Not worth a task: also keeps one thread from paying for others.
+    // Too little work for tasks; and a single thread avoids their cost.
     if items.len() < 2 || threads() == 1 {
         return items.into_iter().map(f).collect();
     }
@@ -33,8 +33,8 @@ pub fn map_with<S: Send, T: Send, R: Send>(
     map_and_keep(items, make, f).0
 }
 
-/// Applies `f` to each item as [`map_with`] does, and also returns the states that exist in the end: at most as many
-/// as there were threads, in no determined order.
+/// Applies `f` to each item as [`map_with`] does, and also returns the states that exist in the end: at most one for
+/// each thread, in no particular order.
 pub fn map_and_keep<S: Send, T: Send, R: Send>(
     items: Vec<T>,
     make: impl Fn() -> S + Sync + Send,
@@ -64,8 +64,8 @@ pub fn threads() -> usize {
     }
 }
 
-/// Calls `f` with each number below `count`. Not generic, so that rayon is compiled once and not for
-/// everything that is done on several threads.
+/// Calls `f` with each number below `count`. Not generic, so that rayon's code is compiled once and not for each
+/// caller.
 fn for_each(count: usize, f: &(dyn Fn(usize) + Sync)) {
     #[cfg(feature = "parallel")]
     {

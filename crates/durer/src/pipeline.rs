@@ -344,7 +344,7 @@ pub fn render_into(
     })
 }
 
-/// Applies ambient occlusion, if requested, and drops the planes that nothing else needs.
+/// Applies ambient occlusion, if requested, and drops the planes that only it needs.
 fn darken(view: &View, options: &RenderOptions, framebuffer: &mut Framebuffer) {
     let Some(occlusion) = &options.ambient_occlusion else { return };
     let Framebuffer { color, depth, normal, .. } = framebuffer;

@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 /// Level of all work for which no other is requested.
 static DEFAULT: OnceLock<Level> = OnceLock::new();
 
-/// Returns the level that everything works at where no other is requested: the machine's best, or
-/// what [`set_default_level`] has chosen.
+/// Returns the level used unless another one is requested: the machine's best, or the one chosen by
+/// [`set_default_level`].
 pub fn default_level() -> Level {
     *DEFAULT.get_or_init(Level::new)
 }
@@ -33,9 +33,9 @@ pub(crate) const fn lanes<S: Simd>() -> usize {
     size_of::<S::i32s>() / size_of::<i32>()
 }
 
-/// Returns every level that this machine can run with code of its own, weakest first; tests render at each of them.
-/// Where every processor of an architecture has registers, as those of x86-64 have SSE2's, `scalar` is among them with
-/// the feature `scalar` only.
+/// Returns every level with separate code that this machine can run, weakest first; tests render at each of them. On
+/// architectures whose every processor has vector registers, such as SSE2's on x86-64, `scalar` is included only with
+/// the feature `scalar`.
 ///
 /// SSE4.2 is not among them: its further instructions make no kernel faster than SSE2 does, so both run the same code,
 /// which saves a quarter of the kernels.
@@ -84,8 +84,8 @@ pub(crate) fn with_code(level: Level) -> Level {
     level
 }
 
-/// Works out an expression with the instructions of a level, whose token the pattern gets. It does what the macro of
-/// the same name in `fearless_simd` does, but builds no code for SSE4.2.
+/// Evaluates an expression with the instructions of a level, whose token is bound to the pattern. It does what the
+/// macro of the same name in `fearless_simd` does, but builds no code for SSE4.2.
 macro_rules! dispatch {
     (@with $token:expr, $simd:pat => $work:expr) => {{
         let token = $token;

@@ -1,4 +1,4 @@
-//! Seconds that stages take, for reports; nothing else depends on them.
+//! Seconds that stages take, used only in reports.
 
 /// Runs from where it is started.
 pub(crate) struct Stopwatch(#[cfg(not(target_arch = "wasm32"))] std::time::Instant);

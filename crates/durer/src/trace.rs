@@ -34,7 +34,7 @@ impl<S> Tracer<S> for NoTrace {
     fn step(&mut self, _make: impl FnOnce() -> S) {}
 }
 
-/// Tracer that keeps the steps up to a cap, and counts those that it dropped.
+/// Tracer that keeps the steps up to a cap, and counts the dropped ones.
 #[derive(Debug, Clone)]
 pub struct Recorder<S> {
     steps: Vec<S>,

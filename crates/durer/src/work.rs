@@ -232,8 +232,8 @@ impl Work {
         }
     }
 
-    /// Resumes work that was stopped for lack of memory, after memory has been released. Returns whether the work goes
-    /// on: if it was stopped for another reason, it stays stopped.
+    /// Resumes work that was stopped for lack of memory, after memory has been released. Returns whether the work
+    /// continues: if it was stopped for another reason, it stays stopped.
     pub fn go_on(&self) -> bool {
         let Some(scope) = &self.0 else { return true };
         let mut why = lock(&scope.shared.why);

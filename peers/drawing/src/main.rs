@@ -1,4 +1,4 @@
-//! Measures line drawings: hiding alone, in CPU seconds, and what comes out.
+//! Measures line drawings: the CPU seconds of hiding alone, and the resulting lines.
 //!
 //! `make FILE.obj --triangles N` or `hide MODEL`; README.md has the options.
 

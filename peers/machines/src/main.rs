@@ -2,7 +2,7 @@
 
 use durer::simd::{by_name, levels, name, set_default_level};
 
-/// What is not optimized takes much.
+/// Unoptimized code needs much stack.
 const STACK: usize = 64 << 20;
 
 fn main() {

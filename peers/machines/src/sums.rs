@@ -106,7 +106,7 @@ fn scenes_by_methods() -> Vec<(String, u64)> {
     made.collect()
 }
 
-/// What is made, and its checksum.
+/// Returns the outputs by name, with their checksums.
 pub fn all() -> Vec<(String, u64)> {
     let mut all = scenes_by_methods();
     let lobes = scenes::lobes();

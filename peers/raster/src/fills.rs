@@ -40,7 +40,7 @@ fn durer(scene: &Scene, canvas: &mut Canvas, target: &mut Pixels<[u8; 4]>) {
     canvas.render(target).unwrap();
 }
 
-/// The thread that asks does the work: nobody else has to be woken for it.
+/// The calling thread does the work, so no other thread must be woken.
 fn one_thread() -> rayon::ThreadPool {
     rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().unwrap()
 }

@@ -240,7 +240,7 @@ pub fn floods() {
             let options = seed_fill::Options { connectivity, ..Default::default() };
             flood_fill(image, (0, 0), 128, 0, SeedFill::Spans, &options, &mut NoTrace);
         };
-        // What each has to do before, to be taken off.
+        // The preparation of each, to be subtracted.
         let mut copy = source.clone();
         let m = medians(
             5,

@@ -1,4 +1,4 @@
-//! Children: what they cost, and that they end.
+//! Child processes: their cost, and their end.
 
 use crate::Result;
 use crate::clock::Cost;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::Instant;
 
-/// Runs a command to its end, its output thrown away, and tells what it cost.
+/// Runs a command to its end, discards its output, and returns its cost.
 ///
 /// Peak memory cannot be less than this process's own at the time of the call (Linux counts the
 /// memory that a child shares before it begins), so nothing large may be held here.
@@ -35,14 +35,14 @@ pub fn run(command: &mut Command) -> Result<Cost> {
     })
 }
 
-/// A child that ends with its owner, asked to, so that it can clear away what it has left.
+/// A child that is asked to end when its owner is dropped, so that it can remove its files.
 pub struct Ended(pub Child);
 
 impl Drop for Ended {
     fn drop(&mut self) {
         // SAFETY: the child is ours and has not been waited for, so its number is still its own.
         unsafe { libc::kill(self.0.id() as libc::pid_t, libc::SIGTERM) };
-        // Where there is nothing to wait for, it has ended.
+        // If there is nothing to wait for, it has ended.
         let _ = self.0.wait();
     }
 }
@@ -66,7 +66,7 @@ impl TempFolder {
 
 impl Drop for TempFolder {
     fn drop(&mut self) {
-        // What cannot be removed stays among the temporary files.
+        // A folder that cannot be removed stays among the temporary files.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }

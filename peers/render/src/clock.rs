@@ -9,7 +9,7 @@ pub struct Cost {
     pub cpu: f64,
     /// Time on the wall, seconds.
     pub wall: f64,
-    /// Largest resident memory, bytes; 0 where it is not asked for.
+    /// Largest resident memory, bytes; 0 if not measured.
     pub memory: f64,
 }
 
@@ -21,7 +21,7 @@ fn process_cpu() -> f64 {
     time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }
 
-/// Runs the work and tells what it cost; only this work may be running.
+/// Runs the work and returns its cost; nothing else may be running.
 pub fn measure<T>(work: impl FnOnce() -> T) -> (T, Cost) {
     let (wall, cpu) = (Instant::now(), process_cpu());
     let result = work();

@@ -15,7 +15,7 @@ use durer::scene::{
 use durer::shade::color;
 use durer::target::Framebuffer;
 
-/// durer on so many threads.
+/// durer with a number of threads.
 pub struct Durer {
     scene: Scene,
     place: Place,

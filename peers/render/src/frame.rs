@@ -69,11 +69,11 @@ enum Contender {
     SwiftShader(Box<SwiftShader>),
 }
 
-/// All who draw one mesh with so many samples.
+/// All renderers of one mesh with a number of samples.
 struct Contest<'a> {
     mesh: &'a str,
     samples: u32,
-    /// Name, place in the list of the durer that it is measured against, what it is, its turns.
+    /// Name, index of the durer it is compared with, contender, and turns.
     contenders: Vec<(&'static str, usize, Contender, Vec<Cost>)>,
     bmesh: PathBuf,
     picture: PathBuf,

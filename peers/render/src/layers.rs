@@ -1,5 +1,4 @@
-//! A hundred full-screen quads, one before another, textured with bilinear filtering: what a
-//! rasterizer does with overdraw.
+//! A hundred full-screen quads, one in front of another, textured with bilinear filtering: a test of overdraw.
 
 use crate::clock::{Cost, measure, median_cost, ratio};
 use crate::options::Options;
@@ -18,7 +17,7 @@ const LAYERS: usize = 100;
 /// Texels along the side of the texture.
 const TEXELS: u32 = 1024;
 
-/// In which order the quads come, by the harness's name.
+/// Orders of the quads, by the harness's names.
 const MODES: [&str; 3] = ["b2f", "f2b", "blend"];
 
 /// Measures all orders with one sample and prints a table.

@@ -12,8 +12,8 @@ pub fn harness() -> Option<PathBuf> {
     std::env::var_os("LLVMPIPE_BENCH").map(PathBuf::from)
 }
 
-/// Returns one turn of frames with so many raster threads (0 = all in the calling one); the medians
-/// that the harness prints.
+/// Runs one turn of frames with a number of raster threads (0 = all in the calling one); returns the medians that the
+/// harness prints.
 pub fn turn(
     harness: &Path,
     mesh: &Path,
@@ -35,7 +35,7 @@ pub fn turn(
     medians(command, harness)
 }
 
-/// Returns one turn of what the arguments say, with so many raster threads.
+/// Runs one turn with the arguments and a number of raster threads.
 pub fn run(harness: &Path, arguments: &[&str], threads: u32) -> Result<Cost> {
     let mut command = command(harness, threads);
     command.args(arguments);

@@ -27,7 +27,7 @@ pub fn sphere(name: &str) -> Result<Mesh> {
     Ok(displaced(around, down))
 }
 
-/// Returns a displaced sphere with so many meridians and parallels.
+/// Returns a displaced sphere with `around` meridians and `down` parallels.
 pub fn displaced(around: u32, down: u32) -> Mesh {
     let points: Vec<[f64; 3]> =
         (0..=down).flat_map(|i| (0..around).map(move |j| point(i, j, around, down))).collect();
@@ -118,7 +118,7 @@ pub fn make(folder: &Path) -> Result<()> {
         write(&folder.join(format!("{name}.glb")), |out| write_glb(out, &mesh))?;
         write_bmesh(&folder.join(format!("{name}.bmesh")), &mesh)?;
     }
-    // One triangle: what remains is the start of the process.
+    // One triangle: its time is the start of the process.
     let mut least = sphere("sphere13k")?;
     least.triangles.truncate(1);
     write(&folder.join("triangle.stl"), |out| write_stl(out, &least))

@@ -9,7 +9,7 @@ pub struct Options {
     pub names: Vec<String>,
     /// Number of turns of each contender.
     pub rounds: usize,
-    /// Only so many samples per pixel; `None` = 1 and 4.
+    /// Samples per pixel; `None` = 1 and 4.
     pub samples: Option<u32>,
     /// Folder for pictures.
     pub png: Option<PathBuf>,

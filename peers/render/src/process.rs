@@ -52,7 +52,7 @@ pub fn run(options: &Options) -> Result<()> {
             }
         }
     }
-    // Only now, as what this process holds would count as its children's peak.
+    // Only now, because memory of this process would count in its children's peak.
     pictures.iter().try_for_each(|p| check(p))
 }
 
@@ -149,7 +149,7 @@ fn render(durer: &Path, model: &Path, picture: &Path) -> Command {
     command
 }
 
-/// Returns the release build of the command, or what `DURER` names.
+/// Returns the release build of the command, or the one named by `DURER`.
 fn durer() -> Result<PathBuf> {
     let built = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/release/durer");
     let path = std::env::var_os("DURER").map_or(built, PathBuf::from);
@@ -168,7 +168,7 @@ fn models(options: &Options, temp: &Path) -> Result<Vec<PathBuf>> {
     let folder = match &options.meshes {
         Some(folder) => folder.clone(),
         None => {
-            // In a process of its own: see child::run on memory.
+            // In a separate process: see child::run on memory.
             child::run(Command::new(std::env::current_exe()?).arg("make").arg(temp))?;
             temp.to_owned()
         }

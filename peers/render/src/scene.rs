@@ -10,7 +10,7 @@ pub const HEIGHT: usize = 1080;
 /// Vertical angle of view, radians.
 #[expect(clippy::approx_constant, reason = "the harness's own number, for the same pixels")]
 pub const FOV_Y: f64 = 0.7854;
-/// Towards the light, view space, of unit length but for rounding.
+/// Direction to the light, view space, of unit length up to rounding.
 pub const LIGHT: [f64; 3] = [0.4364, 0.4364, 0.7868];
 /// Light that comes from everywhere, times the surface's colour.
 pub const AMBIENT: [f32; 3] = [0.08, 0.08, 0.10];

@@ -13,7 +13,7 @@ use vek::Mat4;
 /// Path of the library in Debian's `chromium-common`.
 const DEBIAN: &str = "/usr/lib/chromium/libvk_swiftshader.so";
 
-/// Returns the library, if there is one: what `SWIFTSHADER` names, else Debian's.
+/// Returns the library, if there is one: the one named by `SWIFTSHADER`, else Debian's.
 pub fn library() -> Option<PathBuf> {
     let named = std::env::var_os("SWIFTSHADER").map(PathBuf::from);
     named.or_else(|| Some(PathBuf::from(DEBIAN)).filter(|path| path.exists()))
@@ -29,7 +29,7 @@ pub fn name(library: &Path) -> Result<String> {
     Err(format!("{path}: the device is {}, not SwiftShader", gpu.name).into())
 }
 
-/// The scene for so many samples and threads.
+/// The scene for a number of samples and threads.
 pub struct SwiftShader {
     library: PathBuf,
     /// Position and normal of each vertex, bits of `f32`.
@@ -43,8 +43,8 @@ pub struct SwiftShader {
 }
 
 impl SwiftShader {
-    /// Creates the scene ready to be drawn, with 1 or 4 samples per pixel, by so many threads; a
-    /// folder of its own is made in the one that is given.
+    /// Creates the scene ready to be drawn, with 1 or 4 samples per pixel and a number of threads, in a new folder
+    /// inside the given one.
     pub fn new(
         library: PathBuf,
         mesh: &Mesh,
@@ -78,7 +78,7 @@ impl SwiftShader {
         gpu
     }
 
-    /// Draws one turn of frames by a device of its own; the medians of the timed ones.
+    /// Draws one turn of frames on a new device; returns the medians of the timed ones.
     pub fn turn(&mut self) -> Result<Cost> {
         let mut gpu = self.open()?;
         let targets = gpu.targets(self.samples)?;

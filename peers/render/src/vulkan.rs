@@ -1,8 +1,8 @@
-//! A Vulkan device that is a shared library, and what frames of one mesh need of it.
+//! A Vulkan device in a shared library, with the functions needed to draw frames of one mesh.
 //!
-//! Every call is unsafe by Vulkan's nature. What holds for all of them: handles come from the device that
-//! they are given to and live until it goes, structures point to locals that outlive the call, one
-//! thread makes the calls, and each submission is waited for before anything of it is touched again.
+//! Every call is unsafe by Vulkan's nature. All of them meet these conditions: handles come from the device that they
+//! are passed to and live until it is destroyed, structures point to locals that outlive the call, one thread makes the
+//! calls, and each submission is complete before its data are used again.
 
 use crate::{Result, scene};
 use ash::vk;
@@ -111,7 +111,7 @@ impl Gpu {
         Ok((buffer, memory))
     }
 
-    /// Returns a buffer that holds these words.
+    /// Creates a buffer with the given words.
     pub fn buffer(&mut self, words: &[u32], usage: vk::BufferUsageFlags) -> Result<vk::Buffer> {
         let (buffer, memory) = self.buffer_of(size_of_val(words), usage)?;
         let flags = vk::MemoryMapFlags::empty();
@@ -153,7 +153,7 @@ impl Gpu {
         Ok((image, view))
     }
 
-    /// Colour of 8 bits, depth of 32, so many samples.
+    /// Creates targets with 8-bit colour, 32-bit depth and a number of samples.
     pub fn targets(&mut self, samples: u32) -> Result<Targets> {
         let drawn = vk::ImageUsageFlags::COLOR_ATTACHMENT;
         let read = drawn | vk::ImageUsageFlags::TRANSFER_SRC;
@@ -291,7 +291,7 @@ impl Gpu {
         Ok(made.map_err(|(_, e)| e)?[0])
     }
 
-    /// Draws a frame to its end: the background, then so many indices' triangles.
+    /// Draws a complete frame: the background, then the triangles of the indices.
     pub fn draw(
         &self,
         targets: &Targets,
@@ -332,7 +332,7 @@ impl Gpu {
             gpu.visible();
         })?;
         let flags = vk::MemoryMapFlags::empty();
-        // SAFETY: the mapping holds so many pixels, which the device has written, and any bytes are pixels.
+        // SAFETY: the mapping has room for the pixels, which the device has written, and any bytes are valid pixels.
         unsafe {
             let from = self.device.map_memory(memory, 0, vk::WHOLE_SIZE, flags)?;
             let pixels = std::slice::from_raw_parts(from.cast::<[u8; 4]>(), count).to_vec();

@@ -1,8 +1,8 @@
 //! resvg's suite beside resvg itself at sixteen times the size: whose picture is nearer to the drawing?
 //!
-//! resvg samples coverage by a few rows per pixel and takes curves for chains of chords that suit those. At
-//! sixteen times the size both are sixteen times finer, and the mean of 16 × 16 pixels is what the drawing
-//! looks like, found without durer.
+//! resvg samples coverage by a few rows per pixel and approximates curves by chords of matching length. At sixteen
+//! times the size both are sixteen times finer, and the mean of 16 × 16 pixels is a reference for the drawing that is
+//! independent of durer.
 
 use durer::math::{DAffine2, DVec2};
 use durer::raster::paint::{Canvas, Options};
@@ -18,9 +18,8 @@ const FINE: u32 = 16;
 /// A pixel with premultiplied alpha, 0 … 255.
 type Color = [f64; 4];
 
-/// Returns the drawings that each have but one of what is drawn directly below the root. Means of pixels
-/// where one shape covers another would let what is covered shine through less than coverage does, so each is
-/// drawn alone.
+/// Returns drawings with one of the elements directly below the root each. Where one shape covers another, means of
+/// pixels would show less of the covered one than coverage does, so each is drawn alone.
 fn parts(text: &str) -> Result<Vec<String>, Box<dyn Error>> {
     const ALWAYS: [&str; 6] =
         ["title", "desc", "defs", "style", "linearGradient", "radialGradient"];
@@ -81,8 +80,8 @@ fn durer(text: &str, (width, height): (u32, u32)) -> Result<Vec<Color>, Box<dyn 
     Ok(picture.data().iter().map(premultiplied).collect())
 }
 
-/// Returns the mean difference of all channels, and the percentage of pixels of which one is off by
-/// more than 8.
+/// Returns the mean difference of all channels, and the percentage of pixels with a channel that differs by more than
+/// 8.
 fn difference(a: &[Color], b: &[Color]) -> (f64, f64) {
     let (mut sum, mut off) = (0.0, 0);
     for (a, b) in a.iter().zip(b) {

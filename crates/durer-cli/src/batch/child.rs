@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 /// Time between two checks whether the row is still requested.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Time beyond the limit of a row after which a worker is killed that did not end by itself.
+/// Time beyond the limit of a row after which a worker that has not ended by itself is killed.
 const BACKSTOP: Duration = Duration::from_secs(3);
 
 /// Time that a worker has to start.
@@ -28,7 +28,7 @@ pub struct Worker {
     child: Child,
     stdin: Option<ChildStdin>,
     answers: Receiver<String>,
-    /// Warning about what the system cannot do for it.
+    /// Warning about a restriction that the system does not support.
     pub warning: Option<String>,
     /// The last that it wrote to standard error.
     told: Arc<Mutex<Vec<u8>>>,
@@ -41,9 +41,9 @@ pub enum Outcome {
     Answered(Answer),
     /// The worker ended; with its last message, or else how it ended.
     Died(String),
-    /// The time was over, and the worker did not end by itself.
+    /// The time limit passed, and the worker did not end by itself.
     TimedOut,
-    /// Nobody wants the row any more.
+    /// The row is no longer needed.
     Abandoned,
 }
 
@@ -103,7 +103,7 @@ impl Worker {
         }
     }
 
-    /// Runs a row, until it is done or `abandoned`; sets the row's key when that is known.
+    /// Runs a row, until it is done or `abandoned`; sets the row's key when it is known.
     pub fn run(
         &mut self,
         task: &Task,
@@ -173,7 +173,7 @@ impl Drop for Worker {
 fn in_few_words(status: ExitStatus) -> String {
     #[cfg(unix)]
     if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
-        let why = if signal == 9 { ", as the system does where memory runs out" } else { "" };
+        let why = if signal == 9 { ", as the system does when memory runs out" } else { "" };
         return format!("its process was ended by signal {signal}{why}");
     }
     format!("its process ended with {status}")

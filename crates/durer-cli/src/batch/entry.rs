@@ -1,4 +1,4 @@
-//! The lines of a journal: what became of a row.
+//! The lines of a journal, the results of rows.
 
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use std::path::PathBuf;
 pub struct Entry {
     /// The row's name.
     pub id: String,
-    /// Hash of all that the output depends on; missing where the input could not be read.
+    /// Hash of everything that the output depends on; missing if the input could not be read.
     pub key: Option<String>,
     /// Outcome.
     pub status: Status,
@@ -41,7 +41,7 @@ pub struct Entry {
 pub enum Status {
     /// The output is whole.
     Done,
-    /// There is no output.
+    /// The row failed, without output.
     Failed,
 }
 
@@ -61,7 +61,7 @@ pub struct Written {
 pub struct Reference {
     /// Path as from the folder of the input.
     pub path: PathBuf,
-    /// Hash of the content; missing where there is no such file.
+    /// Hash of the content; missing if the file does not exist.
     pub sha256: Option<String>,
 }
 
@@ -70,9 +70,9 @@ pub struct Reference {
 pub struct RowError {
     /// Kind of failure.
     pub kind: Kind,
-    /// File, and place in it, where that is known.
+    /// File, and the place in it if known.
     pub place: String,
-    /// Reason, in words.
+    /// Message with the reason.
     pub message: String,
 }
 
@@ -149,7 +149,7 @@ impl Entry {
 }
 
 impl RowError {
-    /// Creates an error; the place is what the message begins with, if that is one of the names.
+    /// Creates an error; its place is the name that the message begins with, if that is one of `names`.
     pub fn new(kind: Kind, message: &str, names: &[String]) -> Self {
         let part = |(place, message): (&str, &str)| Self {
             kind,

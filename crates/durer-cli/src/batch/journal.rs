@@ -8,7 +8,7 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// Folder of the journals in that of the outputs.
+/// Folder of the journals in the folder of outputs.
 pub const FOLDER: &str = ".durer";
 
 /// A journal that this process alone writes, until it ends.
@@ -36,7 +36,7 @@ impl Journal {
         let lock = open(&lock_path)?;
         lock.try_lock().map_err(|e| match e {
             TryLockError::WouldBlock => {
-                let what = format!("another process works on shard {shard}; it has to end first");
+                let what = format!("another process works on shard {shard}; it must end first");
                 Failure::of_file(out, what)
             }
             TryLockError::Error(e) => {
@@ -57,7 +57,7 @@ impl Journal {
         self.file.metadata().is_ok_and(|m| m.len() == 0)
     }
 
-    /// Forgets everything.
+    /// Removes all entries.
     pub fn clear(&mut self) -> Result<(), Failure> {
         self.file.set_len(0).map_err(|e| Failure::of_file(&self.path, in_words(&e)))
     }
@@ -88,8 +88,8 @@ fn whole_lines(file: &mut File) -> io::Result<u64> {
     Ok(0)
 }
 
-/// Reads the entries of all journals in a folder, whatever their number of shards. Lines that are not whole are left
-/// out: their rows count as not run.
+/// Reads the entries of all journals in a folder, for any number of shards. Incomplete lines are left out: their rows
+/// count as not run.
 pub fn read_all(out: &Path, mut each: impl FnMut(Entry)) -> Result<(), Failure> {
     let folder = out.join(FOLDER);
     let fail = |path: &Path, e: io::Error| Failure::of_file(path, in_words(&e));

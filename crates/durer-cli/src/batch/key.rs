@@ -1,4 +1,4 @@
-//! Keys of rows: a hash of all that the output depends on.
+//! Keys of rows: a hash of everything that the output depends on.
 
 use super::task::Task;
 use sha2::{Digest, Sha256};
@@ -13,7 +13,7 @@ use std::time::SystemTime;
 pub struct Hashes(HashMap<PathBuf, (u64, Option<SystemTime>, String)>);
 
 impl Hashes {
-    /// Returns the hash of a file; that of a file which has not changed since is known.
+    /// Returns the hash of a file, from the cache if the file has not changed.
     pub fn of(&mut self, path: &Path) -> io::Result<String> {
         let metadata = std::fs::metadata(path)?;
         let (length, modified) = (metadata.len(), metadata.modified().ok());

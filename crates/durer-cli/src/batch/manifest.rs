@@ -16,7 +16,7 @@ use std::path::Path;
 pub struct Record {
     /// Its place, e.g. `line 3`.
     pub place: String,
-    /// Columns and values, without those that are empty.
+    /// Columns and values, without empty ones.
     pub cells: Map<String, Value>,
 }
 
@@ -29,7 +29,7 @@ const PARQUET: &[u8] = b"PAR1";
 /// Reads a manifest row by row.
 ///
 /// # Errors
-/// It cannot be read, or is not a table; or what `each` returns.
+/// The file cannot be read or is not a table, or an error of `each`.
 pub fn read(
     path: &Path,
     mut each: impl FnMut(Record) -> Result<(), Failure>,
@@ -107,7 +107,7 @@ fn read_csv(
     if let Some(twice) =
         header.iter().enumerate().find(|(i, h)| header.iter().take(*i).any(|o| o == *h))
     {
-        return Err(fail(Some(1), format!("column `{}` is there twice", twice.1)));
+        return Err(fail(Some(1), format!("column `{}` appears twice", twice.1)));
     }
     if !header.is_empty() && !header.iter().any(|column| column == "id") {
         return Err(fail(

@@ -39,7 +39,7 @@ pub fn run(out: &Path, report: &Path) -> Result<(), Failure> {
     }
     let failed = last.values().filter(|entry| entry.status == Status::Failed).count();
     let line = format!("durer: {} rows: {} done, {failed} failed", last.len(), last.len() - failed);
-    // A closed standard error leaves nobody to tell.
+    // If standard error is closed, the message is lost.
     let _ = writeln!(std::io::stderr().lock(), "{line}");
     Ok(())
 }

@@ -71,7 +71,7 @@ pub fn run(args: &BatchArgs) -> Result<(), Failure> {
     }
     let known = if resumes { known(args, &out, &rows)? } else { Known::new() };
     let temporary = out.join(journal::FOLDER).join(format!("{}.tmp", shard.file_name()));
-    // What is in it is of a process that was killed, for there is one at a time.
+    // Only one process runs at a time, so its contents were left by a killed one.
     let made = remove(&temporary).and_then(|()| fs::create_dir_all(&temporary));
     made.map_err(|e| Failure::of_file(&temporary, in_words(&e)))?;
     let processors = available_parallelism().map_or(1, usize::from);
@@ -93,7 +93,7 @@ pub fn run(args: &BatchArgs) -> Result<(), Failure> {
     let counts = ended?;
     if !args.quiet {
         let line = format!("durer: {}", summary(&counts, start.elapsed().as_secs_f64()));
-        // A closed standard error leaves nobody to tell.
+        // If standard error is closed, the message is lost.
         let _ = writeln!(std::io::stderr().lock(), "{line}");
     }
     if counts.failed + counts.left > 0 { Err(Failure::Partial) } else { Ok(()) }
@@ -113,8 +113,8 @@ fn remove(folder: &Path) -> std::io::Result<()> {
     }
 }
 
-/// Returns the keys of rows that need not be run, if nothing of them changed: those that are done and whose files are
-/// there, and those that failed for reasons that last.
+/// Returns the keys of rows that need not be run if they have not changed: rows that are done and whose files exist,
+/// and rows that failed for lasting reasons.
 fn known(args: &BatchArgs, out: &Path, rows: &Rows) -> Result<Known, Failure> {
     let mut last: HashMap<String, Option<Entry>> =
         rows.rows.iter().map(|row| (row.id.clone(), None)).collect();
@@ -138,7 +138,7 @@ fn known(args: &BatchArgs, out: &Path, rows: &Rows) -> Result<Known, Failure> {
     Ok(known.filter_map(of).collect())
 }
 
-/// Describes what became of the rows.
+/// Describes the results of the rows.
 fn summary(counts: &Counts, seconds: f64) -> String {
     let Counts { done, same, failed, left } = *counts;
     let rows = if done == 1 { "row" } else { "rows" };

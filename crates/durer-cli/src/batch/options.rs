@@ -86,7 +86,7 @@ impl Parser {
         };
         let usage = |what: String| Failure::Usage(format!("after --: {what}"));
         let command = Self::command(command)
-            .ok_or_else(|| usage(format!("`{command}` is none of {}", COMMANDS.join(", "))))?;
+            .ok_or_else(|| usage(format!("`{command}` is not one of {}", COMMANDS.join(", "))))?;
         let is_output = |w: &&String| w.starts_with("-o") || w.starts_with("--output");
         if let Some(word) = options.iter().find(is_output) {
             let what = "--name or the column `output` names the outputs of rows";
@@ -176,7 +176,7 @@ impl Parser {
         Ok(Some(Given::new(arg, name, values)))
     }
 
-    /// Returns the options of a row: its own, and those of all rows that they neither replace nor exclude.
+    /// Returns the options of a row: its own, and the common ones that they neither replace nor exclude.
     pub fn joined(&self, common: &Common, command: &str, own: Vec<Given>) -> Vec<Given> {
         let Some(sub) = self.sub(command).filter(|_| common.command == command) else { return own };
         let stays = |given: &&Given| {

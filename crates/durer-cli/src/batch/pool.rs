@@ -60,13 +60,13 @@ pub struct Pool<'a> {
     counts: Mutex<Counts>,
     progress: Progress,
     start: Instant,
-    /// No further rows are started.
+    /// True if no further rows are started.
     stopped: AtomicBool,
     /// Running rows are not waited for.
     abandoned: AtomicBool,
     /// A warning of workers was shown.
     warned: AtomicBool,
-    /// Reason why nothing goes on.
+    /// Reason why the batch stopped.
     failure: Mutex<Option<Failure>>,
 }
 
@@ -168,7 +168,7 @@ impl<'a> Pool<'a> {
         self.rows.rows.get(self.next.fetch_add(1, Ordering::Relaxed))
     }
 
-    /// Runs a row, again if its worker was killed; `None` if nobody waits for it.
+    /// Runs a row, again if its worker was killed; `None` if its result is no longer needed.
     fn run_row(&self, kept: &mut Option<Worker>, task: &Task) -> Result<Option<Answer>, Failure> {
         let start = Instant::now();
         let failed = |kind, message: &str, key: Option<String>| {
@@ -185,7 +185,7 @@ impl<'a> Pool<'a> {
             };
             match worker.run(task, self.args.timeout_per_row, &self.abandoned, &mut key) {
                 Outcome::Answered(answer) => {
-                    // After a panic nothing is certain.
+                    // After a panic the worker's state is uncertain.
                     if !is_fault(&answer) {
                         *kept = Some(worker);
                     }
@@ -199,7 +199,7 @@ impl<'a> Pool<'a> {
                 Outcome::Abandoned => return Ok(None),
                 Outcome::Died(last) => words = last,
             }
-            // What the worker says before it ends by itself.
+            // Messages with which the worker ends by itself.
             for (option, kind) in [(TIMEOUT, Kind::Timeout), ("--max-memory", Kind::Memory)] {
                 if words.contains(option) {
                     return failed(kind, &words, key);
@@ -209,7 +209,7 @@ impl<'a> Pool<'a> {
         failed(Kind::Crash, &words, key)
     }
 
-    /// Starts a worker; one that is killed meanwhile is no reason to give up.
+    /// Starts a worker; if it is killed while starting, another one is started.
     fn worker(&self) -> Result<Worker, Failure> {
         let mut started = Worker::start(&self.setup);
         for _ in 1..STARTS {

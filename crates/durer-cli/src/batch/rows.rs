@@ -34,7 +34,7 @@ pub struct Row {
     options: Vec<Given>,
 }
 
-/// The rows of a manifest that belong to a shard, and what they have in common.
+/// The rows of a manifest that belong to a shard, and their common settings.
 pub struct Rows {
     /// The rows, in the order of the manifest.
     pub rows: Vec<Row>,
@@ -51,7 +51,7 @@ const COLUMNS: [&str; 5] = ["id", "input", "output", "command", "sha256"];
 pub const DATA: &str = "data:";
 
 impl Rows {
-    /// Reads and checks all rows of a manifest; keeps those of a shard.
+    /// Reads and checks all rows of a manifest; keeps the rows of a shard.
     pub fn read(args: &BatchArgs, path: &Path, shard: Shard) -> Result<Self, Failure> {
         let parser = Parser::new();
         let common = parser.common(&args.words)?;
@@ -62,11 +62,11 @@ impl Rows {
             let at = |what: String| Failure::Data(format!("{name}: {}: {what}", record.place));
             let row = row(&record, &parser, &common, args.name.as_deref()).map_err(at)?;
             if let Some(first) = ids.add(&row.id, &record.place) {
-                return Err(at(format!("id `{}` is that of {first}, too", row.id)));
+                return Err(at(format!("id `{}` is used in {first}, too", row.id)));
             }
             for output in std::iter::once(&row.output).chain(row.planes.iter().map(|p| &p.1)) {
                 if let Some(first) = outputs.add(output, &record.place) {
-                    return Err(at(format!("output `{output}` is that of {first}, too")));
+                    return Err(at(format!("output `{output}` is used in {first}, too")));
                 }
             }
             if shard.has(&row.id) {
@@ -156,7 +156,7 @@ fn row(
     let command = match cell("command")? {
         None => common.command,
         Some(name) => Parser::command(&name).ok_or_else(|| {
-            format!("command `{name}` is none of {}", options::COMMANDS.join(", "))
+            format!("command `{name}` is not one of {}", options::COMMANDS.join(", "))
         })?,
     };
     let mut own = Vec::new();
@@ -259,7 +259,7 @@ fn check_output(output: &str) -> Result<(), String> {
         return wrong("no part between slashes is empty or `.`");
     }
     if path.components().next() == Some(Component::Normal(journal::FOLDER.as_ref())) {
-        return wrong("the folder .durer is that of the journal");
+        return wrong("the folder .durer belongs to the journal");
     }
     match path.extension().and_then(|suffix| suffix.to_str()) {
         Some("shp") => wrong("a Shapefile is several files; .fgb, .gpkg and .geojson are one"),

@@ -21,8 +21,8 @@ const ARRAYS: [[&str; 3]; 5] = [
     ["JOB_COMPLETION_INDEX", "", SHARDS],
 ];
 
-/// Variable with the number of shards, whatever the job array says: where only some of its jobs run again, or where it
-/// says nothing.
+/// Variable that overrides the job array's number of shards: for arrays that give no number, and when only some of the
+/// jobs run again.
 const SHARDS: &str = "DURER_SHARDS";
 
 impl Shard {

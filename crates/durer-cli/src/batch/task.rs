@@ -5,7 +5,7 @@ use crate::sandbox::Sandbox;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// The first line to a worker: what all of its rows have in common.
+/// The first line to a worker: the settings common to all of its rows.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Setup {
     /// Folder of the outputs.
@@ -18,9 +18,9 @@ pub struct Setup {
     pub max_memory: u64,
     /// Seconds for a row.
     pub timeout: Option<f64>,
-    /// Restriction of workers to the folders below and that of the outputs.
+    /// Restriction of workers to the folders below and the folder of outputs.
     pub sandbox: Option<Sandbox>,
-    /// Folders of what is read.
+    /// Folders of inputs.
     pub read: Vec<PathBuf>,
 }
 
@@ -29,7 +29,7 @@ pub struct Setup {
 pub struct Ready {
     /// Its version of durer.
     pub version: String,
-    /// Warning about what the system cannot do.
+    /// Warning about restrictions that the system does not support.
     pub warning: Option<String>,
 }
 
@@ -40,7 +40,7 @@ pub struct Task {
     pub id: String,
     /// Name of the command.
     pub command: String,
-    /// Options, by their names; each as words of the command line.
+    /// Options by name, each as arguments of the command line.
     pub options: Vec<(String, Vec<String>)>,
     /// Paths or data URIs.
     pub inputs: Vec<String>,

@@ -51,8 +51,7 @@ pub fn work() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the lines of standard input. When it ends, the process that wrote them has ended, and this one ends, too:
-/// nobody waits for its row.
+/// Returns the lines of standard input. When it ends, the parent process has ended, so this process ends too.
 fn lines() -> Receiver<String> {
     let (give, take) = channel();
     std::thread::spawn(move || {
@@ -98,7 +97,7 @@ impl Worker {
         let ran = panics::caught(|| self.run(task, &mut key));
         watch::over();
         let fault = |panic: String| {
-            RowError::new(Kind::Fault, &format!("this is a fault of durer: {panic}"), &[])
+            RowError::new(Kind::Fault, &format!("this is a bug in durer: {panic}"), &[])
         };
         let seconds = start.elapsed().as_secs_f64();
         let read = self.read(task);
@@ -194,7 +193,7 @@ impl Worker {
         noted.into_iter().map(reference).collect()
     }
 
-    /// Returns the paths of the inputs; bytes of data URIs are put into files.
+    /// Returns the paths of the inputs; bytes of data URIs are written to files.
     fn inputs(&self, task: &Task) -> Result<Vec<PathBuf>, RowError> {
         let path = |(number, input): (usize, &String)| {
             if !input.starts_with(DATA) {
@@ -207,7 +206,7 @@ impl Worker {
             let folder = folder.join(number.to_string());
             let path = folder.join(format!("data{}", suffix(input)));
             let write = || {
-                // What an earlier row left is not beside this one's.
+                // Files of an earlier row are removed, so that they do not mix with this row's.
                 let _ = std::fs::remove_dir_all(&folder);
                 std::fs::create_dir_all(&folder)?;
                 std::fs::write(&path, data)
@@ -327,7 +326,7 @@ fn error_of(
         (Err(error), _) if error.is_of_budget() => Kind::Memory,
         (_, Failure::Usage(_)) => Kind::Usage,
         (_, Failure::Refused(_)) => Kind::Memory,
-        // As the error of a budget has it, whose stage varies.
+        // Matches the error of a budget, in which the stage varies.
         _ if message.contains("--max-memory allows") => Kind::Memory,
         _ if written.iter().any(|name| message.starts_with(name)) => Kind::Write,
         _ => Kind::Data,

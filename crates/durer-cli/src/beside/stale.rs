@@ -26,14 +26,14 @@ pub fn remove_beside(place: &Path) {
     }
 }
 
-/// Returns whether a name is that of an unfinished file: `.durer-PROCESS-NUMBER.tmp`.
+/// Returns whether a name is an unfinished file's: `.durer-PROCESS-NUMBER.tmp`.
 fn is_own(name: &str) -> bool {
     let inner = name.strip_prefix(".durer-").and_then(|name| name.strip_suffix(".tmp"));
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
     inner.and_then(|inner| inner.split_once('-')).is_some_and(|(a, b)| digits(a) && digits(b))
 }
 
-/// Returns whether it is a file that was last written more than a day ago.
+/// Returns whether a file was last written more than a day ago.
 fn is_old(entry: &fs::DirEntry) -> bool {
     // Of a link this speaks of the link.
     let Ok(metadata) = entry.metadata() else { return false };

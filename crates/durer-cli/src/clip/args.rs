@@ -91,7 +91,7 @@ pub struct RegionArgs {
     /// The polygons of a file, each feature as a cell: a feature is written once for each cell that it reaches, cut
     /// to the cell, with the cell's fields after its own
     ///
-    /// If the feature has a field of the same name, that of the cell gets the prefix `cell_`; cells without fields are
+    /// If the feature has a field of the same name, the cell's field gets the prefix `cell_`; cells without fields are
     /// identified by their number in the file, as `cell`.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["tiles", "outside", "op", "algorithm"])]
     pub cells: Option<PathBuf>,
@@ -108,7 +108,7 @@ pub struct RegionArgs {
     /// Coordinate system of the input, for --tiles
     #[arg(long, value_name = "SYSTEM", default_value = "lonlat", requires = "tiles")]
     pub tile_coordinates: TileCoordinates,
-    /// Keep what is outside; the same as `--op difference`
+    /// Keep the parts outside; the same as `--op difference`
     #[arg(long, conflicts_with_all = ["op", "tiles"])]
     pub outside: bool,
 }
@@ -121,9 +121,8 @@ pub struct CuttingArgs {
     /// one and leave out lines and points
     #[arg(long, value_name = "OP", default_value = "intersection", conflicts_with = "tiles")]
     pub op: BooleanOp,
-    /// Fill rule that decides which points the polygons of IN and FILE enclose: even-odd, non-zero, positive (rings
-    /// counter-clockwise), negative or abs-geq-two (two rings at least) [default: even-odd; of an SVG, the rule of its
-    /// paths]
+    /// Fill rule for the polygons of IN and FILE: even-odd, non-zero, positive (rings counter-clockwise), negative or
+    /// abs-geq-two (two rings at least) [default: even-odd; of an SVG, the rule of its paths]
     #[arg(long, value_name = "RULE")]
     pub fill_rule: Option<WindingRule>,
     /// Name of an algorithm [default: a fast one that is exact for the input]
@@ -149,12 +148,13 @@ fn algorithm(text: &str) -> Result<Algorithm, String> {
 
 fn algorithm_help() -> String {
     format!(
-        "An algorithm by its name [default: what is fast and right]\n\nOne of {}. Those for lines \
-         take windows and leave polygons to the default, and the other way round; \
-         sutherland-hodgman takes convex masks and leaves bridges along the border; it, rectangle \
-         and weiler-atherton refuse polygons whose rings cross or overlap, greiner-hormann only those of \
-         them that touch the mask in a vertex or along an edge, rectangle also some whose rings touch. Of those for polygons, overlay \
-         and vatti follow --grid and --fill-rule, and do --op union and xor.",
+        "The algorithm, by name [default: the fastest one with a correct result]\n\nOne of {}. Algorithms \
+         for lines take windows and leave polygons to the default, and vice versa. sutherland-hodgman takes \
+         convex masks and leaves bridges along the border. sutherland-hodgman, rectangle and \
+         weiler-atherton refuse polygons whose rings cross or overlap; greiner-hormann refuses these only \
+         if they touch the mask in a vertex or along an edge; rectangle also refuses some whose rings \
+         touch. Of the algorithms for polygons, only overlay and vatti follow --grid and --fill-rule, and \
+         do --op union and xor.",
         names()
     )
 }

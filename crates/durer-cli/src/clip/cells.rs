@@ -1,5 +1,5 @@
-//! `durer clip --cells`: every feature is cut by each of many cells, and each piece gets the fields of
-//! its cell.
+//! `durer clip --cells`: every feature is clipped to each of many cells, and each piece receives the fields of its
+//! cell.
 
 use super::args::ClipArgs;
 use super::srids::Srids;
@@ -18,7 +18,7 @@ use std::path::Path;
 /// The cells of a file.
 pub struct Cells {
     cells: cells::Cells,
-    /// The fields that the pieces of each get.
+    /// The fields for the pieces of each cell.
     fields: Vec<Vec<Member>>,
 }
 
@@ -67,7 +67,7 @@ pub fn read(
     Ok(Cells { cells, fields })
 }
 
-/// Returns the polygons of a cell and the fields that its pieces get; `None` if a feature encloses nothing.
+/// Returns the polygons of a cell and the fields for its pieces; `None` if a feature has no area.
 fn cell(
     feature: &Feature,
     number: u64,
@@ -117,7 +117,7 @@ impl Job<'_> {
     }
 }
 
-/// Returns a feature's fields, and then those of its cell.
+/// Returns a feature's fields, followed by its cell's.
 fn with_fields(mut fields: Vec<Member>, of_cell: &[Member]) -> Vec<Member> {
     for field in of_cell {
         let mut name = field.key();

@@ -14,7 +14,7 @@ use std::path::Path;
 
 /// Returns all polygons of a file as one mask.
 ///
-/// Without a polygon there is nothing to keep the inside of; else it takes away or adds nothing.
+/// A mask without polygons is an error if its inside is to be kept; otherwise it changes nothing.
 pub fn read(
     path: &Path,
     args: &ClipArgs,
@@ -29,7 +29,7 @@ pub fn read(
             srids.add(feature.srid);
             let area = Area::of_geometry(geometry);
             rings |= !area.shapes.is_empty();
-            // An SVG, or an option, says what polygons that cross enclose.
+            // An SVG or an option gives the fill rule of crossing polygons.
             let asked = args.cutting.fill_rule.is_some() || from == GeoFormat::Svg;
             let clean = rules(args, &feature).clean(geometry).map_err(|e| fail(e.to_string()))?;
             repaired |= !asked && clean.repaired;
@@ -55,7 +55,7 @@ pub fn read(
         messages.warning(&display_name(path), message);
     }
     if union.shapes.is_empty() {
-        // Rings may run the wrong way for the rule.
+        // Rings may run in the wrong direction for the rule.
         let why = match args.cutting.fill_rule {
             Some(rule) if rings => format!("by --fill-rule {rule} its polygons enclose nothing"),
             _ => "there is no polygon".to_owned(),
@@ -65,7 +65,7 @@ pub fn read(
         }
         messages.warning(&display_name(path), format!("{why} in it; nothing is cut away"));
     }
-    // What the algorithm says of the mask alone is not a feature's fault.
+    // Errors about the mask alone are not the features' faults.
     if let Some(Algorithm::Polygon(clipper)) = args.cutting.algorithm.filter(|a| !a.joins()) {
         let alone = clipper.clip(&Shapes::new(), &union.shapes, BooleanOp::Intersection);
         alone.map_err(|e| fail(e.to_string()))?;

@@ -95,8 +95,9 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
 /// The warning where features that are joined have different ordinates.
 pub const MIXED: &str = "heights and measures that some features have and others lack are 0 there";
 
-const NO_MASK: &str = "nothing to cut with: give --window, --by, --cells or --tiles; without them features are only \
-                       converted to another format, chosen by --where and the like, or brought to --to-crs";
+const NO_MASK: &str = "nothing to clip with: give --window, --by, --cells or --tiles; without these, \
+                       features are only converted to another format, selected (--where) or transformed \
+                       (--to-crs)";
 
 /// Returns whether features are to be changed or written otherwise without being cut.
 fn converts(args: &ClipArgs, from: GeoFormat, to: GeoFormat) -> bool {
@@ -109,7 +110,7 @@ fn joins(args: &ClipArgs) -> bool {
     matches!(args.cutting.op, BooleanOp::Union | BooleanOp::Xor)
 }
 
-/// Refuses options that the parser accepts one by one but that do not go together.
+/// Refuses combinations of options that the parser accepts separately.
 fn check(args: &ClipArgs) -> Result<(), Failure> {
     let usage = |message: &str| Err(Failure::Usage(message.to_owned()));
     let region = &args.region;
@@ -130,7 +131,9 @@ fn check(args: &ClipArgs) -> Result<(), Failure> {
     let Some(algorithm) = args.cutting.algorithm else { return Ok(()) };
     let name = algorithm.name();
     if region.tiles.is_some() {
-        return usage("--algorithm and --tiles do not go together: tiles are cut by what is fast");
+        return usage(
+            "--algorithm and --tiles do not go together: tiles are always cut by the fastest algorithm",
+        );
     }
     if joins(args) && !algorithm.joins() {
         return usage("--op union and xor are done by --algorithm overlay and vatti");
@@ -156,13 +159,13 @@ fn check(args: &ClipArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the rules for one feature: those of the options, or else the feature's own.
+/// Returns the rules for one feature: the options', or else the feature's own.
 fn rules(args: &ClipArgs, feature: &Feature) -> Rules {
     let fill = args.cutting.fill_rule.unwrap_or(feature.fill_rule);
     Rules { fill, grid: args.cutting.grid, work: args.running.work.clone() }
 }
 
-/// Returns the format of the result; of tiles always GeoJSON.
+/// Returns the format of the result; always GeoJSON for tiles.
 fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure> {
     if args.region.tiles.is_none() {
         return named_format(&args.output, args.to, Some(from));
@@ -197,7 +200,7 @@ fn tell(
         report.warnings.push(format!("and {more} more"));
     }
     let mut found = Vec::new();
-    // An SVG says itself what paths that cross enclose.
+    // An SVG gives the fill rule of crossing paths itself.
     if report.repaired > 0 && report.from != GeoFormat::Svg.name() {
         found.push(format!(
             "polygons of {} features crossed, pinched or overlapped themselves or one another; made \
@@ -214,8 +217,8 @@ fn tell(
     }
     if report.long_ways > 0 {
         found.push(format!(
-            "edges of {} features go over more than 180 degrees of longitude, and are taken so; RFC 7946 wants \
-             what goes across the 180th meridian cut there",
+            "{} features have edges over more than 180 degrees of longitude, which are kept; if they are \
+             meant to cross the 180th meridian, cut them there, as RFC 7946 requires",
             report.long_ways
         ));
     }
@@ -242,7 +245,7 @@ fn tell(
     if report.beyond > 0 {
         let features = report.beyond;
         found.push(format!(
-            "{features} features reach beyond the latitudes of Web Mercator, ±85.0511; what lies there is in no tile"
+            "{features} features reach beyond the latitudes of Web Mercator, ±85.0511; the parts there are in no tile"
         ));
     }
     if report.too_far > 0 {
@@ -254,7 +257,7 @@ fn tell(
     if report.replaced > 0 {
         let features = report.replaced;
         found.push(format!(
-            "the member \"tile\" of {features} features gives way to the tile's name"
+            "the member \"tile\" of {features} features is replaced by the tile's name"
         ));
     }
     for message in found {
@@ -317,7 +320,7 @@ impl Job<'_> {
         Ok(features)
     }
 
-    /// Writes what there is, whole or not at all.
+    /// Writes the result, whole or not at all.
     fn put(
         &mut self,
         writer: &mut Option<Writer<Sink>>,
@@ -351,7 +354,7 @@ impl Job<'_> {
         layer::writer(&self.args.output, self.to, &self.members(), self.system())
     }
 
-    /// Returns the coordinate system of what is written.
+    /// Returns the coordinate system of the output.
     fn system(&self) -> System {
         match (&self.shift, &self.args.systems.from_crs) {
             (Some(shift), _) => shift.system.clone(),
@@ -385,8 +388,8 @@ impl Job<'_> {
         let own = self.reader.members().iter().any(|member| member.name == CRS);
         (told && (self.shift.is_some() || !own)).then(|| {
             format!(
-                "{} stands for longitude and latitude (RFC 7946); that coordinates are EPSG:{code} is told by \
-                 its older member crs, which not all programs heed",
+                "{} should have longitudes and latitudes (RFC 7946); coordinates in EPSG:{code} are marked \
+                 by the older member crs, which some programs ignore",
                 self.to
             )
         })
@@ -457,7 +460,7 @@ impl Job<'_> {
         self.fail(format!("feature {} (from 1): {error}", index + 1))
     }
 
-    /// Joins all polygons, those of the mask too, to one feature.
+    /// Joins all polygons, including the mask's, into one feature.
     fn join(&mut self, mask: Option<&Mask>) -> Result<(), Failure> {
         let (args, mut all) = (self.args, Area::default());
         loop {

@@ -44,7 +44,7 @@ pub struct Report {
     /// Features at which polygons of the mask may have been lost, smaller than a cell of the grid.
     #[serde(skip)]
     pub lost: u64,
-    /// The coordinate systems of what was read.
+    /// The coordinate systems of the input.
     #[serde(skip)]
     pub srids: Srids,
     /// SRIDs of the mask.
@@ -56,7 +56,7 @@ pub struct Report {
     /// Features that reach beyond the latitudes of tiles.
     #[serde(skip)]
     pub beyond: u64,
-    /// Features that lie worlds away.
+    /// Number of features that are more than a world away.
     #[serde(skip)]
     pub too_far: u64,
     /// Tiles that are not empty.
@@ -74,7 +74,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Counts what was done to one feature, in one piece or several.
+    /// Counts the changes to one feature, in one piece or several.
     pub fn add<'a>(&mut self, cuts: impl IntoIterator<Item = &'a Cut>) {
         let (mut repaired, mut lost) = (false, false);
         for cut in cuts {

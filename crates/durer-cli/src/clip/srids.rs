@@ -1,11 +1,11 @@
-//! The numbers of coordinate systems that features tell.
+//! The numbers of coordinate systems given by features.
 
 use durer_formats::geo::GeoFormat;
 
 /// SRIDs of a file's features.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Srids {
-    /// The first few of them, in the order in which they came.
+    /// The first few of them, in order of appearance.
     first: Vec<i32>,
     /// True if there were more.
     more: bool,
@@ -39,7 +39,7 @@ impl Srids {
         format!("{name} {}{}", numbers.join(", "), if more { " and others" } else { "" })
     }
 
-    /// Returns warnings about what gets lost or does not fit; `is_told` says whether the result
+    /// Returns warnings about coordinate systems that get lost or do not match; `is_told` tells whether the result
     /// states the system of all features.
     pub fn told(&self, mask: &Self, joined: bool, to: GeoFormat, is_told: bool) -> Vec<String> {
         let mut told = Vec::new();

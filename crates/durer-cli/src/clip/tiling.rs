@@ -24,7 +24,7 @@ impl Job<'_> {
         self.tile_sequence(&tiling)
     }
 
-    /// Writes the pieces feature by feature, those of each feature tile by tile.
+    /// Writes the pieces feature by feature, and within each feature tile by tile.
     fn tile_sequence(&mut self, tiling: &Tiling) -> Result<(), Failure> {
         let (mut writer, mut seen) = (None, BTreeSet::new());
         let limit = self.args.region.max_tiles;
@@ -65,7 +65,7 @@ impl Job<'_> {
         self.end(writer)
     }
 
-    /// Writes the pieces tile by tile, each tile to a file of its own, `z/x/y.geojson`.
+    /// Writes the pieces tile by tile, each tile to a separate file, `z/x/y.geojson`.
     fn tile_files(&mut self, tiling: &Tiling) -> Result<(), Failure> {
         let mut features = Vec::new();
         loop {
@@ -110,7 +110,7 @@ impl Job<'_> {
         done
     }
 
-    /// Returns the features that lie in tiles; takes note of those that do not.
+    /// Returns the features within the range of tiles; records the others.
     fn subjects<'a>(
         &mut self,
         tiling: &'a Tiling,

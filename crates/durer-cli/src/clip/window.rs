@@ -9,7 +9,7 @@ use durer_formats::geo::{Geometry, Points};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Window {
     Plain(Rect),
-    /// Across the 180th meridian: as it lies west of the map and east of it.
+    /// Across the 180th meridian: the window at the western and at the eastern end of the map.
     Across([Rect; 2]),
 }
 
@@ -21,8 +21,8 @@ impl Window {
         }
     }
 
-    /// Returns whether an edge of a geometry may be meant to go across the meridian but goes the long way
-    /// around: more than half, but not all of it.
+    /// Returns whether an edge of a geometry may be meant to cross the meridian but goes the long way around the world:
+    /// more than half, but not all of it.
     pub fn is_long_way(&self, geometry: &Geometry) -> bool {
         let long = |a: DVec2, b: DVec2| {
             let way = (b.x - a.x).abs();

@@ -48,7 +48,7 @@ impl Source<'_> {
     }
 }
 
-/// Reads the settings of all commands, and returns those of one.
+/// Reads the settings of all commands and returns the ones of one command.
 pub fn read(
     file: &Path,
     text: &str,
@@ -62,7 +62,7 @@ pub fn read(
     for (key, value) in table.get_ref() {
         let (title, place) = (key.get_ref(), key.span().start);
         let DeValue::Table(keys) = value.get_ref() else {
-            let what = format!("`{title}`: options stand under their command, e.g. [render]");
+            let what = format!("`{title}`: options belong under their command, e.g. [render]");
             return Err(source.wrong(place, &what));
         };
         let Some(sub) = command.find_subcommand(title.as_ref()) else {
@@ -83,7 +83,7 @@ fn settings(source: &Source, sub: &Command, keys: &DeTable) -> Result<Vec<Settin
         let setting = setting(source, sub, key, value)?;
         if settings.iter().any(|s| s.given.id == setting.given.id) {
             let what =
-                format!("`{}`: the option is there under another name, too", setting.given.key);
+                format!("`{}`: the option is also given under another name", setting.given.key);
             return Err(setting.wrong(source.file, &what));
         }
         settings.push(setting);
@@ -149,7 +149,7 @@ fn check(sub: &Command, setting: &Setting) -> Result<(), String> {
     let line = std::iter::once(sub.get_name().to_owned()).chain(setting.given.words());
     let Err(error) = sub.clone().try_get_matches_from(line) else { return Ok(()) };
     match error.kind() {
-        // What else is needed can be on the command line.
+        // Missing arguments may be on the command line.
         ErrorKind::MissingRequiredArgument | ErrorKind::ArgumentConflict => Ok(()),
         _ => Err(first_paragraph(&error.to_string())),
     }

@@ -39,7 +39,7 @@ pub fn load(args: &FontArgs) -> Result<Fonts, Failure> {
     }
     if args.system_fonts {
         let mut files = Vec::new();
-        // What cannot be read is not there.
+        // Folders that cannot be read are ignored.
         system_folders().iter().for_each(|folder| drop(find(folder, 0, &mut files)));
         files.iter().filter_map(|file| fs::read(file).ok()).for_each(|bytes| {
             fonts.add(bytes);

@@ -19,7 +19,7 @@ pub struct Dashes(pub Vec<f64>);
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Priority {
     pub field: String,
-    /// True if large numbers come first, as of people, and not small ones, as of ranks.
+    /// True if large numbers come first, such as populations, instead of small ones, such as ranks.
     pub largest_first: bool,
 }
 
@@ -47,7 +47,7 @@ impl From<MarkerArg> for Marker {
     }
 }
 
-/// Fields that labels come from.
+/// Fields for labels.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Labels {
     /// The property that labels show.
@@ -69,7 +69,7 @@ pub struct Layer {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layers(pub Vec<Layer>);
 
-/// The same as the parser knows it: values without their layers. Only its declarations are used.
+/// The options as declared for the parser: values without their layers. Only the declarations are used.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Style of map layers")]
 #[allow(dead_code)]
@@ -102,9 +102,9 @@ struct LayerArgs {
     /// Label features with this property
     ///
     /// Labels are placed within areas, along lines and beside points. They overlap neither each other nor markers.
-    /// Those of upper layers come first, then those that --label-priority puts first, then those of larger features;
-    /// labels without room are left out. Names that do not fit their area are written in two lines if that helps, and
-    /// NAME of Natural Earth is replaced by ABBREV if nothing else fits.
+    /// Labels of upper layers come first, then the ones that --label-priority puts first, then labels of larger
+    /// features; labels without room are left out. Names that do not fit their area are written in two lines if that
+    /// helps, and NAME of Natural Earth is replaced by ABBREV if nothing else fits.
     #[arg(long, value_name = "FIELD")]
     label: Vec<String>,
     /// Place labels with small values of this property first, or with large ones for `-FIELD` [default:

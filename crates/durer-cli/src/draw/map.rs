@@ -67,7 +67,7 @@ impl Job<'_> {
         Ok(map.into_canvas())
     }
 
-    /// Draws the labels, and counts those that found room.
+    /// Draws the labels and counts the ones drawn.
     fn write(
         &mut self,
         map: &mut Map,

@@ -96,7 +96,7 @@ fn check(args: &DrawArgs) -> Result<Target, Failure> {
     Ok(target)
 }
 
-/// Returns the output format: that of --format, or that of the output's name.
+/// Returns the output format: from --format, or from the output's name.
 fn wanted(args: &DrawArgs) -> Wanted {
     Wanted::picture(&args.output, args.picture.file.format)
 }
@@ -170,7 +170,7 @@ impl Job<'_> {
         let format = told.or_else(|| crate::layer::format_of(&layer.input, &bytes));
         let Some(format) = format else {
             let (what, read) = (GeoFormat::foreign(&bytes), GeoFormat::READ);
-            let message = format!("{name}: {what}; drawn are SVG, and map data from {read}");
+            let message = format!("{name}: {what}; durer draw reads SVG, and map data from {read}");
             return Err(Failure::Data(message));
         };
         let (input, map) = (name, None);
@@ -178,7 +178,7 @@ impl Job<'_> {
         Ok(Given { layer, format, bytes })
     }
 
-    /// Returns the limits on what is read.
+    /// Returns the limits on inputs.
     fn limits(&self) -> Limits {
         let work = self.args.running.work.clone();
         Limits { decoded_bytes: self.args.max_bytes, work, ..Limits::default() }
@@ -218,8 +218,7 @@ impl Job<'_> {
     }
 }
 
-/// Returns the bytes of a file, decompressed where they are compressed by gzip, of which there may be no more
-/// than a limit. (An SVG is decompressed by its reader.)
+/// Returns the bytes of a file, decompressed if they are gzip, up to a limit. (An SVG is decompressed by its reader.)
 fn unzipped(bytes: Vec<u8>, limit: u64) -> Result<Vec<u8>, String> {
     if !bytes.starts_with(&[0x1f, 0x8b]) {
         return Ok(bytes);
@@ -234,8 +233,7 @@ fn unzipped(bytes: Vec<u8>, limit: u64) -> Result<Vec<u8>, String> {
     })
 }
 
-/// Returns whole sides for something of a given shape, which by itself would have the size
-/// `natural`.
+/// Returns whole sides for a picture of a given shape, whose natural size is `natural`.
 fn sides(given: Option<Sides>, natural: DVec2) -> (u32, u32) {
     let Size { width, height } =
         given.unwrap_or(Sides { width: None, height: None }).of_shape(natural);

@@ -8,7 +8,7 @@ use durer::paper::Breaks;
 use durer::scene::{Camera, Projection, Scene};
 use durer_formats::drawing::DrawingFormat;
 
-/// Refuses options that the parser accepts one by one but that do not go together.
+/// Refuses combinations of options that the parser accepts separately.
 pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
     let message = match kind {
         _ if args.drawing.breaks.is_empty() => return Ok(()),

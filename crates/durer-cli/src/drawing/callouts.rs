@@ -19,8 +19,8 @@ pub struct Callouts {
 }
 
 impl Callouts {
-    /// Numbers a model's parts and finds where they are seen. `aspect` is that of the views. Notes the parts that are
-    /// not seen.
+    /// Numbers a model's parts and finds their places in the views, whose aspect ratio is `aspect`. Notes the parts
+    /// that are not visible.
     pub fn find(
         subject: &Subject,
         shown: &[Shown],

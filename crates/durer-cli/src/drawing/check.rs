@@ -8,19 +8,19 @@ use crate::render_args::RenderArgs;
 use durer::pipeline::DrawStyle;
 use durer_formats::drawing::DrawingFormat;
 
-/// Options that are about pixels, and what to use for drawings.
+/// Options for pixels, and their counterparts for drawings.
 const OF_PIXELS: &[(&str, &str)] = &[
-    ("algorithm", "it finds the surfaces of pixels; --style says what a drawing shows"),
+    ("algorithm", "it finds visible surfaces for pixels; use --style for drawings"),
     ("aa", "vectors have no samples; leave it out, or write a .png"),
-    ("look", "--style says what a drawing shows"),
+    ("look", "it is for pictures; use --style"),
     ("ambient_occlusion", "areas of drawings have one colour each; leave it out"),
     ("ground", "--style shadows draws shadows exactly"),
     ("edges", "--style regions+lines draws areas with edges"),
     ("grid", "it is for pictures; leave it out"),
     ("axes", "it is for pictures; leave it out"),
-    ("line_width", "--pen says how wide lines are; leave it out"),
+    ("line_width", "--pen sets the width of lines; leave it out"),
     ("point_size", "points of drawings are small crosses; leave it out"),
-    ("color", "pens and materials say what drawings look like; leave it out"),
+    ("color", "drawings have the colours of pens and materials; leave it out"),
     ("shading", "areas of drawings have one colour each; leave it out, and give lights by --light"),
     ("shadows", "--style shadows draws them exactly"),
     ("shadow_map", "--style shadows draws shadows exactly, without a map"),

@@ -12,8 +12,8 @@ use durer::paper::{self, Contents, Frame, LaidOut, Page, Scale, SheetView, Title
 use durer::target::drawing::Drawing;
 use durer_formats::drawing::DrawingFormat;
 
-/// The longer side of drawings that are 1:1 where neither page nor scale is given, millimetres: for DXF and G-code as
-/// far as their digits reach, for SVG what a desk or a screen has room for.
+/// Range of the longer side, millimetres, of drawings that are 1:1 if neither page nor scale is given: for DXF and
+/// G-code as far as their digits reach, for SVG up to the size of a desk or a screen.
 const SMALLEST: f64 = 0.1;
 const LARGEST: f64 = 900_000.0;
 const HANDY: std::ops::RangeInclusive<f64> = 20.0..=420.0;
@@ -30,8 +30,8 @@ pub(super) fn unit(args: &RenderArgs, subject: &Subject) -> Unit {
     known_unit(args, subject).unwrap_or(Unit::Mm)
 }
 
-/// Returns the model's unit, if it is given or the format says it. Readers bring lengths to metres, and
-/// those of 3MF to millimetres.
+/// Returns the model's unit, if it is given or known from the format. Readers convert lengths to metres, or to
+/// millimetres for 3MF.
 pub(super) fn known_unit(args: &RenderArgs, subject: &Subject) -> Option<Unit> {
     let format = subject.format.to_ascii_lowercase();
     let is_one = |names: &[&str]| names.iter().any(|name| format.contains(name));
@@ -110,8 +110,8 @@ pub(super) fn told_scale(
     if !asked && !on_bed && laid.scale == 1.0 && size.max_element() > *HANDY.end() {
         let [width, height] = [size.x, size.y].map(|v| v.ceil());
         return Some(format!(
-            "the drawing is as large as the model, {width} × {height} mm; --page, e.g. {width}x{height}, tells how \
-             large the machine is, and makes the drawing fit"
+            "the drawing is as large as the model, {width} × {height} mm; --page, e.g. {width}x{height}, \
+             sets the size of the machine's bed and fits the drawing to it"
         ));
     }
     if !asked && laid.scale != 1.0 {
@@ -120,7 +120,7 @@ pub(super) fn told_scale(
     }
     known_unit(args, subject).is_none().then(|| {
         let format = subject.format.split(',').next().unwrap_or_default();
-        format!("a unit of the model is taken as 1 mm, as {format} has none; --unit sets another")
+        format!("{format} files have no unit; one unit of the model is drawn as 1 mm; --unit sets another")
     })
 }
 

@@ -55,10 +55,10 @@ const BENEATH: f64 = 0.2;
 /// sheet metal are no more exact.
 const FIT: f64 = 0.02;
 
-/// Lines are simplified at least by this part of the drawing's extent: what is nearer comes from rounding.
+/// Smallest tolerance of simplified lines, as a part of the drawing's extent: smaller deviations come from rounding.
 const FINEST: f64 = 1e-5;
 
-/// The shape of a sheet of several views, where no page is given: that of lying ISO paper.
+/// The shape of a sheet of several views if no page is given: ISO paper in landscape.
 const SHEET: DVec2 = DVec2::new(297.0, 210.0);
 
 /// Returns whether the options request a drawing, rather than for pixels of surfaces.
@@ -101,7 +101,7 @@ fn bytes(color: Vec4) -> [u8; 4] {
     color.to_array().map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8)
 }
 
-/// A model with what its drawing's title block says.
+/// A model with the data of its drawing's title block.
 pub struct Subject<'a> {
     /// Scene of the model.
     pub scene: &'a Scene,
@@ -111,13 +111,13 @@ pub struct Subject<'a> {
     pub format: &'a str,
     /// The material of the caps, where the model was cut.
     pub cap_material: Option<usize>,
-    /// The kinds of its parts, where they are to be numbered.
+    /// The kinds of its parts, if they are to be numbered.
     pub components: Vec<Component>,
     /// The annotations of its drawings, with its round parts.
     pub annotated: Option<Annotated>,
 }
 
-/// A view, and what is seen.
+/// A view with its visible lines and regions.
 pub struct Shown {
     /// Its part on a sheet; `None` without one.
     kind: Option<ViewKind>,
@@ -147,14 +147,13 @@ pub struct Made {
     pub drawings: Vec<Drawing>,
     /// Report on the picture.
     pub report: PictureReport,
-    /// Reason why nothing of the model is visible, if that is so.
+    /// Reason why nothing of the model is visible, if nothing is.
     pub unseen: Option<String>,
     /// Time at which the drawing was put on its sheet.
     start: Instant,
 }
 
-/// Draws one picture of a model and writes its file; returns why nothing of the model is visible, if
-/// that is so.
+/// Draws one picture of a model and writes its file; if nothing of the model is visible, returns the reason.
 pub fn render(
     args: &RenderArgs,
     subject: &Subject,
@@ -349,8 +348,8 @@ fn curve_fit(args: &RenderArgs, kind: Kind) -> f64 {
     args.drawing.fit.unwrap_or(if kind.is_vector() { FIT } else { 0.0 })
 }
 
-/// Returns the tolerance for simplifying lines, as a part of the drawing's extent: on large paper less than elsewhere,
-/// so that curves still pass through the points that they are fitted to.
+/// Returns the tolerance for simplifying lines, as a part of the drawing's extent: smaller on large paper, so that
+/// curves still pass through the points that they are fitted to.
 fn line_tolerance(args: &RenderArgs, kind: Kind, subject: &Subject) -> f64 {
     let usual = hidden_line::Options::default().tolerance;
     let fit = curve_fit(args, kind);
@@ -375,7 +374,7 @@ fn dxf_strokes(args: &RenderArgs) -> DxfStrokes {
     }
 }
 
-/// Returns whether areas extend under whatever covers them.
+/// Returns whether areas extend under the ones that cover them.
 fn is_trapped(args: &RenderArgs, kind: Kind) -> bool {
     let paper = matches!(kind, Kind::Drawing(DrawingFormat::Svg | DrawingFormat::Pdf));
     let viewed = paper || !kind.is_vector();
@@ -409,7 +408,7 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
             classes: drawing.lines.unwrap_or(default.classes),
             crease: drawing.crease.from.to_radians(),
             crease_end: drawing.crease.to.to_radians(),
-            // Programs get all there is; on paper hidden lines may be left out from the start.
+            // Files for programs have all lines; on paper, hidden lines may be left out from the start.
             hidden: drawing.hidden != Hidden::Drop || geojson,
             intersections: drawing.intersections.into(),
             neighbours: smooth != Smooth::Off && drawing.crease == Crease::default(),
@@ -428,8 +427,7 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
     }
 }
 
-/// Returns the ratio of width to height of what the camera sees: the picture's, or the page's where it is
-/// certain.
+/// Returns the ratio of width to height of the camera's view: the picture's, or the page's if it is certain.
 fn aspect(args: &RenderArgs) -> f64 {
     let Size { width, height } = size(args);
     (f64::from(width) / f64::from(height)).clamp(1e-3, 1e3)
@@ -446,8 +444,7 @@ fn size(args: &RenderArgs) -> Size {
     }
 }
 
-/// Returns the shape of a picture whose size leaves a side open: that of its page, or of what is
-/// seen.
+/// Returns the shape of a picture whose size leaves a side open: its page's, or the model's in the view.
 pub fn shape(args: &RenderArgs, scene: &Scene) -> Result<DVec2, Failure> {
     match args.drawing.page {
         Some(Page::Exact(size) | Page::Either(size)) => Ok(size),
@@ -459,8 +456,8 @@ pub fn shape(args: &RenderArgs, scene: &Scene) -> Result<DVec2, Failure> {
     }
 }
 
-/// Returns the view options. Fitted views are parallel unless an angle of view is given: that is what
-/// drawings are measured in.
+/// Returns the view options. Fitted views are parallel unless an angle of view is given, because drawings are measured
+/// in parallel views.
 fn view(args: &RenderArgs) -> ViewArgs {
     let mut view = args.view.clone();
     let fitted = view.eye.is_none() && view.camera.is_none();

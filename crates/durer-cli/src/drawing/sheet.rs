@@ -44,7 +44,7 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
     }
     let views = &args.drawing.views;
     if let Some(twice) = repeated(views) {
-        return usage(format!("--views: {twice} is there twice; each view has one place"));
+        return usage(format!("--views: {twice} is given twice; each view has one place"));
     }
     let details = args.drawing.detail.iter();
     let shown = |view: &NamedView| of_sheet(args).contains(view);
@@ -107,8 +107,7 @@ impl Shot {
     }
 }
 
-/// Returns the views of a sheet but for its details: parallel, with one target, so that they are
-/// aligned.
+/// Returns the views of a sheet except its details: parallel, with one target, so that they are aligned.
 pub fn shots(args: &RenderArgs, scene: &Scene) -> Result<Vec<Shot>, Failure> {
     let sphere = scene.bounding_sphere();
     let target = fit::center(scene).or(sphere.map(|s| s.center)).unwrap_or(DVec3::ZERO);
@@ -137,7 +136,7 @@ pub fn shots(args: &RenderArgs, scene: &Scene) -> Result<Vec<Shot>, Failure> {
 /// Lines of sight nearer to the up axis than this sine have no up of their own.
 const ALONG_UP: f64 = 1e-6;
 
-/// Returns the direction to the eye that looks at a plane from outside, and what is up for it.
+/// Returns the direction to an eye that looks at a plane from outside, and its up direction.
 fn against(plane: &Plane, up_axis: UpAxis) -> (DVec3, DVec3) {
     // Planes without a direction are refused as they are read.
     let to_eye = -plane.normal.normalize_or(DVec3::Z);

@@ -14,7 +14,7 @@ pub fn asked(args: &RenderArgs) -> Option<Hatch> {
     args.drawing.hatch.filter(|hatch| matches!(hatch, Hatch::Contour | Hatch::Stipple))
 }
 
-/// Refuses marks in styles that have fills, or show what is hidden.
+/// Refuses marks in styles that have fills or show hidden lines.
 pub fn check(args: &RenderArgs) -> Result<(), Failure> {
     let Some(hatch) = asked(args) else { return Ok(()) };
     let style = args.drawing.style.unwrap_or_default();

@@ -57,18 +57,18 @@ pub fn run(args: &ExploreArgs) -> Result<(), Failure> {
     }
     for stream in listener.incoming() {
         let pages = pages.clone();
-        // A browser asks for several files at once, and keeps connections that say nothing.
+        // A browser requests several files at once and keeps idle connections open.
         let answered = stream
             .and_then(|stream| std::thread::Builder::new().spawn(move || serve(stream, &pages)));
         if answered.is_err() {
-            // There are too many of them: some end soon.
+            // There are too many connections: some will end soon.
             std::thread::sleep(PAUSE);
         }
     }
     Ok(())
 }
 
-/// Answers one request. What the browser does not take is lost: nobody else waits for it.
+/// Answers one request. If the browser closes the connection, the rest of the answer is dropped.
 fn serve(mut stream: TcpStream, pages: &Pages) {
     let patient = stream.set_read_timeout(Some(PATIENCE)).is_ok()
         && stream.set_write_timeout(Some(PATIENCE)).is_ok();

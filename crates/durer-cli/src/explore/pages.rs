@@ -1,4 +1,4 @@
-//! The files of the explorer: those in the command, or those of a folder.
+//! The files of the explorer: built into the command, or in a folder.
 
 use crate::failure::Failure;
 use std::path::{Component, Path, PathBuf};
@@ -39,7 +39,7 @@ impl Pages {
     fn built() -> Result<Self, Failure> {
         Err(Failure::Usage(
             "this command was built without the pages (the feature `explorer`); \
-             --from DIR takes those that .ci/explorer builds into explorer/dist"
+             --from DIR serves the pages that .ci/explorer builds into explorer/dist"
                 .to_owned(),
         ))
     }

@@ -17,12 +17,12 @@ const SHARE: u64 = 8;
 /// The most triangles or points of a piece: more make nothing faster.
 const MOST_AT_ONCE: u64 = 1 << 18;
 
-/// The most that a model takes as a whole, by its file, where that is more than [`FEW`] bytes: of points a picture
-/// takes far more than they do.
+/// Largest memory for a whole model as a factor of its file's size, if that is more than [`FEW`] bytes: a picture of
+/// points takes far more than the points themselves.
 const BY_FILE: u64 = 6;
 const FEW: u64 = 512 << 20;
 
-/// A model that is read in pieces, and what is known of it.
+/// A model that is read in pieces, with its known data.
 pub struct InPieces {
     /// The file.
     pub pieces: Box<dyn Pieces>,
@@ -45,8 +45,8 @@ impl InPieces {
     }
 }
 
-/// Opens a model of a format that can be read in pieces, where it would not fit the budget, or would take far more than
-/// its file; `None` for any other.
+/// Opens a model that would not fit the budget, or would take far more memory than its file, if its format can be read
+/// in pieces; `None` for other models.
 pub fn in_pieces(path: &Path, reading: &Reading) -> Option<Result<InPieces, Failure>> {
     let length = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?.len();
     let [most_triangles, most_bytes] = reading.given;

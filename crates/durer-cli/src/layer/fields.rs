@@ -25,7 +25,7 @@ pub struct FieldArgs {
 }
 
 impl FieldArgs {
-    /// Returns whether nothing is to be done.
+    /// Returns whether there is nothing to do.
     pub fn is_idle(&self) -> bool {
         self.conditions.is_empty() && self.select.is_empty() && self.rename.is_empty()
     }
@@ -51,7 +51,7 @@ enum Test {
     Contains,
 }
 
-/// Tests by their signs, longer ones before what they begin with.
+/// Tests by their signs, longer ones before their prefixes.
 const TESTS: [(&str, Test); 7] = [
     ("!=", Test::Other),
     ("<=", Test::AtMost),
@@ -82,7 +82,7 @@ fn rename(text: &str) -> Result<(String, String), String> {
 }
 
 impl Condition {
-    /// Returns whether a value, nothing if there is no such field, is so.
+    /// Returns whether a value passes the test; `None` if there is no such field.
     fn holds(&self, value: Option<&Value>) -> bool {
         let text = match value {
             None | Some(Value::Null) => return self.test == Test::Equal && self.value == "null",

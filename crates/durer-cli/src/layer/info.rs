@@ -22,7 +22,7 @@ pub struct LayerInfo {
     name: Option<String>,
     format: &'static str,
     features: u64,
-    /// Features by the name of their geometry; `none` of those that have none.
+    /// Number of features by the name of their geometry; `none` counts features without one.
     geometries: BTreeMap<&'static str, u64>,
     /// `xy`, `xyz`, `xym` or `xyzm`, of all features together.
     dimensions: &'static str,
@@ -108,7 +108,7 @@ pub fn of_layers(path: &Path, work: &Work) -> Result<Vec<LayerInfo>, Failure> {
         let (format, one) = open(path, Some(format), Some(&name), work)?;
         infos.push(of_layer(path, format, one, Some(name))?);
     }
-    // What is not a layer is told with the first one.
+    // Warnings about the file as a whole go to the first layer.
     if let Some(first) = infos.first_mut() {
         first.warnings.splice(0..0, reader.warnings().iter().map(ToString::to_string));
     }

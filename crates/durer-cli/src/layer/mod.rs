@@ -30,8 +30,7 @@ const PROBE: usize = 64 << 10;
 /// A reader of a file or of standard input.
 pub type Source = Reader<Box<dyn BufRead>>;
 
-/// Returns the bytes of a file, or of standard input, as they come; decompressed where they are compressed
-/// by gzip.
+/// Returns a stream of the bytes of a file or of standard input, decompressed if they are gzip.
 pub fn bytes(path: &Path) -> Result<Box<dyn BufRead>, Failure> {
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
     let source: Box<dyn BufRead> = if is_stream(path) {
@@ -51,7 +50,7 @@ pub fn format_of(path: &Path, head: &[u8]) -> Option<GeoFormat> {
     GeoFormat::of_file(&path.to_string_lossy(), head)
 }
 
-/// Opens a file, or standard input, and finds its format; it can be read as long as the work goes on.
+/// Opens a file, or standard input, and finds its format; it can be read until the work is stopped.
 pub fn open(
     path: &Path,
     format: Option<GeoFormat>,
@@ -66,7 +65,7 @@ pub fn open(
         let what = GeoFormat::foreign(head);
         return Err(fail(format!("{what}; map data are read from {}", GeoFormat::READ)));
     };
-    // The layouts of GeoJSON are read alike; the suffix tells the one to write to a stream.
+    // All layouts of GeoJSON are read alike; the suffix determines the one written to a stream.
     let named = GeoFormat::of_name(&path.to_string_lossy());
     let named = named.filter(|named| named.is_geojson() && format == GeoFormat::GeoJson);
     let source = Box::new(Watched::new(source, work, !format.is_geojson()));
@@ -74,7 +73,7 @@ pub fn open(
     Ok((named.unwrap_or(format), reader.map_err(|e| fail(words(&e)))?))
 }
 
-/// Returns a reader of bytes of a file, which finds what is beside it.
+/// Returns a reader of a file's bytes that finds files beside it.
 pub fn reader<R: std::io::Read>(
     path: &Path,
     format: GeoFormat,
@@ -97,7 +96,7 @@ pub fn keep(feature: &Feature, work: &Work) -> durer::Result<()> {
     work.keep("features", bytes as u64)
 }
 
-/// Returns an error's message in the command's words.
+/// Returns an error's message with the names of the command's options.
 pub fn words(error: &durer_formats::Error) -> String {
     match error {
         durer_formats::Error::Io(e) => in_words(e),

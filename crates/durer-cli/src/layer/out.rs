@@ -9,8 +9,7 @@ use durer_formats::geo::{GeoFormat, Member, System, Writer};
 use std::io::IsTerminal;
 use std::path::Path;
 
-/// Returns the format of the result: the one given, that of the suffix, or for a stream that of the
-/// input.
+/// Returns the format of the result: the given one, or the suffix's, or for a stream the input's.
 pub fn named_format(
     output: &Path,
     to: Option<GeoFormat>,
@@ -40,7 +39,7 @@ pub fn named_format(
     Ok(format)
 }
 
-/// Returns a writer of features with what comes before them.
+/// Returns a writer of features that has written the beginning of the file.
 pub fn writer(
     output: &Path,
     to: GeoFormat,
@@ -70,7 +69,7 @@ fn place(output: &Path, to: GeoFormat) -> Result<Sink, Failure> {
     Ok(Sink::stdout())
 }
 
-/// Writes what comes after the features, and the files beside; returns what was warned about.
+/// Writes the end of the file and the files beside it; returns the warnings.
 pub fn finish(
     writer: Writer<Sink>,
     output: &Path,

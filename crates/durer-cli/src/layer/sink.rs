@@ -67,7 +67,7 @@ impl Sink {
     }
 }
 
-/// Returns a failure to write in the command's words.
+/// Returns a failure to write, with the file's name.
 pub fn failure(name: &Path, error: &Error) -> Failure {
     let name = if is_stream(name) { Path::new("standard output") } else { name };
     match error {

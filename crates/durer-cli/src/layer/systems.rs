@@ -24,13 +24,13 @@ pub struct SystemArgs {
 #[derive(Debug, Clone)]
 pub struct Shift {
     to: Crs,
-    /// The way there, where all coordinates come from one system.
+    /// The transform, if all coordinates are in one system.
     common: Option<Transform>,
-    /// The way there for features with the number of their own system: the number of the last one, and its way.
+    /// The transform for features with the number of their own system: the last number, and its transform.
     own: Option<(i32, Transform)>,
-    /// Reason why nothing is known of the file as a whole.
+    /// Reason why the system of the file as a whole is unknown.
     unknown: String,
-    /// The system of what comes out.
+    /// The system of the output.
     pub system: System,
     /// Features that have no place there.
     pub lost: u64,
@@ -50,13 +50,13 @@ impl Shift {
         Some(Self { to, common, own: None, unknown, system, lost: 0 })
     }
 
-    /// Returns the way from a feature's system.
+    /// Returns the transform from a feature's system.
     fn transform(&mut self, srid: Option<i32>) -> Result<&Transform, Failure> {
         if let Some(common) = &self.common {
             return Ok(common);
         }
         let wrong = |why: &str| {
-            Failure::Usage(format!("--to-crs: {why}; --from-crs says where coordinates come from"))
+            Failure::Usage(format!("--to-crs: {why}; --from-crs sets the system of the input"))
         };
         let srid = srid.ok_or_else(|| wrong(&self.unknown))?;
         let known = self.own.take().filter(|(own, _)| *own == srid);
@@ -73,7 +73,7 @@ impl Shift {
     /// Converts a feature to the system; returns whether it has a place there.
     ///
     /// # Errors
-    /// Where the system that it comes from is not known.
+    /// If its source system is not known.
     pub fn apply(&mut self, feature: &mut Feature) -> Result<bool, Failure> {
         if let Some(geometry) = feature.geometry.take() {
             feature.geometry = self.transform(feature.srid)?.geometry(&geometry);
@@ -98,8 +98,7 @@ impl Shift {
         (!told.is_empty()).then(|| told.join("; "))
     }
 
-    /// Returns a warning about the accuracy of coordinates that come from an older frame or go to
-    /// one.
+    /// Returns a warning about the accuracy of coordinates transformed from or to an older frame.
     fn shifted(&self) -> Option<String> {
         let way = self.common.as_ref().or_else(|| self.own.as_ref().map(|(_, way)| way))?;
         let (datum, metres) = way.accuracy()?;

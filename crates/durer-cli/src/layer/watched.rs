@@ -1,9 +1,9 @@
-//! Map data as they come, as long as the work goes on.
+//! A stream of map data that ends when the work is stopped.
 
 use durer::work::Work;
 use std::io::{self, BufRead, Read};
 
-/// A source that ends with an error where its work is stopped, or has no memory left for what is held of it.
+/// A source that ends with an error if its work is stopped, or if there is no memory left for the data held.
 pub struct Watched {
     source: Box<dyn BufRead>,
     work: Work,

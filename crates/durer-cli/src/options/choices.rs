@@ -1,4 +1,4 @@
-//! Options that name one of a few things, and what the library calls it.
+//! Options with a fixed set of values, and the library's names for these.
 
 use clap::ValueEnum;
 use durer::clip::tiles;

@@ -23,7 +23,7 @@ fn environment(text: &str) -> Result<Environment, String> {
     match text {
         "studio" => Ok(Environment::Studio),
         "none" => Ok(Environment::None),
-        "" => Err("it is empty; there are `studio`, `none` and names of .hdr files".to_owned()),
+        "" => Err("it is empty; use `studio`, `none` or the name of a .hdr file".to_owned()),
         file => Ok(Environment::File(PathBuf::from(file))),
     }
 }

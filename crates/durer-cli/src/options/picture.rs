@@ -26,9 +26,9 @@ pub struct PictureArgs {
     pub size: Size,
     /// Render only a part of the picture, of this size in pixels, its upper left pixel at X,Y
     ///
-    /// Tiles joined in any order are the whole picture byte for byte, and memory follows the tile, so that pictures may be
-    /// larger than one machine holds: --size is that of the whole. The algorithms wireframe and depth-sort, edges,
-    /// ambient occlusion, viewports and drawings have no tiles.
+    /// Tiles joined in any order are the whole picture byte for byte. The memory needed depends on the tile, so that
+    /// pictures may be larger than one machine's memory; --size is the size of the whole picture. The algorithms
+    /// wireframe and depth-sort, edges, ambient occlusion, viewports and drawings have no tiles.
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, conflicts_with = "viewports", value_parser = values::tile)]
     pub tile: Option<PixelRect>,
     /// Method that finds visible surfaces [default: z-buffer; a-buffer with --aa 64; ray with --shadows
@@ -69,7 +69,7 @@ pub struct PictureArgs {
 }
 
 impl PictureArgs {
-    /// Returns the size of the file: that of the tile, if there is one.
+    /// Returns the size of the file: the tile's, if there is one.
     pub fn rendered_size(&self) -> Size {
         let of_tile = |tile: PixelRect| Size { width: tile.width(), height: tile.height() };
         self.tile.map_or(self.size, of_tile)

@@ -9,10 +9,11 @@ use std::path::PathBuf;
 pub struct PlaneArgs {
     /// The visible triangle of each pixel
     ///
-    /// A PNG whose colour is the triangle's index as R<<16|G<<8|B, 0xFFFFFF if there is none. Triangles are counted in
-    /// file order over all parts of the scene. A face with n vertices is divided into n − 2 triangles (or another
-    /// number if its outline has spikes or crosses itself): a fan from its first vertex, or, as in concave faces,
-    /// others if the fan would not cover it. There is one sample at the centre of each pixel, whatever --aa is.
+    /// A PNG whose colour is the triangle's index as R<<16|G<<8|B; 0xFFFFFF where no triangle is visible. Triangles are
+    /// counted in file order over all parts of the scene. A face with n vertices is divided into n − 2 triangles (or
+    /// another number if its outline has spikes or crosses itself): a fan from its first vertex, or other triangles if
+    /// the fan would not cover the face, as in concave ones. There is one sample at the centre of each pixel,
+    /// independent of --aa.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub item: Option<PathBuf>,
     /// The depth of each pixel

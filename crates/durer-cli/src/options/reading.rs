@@ -17,13 +17,13 @@ pub struct ReadingArgs {
     /// Show the model in this variant of its materials, by name or number; `durer info` lists them
     #[arg(long, value_name = "NAME")]
     pub variant: Option<String>,
-    /// Let the lights of COLLADA and FBX files shine; those of glTF always do
+    /// Use the lights of COLLADA and FBX files; lights of glTF files are always used
     #[arg(long)]
     pub own_lights: bool,
     /// Allow references to any file below this folder [default: the model's own folder]
     ///
-    /// By default, textures, buffers and material libraries are read from the model's folder only, also if links
-    /// and `..` lead elsewhere. References of a model from standard input are relative to this folder.
+    /// By default, textures, buffers and material libraries are read only from the model's folder, and links or `..`
+    /// that lead elsewhere are refused. References of a model from standard input are relative to this folder.
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub root: Option<PathBuf>,
     /// Read only this plate, counted from 1, of a Bambu Studio or OrcaSlicer project [default: all plates]

@@ -26,7 +26,7 @@ pub struct RunningArgs {
     /// Stop with an error after this many seconds [default: never]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = values::positive)]
     pub timeout: Option<f64>,
-    /// The budget, and what stops the work.
+    /// The budget and cancellation of the work.
     #[arg(skip)]
     pub work: durer::work::Work,
     /// Restrict file access to the folders of inputs and outputs, by Landlock (Linux)
@@ -38,7 +38,7 @@ pub struct RunningArgs {
     /// Print no warnings and no progress; errors are still printed
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Print all warnings, and what was done
+    /// Print all warnings and a summary
     #[arg(short, long)]
     pub verbose: bool,
 }

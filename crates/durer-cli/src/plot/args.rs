@@ -69,10 +69,10 @@ pub struct SurfaceArgs {
     /// A formula for y in x and z, such as 'sin(x) * cos(z)'
     #[arg(long, short, value_name = "FORMULA", allow_hyphen_values = true)]
     pub formula: Option<String>,
-    /// The range of x [default: -4,4 for a formula, else that of the file]
+    /// The range of x [default: -4,4 for a formula, else the file's]
     #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = values::range)]
     pub x: Option<[f64; 2]>,
-    /// The range of z [default: -4,4 for a formula, else that of the file]
+    /// The range of z [default: -4,4 for a formula, else the file's]
     #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = values::range)]
     pub z: Option<[f64; 2]>,
     /// Points along x and z at which a formula is evaluated
@@ -88,7 +88,7 @@ pub struct SurfaceArgs {
     /// Range of heights to draw; lower and higher parts are left out, as are poles of 1/x and tan
     #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = values::range)]
     pub y_range: Option<[f64; 2]>,
-    /// A value that means a missing height, besides that of the format
+    /// A value that means a missing height, besides the format's own
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true, value_parser = values::number, conflicts_with = "formula")]
     pub no_data: Option<f64>,
     /// Array of an NPZ file or member of a JSON object that holds the heights
@@ -113,7 +113,7 @@ pub struct PlotViewArgs {
     /// Degrees above the horizon, -90 to 90
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::elevation, default_value = "30")]
     pub elevation: f64,
-    /// Position of the eye, in perspective: x, height and z of the surface, all of which has to lie ahead
+    /// Position of the eye, in perspective: x, height and z of the surface, all of which must be in front of the eye
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, conflicts_with_all = ["view", "azimuth", "elevation", "ortho"])]
     pub eye: Option<DVec3>,
     /// Point that the eye looks at [default: the middle of the surface]
@@ -155,7 +155,7 @@ pub struct PlotLookArgs {
     /// Colour of lines and labels
     #[arg(long, value_name = "COLOR", default_value = "black", value_parser = color::color)]
     pub ink: Vec4,
-    /// Colour of lines on the lower side of the surface [default: that of the others]
+    /// Colour of lines on the lower side of the surface [default: the colour of the other lines]
     #[arg(long, value_name = "COLOR", value_parser = color::color)]
     pub underside: Option<Vec4>,
     /// A colour, or `transparent` for none

@@ -199,7 +199,7 @@ impl Surface {
         match (&args.surface.formula, &args.input) {
             (Some(formula), _) => Self::of_formula(formula, args),
             (None, Some(path)) => Self::of_file(path, args, messages),
-            // The parser asks for one of them.
+            // The parser requires one of them.
             (None, None) => Err(Failure::Usage("a file or --formula is needed".to_owned())),
         }
     }
@@ -278,7 +278,7 @@ impl Surface {
         }
     }
 
-    /// Returns a factor for heights with which the plot is neither flat nor a tower.
+    /// Returns a factor for heights with which the plot is neither too flat nor too high.
     fn auto_exaggeration(&self, aspect: Option<f64>) -> f64 {
         let extent = |[from, to]: [f64; 2]| to - from;
         let width = extent(self.field.x_range());
@@ -290,7 +290,7 @@ impl Surface {
     }
 }
 
-/// Returns a field without what is beyond `--y-range`.
+/// Returns a field without the heights beyond `--y-range`.
 fn within(field: HeightField, args: &PlotArgs) -> Result<HeightField, Failure> {
     let Some([low, high]) = args.surface.y_range else { return Ok(field) };
     let field = field.within([low, high]).map_err(|e| Failure::Usage(format!("--y-range: {e}")))?;
@@ -356,7 +356,7 @@ fn options(args: &PlotArgs, surface: &Surface) -> Result<plot::Options, Failure>
     })
 }
 
-/// Returns the size of the paper; paper that may be used either way is wider than high, as plots are.
+/// Returns the size of the paper; paper of free orientation is used in landscape, like plots.
 fn paper_size(page: Page) -> DVec2 {
     match page {
         Page::Exact(size) => size,

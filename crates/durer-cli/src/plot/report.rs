@@ -25,7 +25,7 @@ pub struct Report {
     z: [f64; 2],
     /// Lowest and highest height.
     heights: Option<[f64; 2]>,
-    /// Depth over width of the ground as drawn, where it has two scales.
+    /// Depth over width of the ground as drawn, if it has two scales.
     #[serde(skip_serializing_if = "Option::is_none")]
     aspect: Option<f64>,
     /// Factor for heights.

@@ -28,7 +28,7 @@ and neighbours have the same points on their shared border.
 
 Repairs and omissions made while reading the file count as `reading`.
 
-Exit codes: 0 nothing is wrong; 1 something is, or the file cannot be read; 2 wrong usage.";
+Exit codes: 0 no faults; 1 faults, or the file cannot be read; 2 wrong usage.";
 
 /// The options of `durer check`.
 #[derive(Debug, Args)]
@@ -52,7 +52,7 @@ pub struct CheckArgs {
     /// Threads and messages.
     #[command(flatten)]
     pub running: RunningArgs,
-    /// Write what is found on standard output in JSON
+    /// Write the faults to standard output as JSON
     #[arg(long, help_heading = "Running")]
     pub json: bool,
 }
@@ -62,7 +62,7 @@ pub struct CheckArgs {
 struct Found {
     /// The feature, counted from 1.
     feature: u64,
-    /// The other feature, of faults between two.
+    /// The other feature, for faults between two.
     #[serde(skip_serializing_if = "Option::is_none")]
     other: Option<u64>,
     fault: &'static str,
@@ -131,7 +131,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     }
     messages.warnings(&name, reader.warnings());
     report.warnings = reader.warnings().iter().map(ToString::to_string).collect();
-    // What was mended or left out while reading is not as it should be either.
+    // Features mended or left out during reading count as faults, too.
     let mended = reader.warnings().len() as u64 + reader.further_warnings();
     if mended > 0 {
         report.counts.insert("reading", mended);
@@ -165,7 +165,7 @@ impl Report {
         }
     }
 
-    /// Returns the faults that have a place.
+    /// Returns the number of faults that have a place.
     fn faults_counted(&self) -> u64 {
         self.counts.iter().filter(|(kind, _)| **kind != "reading").map(|(_, n)| n).sum()
     }
@@ -189,7 +189,7 @@ impl Report {
         }
     }
 
-    /// Prints the faults, a line each.
+    /// Prints the faults, one per line.
     fn tell(&self) {
         for found in &self.faults {
             let [x, y] = found.at;
@@ -208,7 +208,7 @@ impl Report {
         }
     }
 
-    /// Returns the faults by kind, in a line.
+    /// Returns the numbers of faults by kind, in one line.
     fn sum(&self) -> String {
         let counts: Vec<String> = self.counts.iter().map(|(f, n)| format!("{n} {f}")).collect();
         let total = self.features;

@@ -23,9 +23,8 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 /// The options of `durer fix`.
 #[derive(Debug, Args)]
 pub struct FixArgs {
-    /// Fill rule that decides which points crossing rings enclose: even-odd, non-zero, positive (rings
-    /// counter-clockwise), negative or abs-geq-two (two rings at least) [default: even-odd; of an SVG, the rule of its
-    /// paths]
+    /// Fill rule for crossing rings: even-odd, non-zero, positive (rings counter-clockwise), negative or abs-geq-two
+    /// (two rings at least) [default: even-odd; of an SVG, the rule of its paths]
     #[arg(long, value_name = "RULE")]
     pub rule: Option<WindingRule>,
     /// Give neighbours the same points on shared borders: a point that only one of them has is added to the other if it
@@ -106,7 +105,7 @@ fn match_all(mut job: Job<'_>, args: &FixArgs) -> Result<(), Failure> {
     job.write(all)
 }
 
-/// Adds to polygons the points that neighbours have on their borders; returns how many features got some.
+/// Adds to polygons the points that neighbours have on their borders; returns the number of features changed.
 fn with_matched_points(features: &mut [Feature]) -> usize {
     let mut geometries: Vec<_> = features.iter_mut().map(|f| f.geometry.take()).collect();
     let count = match_points(&mut geometries);
@@ -114,7 +113,7 @@ fn with_matched_points(features: &mut [Feature]) -> usize {
     count
 }
 
-/// Returns the message about features that were made valid on the way.
+/// Returns the message about features that were made valid.
 pub fn told(repaired: u64) -> String {
     format!(
         "{repaired} features are not valid; they were made so by the even-odd rule, as durer fix does"

@@ -1,5 +1,5 @@
-//! Commands that make other features of features: `durer simplify`, `durer buffer`, `durer dissolve`, `durer fix`; and
-//! `durer check`, which says what is wrong with them.
+//! Commands that transform features: `durer simplify`, `durer buffer`, `durer dissolve`, `durer fix`; and `durer
+//! check`, which reports their faults.
 
 mod buffer;
 mod check;
@@ -87,7 +87,7 @@ struct Job<'a> {
     reader: Source,
     fields: Fields,
     report: Report,
-    /// Features of which nothing is left.
+    /// Number of features of which nothing is left.
     gone: u64,
     messages: Messages,
     start: Instant,
@@ -140,8 +140,8 @@ impl<'a> Job<'a> {
         Ok(features)
     }
 
-    /// Changes each geometry by itself; features that have none left are left out. `note` gets what `change` says
-    /// besides.
+    /// Changes each geometry separately; features without a remaining geometry are left out. `note` gets the additional
+    /// results of `change`.
     fn each<N: Send>(
         mut self,
         change: impl Fn(&Feature, &Geometry) -> durer::Result<(Option<Geometry>, N)> + Sync,

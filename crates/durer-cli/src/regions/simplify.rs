@@ -67,7 +67,7 @@ pub struct Simplified {
 }
 
 impl Simplified {
-    /// Returns the words for what the input should not have had.
+    /// Returns a message about faults of the input.
     pub fn told(&self) -> Option<String> {
         let n = self.dropped.degenerate;
         let what =

@@ -7,7 +7,7 @@ use crate::values::Size;
 use durer::target::Framebuffer;
 use durer::view::layout::Layout;
 
-/// A part of the picture and what is seen in it.
+/// A part of the picture and its view.
 pub struct Cell {
     x: u32,
     y: u32,

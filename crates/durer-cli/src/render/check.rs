@@ -95,7 +95,7 @@ fn check_algorithm(args: &RenderArgs) -> Result<(), Failure> {
     }
 }
 
-/// Checks that the tile lies in the picture, both of whose sides are known.
+/// Checks that the tile is in the picture, both of whose sides are known.
 pub fn check_tile(args: &RenderArgs) -> Result<(), Failure> {
     let Size { width, height } = args.picture.size;
     let Some(tile) = args.picture.tile else { return Ok(()) };
@@ -114,7 +114,7 @@ pub fn check_tile(args: &RenderArgs) -> Result<(), Failure> {
     )))
 }
 
-/// Refuses tiles with what takes the whole picture.
+/// Refuses tiles together with options that need the whole picture.
 fn check_whole(args: &RenderArgs) -> Result<(), Failure> {
     if args.picture.tile.is_none() {
         return Ok(());
@@ -131,7 +131,7 @@ fn check_whole(args: &RenderArgs) -> Result<(), Failure> {
         }
         _ => return Ok(()),
     };
-    Err(Failure::Usage(format!("--tile: {what}; render without it, or leave that out")))
+    Err(Failure::Usage(format!("--tile: {what}; render without --tile, or without that option")))
 }
 
 fn has_planes(args: &RenderArgs) -> bool {
@@ -159,7 +159,7 @@ pub fn algorithm(args: &RenderArgs) -> Algorithm {
     })
 }
 
-/// Returns the output format: that of --format, or that of the output's name.
+/// Returns the output format: from --format, or from the output's name.
 pub fn wanted(args: &RenderArgs) -> Wanted {
     Wanted::any(&args.output, args.format)
 }

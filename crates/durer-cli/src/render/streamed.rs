@@ -1,7 +1,7 @@
 //! Pictures of models that are larger than memory, read in pieces and never held as a whole.
 //!
-//! The file is read three times: for the camera, for what is seen, and for the triangles that are; these are a scene by
-//! themselves.
+//! The file is read three times: for the camera, to find the visible items, and to read the visible triangles, which
+//! form a scene.
 
 use super::{
     Job, Picture, RenderArgs, algorithm, asks_for_rays, colored, deliver, picture_options, shots,
@@ -58,7 +58,7 @@ pub fn hinted(failure: Failure) -> Failure {
     }
 }
 
-/// Returns whether pictures of a model can be made of its pieces.
+/// Returns whether pictures of a model can be made from its pieces.
 pub fn suits(args: &RenderArgs, job: &Job, pieces: &dyn Pieces) -> bool {
     let camera = Camera {
         eye: DVec3::Z,
@@ -100,7 +100,7 @@ pub fn render_model(
     Ok(())
 }
 
-/// A model in pieces, of which pictures are made.
+/// A model in pieces, to be rendered.
 struct Streamed<'a> {
     args: &'a RenderArgs,
     pieces: InPieces,
@@ -124,8 +124,7 @@ impl Streamed<'_> {
         Ok(self.facts.insert(facts).clone())
     }
 
-    /// Renders one picture and writes its files; returns why nothing of the model is visible, if that is
-    /// so.
+    /// Renders one picture and writes its files; if nothing of the model is visible, returns the reason.
     fn render_picture(
         &mut self,
         picture: &Picture,
@@ -149,7 +148,7 @@ impl Streamed<'_> {
         Ok((report, unseen))
     }
 
-    /// Finds what is seen.
+    /// Finds the visible items.
     fn survey(
         &mut self,
         options: &RenderOptions,
@@ -163,7 +162,7 @@ impl Streamed<'_> {
         let args = self.args;
         let passed = self.pieces.pieces.primitives(&mut |piece| {
             let percent = 100 * done / all.max(1);
-            tell_pass(messages, name, 2, &format!("looking for what is seen, {percent} %"));
+            tell_pass(messages, name, 2, &format!("finding the visible triangles, {percent} %"));
             done += piece.meshes.iter().map(|mesh| mesh.primitive_count() as u64).sum::<u64>();
             dress(args, piece);
             survey.add(piece)
@@ -173,14 +172,14 @@ impl Streamed<'_> {
         survey.finish().map_err(usage)
     }
 
-    /// Renders what is seen.
+    /// Renders the visible items.
     fn render_seen(
         &mut self,
         seen: &Seen,
         options: &RenderOptions,
         report: &mut PictureReport,
     ) -> Result<(Framebuffer, pipeline::Status), Failure> {
-        tell_pass(self.messages, self.name, 3, "reading what is seen");
+        tell_pass(self.messages, self.name, 3, "reading the visible triangles");
         let only = self.pieces.pieces.only(&seen.items);
         let (mut scene, _charge) = only.map_err(|e| self.pieces.failure(&e))?;
         dress(self.args, &mut scene);

@@ -6,7 +6,7 @@ use durer::paper::{LaidOut, scale_text};
 use durer::target::drawing::{Drawing, Line, LineClass};
 use serde::Serialize;
 
-/// Fewer borders than these are those of sheets.
+/// Number of borders below which they are taken for the edges of sheets.
 const LOOSE: u64 = 12;
 
 /// A drawing's counts and lengths.
@@ -16,7 +16,7 @@ pub struct DrawingReport {
     pub style: &'static str,
     /// Width and height of the paper, millimetres.
     pub page: [f64; 2],
-    /// Length on paper over true length, as a ratio and in words.
+    /// Length on paper over true length, as a ratio and as a text.
     pub scale: f64,
     /// E.g. `1:10`.
     pub scale_text: String,
@@ -28,7 +28,7 @@ pub struct DrawingReport {
     pub edges: u64,
     /// Number of edges of one face only.
     pub border_edges: u64,
-    /// Lines by class, those that have some.
+    /// Number of lines by class, for classes with lines.
     pub lines: Vec<ClassReport>,
     /// Round parts, if requested.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -90,7 +90,7 @@ impl From<&Feature> for FeatureReport {
 }
 
 impl DrawingReport {
-    /// Creates the report on what was drawn, over all views.
+    /// Creates the report on a drawing, over all views.
     pub fn new(
         style: &'static str,
         drawings: &[&Drawing],
@@ -128,8 +128,8 @@ impl DrawingReport {
         let Self { edges, border_edges, .. } = *self;
         (border_edges >= LOOSE && border_edges * 2 > edges).then(|| {
             format!(
-                "{border_edges} of {edges} edges are borders, of one face only: the faces do not \
-                 meet; --weld LENGTH joins those that lie that near to each other"
+                "{border_edges} of {edges} edges are borders of a single face: the faces do not meet; \
+                 --weld LENGTH joins faces that are that close to each other"
             )
         })
     }

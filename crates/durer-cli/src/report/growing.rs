@@ -1,6 +1,6 @@
-//! The report as text that grows while pictures are made. Of a picture its line is all that is kept, in one block with
-//! those of the others: small values of each, held to the end, would lie between the large blocks that pictures need
-//! for a while, and keep an allocator from using those again.
+//! The report as text that grows while pictures are made. Only a line is kept for each picture, in one block with the
+//! others: small allocations per picture, held to the end, would fragment the memory between the large temporary blocks
+//! of pictures, and keep an allocator from reusing these.
 
 use super::{Failed, ModelReport, PictureReport, peak_memory};
 use crate::failure::Failure;
@@ -53,7 +53,7 @@ impl Growing {
     /// Ends a model with all of its pictures.
     pub fn model(&mut self, model: &ModelReport) {
         if self.wanted {
-            // What comes first is known last.
+            // The beginning of the report is known last.
             let opening = opening(model, self.done > 0);
             self.models.insert_str(self.done, &opening);
             let pictures = self.models.len() > self.done + opening.len();
@@ -62,7 +62,7 @@ impl Growing {
         }
     }
 
-    /// Ends a model that failed, with those of its pictures that were written.
+    /// Ends a model that failed, with the pictures written before.
     pub fn failed(&mut self, failed: &Failed) {
         if self.wanted {
             let pictures = self.models.split_off(self.done);

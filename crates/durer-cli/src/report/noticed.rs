@@ -8,8 +8,7 @@ use durer_formats::{Model, Place};
 /// The notes on all pictures of a model.
 #[derive(Debug, Default)]
 pub struct Noticed {
-    /// Reason why nothing of the model is seen in the first picture, if that is so; already
-    /// reported.
+    /// Reason why nothing of the model is visible in the first picture, if nothing is; already reported.
     pub unseen: Option<String>,
     /// Triangles of a picture with a vertex that is not a number, which the renderer finds, not the reader.
     non_finite: u64,
@@ -19,7 +18,7 @@ pub struct Noticed {
     loose_faces: Option<String>,
     /// The scale of the drawing on its paper.
     scale: Option<String>,
-    /// True if something transparent had to become opaque.
+    /// True if transparent colours had to become opaque.
     flattened: bool,
 }
 

@@ -75,7 +75,7 @@ pub struct TilesArgs {
         help_heading = "Fields"
     )]
     pub exclude: Vec<String>,
-    /// The name of the map [default: that of OUT]
+    /// The name of the map [default: the name of OUT]
     #[arg(long, value_name = "TEXT", help_heading = "Layers")]
     pub name: Option<String>,
     /// Credit to show beside the map, as HTML
@@ -84,14 +84,14 @@ pub struct TilesArgs {
     /// Coordinate system of the input
     #[arg(long, value_name = "SYSTEM", default_value = "lonlat", help_heading = "Reading")]
     pub coordinates: TileCoordinates,
-    /// Lines and borders never go more than half around the world: an edge of more than 180 degrees goes the other
+    /// Lines and borders never extend more than half around the world: an edge of more than 180 degrees goes the other
     /// way, across the date line
     #[arg(long, help_heading = "Reading")]
     pub short_way: bool,
     /// The format of all IN [default: by content, then by suffix]
     #[arg(long, value_name = "FORMAT", value_parser = crate::layer::format, help_heading = "Reading")]
     pub from: Option<GeoFormat>,
-    /// The format of OUT [default: by its suffix; of a folder mvt]
+    /// The format of OUT [default: by its suffix; mvt for a folder]
     #[arg(long, value_name = "FORMAT")]
     pub to: Option<TileFormat>,
     /// Features to keep, and their fields.
@@ -129,7 +129,7 @@ impl TileFormat {
         }
     }
 
-    /// Returns whether each tile is a file of its own.
+    /// Returns whether each tile is a separate file.
     pub fn is_folder(self) -> bool {
         matches!(self, Self::Mvt | Self::Geojson)
     }

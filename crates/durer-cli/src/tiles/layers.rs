@@ -143,9 +143,7 @@ fn read_file(
     all.warnings.extend(reader.warnings().iter().map(|warning| format!("{shown}: {warning}")));
     let none = match (all.read == before, kept) {
         (true, _) => Some("there is no feature in it".to_owned()),
-        (false, 0) => {
-            Some(format!("none of its {} features is as --where asks", all.read - before))
-        }
+        (false, 0) => Some(format!("none of its {} features meets --where", all.read - before)),
         _ => None,
     };
     for message in none.into_iter().chain(doubts.messages()) {
@@ -252,8 +250,8 @@ impl Layers {
 }
 
 impl Layer {
-    /// Returns the properties by their numbers; those without a value are left out, and what has parts
-    /// becomes JSON.
+    /// Returns the properties by their numbers; properties without a value are left out, and structured values become
+    /// JSON.
     fn properties(&mut self, args: &TilesArgs, json: Option<&str>) -> Vec<(u32, u32)> {
         let object = json.and_then(|json| serde_json::from_str(json).ok());
         let Some(serde_json::Value::Object(object)) = object else { return Vec::new() };

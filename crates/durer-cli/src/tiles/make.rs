@@ -66,7 +66,7 @@ impl<'a> Maker<'a> {
         if !pieces.iter().all(covers) {
             return gzip(&bytes);
         }
-        // What a thread that panicked has left is whole.
+        // The value is consistent even if a thread panicked.
         let covered = || self.covered.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(packed) = covered().get(&bytes) {
             return packed.clone();

@@ -115,7 +115,7 @@ pub fn run(args: &TilesArgs) -> Result<(), Failure> {
     });
     let ended = made.and_then(|()| out.finish(&metadata(args, &all, bounds)));
     if ended.is_err() && !format.is_folder() {
-        // A file that is not whole is not put into its place.
+        // An incomplete file is not renamed to its final name.
         done = Done::default();
     }
     let Done { levels, written } = done;
@@ -160,7 +160,7 @@ pub fn too_many(count: u64, limit: u64) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Data(format!(
-        "there are {count} tiles at least, and no more than {limit} are made; choose a lower zoom level, or raise \
+        "there would be at least {count} tiles, more than the limit of {limit}; choose a lower zoom level, or raise \
          --max-tiles"
     )))
 }
@@ -170,7 +170,7 @@ fn told(args: &TilesArgs, lost: u64, tiles: u64) -> Vec<String> {
     if lost > 0 {
         let last = args.zoom.end();
         told.push(format!(
-            "{lost} features are in no tile: they lie beyond the latitudes of Web Mercator, ±85.0511, or are too small \
+            "{lost} features are in no tile: they are beyond the latitudes of Web Mercator, ±85.0511, or are too small \
              for the grid of level {last}"
         ));
     }

@@ -61,7 +61,7 @@ pub fn format(args: &TilesArgs) -> Result<(TileFormat, PathBuf), Failure> {
 }
 
 impl Out {
-    /// Returns a place for tiles; nothing is in it yet.
+    /// Creates an empty place for tiles.
     pub fn new(format: TileFormat, path: PathBuf) -> Result<Self, Failure> {
         let file = |path: &Path| {
             if path.is_dir() || is_special(path) {
@@ -98,7 +98,7 @@ impl Out {
         }
     }
 
-    /// Puts everything in its place.
+    /// Renames everything to its final name.
     pub fn finish(self, metadata: &Metadata) -> Result<(), Failure> {
         let commit = |path: &Path, done: Made<File>| {
             let file = done.map_err(|e| crate::layer::failure(path, &e))?;

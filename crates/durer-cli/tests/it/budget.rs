@@ -176,7 +176,7 @@ fn whether_a_large_model_is_closed_may_stay_open() {
     folder.write("many.stl", stl(60_000));
     let info = folder.must("info many.stl --max-memory 6100k");
     let text = String::from_utf8(info.out).unwrap();
-    assert!(text.contains("whether it is closed is not looked for: edges of the model"), "{text}");
+    assert!(text.contains("whether it is closed is not checked: edges of the model"), "{text}");
 }
 
 #[test]

@@ -426,7 +426,7 @@ fn wrong_use_and_bad_data_are_told() {
     let folder = folder();
     folder.write("bad.geojsonl", "{\"type\":\"Point\",\"coordinates\":[1,1]}\n{\"type\":\"Point\",\"coordinates\":[1,oops]}\n");
     folder.write("old.geojsonl", "old");
-    folder.run("clip in.geojson -o a.geojson").fails(2, "nothing to cut with");
+    folder.run("clip in.geojson -o a.geojson").fails(2, "nothing to clip with");
     folder.run("clip in.geojson --window 1,2,3 -o a.geojson").fails(2, "four numbers");
     folder.run("clip in.geojson --window 3,0,1,1 -o a.geojson").fails(2, "the window is empty");
     folder.run("clip in.geojson --window 0,0,1,1 -o a.png").fails(2, "--to");

@@ -39,10 +39,10 @@ fn files_are_converted_without_a_mask() {
     assert_eq!(text(&folder, "o.cpg"), "UTF-8");
     assert!(text(&folder, "o.prj").starts_with("GEOGCS[\"GCS_WGS_1984\""));
     // The same format without anything to do is a forgotten mask.
-    folder.run("clip areas.geojson -o a.geojson").fails(2, "nothing to cut with");
+    folder.run("clip areas.geojson -o a.geojson").fails(2, "nothing to clip with");
     folder.run("clip areas.geojson -o a.kml").fails(2, "kml is only read");
     folder.run("clip areas.geojson --to shapefile -o -").fails(2, "several files");
-    folder.run("clip areas.geojson --outside -o a.wkt").fails(2, "nothing to cut with");
+    folder.run("clip areas.geojson --outside -o a.wkt").fails(2, "nothing to clip with");
 }
 
 #[test]
@@ -102,14 +102,16 @@ fn coordinates_are_brought_to_another_system() {
     assert!(back.contains("[7.4") && back.contains(",46.9") && !back.contains("crs"), "{back}");
     // GeoJSON in another system says so, and so do messages.
     let ended = folder.must("clip areas.geojson --to-crs EPSG:3035 -o o.geojson");
-    assert!(ended.err.contains("told by its older member crs"), "{}", ended.err);
+    assert!(ended.err.contains("are marked by the older member crs"), "{}", ended.err);
     assert!(text(&folder, "o.geojson").contains("urn:ogc:def:crs:EPSG::3035"));
     // It is heard again.
     folder.must("clip o.geojson --to-crs EPSG:4326 -o back.geojson");
     assert!(!text(&folder, "back.geojson").contains("crs"));
     folder.must("clip areas.geojson --to-crs EPSG:3857 -o o.fgb");
     assert!(said(&folder, "info o.fgb").contains("EPSG:3857"));
-    folder.run("clip places.csv --to-crs EPSG:3857 -o o.fgb").fails(2, "--from-crs says where");
+    folder
+        .run("clip places.csv --to-crs EPSG:3857 -o o.fgb")
+        .fails(2, "--from-crs sets the system");
     folder.run("clip places.csv --to-crs mars -o o.fgb").fails(2, "`mars` is not known");
     folder.write("pole.wkt", "SRID=4326;POINT (0 90)\nSRID=4326;POINT (0 9)");
     let ended = folder.must("clip pole.wkt --from-crs 4326 --to-crs 3857 -o o.csv --json");

@@ -28,7 +28,7 @@ fn its_options_hold_where_the_command_line_says_nothing() {
     folder.run("render cube.obj -o a.png --config missing.toml").fails(1, "missing.toml");
     folder.write("rays.toml", "[render]\nbounces = 2\n");
     let rays = folder.run("render cube.obj -o a.png --config rays.toml --algorithm z-buffer");
-    rays.fails(2, "--bounces").fails(2, "(options of rays.toml count, too)");
+    rays.fails(2, "--bounces").fails(2, "(with the options of rays.toml)");
     folder.run("render cube.obj -o a.png --config other.toml --no-config").fails(2, "--no-config");
 }
 

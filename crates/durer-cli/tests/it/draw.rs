@@ -399,7 +399,7 @@ fn wrong_use_and_bad_data_are_told() {
         ("draw a.svg -o a.bmp", 2, "pictures are written as PNG"),
         ("draw no.svg -o a.png", 1, "no.svg: line 1, column"),
         ("draw empty.geojson -o a.png", 1, "there is nothing to draw"),
-        ("draw what.txt -o a.png", 1, "not a known format; drawn are SVG"),
+        ("draw what.txt -o a.png", 1, "not a known format; durer draw reads SVG"),
         ("draw a.svg -o a.png --size 40000x1", 2, "32767"),
         ("draw a.svg -o a.png --size 30000x30000", 2, "--max-pixels raises it"),
         ("draw a.svg -o - --json", 2, "the report goes to standard output"),

@@ -108,7 +108,7 @@ fn options_that_do_not_fit_say_what_does() {
         ("-o a.svg --page A4 --scale 500:1", "the page has room for"),
         ("-o a.svg --page B4711", "WIDTHxHEIGHT in millimetres"),
         ("-o a.svg --sheet third-angle --view top", "has its own views"),
-        ("-o a.svg --sheet first-angle --views front,top,front", "front is there twice"),
+        ("-o a.svg --sheet first-angle --views front,top,front", "front is given twice"),
         ("-o a.svg --sheet first-angle --views front,sideways", "iso, front, back"),
         ("-o a.svg --views front,top", "--sheet"),
         ("-o a.svg --section A:0,0,1,0", "a view of a --sheet"),
@@ -518,7 +518,7 @@ fn holes_are_circles_as_large_as_they_are() {
     folder.write("plate.obj", plate(36).as_bytes());
     let ended = folder.must("render plate.obj -o a.dxf --view front");
     assert!(
-        ended.err.contains("a unit of the model is taken as 1 mm, as OBJ has none"),
+        ended.err.contains("OBJ files have no unit; one unit of the model is drawn as 1 mm"),
         "{}",
         ended.err
     );

@@ -231,7 +231,7 @@ fn what_is_not_seen_or_not_there_is_told_of_pieces_too() {
     folder.write("a.stl", stl(|_| false));
     for (options, why) in [
         ("--eye 900,0,0 --target 999,0,0", "behind the eye"),
-        ("--eye 900,0,0 --target 0,900,0", "beside the picture"),
+        ("--eye 900,0,0 --target 0,900,0", "outside the picture"),
         (
             "--eye 30,0,0.5 --target 30,0,0 --up 0,1,0 --near 99 --far 100",
             "nearer than the near plane",

@@ -67,7 +67,7 @@ fn options_of_plots_are_checked() {
         ("plot --formula x --page 5x5 -o a.svg", "20 mm"),
         ("plot --formula x --labels a,b -o a.svg", "three names"),
         ("plot --formula x --fov 40 --ortho -o a.svg", "cannot be used with"),
-        ("plot --formula x --eye 0,0,0 -o a.svg", "the whole surface lies ahead"),
+        ("plot --formula x --eye 0,0,0 -o a.svg", "the whole surface in front of it"),
         ("plot --formula x --eye 9,9,9 --azimuth 3 -o a.svg", "cannot be used with"),
         ("plot --formula x --samples 1x9 -o a.svg", "2x2 points at least"),
         ("plot --formula x --aspect 0 -o a.svg", "or `auto`, `equal`"),

@@ -1,4 +1,4 @@
-//! A COLLADA document as a tree of elements, whose texts stay where they are in the file.
+//! A COLLADA document as a tree of elements, whose texts are not copied from the file.
 
 use crate::foreign;
 use crate::{Error, Place, Result, number};
@@ -160,7 +160,7 @@ impl<'a> Document<'a> {
 
     /// Returns all elements inside another, at any depth, in their order.
     pub fn inside(&self, element: usize) -> impl Iterator<Item = usize> + '_ {
-        // Elements stand in the order of their starts.
+        // Elements are in the order of their starts.
         let end = self.elements.get(element).map_or(0, |e| e.content.end);
         let from = element + 1;
         let rest = self.elements.get(from..).unwrap_or_default();
@@ -204,7 +204,7 @@ impl<'a> Document<'a> {
         quick_xml::escape::unescape(raw).map_or_else(|_| raw.to_owned(), |t| t.into_owned())
     }
 
-    /// Returns its text as numbers; `None` for each word that is none.
+    /// Returns its text as numbers; `None` for each word that is not one.
     pub fn floats(&self, element: usize) -> impl Iterator<Item = Option<f64>> + use<'a> {
         self.raw(element).split_ascii_whitespace().map(float)
     }

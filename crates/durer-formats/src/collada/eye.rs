@@ -98,8 +98,8 @@ fn parallel(
     Some((Projection::Orthographic { height }, ratio))
 }
 
-/// Returns the light of a frame, which shines along −z; `None` if it is of no known kind. Colours
-/// are as those of materials, linear or not.
+/// Returns the light of a frame, which shines along −z; `None` if its kind is not known. Colours are linear or not,
+/// like the materials'.
 pub(super) fn lamp(
     document: &Document<'_>,
     light: usize,

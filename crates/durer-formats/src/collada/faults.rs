@@ -15,14 +15,14 @@ pub(super) struct Faults {
     pub holes: Tally,
 }
 
-/// Adds warnings of what was left out or repaired.
+/// Adds warnings about omissions and repairs.
 pub(super) fn warn(model: &mut Model, faults: &Faults) {
     for (tally, what) in [
-        (&faults.numbers, "numbers of arrays are none or not finite; they are 0"),
+        (&faults.numbers, "words of arrays are not finite numbers; they count as 0"),
         (&faults.indices, "corners have an index beyond their source; their faces are left out"),
         (
             &faults.attributes,
-            "corners have a normal, color or place in a texture beyond its source; they have none",
+            "corners refer to a normal, color or texture coordinate beyond its source; they get none",
         ),
         (&faults.short, "faces or lists have too few indices; they are left out"),
         (&faults.unknown, "geometries are not meshes (splines, bodies); they are left out"),

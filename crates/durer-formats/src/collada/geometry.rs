@@ -22,7 +22,7 @@ struct Input {
     /// Its place in a [`Corner`].
     slot: usize,
     source: usize,
-    /// Index among those of a corner.
+    /// Position among the indices of a corner.
     offset: usize,
     set: u64,
 }
@@ -102,8 +102,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Returns the inputs that are read; those of `vertices` have the offset of the input that
-    /// names it.
+    /// Returns the inputs that are read; the inputs in `vertices` have the offset of the input that refers to it.
     fn inputs(&mut self, element: usize) -> Result<Vec<Input>> {
         let document = self.document;
         let mut inputs: Vec<Input> = Vec::new();
@@ -130,7 +129,7 @@ impl Reader<'_, '_> {
             Some("NORMAL") => 1,
             Some("COLOR") => 2,
             Some("TEXCOORD") if sets < SETS => 3 + sets,
-            // Tangents and similar ones; their index takes its place all the same.
+            // Tangents and similar inputs; their indices occupy places nevertheless.
             _ => {
                 inputs.push(Input { slot: usize::MAX, source: 0, offset, set: 0 });
                 return Ok(());
@@ -244,7 +243,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Reads a polygon with holes, each joined to it by a way there and back.
+    /// Reads a polygon with holes, each joined to it by a bridge there and back.
     fn with_holes(
         &mut self,
         ph: usize,
@@ -264,8 +263,8 @@ impl Reader<'_, '_> {
         self.polygon(builder, &outline, ph)
     }
 
-    /// Puts a hole into an outline where they are nearest to each other; `false` where that would
-    /// take too long, or there is nothing to join.
+    /// Joins a hole to an outline where they are nearest to each other; returns `false` if that would take too long or
+    /// there is nothing to join.
     fn bridge(&self, outline: &mut Vec<Option<u32>>, hole: &[Option<u32>], builder: usize) -> bool {
         let (slots, builder) = &self.builders[builder];
         let values = Slotted(&self.sources, *slots);
@@ -358,8 +357,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Returns the indices of a corner in its sources, and whether they are all there; `None` if that
-/// of its position is not.
+/// Returns the indices of a corner in its sources, and whether all of them exist; `None` if its position's does not.
 fn key(
     inputs: &[Input],
     sources: &[Option<Rc<Source>>],

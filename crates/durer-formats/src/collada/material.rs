@@ -71,7 +71,7 @@ impl<'d, 'a> Materials<'d, 'a> {
         Some(model.scene.materials.len() - 1)
     }
 
-    /// Adds warnings of what was left out.
+    /// Adds warnings about omissions.
     pub fn warn(&self, model: &mut Model) {
         if self.lost.count > 0 {
             let message =
@@ -176,7 +176,7 @@ impl<'d, 'a> Materials<'d, 'a> {
                 }
             }
             Some(Value::Texture(image, channel)) => {
-                // As a rule it is the picture of the surface, whose alpha counts.
+                // Usually it is the picture of the surface, whose alpha is used.
                 let texture = self.texture(model, profile, &image, channels(&channel));
                 if texture.is_some() && texture == material.base_color_texture {
                     material.alpha_mode = AlphaMode::Blend;
@@ -279,8 +279,8 @@ impl<'d, 'a> Materials<'d, 'a> {
         Some(TextureRef { texture, tex_coord, transform: DMat3::IDENTITY })
     }
 
-    /// Returns the path of the picture behind a sampler: through a surface (1.4), an instance (1.5),
-    /// or where the name is that of an image itself.
+    /// Returns the path of the picture behind a sampler: through a surface (1.4), an instance (1.5), or directly if the
+    /// name is an image's.
     fn picture(&self, profile: usize, name: &str, sampler: Option<usize>) -> Option<String> {
         let document = self.document;
         let text = |n: Option<usize>| n.map(|n| document.text(n));
@@ -297,7 +297,7 @@ impl<'d, 'a> Materials<'d, 'a> {
     }
 }
 
-/// Returns whether the file comes from a Blender since 2.80, which writes the linear values of its
+/// Returns whether the file was written by Blender 2.80 or later, which writes the linear values of its
 /// nodes.
 pub(super) fn is_linear(document: &Document<'_>) -> bool {
     let contributors = document.root().and_then(|root| document.find(root, &["asset"]));
@@ -320,7 +320,7 @@ fn sides(document: &Document<'_>, effect: usize) -> Option<bool> {
     Some(text != "0" && !text.eq_ignore_ascii_case("false"))
 }
 
-/// Returns the first effect that says it is wholly transparent where it can only mean the opposite.
+/// Returns the first effect that is wholly transparent by its values but can only mean the opposite.
 fn is_reversed(document: &Document<'_>) -> Option<usize> {
     let root = document.root()?;
     let zero =
@@ -336,8 +336,8 @@ fn is_reversed(document: &Document<'_>) -> Option<usize> {
     })
 }
 
-/// Returns the path of a picture's address: what is absolute was elsewhere on the writer's machine,
-/// and is looked for beside the model.
+/// Returns the path of a picture's address: absolute paths are from the writer's machine, so these files are searched
+/// beside the model.
 fn path(uri: &str) -> String {
     let bytes = percent_decode(uri).and_then(|b| String::from_utf8(b).ok());
     let path = bytes.unwrap_or_else(|| uri.to_owned()).replace('\\', "/");

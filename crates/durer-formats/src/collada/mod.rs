@@ -2,11 +2,11 @@
 //!
 //! Source: Khronos Group, *COLLADA – Digital Asset Schema Release 1.4.1* and *1.5.0*, 2008.
 //!
-//! Read are meshes (triangles, strips, fans, polygons with holes, lines) with normals, colours and
-//! texture coordinates, the nodes of the scene with all transforms, materials of the common profile, cameras,
-//! lights, and skins and morphs at the shape that they were bound at. Not read are animations, splines
-//! and physics. Lengths become metres through the matrices of the instances. Colours are sRGB
-//! values, those of materials from Blender since 2.80 linear. An x axis that is up becomes y.
+//! The reader takes meshes (triangles, strips, fans, polygons with holes, lines) with normals, colours and texture
+//! coordinates, the nodes of the scene with all transforms, materials of the common profile, cameras, lights, and skins
+//! and morphs in their bind shape. It ignores animations, splines and physics. Lengths become metres through the
+//! matrices of the instances. Colours are sRGB values, except linear ones of materials from Blender since 2.80. An x
+//! axis that is up becomes y.
 
 pub(crate) mod document;
 mod eye;
@@ -39,7 +39,7 @@ pub(crate) fn sniff(head: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`Error::Decode`] for XML that is not well-formed, or another root than `COLLADA`;
-/// [`Error::Limit`] for too much of anything. All else that is wrong is a warning.
+/// [`Error::Limit`] for data above a limit. All other faults are warnings.
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let text = xml::utf8(bytes);
     let text = std::str::from_utf8(&text)

@@ -12,7 +12,7 @@ use durer::math::{DMat4, DVec3, DVec4};
 use durer::scene::Instance;
 use std::collections::{HashMap, HashSet};
 
-/// Places what nodes hold.
+/// Placement of the contents of nodes.
 pub(super) struct Nodes<'d, 'a> {
     pub document: &'d Document<'a>,
     pub materials: Materials<'d, 'a>,
@@ -114,7 +114,7 @@ impl<'d, 'a> Nodes<'d, 'a> {
         Ok(())
     }
 
-    /// Counts what is placed.
+    /// Charges placed nodes to the limits.
     fn visit(&mut self, element: usize) -> Result<()> {
         self.visits += 1;
         let (value, limit) = (self.visits, self.limits.instances);
@@ -140,12 +140,12 @@ impl<'d, 'a> Nodes<'d, 'a> {
         Ok(())
     }
 
-    /// Adds warnings of what was left out.
+    /// Adds warnings about omissions.
     pub fn warn(&self, model: &mut Model) {
         faults::warn(model, &self.faults);
         self.materials.warn(model);
         for (tally, what) in [
-            (&self.missing, "instances name what the file does not have; they are left out"),
+            (&self.missing, "instances refer to missing objects; they are left out"),
             (&self.cycles, "nodes are inside themselves; they are left out there"),
             (&self.broken, "transforms have not the right numbers; they are left out"),
         ] {
@@ -192,8 +192,7 @@ impl<'d, 'a> Nodes<'d, 'a> {
         Ok(())
     }
 
-    /// Returns the geometry behind an instance, through skins and morphs, and what takes it to the
-    /// pose that it was bound at.
+    /// Returns the geometry behind an instance, through skins and morphs, and the matrix to its bind pose.
     fn geometry(&self, target: usize) -> Option<(usize, DMat4)> {
         let document = self.document;
         let (mut at, mut bind) = (target, DMat4::IDENTITY);
@@ -284,7 +283,7 @@ impl<'d, 'a> Nodes<'d, 'a> {
                 let at = set.and_then(|set| piece.sets.iter().position(|s| *s == set));
                 at.unwrap_or(0) as u32
             };
-            // Without a binding the symbol is the material's id in many files.
+            // In many files without a binding, the symbol is the material's id.
             let id = target.unwrap_or(symbol);
             part.material = self.materials.get(model, id, &channels);
             if part.material.is_none() && !symbol.is_empty() {

@@ -20,7 +20,7 @@ pub(super) struct Source {
 }
 
 impl Source {
-    /// Returns the components of a tuple, `fill` where it has fewer; `None` beyond the end.
+    /// Returns the components of a tuple, with `fill` for missing ones; `None` beyond the end.
     pub fn get<const N: usize>(&self, index: u32, fill: f64) -> Option<[f64; N]> {
         let first = self.stride.checked_mul(index as usize)?.checked_add(self.offset)?;
         let values = self.values.get(first..)?;

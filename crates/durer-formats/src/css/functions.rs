@@ -1,6 +1,6 @@
 //! Colours that CSS writes as functions.
 //!
-//! Source: *CSS Color Module Level 4* and *Level 5*, W3C. What lies outside of sRGB is cut off, as browsers do it.
+//! Source: *CSS Color Module Level 4* and *Level 5*, W3C. Colours outside sRGB are clamped, as in browsers.
 
 use super::spaces::{Color, Space};
 use super::tokens::{Piece, Token, tokens};
@@ -14,7 +14,7 @@ pub(super) fn parse(text: &str, current: Option<Color>) -> Option<Color> {
     of_pieces(trimmed(&tokens(text)), current, 0)
 }
 
-/// Returns a colour that is all of the tokens.
+/// Returns the colour that the tokens form; `None` if they are anything else.
 fn of_pieces(pieces: &[Piece<'_>], current: Option<Color>, depth: u32) -> Option<Color> {
     let (first, rest) = pieces.split_first()?;
     let function = match &first.token {
@@ -90,7 +90,7 @@ fn of_components(space: Space, inside: &[Piece<'_>]) -> Option<Color> {
         parts = words(halves.first()?);
     } else {
         alpha = if parts.len() == 4 { parts.pop() } else { None };
-        // With commas, as it was at first, numbers and percentages are not mixed.
+        // In the older syntax with commas, numbers and percentages are not mixed.
         let is_percent =
             |part: &&[Piece<'_>]| matches!(part, [Piece { token: Token::Percent(_), .. }]);
         let percents = parts.iter().filter(|part| is_percent(part)).count();
@@ -149,7 +149,7 @@ fn mixed(inside: &[Piece<'_>], current: Option<Color>, depth: u32) -> Option<Col
     }
     let space = names.next()?;
     let space = Space::of_color(&space).or_else(|| Space::of_function(&space))?;
-    // Other ways than the shorter one around the hues are rare.
+    // Directions other than the shorter one around the hues are rare.
     let way: Vec<String> = names.collect();
     if !way.is_empty() && way != ["shorter", "hue"] {
         return None;

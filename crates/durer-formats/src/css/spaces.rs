@@ -244,7 +244,7 @@ impl Space {
         match self {
             Self::Lab | Self::Lch => *first = first.clamp(0.0, 100.0),
             Self::Oklab | Self::Oklch => *first = first.clamp(0.0, 1.0),
-            // As browsers have it.
+            // As in browsers.
             Self::Hsl => *second = second.min(100.0),
             _ => {}
         }
@@ -306,7 +306,7 @@ impl Space {
         let alpha = a.alpha * (1.0 - share) + b.alpha * share;
         let hue = self.hue();
         if let Some(hue) = hue {
-            // A hue that means nothing is the other one's.
+            // A powerless hue is replaced by the other colour's.
             if x[hue].is_nan() {
                 x[hue] = if y[hue].is_nan() { 0.0 } else { y[hue] };
             }

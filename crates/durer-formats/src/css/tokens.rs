@@ -1,11 +1,11 @@
 //! Tokens of CSS.
 //!
-//! Source: *CSS Syntax Module Level 3*, W3C, § 4. Any text has tokens; what does not fit is a delimiter of one
+//! Source: *CSS Syntax Module Level 3*, W3C, § 4. Any text can be tokenized; other characters are delimiters of one
 //! character.
 
 use std::borrow::Cow;
 
-/// A token; comments are none.
+/// A token; comments are not tokens.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Token<'a> {
     Ident(Cow<'a, str>),
@@ -49,7 +49,7 @@ impl Token<'_> {
 #[derive(Debug, Clone)]
 pub(crate) struct Piece<'a> {
     pub token: Token<'a>,
-    /// Bytes from the start of the text to the token, and to what follows it.
+    /// Byte offsets of the token's start and end.
     pub start: usize,
     pub end: usize,
     /// Index of the closing token for an opening one, or the number of tokens if none closes it; for other
@@ -62,7 +62,7 @@ pub(crate) fn tokens(text: &str) -> Vec<Piece<'_>> {
     let mut lexer = Lexer { text, at: 0 };
     let mut pieces: Vec<Piece<'_>> = Vec::new();
     let mut open: Vec<(usize, char)> = Vec::new();
-    // How many of each kind are open: so none is looked for in vain.
+    // Number of open brackets of each kind, so that closing ones without a partner are not searched.
     let mut waiting = [0_usize; 3];
     while lexer.at < text.len() {
         let start = lexer.at;
@@ -71,7 +71,7 @@ pub(crate) fn tokens(text: &str) -> Vec<Piece<'_>> {
         if let Token::Close(closing) = token
             && waiting[kind_of(closing)] > 0
         {
-            // What is still open within ends here too.
+            // Inner brackets still open end here too.
             while let Some((opened, wanted)) = open.pop() {
                 waiting[kind_of(wanted)] -= 1;
                 if let Some(piece) = pieces.get_mut(opened) {
@@ -216,7 +216,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// Returns a name, and what it begins.
+    /// Returns a name, or the function or address that it begins.
     fn word(&mut self) -> Token<'a> {
         let name = self.name();
         if self.peek(0) != Some('(') {
@@ -272,7 +272,7 @@ impl<'a> Lexer<'a> {
         let mut text = Cow::Borrowed(plain);
         while self.peek(0) == Some('\\') {
             self.at += 1;
-            // A line goes on behind it.
+            // An escaped line end continues the line.
             if self.peek(0) == Some('\n') {
                 self.at += 1;
             } else {

@@ -1,4 +1,4 @@
-//! Numbers, lengths and angles of CSS, and what is computed of them by `calc()`.
+//! Numbers, lengths and angles of CSS, and calculations with `calc()`.
 //!
 //! Source: *CSS Values and Units Module Level 4*, W3C.
 
@@ -12,7 +12,7 @@ const MAX_DEPTH: u32 = 32;
 pub(crate) struct Units {
     pub font_size: f64,
     pub root_font_size: f64,
-    /// Width and height of what percentages are of.
+    /// Width and height to which percentages refer.
     pub viewport: [f64; 2],
 }
 

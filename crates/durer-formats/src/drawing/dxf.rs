@@ -1,5 +1,5 @@
-//! Sheets as DXF for CAD: AutoCAD 2004 (AC1018), the first version with colours beyond the palette;
-//! what reads DXF 2000 reads it.
+//! Sheets as DXF for CAD: AutoCAD 2004 (AC1018), the first version with colours beyond the palette; readers of DXF 2000
+//! read it.
 //!
 //! Model space in millimetres, y up, the origin in the lower left corner of the sheet. Each layer of the sheet is one
 //! with a colour, a line weight and a line type, CONTINUOUS, HIDDEN or CENTER; polylines are LWPOLYLINE, curves are
@@ -25,7 +25,7 @@ use std::io::Write;
 /// Writes a sheet as an ASCII DXF file, encoded in the ANSI code page with `\U+XXXX` for characters that are not ASCII.
 ///
 /// # Errors
-/// [`crate::Error::Io`] where writing fails.
+/// [`crate::Error::Io`] if writing fails.
 pub fn write(out: &mut impl Write, sheet: &Sheet, strokes: DxfStrokes) -> Result<()> {
     write_within(out, sheet, strokes, &Work::default())
 }
@@ -137,7 +137,7 @@ fn viewport(tags: &mut Tags, sheet: &Sheet) {
     tags.tag(0, "ENDTAB");
 }
 
-/// Writes the line types. The dashes of HIDDEN and CENTER are those of the sheet's first pens of the kind; CENTER is
+/// Writes the line types. The dashes of HIDDEN and CENTER are taken from the sheet's first pens of the kind; CENTER is
 /// written only where it is used.
 fn line_types(tags: &mut Tags, sheet: &Sheet) {
     let first = |name: &str| sheet.pens.iter().find(|p| line_type(Some(p)) == name);
@@ -172,7 +172,7 @@ fn layers(tags: &mut Tags, sheet: &Sheet) {
     tags.tag(0, "ENDTAB");
 }
 
-/// Returns the pen of a layer: that of its first line.
+/// Returns the pen of a layer: the pen of its first line.
 fn layer_pen<'a>(sheet: &'a Sheet, l: &SheetLayer) -> Option<&'a Pen> {
     l.marks.iter().find_map(|m| match m {
         Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => {

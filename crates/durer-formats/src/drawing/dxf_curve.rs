@@ -13,7 +13,7 @@ const ARCS: f64 = 0.005;
 /// Digits of angles: with them a circle of a metre still meets its neighbours to the last digit of places.
 const DIGITS: usize = 10;
 
-/// Writes a curve of a sheet that is so high; the file's y axis looks up.
+/// Writes a curve of a sheet of a given height; the file's y axis points up.
 pub(super) fn write(
     tags: &mut Tags,
     to: &Target<'_>,
@@ -95,7 +95,7 @@ pub(super) fn line(tags: &mut Tags, to: &Target<'_>, start: DVec2, end: DVec2) {
 const DOT: f64 = 0.05;
 
 /// Writes a stroke that is a dot as a circle of the pen's width, and returns whether it is one. The circle's own line
-/// is as thin as can be: it is what the dot covers.
+/// is as thin as possible, so that the circle marks the area of the dot.
 pub(super) fn dot(tags: &mut Tags, to: &Target<'_>, start: DVec2, end: DVec2) -> bool {
     let Some(pen) = to.pen.filter(|pen| start.distance(end) < DOT * pen.width) else {
         return false;
@@ -169,7 +169,7 @@ fn spline(tags: &mut Tags, to: &Target<'_>, row: &[(DVec2, &Piece)]) {
     });
     let knots: Vec<f64> = knots.collect();
     begin(tags, "SPLINE", to.layer, to.pen);
-    // 8: it lies in a plane.
+    // 8: it is planar.
     tags.class("AcDbSpline").real(210, 0.0).real(220, 0.0).real(230, 1.0).int(70, 8).int(71, 3);
     tags.int(72, knots.len() as i64).int(73, control.len() as i64).int(74, 0);
     knots.iter().for_each(|knot| {

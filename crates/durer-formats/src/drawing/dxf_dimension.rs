@@ -1,5 +1,5 @@
-//! Dimensions in DXF: an entity that says what is measured, and an anonymous block that says how it looks, so that
-//! readers that do not draw dimensions themselves show it.
+//! Dimensions in DXF: an entity with the measurement, and an anonymous block with its drawing, for readers that do not
+//! draw dimensions themselves.
 
 use super::dxf_entity::{block, entity};
 use super::dxf_tags::{DIMSTYLES, DxfStrokes, Tags, begin, string, symbol};
@@ -8,11 +8,11 @@ use durer::target::dimension::{DimensionText, Measure};
 use durer::target::sheet::Dimension;
 use durer::target::sheet::{Mark, Sheet};
 
-/// The dimensions of a sheet in the order of drawing, with what the file's tables have for them.
+/// The dimensions of a sheet in the order of drawing, with their entries in the file's tables.
 pub(super) struct Dimensions<'a> {
     all: Vec<Listed<'a>>,
-    /// The distinct values of [`Dimension::units_per_millimetre`], each with a style of its own, and the height of
-    /// its text.
+    /// The distinct values of [`Dimension::units_per_millimetre`], each with a separate style, and the height of its
+    /// text.
     styles: Vec<(f64, f64)>,
     strokes: DxfStrokes,
 }
@@ -47,8 +47,8 @@ impl<'a> Dimensions<'a> {
         self.all.iter().enumerate().map(|(i, d)| (block_name(i), d.record))
     }
 
-    /// Writes the variables that stand for a style in programs that know none, as LibreCAD: those of the scale that
-    /// most dimensions have.
+    /// Writes the variables that replace a style in programs without styles, such as LibreCAD: those for the scale of
+    /// most dimensions.
     pub(super) fn variables(&self, tags: &mut Tags) {
         let count = |style: &(f64, f64)| {
             let own = |d: &Listed| (d.dimension.units_per_millimetre, d.dimension.text.height);
@@ -119,7 +119,7 @@ impl<'a> Dimensions<'a> {
         begin(tags, "DIMENSION", layer, None);
         tags.class("AcDbDimension").tag(2, &block_name(number));
         tags.point3(10, place(definition)).point3(11, place(middle(&dimension.text)));
-        // 32: no other entity has the block; 128: the text stays where it is.
+        // 32: no other entity uses the block; 128: the text keeps its place.
         tags.int(70, kind | 32 | 128).int(71, 5);
         let words = if dimension.is_plain { String::new() } else { words(&dimension.text.text) };
         tags.tag(1, &words).real(42, dimension.value).tag(3, &style_name(style));
@@ -164,7 +164,7 @@ fn words(text: &str) -> String {
     string(&text.replace('×', "x"))
 }
 
-/// Returns the angle of a way on the sheet, y up, degrees.
+/// Returns the angle of a direction on the sheet, y up, degrees.
 fn degrees(along: DVec2) -> f64 {
     // Adding 0 makes a plain 0 of −0.
     libm::atan2(-along.y, along.x).to_degrees() + 0.0

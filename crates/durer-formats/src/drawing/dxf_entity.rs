@@ -7,7 +7,7 @@ use durer::target::Curve;
 use durer::target::drawing::Anchor;
 use durer::target::sheet::{Mark, Sheet};
 
-/// Writes a block with its entities; names with a star, except those of the two spaces, are anonymous.
+/// Writes a block with its entities; names with a star are anonymous, except the two spaces'.
 pub(super) fn block(tags: &mut Tags, name: &str, record: u32, entities: impl FnOnce(&mut Tags)) {
     let (start, end) = (tags.fresh(), tags.fresh());
     let begin = |tags: &mut Tags, kind: &str, handle: u32| {

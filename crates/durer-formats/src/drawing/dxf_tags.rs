@@ -1,4 +1,4 @@
-//! The parts that DXF files are made of: group codes with their values, handles, pens, and text.
+//! The parts of DXF files: group codes with their values, handles, pens, and text.
 
 use super::number::push;
 use durer::math::DVec2;
@@ -189,7 +189,7 @@ pub(super) fn symbol(name: &str) -> String {
     string(name).replace(['<', '>', '/', '\\', '"', ':', ';', '?', '*', '|', ',', '=', '`'], "_")
 }
 
-/// Returns text on one line; `^` and what is not ASCII are written as the format escapes them.
+/// Returns text on one line; `^` and characters beyond ASCII are escaped as the format requires.
 pub(super) fn string(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {

@@ -14,18 +14,18 @@ const DIGITS: usize = 3;
 /// Arcs that leave their chords by less are lines, millimetres: machines step no finer.
 const FLAT: f64 = 0.003;
 
-/// Writes a sheet in millimetres, absolute, from the lower left corner, y up: pens of one width and colour one
-/// after another, each taken once, layer by layer, and its strokes on a short way.
+/// Writes a sheet in millimetres, absolute, from the lower left corner, y up: pens of one width and colour one after
+/// another, each picked up once, layer by layer, with its strokes in an order with short moves.
 ///
 /// Circular arcs are G2 and G3 with I and J, which count from where the arc begins, none further than three eighths of
 /// a turn; ellipses and cubic curves are arcs that stay within 0.01 mm. Without [`MachineOptions::arcs`] all are
 /// chords.
 ///
-/// Between pens the machine goes to the origin and waits (`M0`). Dashes and text are strokes of their own; fills
+/// Between pens the machine goes to the origin and waits (`M0`). Dashes and text are separate strokes; fills
 /// are drawn as outlines, last.
 ///
 /// # Errors
-/// The errors of [`MachineOptions::check`]; [`crate::Error::Io`] where writing fails.
+/// The errors of [`MachineOptions::check`]; [`crate::Error::Io`] if writing fails.
 pub fn write(out: &mut impl Write, sheet: &Sheet, machine: &MachineOptions) -> Result<()> {
     machine.check()?;
     let passes = passes(sheet, machine.pens, machine.arcs);
@@ -112,7 +112,7 @@ fn step(from: DVec2, to: DVec2, bulge: f64) -> String {
     if (across.length() * 0.5 * bulge).abs() < FLAT {
         return format!("G1 {way}");
     }
-    // So the middle is as far from both rounded ends.
+    // So the centre is equally far from both rounded ends.
     let off = across * 0.5 + across.perp() * ((1.0 - bulge * bulge) / (4.0 * bulge));
     let [i, j] = [off.x, off.y].map(|v| short(v, DIGITS + 1));
     format!("{} {way} I{i} J{j}", if bulge > 0.0 { "G3" } else { "G2" })

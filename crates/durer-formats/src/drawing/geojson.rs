@@ -20,7 +20,7 @@ use std::io::Write;
 /// Numbers are the shortest that read back the same.
 ///
 /// # Errors
-/// [`crate::Error::Io`] where writing fails.
+/// [`crate::Error::Io`] if writing fails.
 pub fn write(out: &mut impl Write, drawing: &Drawing) -> Result<()> {
     out.write_all(b"{\"type\":\"FeatureCollection\",\"features\":[")?;
     let mut separator: &[u8] = b"\n";
@@ -110,7 +110,7 @@ fn polygons(rings: &[Vec<DVec2>]) -> Vec<Vec<&[DVec2]>> {
     let (outer, holes): (Vec<_>, Vec<_>) = rings.iter().partition(|r| area(r) >= 0.0);
     let mut polygons: Vec<Vec<&[DVec2]>> = outer.iter().map(|r| vec![r.as_slice()]).collect();
     for hole in holes {
-        // The smallest outer ring around the hole; if there is none the hole stands alone.
+        // The smallest outer ring around the hole; if there is none, the hole becomes a separate polygon.
         let around = (0..outer.len())
             .filter(|&i| inside(outer[i], hole))
             .min_by(|&a, &b| area(outer[a]).total_cmp(&area(outer[b])));
@@ -127,8 +127,8 @@ fn area(ring: &[DVec2]) -> f64 {
     ring.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum::<f64>() * 0.5
 }
 
-/// Returns whether a ring lies in another that it does not cross: by the first of its points that
-/// is not a point of the other, as rings may touch there.
+/// Returns whether a ring is in another that it does not cross: by its first point that is not a point of the other,
+/// because rings may touch.
 fn inside(outer: &[DVec2], ring: &[DVec2]) -> bool {
     let Some(p) = ring.iter().find(|p| !outer.contains(p)).or(ring.first()) else { return false };
     let next = outer.iter().cycle().skip(1);

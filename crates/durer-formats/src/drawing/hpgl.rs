@@ -11,15 +11,15 @@ use std::io::Write;
 /// Plotter units per millimetre: a unit is 0.025 mm.
 const UNITS: f64 = 40.0;
 
-/// Writes a sheet: pens of one width and colour in their order, numbered from 1, each taken once and drawing its
-/// strokes on a short way. The origin is the lower left corner, y up.
+/// Writes a sheet: pens of one width and colour in order, numbered from 1, each picked up once, with its strokes in an
+/// order with short moves. The origin is the lower left corner, y up.
 ///
-/// Curves are drawn as chords: ends of arcs, in whole units and degrees, would lie elsewhere. Dashes and text are
-/// strokes of their own, as plotters differ in theirs. Fills are drawn as outlines with the pen after the last: a pen
-/// has no areas.
+/// Curves are drawn as chords: ends of arcs, in whole units and degrees, would be displaced. Dashes and text are
+/// separate strokes, because plotters' own differ. Fills are drawn as outlines with the pen after the last: a pen has
+/// no areas.
 ///
 /// # Errors
-/// [`crate::Error::Io`] where writing fails.
+/// [`crate::Error::Io`] if writing fails.
 pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
     write_for(out, sheet, &MachineOptions::default())
 }
@@ -66,7 +66,7 @@ fn draw(out: &mut impl Write, chains: Vec<Chain>, start: [i64; 2]) -> Result<[i6
     Ok(at.unwrap_or(start))
 }
 
-/// Returns the points in plotter units, each once; a dot has two, for the pen is put down.
+/// Returns the points in plotter units, without repetitions; a dot has two, because the pen must be put down.
 fn steps(way: &Way) -> Vec<[i64; 2]> {
     let all = std::iter::once(way.start).chain(way.steps.iter().map(|s| s.0));
     // A cast saturates; nothing on paper is that far away.

@@ -1,4 +1,4 @@
-//! The order of work of a machine with pens: pen by pen, each of which is taken once, layer by layer.
+//! The order of work of a machine with pens: pen by pen, each picked up once, and layer by layer.
 
 use super::dxf_curve::turned_up;
 use crate::{Error, Result};
@@ -47,8 +47,8 @@ impl MachineOptions {
     /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::Library`] for a speed that is not above 0, no pens, and commands with what machines take for
-    /// something else.
+    /// [`Error::Library`] for a speed that is not above 0, no pens, and commands with characters that machines
+    /// misinterpret.
     pub fn check(&self) -> Result<()> {
         let wrong = |name, value: String, expected| {
             Err(Error::from(durer::Error::parameter(name, value, expected)))
@@ -112,14 +112,14 @@ impl Pass {
     }
 }
 
-/// The way of a pen: where it begins, and for each arc or line its end and its bulge, the tangent of a quarter of its
+/// The path of a pen: its start, and for each arc or line its end and its bulge, the tangent of a quarter of its
 /// turn, above 0 counter-clockwise, 0 for lines.
 pub struct Way {
     pub start: DVec2,
     pub steps: Vec<(DVec2, f64)>,
 }
 
-/// Returns the ways to draw, in an order with short moves of the lifted pen from `start` on.
+/// Returns the paths to draw, in an order with short moves of the lifted pen from `start` on.
 pub fn ways(chains: Vec<Chain>, start: DVec2) -> Vec<Way> {
     ordered_chains(chains, start).into_iter().filter_map(way).collect()
 }
@@ -138,7 +138,7 @@ fn way(chain: Chain) -> Option<Way> {
 }
 
 /// Returns a sheet by pens of one width and colour, in the order of the sheet's pens; the outlines of areas
-/// come last. Dashes and texts become strokes, as machines differ in theirs, and without `arcs` curves do.
+/// come last. Dashes and texts become strokes, because machines' own differ; without `arcs`, curves become strokes too.
 pub fn passes(sheet: &Sheet, pens: Option<usize>, arcs: bool) -> Vec<Pass> {
     let mut found: Vec<Pass> = Vec::new();
     let mut areas = Pass { width: None, color: [0, 0, 0, 255], layers: Vec::new() };
@@ -173,7 +173,7 @@ pub fn passes(sheet: &Sheet, pens: Option<usize>, arcs: bool) -> Vec<Pass> {
     found
 }
 
-/// Returns a mark and the marks that it is made of.
+/// Returns a mark and the marks that it consists of.
 fn with_parts(mark: &Mark) -> impl Iterator<Item = &Mark> {
     let parts = match mark {
         Mark::Dimension(dimension) => &dimension.marks[..],
@@ -198,7 +198,7 @@ fn fold(passes: &mut Vec<Pass>, most: usize) {
     }
 }
 
-/// Returns a mark as what pens draw.
+/// Returns a mark as chains for pens.
 fn chains_of(mark: &Mark, sheet: &Sheet, arcs: bool) -> Vec<Chain> {
     let height = sheet.size.y;
     let stroke = |points: &[DVec2], closed: bool| {

@@ -120,8 +120,8 @@ const MADE: &str = "file of the drawing";
 /// Writes a drawing in one of the formats: the sheet, or for GeoJSON the drawings laid onto it.
 ///
 /// # Errors
-/// [`Error::Io`] where writing fails; [`Error::Library`] where the budget has no room for the file; what
-/// [`MachineOptions::check`] finds.
+/// [`Error::Io`] if writing fails; [`Error::Library`] if the budget has no room for the file; the errors of
+/// [`MachineOptions::check`].
 pub fn write(
     out: &mut impl Write,
     format: DrawingFormat,

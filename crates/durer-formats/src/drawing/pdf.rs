@@ -35,10 +35,10 @@ const FIRST_LAYER: i32 = 6;
 
 /// Writes a sheet as a PDF 1.5 document of one page of the sheet's size, without dates.
 ///
-/// Text is drawn by the single-stroke font; its words are beneath it, invisible, for searching and copying.
+/// Text is drawn by the single-stroke font; the text itself is beneath it, invisible, for searching and copying.
 ///
 /// # Errors
-/// [`crate::Error::Io`] where writing fails.
+/// [`crate::Error::Io`] if writing fails.
 pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
     write_within(out, sheet, &Work::default())
 }
@@ -230,7 +230,7 @@ fn letters(text: &mut String, strokes: &[Vec<DVec2>]) {
 }
 
 fn set_alpha(text: &mut String, state: &mut State, alpha: u8, alphas: &mut BTreeSet<u8>) {
-    // Opaque is what a page begins with.
+    // A page begins with opaque colours.
     if state.alpha.unwrap_or(255) != alpha {
         *text += &format!("/A{alpha} gs\n");
         alphas.insert(alpha);
@@ -301,12 +301,12 @@ fn path(text: &mut String, points: &[DVec2], closed: bool) {
     }
 }
 
-/// Writes an element of a path. Control points have a digit more than ends, which are those of polylines too.
+/// Writes an element of a path. Control points have one digit more than ends, which are also ends of polylines.
 fn element(text: &mut String, element: &PathElement) {
     let (points, operator): (&[DVec2], _) = match element {
         PathElement::MoveTo(p) => (&[*p], "m"),
         PathElement::LineTo(p) => (&[*p], "l"),
-        // Curves of sheets have none of these.
+        // Curves of sheets have no quadratic elements.
         PathElement::QuadTo(a, p) => (&[*a, *a, *p], "c"),
         PathElement::CubicTo(a, b, p) => (&[*a, *b, *p], "c"),
         PathElement::Close => (&[], "h"),

@@ -1,4 +1,4 @@
-//! Words that are found and copied, but not seen: viewers search what a font writes, and not the strokes of the
+//! Invisible text for searching and copying: viewers search only text written with a font, not the strokes of the
 //! single-stroke font. So beneath the strokes there is text in render mode 3, "neither fill nor stroke" (ISO 32000-1,
 //! 9.3.6), in a font that every viewer has.
 
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 /// The font's name in the page's resources.
 pub const FONT: &[u8] = b"F";
-/// All its letters are so wide, in thousandths of its size,
+/// Width of all its letters, in thousandths of its size,
 const WIDTH: f64 = 600.0;
 /// and its capitals so high.
 const CAPITALS: f64 = 562.0;
@@ -22,15 +22,15 @@ const OTHERS: std::ops::RangeInclusive<u8> = 0x80..=0x9f;
 /// Texts of a document.
 #[derive(Debug, Default)]
 pub struct Words {
-    /// True if there is anything.
+    /// True if there is any text.
     pub any: bool,
     /// Codes of letters beyond Latin-1.
     others: BTreeMap<char, u8>,
 }
 
 impl Words {
-    /// Appends the operators for words at a place, in millimetres, y down, as high and as wide as the strokes;
-    /// with the place comes the way that they run, of unit length.
+    /// Appends the operators for a text at a place, in millimetres, y down, as high and as wide as the strokes; the
+    /// unit vector beside the place is the writing direction.
     pub fn write(
         &mut self,
         text: &mut String,
@@ -54,7 +54,7 @@ impl Words {
         let start = at - along * (advance * anchor.share());
         let [size, stretch] = [short(size, 3), short(100.0 * advance / natural, 2)];
         *text += &format!("BT /F {size} Tf {stretch} Tz");
-        // The letters' up is a quarter before the way that they run.
+        // The letters' up is at a right angle to their direction.
         for value in [along.x, along.y, along.y, -along.x, start.x, start.y] {
             text.push(' ');
             push(text, value, 3);
@@ -64,7 +64,7 @@ impl Words {
         *text += "> Tj ET\n";
     }
 
-    /// Returns the code of a letter; if there are none left, that of a question mark.
+    /// Returns the code of a letter; if no codes are left, the question mark's.
     fn code(&mut self, letter: char) -> u8 {
         match letter {
             ' '..='~' | '\u{a0}'..='\u{ff}' => letter as u8,
@@ -79,7 +79,7 @@ impl Words {
         }
     }
 
-    /// Writes the font as an object, and which letters its codes stand for as another.
+    /// Writes the font as one object, and the letters of its codes as another.
     pub fn font(&self, pdf: &mut Pdf, font: Ref, letters: Ref) {
         if !self.any {
             return;

@@ -1,4 +1,4 @@
-//! Sheets as SVG: millimetres, one group per layer that Inkscape and its kin show as a layer, one
+//! Sheets as SVG: millimetres, one group per layer, which Inkscape and similar programs show as a layer, one
 //! element per stroke, short numbers.
 
 use super::number::{push, short};
@@ -13,10 +13,10 @@ use std::io::Write;
 /// Writes a sheet as an SVG document of the sheet's size.
 ///
 /// Layers become groups with `inkscape:groupmode="layer"` and their names as labels and ids. Text is
-/// drawn by the single-stroke font, so that it looks the same everywhere; `aria-label` has its words.
+/// drawn by the single-stroke font, so that it looks the same everywhere; `aria-label` has the text.
 ///
 /// # Errors
-/// [`crate::Error::Io`] where writing fails.
+/// [`crate::Error::Io`] if writing fails.
 pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
     let mut text = String::new();
     let [width, height] = [sheet.size.x, sheet.size.y].map(|v| short(v, DIGITS));

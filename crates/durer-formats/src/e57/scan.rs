@@ -20,7 +20,7 @@ const VALUES: usize = 64;
 
 /// Reads an E57 file.
 ///
-/// A scan that breaks off is read as far as it goes, with a warning.
+/// A truncated scan is read up to its end, with a warning.
 ///
 /// # Errors
 /// [`Error::Decode`] for a file whose header or XML is broken, or without any point;
@@ -34,7 +34,7 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
     match all {
         Ok(Err(why)) => return Err(why),
         Err(_) if scans.cloud.points.is_empty() => return Err(broken("its data make no sense")),
-        Err(_) => model.warn(Place::Whole, "the data break off: what is before is shown"),
+        Err(_) => model.warn(Place::Whole, "the data end early: the part before is shown"),
         Ok(Ok(())) => {}
     }
     if scans.invalid > 0 {
@@ -124,7 +124,7 @@ impl Scans {
         self.cloud.intensities.push(point.intensity.unwrap_or(f32::NAN));
     }
 
-    /// Drops what no point has.
+    /// Drops attributes that no point has.
     fn settle(&mut self) {
         if !self.colored {
             self.cloud.colors = Vec::new();

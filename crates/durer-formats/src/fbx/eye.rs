@@ -54,8 +54,8 @@ fn positive(value: f64) -> Option<f64> {
     Some(value).filter(|v| v.is_finite() && *v > 0.0)
 }
 
-/// Returns the projection of a camera. The library has angles of its own, which ask the platform
-/// for arcs.
+/// Returns the projection of a camera. The library's own angles are not used, because it computes them with the
+/// platform's arc functions.
 fn lens(camera: &Camera, unit: f64) -> Result<Lens, String> {
     let aspect = positive(camera.aspect_ratio);
     let near = positive(camera.near_plane).map(|v| v * unit);

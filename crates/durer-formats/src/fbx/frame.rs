@@ -108,7 +108,7 @@ struct Frame {
     world: DMat4,
     /// Matrix without the node's own scale.
     unscaled: DMat4,
-    /// The scale that those below inherit, where they do so by themselves.
+    /// The scale that nodes below inherit separately, if they do.
     scale: DVec3,
     /// Matrix from the geometry to the node.
     geometry: DMat4,

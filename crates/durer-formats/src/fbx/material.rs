@@ -1,4 +1,4 @@
-//! Materials: Phong's kind, and physical ones of whatever program, as ufbx brings them together.
+//! Materials: Phong's kind, and physical ones of all programs, as unified by ufbx.
 
 use super::picture::{Pictures, path};
 use crate::mtl::image::{Images, grey};
@@ -64,7 +64,7 @@ impl<'s> Materials<'s> {
         model.scene.materials.len() - 1
     }
 
-    /// Adds warnings of what was left out.
+    /// Adds warnings about omissions.
     pub fn warn(&self, model: &mut Model) {
         for (tally, what) in [
             (&self.layered, "textures have layers or are computed; their first picture is shown"),
@@ -127,7 +127,7 @@ impl<'s> Materials<'s> {
         let rough = number(&maps.roughness).or(number(&maps.glossiness).map(|g| 1.0 - g));
         to.roughness = rough.unwrap_or(0.5).clamp(0.0, 1.0);
         if from.shader_type == ShaderType::BlenderPhong {
-            // Blender writes the square of ten times what is smooth.
+            // Blender writes the square of ten times the smoothness.
             let exponent = number(&from.fbx.specular_exponent).unwrap_or(25.0).max(0.0);
             to.roughness = (1.0 - exponent.sqrt() / 10.0).clamp(0.0, 1.0);
         }
@@ -266,7 +266,7 @@ impl<'s> Materials<'s> {
         }
     }
 
-    /// Returns the texture with a picture behind a map: itself, or the first that it is made of.
+    /// Returns the texture with a picture behind a map: itself, or the first one that it is composed of.
     fn file<'m>(&mut self, map: &'m MaterialMap) -> Option<&'m Texture> {
         let texture = map.texture.as_deref().filter(|_| map.texture_enabled)?;
         if path(texture).is_some() {

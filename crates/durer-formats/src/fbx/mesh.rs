@@ -48,7 +48,7 @@ impl Values for Attributes<'_> {
 }
 
 impl Attributes<'_> {
-    /// Returns the indices of a corner, and whether there is something behind all that it has.
+    /// Returns the indices of a corner, and whether all of them refer to existing values.
     fn corner(&self, index: usize) -> (Corner, bool) {
         let mesh = self.0;
         let mut corner = [NONE; 3 + SETS];
@@ -122,7 +122,7 @@ fn by_material(mesh: &Mesh, faults: &mut Faults) -> BTreeMap<u32, Vec<usize>> {
     all
 }
 
-/// Returns the name of a mesh: its own, or that of the first node that shows it.
+/// Returns the name of a mesh: its own, or the first node's that shows it.
 pub(super) fn name(mesh: &Mesh) -> String {
     let node = mesh.element.instances.first().map_or("", |node| node.element.name.as_ref());
     let own: &str = mesh.element.name.as_ref();

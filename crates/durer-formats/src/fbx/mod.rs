@@ -3,15 +3,14 @@
 //! Source: the library ufbx, which reads binary and ASCII files of the versions 3000 to 7700, without the
 //! help of Autodesk's. It is written in C, and comes as the source in the crate of that name.
 //!
-//! Read are meshes (polygons of any shape, with normals, colours of vertices, all sets of texture
-//! coordinates, and materials by face), the nodes with all their transforms, materials of Phong's kind and
-//! physical ones, pictures beside the file or in it, cameras and lights. Lengths become metres. Skins,
-//! blend shapes and animations are left out, and so are curves, NURBS and what is finer than the control
-//! mesh of a subdivision, with a warning. Colours are sRGB values, those of physical materials and from
-//! Blender linear.
+//! The reader takes meshes (polygons of any shape, with normals, colours of vertices, all sets of texture coordinates,
+//! and materials by face), the nodes with all their transforms, materials of Phong's kind and physical ones, pictures
+//! beside the file or in it, cameras and lights. Lengths become metres. Skins, blend shapes and animations are left
+//! out, and so are curves, NURBS and the refinement of subdivision surfaces, with a warning. Colours are sRGB values;
+//! colours of physical materials and from Blender are linear.
 //!
-//! What depends on sines and cosines, as transforms do, is computed here and not in the library, which asks
-//! the platform for them: so pictures are the same everywhere.
+//! Values that depend on sines and cosines, such as transforms, are computed here and not in the library, which uses
+//! the platform's functions, so that pictures are the same everywhere.
 
 #[cfg(not(feature = "fbx"))]
 mod no_scene;

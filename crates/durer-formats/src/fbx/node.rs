@@ -15,7 +15,7 @@ use ufbx::{ElementType, Material, Mesh, Node, Scene};
 /// A mesh, and the materials that a node shows it in.
 type Key = (u32, Vec<u32>);
 
-/// Places what nodes show.
+/// Placement of the contents of nodes.
 pub(super) struct Nodes<'s> {
     scene: &'s Scene,
     frames: &'s Frames,
@@ -80,7 +80,7 @@ impl<'s> Nodes<'s> {
         Ok(())
     }
 
-    /// Returns whether a node, and everything below it, is neither hidden nor a coarser stand-in.
+    /// Returns whether a node, with everything below it, is neither hidden nor a coarser level of detail.
     fn is_shown(&mut self, node: &Node) -> bool {
         let here = || Place::Path(node.element.name.to_string());
         let is_coarse = node.parent.as_deref().is_some_and(|parent| {
@@ -156,15 +156,15 @@ impl<'s> Nodes<'s> {
         })
     }
 
-    /// Adds warnings of what was left out.
+    /// Adds warnings about omissions.
     pub fn warn(&self, model: &mut Model) {
         self.materials.warn(model);
         for (tally, what) in [
-            (&self.hidden, "nodes are hidden; they and what is below them are left out"),
+            (&self.hidden, "nodes are hidden; they and the nodes below them are left out"),
             (&self.coarse, "nodes are coarser levels of detail; they are left out"),
             (
                 &self.faults.attributes,
-                "corners have a normal, color or place in a texture that is not there; they have none",
+                "corners refer to a missing normal, color or texture coordinate; they get none",
             ),
             (&self.faults.holes, "faces are marked as holes; they are left out"),
             (&self.faults.points, "faces have a single corner; they are left out"),

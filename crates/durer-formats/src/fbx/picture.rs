@@ -4,8 +4,8 @@ use crate::{Found, Resources};
 use std::collections::BTreeMap;
 use ufbx::{Scene, Texture};
 
-/// Source of pictures: those that the file contains, those at the paths that it names, and those of the same name
-/// beside it, for many paths are of the machine that wrote the file.
+/// Source of pictures: contained in the file, at the paths that it names, or with the same name beside it, because many
+/// paths are from the machine that wrote the file.
 pub(super) struct Pictures<'s> {
     outside: &'s dyn Resources,
     inside: BTreeMap<String, &'s [u8]>,

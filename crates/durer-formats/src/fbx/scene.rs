@@ -11,7 +11,7 @@ use ufbx::{AllocatorOpts, ErrorType, IndexErrorHandling, LoadOpts, Scene, SceneR
 /// Reads an FBX file.
 ///
 /// # Errors
-/// [`Error::Decode`] where it is broken, [`Error::Limit`] for too much of anything. Warnings name missing and omitted
+/// [`Error::Decode`] if it is broken, [`Error::Limit`] for data above a limit. Warnings name missing and omitted
 /// parts.
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let limits = options.limits.clone();
@@ -38,7 +38,7 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     Ok(model)
 }
 
-/// Reads the scene from memory with the library, and nothing else.
+/// Reads the scene with the library, from memory only.
 fn load(bytes: &[u8], limits: &Limits) -> Result<SceneRoot> {
     let memory = usize::try_from(limits.memory()).unwrap_or(usize::MAX);
     let allocator = || AllocatorOpts {
@@ -71,7 +71,7 @@ fn error(e: &ufbx::Error, limits: &Limits) -> Error {
     }
 }
 
-/// Returns what is wrong with a file, for the library's own words are of its insides.
+/// Describes the fault of a file, because the library's messages describe its internals.
 fn what_is_wrong(kind: ErrorType) -> &'static str {
     match kind {
         ErrorType::EmptyFile => "it is empty",
@@ -108,7 +108,7 @@ fn ends_inside(text: &[u8]) -> bool {
     depth > 0
 }
 
-/// Warns of what the library repaired.
+/// Adds warnings about the library's repairs.
 fn repairs(scene: &Scene, model: &mut Model) {
     for warning in &scene.metadata.warnings {
         if let Some(what) = what_is_repaired(warning.type_) {
@@ -119,8 +119,8 @@ fn repairs(scene: &Scene, model: &mut Model) {
     }
 }
 
-/// Returns what the library repaired, for its own words are of its insides; `None` where nothing is lost, or the file
-/// is not one of this reader's.
+/// Describes a repair by the library, whose messages describe its internals; `None` if nothing is lost, or for files
+/// that this reader does not take.
 fn what_is_repaired(kind: WarningType) -> Option<&'static str> {
     Some(match kind {
         WarningType::DuplicateConnection

@@ -377,7 +377,7 @@ fn what_is_left_out_is_told() {
     let model = read(&file(SETTINGS, &node(2, "Mesh", hidden), &[(2, 0, ""), (1, 2, "")]));
     assert_eq!(
         warnings(&model)[0],
-        "node2: 1 nodes are hidden; they and what is below them are left out"
+        "node2: 1 nodes are hidden; they and the nodes below them are left out"
     );
     assert!(warnings(&model)[1].contains("no nodes with a mesh"));
     let curve = "AnimationCurve: 40, \"AnimCurve::\", \"\" { KeyVer: 4008 }\nDeformer: 41, \"Deformer::\", \"Skin\" { Version: 101 }\n";
@@ -399,7 +399,8 @@ fn what_is_left_out_is_told() {
     let beyond = file(SETTINGS, &node(2, "Mesh", ""), &[(2, 0, ""), (1, 2, "")]);
     let model = read(&beyond.replace("0,1,0,0,1,1,0 }", "0,1,0,0,1,9,0 }"));
     assert!(
-        warnings(&model)[0].starts_with("shape: 1 corners have a normal, color or place"),
+        warnings(&model)[0]
+            .starts_with("shape: 1 corners refer to a missing normal, color or texture coordinate"),
         "{:?}",
         warnings(&model)
     );

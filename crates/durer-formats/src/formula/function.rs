@@ -5,7 +5,7 @@
 pub enum Function {
     One(fn(f64) -> f64),
     Two(fn(f64, f64) -> f64),
-    /// Two or more, taken together from the left.
+    /// Two or more, combined from the left.
     Fold(fn(f64, f64) -> f64),
     Three(fn(f64, f64, f64) -> f64),
 }

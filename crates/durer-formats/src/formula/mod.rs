@@ -1,8 +1,8 @@
 //! Formulas y = f(x, z) in text, evaluated with the same bits on every machine.
 //!
-//! Own code of a few hundred lines: the expression crates to be had call the platform's `sin` and
-//! `pow`, whose last bits differ, or are no longer kept up. A formula becomes a list of operations on
-//! a stack whose depth is known, so nothing recurses or grows while it is evaluated.
+//! A few hundred lines of own code, because the available expression crates call the platform's `sin` and `pow`, whose
+//! last bits differ, or are no longer maintained. A formula becomes a list of operations on a stack whose depth is
+//! known, so nothing recurses or grows while it is evaluated.
 
 mod function;
 mod parser;
@@ -31,7 +31,7 @@ const LONGEST: usize = 10_000;
 #[derive(Debug, Clone)]
 pub struct Formula {
     operations: Vec<Operation>,
-    /// The deepest the stack gets.
+    /// Largest depth of the stack.
     depth: usize,
 }
 
@@ -73,7 +73,7 @@ impl Formula {
         Ok(Self { operations, depth })
     }
 
-    /// Returns the value at a point; NaN or infinite where the formula has none.
+    /// Returns the value at a point; NaN or infinite if the formula has none.
     pub fn evaluate(&self, x: f64, z: f64) -> f64 {
         let mut stack = Vec::with_capacity(self.depth);
         self.evaluate_on(&mut stack, x, z)
@@ -105,7 +105,7 @@ impl Formula {
     }
 }
 
-/// Pops a value; the parser leaves as many as each operation takes.
+/// Pops a value; the parser ensures that each operation finds its operands.
 fn pop(stack: &mut Vec<f64>) -> f64 {
     stack.pop().unwrap_or(f64::NAN)
 }

@@ -20,7 +20,7 @@ impl Beside<'_> {
     /// A file without a name and without other files, all of whose layers are read.
     pub const NOTHING: Beside<'static> = Beside { name: "", resources: &NoResources, layer: None };
 
-    /// Returns the file of the same name with another ending; `None` if there is none.
+    /// Returns the file of the same name with another suffix; `None` if there is none.
     pub(super) fn find(&self, suffix: &str) -> Option<Vec<u8>> {
         let stem = self.name.strip_suffix(".gz").unwrap_or(self.name);
         let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);

@@ -1,9 +1,9 @@
 //! Tables as text (RFC 4180) whose columns hold geometries: as WKT or hexadecimal WKB in one, or as
 //! longitude and latitude, or x and y, in two.
 //!
-//! The first row names the columns. What parts them is a comma, semicolon, tab or bar, whichever the first
-//! row has most of. A column of which all values are numbers of JSON, or `true` and `false`, holds such; any
-//! other holds texts, so that `01067` and `1 067` stay what they are. Empty values are null.
+//! The first row names the columns. The separator is the comma, semicolon, tab or bar, whichever is most frequent in
+//! the first row. A column whose values are all JSON numbers, or `true` and `false`, has values of that type; any other
+//! column has texts, so that `01067` and `1 067` do not change. Empty values are null.
 
 use super::members::{members, object, quoted};
 use super::{Feature, Geometry, Member, Points, Warnings, wkb, wkt};
@@ -95,7 +95,7 @@ struct Rows {
 }
 
 impl Rows {
-    /// Creates a walk at the first row, which decides what separates values.
+    /// Creates a walk at the first row, which determines the separator of values.
     fn new(text: &[u8]) -> Self {
         let mut counts = [0_u32; 4];
         let mut quoted = false;
@@ -110,7 +110,7 @@ impl Rows {
                 }
             }
         }
-        // Of several that come alike often, the first.
+        // Of several equally frequent ones, the first.
         let most = DELIMITERS.iter().zip(counts).rev().max_by_key(|(_, count)| *count);
         Self { at: 0, line: 1, delimiter: most.map_or(b',', |(&d, _)| d) }
     }
@@ -140,7 +140,7 @@ impl Rows {
         }
     }
 
-    /// Returns the value from here to what parts it from the next one, without quotes.
+    /// Returns the value from here to the next separator, without quotes.
     fn value<'a>(&mut self, text: &'a [u8]) -> Cow<'a, [u8]> {
         if text.get(self.at) == Some(&b'"') {
             return Cow::Owned(self.quoted(text));
@@ -192,7 +192,7 @@ impl Reader {
     /// Creates a reader; examines all values to find the types of columns.
     ///
     /// # Errors
-    /// Where no column is known to hold geometries.
+    /// If no column is known to hold geometries.
     pub fn new(text: Vec<u8>) -> Result<Self> {
         let mut rows = Rows::new(&text);
         let keys = rows.next(&text).map(|row| keys(&row)).unwrap_or_default();
@@ -248,7 +248,7 @@ impl Reader {
         }
     }
 
-    /// Returns all values but those of the geometry.
+    /// Returns all values except the geometry's.
     fn fields(&self, row: &[Cow<'_, [u8]>]) -> Vec<Member> {
         let own = |i: usize| match self.place {
             Where::Whole(at) => i == at,
@@ -289,7 +289,7 @@ fn no_place(keys: &[String]) -> Error {
     )
 }
 
-/// Returns a finite number; a decimal comma is taken for a point.
+/// Returns a finite number; a decimal comma counts as a point.
 fn number(value: &[u8]) -> Option<f64> {
     let value = value.trim_ascii();
     let dotted: Vec<u8> = value.iter().map(|&b| if b == b',' { b'.' } else { b }).collect();

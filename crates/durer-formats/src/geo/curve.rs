@@ -4,15 +4,15 @@ use super::Points;
 use durer::math::DVec2;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Edges of a quarter of a circle, all corners of which lie on it: they are within 1/3000 of the radius.
+/// Number of edges for a quarter of a circle, all corners of which are on it: their error is below 1/3000 of the
+/// radius.
 const EDGES: f64 = 32.0;
 
-/// Returns the line through the arcs of control positions: each second one lies on an arc, those between are
-/// its ends. An arc has the same corners whichever way it runs, so that neighbours that share it stay
-/// neighbours.
+/// Returns the line through the arcs of control positions: every second one is on an arc, and its neighbours are the
+/// arc's ends. An arc has the same corners in either direction, so that neighbours that share it stay neighbours.
 ///
 /// # Errors
-/// Where there is an even number of positions, or one.
+/// If there is an even number of positions, or one.
 pub fn flatten(control: &Points) -> Result<Points, &'static str> {
     if control.is_empty() {
         return Ok(Points::new(control.dimensions));
@@ -89,8 +89,8 @@ fn arc_onwards(control: &Points, order: [usize; 3], [a, b, c]: [DVec2; 3]) -> Po
     flat
 }
 
-/// Returns the centre of the circle through three positions, and by how much it turns from the first to the
-/// second and to the third; `None` if they lie on a line.
+/// Returns the centre of the circle through three positions, and the angles from the first to the second and to the
+/// third; `None` if they are collinear.
 fn circle(a: DVec2, b: DVec2, c: DVec2) -> Option<(DVec2, f64, f64)> {
     if a == c {
         // A whole circle, counter-clockwise, with its middle between both positions.

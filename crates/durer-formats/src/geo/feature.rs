@@ -12,7 +12,7 @@ pub struct Member {
     pub value: String,
 }
 
-/// A thing with a geometry and properties.
+/// An object with a geometry and properties.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Feature {
     /// Its geometry, if it has one.
@@ -33,12 +33,12 @@ pub struct Feature {
 }
 
 impl Feature {
-    /// Creates a feature that is nothing but a geometry.
+    /// Creates a feature from a geometry alone.
     pub fn of_geometry(geometry: Geometry) -> Self {
         Self { geometry: Some(geometry), ..Self::default() }
     }
 
-    /// Returns the properties one by one, in their order; none if there are none.
+    /// Returns the properties in order.
     pub fn fields(&self) -> Vec<Member> {
         super::members::members(self.properties.as_deref().unwrap_or_default())
     }

@@ -1,6 +1,6 @@
 //! Formats that are not readable as map data, for messages.
 
-/// Beginnings of formats, what they are, and what to do.
+/// Beginnings of formats that are not read, their names, and advice.
 const MAGIC: [(&[u8], &str, &str); 17] = [
     (
         b"SQLite format 3\0",
@@ -18,7 +18,7 @@ const MAGIC: [(&[u8], &str, &str); 17] = [
     (b"\x89HDF", "HDF5, such as NetCDF", EXPORT),
     (b"CDF\x01", "NetCDF", EXPORT),
     (b"\xd0\xcf\x11\xe0", "an old Office document, such as XLS", "save it as CSV"),
-    (b"PMTiles", "a PMTiles archive of tiles", "take the data that it was made of"),
+    (b"PMTiles", "a PMTiles archive of tiles", "use the data that it was made from"),
     (b"BZh", "a file compressed by bzip2", "decompress it; gzip is read as it is"),
     (b"\x28\xb5\x2f\xfd", "a file compressed by Zstandard", "decompress it; gzip is read as it is"),
     (b"\xfd7zXZ", "a file compressed by XZ", "decompress it; gzip is read as it is"),
@@ -28,7 +28,7 @@ const MAGIC: [(&[u8], &str, &str); 17] = [
 const EXPORT: &str = "export it as GeoJSON, GeoPackage or FlatGeobuf";
 const PIXELS: &str = "it holds pixels and no features";
 
-/// Roots of XML documents that hold something else.
+/// Roots of XML documents with other contents.
 const ROOTS: [(&str, &str, &str); 4] = [
     ("osm", "OpenStreetMap XML", EXPORT),
     ("FeatureCollection", "GML", EXPORT),

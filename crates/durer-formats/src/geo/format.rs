@@ -141,8 +141,7 @@ impl GeoFormat {
             || matches!(self, Self::GeoPackage | Self::GeoParquet)
     }
 
-    /// Returns whether its coordinates are longitude and latitude on WGS 84 where nothing else is
-    /// said.
+    /// Returns whether its coordinates are longitude and latitude on WGS 84 by default.
     pub fn is_lonlat(self) -> bool {
         self.is_geojson() || matches!(self, Self::TopoJson | Self::Kml | Self::Gpx)
     }
@@ -189,8 +188,7 @@ impl GeoFormat {
         }
     }
 
-    /// Returns the format that a file's first bytes speak for, or that its name does unless they are known to be
-    /// something else.
+    /// Returns the format by a file's first bytes, or by its name unless the bytes are known to be another format.
     pub fn of_file(name: &str, head: &[u8]) -> Option<Self> {
         let by_name = || Self::of_name(name);
         Self::of_content(head)

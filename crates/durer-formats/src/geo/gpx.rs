@@ -11,7 +11,7 @@ use durer::math::DVec2;
 /// Memory that the tree of elements may take, in bytes.
 const MAX_MEMORY: u64 = 8 << 30;
 
-/// The field that says what a feature is in the file.
+/// The field with the kind of a feature in the file.
 const KIND: &str = "gpx";
 
 /// Elements with texts that are numbers.

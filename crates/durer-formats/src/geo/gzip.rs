@@ -6,11 +6,10 @@ use std::io::{self, BufRead, BufReader};
 /// First bytes of a gzip stream.
 const MAGIC: [u8; 2] = [0x1f, 0x8b];
 
-/// Returns the bytes of a source, decompressed where it is compressed by gzip, as far as they are
-/// read.
+/// Returns a stream of a source's bytes, decompressed if it is gzip.
 ///
 /// # Errors
-/// Where the source cannot be read.
+/// If the source cannot be read.
 pub fn unzipped<'a>(
     mut source: Box<dyn BufRead + 'a>,
     capacity: usize,

@@ -13,7 +13,7 @@ use durer::math::DVec2;
 /// Memory that the tree of elements may take, in bytes.
 const MAX_MEMORY: u64 = 8 << 30;
 
-/// Elements of a placemark that become fields, in the order in which they are kept.
+/// Elements of a placemark that become fields, in the order of the fields.
 const FIELDS: [&str; 5] = ["name", "description", "address", "phoneNumber", "visibility"];
 
 /// Elements shown beside placemarks that are left out.
@@ -115,7 +115,7 @@ impl Reader<'_> {
         fields
     }
 
-    /// Returns the geometry that an element is, if it is one.
+    /// Returns the geometry of an element, if it is one.
     fn geometry(
         &mut self,
         element: usize,

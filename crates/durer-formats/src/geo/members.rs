@@ -25,8 +25,8 @@ pub fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
 
-/// Returns the members of a JSON object, in order; none of anything else. Of several of one name the
-/// last one counts, in the place of the first.
+/// Returns the members of a JSON object, in order; empty for other values. Of several with one name, the last one
+/// counts, in the place of the first.
 pub fn members(object: &str) -> Vec<Member> {
     let mut list: Vec<Member> = Vec::new();
     let mut places = std::collections::BTreeMap::new();

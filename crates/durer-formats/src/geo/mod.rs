@@ -1,10 +1,10 @@
 //! Geodata: features in GeoJSON, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, WKT, WKB and SVG, read and written
-//! one at a time; and in KML and GPX, read.
+//! one by one; and in KML and GPX, only read.
 //!
-//! [`Reader`] takes bytes and gives features; [`Writer`] takes features and gives bytes. GeoJSON is
-//! read and written as a stream, a feature at a time, whichever way it is laid out (a
-//! FeatureCollection, one feature per line, RFC 8142 sequences); the other formats are held whole.
-//! [`unzipped`] lets any of them be compressed by gzip. [`crs`] brings coordinates from one system to another.
+//! [`Reader`] takes bytes and gives features; [`Writer`] takes features and gives bytes. GeoJSON is read and written as
+//! a stream, feature by feature, in all its layouts (a FeatureCollection, one feature per line, RFC 8142 sequences);
+//! the other formats are held whole. [`unzipped`] decompresses any of them from gzip. [`crs`] transforms coordinates
+//! from one system to another.
 //!
 //! ```
 //! use durer_formats::geo::{GeoFormat, Reader, Writer};
@@ -98,7 +98,7 @@ impl Warnings {
         places.for_each(|place| *place = place_of(std::mem::take(place)));
     }
 
-    /// Adds warnings of what was counted.
+    /// Adds warnings about the counted faults.
     fn tell(&mut self) {
         for (tally, what) in [
             (

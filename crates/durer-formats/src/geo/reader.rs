@@ -42,7 +42,7 @@ impl<R: Read> Reader<R> {
     /// Creates a reader of a format.
     ///
     /// # Errors
-    /// [`Error::Io`] where the source cannot be read, [`Error::Limit`] where a format that is held
+    /// [`Error::Io`] if the source cannot be read, [`Error::Limit`] if a format that is held
     /// whole is longer than 4 GiB.
     pub fn new(format: GeoFormat, source: R) -> Result<Self> {
         Self::with(format, source, &Beside::NOTHING)
@@ -51,7 +51,8 @@ impl<R: Read> Reader<R> {
     /// Creates a reader of a format that may have further files beside it, or layers.
     ///
     /// # Errors
-    /// As [`Self::new`]; and those of [`Self::next_feature`] where a format is read before its first feature is given.
+    /// As [`Self::new`]; also those of [`Self::next_feature`] for formats that are read as a whole before the first
+    /// feature.
     pub fn with(format: GeoFormat, source: R, beside: &Beside<'_>) -> Result<Self> {
         let mut warnings = Warnings::default();
         let mut members = Vec::new();
@@ -101,22 +102,23 @@ impl<R: Read> Reader<R> {
         Ok(Self { source, warnings, system, members })
     }
 
-    /// Returns the coordinate system that the file says all its coordinates are in, as far as it has been
-    /// read: what GeoJSON says after its features is known at the end.
+    /// Returns the coordinate system given by the file for all its coordinates, as far as it has been read: a member of
+    /// GeoJSON after the features is known only at the end.
     pub fn system(&self) -> System {
         let told = super::system::of_members(self.members());
         told.unwrap_or_else(|| self.system.clone())
     }
 
-    /// Skips features whose boxes do not meet a window, in the coordinates of the file, where the file has a spatial
-    /// index; before the first feature. Without an index, features outside of the window are returned as well.
+    /// Skips features whose boxes do not meet a window, in the coordinates of the file, if the file has a spatial
+    /// index; to be called before the first feature. Without an index, features outside the window are returned as
+    /// well.
     pub fn choose(&mut self, window: &Rect) {
         if let Source::FlatGeobuf(reader) = &mut self.source {
             reader.choose(window);
         }
     }
 
-    /// Returns the next feature; `None` at the end. After an error there is nothing more to be had.
+    /// Returns the next feature; `None` at the end, and after an error.
     ///
     /// # Errors
     /// [`Error::Decode`] with line and column, or the byte; [`Error::Unsupported`] for geometries
@@ -162,7 +164,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Returns the names of the layers that are read, of a GeoPackage; none of other formats.
+    /// Returns the names of the layers that are read from a GeoPackage; empty for other formats.
     pub fn layers(&self) -> Vec<String> {
         match &self.source {
             Source::GeoPackage(reader) => reader.layers(),
@@ -254,7 +256,7 @@ fn markup(source: impl Read) -> Result<String> {
 /// Returns all features of a file in the format of its content, or else of its name.
 ///
 /// # Errors
-/// [`Error::Unknown`] where neither does; else as [`Reader::next_feature`].
+/// [`Error::Unknown`] if neither does; else as [`Reader::next_feature`].
 pub fn read_all(bytes: &[u8], name: &str) -> Result<(Vec<Feature>, Vec<Warning>)> {
     let format = GeoFormat::of_content(bytes).or_else(|| GeoFormat::of_name(name));
     let unknown =

@@ -85,7 +85,7 @@ pub struct Field {
 /// Number of examples to keep.
 const EXAMPLES: usize = 3;
 
-/// The fields of a layer, in the order in which they come first.
+/// The fields of a layer, in the order of their first appearance.
 #[derive(Debug, Clone, Default)]
 pub struct Schema {
     fields: Vec<Field>,

@@ -1,4 +1,4 @@
-//! Features as SVG: what a plain viewer shows as a map.
+//! Features as SVG that any viewer shows as a map.
 
 use super::{Feature, Geometry, Points, number};
 use durer::clip::polygon::WindingRule;

@@ -161,8 +161,7 @@ impl<'a> Reader<'a> {
         Ok(Header { kind, dimensions, srid, big })
     }
 
-    /// Returns a count of things of at least `least` bytes each; refused where the data cannot hold
-    /// them.
+    /// Returns a count of items of at least `least` bytes each; refuses it if the data are too short.
     fn count(&mut self, big: bool, least: usize) -> Result<usize> {
         let at = self.at;
         let count = self.word(big)? as usize;
@@ -274,7 +273,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Returns a point; all numbers NaN say that there is none.
+    /// Returns a point; an empty one if all numbers are NaN.
     fn point(&mut self, header: &Header) -> Result<Points> {
         let mut points = Points::new(header.dimensions);
         let at = self.at;
@@ -393,8 +392,8 @@ impl<'a> Reader<'a> {
 /// ```
 ///
 /// # Errors
-/// [`Error::Decode`] with the byte, also for what follows the geometry; [`Error::Unsupported`] for geometries that
-/// durer does not know.
+/// [`Error::Decode`] with the byte, also for bytes after the geometry; [`Error::Unsupported`] for geometries that durer
+/// does not know.
 pub fn from_wkb(bytes: &[u8]) -> Result<(Geometry, Option<i32>)> {
     let mut reader = Reader::new(bytes);
     let header = reader.header()?;
@@ -407,16 +406,16 @@ pub fn from_wkb(bytes: &[u8]) -> Result<(Geometry, Option<i32>)> {
     Ok((geometry, header.srid))
 }
 
-/// Writes a geometry as well-known binary, little-endian: as EWKB where it has the number of a coordinate system, as
-/// ISO else.
+/// Writes a geometry as well-known binary, little-endian: as EWKB if it has the number of a coordinate system, else as
+/// ISO.
 ///
 /// # Errors
-/// [`Error::Io`] where writing fails.
+/// [`Error::Io`] if writing fails.
 pub fn to_wkb(out: &mut impl Write, geometry: &Geometry, srid: Option<i32>) -> Result<()> {
     Ok(write_geometry(out, geometry, srid)?)
 }
 
-/// Writes a feature's geometry, little-endian: as EWKB where it has an SRID, as ISO else.
+/// Writes a feature's geometry, little-endian: as EWKB if it has an SRID, else as ISO.
 pub fn write_feature(out: &mut impl Write, feature: &Feature) -> io::Result<()> {
     match &feature.geometry {
         Some(geometry) => write_geometry(out, geometry, feature.srid),

@@ -31,7 +31,7 @@ const NAMES: [&str; 17] = [
     "TRIANGLE",
 ];
 
-/// The places of names that stand for others only.
+/// The indices of names of abstract types, which stand only for others.
 const ABSTRACT: [usize; 2] = [12, 13];
 
 /// Returns whether a text begins with the name of a geometry and a valid continuation.
@@ -144,7 +144,7 @@ impl<'a> Reader<'a> {
         String::from_utf8_lossy(&rest[..length]).to_ascii_uppercase()
     }
 
-    /// Returns a word if it is one of these; else nothing is taken.
+    /// Takes a word if it is one of these; else nothing.
     fn keyword(&mut self, words: &[&str]) -> Option<String> {
         let before = self.at;
         let word = self.word();
@@ -302,8 +302,7 @@ impl<'a> Reader<'a> {
         Ok(points)
     }
 
-    /// Returns the name that comes next, as far as it is one of these, with the dimensions that
-    /// follow it.
+    /// Returns the next name if it is one of these, with the dimensions that follow it.
     fn name(&mut self, kinds: &[usize], dimensions: &mut Option<Dimensions>) -> Option<usize> {
         let start = self.at;
         let found = tag(&self.word()).filter(|(kind, _)| kinds.contains(kind));

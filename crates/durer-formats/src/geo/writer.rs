@@ -28,7 +28,7 @@ pub struct Writer<W> {
     rewrite: Option<Rewrite<W>>,
 }
 
-/// Function that writes bytes over the first ones of a target and goes to its end.
+/// Function that overwrites the first bytes of a target and moves to its end.
 type Rewrite<W> = fn(&mut W, &[u8]) -> io::Result<()>;
 
 /// Result of a writer at its end.
@@ -43,8 +43,8 @@ pub struct Finished<W> {
 }
 
 impl<W: Write + Seek> Writer<W> {
-    /// Creates a writer of a format to a target that is empty and can be gone back in, so that a GeoPackage
-    /// is written as its features come. Nothing is written yet.
+    /// Creates a writer of a format to an empty, seekable target, so that a GeoPackage is written as its features are
+    /// added. Nothing is written yet.
     pub fn seekable(format: GeoFormat, out: W) -> Self {
         let rewrite: Rewrite<W> = |out, bytes| {
             out.seek(SeekFrom::Start(0))?;
@@ -109,7 +109,7 @@ impl<W: Write> Writer<W> {
     /// Writes a feature. WKT and WKB leave out those without geometry.
     ///
     /// # Errors
-    /// [`crate::Error::Io`]; [`crate::Error::Unsupported`] where a GeoPackage would have more than 1998 fields.
+    /// [`crate::Error::Io`]; [`crate::Error::Unsupported`] if a GeoPackage would have more than 1998 fields.
     pub fn write(&mut self, feature: &Feature) -> Result<()> {
         self.line.clear();
         match self.format {
@@ -162,7 +162,7 @@ impl<W: Write> Writer<W> {
         Ok(())
     }
 
-    /// Ends the document with all members of the collection: those that were not in the head come after the features.
+    /// Ends the document with all members of the collection: members that were not in the head come after the features.
     /// Returns the target.
     ///
     /// # Errors
@@ -174,7 +174,7 @@ impl<W: Write> Writer<W> {
     /// Ends the document as [`Self::finish`] does; returns further files and warnings too.
     ///
     /// # Errors
-    /// [`crate::Error::Io`]; [`crate::Error::Unsupported`] where the format cannot hold the features.
+    /// [`crate::Error::Io`]; [`crate::Error::Unsupported`] if the format cannot hold the features.
     pub fn finish_all(mut self, members: &[Member]) -> Result<Finished<W>> {
         let (mut beside, mut warnings) = Default::default();
         match self.format {

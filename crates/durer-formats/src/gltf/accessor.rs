@@ -111,7 +111,7 @@ impl Layout {
     /// Returns the layout of accessor `index`.
     ///
     /// # Errors
-    /// Where the type is unknown or the elements do not fit into the view.
+    /// If the type is unknown or the elements do not fit into the view.
     pub fn of(root: &Root, index: usize) -> Result<Self> {
         let at = || format!("accessors[{index}]");
         let accessor = root
@@ -142,7 +142,7 @@ impl Layout {
         Ok(layout)
     }
 
-    /// Takes the view's stride and checks that all elements lie in it.
+    /// Takes the view's stride and checks that all elements are within it.
     fn fit(&mut self, root: &Root, view: Whole, at: &str) -> Result<()> {
         let view = root
             .buffer_views
@@ -242,8 +242,8 @@ impl Source<'_> {
         }
     }
 
-    /// Refuses more elements without data than any accessor with data has: deformations say of some vertices that they
-    /// move, and nothing of the others, but nothing else needs zeros.
+    /// Refuses more elements without data than any accessor with data has: sparse deformations give data only for the
+    /// vertices that move, but nothing else needs zeros.
     fn check_bare(&self, count: usize, at: &str) -> Result<()> {
         let with_data = self.root.accessors.iter().filter(|a| a.buffer_view.is_some());
         let has_reason = count <= MOST_BARE
@@ -295,7 +295,7 @@ impl Source<'_> {
     /// Returns elements of N floats; integers are converted, normalized where the accessor says so.
     ///
     /// # Errors
-    /// Where the accessor has another shape, or its data are not there.
+    /// If the accessor has another shape, or its data are not there.
     pub fn floats<const N: usize>(&self, index: Whole, at: &str) -> Result<Vec<[f32; N]>> {
         self.vectors(index, at)
     }

@@ -1,4 +1,4 @@
-//! A moment of an animation: what it does to nodes and to morph weights.
+//! A moment of an animation: its effect on nodes and morph weights.
 
 use super::buffer::Source;
 use super::json::{Animation, AnimationSampler, Channel, Root};
@@ -6,7 +6,7 @@ use super::node::{Override, unit};
 use crate::{Error, Pose, Result};
 use durer::math::{DQuat, DVec3};
 
-/// Returns names of the animations; `animation0`, `animation1` … if there is none.
+/// Returns the names of the animations; unnamed ones are `animation0`, `animation1` …
 pub fn names(root: &Root) -> Vec<String> {
     let name = |(i, a): (usize, &Animation)| a.name.clone().unwrap_or(format!("animation{i}"));
     root.animations.iter().enumerate().map(name).collect()
@@ -16,7 +16,7 @@ pub fn names(root: &Root) -> Vec<String> {
 /// rest pose.
 ///
 /// # Errors
-/// Where there is no such animation, or its data are broken.
+/// If there is no such animation, or its data are broken.
 pub fn pose(source: &Source<'_>, pose: Option<&Pose>) -> Result<Vec<Override>> {
     let root = source.root;
     let mut overrides = vec![Override::default(); root.nodes.len()];
@@ -35,7 +35,7 @@ pub fn pose(source: &Source<'_>, pose: Option<&Pose>) -> Result<Vec<Override>> {
     Ok(overrides)
 }
 
-/// Returns the number of the animation requested; `None` if none is named and there is none.
+/// Returns the index of the requested animation; `None` if none is named and the file has none.
 fn find(root: &Root, pose: &Pose) -> Result<Option<usize>> {
     let Some(wanted) = &pose.animation else {
         return Ok((!root.animations.is_empty()).then_some(0));
@@ -49,7 +49,7 @@ fn find(root: &Root, pose: &Pose) -> Result<Option<usize>> {
     })
 }
 
-/// Sets what one channel moves.
+/// Applies one channel.
 fn apply(
     source: &Source<'_>,
     animation: &Animation,
@@ -188,8 +188,8 @@ fn zip(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     a.iter().zip(b).map(|(&a, &b)| f(a, b)).collect()
 }
 
-/// Interpolates spherically along the shorter arc (Shoemake 1985); linearly where the two are so close that the sine
-/// of their angle is of no use.
+/// Interpolates spherically along the shorter arc (Shoemake 1985); linearly if the two are so close that the sine of
+/// their angle is useless.
 fn slerp(a: &[f64], b: &[f64], t: f64) -> Vec<f64> {
     let quaternion = |v: &[f64]| match *v {
         [x, y, z, w] => unit(DQuat::from_xyzw(x, y, z, w)),

@@ -26,7 +26,7 @@ impl Broken {
         Ok(())
     }
 
-    /// Warns of omissions, and of missing buffers; if nothing is left to show, the first of it is an error.
+    /// Warns of omissions, and of missing buffers; if nothing is left to show, the first of them is an error.
     pub fn tell(mut self, missing: impl Iterator<Item = Error>, model: &mut Model) -> Result<()> {
         let unasked = missing.filter(|error| !self.kinds.contains_key(&error.to_string()));
         let mut unasked = unasked.collect::<Vec<_>>().into_iter();
@@ -48,7 +48,7 @@ impl Broken {
     }
 }
 
-/// Warns of an error and what became of it.
+/// Warns of an error and its consequence.
 fn warn(error: Error, then: &str, model: &mut Model) {
     let (place, what) = apart(error);
     model.warn(place, format!("{what}; {then}"));

@@ -1,4 +1,4 @@
-//! Buffers and the views into them, with what their memory is charged to.
+//! Buffers and the views into them, charged to the limits.
 
 use super::bytes::Bytes;
 use super::container::Container;
@@ -59,7 +59,7 @@ fn take(used: &Cell<u64>, count: u64, limit: u64, what: &'static str, at: &str) 
 /// The bytes of a buffer.
 #[derive(Debug)]
 enum Buffer<'a> {
-    /// Bytes from a file of its own, or from the JSON.
+    /// Bytes from a separate file, or from the JSON.
     Loaded(Vec<u8>),
     /// The binary chunk.
     Chunk(Bytes<'a>),
@@ -108,7 +108,7 @@ impl<'a> Source<'a> {
     /// buffer fails later, when it is read.
     ///
     /// # Errors
-    /// Where a buffer is shorter than it says, or a view does not unpack.
+    /// If a buffer is shorter than it says, or a view does not unpack.
     pub fn load(
         root: &'a Root,
         container: &Container<'a>,
@@ -146,7 +146,7 @@ impl<'a> Source<'a> {
     /// Returns the bytes of a view, as long as its `byteLength`.
     ///
     /// # Errors
-    /// Where the view does not exist or its buffer has no data.
+    /// If the view does not exist or its buffer has no data.
     pub fn view(&self, index: Whole, at: &str) -> Result<Bytes<'_>> {
         let i = index.index();
         let views = &self.root.buffer_views;
@@ -156,7 +156,7 @@ impl<'a> Source<'a> {
             _ => {
                 let at = format!("bufferViews[{i}]");
                 if let Some(packing) = &view.extensions.meshopt {
-                    // It was not unpacked, so its buffer is missing: this tells how.
+                    // It was not unpacked, so its buffer is missing: this returns the reason.
                     self.slice(packing.buffer, packing.byte_offset, packing.byte_length, &at)?;
                 }
                 self.slice(view.buffer, view.byte_offset, length(view), &at)
@@ -197,7 +197,7 @@ impl<'a> Source<'a> {
         let at = format!("bufferViews[{index}].extensions.EXT_meshopt_compression");
         let size = packing.count.0.saturating_mul(packing.byte_stride.0);
         if size < length(view).0 {
-            let message = format!("unpacks to {size} bytes where {} are asked for", length(view).0);
+            let message = format!("unpacks to {size} bytes where {} are needed", length(view).0);
             return Err(Error::path(at, message));
         }
         let data = self.slice(packing.buffer, packing.byte_offset, packing.byte_length, &at)?;

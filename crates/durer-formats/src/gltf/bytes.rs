@@ -1,7 +1,7 @@
-//! Bytes of a file: at hand, or still in the file, to be read where they are needed.
+//! Bytes of a file: in memory, or still in the file, to be read when needed.
 //!
-//! Of an open file, what becomes vertices and indices comes in pieces that stay in the cache, so that memory is
-//! taken for what they become alone.
+//! From an open file, the data of vertices and indices are read in pieces that stay in the cache, so that memory is
+//! needed only for the decoded values.
 
 use crate::{Error, Result};
 use std::borrow::Cow;
@@ -65,10 +65,10 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// Returns all of them; no more than the file has, which is within the limits.
+    /// Returns all bytes; at most the file's size, which is within the limits.
     ///
     /// # Errors
-    /// [`Error::Io`] where the file cannot be read, or has become shorter.
+    /// [`Error::Io`] if the file cannot be read, or has become shorter.
     pub fn whole(&self) -> Result<Cow<'a, [u8]>> {
         match self {
             Self::Held(bytes) => Ok(Cow::Borrowed(bytes)),

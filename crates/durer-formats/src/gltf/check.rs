@@ -1,5 +1,5 @@
-//! References and sizes, checked before anything is read, so that the error of a broken file names
-//! the place where it is broken, also in a part that no picture would show.
+//! References and sizes, checked before anything is read, so that the error of a broken file names the place of the
+//! fault, even in a part that is not drawn.
 
 use super::accessor::Layout;
 use super::json::{Material, Root, TextureInfo, Whole};
@@ -10,7 +10,7 @@ use std::fmt::Display;
 /// Checks every reference of the file.
 ///
 /// # Errors
-/// A decode error with the path of the first reference to something that does not exist.
+/// A decode error with the path of the first reference to a missing object.
 pub fn references(root: &Root) -> Result<()> {
     data(root)?;
     meshes(root)?;

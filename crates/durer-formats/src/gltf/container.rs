@@ -95,7 +95,7 @@ fn split_binary<'a>(file: &Bytes<'a>, warnings: &mut Vec<Warning>) -> Result<Con
         match kind {
             BIN if bin.is_none() => bin = Some(data),
             BIN | JSON => {
-                return Err(Error::byte(at, "a second chunk of a type that may stand once"));
+                return Err(Error::byte(at, "a second chunk of a type that may occur once"));
             }
             _ => warn(at, format!("a chunk of unknown type 0x{kind:08x} is ignored")),
         }

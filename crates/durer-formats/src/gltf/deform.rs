@@ -11,7 +11,7 @@ use durer::math::{DMat3, DMat4, DVec3, Vec3};
 /// Missing weights are 0; normals and tangents are left as long as they become.
 ///
 /// # Errors
-/// Where a target has another number of vertices, or its data are broken.
+/// If a target has another number of vertices, or its data are broken.
 pub fn morph(
     source: &Source<'_>,
     g: &mut Geometry,
@@ -77,11 +77,10 @@ fn morph_sets(
     Ok(())
 }
 
-/// Returns each joint's matrix from mesh space to the world: where the joint is now, times where it
-/// was.
+/// Returns each joint's matrix from mesh space to the world: the joint's current matrix times its inverse bind matrix.
 ///
 /// # Errors
-/// Where there are fewer inverse bind matrices than joints.
+/// If there are fewer inverse bind matrices than joints.
 pub fn joint_matrices(source: &Source<'_>, skin: Whole, world: &[DMat4]) -> Result<Vec<DMat4>> {
     let at = format!("skins[{}]", skin.0);
     let Some(skin) = source.root.skins.get(skin.index()) else {
@@ -108,7 +107,7 @@ pub fn joint_matrices(source: &Source<'_>, skin: Whole, world: &[DMat4]) -> Resu
 /// divided by their sum, and a vertex without weights follows joint 0.
 ///
 /// # Errors
-/// Where a vertex follows a joint that the skin does not have.
+/// If a vertex follows a joint that the skin does not have.
 pub fn skin(g: &mut Geometry, joints: &[DMat4], at: &str) -> Result<()> {
     for v in 0..g.mesh.positions.len() {
         let matrix = blend(g, v, joints, at)?;

@@ -1,4 +1,4 @@
-//! Textures that the scene needs and the file does not have: made of those that it has, texel by texel.
+//! Textures that the scene needs and the file does not have, computed from the file's textures texel by texel.
 
 use super::buffer::Source;
 use super::specular_glossiness::Glossy;
@@ -15,7 +15,7 @@ const CLEAR: f32 = 0.85;
 /// Runs all jobs.
 ///
 /// # Errors
-/// Where the new images are above the limits.
+/// If the new images are above the limits.
 pub fn run(source: &Source<'_>, scene: &mut Scene, todo: &mut Todo) -> Result<()> {
     let jobs = std::mem::take(&mut todo.jobs);
     let mut maker = Maker { source, scene, todo, means: BTreeMap::new(), made: BTreeMap::new() };
@@ -96,7 +96,7 @@ impl Maker<'_> {
             let Some([width, height]) = texels::size(images) else { return Ok(None) };
             let at = format!("materials[{}]", job.material);
             let bytes = u64::from(width) * u64::from(height) * 4 * N as u64;
-            // Several come out of one list of all.
+            // Several textures are computed in one list.
             self.source.budget.bytes(if N > 1 { 2 * bytes } else { bytes }, &at)?;
             let name = images.iter().flatten().map(|i| i.name.as_str()).collect::<Vec<_>>();
             let name = name.join(" + ");
@@ -121,7 +121,7 @@ impl Maker<'_> {
         Ok(made.map(|made: [usize; N]| made.map(|texture| TextureRef { texture, ..placed })))
     }
 
-    /// Returns whether texels of two textures that lie at one place of a mesh can be joined.
+    /// Returns whether two textures have the same coordinates, so that they can be combined texel by texel.
     fn lie_alike(a: Option<TextureRef>, b: Option<TextureRef>) -> bool {
         let place = |t: TextureRef| (t.tex_coord, t.transform);
         a.zip(b).is_none_or(|(a, b)| place(a) == place(b))
@@ -137,12 +137,13 @@ impl Maker<'_> {
             let name = "KHR_materials_pbrSpecularGlossiness";
             self.todo.leave_out(
                 name,
-                "lies otherwise than the diffuse one, its mean is taken",
+                "has other coordinates than the diffuse one, its mean is used",
                 job.material,
             );
             specular = None;
         } else if specular.is_some() && self.image(specular).is_none() {
-            // Not read, which was told: rather a plastic than the mirror that white would be.
+            // The texture could not be read (with a warning): a plastic is better than the mirror that white would
+            // give.
             glossy = Glossy { specular: Vec3::ZERO, glossiness: 0.5, ..glossy };
             specular = None;
         }
@@ -172,19 +173,19 @@ impl Maker<'_> {
     fn clearness(&mut self, job: &Job) -> (f32, Option<TextureRef>) {
         let material = &self.scene.materials[job.material];
         let base = material.base_color_texture;
-        // A texture says where there is metal, which is rarely all over.
+        // A texture marks the metal parts, which are rarely everywhere.
         let metal = material.metallic_roughness_texture.map_or(material.metallic, |_| 0.0);
         let through = CLEAR * material.transmission * (1.0 - metal);
         if Self::lie_alike(base, job.texture) {
             return (through, job.texture);
         }
-        let what = "lies otherwise than the base colour's, its mean is taken";
+        let what = "has other coordinates than the base colour's, its mean is used";
         self.todo.leave_out("KHR_materials_transmission", what, job.material);
         (through * self.mean(job.texture, false).x, None)
     }
 
-    /// Sets alpha to what the surface keeps: all if it does not transmit, and the more the darker its colour is, which
-    /// stains the light that goes through.
+    /// Sets alpha to the share of light that the surface does not transmit: 1 without transmission, otherwise the more
+    /// the darker its colour, which stains the transmitted light.
     fn glass(&mut self, job: &Job) -> Result<()> {
         let mean = self.mean(job.texture, false).x;
         let (through, mask) = self.clearness(job);

@@ -1,7 +1,7 @@
 //! `KHR_draco_mesh_compression`: a primitive's triangles and attributes as one Draco bitstream.
 //!
-//! The bitstream is decoded by the crate `draco-core` (feature `draco`), under the same limits as
-//! everything else; should it ever panic, that becomes an error here.
+//! The bitstream is decoded by the crate `draco-core` (feature `draco`), under the same limits as all other data; a
+//! panic of the crate becomes an error.
 
 use super::buffer::Source;
 use super::json::{Draco, Whole};
@@ -33,7 +33,7 @@ impl Packed {
     /// Decodes the mesh.
     ///
     /// # Errors
-    /// Where the bitstream is broken, or its mesh is above the limits.
+    /// If the bitstream is broken, or its mesh is above the limits.
     pub fn read(source: &Source<'_>, draco: &Draco, at: &str) -> Result<Option<Self>> {
         let at = format!("{at}.extensions.KHR_draco_mesh_compression");
         let bytes = source.view(draco.buffer_view.unwrap_or_default(), &at)?.whole()?;
@@ -85,7 +85,7 @@ impl Attribute<'_> {
     /// Returns N floats per vertex; integers become −1 … 1 or 0 … 1 where `normalized`.
     ///
     /// # Errors
-    /// Where the attribute has another number of components.
+    /// If the attribute has another number of components.
     pub fn floats<const N: usize>(
         &self,
         normalized: bool,

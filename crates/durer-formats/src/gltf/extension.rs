@@ -25,22 +25,22 @@ const READ: &[&str] = &[
     "KHR_texture_transform",
 ];
 
-/// Extensions that are read in part, and what is left out.
+/// Extensions that are read in part, and the parts left out.
 const IN_PART: &[(&str, &str)] = &[
-    ("KHR_materials_transmission", "what lies behind shows through, neither bent nor blurred"),
+    ("KHR_materials_transmission", "surfaces behind show through, without refraction or blur"),
     ("KHR_materials_volume", "its colour tints the surface, its thickness does nothing"),
 ];
 
 /// Extensions whose absence is reported elsewhere, or changes no picture.
 const SILENT: &[&str] = &["KHR_texture_basisu", "KHR_xmp", "KHR_xmp_json_ld"];
 
-/// Returns a message's words for the loss of an optional extension.
+/// Describes the effect of an ignored optional extension, for a message.
 fn loss(name: &str) -> &'static str {
     match name {
         "MSFT_texture_dds" | "EXT_texture_avif" => {
             "textures without a PNG, JPEG or WebP are drawn white"
         }
-        "KHR_animation_pointer" => "what it moves stays at rest",
+        "KHR_animation_pointer" => "animated parts stay at rest",
         n if n.starts_with("KHR_materials_") => "drawn without its effect",
         _ => "passed over",
     }

@@ -8,11 +8,11 @@ use durer::math::{DMat4, DVec3, Vec3};
 use durer::scene::{Light, LightKind, Projection, Scene};
 use std::f64::consts::PI;
 
-/// Stronger lights count as this strong, so that all that is made of them stays finite.
+/// Largest strength of a light, so that all values computed from it stay finite.
 const STRONGEST: f64 = 1e30;
 
 /// Adds the cameras of the scene's nodes, in drawing order, with unique names. A camera without a far plane gets one
-/// behind the scene. Cameras that cannot see are left out with a warning.
+/// behind the scene. Invalid cameras are left out with a warning.
 pub fn cameras(
     source: &Source<'_>,
     nodes: &[usize],
@@ -46,10 +46,9 @@ fn lens(camera: &json::Camera) -> Result<Lens, String> {
 
 /// Returns the lights of KHR_lights_punctual.
 ///
-/// A file's intensities are lux (directional) and candela (point, spot). A white matte surface sends
-/// back 1/π of what falls on it, so π lux make it white: all intensities are divided by π. Sunlight has
-/// thousands of lux, in whatever units a program counted; how strong the picture shows it is a matter of
-/// its exposure, not of the file.
+/// A file's intensities are lux (directional) and candela (point, spot). A white matte surface reflects 1/π of the
+/// incident light, so π lux make it white: all intensities are divided by π. Sunlight has thousands of lux; its
+/// brightness in the picture is determined by the exposure.
 pub fn lights(
     source: &Source<'_>,
     nodes: &[usize],

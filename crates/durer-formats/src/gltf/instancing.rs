@@ -10,7 +10,7 @@ use durer::math::{DMat4, DQuat, DVec3};
 /// application's own attributes, are ignored.
 ///
 /// # Errors
-/// Where an attribute is broken, or they have different numbers of elements.
+/// If an attribute is broken, or they have different numbers of elements.
 pub fn matrices(source: &Source<'_>, instancing: &Instancing, node: usize) -> Result<Vec<DMat4>> {
     let at = format!("nodes[{node}].extensions.EXT_mesh_gpu_instancing.attributes");
     let translations = read::<3>(source, instancing, "TRANSLATION", &at)?;
@@ -18,7 +18,7 @@ pub fn matrices(source: &Source<'_>, instancing: &Instancing, node: usize) -> Re
     let scales = read::<3>(source, instancing, "SCALE", &at)?;
     let counts = [&translations.count(), &rotations.count(), &scales.count()];
     let mut given = counts.into_iter().flatten();
-    // Without any of them all instances are in one place, where one is as good as many.
+    // Without any of them all instances are in one place, where one looks like many.
     let count = given.next().copied().unwrap_or(1);
     if let Some(other) = given.find(|other| **other != count) {
         let message = format!("their numbers of elements differ: {count} and {other}");

@@ -31,7 +31,7 @@ impl<'de> Deserialize<'de> for Whole {
                 Ok(Whole(n))
             }
             fn visit_f64<E: serde::de::Error>(self, n: f64) -> Result<Whole, E> {
-                // 2^53: beyond it a float no longer tells neighbouring whole numbers apart.
+                // 2^53: beyond it a float cannot represent all whole numbers.
                 if (0.0..=9_007_199_254_740_992.0).contains(&n) && n == n.trunc() {
                     Ok(Whole(n as u64))
                 } else {
@@ -43,8 +43,8 @@ impl<'de> Deserialize<'de> for Whole {
     }
 }
 
-/// Declares structs of optional members, all named in camel case and with a default. They are read
-/// from JSON objects alone; what is derived would take arrays too.
+/// Declares structs of optional members, all named in camel case and with a default. They are read only from JSON
+/// objects; a derived implementation would accept arrays too.
 macro_rules! objects {
     ($($(#[$meta:meta])* $name:ident { $($(#[$field_meta:meta])* $field:ident: $type:ty,)* })*) => {$(
         $(#[$meta])*

@@ -15,12 +15,11 @@ use durer::scene::{
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-/// Reads all materials, and the textures and images that they use. Their indices in the scene are
-/// those of the file; images that nothing uses, or that cannot be read, are empty (white). Textures that are made
-/// of those of the file come after them.
+/// Reads all materials, and the textures and images that they use. Their indices in the scene are the file's; images
+/// that are not used or cannot be read are empty (white). Textures derived from the file's come after them.
 ///
 /// # Errors
-/// Where an image is above the limits.
+/// If an image is above the limits.
 pub fn read(
     source: &Source<'_>,
     resources: &dyn Resources,
@@ -38,7 +37,7 @@ pub fn read(
             Image::default()
         });
     }
-    // One more image, for textures that have none.
+    // One additional image, for textures without one.
     let none = scene.images.len();
     scene.images.push(Image::default());
     let sampler = |t: &json::Texture| t.sampler.map(|s| sampler(&root.samplers[s.index()]));
@@ -52,14 +51,14 @@ pub fn read(
     Ok(())
 }
 
-/// Returns the image that a texture shows: that of EXT_texture_webp before the one for readers that do not know
+/// Returns the image of a texture: preferably the one of EXT_texture_webp, else the one for readers that do not know
 /// it.
 fn image_of(texture: &json::Texture) -> Option<Whole> {
     let webp = texture.extensions.webp.as_ref().and_then(|webp| webp.source);
     webp.or(texture.source)
 }
 
-/// Returns true for each image that is used; warns of textures that have none.
+/// Returns true for each image that is used; warns of textures without one.
 fn used_images(root: &Root, scene: &Scene, todo: &Todo, warnings: &mut Vec<Warning>) -> Vec<bool> {
     let mut used = vec![false; root.images.len()];
     let mut without = BTreeSet::new();
@@ -135,7 +134,7 @@ fn decode_image(
     Ok(image)
 }
 
-/// Converts a sampler with OpenGL's numbers for filters and wraps; what is unknown becomes the default.
+/// Converts a sampler with OpenGL's numbers for filters and wraps; unknown numbers become the default.
 fn sampler(sampler: &Sampler) -> SceneSampler {
     let number = |n: Option<Whole>| n.map_or(0, |n| n.0);
     let wrap = |n| match number(n) {

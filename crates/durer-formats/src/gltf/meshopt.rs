@@ -46,7 +46,7 @@ pub fn decode(data: &[u8], packing: Packing<'_>) -> Result<Vec<u8>, Refusal> {
         }
         "TRIANGLES" => narrow(indices::decode_triangles(data, count)?, stride),
         "INDICES" => narrow(indices::decode_sequence(data, count)?, stride),
-        _ => Err("the mode is none of ATTRIBUTES, TRIANGLES, INDICES"),
+        _ => Err("the mode is not one of ATTRIBUTES, TRIANGLES, INDICES"),
     }
 }
 

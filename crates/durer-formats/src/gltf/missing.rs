@@ -1,10 +1,10 @@
-//! The error for references to what does not exist.
+//! The error for references to missing objects.
 
 use super::json::Whole;
 use crate::Error;
 use std::fmt::Display;
 
-/// Returns the error for a reference to one of `count` things that does not exist.
+/// Returns the error for a reference beyond the `count` existing objects.
 pub fn missing(what: &str, index: Whole, count: usize, at: impl Display) -> Error {
     let message = match count {
         0 => format!("there is no {what} {}, none at all", index.0),

@@ -1,16 +1,14 @@
 //! glTF 2.0, text and binary (Khronos, 2017; ISO/IEC 12113:2022).
 //!
-//! The reader takes meshes of all seven primitive modes, as one [`durer::scene::Mesh`] per primitive and
-//! one instance per node and primitive; the nodes of the default scene depth first; sparse, interleaved,
-//! normalized and quantized accessors; buffer views compressed by meshopt; primitives compressed by Draco
-//! (feature `draco`); materials with their textures, layers and variants; cameras; lights; skins and
-//! morph targets, posed at one moment of an animation; instances by attributes. What is known of
-//! extensions is in `extension.rs`.
+//! The reader takes meshes of all seven primitive modes, as one [`durer::scene::Mesh`] per primitive and one instance
+//! per node and primitive; the nodes of the default scene depth first; sparse, interleaved, normalized and quantized
+//! accessors; buffer views compressed by meshopt; primitives compressed by Draco (feature `draco`); materials with
+//! their textures, layers and variants; cameras; lights; skins and morph targets, posed at one moment of an animation;
+//! instances by attributes. The known extensions are listed in `extension.rs`.
 //!
-//! Every reference and size of a file is checked before any data are read, also in parts that are not
-//! drawn; errors give their path in the JSON. Where data themselves are broken or missing, what needs them
-//! is left out if something else remains. Nothing recurses, and memory is charged to [`crate::Limits`]
-//! before it is taken.
+//! Every reference and size of a file is checked before any data are read, also in parts that are not drawn; errors
+//! give their path in the JSON. If data themselves are broken or missing, the parts that need them are left out as long
+//! as something else remains. Nothing recurses, and memory is charged to [`crate::Limits`] before it is taken.
 
 mod accessor;
 mod animation;
@@ -73,9 +71,9 @@ pub fn is_binary(bytes: &[u8]) -> bool {
 
 /// Reads a model, `.gltf` or `.glb`, posed as `options.pose` says.
 ///
-/// Buffers and images that the file refers to come from `resources`, which decides where references may
-/// lead. An image that is missing or broken is drawn white, and a primitive that is broken, or whose buffer
-/// is missing, is left out where something else remains, each with a warning. Linear in the data that are drawn.
+/// Buffers and images that the file refers to come from `resources`, which decides which references are allowed. An
+/// image that is missing or broken is drawn white, and a primitive that is broken, or whose buffer is missing, is left
+/// out if something else remains, each with a warning. Linear in the data that are drawn.
 ///
 /// ```
 /// use durer_formats::{NoResources, ReadOptions, gltf};
@@ -89,10 +87,9 @@ pub fn is_binary(bytes: &[u8]) -> bool {
 /// ```
 ///
 /// # Errors
-/// [`Error::Decode`] with the byte of the container, the line of the JSON or the path in it;
-/// [`Error::Unsupported`] for a required extension or a version that is not known; [`Error::Resource`] for
-/// a buffer that cannot be had, and [`Error::Decode`] for a broken primitive, if nothing is left to draw
-/// without it; [`Error::Limit`].
+/// [`Error::Decode`] with the byte of the container, the line of the JSON or the path in it; [`Error::Unsupported`] for
+/// a required extension or a version that is not known; [`Error::Resource`] for a buffer that cannot be read, and
+/// [`Error::Decode`] for a broken primitive, if nothing is left to draw without it; [`Error::Limit`].
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     read_parts(&Bytes::Held(bytes), resources, options)
 }
@@ -101,7 +98,7 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
 /// model is that of [`read`] with the file's bytes.
 ///
 /// # Errors
-/// As [`read`]; [`Error::Limit`] for a file of more bytes than may be decoded, [`Error::Io`] where it cannot be read.
+/// As [`read`]; [`Error::Limit`] for a file of more bytes than may be decoded, [`Error::Io`] if it cannot be read.
 pub fn read_file(
     mut file: impl Read + Seek,
     resources: &dyn Resources,
@@ -136,8 +133,7 @@ fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions
     let world = tree.world_matrices(&root, &pose);
     let warnings = &mut model.warnings;
     let nodes = tree.scene_nodes(&root, |n| {
-        let message =
-            "stands in the scene but has a parent; drawn once, below its parent".to_owned();
+        let message = "is in the scene but has a parent; drawn once, below its parent".to_owned();
         warnings.push(crate::Warning { place: Place::Path(format!("nodes[{n}]")), message });
     });
     tell_missing_scene(&root, &nodes, &mut model);
@@ -156,7 +152,7 @@ fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions
     builder.broken.tell(source.missing(), &mut model)?;
     model.scene.up_axis = UpAxis::Y;
     material::read(&source, resources, &mut model.scene, &mut model.warnings)?;
-    // A hidden camera sees all the same; a hidden light does not shine.
+    // Hidden cameras can still be used; hidden lights do not shine.
     eye::cameras(&source, &nodes, &world, &mut model.scene, &mut model.warnings);
     let mut shining = nodes;
     shining.retain(|n| visible[*n]);
@@ -270,7 +266,7 @@ impl Builder<'_> {
             return Ok(*made);
         }
         let geometry = self.geometry(mesh, p, model).inspect_err(|_| {
-            // It is left out wherever it stands, and told once.
+            // It is left out everywhere and reported once.
             self.made.insert((mesh, p), None);
         })?;
         let made = geometry.map(|g| self.add(g, mesh, p, &mut model.scene));
@@ -299,7 +295,7 @@ impl Builder<'_> {
         Ok((Some(self.add(g, mesh, p, &mut model.scene)), joints.is_some()))
     }
 
-    /// Reads a primitive; each thing that had to be repaired is warned about once.
+    /// Reads a primitive; each kind of repair gives one warning.
     fn geometry(&self, mesh: usize, p: usize, model: &mut Model) -> Result<Option<Geometry>> {
         let at = path(mesh, p);
         let primitive = &self.source.root.meshes[mesh].primitives[p];

@@ -8,7 +8,7 @@ use crate::Result;
 #[derive(Debug)]
 pub enum Packed {}
 
-/// Attribute of a decoded mesh; without the feature there is none.
+/// Attribute of a decoded mesh; without the feature, there are none.
 pub type Attribute<'a> = &'a Packed;
 
 impl Packed {

@@ -37,7 +37,7 @@ impl Tree {
     /// Checks that the nodes are a forest. It may be as deep as there are nodes: nothing recurses.
     ///
     /// # Errors
-    /// Where a node has two parents or is its own ancestor, or there are more than `most` nodes.
+    /// If a node has two parents or is its own ancestor, or there are more than `most` nodes.
     pub fn of(root: &Root, most: u64) -> Result<Self> {
         let (value, limit) = (root.nodes.len() as u64, most);
         if value > limit {
@@ -66,9 +66,9 @@ impl Tree {
         world
     }
 
-    /// Returns the nodes of the default scene (of the first one if that is not there; of a file without
-    /// scenes, all), in drawing order: depth first, as in the file. A node below another one of the scene
-    /// comes once; the nodes of the scene that are not roots are passed to `odd`.
+    /// Returns the nodes of the default scene (or the first one if that does not exist, or all nodes of a file without
+    /// scenes), in drawing order: depth first, as in the file. A node below another one of the scene appears once; the
+    /// nodes of the scene that are not roots are passed to `odd`.
     pub fn scene_nodes(&self, root: &Root, mut odd: impl FnMut(usize)) -> Vec<usize> {
         let scene = root.scenes.get(root.scene.map_or(0, Whole::index)).or(root.scenes.first());
         let roots: Vec<usize> = match scene {
@@ -119,8 +119,8 @@ fn parents(root: &Root) -> Result<Vec<Option<usize>>> {
     Ok(parents)
 }
 
-/// Visits nodes depth first, as in the file. Ends, because no node has two parents and a walk that starts at a root can
-/// come to no cycle.
+/// Visits nodes depth first, as in the file. Ends, because no node has two parents, so a walk from a root cannot reach
+/// a cycle.
 fn walk(root: &Root, roots: impl DoubleEndedIterator<Item = usize>) -> impl Iterator<Item = usize> {
     let mut stack: Vec<usize> = roots.rev().collect();
     std::iter::from_fn(move || {

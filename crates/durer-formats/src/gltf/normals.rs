@@ -1,4 +1,4 @@
-//! Normals and tangents brought to unit length; those that cannot are replaced.
+//! Normals and tangents scaled to unit length; vectors for which that is impossible are replaced.
 
 use super::geometry::Geometry;
 use crate::model::count_infinite;
@@ -6,7 +6,7 @@ use durer::math::{Vec3, Vec4};
 use durer::scene::Topology;
 
 /// Scales normals and tangents to unit length. A normal without a direction becomes the mean of the normals of the
-/// triangles around its vertex, by area; where these have none either, +z.
+/// triangles around its vertex, weighted by area; if these have none either, +z.
 pub fn repair(g: &mut Geometry) {
     let positions = count_infinite(&g.mesh.positions);
     if positions > 0 {
@@ -32,10 +32,10 @@ pub fn repair(g: &mut Geometry) {
     colors.for_each(|c| *c = Vec4::ONE);
 }
 
-/// Returns the vector at unit length; vectors that already have it to the last bits stay as they
-/// are, and what is too short or not finite has none.
+/// Returns the vector at unit length; vectors that already have it up to the last bits stay unchanged; `None` for
+/// vectors that are too short or not finite.
 fn unit(v: Vec3) -> Option<Vec3> {
-    // In double precision, where squares of tiny and huge numbers are still there.
+    // In double precision, in which squares of tiny and huge numbers neither underflow nor overflow.
     let (d, length) = (v.as_dvec3(), v.as_dvec3().length());
     if !length.is_finite() || length < 1e-12 {
         return None;

@@ -1,4 +1,4 @@
-//! Versions before glTF 2.0: known by what they are, and refused by name.
+//! Versions before glTF 2.0, which are recognized and refused by name.
 
 use crate::{Error, Place};
 use serde::Deserialize;
@@ -10,8 +10,7 @@ pub fn unsupported(place: Place, version: &str) -> Error {
     Error::Unsupported { place, what: format!("glTF {version}"), hint: hint.to_owned() }
 }
 
-/// Returns the version that a JSON text says it has, or is built like, where that is one before
-/// 2.0.
+/// Returns the version that a JSON text declares or has the structure of, if it is before 2.0.
 pub fn version(text: &[u8]) -> Option<String> {
     let outline: Outline = serde_json::from_slice(text).ok()?;
     let said = match outline.asset.unwrap_or_default().version {

@@ -13,7 +13,7 @@ pub struct Placing {
     pub weights: Vec<f32>,
     /// The matrices of the skin, if there is one.
     pub joints: Option<Vec<DMat4>>,
-    /// Matrices to the world; one, or those of EXT_mesh_gpu_instancing.
+    /// Matrices to the world: one, or the ones of EXT_mesh_gpu_instancing.
     pub places: Vec<DMat4>,
 }
 
@@ -21,7 +21,7 @@ impl Placing {
     /// Computes the placement of node `n`, whose morph targets have these weights.
     ///
     /// # Errors
-    /// Where the skin or the instances are broken, or their data are missing.
+    /// If the skin or the instances are broken, or their data are missing.
     pub fn of(
         source: &Source<'_>,
         world: &[DMat4],

@@ -11,7 +11,7 @@ use durer::scene::{Mesh, Topology};
 /// Reads a primitive; `None` if it has no positions.
 ///
 /// # Errors
-/// Where an accessor does not fit its use, or indices refer to no vertex and nothing is left without them.
+/// If an accessor does not fit its use, or indices refer to no vertex and nothing is left without them.
 pub fn read(source: &Source<'_>, primitive: &Primitive, at: &str) -> Result<Option<Geometry>> {
     let attributes = Attributes::of(source, primitive, at)?;
     let Some(positions) = attributes.vectors("POSITION")? else { return Ok(None) };
@@ -198,7 +198,7 @@ impl Geometry {
         Ok(())
     }
 
-    /// Sets topology and indices from the file's way to join vertices.
+    /// Sets topology and indices from the file's mode.
     fn join(
         &mut self,
         mode: Mode,
@@ -231,7 +231,7 @@ impl Geometry {
         Ok(())
     }
 
-    /// Leaves out primitives with a corner that is not a vertex; `first` is the first of these. Where nothing is
+    /// Leaves out primitives with a corner that is not a vertex; `first` describes the first of these. If nothing is
     /// left, that is an error.
     fn leave_out_dangling(&mut self, first: &str, at: &str) -> Result<()> {
         let (corners, kind) = match self.mesh.topology {
@@ -266,7 +266,7 @@ fn read_indices(source: &Source<'_>, primitive: &Primitive, at: &str) -> Result<
     Ok(Some(source.integers::<1>(accessor, &format!("{at}.indices"))?.into_flattened()))
 }
 
-/// Returns a message on the first index that is none of this many vertices, if there is one.
+/// Returns a message about the first index that is not below the number of vertices, if there is one.
 fn first_dangling(indices: &[u32], vertices: usize) -> Option<String> {
     // All of them at once, because there is hardly ever one, and it is found sooner than the first.
     let dangling = |i: u32| i as usize >= vertices;

@@ -31,7 +31,7 @@ pub struct Metallic {
 }
 
 impl Glossy {
-    /// Returns the factors that the file gives; those that are missing are 1.
+    /// Returns the factors in the file; missing ones are 1.
     pub fn of(glossy: &json::SpecularGlossiness) -> Self {
         let unit = |v: f32| v.clamp(0.0, 1.0);
         Self {
@@ -98,7 +98,7 @@ fn metalness(diffuse: f32, specular: f32, scattered: f32) -> f32 {
     let b = diffuse * scattered / (1.0 - DIELECTRIC) + specular - 2.0 * DIELECTRIC;
     let c = DIELECTRIC - specular;
     let root = (b * b - 4.0 * DIELECTRIC * c).max(0.0).sqrt();
-    // Of the two ways to write the root the one that subtracts nothing.
+    // The form of the root without a subtraction.
     let root = if b > 0.0 { -2.0 * c / (b + root) } else { (root - b) / (2.0 * DIELECTRIC) };
     root.clamp(0.0, 1.0)
 }

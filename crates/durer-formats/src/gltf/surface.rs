@@ -1,7 +1,7 @@
 //! The changes that extensions make to a material.
 //!
-//! The scene holds one number for what extensions may vary by a texture: there the mean of the texture is taken,
-//! with one warning for each extension. What only a texture can say becomes one (`derived.rs`).
+//! The scene has single numbers for some values that extensions may vary by a texture: for these the mean of the
+//! texture is used, with one warning per extension. Values that need a texture become one (`derived.rs`).
 
 use super::json::{Clearcoat, MaterialExtensions, Sheen, Specular};
 use super::specular_glossiness::Glossy;
@@ -10,7 +10,7 @@ use super::todo::{Job, Todo, What};
 use durer::math::Vec3;
 use durer::scene::{Material, ShadingModel};
 
-/// Emission is cut at this factor, so that light stays finite whatever a file says.
+/// Largest factor of emission, so that light stays finite for any file.
 pub const BRIGHTEST: f32 = 1e6;
 
 /// The index that means infinity (KHR_materials_ior: 0): everything is reflected.
@@ -29,7 +29,7 @@ pub fn extend(
         material.metallic_roughness_texture = None;
     }
     if extensions.unlit.is_some() {
-        // Shown as it is: what it would reflect or let through has no meaning.
+        // Shown without lighting, so reflection and transmission have no meaning.
         material.model = ShadingModel::Unlit;
         return;
     }

@@ -3,7 +3,7 @@
 use super::json::{Primitive, Root, Whole};
 use crate::{Error, Result};
 
-/// Returns names of the variants; `variant0`, `variant1` … if there is none.
+/// Returns the names of the variants; unnamed ones are `variant0`, `variant1` …
 pub fn names(root: &Root) -> Vec<String> {
     let variants = root.extensions.variants.as_ref().map_or(&[][..], |v| &v.variants);
     let name = |(i, name): (usize, &Option<String>)| name.clone().unwrap_or(format!("variant{i}"));
@@ -14,7 +14,7 @@ pub fn names(root: &Root) -> Vec<String> {
 /// requested.
 ///
 /// # Errors
-/// Where there is no such variant, with all that there are.
+/// If there is no such variant, with a list of all variants.
 pub fn find(names: &[String], wanted: Option<&str>) -> Result<Option<u64>> {
     let Some(wanted) = wanted else { return Ok(None) };
     let by_number = || wanted.parse().ok().filter(|n| *n < names.len());

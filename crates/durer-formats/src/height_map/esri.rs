@@ -9,7 +9,7 @@ use crate::{Error, Result};
 struct Header {
     columns: Option<u64>,
     rows: Option<u64>,
-    /// West and south, and whether they are those of the middle of a cell or of its corner.
+    /// West and south, and whether they refer to the middle of a cell or to its corner.
     west: Option<(f64, bool)>,
     south: Option<(f64, bool)>,
     dx: Option<f64>,
@@ -49,7 +49,7 @@ pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
     }
     while !cursor.at_end() {
         if let Some(word) = cursor.word() {
-            let message = format!("`{}` stands after the last of {count} heights", quote(word));
+            let message = format!("`{}` follows the last of {count} heights", quote(word));
             return Err(cursor.error(message));
         }
         cursor.next_line();

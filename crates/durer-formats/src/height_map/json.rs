@@ -58,7 +58,7 @@ fn wrong(path: &str, message: &str) -> Error {
 fn height(value: &Value, path: impl FnOnce() -> String) -> Result<f64> {
     match value {
         Value::Null => Ok(f64::NAN),
-        // Some writers have no other way to say "not a number".
+        // Some writers write "not a number" as a text.
         Value::String(s) if s.eq_ignore_ascii_case("nan") => Ok(f64::NAN),
         _ => value.as_f64().ok_or_else(|| wrong(&path(), "a number or null is needed")),
     }

@@ -1,7 +1,7 @@
 //! Height maps: ESRI ASCII grids, NumPy arrays, tables of numbers, JSON, and grey PNG pictures.
 //!
-//! The first row of a file is the farthest of the surface, its first column the left one: as a map
-//! that lies on a table, seen from its lower border.
+//! The first row of a file is the farthest of the surface, its first column the left one: like a map on a table, seen
+//! from its lower border.
 
 mod esri;
 mod json;
@@ -92,7 +92,7 @@ impl HeightMapFormat {
 pub struct HeightMapOptions {
     /// Limits: [`Limits::decoded_bytes`] counts eight bytes per point.
     pub limits: Limits,
-    /// A height that means "missing", beside that of the format itself.
+    /// A height that means "missing", besides the format's own.
     pub no_data: Option<f64>,
     /// Array of an NPZ file, or member of a JSON object; `None` takes the only one, or the first.
     pub array: Option<String>,
@@ -128,8 +128,8 @@ struct Grid {
 ///
 /// # Errors
 /// [`Error::Unknown`] if neither gives the format; [`Error::Decode`] with line or byte for broken contents;
-/// [`Error::Limit`] above the limits; [`Error::Unsupported`] for known things that are not read; [`Error::Library`] for
-/// a grid that [`HeightField::new`] refuses.
+/// [`Error::Limit`] above the limits; [`Error::Unsupported`] for known features that are not read; [`Error::Library`]
+/// for a grid that [`HeightField::new`] refuses.
 pub fn read(bytes: &[u8], name: &str, options: &HeightMapOptions) -> Result<HeightMap> {
     let format = HeightMapFormat::of_content(bytes)
         .or_else(|| HeightMapFormat::of_name(name).filter(|f| *f == HeightMapFormat::Table))
@@ -145,8 +145,7 @@ pub fn read(bytes: &[u8], name: &str, options: &HeightMapOptions) -> Result<Heig
     };
     let has_names = matches!(format, Some(HeightMapFormat::Npz | HeightMapFormat::Json));
     if let Some(name) = options.array.as_ref().filter(|_| !has_names) {
-        let message =
-            format!("{} has no arrays with names; `{name}` is not looked for", grid.format);
+        let message = format!("{} has no arrays with names; `{name}` is ignored", grid.format);
         grid.warnings.push(Warning { place: Place::Whole, message });
     }
     finish(grid, options)

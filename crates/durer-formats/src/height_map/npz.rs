@@ -1,5 +1,5 @@
-//! NumPy's NPZ: a ZIP of NPY arrays. Scalars `xmin`, `xmax`, `ymin` and `ymax` beside the heights say where
-//! they lie, the first row in the north.
+//! NumPy's NPZ: a ZIP of NPY arrays. Scalars `xmin`, `xmax`, `ymin` and `ymax` beside the heights give their extent,
+//! with the first row in the north.
 
 use super::npy::{self, Array};
 use super::{Grid, HeightMapOptions};

@@ -1,4 +1,4 @@
-//! Grey PNG pictures: 0 … 255 or 0 … 65535 is the height; what is fully transparent is missing.
+//! Grey PNG pictures: 0 … 255 or 0 … 65535 is the height; fully transparent pixels are missing heights.
 
 use super::{Grid, HeightMapOptions, check_size};
 use crate::{Error, Place, Result, foreign};

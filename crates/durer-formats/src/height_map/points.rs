@@ -1,4 +1,4 @@
-//! Lists of points x, y, z, and tables whose first row and column are coordinates: put on an even grid.
+//! Lists of points x, y, z, and tables whose first row and column are coordinates: resampled to an even grid.
 
 use super::{Grid, HeightMapOptions, check_size};
 use crate::{Error, Place, Result, Warning};
@@ -7,11 +7,11 @@ use spade::{DelaunayTriangulation, FloatTriangulation, HasPosition, Point2, Tria
 /// Steps of a grid may differ by this part of them: files round coordinates.
 const EVEN: f64 = 1e-3;
 
-/// Scattered points are put on a grid of this many columns and rows at least and at most.
+/// Smallest and largest number of columns and rows of the grid for scattered points.
 const SIDES: [usize; 2] = [16, 512];
 
-/// Returns the even grid of a table of three columns, if its rows are points x, y, z: each x with each y once, or
-/// what `is_list` says are points. Points that lie anywhere are interpolated within their Delaunay triangles.
+/// Returns the even grid of a table of three columns, if its rows are points x, y, z: each x with each y once, or if
+/// `is_list` is set. Scattered points are interpolated within their Delaunay triangles.
 pub fn gridded(table: &Grid, is_list: bool, options: &HeightMapOptions) -> Result<Option<Grid>> {
     let points = table.heights.as_chunks::<3>().0;
     if let Some(lattice) = lattice(points, options)? {
@@ -70,7 +70,7 @@ fn spread(x: &[f64], y: &[f64], heights: Vec<f64>) -> Grid {
             let (j, v) = between(y, row);
             let h =
                 |i: usize, j: usize| south_first.get(j * columns + i).copied().unwrap_or(f64::NAN);
-            // What is missing counts only if it has a part.
+            // A missing height matters only if its weight is not 0.
             let mix = |a: f64, b: f64, part: f64| match part {
                 0.0 => a,
                 1.0 => b,

@@ -17,8 +17,7 @@ fn is_row(line: &[u8]) -> bool {
     !line.is_empty() && !line.starts_with(b"#")
 }
 
-/// A table of three columns without a heading and with more rows than this gives a warning about what a heading
-/// would change.
+/// Number of rows above which a table of three columns without a heading gives a warning about the effect of a heading.
 const LONG: usize = 12;
 
 pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
@@ -62,8 +61,7 @@ enum Heading {
     Words,
 }
 
-/// Returns the numbers of a table. Of a first line whose first cell alone is text that cell is
-/// missing.
+/// Returns the numbers of a table. If only the first cell of the first line is text, that cell counts as missing.
 fn table(bytes: &[u8], options: &HeightMapOptions) -> Result<(Grid, Heading)> {
     let text = utf8(bytes);
     let mut grid = Grid {
@@ -130,8 +128,7 @@ fn name(cell: &[u8]) -> String {
     String::from_utf8_lossy(cell).trim_matches(['"', ' ', '\'']).to_ascii_lowercase()
 }
 
-/// Returns the meaning of a first line; text in a corner, before numbers alone, names what the first row
-/// and column are.
+/// Returns the meaning of a first line; text in the corner, followed only by numbers, names the first row and column.
 fn heading_of(line: &[u8], separator: Option<u8>) -> Heading {
     let words: Vec<bool> = cells(line, separator).map(|(_, cell)| height(cell).is_none()).collect();
     let names: Vec<String> = cells(line, separator).map(|(_, cell)| name(cell)).collect();

@@ -8,7 +8,7 @@ use crate::{Error, Limits, Place, Result};
 
 /// The first bytes.
 pub(super) const MAGIC: &[u8] = b"BM";
-/// The length of the file's header, which precedes that of the picture.
+/// The length of the file's header, which precedes the picture's.
 const FILE_HEADER: usize = 14;
 /// Two bytes of a run hold up to 255 pixels, and four leave out up to 255 rows.
 const RUN_PIXELS_PER_BYTE: u64 = 1 << 20;
@@ -99,7 +99,7 @@ fn header(bytes: &[u8], name: &str) -> Result<Header> {
         (0, 1 | 2 | 4 | 8 | 24) => Packing::Plain,
         (1, 8) | (2, 4) => Packing::Runs,
         (3 | 6, 16 | 32) => {
-            // Later headers hold the fields, which stand behind the first ones; both at the same place.
+            // The masks are in later headers or behind the first ones, at the same place in both cases.
             let has_alpha = packing == 6 || size >= 56;
             let field = |i: usize| long(bytes, FILE_HEADER + 40 + 4 * i).unwrap_or(0);
             Packing::Fields([field(0), field(1), field(2), if has_alpha { field(3) } else { 0 }])
@@ -124,7 +124,7 @@ fn header(bytes: &[u8], name: &str) -> Result<Header> {
 }
 
 impl Header {
-    /// Returns a colour of the palette; black for those that it has not.
+    /// Returns a colour of the palette; black for missing ones.
     fn color(&self, index: usize) -> [u8; 4] {
         self.palette.get(index).copied().unwrap_or([0, 0, 0, 255])
     }
@@ -161,7 +161,7 @@ fn fields(value: u32, masks: [u32; 4]) -> [u8; 4] {
     parts
 }
 
-/// Decodes run-length encoded pixels; those that are left out have the first colour.
+/// Decodes run-length encoded pixels; skipped pixels have the first colour.
 fn runs(header: &Header, data: &[u8]) -> Option<Vec<[u8; 4]>> {
     let (width, height) = (header.width as usize, header.height as usize);
     let mut pixels = vec![header.color(0); width * height];

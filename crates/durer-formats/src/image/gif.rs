@@ -9,7 +9,7 @@ use std::num::NonZeroU64;
 /// The first bytes.
 pub(super) const MAGIC: &[u8] = b"GIF8";
 
-/// Decodes a file: what its first picture leaves free of the screen is transparent.
+/// Decodes a file; the part of the screen outside its first picture is transparent.
 ///
 /// # Errors
 /// As [`super::decode`].

@@ -45,15 +45,15 @@ pub(super) fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Pictur
         decoder.decode_into(pixels.as_flattened_mut()).map_err(wrong)?;
         pixels
     };
-    // The decoder leaves grey what is not there.
+    // The decoder leaves missing parts grey.
     if !has_end(bytes) {
         return Err(broken(name, "is cut off: no end of image follows its last scan"));
     }
     Ok((size.0, size.1, pixels))
 }
 
-/// Returns whether the marker of the end of a JPEG comes after that of its last scan; in the data of a scan
-/// neither can be.
+/// Returns whether the end marker of a JPEG comes after the marker of its last scan; the data of a scan can contain
+/// neither.
 fn has_end(bytes: &[u8]) -> bool {
     let last_scan = bytes.windows(2).rposition(|marker| marker == [0xff, 0xda]);
     last_scan.is_none_or(|at| bytes[at..].windows(2).any(|marker| marker == [0xff, 0xd9]))

@@ -50,7 +50,7 @@ impl Orientation {
         Self::ALL.get(usize::from(number).wrapping_sub(1)).copied().unwrap_or_default()
     }
 
-    /// Returns the pixels as they are to be seen.
+    /// Returns the pixels in the orientation of display.
     pub fn turned<P: Copy>(self, pixels: Pixels<P>) -> Pixels<P> {
         let (w, h) = (pixels.width(), pixels.height());
         let (width, height) = if self as u8 >= Self::Transposed as u8 { (h, w) } else { (w, h) };

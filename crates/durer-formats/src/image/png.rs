@@ -63,8 +63,8 @@ pub struct DeepImage {
 
 /// Decodes a PNG file of 16 bits per channel without rounding; samples of fewer bits are spread over the same range.
 ///
-/// `name`, limits and omissions are those of [`super::decode`]; a pixel takes 8 bytes. [`bits_per_sample`] returns
-/// whether a file is so deep.
+/// `name`, limits and omissions as in [`super::decode`]; a pixel takes 8 bytes. [`bits_per_sample`] tells whether a
+/// file is deep.
 ///
 /// # Errors
 /// As [`super::decode`]; also [`Decode`](crate::Error::Decode) if the bytes are no PNG.
@@ -87,7 +87,7 @@ pub fn decode_deep(bytes: &[u8], name: &str, limits: &Limits) -> Result<DeepImag
 }
 
 /// Returns the samples of the first picture of a PNG, palettes and transparent colours resolved, 1, 2 and 4
-/// bits as 8, 16 bits as two bytes; `bytes_per_pixel` is what a pixel will take once it is decoded.
+/// bits as 8, 16 bits as two bytes; `bytes_per_pixel` is the size of a decoded pixel.
 fn png_samples(
     bytes: &[u8],
     bytes_per_pixel: u64,

@@ -11,7 +11,7 @@ pub(super) fn is_webp(bytes: &[u8]) -> bool {
     bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP")
 }
 
-/// Decodes a file; of an animation its first picture.
+/// Decodes a file, or the first picture of an animation.
 ///
 /// # Errors
 /// As [`super::decode`].
@@ -19,7 +19,7 @@ pub(super) fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Pictur
     let wrong = |e: image_webp::DecodingError| broken(name, foreign::webp(&e));
     let mut decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(wrong)?;
     let size @ (width, height) = decoder.dimensions();
-    // Pixels that are all alike take no bits at all, so that nothing is known of how many there can be.
+    // Equal pixels take no bits at all, so the file's size does not limit their number.
     check_size(size, 4, u64::MAX, name, limits)?;
     decoder.set_memory_limit(usize::try_from(limits.decoded_bytes).unwrap_or(usize::MAX));
     let too_large = || broken(name, "is too large");

@@ -82,8 +82,7 @@ impl<'a> Points<'a> {
     }
 }
 
-/// Returns the layers that points are made of. That of GPS times, whose decompression recurses as deep as a file says,
-/// is not among them.
+/// Returns the layers of points to decompress, without GPS times, whose decompression recurses as deep as a file says.
 fn selection() -> DecompressionSelection {
     DecompressionSelection::xy_returns_channel()
         .decompress_z()
@@ -111,7 +110,7 @@ fn broken(why: &str) -> Error {
     Error::whole(format!("broken LAZ data: {why}"))
 }
 
-/// Checks what the crate would take memory for.
+/// Checks the sizes for which the crate would allocate memory.
 fn check(bytes: &[u8], header: &Header, vlr: &LazVlr) -> Result<()> {
     let items = vlr.items();
     let size: usize = items.iter().map(|item| usize::from(item.size())).sum();
@@ -138,7 +137,7 @@ fn chunks(bytes: &[u8], data: usize) -> Option<usize> {
     let offset = |at| take(bytes, at).map(i64::from_le_bytes);
     let mut at = offset(data)?;
     if at <= data as i64 {
-        // Written in one go: the offset stands at the end.
+        // Files written in one pass have the offset at the end.
         at = offset(bytes.len().checked_sub(8)?)?;
     }
     let count = take(bytes, usize::try_from(at).ok()?.checked_add(4)?)?;
@@ -163,8 +162,8 @@ enum Next {
 struct Guard<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Offset of the data while the table of chunks is read: the crate goes on there if there is no
-    /// table, so the reader has to be at that place.
+    /// Offset of the data while the table of chunks is read: if there is no table, the crate continues there, so the
+    /// reader must be at that place.
     start: Option<usize>,
     /// Bytes of a point and number of layers, where points are compressed in layers.
     layout: Option<(usize, usize)>,

@@ -50,7 +50,7 @@ pub(super) fn material(
 
 fn set_colors(material: &mut Material, m: &Statements) {
     let mapped = m.map_diffuse.is_some();
-    // Writers that put everything into the picture leave Kd black; a black factor would hide it.
+    // Some writers put all colour into the picture and leave Kd black; a black factor would hide it.
     let diffuse = m.diffuse.filter(|kd| !(mapped && *kd == [0.0; 3]));
     let diffuse = diffuse.map(color::linear3).or(mapped.then_some(Vec3::ONE));
     if let Some(diffuse) = diffuse {
@@ -59,10 +59,10 @@ fn set_colors(material: &mut Material, m: &Statements) {
     material.emissive = m.emissive.map_or(Vec3::ZERO, color::linear3);
 }
 
-/// Returns the statements with colours divided by 255, where they are written so.
+/// Returns the statements with colours divided by 255, if they are written as bytes.
 fn from_bytes(m: &Statements) -> Option<Statements> {
     let above = |color: &[f32; 3], limit: f32| color.iter().any(|v| *v > limit);
-    // Emission may well be above 1, and so is the ambient colour of what stands for a lamp.
+    // Emission may be above 1, and so may the ambient colour of a lamp's surface.
     let told = [m.diffuse, m.specular];
     told.iter().flatten().any(|color| above(color, BRIGHTEST)).then(|| {
         let scale = |color: Option<[f32; 3]>| {
@@ -74,7 +74,8 @@ fn from_bytes(m: &Statements) -> Option<Statements> {
     })
 }
 
-/// Sets alpha from `d`, or else from `Tr`, of which 1 is opaque to many writers, though transparent to the manual.
+/// Sets alpha from `d`, or else from `Tr`, whose value 1 many writers use for opaque although the manual defines it as
+/// transparent.
 fn set_alpha(material: &mut Material, notes: &mut Notes, name: &str, m: &Statements) {
     let alpha = match (m.dissolve, m.transparency) {
         (Some(d), _) => d,

@@ -5,7 +5,7 @@ use crate::{Found, Limits, Model, Place, Resources, image, texels};
 use durer::scene::Image;
 use std::collections::HashMap;
 
-/// Pictures by what they were made of, as indices into the scene's images.
+/// Pictures by their sources, as indices into the scene's images.
 pub(crate) struct Images<'a> {
     resources: &'a dyn Resources,
     /// Rest of the limit for decoded pictures.

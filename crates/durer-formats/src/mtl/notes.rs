@@ -31,12 +31,12 @@ pub(super) struct Notes {
 }
 
 impl Notes {
-    /// Warns of everything that was met.
+    /// Adds warnings about all faults found.
     pub fn tell(&self, model: &mut Model) {
         for (named, message) in [
             (
                 &self.opacity,
-                "`Tr` without `d` is taken as opacity (1 is opaque), as it would else hide what is there",
+                "`Tr` without `d` is taken as opacity (1 is opaque), because the model would be invisible otherwise",
             ),
             (&self.invisible, "wholly transparent (`d 0`): nothing of it is seen"),
             (&self.byte_colors, "colors go up to 255 instead of 1; they were scaled"),

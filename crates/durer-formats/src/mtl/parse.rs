@@ -42,11 +42,11 @@ pub(super) struct Statements {
     pub map_bump: Option<Map>,
 }
 
-/// Materials by name; of two with the same name the first counts.
+/// Materials by name; the first of several with the same name is used.
 #[derive(Debug, Default)]
 pub(super) struct Library {
     pub materials: HashMap<String, Statements>,
-    /// True if `Tr` is the opacity: it is nowhere 0 and somewhere 1, of materials without `d`.
+    /// True if `Tr` is the opacity: among materials without `d`, it is never 0 and 1 at least once.
     pub tr_is_opacity: bool,
 }
 

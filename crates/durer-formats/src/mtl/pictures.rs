@@ -1,4 +1,4 @@
-//! Materials that are a picture and nothing else, for formats without a material library.
+//! Materials that consist only of a picture, for formats without a material library.
 
 use super::convert;
 use super::image::Images;
@@ -6,8 +6,8 @@ use super::notes::Notes;
 use super::parse::{Map, Statements};
 use crate::{Model, ReadOptions, Resources};
 
-/// Adds a material for each picture, matte and of its colours; returns whether one of them could be read. Of those that
-/// could not, there is a warning.
+/// Adds a matte material with the colours of each picture; returns whether any of them could be read. Unreadable ones
+/// give a warning.
 pub(crate) fn add_pictures(
     model: &mut Model,
     names: &[String],
@@ -15,7 +15,7 @@ pub(crate) fn add_pictures(
     options: &ReadOptions,
 ) -> bool {
     let mut images = Images::new(resources, options.limits.clone());
-    // A picture alone says nothing that would be told.
+    // A picture alone gives no notes.
     let (mut notes, mut any) = (Notes::default(), false);
     for name in names {
         let path = super::relative(name);

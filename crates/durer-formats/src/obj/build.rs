@@ -10,7 +10,7 @@ use durer::scene::{Instance, Material, Mesh, Part, Topology};
 /// Builds the meshes: triangles first, then lines, then points.
 ///
 /// # Errors
-/// A limit, or a scene that does not hold together, which would be an error of this reader.
+/// A limit, or an inconsistent scene, which would be a bug in this reader.
 pub(super) fn build(
     mut parsed: Parsed,
     resources: &dyn Resources,
@@ -46,8 +46,8 @@ pub(super) fn build(
     Ok(model)
 }
 
-/// Removes materials that no library defines from lines and points, which would hardly be seen in their grey: without a
-/// material they get a colour that goes with the background.
+/// Removes materials that no library defines from lines and points, which would hardly be visible in grey: without a
+/// material they get a colour that contrasts with the background.
 fn forget_undefined(model: &Model, mesh: &mut Mesh) {
     let is_default = |m: &Material| *m == Material { name: m.name.clone(), ..Material::default() };
     for part in &mut mesh.parts {

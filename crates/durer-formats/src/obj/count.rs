@@ -3,7 +3,7 @@
 use crate::budget::MODEL;
 use crate::{Error, Limits, Place, Result};
 
-/// Numbers of statements and of what they make.
+/// Numbers of statements and of the elements they create.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Counts {
     pub positions: usize,
@@ -77,7 +77,7 @@ impl Counts {
         Ok(limits.work.keep(MODEL, self.bytes())?)
     }
 
-    /// Returns about how many bytes the numbers take, and the meshes that are made of them.
+    /// Returns an estimate of the bytes for the numbers and the meshes made from them.
     fn bytes(&self) -> u64 {
         let numbers = 3 * (self.positions + self.normals) + 2 * self.tex_coords;
         let corners = 3 * self.triangles + 2 * self.lines + self.points;

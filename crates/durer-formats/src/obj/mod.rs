@@ -1,21 +1,21 @@
 //! Wavefront OBJ with its material library MTL.
 //!
-//! Source: *Wavefront Advanced Visualizer Manual*, appendix B1 (OBJ) and B5 (MTL), 1990s, and what
-//! later writers do. Lines, points and triangles become one mesh each; faces keep the file's order
-//! and are triangulated: fans where these are right, ears if they are not. Names of objects, or of
-//! groups where there is but one object, and materials become parts.
+//! Source: *Wavefront Advanced Visualizer Manual*, appendix B1 (OBJ) and B5 (MTL), 1990s, with the practice of later
+//! writers. Lines, points and triangles become one mesh each; faces keep the file's order and are triangulated: as fans
+//! if these are correct, else by ear clipping. Names of objects, or of groups if there is only one object, and
+//! materials become parts.
 //!
 //! Choices where the manual is silent or tools differ:
 //! - colours (of materials and of vertices, `v x y z r g b`) are sRGB values, as in viewers without
 //!   colour management and in three.js; vertex colours of 0…255 are scaled.
 //! - faces may refer to vertices that come later in the file; negative numbers count back from the
 //!   last vertex so far.
-//! - corners without a normal get, in a file with smoothing groups, the area-weighted mean of the faces
-//!   of their group around the vertex, or where smoothing is off their face's own. A file without
-//!   normals and groups, also with `s off`, leaves them to the renderer; where only some
-//!   corners have normals, the others get the mean of all faces around them.
-//! - what is wrong with one element costs that element only, and a warning.
-//! - a file with vertices and nothing else is a point cloud.
+//! - in a file with smoothing groups, corners without a normal get the area-weighted mean of the faces of their group
+//!   around the vertex, or their face's own normal if smoothing is off. In a file without normals and groups, also with
+//!   `s off`, normals are left to the renderer; if only some corners have normals, the others get the mean of all faces
+//!   around them.
+//! - a fault in one element loses only that element, with a warning.
+//! - a file with only vertices is a point cloud.
 //!
 //! Cost: three passes over the text, one to count. Memory: the text, 24 bytes per `v` while reading,
 //! and the mesh; at most 8 times the file.
@@ -35,10 +35,9 @@ use crate::{Model, ReadOptions, Resources, Result, text};
 /// Reads an OBJ file: UTF-8 or any 8-bit text, or UTF-16 with a byte-order mark.
 ///
 /// # Errors
-/// [`crate::Error::Decode`] for a file without vertices, and with line and column for numbers that are
-/// none and indices to something that does not exist, if nothing is left without them;
-/// [`crate::Error::Limit`] for more primitives than allowed. A missing material library or texture is a
-/// warning.
+/// [`crate::Error::Decode`] for a file without vertices, and, if nothing else is left, with line and column for invalid
+/// numbers and indices out of range; [`crate::Error::Limit`] for more primitives than allowed. A missing material
+/// library or texture is a warning.
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let text = text::utf8(bytes);
     let counts = count::count(&text);

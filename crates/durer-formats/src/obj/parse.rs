@@ -22,8 +22,8 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Returns the name of its primitives, which is that of their part: the object in files with several, else the
-    /// group; the other of the two if one is missing.
+    /// Returns the name of its primitives and of their part: the object's in files with several objects, else the
+    /// group's; if one is missing, the other.
     pub fn name(&self, has_objects: bool) -> &str {
         let (first, second) = match has_objects {
             true => (&self.object, &self.group),
@@ -95,13 +95,13 @@ struct Parser<'a> {
     brightest: f32,
     /// Faces with three or more corners so far.
     faces: usize,
-    /// Placeholder for the normal of a corner that has none: [`NONE`], or in files with smoothing groups
-    /// a number that follows those of the normals: the first for flat faces, then one for each group.
+    /// Placeholder for the normal of a corner that has none: [`NONE`], or in files with smoothing groups a number after
+    /// the normals' numbers: the first for flat faces, then one for each group.
     smoothing: u32,
     groups: HashMap<&'a [u8], u32>,
 }
 
-/// The three kinds of things that corners refer to.
+/// The three kinds of values that corners refer to.
 #[derive(Clone, Copy)]
 enum Kind {
     Position,
@@ -152,7 +152,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Parses statements that name things, and those that are not known.
+    /// Parses statements with names, and unknown statements.
     fn naming(&mut self, word: &[u8]) {
         match word {
             b"usemtl" => {
@@ -288,8 +288,8 @@ impl<'a> Parser<'a> {
         }))
     }
 
-    /// Drops references to texture coordinates or normals where the file has none at all: some
-    /// writers number them all the same.
+    /// Drops references to texture coordinates or normals if the file has none at all: some writers number them
+    /// nevertheless.
     fn only_existing(&mut self, t: Option<i64>, n: Option<i64>) -> (Option<i64>, Option<i64>) {
         let kept =
             (t.filter(|_| self.counts.tex_coords > 0), n.filter(|_| self.counts.normals > 0));
@@ -306,7 +306,7 @@ impl<'a> Parser<'a> {
         self.cursor.error(message)
     }
 
-    /// Returns the number of a thing from the file's index: from 1, or back from −1.
+    /// Resolves an index of the file, from 1 on or back from −1.
     fn resolve(&self, index: i64, kind: Kind) -> Result<u32> {
         let (total, so_far) = match kind {
             Kind::Position => (self.counts.positions, self.out.positions.len()),

@@ -13,7 +13,7 @@ pub(super) struct Repairs {
     pub sloppy: Tally,
     pub unnamed_parts: Tally,
     pub byte_colors: bool,
-    /// Corners with a texture coordinate or normal in a file that has none of them.
+    /// Corners with references to texture coordinates or normals in a file without any.
     pub no_attributes: Tally,
     /// Vertices with no color, or no finite one, where others have one.
     pub no_color: Tally,
@@ -26,7 +26,7 @@ pub(super) struct Repairs {
 }
 
 impl Repairs {
-    /// Warns of everything, once for all of a kind.
+    /// Adds one warning for each kind of repair.
     pub fn tell(&self, model: &mut Model) {
         let word = &self.unknown_word;
         let (corner, number) = (&self.bad_corner, &self.bad_number);

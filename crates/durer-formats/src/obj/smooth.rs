@@ -1,14 +1,14 @@
-//! Normals of corners that have none of their own.
+//! Normals for corners without one.
 //!
-//! In place of such a normal a corner has [`NONE`], or in files with smoothing groups a number from that
-//! of the file's normals on: the first is for flat faces, the others are for the groups.
+//! Such a corner has [`NONE`] as its normal, or in files with smoothing groups a number after the file's normals: the
+//! first is for flat faces, the others are for the groups.
 
 use super::corners::{Corner, NONE};
 use crate::{Model, Place, polygon};
 use durer::math::DVec3;
 use durer::scene::Mesh;
 
-/// Fills in the normals, of a mesh whose faces are fans; `count` is that of the file's.
+/// Fills in the normals of a mesh whose faces are fans; `count` is the number of normals in the file.
 ///
 /// Each is the mean of the vector areas of the faces around the vertex that are of the same group. Flat
 /// faces are left without, which means the face's own.
@@ -37,7 +37,7 @@ pub(super) fn fill(model: &mut Model, mesh: &mut Mesh, keys: &[Corner], count: u
     }
 }
 
-/// Returns for each vertex the sum of twice the vector areas of the faces that it is a corner of.
+/// Returns for each vertex the sum of twice the vector areas of its faces.
 fn areas(mesh: &Mesh) -> Vec<DVec3> {
     let at = |v: u32| mesh.positions.get(v as usize).copied().unwrap_or_default().as_dvec3();
     let mut areas = vec![DVec3::ZERO; mesh.positions.len()];

@@ -1,6 +1,6 @@
 //! Pictures one after another in one file: animated PNG, WebP and GIF, shown again and again.
 //!
-//! Each picture is written as it comes, so memory is that of one.
+//! Each picture is written immediately, so the memory of one suffices.
 
 use super::{charged, gif, refused, sides, webp};
 use crate::png::{Compression, encoding};
@@ -57,7 +57,7 @@ pub struct Options {
     pub frames: u32,
     /// Time that all pictures take, in seconds.
     pub seconds: f64,
-    /// True if pictures may be transparent. Where they may not, their alpha is left out of a PNG.
+    /// True if pictures may be transparent; otherwise their alpha is left out of a PNG.
     pub alpha: bool,
     /// Effort of PNG compression.
     pub compression: Compression,
@@ -82,7 +82,7 @@ impl<W: Write + Seek> Animation<W> {
     /// Begins a file. Only a WebP seeks in it.
     ///
     /// # Errors
-    /// [`Error::Library`] for a size or times that the format cannot say, [`Error::Io`] where writing
+    /// [`Error::Library`] for a size or times that the format cannot say, [`Error::Io`] if writing
     /// fails.
     pub fn new(out: W, format: AnimationFormat, options: &Options) -> Result<Self> {
         check(format, options)?;
@@ -98,7 +98,7 @@ impl<W: Write + Seek> Animation<W> {
     /// Adds the next picture.
     ///
     /// # Errors
-    /// [`Error::Library`] for one of another size or one too many, [`Error::Io`] where writing fails.
+    /// [`Error::Library`] for one of another size or one too many, [`Error::Io`] if writing fails.
     pub fn push(&mut self, pixels: &Pixels<[u8; 4]>) -> Result<()> {
         let (width, height) = sides(pixels, u32::MAX, "1x1 at least")?;
         if (width, height) != self.options.size || self.count >= self.options.frames {
@@ -129,7 +129,7 @@ impl<W: Write + Seek> Animation<W> {
     /// Ends the file.
     ///
     /// # Errors
-    /// [`Error::Library`] where pictures are missing, [`Error::Io`] where writing fails.
+    /// [`Error::Library`] if pictures are missing, [`Error::Io`] if writing fails.
     pub fn finish(self) -> Result<()> {
         if self.count != self.options.frames {
             let value = self.count.to_string();
@@ -159,7 +159,7 @@ fn check(format: AnimationFormat, options: &Options) -> Result<()> {
     }
     let (least, most) = format.times();
     let each = options.seconds / f64::from(options.frames);
-    // A little less for numbers such as 0.3 / 15.
+    // Slightly less, because of rounded numbers such as 0.3 / 15.
     if !(each >= least * (1.0 - 1e-9) && each <= most) {
         let expected = match format {
             AnimationFormat::Gif => "0.02 to 600 seconds for each picture of a GIF",
@@ -226,7 +226,7 @@ fn push_webp<W: Write>(out: &mut W, pixels: &Pixels<[u8; 4]>, delay: u32) -> Res
     webp::write(&mut still, pixels)?;
     // A still picture is its header and one chunk, which is of an even length.
     let chunk = still.get(RIFF_HEADER..).unwrap_or_default();
-    // Place and size, time, flags: the picture replaces what is there.
+    // Place and size, time, flags: the picture replaces the previous one.
     let header_length = 16;
     let length = u32::try_from(chunk.len() + header_length).map_err(refused)?;
     out.write_all(b"ANMF")?;

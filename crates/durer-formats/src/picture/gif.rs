@@ -25,7 +25,7 @@ pub fn push<W: Write>(
     // Numbers of colours, and the frame, which the encoder makes in memory.
     let _room = charged(pixels, 1 + 2)?;
     let Indexed { palette, indices, transparent } = indexed(pixels);
-    // Through what is transparent the picture before would be seen.
+    // Otherwise the previous picture would be visible through transparent pixels.
     let dispose = match transparent {
         Some(_) => DisposalMethod::Background,
         None => DisposalMethod::Keep,

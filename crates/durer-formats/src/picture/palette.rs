@@ -31,7 +31,7 @@ struct Group {
     mean: u8,
 }
 
-/// Finds colours for a picture: its own where they are at most 256, with the transparent one.
+/// Finds colours for a picture: its own if there are at most 256, including the transparent one.
 pub fn indexed(pixels: &Pixels<[u8; 4]>) -> Indexed {
     let mut colors = counted(pixels);
     let clear = pixels.data().iter().any(|p| p[3] < SEEN);
@@ -50,7 +50,7 @@ pub fn indexed(pixels: &Pixels<[u8; 4]>) -> Indexed {
     Indexed { palette, indices, transparent }
 }
 
-/// Returns the colours of what is not transparent, in order, with their numbers of pixels.
+/// Returns the colours of pixels that are not transparent, in order, with their numbers of pixels.
 fn counted(pixels: &Pixels<[u8; 4]>) -> Vec<([u8; 3], u64)> {
     let seen = pixels.data().iter().filter(|p| p[3] >= SEEN);
     let mut all: Vec<[u8; 3]> = seen.map(|&[r, g, b, _]| [r, g, b]).collect();
@@ -65,7 +65,7 @@ fn grouped(colors: &mut [([u8; 3], u64)], most: usize) -> Vec<Group> {
     }
     let mut groups = vec![Group::of(colors, 0, colors.len())];
     while groups.len() < most {
-        // The first of those that are equally bad.
+        // The first of equally bad ones.
         let worst = (0..groups.len()).rev().max_by_key(|&i| groups[i].error).unwrap_or(0);
         let Group { start, end, error, channel, mean } = groups[worst];
         if error == 0 {
@@ -103,8 +103,7 @@ impl Group {
     }
 }
 
-/// Returns the colour of most pixels where it has half of them, so that a background stays as it is; else
-/// the mean.
+/// Returns the most frequent colour if it has half of the pixels, so that a background keeps its colour; else the mean.
 fn representative(colors: &[([u8; 3], u64)]) -> [u8; 3] {
     let pixels = colors.iter().map(|c| c.1).sum::<u64>().max(1);
     let main = colors.iter().rev().max_by_key(|c| c.1);

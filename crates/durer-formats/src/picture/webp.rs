@@ -13,7 +13,7 @@ pub const MAX_SIDE: u32 = 1 << 14;
 pub fn write<W: Write>(out: W, pixels: &Pixels<[u8; 4]>) -> Result<()> {
     let expected = "1x1 to 16384x16384 for a WebP, which has room for no more pixels along a side";
     let (width, height) = sides(pixels, MAX_SIDE, expected)?;
-    // Colours without alpha, what the encoder predicts from them, and the file, which it makes in memory.
+    // Colours without alpha, the encoder's predictions, and the file, which it builds in memory.
     let _room = charged(pixels, 3 + 4 + 4)?;
     let encoder = WebPEncoder::new(out);
     let written = if is_opaque(pixels) {

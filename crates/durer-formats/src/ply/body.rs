@@ -36,7 +36,7 @@ pub(super) trait Values {
     /// Checks that the file has room for a list.
     ///
     /// # Errors
-    /// Where it has not.
+    /// If it has no room.
     fn check_list(&mut self, kind: Type, length: u64) -> Result<()> {
         let (least, left) = (length.saturating_mul(self.least_value(kind)), self.bytes_left());
         // The last value of an ascii file needs no blank behind it.
@@ -48,7 +48,7 @@ pub(super) trait Values {
         Err(Error::Decode { place: self.place(), message })
     }
 
-    /// Returns whether a value was requested that the file has no more.
+    /// Returns whether a value beyond the end of the file was requested.
     fn ended(&self) -> bool;
 
     /// Returns the place and message for values beyond the last element.

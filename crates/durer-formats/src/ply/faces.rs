@@ -23,7 +23,7 @@ pub(super) struct Faces {
     numbers: HashMap<[u32; 2], u32>,
     /// Faces of fewer than three vertices.
     small: Tally,
-    /// Faces whose list of texture coordinates has another length than that of vertices.
+    /// Faces whose lists of texture coordinates and of vertices differ in length.
     odd_tex_coords: Tally,
     /// The row that is read.
     corners: Vec<u32>,
@@ -168,7 +168,7 @@ impl Faces {
             (&self.small, "faces have fewer than three vertices and were left out"),
             (
                 &self.odd_tex_coords,
-                "faces have another number of texture coordinates than of vertices; they have none",
+                "faces have different numbers of texture coordinates and vertices; they get none",
             ),
         ]
     }

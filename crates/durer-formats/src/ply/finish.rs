@@ -56,7 +56,7 @@ pub(super) fn format(header: &Header) -> &'static str {
     }
 }
 
-/// Leaves out faces and edges that came before vertices of which the file has not all.
+/// Leaves out faces and edges that precede vertices if vertices are missing at the end of the file.
 fn drop_unfinished(model: &mut Model, builder: &mut Builder) {
     let there = builder.vertices.len();
     if there as u64 >= builder.bounds.vertex_count {
@@ -76,7 +76,7 @@ fn drop_unfinished(model: &mut Model, builder: &mut Builder) {
 /// Warns of faces and edges whose vertices do not exist.
 ///
 /// # Errors
-/// Where nothing else is left.
+/// If nothing else is left.
 pub(super) fn check_dangling(model: &mut Model, bounds: &Bounds, nothing: bool) -> Result<()> {
     let dangling = &bounds.dangling;
     if dangling.count == 0 {

@@ -54,7 +54,7 @@ pub(super) struct Header {
     pub length: usize,
     /// Lines up to the data.
     pub lines: u64,
-    /// Lines that begin with no word of PLY: some writers forget `comment`.
+    /// Lines that do not begin with a keyword of PLY: some writers forget `comment`.
     pub unknown: Tally,
 }
 
@@ -157,7 +157,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header> {
     Ok(Header { encoding, elements, textures, length, lines: cursor.line() + 1, unknown })
 }
 
-/// Returns the picture that a comment names, as VCG's library and those that follow it write it.
+/// Returns the picture named by a comment, as VCG's library and others write it.
 fn texture(cursor: &mut Cursor<'_>) -> Option<String> {
     let names = cursor.word()?.eq_ignore_ascii_case(b"TextureFile");
     let name = names.then(|| String::from_utf8_lossy(cursor.rest()).into_owned());

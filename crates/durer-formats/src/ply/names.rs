@@ -2,8 +2,8 @@
 
 use super::header::{Element, Property, Type};
 
-/// Values of a vertex, in order: position, normal, colour with alpha, texture coordinate, and those of
-/// a Gaussian splat: colour, opacity, logarithms of radii, rotation.
+/// Values of a vertex, in order: position, normal, colour with alpha, texture coordinate, and the values of a Gaussian
+/// splat: colour, opacity, logarithms of radii, rotation.
 pub(super) const VALUES: usize = 23;
 pub(super) const NORMAL: usize = 3;
 pub(super) const RED: usize = 6;
@@ -71,7 +71,7 @@ impl Plan {
         let mut steps: Vec<Step> = Vec::new();
         for property in &element.properties {
             let usage = usage(role, property);
-            // Of two names for one thing the first counts.
+            // The first of two names for one property is used.
             let known = usage != Use::Nothing && steps.iter().any(|s| s.usage == usage);
             let usage = if known { Use::Nothing } else { usage };
             steps.push(Step { usage, list: property.list, kind: property.kind });

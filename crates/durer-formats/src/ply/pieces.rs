@@ -63,7 +63,7 @@ struct FacesSeen {
     triangles: u64,
     /// Message about the end of the file: missing or extra values.
     end: Option<(Place, String)>,
-    /// A bit for each vertex that something is drawn with.
+    /// A bit for each vertex that primitives use.
     used: Vec<u64>,
     _charge: Charge,
 }
@@ -97,11 +97,10 @@ fn elements(header: &Header) -> Option<(&Element, Option<&Element>)> {
 }
 
 impl<R: Read + Seek> Pieces<R> {
-    /// Opens a file of `length` bytes, in pieces of about this many vertices or faces; `None` if it is no such
-    /// file.
+    /// Opens a file of `length` bytes, in pieces of about this many vertices or faces; `None` if it is not such a file.
     ///
     /// # Errors
-    /// [`Error::Limit`] for too many vertices, [`Error::Io`], [`durer::Error::Memory`] where the budget has no room for
+    /// [`Error::Limit`] for too many vertices, [`Error::Io`], [`durer::Error::Memory`] if the budget has no room for
     /// a piece.
     pub fn new(
         mut source: R,
@@ -281,7 +280,7 @@ impl<R: Read + Seek> Pieces<R> {
         Ok(())
     }
 
-    /// Returns a scene of some vertices and what is drawn with them.
+    /// Returns a scene of some vertices and their primitives.
     fn scene(&mut self, mut mesh: Mesh) -> Result<Scene> {
         if self.faces.is_none() {
             mesh.topology = Topology::Points;
@@ -383,7 +382,7 @@ impl<R: Read + Seek> crate::Pieces for Pieces<R> {
 
     fn only(&mut self, numbers: &[u32]) -> Result<(Scene, Charge)> {
         let corners = if self.faces.is_some() { 3 } else { 1 };
-        // The most that it can be: each corner a vertex of its own, and its number.
+        // Upper bound: each corner is a separate vertex with an index.
         let bytes = numbers.len() as u64 * corners * (44 + 4);
         let charge = self.options.limits.work.charge(MODEL, bytes)?;
         let mut mesh = Mesh::default();

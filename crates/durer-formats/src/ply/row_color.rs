@@ -15,7 +15,7 @@ pub(super) struct RowColor {
 }
 
 impl RowColor {
-    /// Creates a white colour, of a row that has a colour or has none.
+    /// Creates a white colour; `used` tells whether rows have colours.
     pub fn new(used: bool) -> Self {
         Self { rgba: [1.0; 4], used }
     }
@@ -32,7 +32,7 @@ impl RowColor {
         Ok(())
     }
 
-    /// Returns its number in the palette; [`NONE`] where rows have none.
+    /// Returns its number in the palette; [`NONE`] if rows have no colours.
     pub fn number(self, palette: &mut Palette) -> u32 {
         if self.used { palette.number(self.rgba) } else { NONE }
     }

@@ -1,10 +1,9 @@
 //! Gaussian splats, drawn as discs.
 //!
-//! Source: B. Kerbl, G. Kopanas, T. Leimkühler, G. Drettakis, *3D Gaussian Splatting for Real-Time
-//! Radiance Field Rendering*, ACM Transactions on Graphics 42 (4), 2023, whose program writes these
-//! files. A splat is a normal distribution with three radii; here it is a hexagon in the plane of
-//! the two larger ones, or where the third is not much smaller an octahedron, of its first colour,
-//! without the parts that depend on the direction of sight.
+//! Source: B. Kerbl, G. Kopanas, T. Leimkühler, G. Drettakis, *3D Gaussian Splatting for Real-Time Radiance Field
+//! Rendering*, ACM Transactions on Graphics 42 (4), 2023, whose program writes these files. A splat is a normal
+//! distribution with three radii; here it is a hexagon in the plane of the two larger radii, or an octahedron if the
+//! third is not much smaller, in its base colour, without the parts that depend on the viewing direction.
 
 use super::vertices::{Shape, Vertices};
 use crate::facets::{Attributes, whole};
@@ -13,9 +12,9 @@ use crate::{Error, Limits, Model, Place, Result};
 use durer::math::{Vec3, Vec4};
 use durer::scene::{Material, Mesh, ShadingModel};
 
-/// A disc's radius in standard deviations: neighbours close to a surface, and edges stay where they are.
+/// A disc's radius in standard deviations: neighbours form a closed surface, and edges keep their places.
 const RADIUS: f32 = 1.5;
-/// Splats that let through more of what is behind them are mist around what is to be seen.
+/// Smallest opacity of drawn splats; more transparent ones are mist around the objects.
 const OPACITY: f32 = 0.3;
 /// A splat is round where the logarithms of its radii differ by less: by less than a half.
 const ROUND: f32 = 0.7;
@@ -102,7 +101,7 @@ impl Shape {
         self.scale.max_element() - self.scale.min_element() < ROUND
     }
 
-    /// Returns the triangles of what is drawn.
+    /// Returns the triangles of its shape.
     fn triangles(&self) -> &'static [u32] {
         if self.is_round() { &SOLID } else { &FLAT }
     }

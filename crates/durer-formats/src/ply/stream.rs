@@ -54,7 +54,7 @@ impl<R: Read + Seek> Stream<R> {
         self.start.saturating_add(self.at as u64)
     }
 
-    /// Moves what is left to the front and reads on.
+    /// Moves the remaining bytes to the front and reads on.
     #[cold]
     fn refill(&mut self) -> Result<()> {
         self.buffer.drain(..self.at);

@@ -5,8 +5,8 @@ use crate::facets::whole;
 use crate::{Model, Place, ReadOptions, Resources, mtl};
 use durer::scene::{Mesh, Part};
 
-/// Assigns to a mesh the materials of the pictures that the header names; `numbers` has that of each face, where faces
-/// name one.
+/// Assigns to a mesh the materials of the pictures that the header names; `numbers` has the picture's number for each
+/// face, if faces name one.
 pub(super) fn lay_on(
     model: &mut Model,
     mesh: &mut Mesh,
@@ -52,7 +52,7 @@ fn parts(
         let start = mesh.faces.get(face).map_or(face as u32, |&start| start);
         let material = Some(materials.start.saturating_add(number as usize));
         let material = material.filter(|m| materials.contains(m));
-        // The largest number stands for what writers say by −1: none.
+        // The largest number is −1, which writers use for none.
         unknown += u64::from(material.is_none() && number != u32::MAX);
         match parts.last_mut() {
             Some(last) if last.material == material => {}

@@ -10,10 +10,10 @@ use crate::facets::Attributes;
 use crate::{Error, Result, place};
 use durer::math::{DVec3, Vec2, Vec3, Vec4};
 
-/// Half the root of 1 / π: what a splat's first coefficient of spherical harmonics is multiplied by.
+/// Half the root of 1 / π, the factor of a splat's first coefficient of spherical harmonics.
 const SH_C0: f64 = 0.282_094_791_773_878_14;
 
-/// The vertices so far; each list but that of the positions may be empty.
+/// The vertices so far; all lists except the positions may be empty.
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
     /// Attributes of the mesh; colours are sRGB values.
@@ -100,7 +100,7 @@ impl Vertices {
         self.wide.as_ref().map_or(self.all.positions.len(), Vec::len)
     }
 
-    /// Returns the positions, relative to an origin where they are wide.
+    /// Returns the positions, relative to an origin if they have double precision.
     pub fn into_positions(self, origin: DVec3) -> Vec<Vec3> {
         self.wide.map_or(self.all.positions, |wide| place::narrow(&wide, origin))
     }
@@ -139,7 +139,7 @@ impl Vertices {
         if self.kinds.color {
             let part = |slot: usize| (v[slot] / self.present[slot].unwrap_or(1.0)) as f32;
             let alpha = if self.has(ALPHA, 1) { part(ALPHA) } else { 1.0 };
-            // Linear light is computed at the end, where bytes and floats are told apart.
+            // Linear light is computed at the end, where bytes and floats are distinguished.
             self.all.colors.push(Vec4::new(part(RED), part(RED + 1), part(RED + 2), alpha));
         } else if self.kinds.splat_color {
             self.all.colors.push(self.splat_color(three(SPLAT_COLOR), v[OPACITY]));

@@ -1,4 +1,4 @@
-//! Outlines that cross themselves: whether they do, and what they enclose.
+//! Outlines that cross themselves: their detection and the region that they enclose.
 
 use super::Budget;
 use durer::clip::polygon::overlay::{self, EdgeId, Origin};
@@ -55,7 +55,7 @@ pub(super) enum Corner {
     New(usize),
 }
 
-/// A point on two edges: the numbers of the corners at their ends, and how far along it lies.
+/// A point on two edges: the numbers of the corners at their ends, and its position along each.
 pub(super) type Crossing = [([usize; 2], f64); 2];
 
 /// The points that an outline winds around, as triangles that run counter-clockwise.
@@ -67,7 +67,7 @@ pub(super) struct Resolved {
     numbers: HashMap<[[usize; 2]; 2], usize>,
 }
 
-/// Finds what an outline encloses by the non-zero rule. `None` if this cannot be decided.
+/// Finds the region that an outline encloses by the non-zero rule. `None` if this cannot be decided.
 pub(super) fn resolve(points: &[DVec2], budget: &mut Budget) -> Option<Resolved> {
     budget.spend(100 * points.len())?;
     let outline = Shapes::from_rings([points]);

@@ -80,7 +80,7 @@ enum Ear {
 struct Queue {
     corners: VecDeque<usize>,
     queued: Vec<bool>,
-    /// Per corner, those that it is in the way of.
+    /// Per corner, the corners whose ears it blocks.
     waiting: Vec<Vec<usize>>,
 }
 
@@ -102,7 +102,7 @@ impl Queue {
         Some(i)
     }
 
-    /// Queues all that a corner was in the way of.
+    /// Queues all corners whose ears a corner blocked.
     fn free(&mut self, other: usize) {
         std::mem::take(&mut self.waiting[other]).into_iter().for_each(|i| self.push(i));
     }
@@ -115,7 +115,7 @@ struct Ring<'a> {
     prev: Vec<usize>,
     left: usize,
     there: Vec<bool>,
-    /// Corners that are there and do not turn left: only these lie in the way of ears.
+    /// Remaining corners that do not turn left: only these can block ears.
     blunt: Vec<bool>,
     cells: Cells,
 }
@@ -164,7 +164,7 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// Returns whether a corner is where the one before it is, or the tip of a spike.
+    /// Returns whether a corner coincides with the one before it, or is the tip of a spike.
     fn is_nothing(&self, i: usize) -> bool {
         let [a, b, c] = self.around(i).map(|i| self.points[i]);
         a == b || (orient2d(a, b, c) == Orientation::Collinear && (a - b).dot(c - b) > 0.0)
@@ -218,7 +218,7 @@ impl<'a> Ring<'a> {
         in_the_way
     }
 
-    /// Returns whether the rest encloses nothing but rounding errors.
+    /// Returns whether the rest has no area up to rounding errors.
     fn has_no_area(&self) -> bool {
         let Some(origin) = self.corners().next().map(|i| self.points[i]) else { return true };
         let from = |i: usize| self.points[i] - origin;
@@ -234,7 +234,7 @@ fn is_thin([a, b, c]: [DVec2; 3]) -> bool {
     orient2d_value(a, b, c) < THIN * longest
 }
 
-/// Corners by the cell of a grid that they lie in.
+/// Corners by their cells of a grid.
 #[derive(Default)]
 struct Cells {
     low: DVec2,
@@ -269,7 +269,7 @@ impl Cells {
         cells
     }
 
-    /// Returns the column and row, those at the border for what is outside.
+    /// Returns the column and row, clamped to the grid.
     fn place(&self, p: DVec2) -> [usize; 2] {
         ((p - self.low) * self.scale).to_array().map(|v| (v as usize).min(self.side - 1))
     }

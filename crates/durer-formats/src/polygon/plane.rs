@@ -2,7 +2,7 @@
 
 use durer::math::{DVec2, DVec3};
 
-/// Corners nearer to the plane than this part of the polygon's size lie in it, but for rounding.
+/// Distance from the plane, as a part of the polygon's size, below which corners count as in it.
 const FLAT: f64 = 1e-9;
 
 /// Corners farther from the plane than this part of the polygon's size make a bent face.
@@ -36,16 +36,14 @@ impl Plane {
         size.is_finite().then_some(Self { origin, normal, none: FLAT * size })
     }
 
-    /// Returns whether corners lie so far off the plane that edges which cross in it pass each other
-    /// in space.
+    /// Returns whether corners are so far off the plane that edges which cross in it pass each other in space.
     pub fn is_left_by(&self, points: &[DVec3]) -> bool {
         let limit = self.none / FLAT * BENT;
         points.iter().any(|p| (*p - self.origin).dot(self.normal).abs() > limit)
     }
 
-    /// Returns a point along the normal, on the plane of two axes that the polygon is seen best in.
-    /// Points that lie in the plane already keep their coordinates, so that no rounding bends straight
-    /// lines.
+    /// Projects a point along the normal to the plane of two axes in which the polygon is largest. Points already in
+    /// the polygon's plane keep their coordinates, so that no rounding bends straight lines.
     pub fn flat(&self, p: DVec3) -> DVec2 {
         let height = (p - self.origin).dot(self.normal);
         let p = if height.abs() > self.none { p - height * self.normal } else { p };

@@ -8,7 +8,7 @@ use std::ops::{Add, Mul};
 /// A vertex to be added: the mean of two points, each on the line between two vertices.
 type Between = [([u32; 2], f64); 2];
 
-/// The faces that get other triangles, in order.
+/// The faces whose triangles are replaced, in order.
 #[derive(Debug, Default)]
 pub(super) struct Replaced {
     /// Faces, and where their triangles end.
@@ -39,7 +39,7 @@ impl Replaced {
         self.faces.push((face, self.triangles.len()));
     }
 
-    /// Replaces a face by triangles whose corners may lie where its edges cross.
+    /// Replaces a face by triangles whose corners may be at crossings of its edges.
     pub fn add_resolved(&mut self, face: usize, corners: &[u32], resolved: &Resolved) {
         if resolved.triangles.is_empty() {
             return;
@@ -88,7 +88,7 @@ impl Replaced {
         starts.zip(&self.faces).map(range)
     }
 
-    /// Writes over the fans where each has as many triangles as comes in its place.
+    /// Overwrites the fans if each has as many triangles as its replacement; returns whether that was possible.
     fn fit_in_place(&self, mesh: &mut Mesh) -> bool {
         let count = mesh.triangle_count();
         let Some(indices) = &mut mesh.indices else { return true };
@@ -108,7 +108,7 @@ impl Replaced {
         true
     }
 
-    /// Writes all triangles anew, with the faces' and the parts' beginnings moved along.
+    /// Rewrites all triangles, and adjusts the starts of faces and parts.
     fn rebuild(&self, mesh: &mut Mesh) {
         let count = mesh.triangle_count();
         let old = mesh.indices.take().unwrap_or_default();
@@ -145,7 +145,7 @@ impl Replaced {
     }
 }
 
-/// Adds the values of new vertices, where there are values at all.
+/// Adds the values of new vertices, if there are any values.
 fn extend<T>(values: &mut Vec<T>, added: &[Between])
 where
     T: Copy + Default + Add<Output = T> + Mul<f32, Output = T>,

@@ -11,7 +11,7 @@ pub struct Column {
     pub default: Option<String>,
     /// True if it is the number of the row.
     pub is_number: bool,
-    /// True if rows have a place for it: values that are computed when requested have none.
+    /// True if rows store it: values computed on demand are not stored.
     pub is_stored: bool,
 }
 
@@ -41,7 +41,7 @@ impl Token {
     }
 }
 
-/// Returns the columns of a table with numbered rows, in their order; `None` for anything else.
+/// Returns the columns of a table with numbered rows, in order; `None` for other statements.
 pub fn columns(sql: &str) -> Option<Vec<Column>> {
     let tokens = tokens(sql);
     let start = tokens.iter().position(|t| *t == Token::Sign('('))?;
@@ -182,7 +182,7 @@ fn is_letter(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '_' | '$' | '.') || !c.is_ascii() && !c.is_whitespace()
 }
 
-/// A text in quotes, and what follows it.
+/// A text in quotes, and the rest after it.
 struct Quoted<'a>(String, &'a str);
 
 impl<'a> Quoted<'a> {

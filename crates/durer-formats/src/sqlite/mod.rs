@@ -1,5 +1,5 @@
 //! Databases of SQLite: <https://www.sqlite.org/fileformat2.html>. New ones are written page by page, and tables of
-//! others are read row by row. Nothing is asked of them in SQL but the names of columns.
+//! others are read row by row. Only the names of columns are read from their SQL.
 
 mod columns;
 mod read;

@@ -1,10 +1,10 @@
-//! Tables of databases, row by row, from bytes that may say anything.
+//! Tables of databases, row by row, from untrusted bytes.
 
 use super::{HEADER, MAGIC, TABLE_INNER, TABLE_LEAF, Value};
 use crate::{Error, Result};
 use std::borrow::Cow;
 
-/// Trees of pages are so high, at most, as in SQLite.
+/// Largest height of a tree of pages, as in SQLite.
 const MAX_DEPTH: usize = 20;
 
 /// Encoding of texts.
@@ -50,7 +50,7 @@ impl Database {
     /// Reads the header.
     ///
     /// # Errors
-    /// Where there is none, or one that cannot be.
+    /// If the header is missing or invalid.
     pub fn new(bytes: Vec<u8>) -> Result<Self> {
         let head: &[u8; HEADER] = bytes
             .first_chunk()
@@ -85,13 +85,13 @@ impl Database {
         self.bytes.len().div_ceil(self.page) as u64
     }
 
-    /// Returns a page, and what it is called in messages.
+    /// Returns a page.
     fn page(&self, number: u32) -> Result<&[u8]> {
         let start = (number as usize).checked_sub(1).and_then(|i| i.checked_mul(self.page));
         let found = start.and_then(|start| self.bytes.get(start..start.checked_add(self.page)?));
         found.ok_or_else(|| {
             let pages = self.bytes.len() / self.page;
-            Error::whole(format!("page {number} is asked for, but the file ends after {pages}"))
+            Error::whole(format!("page {number} is needed, but the file ends after {pages}"))
         })
     }
 
@@ -102,7 +102,7 @@ impl Database {
     /// Returns everything in the database, as its first table lists it.
     ///
     /// # Errors
-    /// Where that table cannot be read.
+    /// If that table cannot be read.
     pub fn tables(&self) -> Result<Vec<Table>> {
         let (mut rows, mut tables) = (self.rows(1), Vec::new());
         while let Some(row) = rows.next(self)? {
@@ -123,7 +123,7 @@ impl Database {
     /// Returns the values of a row.
     ///
     /// # Errors
-    /// Where they are more than the row has room for.
+    /// If the row has no room for them.
     pub fn values<'a>(&self, row: &'a Row<'_>) -> Result<Vec<Value<'a>>> {
         let wrong = || Error::whole(format!("row {} of a table cannot be read", row.number));
         self.values_of(&row.record).ok_or_else(wrong)
@@ -174,7 +174,7 @@ impl Database {
 
 /// Position of the reader in a table's rows.
 pub struct Rows {
-    /// Pages from the first one downwards, and what of each comes next.
+    /// Pages from the first one downwards, and the next entry of each.
     stack: Vec<(u32, usize)>,
     /// Pages that may yet be read: none is read twice, but where the file is wrong.
     left: u64,
@@ -186,7 +186,7 @@ impl Rows {
     /// Returns the next row; `None` at the end.
     ///
     /// # Errors
-    /// Where pages are not those of a table.
+    /// If pages do not belong to a table.
     pub fn next<'a>(&mut self, database: &'a Database) -> Result<Option<Row<'a>>> {
         while let Some(&(number, index)) = self.stack.last() {
             let node = Node::new(database, number)?;
@@ -242,7 +242,7 @@ impl Rows {
         Ok(Row { number: number as i64, record })
     }
 
-    /// Returns the bytes of a row that goes on on other pages.
+    /// Returns the bytes of a row that continues on other pages.
     fn follow(
         &mut self,
         database: &Database,
@@ -296,7 +296,7 @@ impl<'a> Node<'a> {
         self.page.get(usize::from(at[0]) << 8 | usize::from(at[1])..)
     }
 
-    /// Returns a page below; after those of the cells there is one more.
+    /// Returns a child page; there is one more after the cells'.
     fn child(&self, index: usize) -> Option<u32> {
         match index.cmp(&self.count) {
             _ if self.is_leaf => None,
@@ -334,7 +334,7 @@ fn word(bytes: &[u8], at: usize) -> Option<u32> {
     Some(u32::from_be_bytes(*bytes.get(at..)?.first_chunk()?))
 }
 
-/// Returns a number of up to nine bytes, and what follows it.
+/// Returns a number of up to nine bytes, and the rest after it.
 fn varint(bytes: &[u8]) -> Option<(u64, &[u8])> {
     let mut value = 0;
     for (i, &byte) in bytes.iter().enumerate().take(9) {

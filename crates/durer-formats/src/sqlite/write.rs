@@ -1,7 +1,7 @@
 //! New databases of SQLite, written from the first page to the last: <https://www.sqlite.org/fileformat2.html>.
 //!
-//! Tables get their rows in the order of their numbers, and indices are built when all entries are there; nothing is
-//! ever changed but the first page.
+//! Tables get their rows in the order of their numbers, and indices are built when all entries are known; only the
+//! first page is ever changed.
 
 use super::{HEADER, INDEX_INNER, INDEX_LEAF, MAGIC, TABLE_INNER, TABLE_LEAF, Value};
 use crate::{Error, Place, Result};
@@ -15,16 +15,16 @@ const LOCKED: u32 = (1 << 30) / PAGE as u32 + 1;
 /// A page may have this number, and no higher one.
 const MOST_PAGES: u32 = u32::MAX - 4;
 
-/// A record longer than this goes on on other pages …
+/// Length above which a record continues on other pages …
 const MOST: usize = PAGE - 35;
 
 /// … so that at least this stays.
 const LEAST: usize = (PAGE - 12) * 32 / 255 - 23;
 
-/// Nor is a record longer than this, as SQLite is built.
+/// Largest record in SQLite's default build.
 const LONGEST: usize = 1_000_000_000;
 
-/// The pages of a database that is being written, but for the first one, which is known when all others are.
+/// The pages of a database that is being written, except the first one, which depends on all others.
 pub struct Database {
     /// Free pages.
     out: Vec<u8>,
@@ -39,7 +39,7 @@ impl Database {
         Self { out: vec![0; PAGE], pages: 1, schema: Vec::new() }
     }
 
-    /// Returns the pages since the last call, which follow those of that one.
+    /// Returns the pages added since the last call.
     pub fn take(&mut self) -> Vec<u8> {
         std::mem::take(&mut self.out)
     }
@@ -61,7 +61,7 @@ impl Database {
         Ok(self.pages)
     }
 
-    /// Registers a table or index whose first page is `root`; an index that SQLite makes by itself has no text.
+    /// Registers a table or index whose first page is `root`; an index that SQLite makes automatically has no text.
     pub fn name(&mut self, kind: &str, name: &str, table: &str, root: u32, sql: &str) {
         let sql = if sql.is_empty() { Value::Null } else { Value::from(sql) };
         let [kind, name, table] = [kind, name, table].map(Value::from);
@@ -85,7 +85,7 @@ impl Database {
         Ok((bytes, self.out))
     }
 
-    /// Returns the cell of a row; what is too long goes to pages of its own.
+    /// Returns the cell of a row; the rest of a long record goes to overflow pages.
     fn row(&mut self, number: i64, record: &[u8]) -> Result<Vec<u8>> {
         if record.len() > LONGEST {
             let (value, limit) = (record.len() as u64, LONGEST as u64);
@@ -127,7 +127,7 @@ fn header(pages: u32, application: u32, version: u32) -> [u8; HEADER] {
     put(16, &(PAGE as u16).to_be_bytes());
     // Versions, and shares of a page, that are always these.
     put(18, &[1, 1, 0, 64, 32, 32]);
-    // How often it was changed, pages; schema: how often it was changed, its format; UTF-8.
+    // Change counter, pages; schema: change counter, format; UTF-8.
     let counts = [(24, 1), (28, pages), (40, 1), (44, 4), (56, 1), (92, 1), (96, VERSION)];
     for (at, value) in counts.into_iter().chain([(60, version), (68, application)]) {
         put(at, &value.to_be_bytes());
@@ -171,7 +171,7 @@ impl Page {
         self.ends.push(self.cells.len());
     }
 
-    /// Returns the page, with a last child where it has children.
+    /// Returns the page, with a last child if it has children.
     fn bytes(&self, last: Option<u32>) -> Vec<u8> {
         let mut bytes = vec![0; self.before];
         let start = PAGE - self.cells.len();
@@ -188,7 +188,7 @@ impl Page {
     }
 }
 
-/// A table that gets one row after the other.
+/// A table that is written row by row.
 pub struct Table {
     leaf: Page,
     /// The number of the last row.
@@ -254,8 +254,7 @@ const CHILDREN: usize = (PAGE - 12) / (15 + RECORD);
 /// … this many bytes, its length included.
 const RECORD: usize = 40;
 
-/// Returns parts of a list, none with more than `most` items (2 at least), nor with much fewer than
-/// another.
+/// Divides a list into parts of similar length, each with at most `most` items (2 at least).
 fn evenly<T>(list: &[T], most: usize) -> impl Iterator<Item = &[T]> {
     let count = list.len().div_ceil(most);
     (0..count).map(move |i| &list[i * list.len() / count..(i + 1) * list.len() / count])
@@ -270,7 +269,7 @@ pub fn index(to: &mut Database, records: &[Vec<u8>]) -> Result<u32> {
         cell.extend_from_slice(record);
         cell
     };
-    // Between two leaves is one record; counted to each but the last leaf.
+    // There is one record between two leaves; it belongs to the leaf before it.
     let mut level: Vec<(u32, &[u8])> = Vec::new();
     let mut next = 0;
     let leaves = (records.len() + 1).div_ceil(CHILDREN).max(1);

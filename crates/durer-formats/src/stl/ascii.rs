@@ -58,7 +58,7 @@ struct Ascii<'a> {
     /// Vertices that are not three numbers, and the fault of the first.
     bad_vertices: Tally,
     bad_vertex: Option<Error>,
-    /// True if the facet that is open has such a vertex.
+    /// True if the current facet has such a vertex.
     spoiled: bool,
     limits: Limits,
 }
@@ -100,7 +100,7 @@ impl<'a> Ascii<'a> {
             } else if is(b"end") {
                 self.end_of(cursor)?;
             } else if is(b"normal") {
-                // Not used, and not worth an error where it is wrong.
+                // Not used, so errors in it are ignored.
                 for _ in 0..3 {
                     cursor.word();
                 }
@@ -190,8 +190,7 @@ impl<'a> Ascii<'a> {
     /// Grows by halves, not by doubling, so that memory stays near what is needed.
     fn reserve(&mut self, read: usize) {
         if self.points.len() == self.points.capacity() {
-            // What was read so far has a vertex per this many bytes; the first guess is a page's
-            // worth.
+            // Estimated from the bytes per vertex read so far; the first guess is one page.
             let more = (self.points.len() / 2).max(read.min(256)).max(16);
             self.points.reserve_exact(more);
         }
@@ -229,11 +228,11 @@ impl<'a> Ascii<'a> {
         self.points.extend(rest.windows(2).flat_map(|pair| [first, pair[0], pair[1]]));
     }
 
-    /// Drops what a cut-off file leaves open.
+    /// Drops the incomplete rest of a truncated file.
     fn end(&mut self, model: &mut Model, cursor: &Cursor<'_>) -> Result<()> {
         let cut = self.inside_facet || self.open > 0;
         if self.open >= 3 && !self.spoiled {
-            // All vertices are there: only the closing words are missing.
+            // All vertices are present; only the closing words are missing.
             self.close_facet(cursor)?;
         }
         let whole = self.points.len() - self.open;
@@ -260,7 +259,7 @@ impl<'a> Ascii<'a> {
         Ok(())
     }
 
-    /// Refuses what holds no facet, but other words or facets that are none.
+    /// Refuses files without a facet that have other words or invalid facets.
     fn check_words(&self, cut: bool) -> Result<()> {
         if !self.points.is_empty() || cut {
             return Ok(());
@@ -288,7 +287,7 @@ impl<'a> Ascii<'a> {
         }
     }
 
-    /// Returns the names of the solids; those that have none, or that of one before, get a number.
+    /// Returns the names of the solids; solids without a name, or with the name of an earlier one, get a number.
     fn names<'b>(&'b self) -> Vec<String> {
         let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
         let several = self.solids.len() > 1;
@@ -301,8 +300,8 @@ impl<'a> Ascii<'a> {
         self.solids.iter().map(|s| name(&s.1)).collect()
     }
 
-    /// Returns the parts: each solid is one, if there are several or the one has a name. Of several, each has a name
-    /// of its own.
+    /// Returns the parts: each solid is one, if there are several or the only one has a name. If there are several,
+    /// each has its own name.
     fn parts(&self) -> Vec<Part> {
         let count = self.points.len() / 3;
         if self.solids.iter().all(|(_, name)| name.is_empty()) && self.solids.len() < 2 {

@@ -18,7 +18,7 @@ const AT_ONCE: usize = 1024;
 /// holds. The same model as [`super::read`] gives, without holding the file's bytes.
 ///
 /// # Errors
-/// [`Error::Limit`] for too many triangles, [`Error::Io`] where reading fails or ends too early.
+/// [`Error::Limit`] for too many triangles, [`Error::Io`] if reading fails or ends too early.
 pub fn read_binary_stream(
     head: &[u8; HEADER],
     mut source: impl std::io::Read,
@@ -133,7 +133,7 @@ impl Facets {
             return;
         }
         colors.reserve_exact(3 * self.count - colors.len());
-        // The first facet with a color: those before have none.
+        // The first facet with a color; earlier ones have none.
         colors.resize(before, self.palette.color(0));
         colors.extend(records.iter().flat_map(|r| [self.palette.color(attribute(r)); 3]));
     }

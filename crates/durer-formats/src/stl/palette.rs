@@ -12,7 +12,7 @@ pub(super) const PAINTED: u16 = 1 << 15;
 /// Magics writes `COLOR=` and the body's RGBA into the header, and per facet 5 bits of red, green
 /// and blue from the lowest bit on, with bit 15 set where the facet has the body's color. VisCAM
 /// has no mark in the header, blue lowest, and bit 15 set where the facet has a color of its own.
-/// Programs that write the header only leave all attributes 0: then all have the body's color.
+/// Programs that write only the header leave all attributes 0: then all facets have the body's color.
 pub(super) struct Palette {
     /// Linear values of sRGB bytes.
     table: [f32; 256],
@@ -42,7 +42,7 @@ impl Palette {
         Vec4::new(linear(r), linear(g), linear(b), f32::from(a) / 255.0)
     }
 
-    /// Returns the bits of a facet's attributes one of which marks facets with colours of their own.
+    /// Returns the bits of a facet's attributes of which at least one marks facets with their own colours.
     pub fn telling(&self) -> u16 {
         if self.body.is_some() { u16::MAX } else { PAINTED }
     }

@@ -47,7 +47,7 @@ impl<R: Read + Seek> Pieces<R> {
     /// this many triangles.
     ///
     /// # Errors
-    /// [`Error::Limit`] for too many triangles, [`durer::Error::Memory`] where the budget has no room for a piece.
+    /// [`Error::Limit`] for too many triangles, [`durer::Error::Memory`] if the budget has no room for a piece.
     pub fn new(
         head: &[u8; HEADER],
         source: R,

@@ -1,8 +1,8 @@
-//! Arcs of path data as curves that are near to them whatever the size of the picture.
+//! Arcs of path data as curves that approximate them at any size of the picture.
 //!
-//! usvg takes four curves for a circle, which are off by 1/3700 of its radius: half a pixel where that is 2000. Eight
-//! are off by 1/240,000. And where an arc ends at the point where the one before did, which draws nothing, usvg may
-//! find the two some last bits apart and draw the ellipse whole.
+//! usvg approximates a circle by four curves, with an error of 1/3700 of its radius: half a pixel for a radius of 2000.
+//! With eight the error is 1/240,000. And if an arc ends at its start, which draws nothing, usvg may compute the two
+//! points a few last bits apart and draw the whole ellipse.
 
 use crate::arc::{Arc, Ends};
 use durer::math::DVec2;

@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use usvg::{Group, Node};
 
-/// Groups, clip paths, masks, patterns and drawings within images may be nested so deep, all together.
+/// Largest depth of nested groups, clip paths, masks, patterns and drawings within images, all together.
 const MAX_DEPTH: u32 = 200;
 
 /// Painter of nodes onto a canvas.
@@ -35,7 +35,7 @@ impl<'a> Painter<'a> {
         Self { canvas, limits, depth: 0, bytes_left, painted, warnings }
     }
 
-    /// Returns the messages about what could not be drawn.
+    /// Returns the messages about parts that could not be drawn.
     pub fn warnings(self) -> BTreeSet<String> {
         self.warnings
     }
@@ -52,7 +52,7 @@ impl<'a> Painter<'a> {
     fn deeper(&mut self, work: impl FnOnce(&mut Self)) {
         if self.depth == MAX_DEPTH {
             return self
-                .warn(format!("what is nested more than {MAX_DEPTH} levels deep is left out"));
+                .warn(format!("elements nested more than {MAX_DEPTH} levels deep are left out"));
         }
         self.depth += 1;
         work(self);
@@ -76,7 +76,7 @@ impl<'a> Painter<'a> {
     fn group(&mut self, group: &Group, map: DAffine2) {
         let map = map * paint::affine(group.transform());
         if !group.filters().is_empty() {
-            self.warn("filters are not drawn; what they apply to is drawn without them");
+            self.warn("filters are not drawn; elements are drawn without them");
         }
         let blend = paint::blend(group.blend_mode());
         let clips = group.clip_path().map_or(0, |clip| self.clip(clip, map))
@@ -84,7 +84,7 @@ impl<'a> Painter<'a> {
         let opacity = f64::from(group.opacity().get());
         match single_path(group) {
             _ if !group.should_isolate() => self.nodes(group, map),
-            // What paints each pixel once needs no layer.
+            // Content that paints each pixel once needs no layer.
             Some(path) if blend == Blend::Normal => self.path(path, map, opacity),
             _ => {
                 self.canvas.push_group();
@@ -289,7 +289,7 @@ fn rule(rule: usvg::FillRule) -> FillRule {
     }
 }
 
-/// Returns the only thing in a group, if it is a path that is filled or stroked but not both.
+/// Returns the only element of a group, if it is a path that is filled or stroked but not both.
 fn single_path(group: &Group) -> Option<&usvg::Path> {
     match group.children() {
         [Node::Path(path)] if path.fill().is_none() || path.stroke().is_none() => Some(path),
@@ -297,7 +297,7 @@ fn single_path(group: &Group) -> Option<&usvg::Path> {
     }
 }
 
-/// Returns whether a group does nothing but map its content.
+/// Returns whether a group only transforms its content.
 fn plain(group: &Group) -> bool {
     !group.should_isolate()
 }

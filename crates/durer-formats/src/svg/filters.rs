@@ -11,7 +11,7 @@ pub(super) fn links(value: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Returns a list of filters without those that refer to what is `missing`.
+/// Returns a list of filters without those whose references are `missing`.
 pub(super) fn without_links(value: &str, missing: impl Fn(&str) -> bool) -> String {
     let (mut out, mut rest) = (String::new(), value);
     while let Some(at) = rest.find("url(") {

@@ -60,7 +60,7 @@ impl Later {
     }
 }
 
-/// An element with what is left to do.
+/// An element with its remaining work.
 pub(super) struct Pending<'a, 'i> {
     pub node: Node<'a, 'i>,
     pub around: Around,
@@ -149,7 +149,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         self.node.tag_name().name()
     }
 
-    /// Returns the box that something refers to.
+    /// Returns the reference box of the element.
     fn bounds(&self, view: &View<'_, 'a, 'i>, reference: Reference) -> Option<Bounds> {
         let [width, height] = self.around.units.viewport;
         if reference == Reference::View {
@@ -165,7 +165,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         Some(bounds)
     }
 
-    /// Puts the properties of a transform together.
+    /// Combines the properties of a transform.
     fn transform(
         &self,
         changes: &mut Changes<'a>,
@@ -361,7 +361,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         changes.groups.insert(self.node.id(), inside);
     }
 
-    /// Measures dashes in what the element says its length is.
+    /// Scales dashes by the path length that the element gives.
     fn dashes(&self, changes: &mut Changes<'a>, ids: &HashMap<&'a str, Node<'a, 'i>>) {
         let view = View { changes, ids };
         let units = &self.around.units;
@@ -394,7 +394,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         }
     }
 
-    /// Sets the size of a `use` to that of the symbol that it shows, where it has none itself.
+    /// Sets the size of a `use` to its symbol's if it has none itself.
     fn size(&self, changes: &mut Changes<'a>, ids: &HashMap<&'a str, Node<'a, 'i>>) {
         for side in ["width", "height"] {
             let view = View { changes, ids };

@@ -29,7 +29,7 @@ const MONO: [&str; 6] = [
 
 /// A set of fonts, from the bytes of TrueType and OpenType files and collections.
 ///
-/// What text looks like depends on the fonts that were added and on their order, on nothing else.
+/// The appearance of text depends only on the added fonts and their order.
 #[derive(Debug)]
 pub struct Fonts {
     /// Made when first needed; `const` cannot do it.
@@ -170,7 +170,7 @@ fn replaced(font: &usvg::Font, face: &fontdb::FaceInfo) -> Option<String> {
     Some(format!("font {wanted} is missing; {found} is used in its place"))
 }
 
-/// Returns a family with what is not usual in its style.
+/// Returns a family with its style, as far as it is not normal.
 fn described(family: &str, weight: u16, slanted: bool, stretch: fontdb::Stretch) -> String {
     let weight = match weight {
         300..500 => String::new(),

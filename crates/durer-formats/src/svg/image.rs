@@ -70,7 +70,7 @@ fn reduced(mut image: Pixels<[u8; 4]>, size: DVec2, pixel_from_node: DAffine2) -
     image
 }
 
-/// Returns the means of pairs of pixels; colours count as much as they are opaque.
+/// Returns the means of pairs of pixels; colours are weighted by their alpha.
 fn halved(
     image: &Pixels<[u8; 4]>,
     width: u32,

@@ -1,4 +1,4 @@
-//! Letters of text, changed as CSS asks for it.
+//! Letters of text, changed as CSS requires.
 
 use std::borrow::Cow;
 
@@ -71,8 +71,8 @@ const NON_JOINER: char = '\u{200c}';
 /// Share of the space between letters for each of a letter and its successor.
 pub(super) const SHARE: f64 = 0.5;
 
-/// Returns a text with what keeps letters from being joined after each of them, where another one follows, so
-/// that all gaps are alike. Blanks at the ends of the line and several together stay so: they vanish.
+/// Returns a text with a non-joiner after each letter that is followed by another one, so that all gaps are equal.
+/// Blanks at the ends of the line and repeated blanks get none: they vanish.
 fn kept_apart(text: &str, [has_before, has_after]: [bool; 2]) -> String {
     let mut out = String::with_capacity(2 * text.len());
     let mut left = text.chars().filter(|c| !c.is_whitespace()).count();
@@ -86,7 +86,7 @@ fn kept_apart(text: &str, [has_before, has_after]: [bool; 2]) -> String {
             None => has_after,
         };
         let is_last = left == 0 && !has_after && !c.is_whitespace();
-        // What is joined by nature stays so: Arabic and others get no space anyway.
+        // Cursive scripts stay joined: Arabic and others get no space anyway.
         if is_joined(c) {
             continue;
         }

@@ -26,7 +26,7 @@ impl<'a> Lines<'a> {
         Self { text, marks }
     }
 
-    /// Returns line and column of an offset in bytes; those of the end beyond it.
+    /// Returns the line and column of an offset in bytes, clamped to the end.
     pub fn at(&self, offset: usize) -> (u64, u64) {
         let before = self.marks.partition_point(|(mark, _)| *mark <= offset).checked_sub(1);
         let (mark, start) = before.and_then(|i| self.marks.get(i)).copied().unwrap_or((0, [1, 1]));

@@ -1,7 +1,7 @@
 //! The positions of a path's markers, and their directions.
 //!
-//! Source: *SVG 2*, W3C, § 13.7.4 and § 9.5.1 (directions of vertices); what is not said there as in Chromium. usvg
-//! takes each curve that an arc is made of for a segment, and looks at closed paths as if they were open.
+//! Source: *SVG 2*, W3C, § 13.7.4 and § 9.5.1 (directions of vertices); unspecified cases as in Chromium. usvg treats
+//! each curve of an arc as a segment, and closed paths as open ones.
 
 use super::arcs;
 use crate::arc::Ends;
@@ -16,7 +16,7 @@ pub(super) struct Vertex {
     pub angle: f64,
 }
 
-/// A segment: where it ends, and the directions in which it begins and ends; none if it has no length.
+/// A segment: its end point, and its directions at both ends, if it has a length.
 #[derive(Debug, Clone, Copy)]
 struct Segment {
     end: DVec2,
@@ -42,13 +42,13 @@ struct Subpath {
 }
 
 impl Subpath {
-    /// Returns the corners in order; of a closed one the first comes again at its end.
+    /// Returns the corners in order; a closed path repeats the first one at its end.
     fn vertices(&self) -> Vec<Vertex> {
         let count = self.segments.len();
         let mut ways = vec![None; count + 1];
         let (mut before, mut after) = (vec![None; count + 1], vec![None; count + 1]);
         for (i, segment) in self.segments.iter().enumerate() {
-            // What has no length goes on as what came before.
+            // A segment without length continues the direction of the one before.
             before[i + 1] = segment.ends.or(before[i]);
         }
         for (i, segment) in self.segments.iter().enumerate().rev() {
@@ -69,7 +69,7 @@ impl Subpath {
 fn between(before: Option<DVec2>, after: Option<DVec2>) -> Option<f64> {
     let angle = |way: DVec2| libm::atan2(way.y, way.x);
     let (Some(a), Some(b)) = (before, after) else { return before.or(after).map(angle) };
-    // Straight to the left again after straight to the right looks up in browsers, and the other way round down.
+    // In browsers, a turn from straight right to straight left points up, and the opposite one down.
     let b = if b.y == 0.0 { DVec2::new(b.x, -0.0) } else { b };
     let (mut a, b) = (angle(a), angle(b));
     if (a - b).abs() > std::f64::consts::PI {
@@ -83,7 +83,7 @@ pub(super) fn vertices(data: &str) -> Vec<Vertex> {
     let mut found = Vec::new();
     let mut subpath = Subpath::default();
     let mut at = DVec2::ZERO;
-    // The last control point, for curves that go on smoothly: of a cubic, of a quadratic one.
+    // The last control point, for smooth continuations: of a cubic and of a quadratic curve.
     let mut controls: [Option<DVec2>; 2] = [None; 2];
     for segment in PathParser::from(data).map_while(Result::ok) {
         use PathSegment::*;
@@ -138,7 +138,7 @@ pub(super) fn vertices(data: &str) -> Vec<Vertex> {
         };
         controls = next;
         at = made.end;
-        // After a close a new one begins at the same place.
+        // After a close, a new subpath begins at the same place.
         if subpath.is_closed && !matches!(segment, ClosePath { .. }) {
             let start = subpath.start;
             found.extend(std::mem::take(&mut subpath).vertices());
@@ -168,7 +168,7 @@ fn arc(ends: &Ends) -> Segment {
     }
 }
 
-/// Returns paths that show nothing but one marker each: at their middle, along the direction of a vertex.
+/// Returns paths that show only one marker each, at their middle, along the direction of a vertex.
 pub(super) fn paths(
     vertices: &[Vertex],
     [start, mid, end]: [Option<&str>; 3],

@@ -1,9 +1,9 @@
 //! Drawings in SVG, onto a canvas.
 //!
-//! Style sheets, and values newer than SVG 1.1, are put in attributes that usvg knows, as browsers read them; usvg
-//! resolves units, references and text; what is left — paths with fills and strokes, groups with clip paths, masks and
-//! opacity, images — is painted by [`durer::raster::paint`]. Not painted are filters, blend modes, and what moves or
-//! runs; [`Drawing::read`] and [`Drawing::draw`] say so in warnings.
+//! Style sheets, and values newer than SVG 1.1, are written as attributes that usvg knows, as browsers interpret them;
+//! usvg resolves units, references and text; the remaining paths with fills and strokes, groups with clip paths, masks
+//! and opacity, and images are painted by [`durer::raster::paint`]. Filters, blend modes, animations and scripts are
+//! not painted; [`Drawing::read`] and [`Drawing::draw`] warn of them.
 //!
 //! ```
 //! use durer::math::DAffine2;
@@ -58,7 +58,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use svgtypes::{PathParser, PathSegment};
 use usvg::roxmltree;
 
-/// Elements that are ignored, beside those that only describe.
+/// Elements that are ignored, besides purely descriptive ones.
 const NOT_DRAWN: [&str; 12] = [
     "animate",
     "animateColor",
@@ -192,8 +192,8 @@ impl Drawing {
     }
 
     /// Paints the drawing; `pixel_from_drawing` maps the drawing's units, y down, to pixels. Returns warnings of
-    /// elements that cannot be drawn, each kind once. Cost: that of the canvas, and of its own for each tile of a
-    /// pattern and each image.
+    /// elements that cannot be drawn, each kind once. Cost: the canvas's, plus the cost of each tile of a pattern and
+    /// each image.
     pub fn draw(&self, canvas: &mut Canvas, pixel_from_drawing: DAffine2) -> Vec<Warning> {
         let mut painter = draw::Painter::new(canvas, &self.limits);
         painter.tree(&self.tree, pixel_from_drawing);
@@ -290,23 +290,23 @@ impl Told {
     }
 }
 
-/// A document that has been examined, and put in terms that usvg knows.
+/// A document that has been checked and rewritten in terms that usvg knows.
 struct Prepared {
     written: Option<write::Written>,
     warnings: Vec<Warning>,
 }
 
 impl Prepared {
-    /// Returns the document that was written anew, if it was.
+    /// Returns the rewritten document, if there is one.
     fn document(&self) -> Result<Option<roxmltree::Document<'_>>> {
         self.written.as_ref().map(|written| parse(&written.text)).transpose()
     }
 }
 
-/// Examines a document with `above` levels of elements around it, and puts it in terms that usvg knows.
+/// Examines a document with `above` levels of elements around it, and rewrites it in terms that usvg knows.
 ///
 /// # Errors
-/// What usvg would not get through.
+/// For documents that usvg cannot process.
 fn prepared(
     document: &roxmltree::Document<'_>,
     above: usize,
@@ -358,8 +358,8 @@ fn not_xml(error: &roxmltree::Error, text: &str) -> Error {
     Error::line(line, column, format!("not well-formed XML: {}", foreign::markup(error)))
 }
 
-/// Returns usvg's tree of a document. If numbers overflow on its way, as coordinates under a transform by 10²⁰ do, it
-/// may panic.
+/// Returns usvg's tree of a document. If numbers overflow in it, such as coordinates under a transform by 10²⁰, it may
+/// panic.
 fn resolved(
     tree: impl FnOnce() -> std::result::Result<usvg::Tree, usvg::Error>,
 ) -> Result<usvg::Tree> {
@@ -391,7 +391,7 @@ const FARTHEST: f64 = 1e15;
 /// Checks that arcs can be read in a time that is in proportion to the document.
 fn check_arcs(document: &roxmltree::Document<'_>) -> Result<()> {
     for path in document.descendants().filter_map(|node| node.attribute_node("d")) {
-        // Arcs begin where a path has come to by then, wherever that is.
+        // Arcs begin at the current point of the path, which may be anywhere.
         if path.value().contains(['A', 'a']) && PathParser::from(path.value()).any(is_far) {
             let at = document.text_pos_at(path.range().start);
             let message = "a path with arcs reaches beyond ±10¹⁵, farther than arcs can be drawn";
@@ -401,8 +401,7 @@ fn check_arcs(document: &roxmltree::Document<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Returns whether a number of a segment is beyond [`FARTHEST`]; if there is none, usvg ends the
-/// path.
+/// Returns whether a number of a segment is beyond [`FARTHEST`]; without a number, usvg ends the path.
 fn is_far(segment: std::result::Result<PathSegment, svgtypes::Error>) -> bool {
     use PathSegment::*;
     let largest = match segment {

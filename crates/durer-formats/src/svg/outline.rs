@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use svgtypes::{SimplePathSegment, SimplifyingPathParser};
 use usvg::roxmltree::{Node, NodeId};
 
-/// Elements within one another whose boxes are looked for may be so deep.
+/// Largest depth of nested elements whose boxes are computed.
 const MAX_DEPTH: u32 = 64;
 
 /// Limit on the elements examined for boxes in a document: groups within groups would be examined again and again.
@@ -244,8 +244,8 @@ impl<'b, A> Boxes<'b, A> {
         Self { all, around, looked }
     }
 
-    /// Returns the box around an element in its own units, without its transform; `None` if it is not
-    /// known, as that of text.
+    /// Returns the box around an element in its own units, without its transform; `None` if it is not known, as for
+    /// text.
     pub fn find<'a>(&mut self, node: Node<'a, '_>) -> Option<Bounds>
     where
         A: Attributes<'a>,

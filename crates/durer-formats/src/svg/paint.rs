@@ -10,14 +10,14 @@ use usvg::tiny_skia_path::{self, PathSegment};
 /// Tiles of patterns have at most this many pixels a side; larger ones are painted coarser.
 const MAX_TILE: f64 = 4096.0;
 
-/// Tiles that do not lie on whole pixels have this many times as many a side.
+/// Factor for the pixels per side of tiles that are not aligned to whole pixels.
 const FINER: f64 = 8.0;
 
 /// Tiles are not made finer beyond this many pixels: a tile is painted for each size that it is seen
 /// at.
 const FINER_PIXELS: f64 = 1_048_576.0;
 
-/// Sides of tiles that are so near to whole pixels are whole.
+/// Difference from whole pixels below which sides of tiles count as whole.
 const WHOLE: f64 = 1e-3;
 
 pub(super) fn affine(t: usvg::Transform) -> DAffine2 {

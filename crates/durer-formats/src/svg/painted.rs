@@ -1,7 +1,7 @@
 //! The cache of painted tiles of patterns and decoded images.
 //!
-//! Things of the tree are known by their address: the tree outlives everything painted from it, and whatever
-//! refers to one thing twice has the same address twice.
+//! Nodes of the tree are identified by their addresses: the tree outlives everything painted from it, and two
+//! references to one node have the same address.
 
 use super::paint::Tile;
 use durer::curve::Path;

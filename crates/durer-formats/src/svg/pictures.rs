@@ -31,7 +31,7 @@ pub(super) type Key = (String, bool, usize);
 /// Pictures that have been read.
 pub(super) type Read = BTreeMap<Key, ImageKind>;
 
-/// Returns the resolver of pictures: the list of those of the drawing.
+/// Returns the resolver of pictures, which looks them up in the drawing's list.
 pub(super) fn resolver<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHrefResolver<'a> {
     let options = options.clone();
     ImageHrefResolver {

@@ -1,17 +1,17 @@
-//! The references between a drawing's elements: usvg follows patterns, masks, clip paths and filters by recursion, and
-//! without end where three of them, or two of different kinds, form a circle. Such drawings are refused before usvg
-//! reads them.
+//! The references between a drawing's elements: usvg follows patterns, masks, clip paths and filters by recursion,
+//! endlessly if three of them, or two of different kinds, form a cycle. Such drawings are refused before usvg reads
+//! them.
 
 use super::filters::links;
 use crate::{Error, Result};
 use std::collections::HashMap;
 use usvg::roxmltree::{Document, Node, NodeId};
 
-/// Elements within one another and within what refers to them may be so deep, as usvg has it for elements alone.
+/// Largest depth of elements within one another, including references; usvg's limit counts elements alone.
 pub const MAX_DEPTH: usize = 1024;
 
-/// References may be followed this many times in all: what refers twice to what refers twice, and so on, would
-/// keep a small file busy for ever.
+/// Largest number of references followed in all: chains in which each element refers twice to the next would otherwise
+/// take for ever in a small file.
 const MAX_FOLLOWED: u64 = 1_000_000;
 
 /// Stack that following a reference takes, in elements.
@@ -66,7 +66,7 @@ const PROPERTIES: [(&str, Kind); 9] = [
     ("marker-end", Kind::Marker),
 ];
 
-/// Kinds of which only one value counts, in the order of [`Values`].
+/// Kinds with a single value, in the order of [`Values`].
 const CASCADED: [Kind; 5] = [Kind::Fill, Kind::Stroke, Kind::ClipPath, Kind::Mask, Kind::Filter];
 
 /// Returns the kind of reference that a property makes.
@@ -170,7 +170,7 @@ impl<'a, 'i> Walk<'a, 'i, '_> {
                     continue;
                 }
                 let below = level + REFERENCE;
-                // What `use` shows stands in its place.
+                // The target of a `use` takes its place.
                 let is_use = opened.kind == Kind::Href && node.tag_name().name() == "use";
                 let around = if is_use { said } else { self.around(target) };
                 let around = self.needed(target, around);
@@ -219,7 +219,7 @@ impl<'a, 'i> Walk<'a, 'i, '_> {
         let markers = attributes(node).filter(|(name, _)| property(name) == Some(Kind::Marker));
         let marker = Opened { kind: Kind::Marker, is_outside: false };
         markers.filter(|_| !is_clip).for_each(|(_, value)| follow(marker, value));
-        // Where links lead is not drawn.
+        // Targets of links are not drawn.
         if node.tag_name().name() != "a" {
             found.extend(self.linked(node).map(|target| (BY_HREF, target)));
         }
@@ -242,12 +242,12 @@ impl<'a, 'i> Walk<'a, 'i, '_> {
         })
     }
 
-    /// Returns whether usvg would follow a circle without end that closes by a reference to the element opened
-    /// `at`: it cuts those of one or two elements of the same kind, and all with a marker or of `href` alone.
+    /// Returns whether usvg would follow endlessly the cycle that a reference to the element opened `at` closes: it
+    /// breaks cycles of one or two elements of the same kind, and all cycles with a marker or of `href` alone.
     fn is_endless(&self, at: usize, closing: Opened) -> bool {
         let within = self.open.get(at + 1..).unwrap_or_default().iter().map(|(_, opened)| *opened);
         let circle: Vec<Opened> = within.chain([closing]).collect();
-        // Paints from around what is followed are not seen where circles are cut.
+        // usvg does not see paints inherited from around the references when it breaks cycles.
         let is_alike = circle.iter().all(|other| other.kind == closing.kind && !other.is_outside);
         let is_cut = is_alike && (circle.len() <= 2 || closing.kind == Kind::Href);
         !is_cut && circle.iter().all(|other| other.kind != Kind::Marker)
@@ -339,8 +339,8 @@ fn attributes<'a>(node: Node<'a, '_>) -> impl Iterator<Item = (&'a str, &'a str)
     known.map(|attribute| (attribute.name(), attribute.value()))
 }
 
-/// Returns the values for an element's children: fill and stroke are inherited by all, the others by those that ask
-/// for them.
+/// Returns the values for an element's children: fill and stroke are inherited by all, the others by children with
+/// `inherit`.
 fn handed_down<'a>(mut said: Values<'a>, around: &Values<'a>) -> Values<'a> {
     for (own, around) in said.iter_mut().zip(around).take(2) {
         *own = own.or(*around);

@@ -283,7 +283,7 @@ fn four(given: &[f64]) -> Option<[f64; 4]> {
     })
 }
 
-/// Returns a rectangle with such corners, from the upper left one on, clockwise.
+/// Returns a rectangle with rounded corners, from the upper left one on, clockwise.
 fn rectangle(low: DVec2, high: DVec2, radii: &[DVec2; 4]) -> String {
     let [a, b, c, d] = *radii;
     let arc = |r: DVec2, x: f64, y: f64| format!("A{} {} 0 0 1 {x} {y}", r.x, r.y);

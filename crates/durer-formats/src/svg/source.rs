@@ -13,12 +13,11 @@ const MAGIC: [u8; 2] = [0x1f, 0x8b];
 /// Number of bytes at the start that are searched for the name of the encoding.
 const DECLARATION: usize = 256;
 
-/// Returns the text of a drawing: decompressed where it is gzip, then decoded as its mark or its XML
-/// declaration says.
+/// Returns the text of a drawing: decompressed if it is gzip, then decoded by its mark or its XML declaration.
 ///
 /// # Errors
 /// [`Error::Decode`] for broken gzip, and for bytes that are not in the encoding that is said or an encoding that is
-/// not known; [`Error::Limit`] where it is larger than `limits.decoded_bytes`.
+/// not known; [`Error::Limit`] if it is larger than `limits.decoded_bytes`.
 pub(super) fn text<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Cow<'a, str>> {
     if !bytes.starts_with(&MAGIC) {
         return decoded(bytes);
@@ -86,7 +85,7 @@ fn in_encoding<'a>(
     let (text, is_broken) = encoding.decode_without_bom_handling(bytes);
     match is_broken {
         true => Err(Error::whole(format!(
-            "it says that it is in {name}, but there are bytes in it that are not"
+            "it declares the encoding {name}, but has bytes that are invalid in it"
         ))),
         false => Ok(text),
     }

@@ -1,7 +1,7 @@
 //! Texts that are too long to be laid out in one piece.
 //!
-//! usvg counts the letters of a piece of text from its beginning for each of them. A piece goes on until an element
-//! says where it is, by `x` or `y`.
+//! usvg counts the letters of a piece of text from its beginning for each letter. A piece continues until an element
+//! gives a position by `x` or `y`.
 
 use super::ROOT;
 use crate::{Error, Result};
@@ -11,7 +11,7 @@ use usvg::roxmltree::{Document, Node};
 /// seconds.
 const MOST: u64 = 4_000_000_000;
 
-/// Refuses drawings of which the texts would take for ever.
+/// Refuses drawings whose texts would take too long.
 ///
 /// # Errors
 /// [`Error::Decode`] with the place of the text from where on it is too much.

@@ -1,6 +1,6 @@
 //! Transforms as CSS writes them, with units and an origin.
 //!
-//! Source: *CSS Transforms Module Level 1* and *Level 2*, W3C; of the latter what stays in the plane.
+//! Source: *CSS Transforms Module Level 1* and *Level 2*, W3C; of the latter only the functions in the plane.
 
 use crate::css::{Piece, Token, Units, Whole, split, tokens, words};
 use durer::math::{DAffine2, DVec2};
@@ -119,7 +119,7 @@ pub(super) fn origin(text: &str, units: &Units, corner: [f64; 2], size: [f64; 2]
     let is_horizontal =
         |part: &&[Piece<'_>]| word(part).is_some_and(|w| w == "left" || w == "right");
     if parts.first().is_some_and(is_vertical) || parts.get(1).is_some_and(is_horizontal) {
-        // The vertical one stands first, or alone.
+        // The vertical position may come first, or alone.
         let horizontal = parts.get(1).copied().unwrap_or_default();
         parts = vec![horizontal, parts.first()?];
     }

@@ -1,6 +1,6 @@
-//! The values of attributes, and the same in words that usvg understands.
+//! The values of attributes, rewritten so that usvg understands them.
 //!
-//! usvg passes over in silence what it does not know, or takes it for something else.
+//! usvg silently ignores or misinterprets values that it does not know.
 
 use super::{arcs, transform};
 use crate::css::{self, Color, Token, Units, Whole};
@@ -147,8 +147,8 @@ impl Kind {
         }
     }
 
-    /// Returns a value as usvg understands it, where it can be used; `name` is that of the property, and
-    /// `around` what relative values are relative to.
+    /// Returns a value in a form that usvg understands, if it can be used; `name` is the property's, and relative
+    /// values refer to `around`.
     pub fn words<'v>(self, name: &str, value: &'v str, around: &Around) -> Option<Cow<'v, str>> {
         if self == Self::Path {
             return path(value);
@@ -182,7 +182,7 @@ impl Kind {
     fn computed(self, name: &str, value: &str, around: &Around) -> Option<String> {
         let units = &around.units;
         let length = |whole: f64| units.parse(value, Some(Whole::Length(whole)))?.length();
-        // What is computed is kept in range; what is said must be in it.
+        // Computed values are clamped to the range; literal values must be in it.
         let in_range = |length: f64| match value.contains('(') {
             true => Some(length.max(0.0)),
             false => Some(length).filter(|length| *length >= 0.0),
@@ -202,7 +202,7 @@ impl Kind {
         Some(number.to_string())
     }
 
-    /// Returns advice: what would be right, and the effect of the wrong value.
+    /// Returns advice: the expected values, and the effect of a wrong one.
     pub fn wanted(self) -> String {
         let wanted = match self {
             Self::Paint => "a colour, as `red` or `#c80000`, `none` or `url(#…)`",
@@ -253,7 +253,7 @@ impl Fate {
     pub fn in_words(self) -> &'static str {
         match self {
             Self::PassedOver => "it is ignored",
-            Self::PartlyUsed => "what comes before the error is drawn",
+            Self::PartlyUsed => "the part before the error is drawn",
             Self::Zero => "it counts as 0",
         }
     }
@@ -267,7 +267,7 @@ pub(super) struct Around {
     pub color: Option<Color>,
 }
 
-/// Words for sizes of fonts, and how many times as large as those around or as `medium` they are; usvg has it so.
+/// Keywords for font sizes, with their factors on the surrounding size or on `medium`, as in usvg.
 const FONT_SIZES: [(&str, f64); 9] = [
     ("xx-small", 1.0 / 1.728),
     ("x-small", 1.0 / 1.44),
@@ -348,7 +348,7 @@ fn paint<'v>(value: &'v str, around: &Around) -> Option<Cow<'v, str>> {
     Some(Cow::Owned(format!("{link} {words}")))
 }
 
-/// Returns whether a `url(…)` refers to something outside of its file.
+/// Returns whether a `url(…)` refers to another file.
 pub(super) fn is_elsewhere(link: &str) -> bool {
     let inner = link.get(4..).unwrap_or_default().trim_end_matches(')');
     !inner.trim_matches(|c: char| c.is_whitespace() || c == '"' || c == '\'').starts_with('#')

@@ -1,4 +1,4 @@
-//! A drawing's document, written anew with other attributes.
+//! A drawing's document, rewritten with other attributes.
 
 use super::letters::Letters;
 use super::outline::Changed;
@@ -34,7 +34,7 @@ impl Changes<'_> {
     }
 }
 
-/// A document, or a part of one, that was written anew.
+/// A rewritten document, or a part of one.
 #[derive(Debug, Default)]
 pub(super) struct Written {
     pub text: String,
@@ -62,8 +62,7 @@ pub(super) fn is_of_svg(node: &Node<'_, '_>) -> bool {
     node.tag_name().namespace().is_none_or(|space| space == super::ROOT.0)
 }
 
-/// Writes a document with what becomes other in it. Comments, style sheets and elements that are not of SVG are left
-/// out.
+/// Writes a document with changes. Comments, style sheets and elements outside SVG are left out.
 pub(super) fn document(document: &Document<'_>, changes: &Changes<'_>) -> Written {
     let mut out =
         Written { text: String::with_capacity(document.input_text().len()), places: Vec::new() };
@@ -71,7 +70,7 @@ pub(super) fn document(document: &Document<'_>, changes: &Changes<'_>) -> Writte
     out
 }
 
-/// Writes an element and what is in it.
+/// Writes an element and its content.
 pub(super) fn element(root: Node<'_, '_>, changes: &Changes<'_>, out: &mut Written) {
     // Without recursion: elements may be very deep in one another.
     let mut next = Some(root);
@@ -100,7 +99,7 @@ fn is_written(node: Node<'_, '_>) -> bool {
     node.is_element() && is_of_svg(&node) && node.tag_name().name() != "style"
 }
 
-/// Writes a text or the beginning of an element; returns whether what is in it is to be written.
+/// Writes a text or the beginning of an element; returns whether its content is to be written.
 fn open(node: Node<'_, '_>, changes: &Changes<'_>, out: &mut Written) -> bool {
     if let Some(text) = node.text().filter(|_| node.is_text()) {
         let letters = node.parent().and_then(|parent| changes.letters.get(&parent.id()));

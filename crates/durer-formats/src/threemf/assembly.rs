@@ -1,4 +1,4 @@
-//! From the build to the scene: which objects stand where, and what each of them is made of.
+//! From the build to the scene: the placement of objects, and their components.
 
 use super::mesh::{self, Base, Key, Materials, Repairs, Texture};
 use super::package::Package;
@@ -33,7 +33,7 @@ pub(super) struct Assembly<'a, 'b> {
     hidden: Tally,
     empty: Tally,
     aside: Tally,
-    /// Scene's numbers of pictures by path, and whether they are transparent somewhere.
+    /// Indices of pictures in the scene by path, and whether they have transparent pixels.
     pictures: HashMap<String, Option<(usize, bool)>>,
     /// Scene's numbers of textures.
     samplers: HashMap<(usize, Sampler), usize>,
@@ -58,10 +58,10 @@ struct Frame {
     world_from_object: DMat4,
 }
 
-/// Bytes of a triangle that is made of a beam, a ball or paint.
+/// Bytes of a triangle made from a beam, a ball or paint.
 const PER_TRIANGLE: u64 = 36;
 
-/// Scene's numbers of an object's meshes, and what their positions are relative to.
+/// Indices of an object's meshes in the scene, and the origin of their positions.
 type Made = (Vec<usize>, DVec3);
 
 impl<'a, 'b> Assembly<'a, 'b> {
@@ -88,7 +88,7 @@ impl<'a, 'b> Assembly<'a, 'b> {
         }
     }
 
-    /// Builds the items of the root part, or those of a plate, counted from 1.
+    /// Builds the items of the root part, or of one plate, counted from 1.
     ///
     /// # Errors
     /// Those of [`super::read`].
@@ -298,7 +298,7 @@ impl<'a, 'b> Assembly<'a, 'b> {
         self.textures.insert(part, textures);
     }
 
-    /// Returns the scene's number of a picture, read once, and whether it is transparent somewhere.
+    /// Returns the index of a picture in the scene, read once, and whether it has transparent pixels.
     fn picture(&mut self, path: &str) -> Option<(usize, bool)> {
         if let Some(known) = self.pictures.get(path) {
             return *known;
@@ -332,7 +332,7 @@ impl<'a, 'b> Assembly<'a, 'b> {
                 &self.aside,
                 "items are objects of the type `other`, which is not to be built; left out",
             ),
-            (&self.empty, "objects have neither triangles nor beams, which is all that is read"),
+            (&self.empty, "objects have neither triangles nor beams; nothing else is read"),
         ] {
             tell(self.model, tally, what);
         }
@@ -348,8 +348,14 @@ fn tell(model: &mut Model, tally: &Tally, what: &str) {
 fn warn_of_faults(model: &mut Model, faults: Faults) {
     for (tally, what) in [
         (faults.colors, "colors are not #RRGGBB or #RRGGBBAA; they are grey"),
-        (faults.vertices, "triangles name vertices that the object has not; they are left out"),
-        (faults.beams, "beams or balls name vertices that the object has not; they are left out"),
+        (
+            faults.vertices,
+            "triangles refer to vertices that the object does not have; they are left out",
+        ),
+        (
+            faults.beams,
+            "beams or balls refer to vertices that the object does not have; they are left out",
+        ),
         (faults.clipped, "beam lattices are to be cut at another mesh; they are shown whole"),
         (
             faults.layers,
@@ -362,11 +368,11 @@ fn warn_of_faults(model: &mut Model, faults: Faults) {
 
 fn warn_of_repairs(model: &mut Model, repairs: &Repairs) {
     for (count, what) in [
-        (repairs.unknown, "triangles name properties that the file has not; there they are grey"),
         (
-            repairs.paint,
-            "triangles are painted by a broken code; what is left of it is not painted",
+            repairs.unknown,
+            "triangles refer to properties that the file does not have; there they are grey",
         ),
+        (repairs.paint, "triangles have an invalid paint code; the rest of the code is ignored"),
         (
             repairs.hidden,
             "triangles are modifiers, holes or places for supports; they are left out",

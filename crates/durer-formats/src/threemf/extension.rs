@@ -1,10 +1,10 @@
-//! Extensions that a part requires: the namespaces of those that are read, and a word for others.
+//! Extensions that a part requires: the namespaces of the ones that are read, and names of others.
 
 use crate::xml::{self, Here};
 use crate::{Error, Result};
 use quick_xml::events::BytesStart;
 
-/// Namespaces of what is read, or does not change what is seen.
+/// Namespaces of extensions that are read or do not change the picture.
 const READ: &[&str] = &[
     "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",

@@ -3,7 +3,7 @@
 //! Source: 3MF Consortium, *Beam Lattice Extension* 1.2.0, 2021.
 //!
 //! A round end is the whole ball that the beam ends in, once for all beams of its radius there.
-//! The corners lie on the true surface, and normals are those of it. The more beams, the fewer sides.
+//! The corners and normals are those of the true surface. The more beams, the fewer sides.
 
 use super::property::Properties;
 use crate::{Error, Result};
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Default)]
 pub(super) struct Lattice {
     pub radius: f64,
-    /// Shorter beams are none.
+    /// Length below which beams are ignored.
     pub shortest: f64,
     /// True if ends are flat where a beam does not say.
     pub butt: bool,
@@ -58,7 +58,7 @@ fn sides(beams: usize) -> usize {
 
 /// Makes a lattice's mesh, relative to `origin`; at most `limit` triangles.
 ///
-/// `color` is that of what has none of its own.
+/// `color` is used for beams without their own.
 ///
 /// # Errors
 /// [`Error::Limit`].

@@ -20,8 +20,7 @@ pub(super) struct Base<'a> {
 }
 
 impl Base<'_> {
-    /// Returns the colour of what is printed with a filament, where the file says how filaments
-    /// look.
+    /// Returns the colour of a filament, if the file gives it.
     fn color(&self, filament: Option<u32>) -> Option<Vec4> {
         let number = filament.unwrap_or(1);
         self.settings.has_filaments().then(|| self.settings.filament(number))
@@ -40,7 +39,7 @@ impl Base<'_> {
     }
 }
 
-/// Repairs of what could not be built as the file says.
+/// Repairs of parts that could not be built as given by the file.
 #[derive(Debug, Default)]
 pub(super) struct Repairs {
     /// Triangles that name properties which the file has not.
@@ -272,7 +271,7 @@ impl Soup<'_> {
         if texture.is_some() {
             bucket.places.extend(looks.map(|l| l.texture.map_or(Vec2::ZERO, |(_, place)| place)));
         }
-        // What has a texture that cannot be had is grey.
+        // Triangles with a missing texture are grey.
         let lost = textured.is_some() && texture.is_none();
         let grey = Material::default().base_color;
         bucket.colors.extend(looks.map(|l| if lost { l.color * grey } else { l.color }));

@@ -24,7 +24,7 @@ pub(super) struct Package<'a> {
     work: Work,
 }
 
-/// Memory of a part and of what is read from it, against its own size: numbers take less than their text.
+/// Memory of a part and of the data read from it, relative to its size: numbers take less than their text.
 const PER_BYTE: u64 = 2;
 
 impl<'a> Package<'a> {
@@ -84,8 +84,8 @@ impl<'a> Package<'a> {
         if file.size() > self.left {
             return Err(too_large(file.size()));
         }
-        // What the archive claims is not trusted: no memory is taken ahead, and one byte more than
-        // is left gives the lie away.
+        // The size in the archive is not trusted: no memory is allocated in advance, and reading one byte beyond the
+        // limit reveals a wrong size.
         let mut bytes = Vec::new();
         let mut file = file.take(self.left.saturating_add(1));
         file.read_to_end(&mut bytes)

@@ -1,20 +1,19 @@
-//! Paint of PrusaSlicer, Bambu Studio and their kin: triangles divided by a code, piece by piece a
-//! filament.
+//! Paint of PrusaSlicer, Bambu Studio and similar programs: triangles divided by a code, with a filament for each
+//! piece.
 //!
 //! The code is a tree in hexadecimal digits, read from its end, root first. The low two bits of a digit are the number
-//! of divided sides. With none it is a piece, whose filament is in the high two bits; 3 there means
-//! 3 more than the next digit says, and each digit 15 adds 15 and goes on. Else the high
-//! bits name the corner to count from, and the children follow, the last one first: with one side,
-//! that opposite to the corner is halved; with two, those at the corner; with three, all. Filament 0
-//! is no paint.
+//! of divided sides. With none it is a piece, whose filament is in the high two bits; 3 there means 3 plus the next
+//! digit, and each digit 15 adds 15 and continues. Otherwise the high bits name the corner to count from, and the
+//! children follow, the last one first: with one divided side, the side opposite the corner is halved; with two, the
+//! sides at the corner; with three, all. Filament 0 is no paint.
 
 use durer::math::DVec3;
 
 /// The corners of a piece.
 type Corners = [DVec3; 3];
 
-/// Divides a triangle by its code; `piece` gets each piece with its filament. Returns whether the
-/// code was whole and no longer; pieces for which it had no digits are without paint.
+/// Divides a triangle by its code; `piece` receives each piece with its filament. Returns whether the code had exactly
+/// the needed digits; pieces without digits get no paint.
 pub(super) fn divide(code: &str, corners: Corners, mut piece: impl FnMut(Corners, u32)) -> bool {
     let mut digits = Digits(code.as_bytes());
     let mut stack = vec![corners];
@@ -44,7 +43,7 @@ pub(super) fn divide(code: &str, corners: Corners, mut piece: impl FnMut(Corners
 struct Digits<'a>(&'a [u8]);
 
 impl Digits<'_> {
-    /// Reads the next digit; `None` at the end, and for what is none.
+    /// Reads the next digit; `None` at the end and for other characters.
     fn next(&mut self) -> Option<u32> {
         let (&last, rest) = self.0.split_last()?;
         self.0 = rest;
@@ -73,7 +72,7 @@ fn turned([a, b, c]: Corners, first: u32) -> Corners {
     }
 }
 
-/// Adds the children of a triangle of which this many sides are divided, the first one first.
+/// Adds the children of a triangle with `sides` divided sides, the first one first.
 fn children(sides: u32, [a, b, c]: Corners, stack: &mut Vec<Corners>) {
     let middle = |p: DVec3, q: DVec3| (p + q) * 0.5;
     match sides {

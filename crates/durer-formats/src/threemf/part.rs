@@ -21,7 +21,7 @@ pub(super) struct Use {
     pub transform: DMat4,
 }
 
-/// A triangle with colours of its own: its number, the group, and an index per corner.
+/// A triangle with its own colours: its number, the group, and an index per corner.
 pub(super) type Property = (u32, u64, [u64; 3]);
 
 /// A mesh, or components.
@@ -35,7 +35,7 @@ pub(super) struct Object {
     /// The group and index of the whole object's colour.
     pub property: Option<(u64, u64)>,
     pub properties: Vec<Property>,
-    /// Numbers of triangles with what slicers painted onto them.
+    /// Numbers of triangles with the paint of slicers.
     pub paint: Vec<(u32, Box<str>)>,
     pub lattice: Option<Lattice>,
     pub components: Vec<Use>,
@@ -261,8 +261,8 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Collapses triangles that name vertices which the object lacks to a point, so that numbers stay, and removes such
-    /// beams and balls.
+    /// Collapses triangles with missing vertices to a point, so that the numbers of others do not change, and removes
+    /// such beams and balls.
     fn drop_dangling(&mut self, id: u64, object: &mut Object) {
         let count = object.vertices.len();
         let place = || Place::Path(format!("{}, object {id}", self.here.file));

@@ -132,7 +132,7 @@ impl Properties {
     }
 }
 
-/// Lays a look over what is below it.
+/// Lays a look over the look below it.
 fn over(below: Option<Look>, layer: &Layer, look: Look) -> Look {
     let Some(below) = below else { return look };
     if layer.multiplies {

@@ -141,7 +141,7 @@ impl Parser<'_> {
     }
 }
 
-/// Returns whole numbers with blanks between them; what is none counts as a very large one.
+/// Parses whole numbers separated by blanks; other words count as a very large number.
 fn whole_numbers(text: &str) -> Vec<u64> {
     text.split_ascii_whitespace().map(|w| w.parse().unwrap_or(u64::MAX)).collect()
 }

@@ -59,7 +59,7 @@ pub(super) struct Plate {
 }
 
 impl Settings {
-    /// Reads the slicer's files. What cannot be read is a warning: the model is drawn without it.
+    /// Reads the slicer's files. Unreadable files give a warning, and the model is drawn without them.
     pub fn read(package: &mut Package<'_>, model: &mut Model) -> Self {
         let mut settings = Self::default();
         let mut file = |name: &str, parse: &mut dyn FnMut(&[u8]) -> Result<(), String>| {
@@ -145,8 +145,7 @@ fn project_filaments(text: &[u8]) -> Result<Vec<String>, String> {
     Ok(project.filament_colour)
 }
 
-/// Returns the colours in a configuration of PrusaSlicer: those of extruders where all have one,
-/// else those of filaments.
+/// Returns the colours in a configuration of PrusaSlicer: the extruders' if all have one, else the filaments'.
 fn config_filaments(text: &[u8]) -> Vec<String> {
     let text = String::from_utf8_lossy(text);
     let value = |key: &str| {
@@ -208,7 +207,7 @@ impl ObjectParser<'_> {
             }
             return;
         }
-        // Filament 0 is that of the whole.
+        // Filament 0 stands for the whole object's.
         let filament = value.parse().ok().filter(|f| *f > 0);
         match (key, &mut self.volume, &mut self.object) {
             ("extruder", Some(volume), _) => volume.2.filament = filament,

@@ -31,7 +31,7 @@ impl<W: Write + Seek> MbTiles<W> {
     /// Adds a tile, compressed by [`gzip`](super::gzip()).
     ///
     /// # Errors
-    /// [`crate::Error::Io`]; [`crate::Error::Limit`] where the database has no room.
+    /// [`crate::Error::Io`]; [`crate::Error::Limit`] if the database has no room.
     pub fn add(&mut self, tile: Tile, bytes: &[u8]) -> Result<()> {
         // Rows count to the north.
         let row = (1u32 << tile.zoom) - 1 - tile.y;

@@ -1,7 +1,7 @@
 //! Vector tiles, and files that hold many of them.
 //!
-//! [`Layer`] and [`encode`] make the bytes of a tile, as the Mapbox Vector Tile Specification 2.1 says; [`PmTiles`] and
-//! [`MbTiles`] put tiles into one file.
+//! [`Layer`] and [`encode`] make the bytes of a tile by the Mapbox Vector Tile Specification 2.1; [`PmTiles`] and
+//! [`MbTiles`] write tiles to one file.
 
 mod archive;
 mod gzip;

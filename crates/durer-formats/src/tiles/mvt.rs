@@ -45,7 +45,7 @@ impl Value {
     }
 }
 
-/// The names and values of properties, each once, in the order in which they came.
+/// The names and values of properties, each once, in order of appearance.
 #[derive(Debug, Clone, Default)]
 pub struct Dictionary {
     names: Vec<String>,
@@ -173,7 +173,7 @@ impl<'a> Layer<'a> {
     }
 }
 
-/// Returns the bytes of a tile: its layers, but for those without a feature.
+/// Returns the bytes of a tile: its layers, without empty ones.
 pub fn encode(layers: &[Layer<'_>]) -> Vec<u8> {
     let mut tile = Message::default();
     let full = layers.iter().filter(|layer| !layer.is_empty());

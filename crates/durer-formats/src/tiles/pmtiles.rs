@@ -15,8 +15,7 @@ const HEAD: u64 = 16_384;
 
 const HEADER: u64 = 127;
 
-/// Tiles of at most this many bytes are looked for among those before: the sea, the inside of
-/// areas.
+/// Largest size in bytes of tiles that are compared with earlier ones: the sea, the inside of areas.
 const SMALL: usize = 1024;
 
 /// Number of tiles to remember.
@@ -136,7 +135,7 @@ fn e7(degrees: f64) -> [u8; 4] {
     ((degrees * 1e7).round() as i32).to_le_bytes()
 }
 
-/// Returns the root directory and those that it refers to, compressed.
+/// Returns the root directory and the leaf directories, compressed.
 fn directories(entries: &[Entry]) -> (Vec<u8>, Vec<u8>) {
     let fits = |directory: &[u8]| directory.len() as u64 <= HEAD - HEADER;
     let root = directory(entries);

@@ -120,7 +120,7 @@ fn corners_have_attributes_by_offset_and_stride() {
     assert_eq!(mesh.colors[1], Vec4::new(0.0, 1.0, 0.0, 0.5));
     let material = &model.scene.materials[mesh.parts[0].material.expect("of colours")];
     assert_eq!(material.name, "vertex colors");
-    assert!(warnings(&model)[0].contains("1 instances name what the file does not have"));
+    assert!(warnings(&model)[0].contains("1 instances refer to missing objects"));
 }
 
 #[test]
@@ -333,7 +333,7 @@ fn what_is_wrong_is_left_out_with_a_word() {
         ),
         (
             "<triangles>V<input semantic=\"NORMAL\" source=\"#n\" offset=\"0\"/><p>0 1 2</p></triangles>",
-            "2 corners have a normal, color or place",
+            "2 corners refer to a normal, color or texture coordinate",
         ),
     ] {
         let model = read(&document(&primitives.replace('V', VERTEX), "", SHOWN).replace('\n', " "));
@@ -345,7 +345,9 @@ fn what_is_wrong_is_left_out_with_a_word() {
         "",
         "<instance_geometry url=\"#q\"/><instance_light url=\"#x\"/><scale>1</scale>",
     ));
-    for expected in ["2 instances name what", "1 transforms have not", "no nodes with a mesh"] {
+    for expected in
+        ["2 instances refer to missing", "1 transforms have not", "no nodes with a mesh"]
+    {
         assert!(
             warnings(&empty).iter().any(|w| w.contains(expected)),
             "{expected}: {:?}",

@@ -180,7 +180,10 @@ fn frames_that_need_grids_are_refused_by_name() {
     };
     for datum in ["North_American_1927", "MGI_1901", "European_1950_ED77", "D_CH1903"] {
         let told = Crs::parse(&definition(datum, "")).expect_err("refused");
-        assert!(told.contains(&format!("how its datum {datum} lies is not known")), "{told}");
+        assert!(
+            told.contains(&format!("the position of its datum {datum} is not known")),
+            "{told}"
+        );
     }
     let shifted = definition("WGS_1984", ",TOWGS84[1,2,3,0,0,0,0]");
     assert!(Crs::parse(&shifted).is_err_and(|e| e.contains("WGS_1984")));

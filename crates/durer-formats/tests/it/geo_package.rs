@@ -140,7 +140,7 @@ fn damaged_files_are_refused_with_a_place() {
     let told = error(&with(108, &[0, 0, 0, 1]), None);
     let ways = ["nested too deep", "lead to each other without end", "lie over each other"];
     assert!(ways.iter().any(|way| told.contains(way)), "{told}");
-    assert!(error(&WIDE[..1536], None).contains("is asked for, but the file ends after 3"));
+    assert!(error(&WIDE[..1536], None).contains("is needed, but the file ends after 3"));
     assert!(error(b"SQLite", None).contains("the header of an SQLite database is expected"));
 }
 

@@ -196,7 +196,7 @@ fn broken_files_are_told_where_and_what() {
         (&b""[..], "the file is empty"),
         (b"hello", "height maps are read from"),
         (b"ncols 2\nnrows 2\n1 2\n3 x\n", "line 4, column 3: `x` is not a number"),
-        (b"ncols 2\nnrows 2\n1 2 3 4 5\n", "line 3, column 9: `5` stands after"),
+        (b"ncols 2\nnrows 2\n1 2 3 4 5\n", "line 3, column 9: `5` follows the last"),
         (b"ncols 2\nnrows 2\n10 20 30\n", "ends after 3 of 4"),
         (b"ncols 2\n1 2 3 4\n", "`nrows` is missing"),
         (b"ncols 0\nnrows 2\n", "line 1, column 1: `ncols` needs a whole number"),

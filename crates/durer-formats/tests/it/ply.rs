@@ -227,7 +227,7 @@ fn a_missing_picture_and_missing_coordinates_are_told() {
     assert!(warnings(&none).contains("no texture coordinates"), "{}", warnings(&none));
     let odd =
         textured(&cube(&format!("comment TextureFile quad.png\n{coords}"), "3 0 1 2 4 0 0 1 0\n"));
-    assert!(warnings(&odd).contains("1 faces have another number"), "{}", warnings(&odd));
+    assert!(warnings(&odd).contains("1 faces have different numbers"), "{}", warnings(&odd));
 }
 
 #[test]

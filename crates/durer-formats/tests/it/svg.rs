@@ -188,7 +188,7 @@ fn values_that_cannot_be_used_are_told_with_their_place() {
             "is `-3`",
             "at least 0, as `12`, `3.5mm` or `20%`; it counts as 0",
         ),
-        ("<path d='M0 0L5 5X'/>", "`d` of `path`", "what comes before the error is drawn"),
+        ("<path d='M0 0L5 5X'/>", "`d` of `path`", "the part before the error is drawn"),
         ("<polygon points='1 1 2 3 4'/>", "`points` of `polygon`", "pairs of numbers"),
         ("<g transform='turn(5)'/>", "`transform` of `g`", "`rotate`"),
         ("<g transform='scale(1e-7)'/>", "`transform` of `g`", "is left out"),

@@ -111,7 +111,7 @@ fn half_transparent_triangles_are_blended() {
     let texts: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
     let [colors, properties] = &texts[..] else { panic!("{texts:?}") };
     assert!(colors.contains("part.model, byte") && colors.contains("1 colors are not"), "{colors}");
-    assert!(properties.contains("1 triangles name properties"), "{properties}");
+    assert!(properties.contains("1 triangles refer to properties"), "{properties}");
 }
 
 /// Returns a PNG of 2 × 2 pixels.

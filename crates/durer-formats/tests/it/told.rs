@@ -98,7 +98,7 @@ fn readers_of_map_data_quote_plainly() {
 
 /// Faults of XML, each within an element `R`, and what drawings are told of them.
 const FAULTS: [(&str, &str); 17] = [
-    ("<R><a></b></R>", "`</b>` stands where `</a>` is needed"),
+    ("<R><a></b></R>", "`</b>` is found where `</a>` is expected"),
     ("<R><a", "the text ends before all elements do"),
     ("<R><a>", "the text ends before all elements do"),
     ("<R><q:a/></R>", "`svg` needs `xmlns:q=\"…\"`"),
@@ -111,8 +111,8 @@ const FAULTS: [(&str, &str); 17] = [
     ("<R><!-- -- --></R>", "a comment holds `--`, or ends with `-`"),
     ("<R>\u{1}</R>", "the character U+0001 is not allowed in XML"),
     ("<R><?xml version='1.0'?></R>", "elsewhere than at the very beginning"),
-    ("<R><a b=c/></R>", "`c` stands where a quote is needed"),
-    ("<R><a b/></R>", "`/` stands where `=` is needed"),
+    ("<R><a b=c/></R>", "`c` is found where a quote is expected"),
+    ("<R><a b/></R>", "`/` is found where `=` is expected"),
     ("<R><1/></R>", "a name is needed, which begins with a letter, `_` or `:`"),
     (
         "<!DOCTYPE R [<!ENTITY a '&b;'><!ENTITY b '&a;'>]><R>&a;</R>",

@@ -21,7 +21,7 @@ const WHOLE: &[&str] = &["", "front", "top", "right", "left", "back", "bottom"];
 pub(super) fn said(sign: &str, value: f64, count: usize, view: &Seen, unit: f64) -> Said {
     let times = if count > 1 { format!("{count}× ") } else { String::new() };
     let text = format!("{times}{sign}{}", style::length(value, unit));
-    // Programs that write the text anew take two digits after the point.
+    // Programs that regenerate the text write two digits after the point.
     let is_plain = count <= 1 && text.rsplit_once('.').is_none_or(|(_, digits)| digits.len() <= 2);
     Said { text, is_plain, value, scale: 1.0 / view.factor().max(f64::MIN_POSITIVE) }
 }
@@ -71,7 +71,7 @@ fn size(
     let found = view.farthest(-way, then).zip(view.farthest(way, then));
     let Some((low, high)) = found else { return true };
     let (mut from, mut to) = (low.dot(way), high.dot(way));
-    // A mesh's polygon is smaller than the circle that it stands for.
+    // A mesh's polygon is smaller than the circle that it approximates.
     for cylinder in features.iter().map(|f| &f.cylinder).filter(|c| c.is_full() && !c.hollow) {
         let along = cylinder.axis().dot(axis);
         let reach = cylinder.radius * (1.0 - along * along).max(0.0).sqrt() * view.factor();
@@ -90,8 +90,8 @@ fn size(
     place::linear(board, view, ends, way, &side, &said("", value, 1, view, unit))
 }
 
-/// Puts the diameters of the features of one kind: equal ones have one in common, with their number. Notes name those
-/// that have none.
+/// Places the diameters of the features of one kind: equal ones share one dimension, with their number. Notes name
+/// features without room for one.
 pub(super) fn diameters(
     board: &mut Board,
     views: &[Seen],
@@ -120,7 +120,7 @@ pub(super) fn diameters(
             let many =
                 if count > 1 { format!("{count} {}", plural(name)) } else { format!("a {name}") };
             notes.push(format!(
-                "{many} of ⌀{} no view shows as a circle; there is no dimension",
+                "no view shows {many} of ⌀{} as a circle; there is no dimension",
                 text(first)
             ));
         }
@@ -149,8 +149,7 @@ fn plural(name: &str) -> String {
     if name.ends_with('s') { format!("{name}es") } else { format!("{name}s") }
 }
 
-/// Returns the distinct circles of those features that a view shows, which are taken out of the list, and
-/// their diameter.
+/// Removes from the list the features that a view shows as circles; returns their distinct circles and their diameter.
 pub(super) fn circles(view: &Seen, rest: &mut Vec<&Feature>) -> Option<(Vec<Target>, f64)> {
     let mut targets: Vec<Target> = Vec::new();
     let mut value = None;

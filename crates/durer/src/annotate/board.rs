@@ -1,4 +1,4 @@
-//! The sheet while it is annotated: its pens, what is taken, what is new.
+//! The sheet while it is annotated: its pens, occupied areas and new marks.
 
 use super::quad::Quad;
 use super::style::{CENTER, HALO, Style, THIN};
@@ -9,7 +9,7 @@ use crate::target::sheet::Dimension;
 use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use crate::target::{Arc, Curve, Piece};
 
-/// Annotations stay so far inside the frame or the border of the paper, millimetres.
+/// Distance that annotations keep from the frame or the border of the paper, millimetres.
 const INSIDE: f64 = 1.0;
 
 /// Layers whose marks nothing may be written on.
@@ -19,7 +19,7 @@ const SOLID: &[&str] =
 pub(super) struct Board<'a> {
     sheet: &'a mut Sheet,
     pub style: Style,
-    /// Area in which annotations may lie.
+    /// Area for annotations.
     page: Rect,
     /// Areas that are occupied.
     taken: Vec<Quad>,
@@ -41,7 +41,7 @@ pub(super) enum Layer {
 
 const NAMES: [&str; 3] = ["center", "thread", "dimension"];
 
-/// An annotation that has not got its place yet.
+/// An annotation that has not been placed yet.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
     /// Marks on the sheet.
@@ -55,7 +55,7 @@ pub(super) struct Draft {
 }
 
 impl<'a> Board<'a> {
-    /// Creates the board of a sheet with what its views take up; `None` without any.
+    /// Creates the board of a sheet with the areas that its views occupy; `None` without any.
     pub fn new(sheet: &'a mut Sheet, views: &[Rect], color: [u8; 4]) -> Option<Self> {
         let first = *views.first()?;
         let whole = Rect::around([DVec2::ZERO, sheet.size]);
@@ -105,7 +105,7 @@ impl<'a> Board<'a> {
         self.is_free_but_for(solid, &[])
     }
 
-    /// Returns whether `solid` is within the page and overlaps nothing that is taken, except what is `allowed`.
+    /// Returns whether `solid` is within the page and overlaps no occupied area except those in `allowed`.
     pub fn is_free_but_for(&self, solid: &[Quad], allowed: &[Quad]) -> bool {
         let taken = || self.taken.iter().filter(|t| !allowed.contains(t));
         solid.iter().all(|q| q.is_within(&self.page) && !taken().any(|t| t.overlaps(q)))
@@ -119,7 +119,7 @@ impl<'a> Board<'a> {
         new.chain(leaders).filter(|q| q.overlaps(&line)).count()
     }
 
-    /// Puts an annotation where it was drafted.
+    /// Places an annotation as drafted.
     pub fn put(&mut self, draft: Draft) {
         draft.mark.into_iter().for_each(|mark| self.add(Layer::Dimension, mark));
         self.taken.extend(draft.solid);

@@ -17,8 +17,8 @@ const SOLID: f64 = 24.0;
 /// Centres nearer than this are one, millimetres.
 const SAME: f64 = 0.05;
 
-/// An axis as seen: what those in line have in common, where it begins and ends along them, its way, and how far off
-/// the origin it lies.
+/// An axis as seen: the key common to axes in line, its begin and end along them, its direction, and its distance from
+/// the origin.
 type Axis = ([i64; 3], (f64, f64), DVec2, f64);
 
 /// A circle that is seen in its true shape.
@@ -28,8 +28,8 @@ struct Circle {
     radius: f64,
 }
 
-/// Draws the centre marks and lines of one view; `alone` says that it is the sheet's only one, in which axes are
-/// drawn that are seen obliquely too.
+/// Draws the centre marks and lines of one view; if it is the sheet's only one (`alone`), axes seen obliquely are drawn
+/// too.
 pub(super) fn put(board: &mut Board, view: &Seen, features: &[Feature], alone: bool) {
     let round = || features.iter().filter(|f| f.kind != FeatureKind::Fillet);
     let mut circles = Vec::new();

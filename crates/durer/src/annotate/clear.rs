@@ -13,14 +13,14 @@ const SHORTEST: f64 = 0.3;
 const NEAR: f64 = 0.01;
 const CHORD: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
-/// Cuts the strokes of a sheet, those of dimensions too, wherever one of the quads lies on them.
+/// Cuts the strokes of a sheet, including those of dimensions, wherever one of the quads covers them.
 pub(super) fn clear(sheet: &mut Sheet, quads: &[Quad]) {
     for layer in sheet.layers.iter_mut().filter(|l| !is_whole(&l.name)) {
         cut_marks(&mut layer.marks, quads);
     }
 }
 
-/// Returns whether a layer stays as it is: nothing is written across the frame, and areas are not lines.
+/// Returns whether a layer is not cut: nothing is written across the frame, and areas are not lines.
 fn is_whole(layer: &str) -> bool {
     matches!(layer, "frame" | "title-block" | "regions")
 }
@@ -52,7 +52,7 @@ fn cut_marks(marks: &mut Vec<Mark>, quads: &[Quad]) {
     *marks = kept;
 }
 
-/// Returns the parts of a chain outside of all quads; `None` if that is all of it.
+/// Returns the parts of a chain outside all quads; `None` if no quad meets it.
 fn outside(points: &[DVec2], closed: bool, quads: &[Quad]) -> Option<Vec<Vec<DVec2>>> {
     let again = points.first().copied().filter(|_| closed);
     let chain: Vec<DVec2> = points.iter().copied().chain(again).collect();
@@ -79,8 +79,7 @@ fn outside(points: &[DVec2], closed: bool, quads: &[Quad]) -> Option<Vec<Vec<DVe
     Some(parts)
 }
 
-/// Returns the parts of a curve outside of all quads, each piece on its own; `None` if that is all
-/// of it.
+/// Returns the parts of a curve outside all quads, each piece separately; `None` if no quad meets it.
 fn outside_of_curve(curve: &Curve, quads: &[Quad]) -> Option<Vec<Curve>> {
     outside(&pieces::points(curve, NEAR), curve.closed, quads)?;
     let parts = curve.iter().flat_map(|(start, piece)| match *piece {

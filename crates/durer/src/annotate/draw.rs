@@ -27,22 +27,22 @@ pub(super) struct Linear {
     pub ends: [DVec2; 2],
     /// A point of the dimension line.
     pub line: DVec2,
-    /// The way of the dimension line, of unit length.
+    /// Direction of the dimension line, of unit length.
     pub along: DVec2,
 }
 
-/// Returns the way in which texts along a line run: to the right, or upwards.
+/// Returns the direction of texts along a line: to the right, or upwards.
 pub(super) fn reading(along: DVec2) -> DVec2 {
     let backwards = along.x < -1e-6 || (along.x < 1e-6 && along.y > 0.0);
     if backwards { -along } else { along }
 }
 
-/// Returns a quarter before the way that a text runs.
+/// Returns the direction above a text, at a right angle to the text's own.
 fn above(along: DVec2) -> DVec2 {
     DVec2::new(along.y, -along.x)
 }
 
-/// Returns a filled arrow head; `body` is the way from its tip into it.
+/// Returns a filled arrow head; `body` is the direction from its tip into it.
 fn arrow(tip: DVec2, body: DVec2, style: &Style) -> Mark {
     let (back, side) = (tip + body * style.arrow, body.perp() * (style.arrow / 6.0));
     Mark::Fill { rings: vec![vec![tip, back + side, back - side]], color: style.color }
@@ -99,7 +99,7 @@ impl Board<'_> {
         )
     }
 
-    /// Returns a leader from a point: it goes to an elbow and on below its text. `measure` is the measured quantity,
+    /// Returns a leader from a point to an elbow and on below its text. `measure` is the measured quantity,
     /// `None` for a note.
     pub fn leader(
         &mut self,
@@ -163,7 +163,7 @@ impl Board<'_> {
         marks.push(arrow(at(from), body(from, from + head), &style));
         marks.push(arrow(at(from + turn), body(from + turn, from + turn - head), &style));
         let (sin, cos) = libm::sincos(from + turn * 0.5);
-        // The text's middle lies outside the arc, as far as its half size in that direction.
+        // The text's middle is outside the arc by half its size in that direction.
         let half = DVec2::new(self.width(&said.text), style.text) * 0.5;
         let out = radius + GAP + half.x * cos.abs() + half.y * sin.abs();
         let middle = vertex + DVec2::new(cos, -sin) * out;

@@ -146,7 +146,7 @@ fn worded(said: Said, request: &Request) -> Said {
     }
 }
 
-/// Returns the first view that shows a direction in its true length, and its way there.
+/// Returns the first view that shows a direction in its true length, and the direction there.
 fn in_true_length<'a, 'b>(
     views: &[&'a Seen<'b>],
     direction: DVec3,
@@ -187,7 +187,7 @@ fn diameter(
         let target = Target { center, radius, facing: None };
         return Ok(place_diameter(board, view, &[target], request.side, &sign(view)));
     }
-    // From the side it is the distance of the outlines.
+    // Seen from the side, the diameter is the distance of the outlines.
     let (view, way) = in_true_length(views, cylinder.axis())?;
     let (middle, across) = (view.point(cylinder.ends[0]), way.perp());
     let reach = across * cylinder.radius * view.factor();

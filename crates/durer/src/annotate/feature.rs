@@ -1,4 +1,4 @@
-//! The round parts of a model by name: `hole 1`, `boss 2`, `fillet 3`, or the name of an object that has but one.
+//! The round parts of a model by name: `hole 1`, `boss 2`, `fillet 3`, or the name of an object that has only one.
 
 use crate::math::DVec3;
 use crate::scene::Scene;
@@ -77,8 +77,7 @@ pub fn features(scene: &Scene, faces: &Faces) -> Vec<Feature> {
     cylinders(faces).into_iter().map(named).collect()
 }
 
-/// Returns the name of the object that a triangle is a part of: its group's, else that of its instance or
-/// its mesh.
+/// Returns the name of the object that a triangle belongs to: its group's name, else its instance's or its mesh's.
 fn object<'a>(scene: &'a Scene, faces: &Faces, item: u32) -> &'a str {
     let Some(run) = faces.run_of(item) else { return "" };
     let mesh = &scene.meshes[run.mesh];

@@ -1,4 +1,4 @@
-//! Letters of cutting planes and details make room for dimensions and centre lines, which have but one place.
+//! Letters of cutting planes and details make room for dimensions and centre lines, which have only one place.
 
 use super::board::text_quad;
 use super::quad::Quad;
@@ -13,7 +13,7 @@ const MOVED: [(&str, bool); 2] = [("cutting-planes", true), ("details", false)];
 /// Layers that letters make room for.
 const FIXED: [&str; 3] = ["center", "thread", "dimension"];
 
-/// Layers without anything that letters might lie on.
+/// Layers with nothing that letters could cover.
 const APART: [&str; 4] = ["regions", "frame", "title-block", "parts-list"];
 
 /// Distances that letters are moved, the least first, in millimetres.
@@ -28,8 +28,8 @@ const REACH: f64 = 20.0;
 /// Curves are examined as chords this near to them, millimetres.
 const NEAR: f64 = 0.05;
 
-/// Moves each letter that lies on an annotation to the nearest place where it lies on nothing, if there is one near by;
-/// the places of all letters.
+/// Moves each letter that covers an annotation to the nearest free place, if there is one near by; returns the places
+/// of all letters.
 pub(super) fn make_room(sheet: &mut Sheet, views: &[Rect], page: &Rect) -> Vec<Quad> {
     let mut places = Vec::new();
     for (name, outside) in MOVED {

@@ -33,7 +33,7 @@ use seen::Seen;
 /// Contents of a sheet.
 #[derive(Debug, Clone, Copy)]
 pub struct Shown<'a> {
-    /// Its views, and where they are.
+    /// Its views and their places.
     pub views: &'a [PlacedView],
     /// Drawings of the views, in the same order.
     pub drawings: &'a [&'a Drawing],
@@ -59,10 +59,10 @@ pub fn room(wanted: &Annotations) -> f64 {
     }
 }
 
-/// Puts annotations on a sheet; what could not be put comes back in words.
+/// Puts annotations on a sheet; returns messages for those that could not be placed.
 ///
 /// # Errors
-/// [`crate::Error::Parameter`] for names that nothing has, and for what no view shows.
+/// [`crate::Error::Parameter`] for unknown names, and for features that no view shows.
 pub fn annotate(sheet: &mut Sheet, wanted: &Annotations, shown: &Shown) -> Result<Vec<String>> {
     let mut notes = Vec::new();
     let both = shown.views.iter().zip(shown.drawings);

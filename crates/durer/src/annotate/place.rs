@@ -21,7 +21,7 @@ const WAYS: [f64; 16] = [
 const ELBOW: f64 = 4.0;
 const ELBOWS: u32 = 6;
 
-/// A crossing of a leader with something is as bad as so much more length, millimetres.
+/// Penalty for each crossing of a leader, as additional length in millimetres.
 const CROSSING: f64 = 60.0;
 
 /// Candidate point for a leader.
@@ -30,11 +30,11 @@ pub(super) struct Target {
     pub center: DVec2,
     /// 0 for a point.
     pub radius: f64,
-    /// The only way, as seen from the centre, that leaders come from; any where `None`.
+    /// The only direction, seen from the centre, from which leaders come; `None` for any.
     pub facing: Option<DVec2>,
 }
 
-/// Puts a linear dimension into the first lane with room; `sides` in this order. Whether there was one.
+/// Puts a linear dimension into the first lane with room, trying `sides` in this order; returns whether there was one.
 pub(super) fn linear(
     board: &mut Board,
     view: &Seen,
@@ -43,7 +43,7 @@ pub(super) fn linear(
     sides: &[Side],
     said: &Said,
 ) -> bool {
-    // Programs that measure anew know of no breaks.
+    // Programs that measure again do not know about breaks.
     let measured = (ends[1] - ends[0]).dot(along).abs() * said.scale;
     let is_whole = (measured - said.value).abs() <= 1e-6 * said.value.abs();
     let said = &Said { is_plain: said.is_plain && is_whole, ..said.clone() };
@@ -80,8 +80,7 @@ fn lane_at(bounds: Rect, ends: [DVec2; 2], along: DVec2, side: Side, distance: f
     }
 }
 
-/// Returns the sides on which a dimension may be, the nearest to the measured part first; only `wanted`,
-/// where given.
+/// Returns the sides on which a dimension may be, the nearest to the measured part first; only `wanted`, if given.
 pub(super) fn sides(
     view: &Seen,
     ends: [DVec2; 2],
@@ -101,8 +100,8 @@ pub(super) fn sides(
     if swapped { vec![second, first] } else { vec![first, second] }
 }
 
-/// Puts a leader with a text to one of several targets that are alike, on the shortest way that is free. Whether
-/// there was one. `measure` returns the measured value from the target, the end of the leader and its direction.
+/// Puts a leader with a text to one of several equivalent targets, on the shortest free way; returns whether there was
+/// one. `measure` returns the measured value from the target, the end of the leader and its direction.
 pub(super) fn leader(
     board: &mut Board,
     view: &Seen,
@@ -156,7 +155,7 @@ fn is_on(side: Option<Side>, way: DVec2) -> bool {
     }
 }
 
-/// Returns the length of a way from a point to the border of a rectangle; 0 if it begins outside.
+/// Returns the distance from a point along a direction to the border of a rectangle; 0 if the point is outside.
 fn exit(bounds: Rect, from: DVec2, way: DVec2) -> f64 {
     let (min, max) = (bounds.min(), bounds.max());
     let reach = |low: f64, high: f64, at: f64, way: f64| {

@@ -1,4 +1,4 @@
-//! Places on a sheet that something takes up: convex quadrilaterals.
+//! Occupied places on a sheet: convex quadrilaterals.
 
 use super::style::HALO;
 use crate::math::{DVec2, Rect};
@@ -45,7 +45,7 @@ impl Quad {
         let mut around = Rect::around(strokes.into_iter().flatten());
         around = around.or_else(|| Rect::around([DVec2::ZERO]));
         let (min, max) = around.map_or((DVec2::ZERO, DVec2::ZERO), |r| (r.min(), r.max()));
-        // Capitals count, whatever the letters.
+        // The height of capitals is used for all letters.
         let (min, max) = (DVec2::new(min.x, min.y.min(-height)), DVec2::new(max.x, max.y.max(0.0)));
         let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
         Self(Self(corners).wider(space).0.map(|corner| at + along.rotate(corner)))
@@ -76,7 +76,7 @@ impl Quad {
         })
     }
 
-    /// Returns whether all of it lies in a rectangle.
+    /// Returns whether all of it is in a rectangle.
     pub fn is_within(&self, rect: &Rect) -> bool {
         let (min, max) = (rect.min(), rect.max());
         self.0.iter().all(|p| p.cmpge(min).all() && p.cmple(max).all())

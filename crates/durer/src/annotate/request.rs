@@ -9,7 +9,7 @@ pub struct Annotations {
     pub center_lines: bool,
     /// The sizes of the whole, each once.
     pub sizes: bool,
-    /// The diameters of holes, those that are alike once.
+    /// The diameters of holes, equal ones once.
     pub holes: bool,
     /// The diameters of other round parts.
     pub bosses: bool,
@@ -80,7 +80,7 @@ pub enum Place {
 /// Direction in which a distance is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Along {
-    /// The straight way from one to the other; between axes, at right angles to them.
+    /// The direction from one to the other; between axes, at right angles to them.
     #[default]
     Straight,
     /// The world's x axis.

@@ -25,22 +25,21 @@ pub(super) struct Seen<'a> {
 pub(super) enum Sight {
     /// Seen as a point.
     EndOn,
-    /// In its true length, this way on the sheet.
+    /// In its true length, in this direction on the sheet.
     Along(DVec2),
-    /// Shortened, this way on the sheet.
+    /// Shortened, in this direction on the sheet.
     Oblique(DVec2),
 }
 
 impl<'a> Seen<'a> {
-    /// Creates a view of a drawing; `None` in perspective, or without a camera. Hidden lines count where they
-    /// are drawn.
+    /// Creates a view of a drawing; `None` in perspective, or without a camera. Hidden lines count if they are drawn.
     pub fn new(placed: &'a PlacedView, drawing: &Drawing, hidden: bool) -> Option<Self> {
         let camera = placed.camera.as_ref()?;
         if !matches!(camera.projection, Projection::Orthographic { .. }) {
             return None;
         }
         let [right, up, back] = camera.axes();
-        // Break lines go on beyond what they cut.
+        // Break lines extend beyond the parts that they cut.
         let shown = |l: &&Line| (hidden || l.is_visible()) && l.class != LineClass::Break;
         let lines = drawing.lines.iter().filter(shown);
         let points = lines.flat_map(|l| &l.points).map(|p| placed.sheet_from_plane(*p));
@@ -67,14 +66,14 @@ impl<'a> Seen<'a> {
         self.placed.sheet_from_model(p).unwrap_or(DVec2::NAN)
     }
 
-    /// Returns the length between two places of the sheet along a direction of it, in units of the model:
-    /// with what breaks leave out.
+    /// Returns the length between two places of the sheet along a direction, in units of the model, including the parts
+    /// that breaks leave out.
     pub fn length(&self, ends: [DVec2; 2], way: DVec2) -> f64 {
         let [from, to] = ends.map(|p| self.placed.plane_from_sheet(p));
         (to - from).dot(DVec2::new(way.x, -way.y))
     }
 
-    /// Returns a direction of the world on the sheet, if it is not of unit length any more.
+    /// Returns a direction of the world on the sheet, no longer of unit length.
     pub fn way(&self, direction: DVec3) -> DVec2 {
         DVec2::new(direction.dot(self.axes[0]), -direction.dot(self.axes[1]))
     }

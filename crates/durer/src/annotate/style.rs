@@ -1,4 +1,4 @@
-//! The look of annotations (ISO 128, ISO 129-1, ISO 3098), and numbers in words.
+//! The look of annotations (ISO 128, ISO 129-1, ISO 3098), and numbers as texts.
 
 use crate::math::DVec2;
 

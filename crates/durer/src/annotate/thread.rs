@@ -15,14 +15,15 @@ use crate::target::sheet::Mark;
 /// The core of a screw whose pitch is not known, as a part of its diameter: as drawings show it.
 const CORE: f64 = 0.85;
 
-/// A cylinder is that of a thread up to so much of its diameter.
+/// Largest difference between the diameters of a cylinder and its thread, as a part of the diameter.
 const NEAR: f64 = 0.15;
 
 /// The arc is open in the upper right quarter: from 95° on, for 270°.
 const START: f64 = 95.0;
 const TURN: f64 = 270.0;
 
-/// Puts the threads into all views, and what they are called at one place each. The features that have a size by it.
+/// Draws the threads in all views, and the label of each at one place. Returns the features whose size is thereby
+/// given.
 pub(super) fn put<'a>(
     board: &mut Board,
     views: &[Seen],
@@ -42,7 +43,7 @@ pub(super) fn put<'a>(
                     threaded.push(feature);
                 }
                 None => notes.push(format!(
-                    "--thread: {} of `{}` has a diameter of {}, which is none of {}; it is drawn without",
+                    "--thread: {} of `{}` has a diameter of {}, which does not fit {}; it is drawn without a thread",
                     feature.name,
                     thread.name,
                     super::style::length(2.0 * feature.cylinder.radius, unit),
@@ -97,8 +98,8 @@ fn dashed(board: &mut Board) -> usize {
     board.pen(super::style::THIN, dashes)
 }
 
-/// Returns whether the lines of a thread seen from the side are hidden; `None` if nothing of it is drawn. The
-/// outline of a screw is seen; that of a hole in sections, elsewhere as a hidden line.
+/// Returns whether the lines of a thread seen from the side are hidden; `None` if they are not drawn. The outline of a
+/// screw is visible; the outline of a hole is visible in sections and hidden elsewhere.
 fn is_hidden(view: &Seen, feature: &Feature, ends: [DVec2; 2], way: DVec2) -> Option<bool> {
     let side = way.perp() * feature.cylinder.radius * view.factor();
     let corners = ends.iter().flat_map(|p| [*p + side, *p - side]);
@@ -107,7 +108,7 @@ fn is_hidden(view: &Seen, feature: &Feature, ends: [DVec2; 2], way: DVec2) -> Op
     drawn.then_some(feature.kind == FeatureKind::Hole && !cut)
 }
 
-/// Puts what a thread is called.
+/// Places the label of a thread.
 fn label(
     board: &mut Board,
     views: &[Seen],

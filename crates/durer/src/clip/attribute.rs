@@ -1,8 +1,8 @@
 //! The sources of a clipped shape's vertices, and values carried along: height, measure, colour,
 //! texture coordinates, any tuple of numbers.
 //!
-//! Clippers do not touch attributes; they tell the source of every output vertex, and
-//! [`interpolate`] or any callback makes the new values from it. Who needs none pays nothing.
+//! Clippers do not touch attributes; they return the source of every output vertex, from which [`interpolate`] or any
+//! callback computes the new values. Callers without attributes pay nothing.
 
 use crate::math::DVec2;
 
@@ -52,7 +52,7 @@ pub trait Provenance: Default {
     fn push_range(&mut self, other: &Self, range: std::ops::Range<usize>);
     /// Adds a range of this list once more.
     fn repeat(&mut self, range: std::ops::Range<usize>);
-    /// Forgets everything from a length on.
+    /// Removes everything from a length on.
     fn truncate(&mut self, length: usize);
 }
 

@@ -1,7 +1,7 @@
 //! Geometries cut by many cells, such as districts: each piece with the number of its cell.
 //!
-//! Cells are found by their boxes; each is a [`Mask`], ready for many geometries. A polygon with many points is made a
-//! mask itself, and the cells near it are cut with it: that looks at what is near a cell only, and gives the same
+//! Cells are found by their boxes; each is a [`Mask`], ready for many geometries. A polygon with many points becomes a
+//! mask itself, and the cells near it are cut with it: that examines only the edges near a cell, and gives the same
 //! points.
 //!
 //! ```
@@ -19,7 +19,7 @@
 //! # Ok::<(), durer::Error>(())
 //! ```
 //!
-//! Cost: O(log c + the cells whose boxes meet the geometry's) for c cells of like width, and that of each cut.
+//! Cost: O(log c + the cells whose boxes meet the geometry's) for c cells of similar width, plus the cost of each cut.
 
 use super::mask::{Area, Cut, Cutter, Mask, Rules};
 use super::polygon::{BooleanOp, Shapes, coverage};
@@ -32,7 +32,7 @@ use crate::{Result, parallel};
 #[derive(Debug)]
 pub struct Cells {
     cells: Vec<Cell>,
-    /// Cells that enclose something, by their left borders.
+    /// Cells with an area, by their left borders.
     order: Vec<usize>,
     /// The width of the widest.
     width: f64,
@@ -129,7 +129,7 @@ impl Cells {
     }
 }
 
-/// Polygons with this many points that cells are cut with them, and not they with the cells.
+/// Polygons with so many points that cells are clipped with them instead of the other way round.
 struct Large {
     mask: Mask,
     repaired: bool,
@@ -140,8 +140,8 @@ struct Large {
 const MANY: usize = 64;
 
 impl Large {
-    /// Prepares the polygons of a geometry; `None` for other geometries, and for those that are small, have heights or
-    /// measures, or are to be cut on a grid.
+    /// Prepares the polygons of a geometry; `None` for other geometries, and for geometries that are small, have
+    /// heights or measures, or are to be clipped on a grid.
     fn new(geometry: &Geometry, rules: &Rules) -> Result<Option<Self>> {
         let is_polygon = matches!(geometry, Geometry::Polygon(_) | Geometry::MultiPolygon(_));
         let is_flat = geometry.dimensions() == Dimensions::Xy;

@@ -1,8 +1,8 @@
 //! Exact signs for every finite input, the extremes of the number range included.
 //!
-//! A floating-point filter decides nearly all cases; what it leaves open goes to whole numbers of
-//! unbounded length, which f64 values are after scaling by a power of two: expansion arithmetic loses
-//! its promise where products overflow or underflow.
+//! A floating-point filter decides nearly all cases. The remaining ones use integers of unbounded length, to which f64
+//! values are scaled by a power of two, because expansion arithmetic is no longer exact when products overflow or
+//! underflow.
 
 use crate::math::{DVec2, orient2d_value};
 use std::cmp::Ordering;
@@ -49,7 +49,7 @@ fn side_in_whole_numbers(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
 }
 
 /// Returns the point where two closed segments cross, each coordinate correctly rounded: the same
-/// bits for either order and direction. `None` if they keep apart or lie on one line.
+/// bits for either order and direction. `None` if they are apart or collinear.
 pub(crate) fn crossing([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<DVec2> {
     let apart = |s: Ordering, t: Ordering| s == t;
     if apart(side(a, b, c), side(a, b, d)) || apart(side(c, d, a), side(c, d, b)) {
@@ -160,7 +160,7 @@ impl Exact {
             (twice.clone() - middle).sign()
         };
         let odd = |v: f64| v.to_bits() & 1 == 1;
-        // What is off by two ulp at most needs no more steps.
+        // An error of at most two ulp needs no more steps.
         for _ in 0..4 {
             let (up, down) = (near.next_up(), near.next_down());
             near = match (beyond(near, up), beyond(down, near)) {

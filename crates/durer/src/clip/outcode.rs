@@ -1,8 +1,8 @@
-//! Outcodes: on which sides of a window or volume a point lies, one bit per border.
+//! Outcodes: the borders of a window or volume that a point is beyond, one bit per border.
 //!
-//! Danny Cohen and Ivan Sutherland, 1967; in print in Newman & Sproull, *Principles of Interactive
-//! Computer Graphics* (1973). Two tests decide most cases: where the OR of all codes is empty,
-//! everything is inside; where the AND is not, everything lies beyond one border.
+//! Danny Cohen and Ivan Sutherland, 1967; in print in Newman & Sproull, *Principles of Interactive Computer Graphics*
+//! (1973). Two tests decide most cases: if the OR of all codes is empty, everything is inside; if the AND is not empty,
+//! everything is beyond one border.
 
 use crate::math::{DVec2, DVec4, Rect};
 use std::fmt;
@@ -60,8 +60,8 @@ impl Outcode {
         Self::from_inside(inside)
     }
 
-    /// Returns the code of a homogeneous point (x, y, z, w) of clip space; any w, so that a point
-    /// behind the eye lies beyond several borders at once.
+    /// Returns the code of a homogeneous point (x, y, z, w) of clip space; any w, so that a point behind the eye is
+    /// beyond several borders at once.
     #[inline]
     pub fn of_homogeneous(p: DVec4, depth: DepthRange) -> Self {
         let near = match depth {

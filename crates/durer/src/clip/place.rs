@@ -1,14 +1,13 @@
 //! The places in the pipeline at which triangles are clipped: before the camera transform, in clip
 //! space, after the division, in the viewport, or per pixel. All five give the same picture.
 //!
-//! In the world each border is a plane, one dot product a vertex, and what is rejected is never
-//! transformed. In clip space the borders are the same for all cameras, additions suffice, and w may
-//! have any sign. After the division borders are constants, but a triangle through the eye plane has
-//! no image: what is in and behind that plane must be cut off first, and attributes are no longer
-//! linear. In the viewport the near and the far plane have done their work, and four borders of a
-//! rectangle in the plane are left. Per pixel nothing is cut but at the eye plane: each pixel is asked
-//! whether it lies within the scissor rectangle ([`crate::raster`] walks no others), within any mask
-//! ([`crate::fragment::PixelMask`]), and whether its depth lies in the volume.
+//! In the world each border is a plane, one dot product per vertex, and rejected vertices are never transformed. In
+//! clip space the borders are the same for all cameras, additions suffice, and w may have any sign. After the division
+//! borders are constants, but a triangle through the eye plane has no image, so the part on and behind that plane must
+//! be cut off first, and attributes are no longer linear. In the viewport the near and the far plane have been applied,
+//! and four borders of a rectangle in the plane are left. Per pixel, polygons are cut only at the eye plane: each pixel
+//! is tested against the scissor rectangle ([`crate::raster`] visits no others), the mask if there is one
+//! ([`crate::fragment::PixelMask`]), and the depth range of the volume.
 
 use super::outcode::{DepthRange, Outcode};
 use super::volume::{self, Blend, ClipVertex, Step, cut_ring, planes_in_source};
@@ -150,7 +149,7 @@ crate::info::family! {
         AfterDivision => AFTER_DIVISION,
         /// The viewport: near and far in clip space, the other four borders in two dimensions.
         Viewport => VIEWPORT,
-        /// Per pixel: nothing is cut but at the eye plane, so the ring may reach beyond all borders.
+        /// Per pixel: polygons are cut only at the eye plane, so the ring may reach beyond all borders.
         PerPixel => PER_PIXEL,
     }
 }
@@ -290,8 +289,8 @@ fn in_world<A: Blend>(
     ring
 }
 
-/// Returns the smallest w of a point in the view volume: half of it is a safe place for the eye
-/// plane, and not so near to the eye that the division loses the digits of what is visible.
+/// Returns the smallest w of a point in the view volume: half of it is a safe distance for the eye plane, far enough
+/// from the eye for the division to keep the digits of visible points.
 fn nearest_w(clip_from_world: &DMat4, depth: DepthRange) -> f64 {
     let world_from_clip = clip_from_world.inverse();
     let near = if depth == DepthRange::ZeroToOne { 0.0 } else { -1.0 };
@@ -338,8 +337,8 @@ fn in_ndc<A: Blend>(
     if ring.len() < 3 { Vec::new() } else { ring }
 }
 
-/// Computes the point at which an edge meets a border, after the division: position and 1/w are linear there, and an
-/// attribute counts as much as its end is near.
+/// Computes the point at which an edge meets a border, after the division: position and 1/w are linear there, and
+/// attributes are weighted by 1/w of their ends.
 fn cut_ndc<A: Blend>([i, o]: [&NdcVertex<A>; 2], [d_in, d_out]: [f64; 2]) -> NdcVertex<A> {
     let total = d_in - d_out;
     let (wi, wo) = (-d_out * i.inv_w, d_in * o.inv_w);

@@ -1,19 +1,17 @@
 //! Polylines against a polygon with holes: the part inside or outside, in pieces.
 //!
-//! Every piece remembers its polyline and runs in its direction; cuts lie where the polyline crosses
-//! the polygon's border and nowhere else, not where it crosses itself. The polygon is closed: a run
-//! along its border is inside. Attributes are carried by the sources of the vertices
-//! ([`crate::clip::attribute`]). For a rectangle call [`crate::clip::polygon::rectangle::clip_lines`],
-//! which is much faster.
+//! Every piece keeps its polyline's index and direction; it is cut only where it crosses the polygon's border, not
+//! where it crosses itself. The polygon is closed: a run along its border is inside. Attributes are carried by the
+//! sources of the vertices ([`crate::clip::attribute`]). For a rectangle call
+//! [`crate::clip::polygon::rectangle::clip_lines`], which is much faster.
 //!
-//! Which edges a segment meets is decided exactly, by orientations; a vertex of either that lies on the
-//! other but for the rounding of its coordinates is met there, so that what was cut before stays as it is.
-//! The places of other cuts are correctly rounded, and parts of a segment between two cuts that round to one
-//! point are ignored. The middle of the part between two cuts decides, exactly, whether it is inside, by the
-//! even-odd rule.
+//! Which edges a segment meets is decided exactly, by orientations; a vertex of either that is on the other up to the
+//! rounding of its coordinates counts as on it, so that clipping again changes nothing. The places of other cuts are
+//! correctly rounded, and parts of a segment between two cuts that round to one point are ignored. The middle of the
+//! part between two cuts decides, exactly, whether it is inside, by the even-odd rule.
 //!
-//! Object space. The border's edges are kept in horizontal slabs, so a segment looks only at edges of
-//! its own heights: O(n·e/s) for n segments, e edges, s ≈ √e slabs crossed by a segment's extent.
+//! Object space. The border's edges are kept in horizontal slabs, so a segment is compared only with edges at its own
+//! heights: O(n·e/s) for n segments, e edges, s ≈ √e slabs crossed by a segment's extent.
 
 use crate::clip::attribute::Source;
 use crate::clip::exact::{crossing, side};
@@ -208,7 +206,7 @@ fn clip_one(
         if !cuts.is_empty() {
             known = None;
         }
-        // Parts on the same side are one: where the border is only touched, nothing is cut.
+        // Parts on the same side are joined: where the line only touches the border, it is not cut.
         let mut parts: Vec<(DVec2, DVec2, bool)> = Vec::new();
         for (start, end) in cuts.parts(a, b) {
             let inside = known.unwrap_or_else(|| {
@@ -281,7 +279,7 @@ struct Border {
 #[derive(Debug, Clone, Copy)]
 struct Edge {
     ends: [DVec2; 2],
-    /// The edge that it is a part of.
+    /// The edge that it is part of.
     line: [DVec2; 2],
 }
 
@@ -332,7 +330,7 @@ impl Border {
                 }
             }
         }
-        // So that rounding does not spoil the order.
+        // Keeps rounding from changing the order.
         let axis = longer_axis(a, b);
         cuts.points
             .sort_by(|p, q| p[axis].total_cmp(&q[axis]).then(p[1 - axis].total_cmp(&q[1 - axis])));
@@ -380,7 +378,7 @@ fn meet(segment: [DVec2; 2], edge: &Edge, cuts: &mut Cuts) {
     let [Some(&first), Some(&last)] = [touches.first(), touches.last()] else {
         let crossed = side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b);
         let point = if crossed { crossing(segment, edge.line) } else { None };
-        // What was cut from the edge's line may miss it by its own rounding.
+        // A point cut from the edge's line may miss it by its own rounding.
         let point = point.or_else(|| if crossed { crossing(segment, edge.ends) } else { None });
         return cuts.points.extend(point);
     };

@@ -1,14 +1,14 @@
-//! Points that lie on an edge but for the rounding of their coordinates.
+//! Points that are on an edge up to the rounding of their coordinates.
 //!
-//! A crossing is rounded by half an ulp on each axis, so that it mostly lies beside both edges. Whoever cuts
-//! what was cut before has to see that it lies on them. The point and the edge alone decide what is near
-//! alone, so that all who have them decide alike.
+//! A crossing is rounded by half an ulp on each axis, so it is mostly beside both edges. When clipped geometry is
+//! clipped again, it must count as on them. The decision depends only on the point and the edge, so that all features
+//! that have them agree.
 
 use super::exact;
 use crate::math::{DVec2, orient2d_value};
 use std::cmp::Ordering;
 
-/// Nearer than this share of its larger coordinate, two to four ulp, a point lies on an edge.
+/// Distance from an edge below which a point counts as on it, as a share of its larger coordinate: two to four ulp.
 const NEAR: f64 = 2.0 * f64::EPSILON;
 
 /// Returns the distance from a point within which it counts as reached.

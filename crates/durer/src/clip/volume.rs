@@ -6,9 +6,9 @@
 //! inside and an outside point the border is met at (d_in · p_out − d_out · p_in) / (d_in − d_out).
 //! Nothing is divided by w, so w may be anything: points behind, in and before the eye plane.
 //!
-//! That form is monotonic in floating point: a new vertex satisfies exactly what both ends satisfy.
-//! So results lie in the volume without tolerance, clipping twice changes nothing, and as the inside
-//! point always comes first, either direction of an edge gives the same bits.
+//! That form is monotonic in floating point: a new vertex satisfies exactly what both ends satisfy. So results are in
+//! the volume without tolerance, clipping twice changes nothing, and because the inside point always comes first, both
+//! directions of an edge give the same bits.
 
 use super::outcode::{DepthRange, Outcode};
 use crate::info::{Class, Info, Occluder};
@@ -59,9 +59,9 @@ pub enum Borders {
     /// All six.
     #[default]
     All,
-    /// The near plane; and the four sides only for what reaches beyond the guard band −g·w ≤ x, y ≤ g·w, as graphics
-    /// hardware does. The rasterizer's own clip does the rest, and the depth test must discard fragments beyond the far
-    /// plane.
+    /// The near plane; and the four sides only for triangles that reach beyond the guard band −g·w ≤ x, y ≤ g·w, as
+    /// graphics hardware does. The rasterizer's own clip does the rest, and the depth test must discard fragments
+    /// beyond the far plane.
     NearOnly {
         /// g, above 1; a power of two keeps results exactly inside. Half the rasterizer's range
         /// divided by half the viewport's width is right; more overflows its coordinates, less
@@ -119,10 +119,10 @@ pub struct ClipVertex<A = ()> {
     pub attributes: A,
 }
 
-/// Step of the algorithm. Vertex numbers count in the ring as it is when a border's turn comes.
+/// Step of the algorithm. Vertex numbers refer to the ring at the start of a border's turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
-    /// A vertex got its outcode.
+    /// Outcode of a vertex.
     Code {
         /// Its number in the input.
         vertex: usize,
@@ -259,8 +259,7 @@ impl Options {
     }
 }
 
-/// Returns the borders that have to be cut: those beyond which some vertex lies. `None` rejects
-/// all.
+/// Returns the borders to clip against: those that some vertex is beyond. `None` rejects all.
 fn needed<A>(
     vertices: &[ClipVertex<A>],
     options: &Options,
@@ -352,8 +351,8 @@ pub fn clip_polygon<A: Blend>(
     ring
 }
 
-/// Clips triangles, each by itself, and divides the rest of each into triangles, which come after one another in `out`:
-/// those wholly inside as they are, polygons as fans from their first vertex.
+/// Clips triangles one by one and appends the triangles of each result to `out`: triangles wholly inside unchanged,
+/// polygons as fans from their first vertex.
 ///
 /// The same as [`clip_polygon`] for each, without taking memory for each: triangles that are wholly inside or outside
 /// take a few nanoseconds.
@@ -420,7 +419,7 @@ fn clip_ring<A: Blend>(
     }
 }
 
-/// Returns whether all that was left lies in the guard band beyond one border.
+/// Returns whether the whole remaining polygon is in the guard band beyond one border.
 fn unseen<A>(vertices: &[ClipVertex<A>], options: &Options) -> bool {
     let codes = vertices.iter().map(|v| Outcode::of_homogeneous(v.position, options.depth));
     !codes.fold(Outcode(u8::MAX), |all, code| all & code).is_inside()
@@ -428,7 +427,7 @@ fn unseen<A>(vertices: &[ClipVertex<A>], options: &Options) -> bool {
 
 /// Returns one border of the Sutherland–Hodgman method: the part of a ring with `distance ≥ 0`.
 ///
-/// `cut` gets the inside end and the outside end of an edge with their distances.
+/// `cut` receives the inside end and the outside end of an edge with their distances.
 pub(super) fn cut_ring<V: Clone>(
     ring: &[V],
     border: Outcode,

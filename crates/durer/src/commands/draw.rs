@@ -257,7 +257,7 @@ fn segment(brush: &Brush, ends: [Corner; 2], target: &mut Framebuffer) {
     bresenham::draw(from, to, &options, |p| pixels.push(p), &mut NoTrace);
     let length2 = way.length_squared();
     let paint = |t: f64| {
-        // Linear in space: what is near counts more.
+        // Linear in space: nearer ends have more weight.
         let (near, far) = (a.inv_w * (1.0 - t), b.inv_w * t);
         Blend::blend(&a.paint, near, &b.paint, far, near + far)
     };

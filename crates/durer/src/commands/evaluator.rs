@@ -8,7 +8,7 @@ use crate::math::{DVec3, DVec4};
 use crate::trace::NoTrace;
 use crate::{Error, Result};
 
-/// Steps of an evaluator at most; of a patch, both ways.
+/// Largest number of steps of an evaluator; for a patch, in both directions.
 const MAX_STEPS: u32 = 4096;
 
 /// A curve in space.
@@ -58,8 +58,8 @@ impl Patch {
         patch(&self.rows, [u, v], &mut NoTrace).filter(|p| p.is_finite())
     }
 
-    /// Returns the unit normal at two parameters 0 … 1: that of the derivatives along u and v, ∂S/∂u × ∂S/∂v; `None`
-    /// if they are parallel or not finite.
+    /// Returns the unit normal at two parameters 0 … 1, from the derivatives along u and v, ∂S/∂u × ∂S/∂v; `None` if
+    /// they are parallel or not finite.
     pub fn normal(&self, u: f64, v: f64) -> Option<DVec3> {
         // The derivative of a Bézier curve has the differences of its control points, times its degree.
         let along: Vec<Vec<DVec3>> =

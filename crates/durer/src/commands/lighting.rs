@@ -14,13 +14,13 @@ use crate::math::{DMat3, DVec3, DVec4, Vec4};
 use crate::trace::Tracer;
 use crate::{Error, Result};
 
-/// The number of lights: as many as OpenGL demands.
+/// The number of lights, the minimum that OpenGL requires.
 pub const MAX_LIGHTS: usize = 8;
 
 /// A source of light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
-    /// Linear colour that reaches everything, with attenuation.
+    /// Linear colour of the ambient light, which is attenuated.
     pub ambient: Vec4,
     /// Linear colour that is reflected in all directions.
     pub diffuse: Vec4,
@@ -34,7 +34,7 @@ pub struct Light {
     pub spot_exponent: f64,
     /// Half the angle of a spotlight in degrees, 0 … 90; 180 shines in all directions.
     pub spot_cutoff: f64,
-    /// k₀, k₁, k₂: one over their sum, times the powers of the distance, is what remains of the light.
+    /// k₀, k₁, k₂: the light is divided by their sum, weighted by powers of the distance.
     pub attenuation: [f64; 3],
 }
 
@@ -60,7 +60,7 @@ impl Default for Light {
 pub struct Material {
     /// Share of ambient light.
     pub ambient: Vec4,
-    /// Share of diffuse light; its alpha is that of the result.
+    /// Share of diffuse light; its alpha is the result's alpha.
     pub diffuse: Vec4,
     /// Share of mirrored light.
     pub specular: Vec4,
@@ -84,7 +84,7 @@ impl Default for Material {
 pub struct LightModel {
     /// Linear ambient colour that belongs to no light.
     pub ambient: Vec4,
-    /// True if the direction to the eye is that from each vertex; false if it is +z everywhere.
+    /// True if the direction to the eye is computed from each vertex; false if it is +z everywhere.
     pub local_viewer: bool,
     /// True if back faces are lit with the back material and reversed normals.
     pub two_sided: bool,
@@ -313,7 +313,7 @@ impl Lighting {
     }
 }
 
-/// Returns the place of a homogeneous point; that of a direction is the direction.
+/// Returns the place of a homogeneous point; for a direction, the direction.
 fn place(p: DVec4) -> DVec3 {
     if p.w == 0.0 { p.truncate() } else { p.truncate() / p.w }
 }

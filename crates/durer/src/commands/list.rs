@@ -12,8 +12,8 @@ pub struct ListId(usize);
 /// Lists call each other to this depth; OpenGL demands as much.
 pub const MAX_NESTING: usize = 64;
 
-/// Commands that one call of [`execute`] carries out at most: lists that call others twice each would
-/// else never come to an end.
+/// Largest number of commands that one call of [`execute`] carries out: lists that each call another one twice would
+/// otherwise never end.
 pub const MAX_COMMANDS: u64 = 1 << 24;
 
 /// Recorded commands.

@@ -1,11 +1,10 @@
 //! Commands as in the classic OpenGL pipeline: state that stays, primitives, evaluators, display lists.
 //!
-//! M. Segal, K. Akeley, *The OpenGL Graphics System: A Specification*, 1992; display lists as in J. Foley,
-//! A. van Dam, *Fundamentals of Interactive Computer Graphics*, 1982. A [`Command`] changes the
-//! [`Pipeline`] or draws; vertices go through the model-view matrix, are lit, go through the projection matrix, are
-//! clipped, rasterized, textured and handed to [`crate::fragment::apply`] one fragment at a time. Beside them is the
-//! path of pixels, which are drawn, copied and read as rectangles. This is the place to see every
-//! fragment operation at work; pictures of scenes are made by [`crate::pipeline`].
+//! M. Segal, K. Akeley, *The OpenGL Graphics System: A Specification*, 1992; display lists as in J. Foley, A. van Dam,
+//! *Fundamentals of Interactive Computer Graphics*, 1982. A [`Command`] changes the [`Pipeline`] or draws; vertices go
+//! through the model-view matrix, are lit, go through the projection matrix, are clipped, rasterized, textured and
+//! handed to [`crate::fragment::apply`] one fragment at a time. The pixel path draws, copies and reads rectangles of
+//! pixels. This module uses every fragment operation; pictures of scenes are made by [`crate::pipeline`].
 //!
 //! Rows count as in the framebuffer: downwards from the top, or upwards where its
 //! [origin](crate::target::Framebuffer::origin) is at the lower left, as in OpenGL. Lines light exactly the pixels of
@@ -50,7 +49,7 @@ pub use texture::{Texture, TextureFunction};
 use crate::fragment::{DepthRange, FragmentState, PolygonOffset};
 use crate::math::{DMat4, DVec2, DVec3, Vec4};
 
-/// Way in which vertices form shapes.
+/// Kind of shapes formed by vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Primitive {
     /// Each vertex a pixel.
@@ -157,7 +156,7 @@ pub enum Command {
     Draw(Primitive, Vec<Vertex>),
     /// Evaluates a curve at this many equal steps of its parameter and draws them as a line strip.
     EvaluateCurve(Curve, u32),
-    /// Evaluates a patch at this many equal steps both ways and draws its triangles.
+    /// Evaluates a patch at this many equal steps in both directions and draws its triangles.
     EvaluatePatch(Patch, [u32; 2]),
     /// Replays a display list with the current state; its changes of the state stay.
     Call(ListId),

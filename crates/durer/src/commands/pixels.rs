@@ -3,8 +3,8 @@
 //!
 //! M. Segal, K. Akeley, *The OpenGL Graphics System: A Specification* 2.1 (2006), 2.13, 3.6 and 4.3. A pixel of the
 //! source in column n, row m becomes the rectangle from (x + n·zx, y + m·zy) to (x + (n + 1)·zx, y + (m + 1)·zy) at the
-//! raster position (x, y) and the zoom (zx, zy); the pixels whose centres are in it get its value. Rows count as they
-//! do in the framebuffer: downwards, or upwards where its origin is at the lower left.
+//! raster position (x, y) and the zoom (zx, zy); its value is written to the pixels whose centres are in it. Rows count
+//! as they do in the framebuffer: downwards, or upwards where its origin is at the lower left.
 
 use super::brush::{Brush, Look};
 use super::state::Pipeline;

@@ -5,7 +5,7 @@ use super::texture::Texture;
 use crate::fragment::{DepthRange, FragmentState, PolygonOffset};
 use crate::math::{DMat4, DVec2, DVec3, Vec4};
 
-/// Faces to leave out, by the way their corners turn on the screen: counter-clockwise, seen with y up,
+/// Faces to leave out, by the direction of their corners on the screen: counter-clockwise, seen with y up,
 /// is a front face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum CullFace {
@@ -18,7 +18,7 @@ pub enum CullFace {
     Back,
 }
 
-/// Place at which pixels are drawn, with what belongs to a vertex there.
+/// Place at which pixels are drawn, with the attributes of a vertex there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RasterPosition {
     /// Pixels of the framebuffer.
@@ -40,7 +40,7 @@ impl Default for RasterPosition {
     }
 }
 
-/// Everything that commands set; a value that can be kept, compared and put back.
+/// Everything that commands set; a value that can be stored, compared and restored.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pipeline {
     /// Object space to eye space; at first the identity.
@@ -65,7 +65,7 @@ pub struct Pipeline {
     pub texture: Option<Texture>,
     /// Place at which pixels are drawn; `None` if it was clipped away.
     pub raster: Option<RasterPosition>,
-    /// Width and height that a drawn pixel gets, in pixels; negative to mirror; at first 1.
+    /// Width and height of a drawn pixel, in pixels; negative to mirror; initially 1.
     pub pixel_zoom: DVec2,
     /// Faces to leave out; at first none.
     pub cull: CullFace,
@@ -73,12 +73,12 @@ pub struct Pipeline {
     pub depth_range: DepthRange,
     /// Offset added to the depths of polygons; at first nothing.
     pub polygon_offset: PolygonOffset,
-    /// Scissor, alpha test, stencil, depth, blending, dithering, logic operation and write masks; at first
-    /// all off but the masks, which let everything through.
+    /// Scissor, alpha test, stencil, depth, blending, dithering, logic operation and write masks; initially all off,
+    /// with masks that let everything through.
     pub fragments: FragmentState,
 }
 
-/// The most matrices on the stack: as many as OpenGL demands.
+/// The largest number of matrices on the stack, the minimum that OpenGL requires.
 pub const MAX_STACK: usize = 32;
 
 impl Default for Pipeline {

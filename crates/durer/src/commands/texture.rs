@@ -1,4 +1,4 @@
-//! Textures of the classic pipeline: an image, its sampler, and how its colour meets that of a fragment.
+//! Textures of the classic pipeline: an image, its sampler, and the combination of its colour with a fragment's.
 //!
 //! M. Segal, K. Akeley, *The OpenGL Graphics System: A Specification* 2.1 (2006), 3.8.13, for images with alpha.
 
@@ -8,7 +8,7 @@ use crate::shade::PreparedTexture;
 use crate::shade::texture::Usage;
 use std::sync::Arc;
 
-/// Way in which the texture's colour and the fragment's become one.
+/// Function that combines the texture's colour with the fragment's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum TextureFunction {
     /// The texture's.
@@ -18,7 +18,7 @@ pub enum TextureFunction {
     Modulate,
     /// The texture's over the fragment's, by the texture's alpha; the fragment's alpha stays.
     Decal,
-    /// Interpolation from the fragment's colour to that of the environment, by the texture's colour.
+    /// Interpolation from the fragment's colour to the environment's, by the texture's colour.
     Blend,
     /// Their sum; alphas are multiplied.
     Add,
@@ -32,7 +32,7 @@ pub struct Texture {
     pub image: Arc<Image>,
     /// Filters, and extension outside 0 … 1. Levels are computed for each drawing command: O(texels).
     pub sampler: Sampler,
-    /// Way in which its colour is applied.
+    /// Function by which its colour is applied.
     pub function: TextureFunction,
     /// Linear colour of the environment, for [`TextureFunction::Blend`]; at first 0.
     pub color: Vec4,
@@ -59,8 +59,8 @@ pub(super) struct Prepared<'a> {
 }
 
 impl Prepared<'_> {
-    /// Returns the colour of a fragment with the texture applied. `at` are texture coordinates: those of the fragment,
-    /// and those one pixel further along x and y.
+    /// Returns the colour of a fragment with the texture applied. `at` are the texture coordinates of the fragment, and
+    /// those one pixel further along x and y.
     pub fn apply(&self, color: DVec4, at: [DVec2; 3]) -> DVec4 {
         let [uv, right, down] = at;
         let (ddx, ddy) = ((right - uv).as_vec2(), (down - uv).as_vec2());

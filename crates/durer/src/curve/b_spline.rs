@@ -37,8 +37,8 @@ pub const INFO: Info = Info {
 /// A B-spline curve.
 ///
 /// # Guarantees
-/// There are more control points than the degree; knots are finite, do not fall, and are as many as control
-/// points + degree + 1; the domain, from knot `degree` to knot `control points`, has a length.
+/// There are more control points than the degree; there are control points + degree + 1 knots, finite and
+/// non-decreasing; the domain, from knot `degree` to knot `control points`, is not empty.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BSpline<P> {
     degree: usize,
@@ -50,7 +50,7 @@ impl<P: Point> BSpline<P> {
     /// Creates a curve from its parts.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where a guarantee would not hold.
+    /// [`Error::Parameter`] if a guarantee would not hold.
     pub fn new(degree: usize, control: Vec<P>, knots: Vec<f64>) -> Result<Self> {
         let count = control.len();
         if degree == 0 || degree > 64 || count <= degree {

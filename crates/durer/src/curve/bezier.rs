@@ -1,7 +1,7 @@
 //! Bézier curves and patches of any degree, by de Casteljau's algorithm.
 //!
 //! P. de Casteljau, *Outillages méthodes calcul*, Citroën 1959; P. Bézier, 1962. Cost: O(n²) for degree n, stable
-//! for all parameters in 0 … 1. Points may lie in any space: pixels, world, or homogeneous for rational curves.
+//! for all parameters in 0 … 1. Points may be in any space: pixels, world, or homogeneous for rational curves.
 
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3, DVec4};
@@ -31,7 +31,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// Points that can be mixed; what curves are made of.
+/// Points that can be interpolated, as the control points of curves.
 pub trait Point: Copy {
     /// Returns the point at `t` on the line from `self` (0) to `other` (1).
     fn mix(self, other: Self, t: f64) -> Self;

@@ -1,8 +1,8 @@
 //! Catmull–Rom splines: cubic pieces through all points, and Hermite's form of a cubic.
 //!
 //! E. Catmull, R. Rom, *A class of local interpolating splines*, Computer Aided Geometric Design (Academic Press),
-//! 1974: the tangent at a point is half the way from the one before to the one after, so a point moves only the four
-//! pieces near it. A piece between two points with these tangents is Hermite's cubic, and that is a Bézier curve.
+//! 1974: the tangent at a point is half the vector from the point before to the point after, so a point moves only the
+//! four pieces near it. A piece between two points with these tangents is Hermite's cubic, and that is a Bézier curve.
 //! Object space. Cost: O(1) per piece.
 //!
 //! Deviation: the paper's curve begins at the second point and ends at the last but one; here the end points are taken
@@ -56,7 +56,7 @@ impl Default for Options {
 /// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
-    /// A point got its tangent.
+    /// Tangent of a point.
     Tangent {
         /// Index of the point.
         index: usize,

@@ -38,7 +38,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// No curve is cut into more pieces: with control points a billion pixels away the tolerance gives way.
+/// Largest number of pieces per curve: with control points a billion pixels away the tolerance is exceeded instead.
 const MAX_SEGMENTS: f64 = 4096.0;
 
 /// Chains of points, one after the other: flattened paths.
@@ -136,9 +136,9 @@ pub fn segments_for(degree: u32, second_difference: f64, tolerance: f64) -> u32 
 /// Replaces the curves of a path by chains of lines that stay within `tolerance` of them, in the
 /// path's unit.
 ///
-/// For pixels, 0.025 cannot be seen under anti-aliasing (at most 6/255 of coverage where a curve bends most) and is
-/// what [`crate::raster::paint`] takes; 0.1 is seen by comparison only. The number of lines grows
-/// with 1/√tolerance. Contours that are not closed stay marked as open.
+/// For pixels, 0.025 cannot be seen under anti-aliasing (at most 6/255 of coverage where a curve bends most) and is the
+/// tolerance of [`crate::raster::paint`]; 0.1 is visible only by comparison. The number of lines grows with
+/// 1/√tolerance. Contours that are not closed stay marked as open.
 pub fn flatten(path: &Path, tolerance: f64) -> Contours {
     flatten_traced(path, tolerance, &mut NoTrace)
 }
@@ -154,7 +154,7 @@ pub enum Step {
         element: usize,
         /// End of the chord.
         end: DVec2,
-        /// The curve lies at most so far from the chord, in the path's unit.
+        /// Bound on the distance of the curve from the chord, in the path's unit.
         error: f64,
     },
     /// The contour ends, closed or open.

@@ -1,4 +1,4 @@
-//! Outlines of lines, Bézier curves and arcs: what fills, strokes, clips and glyphs are made of.
+//! Outlines of lines, Bézier curves and arcs, for fills, strokes, clip paths and glyphs.
 
 use crate::math::{DAffine2, DVec2, Rect};
 
@@ -68,7 +68,7 @@ impl Path {
         self.push(PathElement::CubicTo(a, b, end))
     }
 
-    /// Closes the contour: goes back to its start.
+    /// Closes the contour with a line back to its start.
     pub fn close(&mut self) -> &mut Self {
         self.push(PathElement::Close)
     }

@@ -88,7 +88,7 @@ fn reach(start: DVec2, piece: &Piece) -> f64 {
     }
 }
 
-/// Divides a curve where it turns by more than the angle with this cosine. A closed one without such corners comes back
+/// Divides a curve where it turns by more than the angle with this cosine. A closed curve without such corners stays
 /// closed.
 pub fn at_corners(curve: &Curve, cosine: f64) -> Vec<Curve> {
     let ways: Vec<[DVec2; 2]> = curve.iter().map(|(start, piece)| piece.ways(start)).collect();
@@ -112,11 +112,11 @@ pub fn at_corners(curve: &Curve, cosine: f64) -> Vec<Curve> {
     parts
 }
 
-/// No curve is halved more often to become arcs.
+/// Largest number of times that a curve is halved to become arcs.
 const MOST_HALVINGS: u32 = 12;
 
-/// Returns a curve as circular arcs and lines: for each its end and its bulge, the tangent of a quarter of its turn, 0
-/// of lines. They stay within `tolerance` of the curve.
+/// Returns a curve as circular arcs and lines: for each its end and its bulge, the tangent of a quarter of its turn,
+/// which is 0 for lines. They stay within `tolerance` of the curve.
 ///
 /// Ellipses and cubic curves become pairs of arcs that go over into each other without a corner: K. M. Bolton, *Biarc
 /// curves*, Computer-Aided Design, 1975; both with tangents of the same length.
@@ -138,7 +138,7 @@ pub fn arcs(curve: &Curve, tolerance: f64) -> Vec<(DVec2, f64)> {
     arcs
 }
 
-/// A point of a curve and its way there, of length 1.
+/// A point of a curve and its unit direction there.
 type Place = (DVec2, DVec2);
 
 fn place(start: DVec2, piece: &Piece, t: f64) -> Place {

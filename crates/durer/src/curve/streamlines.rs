@@ -1,8 +1,8 @@
 //! Evenly spaced streamlines: lines along a field of directions, nowhere nearer to each other than the field says.
 //!
 //! Bruno Jobard, Wilfrid Lefer, "Creating evenly-spaced streamlines of arbitrary density", Visualization in Scientific
-//! Computing 1997. New lines begin beside lines that exist, at the distance that lines should have there, and grow
-//! both ways until the field ends or another line is too near; where no place beside a line is left, the given seeds
+//! Computing 1997. New lines begin beside lines that exist, at the distance that lines should have there, and grow in
+//! both directions until the field ends or another line is too near; if no place beside a line is left, the given seeds
 //! are tried in turn. Here the distance may differ from place to place. O(n) for n points of lines, where distances are
 //! alike.
 
@@ -231,7 +231,7 @@ impl Placed {
         Self { cell, columns, rows, cells: vec![Vec::new(); columns * rows] }
     }
 
-    /// Returns the cell of a place, the nearest where it is outside.
+    /// Returns the cell of a place, or the nearest one if it is outside.
     fn cell(&self, p: DVec2) -> (usize, usize) {
         let place = |v: f64, count: usize| ((v / self.cell).max(0.0) as usize).min(count - 1);
         (place(p.x, self.columns), place(p.y, self.rows))

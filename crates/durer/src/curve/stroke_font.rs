@@ -1,10 +1,10 @@
 //! A single-stroke font: letters as chains of lines for a pen to follow, for labels on drawings,
 //! plotters and contact sheets.
 //!
-//! A design of its own, on a grid where capitals are 12 units high, small letters 8, and descenders
-//! reach 4 below the base line. Round shapes are quarters of ellipses that start and end along the grid.
-//! Widths are proportional, figures stand in columns. Printable ASCII, the signs that drawings need
-//! (° µ × ± – … Ø ² ³), and Latin letters with accents; anything else is an empty box.
+//! durer's own design, on a grid where capitals are 12 units high, small letters 8, and descenders reach 4 below the
+//! base line. Round shapes are quarters of ellipses that start and end along the grid. Widths are proportional; figures
+//! have equal widths. Printable ASCII, the signs that drawings need (° µ × ± – … Ø ² ³), and Latin letters with
+//! accents; anything else is an empty box.
 
 use super::Path;
 use crate::math::DVec2;
@@ -15,7 +15,7 @@ pub struct StrokeText {
     /// Chains of at least two points, y down, the first letter's origin on the base line at (0, 0). A
     /// chain that is closed repeats its first point.
     pub strokes: Vec<Vec<DVec2>>,
-    /// Offset of the next letter. Half of the space between letters lies on either side of each, so
+    /// Offset of the next letter. Half of the space between letters is on either side of each, so
     /// half of `advance` is the middle of the text.
     pub advance: f64,
 }

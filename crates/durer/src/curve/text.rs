@@ -96,10 +96,10 @@ impl std::fmt::Debug for Font<'_> {
 }
 
 impl<'a> Font<'a> {
-    /// Reads a font file; of a collection, the font with the given index.
+    /// Reads a font file, or the font with the given index of a collection.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where the bytes are not a font.
+    /// [`Error::Parameter`] if the bytes are not a font.
     pub fn new(bytes: &'a [u8], index: u32) -> Result<Self> {
         let font = FontRef::from_index(bytes, index)
             .map_err(|e| Error::parameter("font", e, "the bytes of a TrueType or OpenType file"))?;
@@ -161,7 +161,7 @@ impl<'a> Font<'a> {
     }
 }
 
-/// Pen that turns y upside down on the way into a path.
+/// Pen that draws into a path with y reversed.
 #[derive(Default)]
 struct Pen(Path);
 

@@ -168,7 +168,7 @@ impl Blend {
     }
 }
 
-/// Blends source over destination, straight alpha; transparent black where nothing is there.
+/// Blends source over destination, straight alpha; transparent black if both are transparent.
 #[inline(always)]
 pub fn over_straight(source: Vec4, destination: Vec4) -> Vec4 {
     let under = destination.w * (1.0 - source.w);

@@ -63,8 +63,8 @@ impl Palette {
         self.colors[usize::from(index)] = color;
     }
 
-    /// Sets a range of indices to colours in equal steps of light, from the one given for its first to
-    /// that for its last index; linear RGBA, straight alpha. A range of one index gets the first.
+    /// Sets a range of indices to colours in equal steps of light, from the given colour of its first index to the one
+    /// of its last; linear RGBA, straight alpha. A range of one index gets the first colour.
     pub fn ramp(&mut self, indices: RangeInclusive<u8>, first: Vec4, last: Vec4) {
         let steps = f32::from(indices.end().saturating_sub(*indices.start())).max(1.0);
         for (i, index) in indices.enumerate() {
@@ -73,7 +73,7 @@ impl Palette {
     }
 
     /// Returns the index whose colour is nearest: the least sum of squared differences of sRGB codes
-    /// and alpha; of equally near ones the lowest. Cost: 256 comparisons.
+    /// and alpha; among equally near ones the lowest. Cost: 256 comparisons.
     pub fn nearest(&self, color: [u8; 4]) -> u8 {
         let distance = |index: &u8| -> u32 {
             let entry = self.get(*index);

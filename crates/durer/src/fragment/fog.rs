@@ -1,4 +1,4 @@
-//! Depth cueing and fog: what is farther away is nearer to the colour of the air.
+//! Depth cueing and fog: with distance, colours approach the colour of the air.
 //!
 //! Depth cueing: J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes, *Computer Graphics: Principles and Practice*, 2nd
 //! ed. 1990, 14.3.4 and 16.1.3. Fog: *The OpenGL Graphics System* 2.1 (2006), 3.10. Cost: O(1). Limits: colours are

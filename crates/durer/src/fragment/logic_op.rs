@@ -1,4 +1,4 @@
-//! Logic operations: what is drawn and what is there, bit by bit (OpenGL 4.6, 17.3.9).
+//! Logic operations: the drawn and the stored value, combined bit by bit (OpenGL 4.6, 17.3.9).
 
 /// A function of a source bit and a destination bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

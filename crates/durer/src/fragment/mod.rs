@@ -101,7 +101,7 @@ impl Default for FragmentState {
     }
 }
 
-/// Stage at which a fragment's way ended.
+/// Stage at which a fragment ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Outcome {
     /// Outside the framebuffer, the scissor rectangle or the mask.
@@ -189,7 +189,7 @@ fn written_color(
     state.write_mask.color(code, stored)
 }
 
-/// Writes the index and returns what is now in the plane.
+/// Writes the index and returns the plane's new value.
 fn write_index(state: &FragmentState, fragment: &Fragment, plane: &mut Pixels<u8>) -> Option<u8> {
     let (x, y) = (fragment.x, fragment.y);
     let stored = plane.get(x, y).unwrap_or(0);
@@ -225,7 +225,7 @@ fn passes_depth(state: &FragmentState, fragment: &Fragment, target: &Framebuffer
     }
 }
 
-/// Returns whether the fragment passes the stencil test; updates the stored value by whichever operation applies.
+/// Returns whether the fragment passes the stencil test; updates the stored value by the operation that applies.
 fn passes_stencil(
     state: &FragmentState,
     fragment: &Fragment,

@@ -1,6 +1,6 @@
 //! Windows of any shape, with holes: one bit per pixel.
 //!
-//! What the scissor rectangle is for a rectangle: the place to clip when nothing was clipped before.
+//! Like the scissor rectangle, but for any shape: clipping per pixel when nothing was clipped before.
 //! Cost: O(1) per fragment; memory one bit per pixel.
 
 use crate::curve::Contours;
@@ -13,7 +13,7 @@ use crate::{Error, Result};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PixelMask {
     width: u32,
-    /// Rows of whole words.
+    /// Rows, each in whole words.
     words: Vec<u64>,
     per_row: usize,
 }
@@ -39,7 +39,7 @@ impl PixelMask {
         Ok(Self { width, words: vec![0; per_row * height as usize], per_row })
     }
 
-    /// Returns the pixels whose centres lie inside contours, in pixels; with the even-odd rule
+    /// Returns the pixels whose centres are inside contours, in pixels; with the even-odd rule
     /// every second contour inside another is a hole.
     ///
     /// # Errors

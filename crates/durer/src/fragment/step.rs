@@ -33,7 +33,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// Step of a fragment's way.
+/// Step in the processing of a fragment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// The fragment is within the framebuffer and the scissor rectangle, or not.
@@ -58,7 +58,7 @@ pub enum Step {
         stored: u8,
         /// The reference.
         reference: u8,
-        /// True if the fragment goes on.
+        /// True if the fragment continues.
         passes: bool,
         /// The stored value from now on.
         new: u8,

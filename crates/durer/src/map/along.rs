@@ -15,7 +15,7 @@ const BEND: f64 = 0.6;
 /// Number of positions to try.
 const TRIED: usize = 24;
 
-/// A label's way along a line.
+/// A label's course along a line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
     /// The line, from the label's beginning to its end.

@@ -10,7 +10,7 @@ pub const LETTERS: f64 = 0.73;
 /// The halo reaches so far around letters, as a share of their size.
 pub const HALO: f64 = 0.16;
 
-/// The lines of a block are so far apart, as a share of the letters' size.
+/// Distance of the lines of a block, as a share of the letters' size.
 const LEADING: f64 = 1.05;
 
 /// One line or more, centred one below another. Its corner is the start of the first base line, if that line were as

@@ -1,5 +1,5 @@
-//! Borders of a layer's areas, each part once: where they are dashed or let light through, what two neighbours
-//! share would be seen twice.
+//! Borders of a layer's areas, each part once: dashed or translucent borders shared by two neighbours would be visible
+//! twice.
 
 use crate::math::DVec2;
 use std::collections::HashSet;

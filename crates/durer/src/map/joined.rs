@@ -5,13 +5,13 @@ use crate::clip::polygon::signed_area;
 use crate::curve::Path;
 use crate::math::DVec2;
 
-/// Points are moved to this part of a pixel, so that neighbours have the same border whichever way each
-/// runs along it, and points that then coincide are left out. For each edge through a pixel it changes the coverage by
-/// less than 0.1/255; on a grid of 1/256 that was 1/255, which can be seen as another colour.
+/// Grid to which points are moved, per pixel, so that neighbours have the same border in either direction; points that
+/// then coincide are left out. Each edge through a pixel changes the coverage by less than 0.1/255; on a grid of 1/256
+/// it would be 1/255, which is visible as another colour.
 const GRID: f64 = 4096.0;
 
-/// Outer rings run one way and holes the other, so that the winding number is the number of the areas
-/// hold a point.
+/// Outer rings run in one direction and holes in the other, so that the winding number of a point is the number of
+/// areas that contain it.
 #[derive(Debug, Default)]
 pub struct Joined {
     rings: Vec<Vec<DVec2>>,
@@ -87,7 +87,7 @@ fn turns(ring: &[DVec2]) -> Option<i32> {
         if side == 0.0 && from.dot(to) < 0.0 {
             return None;
         }
-        // How often the direction passes that of x.
+        // Number of times that the direction passes the x axis.
         match (from.y < 0.0, to.y < 0.0) {
             (true, false) if side > 0.0 => turns += 1,
             (false, true) if side < 0.0 => turns -= 1,

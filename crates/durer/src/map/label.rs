@@ -20,8 +20,8 @@ use crate::{Error, Result};
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-/// Labels are wider than high: an area counts as if it were narrower by this, or by what is known of its label, when a
-/// place is sought.
+/// Ratio of a label's width to its height: areas are treated as narrower by this, or by the known ratio of their label,
+/// when a place is searched.
 const WIDTH: f64 = 2.0;
 
 /// Room between a marker and its label, as a share of the letters' size.
@@ -30,7 +30,7 @@ const GAP: f64 = 0.25;
 /// Room between an area and its label's halo, as a share of the letters' size.
 const APART: f64 = 0.15;
 
-/// A name in two lines comes first where its area holds so much more of it than of one line.
+/// Additional share inside the area from which a name in two lines is preferred to one line.
 const BETTER: f64 = 0.1;
 
 /// Label of a feature.
@@ -63,8 +63,8 @@ pub struct Anchor {
 }
 
 impl Anchor {
-    /// Returns points far from the border of an area for labels of a shape: the best one, and those of its left, right,
-    /// upper and lower part.
+    /// Returns points far from the border of an area, for labels of a shape: the best one, and the best ones of its
+    /// left, right, upper and lower parts.
     fn poles(&self, area: &Shapes, wide: f64) -> Vec<DVec2> {
         let Some(bounds) = area.bounds() else { return vec![self.at] };
         let own = largest(std::slice::from_ref(area)).and_then(|polygon| middle(polygon, wide));
@@ -234,10 +234,10 @@ pub(super) fn draw(
         charge.grow(one.bytes())?;
         planned.push(one);
     }
-    // The sort is stable: what is equal stays in the order of the file.
+    // The sort is stable: equal labels stay in the order of the file.
     planned.sort_by(Planned::order);
     let mut placer = Placer::new(*ground.seen);
-    // Of many markers at one place one is enough; each label would be held against all of them.
+    // One of many markers at one place is enough; each label is compared with all reserved places.
     let mut reserved = BTreeSet::new();
     let bits = |marker: &Rect| [marker.min(), marker.max()].map(|p| [p.x, p.y].map(f64::to_bits));
     let markers = ground.markers.iter().filter(|marker| reserved.insert(bits(marker)));
@@ -248,7 +248,7 @@ pub(super) fn draw(
         let held = layer.iter().take_while(|planned| planned.fit == Fit::Held).count();
         for (i, planned) in layer.iter().enumerate() {
             if i == held {
-                // Islands that names would hide are kept free; names that have an area of their own stand already.
+                // Islands that names would hide are kept free; names within their own areas are placed already.
                 let tiny = layer.iter().filter(|p| p.tiny && p.alone);
                 for heart in tiny.filter_map(|p| p.label.anchor.heart()) {
                     placer.place([heart]);
@@ -274,8 +274,8 @@ pub(super) fn draw(
     Ok(drawn)
 }
 
-/// Number of labels beyond which outlines of letters are not kept, as most find no room, but made again for those that
-/// do.
+/// Number of labels above which outlines of letters are not kept, because most labels find no room, but made again for
+/// those that do.
 const MANY: usize = 4096;
 
 /// Label with its candidate positions.
@@ -399,8 +399,8 @@ impl<'a, 'd> Planned<'a, 'd> {
         }
     }
 
-    /// Compares the order of placing: upper layers first, then labels that their area holds, those of smaller rank,
-    /// those that their area nearly holds, and larger ones.
+    /// Compares the order of placing: upper layers first, then labels that fit in their area, smaller ranks, labels
+    /// that nearly fit, and larger areas.
     fn order(&self, other: &Self) -> Ordering {
         let nearly = |label: &Self| label.fit == Fit::Over && label.held >= NEARLY;
         let held = |label: &Self| label.fit != Fit::Held;
@@ -415,7 +415,7 @@ impl<'a, 'd> Planned<'a, 'd> {
 /// Returns starts of the base line, the best first.
 fn beside(at: DVec2, beside: bool, block: &Block, style: &Style) -> Vec<DVec2> {
     let (size, advance) = (style.label_size, block.extent().x);
-    // Capitals stand in the middle of the line.
+    // Capitals are centred on the line.
     let middle = at + DVec2::new(0.0, LETTERS * 0.5 * size);
     let centered = middle - DVec2::new(advance * 0.5, 0.0);
     let apart = GAP * size + 0.5 * (style.marker_size + style.stroke_width);

@@ -1,8 +1,8 @@
 //! Maps: layers of points, lines and areas on a canvas, each with a style, and labels that keep off each other.
 //!
-//! Neighbouring areas of one opaque colour are painted as one and leave no seam; dashed or translucent borders that
-//! two areas share are drawn once. Labels are placed within areas, along lines and beside points, those of upper layers
-//! and small ranks first; labels that find no room are left out.
+//! Neighbouring areas of one opaque colour are painted as one and leave no seam; dashed or translucent borders that two
+//! areas share are drawn once. Labels are placed within areas, along lines and beside points, upper layers and small
+//! ranks first; labels without room are left out.
 //!
 //! ```
 //! use durer::geometry::{Geometry, Points};
@@ -27,7 +27,7 @@
 //! # Ok::<(), durer::Error>(())
 //! ```
 //!
-//! The cost is O(n) for n positions, and the canvas's; that of l labels O(l log l).
+//! The cost is O(n) for n positions, plus the canvas's, and O(l log l) for l labels.
 
 mod along;
 mod block;
@@ -203,7 +203,7 @@ impl Map {
     /// Draws a layer over those before it; returns the counts of parts that touch the viewport.
     ///
     /// # Errors
-    /// As those of [`Canvas::stroke`], for styles that make no sense.
+    /// Those of [`Canvas::stroke`], for invalid styles.
     pub fn layer<'a>(
         &mut self,
         style: &Style,
@@ -231,8 +231,8 @@ impl Map {
         Anchor::of(geometry, &self.screen, &self.seen)
     }
 
-    /// Draws as many labels as find room, over all layers drawn so far; `styles` are those of the layers. Each label is
-    /// written in the font that has most of its letters, the first of those.
+    /// Draws the labels for which there is room, over all layers drawn so far; `styles` are the layers' styles. Each
+    /// label is written in the first of the fonts that have most of its letters.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] if there is no font; [`crate::Error::Dangling`] for a label of a layer without a

@@ -1,8 +1,8 @@
 //! Positions for the label of an area: inside it if the label fits, otherwise where it hides least.
 //!
-//! Names that their area holds cannot get in each other's way, so they come first. A name that would hide most of its
-//! area is placed beside it in the open, as names of small islands are on maps; one that only reaches a little over the
-//! border stays where most of it is inside. No name is placed on another area without reaching into its own.
+//! Names that fit in their area cannot collide, so they come first. A name that would hide most of its area is placed
+//! beside it in the open, like the names of small islands on maps; a name that only extends a little over the border
+//! stays where most of it is inside. No name is placed on another area unless it extends into its own.
 
 use crate::clip::polygon::{Shapes, rectangle};
 use crate::curve::Contours;
@@ -13,8 +13,8 @@ use crate::trace::NoTrace;
 /// A label is in an area that holds this share of it: corners of its box are empty.
 const HELD: f64 = 0.98;
 
-/// An area that holds this share of its label nearly holds it: such labels come before those of larger areas that hold
-/// less of theirs.
+/// Share of a label inside its area from which it nearly fits: such labels come before labels of larger areas that fit
+/// less.
 pub const NEARLY: f64 = 0.75;
 
 /// A label belongs to an area that contains at least this share of it.
@@ -23,16 +23,16 @@ const MOSTLY: f64 = 0.5;
 /// Smallest share of a label that an area has to hold for the label to reach out of it, if there is no better place.
 const PARTLY: f64 = 0.35;
 
-/// A label beside its area is in the open where no more than this share of it lies on land.
+/// Largest share of a label on land with which it is in the open.
 const OPEN: f64 = 0.02;
 
-/// An area is alone where all land around it is no larger than it by this.
+/// Factor within which the land around an area may be larger than it for the area to count as alone.
 const ALONE: f64 = 1.5;
 
 /// Numbers of columns and rows of candidate positions within an area.
 const GRID: (u32, u32) = (17, 13);
 
-/// The land is examined in no more pixels than this a side.
+/// Largest number of pixels per side in which the land is examined.
 const LAND_SIDE: f64 = 1024.0;
 
 /// Quality of a label's position in its area; better ones are placed first.
@@ -54,7 +54,7 @@ pub struct Places {
     pub fit: Fit,
     /// The share of the label that the area holds.
     pub held: f64,
-    /// True if the area has no neighbours, as islands have none.
+    /// True if the area has no neighbours, like an island.
     pub alone: bool,
     pub middles: Vec<DVec2>,
 }
@@ -139,7 +139,7 @@ pub fn around(area: &Shapes, poles: &[DVec2], size: DVec2, gap: f64, land: &Land
             inside.extend(share_of(middle).map(|share| (share, middle)));
         }
     }
-    // Of places that hold it whole the first stays first: it is the farthest from the border.
+    // Of places where it fits whole, the first stays first: it is the farthest from the border.
     inside.sort_by(|a, b| b.0.min(HELD).total_cmp(&a.0.min(HELD)));
     let best = inside.first().map_or(0.0, |best| best.0);
     let hidden = best * size.x * size.y / area.area().abs().max(f64::MIN_POSITIVE);
@@ -148,7 +148,7 @@ pub fn around(area: &Shapes, poles: &[DVec2], size: DVec2, gap: f64, land: &Land
         let label = Rect::new(*middle - size / 2.0, *middle + size / 2.0);
         label.is_ok_and(|label| land.share(&label) <= OPEN)
     };
-    // At a corner only what is alone is meant.
+    // At a corner, only an area without neighbours is unambiguous.
     let sides = if alone { 8 } else { 4 };
     let open = beside(&bounds, size, gap).into_iter().take(sides).filter(is_open);
     let on = inside.iter().filter(|(share, _)| *share >= MOSTLY).map(|(_, middle)| *middle);
@@ -158,7 +158,7 @@ pub fn around(area: &Shapes, poles: &[DVec2], size: DVec2, gap: f64, land: &Land
     let fit = match best {
         b if b >= HELD => Fit::Held,
         b if b < MOSTLY => Fit::Tiny,
-        // Between neighbours there is nothing open to stand in.
+        // Between neighbours there is no open place.
         _ if hidden <= MOSTLY || !alone => Fit::Over,
         _ => Fit::Hiding,
     };

@@ -1,4 +1,4 @@
-//! Borders of regions as curves on paper. What neighbours share is fitted once, so they still share it, bit for bit.
+//! Borders of regions as curves on paper. Shared borders are fitted once, so neighbours still share them, bit for bit.
 
 use super::fitted::{is_as_it_was, key};
 use super::onto_paper;
@@ -10,10 +10,11 @@ use crate::target::{Curve, Piece};
 use std::collections::BTreeMap;
 
 /// Returns the borders of each region as curves, in millimetres on paper, all within `tolerance` millimetres, or as an
-/// arc through corners leaves its chords; `None` for regions without anything round.
+/// arc through corners leaves its chords; `None` for regions without round borders.
 ///
-/// Points where more than two pieces of borders meet stay where they are, to the bit. A border that goes straight on
-/// there is fitted as a whole, so that the rim of a faceted cylinder is round, whatever the shades of its facets.
+/// Points where more than two pieces of borders meet keep their coordinates, bit for bit. A border that continues
+/// straight there is fitted as a whole, so that the rim of a faceted cylinder is round, whatever the shades of its
+/// facets.
 pub(super) fn borders(
     regions: &[Region],
     origin: DVec2,
@@ -47,7 +48,7 @@ struct Link {
     back: bool,
 }
 
-/// The points of all rings, each once, and where they lead on.
+/// The points of all rings, each once, and the edges that leave them.
 struct Network {
     /// Sorted by their bits.
     keys: Vec<[u64; 2]>,
@@ -61,7 +62,7 @@ struct Network {
 /// No point.
 const NONE: u32 = u32::MAX;
 
-/// The cosine of 30°: borders that turn further do not go on.
+/// The cosine of 30°: borders that turn further end.
 const STRAIGHT: f64 = 0.866;
 
 impl Network {
@@ -107,8 +108,8 @@ impl Network {
         self.places.get(id as usize).copied().unwrap_or(DVec2::NAN)
     }
 
-    /// Returns the continuation of a border that comes from one point to another: the candidate that lies
-    /// straightest ahead, if the same holds the other way round.
+    /// Returns the continuation of a border that comes from one point to another: the candidate closest to straight
+    /// ahead, if the same holds in the other direction.
     fn ahead(&self, from: u32, at: u32) -> Option<u32> {
         let straightest = |from: u32| {
             let come = (self.place(at) - self.place(from)).normalize_or_zero();
@@ -206,7 +207,7 @@ impl Chains {
         rows
     }
 
-    /// Extends a row as far as it goes; returns whether it comes back to its start.
+    /// Extends a row as far as possible; returns whether it returns to its start.
     fn extend(&self, network: &Network, links: &mut Vec<Link>, taken: &mut [bool]) -> bool {
         while let Some(last) = links.last() {
             let ids = self.ids(*last);
@@ -309,7 +310,7 @@ impl RowCurve<'_> {
     }
 
     /// Returns the part of the curve between two points of the polyline, this many steps from the first;
-    /// `None` if one of them does not lie on it.
+    /// `None` if one of them is not on it.
     fn part(&self, first: usize, steps: usize) -> Option<Curve> {
         let count = self.points.len();
         let shift = if self.closed { *self.fitted.from.first()? } else { 0 };

@@ -5,7 +5,7 @@ use crate::math::DVec2;
 /// Chains that bend by more than this at a point are divided there; as the cosine of 25°.
 pub(super) const CORNER: f64 = 0.906;
 
-/// No stroke gets more dashes than this; with more it looks solid anyway.
+/// Largest number of dashes of a stroke; with more it looks solid anyway.
 const MOST_DASHES: f64 = 100_000.0;
 
 /// Returns the length of a chain of points.
@@ -69,8 +69,7 @@ pub fn at_corners(points: &[DVec2], closed: bool) -> Vec<(Vec<DVec2>, bool)> {
     cuts.windows(2).map(|w| (part(w[0], w[1]), false)).collect()
 }
 
-/// Returns the dashes of a stroke as chains of their own: what pens and painters without dashes
-/// draw.
+/// Returns the dashes of a stroke as separate chains, for pens and painters without dashes.
 pub fn cut(points: &[DVec2], closed: bool, dashes: &[f64]) -> Vec<Vec<DVec2>> {
     let mut chain = points.to_vec();
     if let (true, Some(&first)) = (closed, points.first()) {

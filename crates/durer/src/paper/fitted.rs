@@ -59,7 +59,7 @@ fn is_round(class: LineClass) -> bool {
     !matches!(class, LineClass::Grid | LineClass::Mark)
 }
 
-/// The points that more than one line has, and the ends of those that end anywhere else.
+/// The points common to several lines, and the ends of lines that end elsewhere.
 struct Shared {
     /// Points on the plane, sorted.
     points: Vec<[u64; 2]>,
@@ -108,8 +108,8 @@ impl Shared {
     }
 }
 
-/// Moves arcs of one circle or ellipse, of whatever lines, to the same centre and axes: those of the one that turns
-/// furthest. Where that would move their ends apart from what they are joined to, they stay.
+/// Moves arcs of one circle or ellipse, of any lines, to the same centre and axes: those of the longest arc. Arcs whose
+/// ends would be detached from their neighbours stay.
 fn unite(curves: &mut [Option<Curve>], tolerance: f64) {
     let mut arcs: Vec<(f64, usize, usize)> = Vec::new();
     for (i, curve) in curves.iter().enumerate() {
@@ -133,7 +133,7 @@ fn unite(curves: &mut [Option<Curve>], tolerance: f64) {
     }
 }
 
-/// Arcs that others may be parts of, by the cells of a grid that their centres lie in.
+/// Arcs that others may be parts of, by the grid cells of their centres.
 struct Leaders {
     cells: std::collections::BTreeMap<[i64; 2], Vec<Arc>>,
     tolerance: f64,

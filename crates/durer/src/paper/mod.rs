@@ -1,7 +1,7 @@
 //! From the plane of a picture to paper: page, scale, pens, line types, layers.
 //!
-//! [`lay_out`] puts one [`Drawing`] onto a [`Sheet`], [`lay_out_views`] several views of a thing with a
-//! title block; [`paint`] makes pixels of a sheet. Writers of files take sheets.
+//! [`lay_out`] puts one [`Drawing`] onto a [`Sheet`], [`lay_out_views`] several views of an object with a title block;
+//! [`paint`] makes pixels of a sheet. Writers of files take sheets.
 
 mod areas;
 mod broken;
@@ -43,7 +43,7 @@ pub enum Hidden {
     /// They are drawn dashed, in layers `hidden-CLASS`.
     Dashed,
     /// They are drawn thin and grey, in layers `hidden-N-CLASS` by the number N of surfaces in front
-    /// of them; the last, N = [`DEEPEST`], has all that lie behind as many or more.
+    /// of them; the last, N = [`DEEPEST`], has all lines behind that many surfaces or more.
     Layer,
 }
 
@@ -81,8 +81,8 @@ pub struct Options {
     /// drawn as polylines. See [`crate::curve::fit::Options::tolerance`] and
     /// [`crate::curve::fit::Options::round`].
     pub fit: f64,
-    /// True if the borders of regions are fitted too, where they share them; not for regions that reach under others,
-    /// which would end before those do.
+    /// True if borders that regions share are fitted too; not for regions that extend under others, which would end
+    /// before those do.
     pub fit_areas: bool,
     /// Colour of the paper.
     pub background: Option<[u8; 4]>,
@@ -108,8 +108,7 @@ impl Default for Options {
     }
 }
 
-/// The longer side of a drawing for which neither page nor scale is given, millimetres: it fits the
-/// width of A4 with its margins.
+/// The longer side, millimetres, of a drawing without a given page or scale: it fits the width of A4 with its margins.
 const FITTED_SIDE: f64 = 180.0;
 
 /// The largest sheet, in millimetres.
@@ -138,8 +137,8 @@ impl Options {
         }
     }
 
-    /// Returns the page and the scale (paper over truth) for something of a size in model units, where
-    /// `taken` millimetres of the page are not to be had.
+    /// Returns the page and the scale (paper over truth) for contents of a size in model units, where `taken`
+    /// millimetres of the page are not available.
     fn page_and_scale(&self, size: DVec2, taken: DVec2) -> Result<(DVec2, f64)> {
         let size = size * self.unit;
         match self.page {
@@ -172,7 +171,7 @@ impl Options {
         }
     }
 
-    /// Returns the scale for something of a true size in millimetres on a page.
+    /// Returns the scale for contents of a true size in millimetres on a page.
     fn scale_on(&self, page: DVec2, size: DVec2, taken: DVec2) -> Result<f64> {
         let room = page - taken;
         if room.min_element() < 1.0 {
@@ -269,7 +268,7 @@ fn unit_square() -> Rect {
     Rect::new(DVec2::ZERO, DVec2::ONE).unwrap_or_else(|_| unit_square())
 }
 
-/// A drawing whose plane's origin lies at a place of the sheet.
+/// A drawing whose plane's origin is at a place of the sheet.
 struct Placed<'a> {
     drawing: &'a Drawing,
     /// Millimetres.
@@ -462,7 +461,7 @@ fn text_pen(sheet: &mut Sheet, height: f64, options: &Options) -> usize {
     pen_index(sheet, Pen { width: height * 0.1, color: options.pens.color, dashes: Vec::new() })
 }
 
-/// Returns the index of a pen, which the sheet gets if it does not have it.
+/// Returns the index of a pen, which is added to the sheet if needed.
 pub(crate) fn pen_index(sheet: &mut Sheet, pen: Pen) -> usize {
     match sheet.pens.iter().position(|p| *p == pen) {
         Some(index) => index,

@@ -10,7 +10,7 @@ pub enum Page {
     /// Page as large as the drawing needs.
     #[default]
     Fit,
-    /// A size that may be turned: the way round that gives the larger scale is taken.
+    /// A size that may be turned: the orientation that gives the larger scale is used.
     Either(DVec2),
     /// Width and height in millimetres.
     Exact(DVec2),
@@ -36,7 +36,7 @@ const LONGEST: f64 = 100_000.0;
 impl FromStr for Page {
     type Err = Error;
 
-    /// Parses `A4`, `letter`, … (either way round), `A4-landscape`, `A4-portrait`, `WxH` in millimetres, or `fit`.
+    /// Parses `A4`, `letter`, … (in either orientation), `A4-landscape`, `A4-portrait`, `WxH` in millimetres, or `fit`.
     fn from_str(text: &str) -> Result<Self> {
         let expected = "fit, A0 … A6, letter, legal, tabloid (also with -portrait or -landscape), or \
                         WIDTHxHEIGHT in millimetres, e.g. 300x200";
@@ -99,7 +99,7 @@ pub fn standard_scale(largest: f64) -> f64 {
     if !(largest > 1e-9 && largest < 1e9) {
         return largest;
     }
-    // A scale that is a standard one but for rounding stays.
+    // A scale that equals a standard one up to rounding stays.
     let largest = largest * (1.0 + 1e-9);
     // From the small end up: k reads 1:10^9 at first, and 10^9:1 at last.
     let decades = (-9..=9).map(|k: i32| libm::exp10(f64::from(k)));
@@ -107,7 +107,7 @@ pub fn standard_scale(largest: f64) -> f64 {
     steps.take_while(|s| *s <= largest).last().unwrap_or(largest)
 }
 
-/// Returns a scale in the words of drawings: `1:10`, `2:1`, `1:3.27`.
+/// Returns a scale as written on drawings: `1:10`, `2:1`, `1:3.27`.
 pub fn scale_text(scale: f64) -> String {
     let short = |n: f64| {
         let digits = if n >= 100.0 { 0 } else { 2 };

@@ -3,8 +3,8 @@
 use crate::math::DVec2;
 use crate::target::drawing::Line;
 
-/// Returns the parts of a line that `cut` leaves of its segments, in order along each; what goes on from one segment to
-/// the next, ends equal to the bit, stays one part, across the first point of a closed line too.
+/// Returns the parts of a line that `cut` leaves of its segments, in order along each. Parts that continue from one
+/// segment to the next, with ends equal to the bit, stay one part, also across the first point of a closed line.
 pub(super) fn parts<I: IntoIterator<Item = [DVec2; 2]>>(
     line: &Line,
     cut: impl Fn(DVec2, DVec2) -> I,

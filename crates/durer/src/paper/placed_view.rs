@@ -50,8 +50,8 @@ impl PlacedView {
         self.breaks.seen_at(DVec2::new(off.x, -off.y))
     }
 
-    /// Returns a point of the model on the sheet, millimetres; `None` if it lies before the near
-    /// plane of a perspective view, or the camera is not known.
+    /// Returns a point of the model on the sheet, millimetres; `None` if it is in front of the near plane of a
+    /// perspective view, or the camera is not known.
     pub fn sheet_from_model(&self, p: DVec3) -> Option<DVec2> {
         let camera = self.camera.as_ref()?;
         let plane = PicturePlane::of_camera(camera, 1.0).ok()?;

@@ -9,7 +9,7 @@ use crate::view::components::Component;
 use crate::view::picture_plane::PicturePlane;
 use crate::visibility::surface::setup::runs;
 
-/// Rows of the picture in which parts are looked for: what is narrower than a thousandth of it is not found.
+/// Rows of the picture in which parts are searched: parts narrower than a thousandth of it are not found.
 const ROWS: u32 = 1000;
 
 /// Marks triangles that belong to no part.
@@ -19,7 +19,7 @@ const NONE: u32 = u32::MAX;
 /// possible, in plane units of a [`crate::target::drawing::Drawing`] of the camera; `None` if it is not seen. `aspect`
 /// is width over height of the camera's field of view, 1/8 … 8.
 ///
-/// Cost: that of a picture of a thousand rows.
+/// Cost: a picture of a thousand rows.
 ///
 /// # Errors
 /// As [`render`].
@@ -73,8 +73,8 @@ fn kinds(scene: &Scene, components: &[Component], items: &Pixels<u32>) -> Result
     Ok(items.data().iter().map(kind).collect())
 }
 
-/// Returns, for each of `count` kinds, the pixel farthest, in steps to neighbours, from those of other kinds and from
-/// the border of the picture; of equals the first.
+/// Returns, for each of `count` kinds, the pixel farthest, in steps to neighbours, from pixels of other kinds and from
+/// the border of the picture; the first of equals.
 fn innermost(kinds: &[u32], width: usize, count: usize) -> Vec<Option<usize>> {
     let mut steps = vec![0u32; kinds.len()];
     let step = |steps: &[u32], at: usize, other: Option<usize>| match other {

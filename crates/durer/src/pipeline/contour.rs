@@ -1,8 +1,8 @@
-//! The outlines that have nothing behind them: the contour of everything visible.
+//! The outlines with nothing behind them: the contour of everything visible.
 //!
-//! Beside an outline lies, on one side, what it bounds, and on the other what is behind that. Points on both sides are
-//! looked up among the faces as they are seen; where one is in none of them, the line is part of the contour. Where
-//! along a line that changes is found by halving. O(m log n) as a rule for m points and n faces.
+//! An outline has, on one side, the surface it bounds, and on the other the surface behind. Points on both sides are
+//! looked up among the projected faces; where one is in none of them, the line is part of the contour. The places along
+//! a line where that changes are found by bisection. O(m log n) as a rule for m points and n faces.
 
 use super::runs::{Known, around, divided};
 use crate::Result;
@@ -21,7 +21,7 @@ const LOOKS: f64 = 200.0;
 /// Number of halvings that locate the place where a line changes.
 const HALVINGS: usize = 12;
 
-/// Parts shorter than this many times [`BESIDE`] come from what lies near to their ends.
+/// Length, as a multiple of [`BESIDE`], below which parts come from faces near their ends.
 const CRUMB: f64 = 4.0;
 
 /// Makes the visible silhouettes and borders with nothing behind them lines of [`LineClass::Contour`].
@@ -83,7 +83,7 @@ impl Face {
         (low.is_finite() && high.is_finite()).then_some(Self { corners, low, high })
     }
 
-    /// Returns whether a point lies within it or on its border.
+    /// Returns whether a point is within it or on its border.
     fn contains(&self, p: DVec2) -> bool {
         let next = self.corners.iter().cycle().skip(1);
         let mut sides = [false; 2];

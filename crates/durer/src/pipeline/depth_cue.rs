@@ -1,10 +1,9 @@
 //! The nearness of a drawing's visible lines, in a few steps, for pens that distinguish near from
 //! far.
 //!
-//! Lines run along edges, so their points are where vertices of the model are seen; of vertices seen at one place
-//! the nearest is the one that can be seen. Between them depth is linear in the plane of the picture, also in
-//! perspective ([`PlanePoint::depth`]). Lines are divided where they come from one step to the next.
-//! O(n log n) for n vertices.
+//! Lines run along edges, so their points are projected vertices of the model; of vertices at one place the nearest is
+//! visible. Between them depth is linear in the plane of the picture, also in perspective ([`PlanePoint::depth`]).
+//! Lines are divided where they cross from one step to the next. O(n log n) for n vertices.
 
 use super::runs::{Known, around, divided};
 use crate::Result;
@@ -56,7 +55,7 @@ pub fn depth_cued(drawing: Drawing, scene: &Scene, camera: &Camera) -> Result<Dr
     Ok(Drawing { lines, nearness, ..drawing })
 }
 
-/// Returns whether a line lies along an edge that can be seen.
+/// Returns whether a line is along a visible edge.
 fn told(line: &Line) -> bool {
     let apart = matches!(
         line.class,

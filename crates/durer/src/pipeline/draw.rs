@@ -93,7 +93,7 @@ pub struct DrawOptions {
     /// The material of a section's caps ([`crate::view::section::Section::cap_material`]): their
     /// regions are distinguished and get the hatching of sections.
     pub cap_material: Option<usize>,
-    /// Budget of the work, and its cancellation; for its lines this counts, not that of [`Self::lines`].
+    /// Budget and cancellation of the work; also used for the lines, instead of the one in [`Self::lines`].
     pub work: Work,
 }
 
@@ -189,7 +189,7 @@ fn regions(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing>
 }
 
 fn lights(scene: &Scene, options: &DrawOptions) -> PreparedLights {
-    // One colour for each face: mirrors would show but a point of what surrounds them.
+    // One colour for each face: a mirror would show only one point of its surroundings.
     let light = (&options.lighting, &Surroundings::None);
     super::lights(scene, &options.camera, light, options.exposure)
 }
@@ -235,7 +235,7 @@ pub fn with_marks(drawing: Drawing, marks: Vec<Line>) -> Drawing {
     Drawing { lines, nearness, ..drawing }
 }
 
-/// Returns the classes that `names` name, joined by commas; `all` is all that edges can be but
+/// Returns the classes named in `names`, separated by commas; `all` means all classes of edges except
 /// [`LineClass::Wire`].
 ///
 /// # Errors

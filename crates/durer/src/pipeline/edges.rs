@@ -26,9 +26,8 @@ impl Default for EdgeStyle {
     }
 }
 
-/// Draws the visible outlines, creases and borders of a scene over the picture that
-/// [`super::render`] made of it by the same options: found as for drawings, exactly, by
-/// [`hidden_line`], and painted by their areas.
+/// Draws the visible outlines, creases and borders of a scene over the picture that [`super::render`] made of it with
+/// the same options. They are found exactly, as for drawings, by [`hidden_line`], and painted with area coverage.
 ///
 /// # Errors
 /// As [`draw`] and [`Canvas::new`].

@@ -1,7 +1,7 @@
 //! The surroundings that a model can be placed on: a grid, axes, and the shadow where it touches
 //! the floor.
 //!
-//! All of it is added to the scene as meshes, so that every way to render shows it.
+//! These are added to the scene as meshes, so that every method of rendering shows them.
 
 use super::{RenderOptions, SurfaceMethod, render};
 use crate::Result;
@@ -83,8 +83,8 @@ pub fn add_grid(scene: &mut Scene, model: &Aabb) {
     add_lines(scene, "grid", &lines, Vec3::splat(0.35));
 }
 
-/// Adds the axes of the world, x red, y green, z blue, as long as the model is large: from the origin
-/// where that is in the box around the model, else from the box's smallest corner.
+/// Adds the axes of the world, x red, y green, z blue, as long as the model is large: from the origin if it is in the
+/// box around the model, else from the box's smallest corner.
 pub fn add_axes(scene: &mut Scene, model: &Aabb) {
     let Aabb { min, max } = *model;
     let inside = min.cmple(DVec3::ZERO).all() && max.cmpge(DVec3::ZERO).all();
@@ -148,8 +148,8 @@ fn add(scene: &mut Scene, mut mesh: Mesh, origin: DVec3, material: Material) {
 /// Adds the soft shadow that a model, in its box, has on the floor under it: darker where it is nearer
 /// to the floor.
 ///
-/// The model is seen from below, and what is up to so high over the floor darkens it around, the
-/// lower the more sharply. Cost: a picture of 512 × 512 pixels.
+/// The model is rendered from below, and surfaces up to a certain height over the floor darken it around them, lower
+/// ones more sharply. Cost: a picture of 512 × 512 pixels.
 ///
 /// # Errors
 /// As [`render`].
@@ -177,7 +177,7 @@ pub fn add_ground(scene: &mut Scene, model: &Scene, around: &Aabb) -> Result<()>
         double_sided: false,
         ..Material::default()
     };
-    // A little lower than the floor, so that faces which lie on it are in front.
+    // A little lower than the floor, so that faces on it are in front.
     let below = floor.min.z - 1e-3 * floor.size();
     let origin = floor.world(middle.truncate().extend(below));
     let corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
@@ -195,7 +195,7 @@ pub fn add_ground(scene: &mut Scene, model: &Scene, around: &Aabb) -> Result<()>
 }
 
 /// Returns the height over the floor of the lowest surface, in world units; infinite if there is
-/// none. `None` if the model has no height that numbers can represent.
+/// none. `None` if the model's height cannot be represented.
 fn heights(scene: &Scene, floor: &Floor, side: f64) -> Result<Option<Vec<f64>>> {
     let size = floor.size();
     let height = (floor.max.z - floor.min.z).max(size * 1e-6);

@@ -1,8 +1,7 @@
-//! Pictures of scenes that come in pieces, over and over, because they are larger than memory.
+//! Pictures of scenes that are larger than memory and are read in pieces, several times.
 //!
-//! A [`Survey`] of all pieces finds the items that are seen; a scene of those alone, in the same order, gives the
-//! picture of the whole, bit for bit. What lets light through, throws shadows or is lit by the brightness of the whole
-//! needs all of the scene at once.
+//! A [`Survey`] of all pieces finds the visible items; a scene of these alone, in the same order, gives the picture of
+//! the whole, bit for bit. Blended surfaces, shadows and metered exposure need the whole scene at once.
 
 use super::{
     Cull, Exposure, Filter, Lighting, Places, RenderOptions, Report, Seen, Shading, Shadows,
@@ -15,18 +14,18 @@ use crate::visibility::surface::z_buffer::survey;
 use crate::{Error, Result};
 
 /// Alternative to a picture in pieces.
-const INSTEAD: &str = "all of the scene has to be held";
+const INSTEAD: &str = "the whole scene must be in memory";
 
-/// Checks that a picture can be made of pieces; these have normals at their vertices or have none, and no lights of
-/// their own.
+/// Checks that a picture can be made of pieces without lights; `have_normals` tells whether their vertices have
+/// normals.
 ///
 /// # Errors
-/// The errors of [`RenderOptions::check`], and [`Error::Unsupported`] for what needs the whole scene at once.
+/// The errors of [`RenderOptions::check`], and [`Error::Unsupported`] for options that need the whole scene at once.
 pub fn check_pieces(options: &RenderOptions, have_normals: bool) -> Result<()> {
     options.check()?;
     let smooth = matches!(options.shading, Some(Shading::Gouraud | Shading::Phong));
     let panorama = matches!(options.surroundings, Surroundings::Panorama(_));
-    // Of lights that go with the camera it is known how bright they are.
+    // The brightness of lights that go with the camera is known.
     let metered = match (options.exposure, &options.lighting) {
         (Some(Exposure::Ev(_)), _) => false,
         (Some(Exposure::Auto), Lighting::Given(_)) => true,
@@ -52,7 +51,7 @@ pub fn check_pieces(options: &RenderOptions, have_normals: bool) -> Result<()> {
 /// Begins to search for the triangles that are visible in a picture.
 ///
 /// # Errors
-/// The errors of [`RenderOptions::check`]; [`Error::Memory`] where the budget has no room for the samples.
+/// The errors of [`RenderOptions::check`]; [`Error::Memory`] if the budget has no room for the samples.
 pub fn survey(options: &RenderOptions) -> Result<Survey> {
     options.check()?;
     let view = options.view()?;

@@ -1,9 +1,8 @@
 //! The visibility of a scene in its picture or drawing, with the reason if nothing is visible.
 //!
-//! An empty picture is either right or the work of one wrong number in a file, and looks the same. The
-//! check costs a look at the first rows of most pictures; only where nothing is seen the reason is
-//! searched for: by outcodes of all vertices, then by rendering again without what may have hidden
-//! the model.
+//! An empty picture may be right or the result of one wrong number in a file. For most pictures the check reads only
+//! the first rows; only if nothing is visible, the reason is searched: by outcodes of all vertices, then by rendering
+//! again without options that may have hidden the model.
 
 use super::{RenderOptions, render};
 use crate::Result;
@@ -45,7 +44,7 @@ pub enum Unseen {
     Transparent,
     /// It is in the picture, in the colour of the background.
     LikeBackground,
-    /// No sample of a pixel lies on it, or no line of a drawing is requested.
+    /// No sample of a pixel is on it, or no line of a drawing is requested.
     Missed,
 }
 
@@ -60,8 +59,8 @@ impl Status {
     }
 }
 
-/// Returns the status of a picture that [`render`] made by these options: whether anything of its scene is visible. A
-/// window that shows nothing but the background is [`Status::Ok`] if the whole picture may show something.
+/// Returns the status of a picture that [`render`] made with these options: whether anything of its scene is visible. A
+/// window that shows only the background is [`Status::Ok`] if the whole picture may show something.
 ///
 /// Cost: the first rows of most pictures; where a picture is empty, a pass over all vertices and up to
 /// four more renderings.
@@ -146,7 +145,7 @@ fn status_of_vertices(scene: &Scene, view: &View) -> Option<Status> {
     places.status()
 }
 
-/// Positions of all vertices that something is drawn with, of a scene that may come in pieces.
+/// Positions of all vertices used by primitives, of a scene that may come in pieces.
 pub struct Places<'a> {
     view: &'a View,
     any: bool,
@@ -160,7 +159,7 @@ impl<'a> Places<'a> {
         Self { view, any: false, beyond_all: None, behind_all: true }
     }
 
-    /// Adds those of a scene, or of the next piece of one.
+    /// Adds the vertices of a scene, or of the next piece of one.
     pub fn add(&mut self, scene: &Scene) {
         for p in drawn_vertices(scene) {
             self.any = true;
@@ -231,7 +230,7 @@ impl std::fmt::Display for Unseen {
             Self::BehindEye => "all of it is behind the eye",
             Self::BeforeNear => "all of it is nearer than the near plane",
             Self::BeyondFar => "all of it is beyond the far plane",
-            Self::Beside => "all of it is beside the picture",
+            Self::Beside => "all of it is outside the picture",
             Self::Culled => "all faces in view are seen from behind and left out",
             Self::Transparent => "all materials in view are wholly transparent",
             Self::LikeBackground => "it has the colour of the background",

@@ -130,14 +130,14 @@ fn axis(
         };
         placed.map(with_label).collect()
     };
-    // As many as stand apart; the last of all may stand alone.
+    // The largest number of labels that do not touch, or else a single label.
     let fitting = (1..=wanted).rev().map(labelled).find(|placed| stand_apart(placed, letter));
     let placed = fitting.unwrap_or_else(|| labelled(1).into_iter().take(1).collect());
     let mut widest: f64 = 0.0;
     for (at, label) in placed {
         push(marks, [at, at + out * (TICK * letter)]);
         widest = widest.max(reach(out, label.text.chars().count() as f64 * LETTER));
-        // At a corner the other axis may have been there first.
+        // At a corner, the other axis may have a label already.
         if is_free(&label, &marks.labels, letter) {
             marks.labels.push(label);
         }
@@ -151,7 +151,7 @@ fn axis(
         return;
     }
     let height = options.text;
-    // Beside an upright axis a long name would need a wide margin: it stands on top.
+    // Beside a vertical axis a long name would need a wide margin, so it is placed on top.
     let (at, out) = match edge.k {
         1 => (edge.seen[1] + DVec2::Y * (GAP * 1.6 * letter), DVec2::Y),
         _ => (middle + out * ((TICK + 2.2 * GAP + widest) * letter), out),
@@ -204,7 +204,7 @@ fn reach(out: DVec2, width: f64) -> f64 {
     (width * out.x.abs()).max(out.y.abs())
 }
 
-/// Returns a text that begins at a point and goes in a direction.
+/// Returns a text that extends from a point in a direction.
 fn label(at: DVec2, out: DVec2, text: String, letter: f64, height: f64) -> Label {
     let anchor = match out.x {
         x if x < -0.35 => Anchor::End,

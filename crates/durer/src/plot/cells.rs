@@ -1,7 +1,6 @@
 //! Filled cells, from back to front.
 //!
-//! Each cell reaches half-way under those neighbours that are painted after it, so no seam of the
-//! background shows between them.
+//! Each cell reaches half-way under those neighbours that are painted after it, so no seams are visible between them.
 
 use super::{Options, part};
 use crate::math::{DVec2, DVec3};
@@ -96,7 +95,7 @@ impl Cell<'_> {
         }
     }
 
-    /// Returns the point half-way from a corner to the point of the grid beyond it, or the corner where there is none.
+    /// Returns the point half-way from a corner to the point of the grid beyond it, or the corner if there is none.
     fn beyond(&self, k: usize, step: [i64; 2]) -> DVec3 {
         let corner = self.corner(k);
         let to = |at: usize, step: i64| usize::try_from(at as i64 + step).ok();
@@ -121,7 +120,7 @@ impl Cell<'_> {
             match (on_aside, on_ahead) {
                 (false, false) => ring.push(self.corner(k)),
                 (true, false) => {
-                    // The bend at the corner stays: before it or after it on the way round.
+                    // The bend at the corner stays, before or after it along the ring.
                     let (p, q) = (self.corner(k), self.beyond(k, aside));
                     let leaves = matches!(k, 1 | 2);
                     ring.extend(if leaves { [p, q] } else { [q, p] });
@@ -133,7 +132,7 @@ impl Cell<'_> {
                 }
                 (true, true) => {
                     if has_both {
-                        // Under three neighbours no bend is seen.
+                        // Under three neighbours no bend is visible.
                         ring.push(self.beyond(k, [dc, dr]));
                     } else {
                         let (a, b) = (self.beyond(k, aside), self.beyond(k, ahead));

@@ -54,7 +54,7 @@ pub fn marks(sheet: &mut Sheet, heights: Option<[f64; 2]>, options: &Options) ->
     let share = |shade: usize| shade as f64 / SHADES as f64;
     let mut marks: Vec<Mark> = (0..SHADES)
         .map(|shade| Mark::Fill {
-            // Up to the end, under those that follow: no seam shows.
+            // Up to the end, under the following ones, so that no seam is visible.
             rings: vec![corners(share(shade), 1.0)],
             color: map.at(share(shade) + 0.5 / SHADES as f64),
         })

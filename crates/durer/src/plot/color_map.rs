@@ -1,4 +1,4 @@
-//! Colours that stand for numbers.
+//! Colours that represent numbers.
 
 /// A table of colours, interpolated in sRGB.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -54,7 +54,7 @@ impl ColorMap {
         }
     }
 
-    /// Returns the colour of a number from 0 to 1, sRGB, opaque; numbers beyond get the colour of the end.
+    /// Returns the colour of a number from 0 to 1, sRGB, opaque; numbers beyond are clamped.
     pub fn at(self, part: f64) -> [u8; 4] {
         let table: &[[u8; 3]] = match self {
             Self::Viridis => &VIRIDIS,

@@ -28,9 +28,8 @@ pub struct Options {
     pub direction: ViewDirection,
     /// Perspective or parallel.
     pub lens: Lens,
-    /// Position of the eye and the point that it looks at, (x, height, z), instead of `direction`: in
-    /// perspective only, and all of the surface's box has to lie before it. The plot fits the paper all
-    /// the same.
+    /// Position of the eye and the point that it looks at, (x, height, z), instead of `direction`: in perspective only,
+    /// and all of the surface's box must be in front of it. The plot is fitted to the paper as always.
     pub eye: Option<[DVec3; 2]>,
     /// Rows and columns that become lines, and the treatment of hidden parts.
     pub lines: floating_horizon::Options,
@@ -96,10 +95,10 @@ const DASHES: [f64; 2] = [6.0, 4.0];
 const HIDDEN_PEN: f64 = 0.6;
 /// Half the height of the box around a level surface, over the longer side of its ground.
 const FLAT_HEIGHT: f64 = 0.1;
-/// Width of the bar of colours, its distance from the plot and its height over that of the page, in heights of a
-/// letter and as a share.
+/// Width of the bar of colours and its distance from the plot, in letter heights, and its height as a share of the
+/// page's.
 const BAR: [f64; 3] = [1.4, 2.0, 0.5];
-/// Title letters over those of labels, and lines of a title apart in their heights.
+/// Ratio of title letters to label letters, and distance of a title's lines in letter heights.
 const TITLE: [f64; 2] = [1.4, 1.5];
 /// Visible pieces shorter than this, in millimetres, are dots that a pen would only blot.
 const SHORTEST: f64 = 0.02;
@@ -233,9 +232,9 @@ fn standing(
     let depths = bounds.corners().map(|c| (c - eye).dot(sight));
     let near = depths.into_iter().fold(f64::INFINITY, f64::min);
     let far = depths.into_iter().fold(0.0, f64::max);
-    // As much as the axes need to be seen at all.
+    // The minimum at which the axes are visible.
     if !(near > 1e-3 * far && far.is_finite()) {
-        let expected = "a place from where the whole surface lies ahead";
+        let expected = "a place with the whole surface in front of it";
         return Err(Error::parameter("eye", places[0], expected));
     }
     let up = if sight.y.abs() < 0.9999 { DVec3::Y } else { DVec3::NEG_Z };
@@ -338,7 +337,7 @@ fn colored(
     for pair in curve.points.windows(2) {
         let (from, to) = (shade(pair[0].y), shade(pair[1].y));
         loop {
-            // The next border between two shades on the way, if there is one.
+            // The next border between two shades along the line, if there is one.
             let up = to > from;
             let border = if up { now as f64 + 1.0 } else { now as f64 };
             let beyond = if up { to > border && now + 1 < SHADES } else { to < border && now > 0 };
@@ -449,7 +448,7 @@ impl Plot {
 }
 
 impl Layout {
-    /// Converts regions to marks; the memory of those that are done is freed on the way.
+    /// Converts regions to marks; the memory of finished ones is freed along the way.
     fn fills(&self, mut regions: Vec<Region>) -> Vec<Mark> {
         let mut marks = Vec::with_capacity(regions.len());
         regions.reverse();

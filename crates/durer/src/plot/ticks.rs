@@ -24,7 +24,7 @@ pub fn offset([low, high]: [f64; 2]) -> f64 {
     if offset.is_finite() { offset } else { 0.0 }
 }
 
-/// Returns the multiples of a round step that lie in a range, about `wanted` of them, with their texts; all texts have
+/// Returns the multiples of a round step in a range, about `wanted` of them, with their texts; all texts have
 /// the same number of decimals.
 ///
 /// ```
@@ -50,7 +50,7 @@ pub fn ticks([low, high]: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
     };
     let step = factor * power(exponent);
     let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
-    // Ranges far from zero with hardly any digits left have no ticks worth the name.
+    // Ranges far from zero with hardly any digits left have no useful ticks.
     let few = last - first < 1000.0;
     if !few || first.abs().max(last.abs()) > 9e15 {
         return Vec::new();
@@ -79,7 +79,7 @@ pub fn short(value: f64) -> String {
     long.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Returns a number with this many decimals, or with an exponent where that would be long.
+/// Returns a number with this many decimals, or with an exponent if that would be long.
 fn text(value: f64, decimals: usize) -> String {
     let value = value + 0.0;
     if value == 0.0 && decimals > 6 {

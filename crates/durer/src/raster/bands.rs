@@ -1,8 +1,8 @@
-//! Bands of rows, in which outlines are filled, and which edges each of them needs.
+//! Bands of rows, in which outlines are filled, and the edges that each needs.
 //!
-//! Paths of few edges lie one after the other in a list. Those of many are made in chunks, on several threads; each
-//! chunk knows the edges of every band, and bands read chunk after chunk, so how many threads there are changes
-//! nothing.
+//! Paths with few edges are stored one after the other in a list. The edges of other paths are made in chunks, on
+//! several threads; each chunk knows the edges of every band, and bands read the chunks in order, so the result does
+//! not depend on the number of threads.
 
 use std::ops::Range;
 
@@ -14,16 +14,16 @@ use crate::parallel;
 
 /// Rows of a band: small enough for its buffers to stay in the second-level cache.
 pub(crate) const BAND_ROWS: i32 = 32;
-/// Paths with fewer edges are gone through as a whole in every band.
+/// Number of edges below which every band goes through the whole path.
 pub(crate) const FEW_EDGES: usize = 48;
-/// Points whose edges are made at once: enough to be worth a task, and few enough for their edges to stay in the
-/// second-level cache until they are sorted.
+/// Number of points per chunk: enough to justify a task, and few enough for their edges to stay in the second-level
+/// cache until they are sorted.
 pub(crate) const CHUNK: usize = 4096;
 
 /// The edges of one path.
 #[derive(Debug)]
 pub(crate) enum Edges<E> {
-    /// A few, in a list that holds those of other paths too.
+    /// A few edges, in a list shared with other paths.
     Few(Range<u32>),
     /// Many, in the order of the path.
     Many(Vec<Chunk<E>>),
@@ -95,7 +95,7 @@ impl<E> Edges<E> {
     }
 }
 
-/// Returns each of eight numbers with all those before it, of which the sum is `before`.
+/// Returns the running sums of eight numbers, starting from `before`.
 ///
 /// Halves are summed for themselves first: to move numbers from one to the other takes longest.
 #[inline(always)]
@@ -131,8 +131,8 @@ struct Run {
 struct BandIndex {
     /// The first band touched.
     base: i32,
-    /// Edges that follow each other and all touch one band, first and one past the last, band after band, for those
-    /// of a band are read one after the other.
+    /// Ranges of consecutive edges that touch a band, end exclusive, sorted by band, because the ranges of a band are
+    /// read together.
     stretches: Vec<(u32, u32)>,
     /// Start of each band's edges in that list, from the first band touched on, and the end of the
     /// last.
@@ -159,7 +159,7 @@ impl BandIndex {
         Self::from_runs(&runs, base, last)
     }
 
-    /// Creates the index from runs, which are counted first and then put in their places.
+    /// Creates the index from runs by counting sort.
     fn from_runs(runs: &[Run], base: i32, last: i32) -> Self {
         let bands = (last - base + 1).max(0) as usize;
         let mut starts = vec![0; bands + 1];

@@ -1,4 +1,4 @@
-//! Edges of filled outlines cut at a box, so that what they wind around inside it stays the same.
+//! Edges of filled outlines clipped to a box, with the same winding numbers inside it.
 
 use std::ops::Range;
 
@@ -19,8 +19,8 @@ pub(crate) enum Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// Returns the first lines of those of a closed contour that begin at a range of its points, which then
-    /// begins after them.
+    /// Returns the next lines of a closed contour that begin at the points in `own`, and removes these points from the
+    /// range.
     #[inline(always)]
     pub fn next(
         points: &'a [DVec2],
@@ -60,11 +60,11 @@ pub(crate) fn lines(points: &[DVec2], own: Range<usize>) -> impl Iterator<Item =
     })
 }
 
-/// Clips an edge to the rows of a box, in the direction of travel: up to three pieces remain, those left or
-/// right of the box moved onto its border, for left of it they still wind around everything in their rows.
+/// Clips an edge to the rows of a box, in the direction of travel: up to three pieces remain. Pieces left or right of
+/// the box are moved onto its border, because left of it they still wind around everything in their rows.
 ///
-/// Which pieces they are depends on the two ends alone and not on the direction, so both faces of a shared edge
-/// get the same. `None` if the edge lies wholly above or below the box.
+/// The pieces depend only on the two ends, not on the direction, so both faces of a shared edge get the same pieces.
+/// `None` if the edge is wholly above or below the box.
 pub(crate) fn pieces(a: DVec2, b: DVec2, low: DVec2, high: DVec2) -> Option<[(DVec2, DVec2); 3]> {
     let far = DVec2::splat(FARTHEST);
     let (a, b) = (a.clamp(-far, far), b.clamp(-far, far));

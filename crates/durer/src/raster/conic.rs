@@ -97,8 +97,8 @@ pub struct Step {
     pub region: Region,
     /// The pixel, seen from the centre, with y up.
     pub pixel: IVec2,
-    /// The decision variable there; of ellipses four times it, which makes it whole. Where it is negative the next
-    /// pixel lies straight on in the flat parts and aslant in the steep one.
+    /// The decision variable at the pixel; for ellipses multiplied by four, which makes it an integer. If it is
+    /// negative, the next step is axial in the flat parts and diagonal in the steep one.
     pub d: i128,
 }
 
@@ -213,7 +213,7 @@ pub fn ellipse(
         }
         y -= 1;
     }
-    // What is left of a flat tip.
+    // The rest of a flat tip.
     (x + 1..=a).for_each(|x| light(Region::Steep, (x, 0), d));
     Ok(())
 }

@@ -5,8 +5,8 @@
 //! no other corner. O(n²) tests of corners, each against all others. [`triangulate`](super::triangulate::triangulate) finds
 //! ears faster, in another order.
 //!
-//! All signs are exact. Rings may be given in either direction. Where rings cross, there may be no ear; then a corner is
-//! cut off that is none, so that there is always an end.
+//! All signs are exact. Rings may be given in either direction. Where rings cross, there may be no ear; then another
+//! corner is cut off, so that the loop always ends.
 
 use super::triangulate::{Step, Triangulation};
 use crate::curve::Contours;
@@ -51,7 +51,7 @@ pub fn ears(polygon: &Contours, t: &mut impl Tracer<Step>) -> Triangulation {
 /// Rest of a polygon.
 struct Cutting {
     points: Vec<DVec2>,
-    /// Corners in their order, counter-clockwise; those of bridges twice.
+    /// Corners in order, counter-clockwise; the ends of bridges appear twice.
     ring: Vec<u32>,
 }
 
@@ -143,7 +143,7 @@ impl Cutting {
             let count = self.ring.len();
             let turns = (place..place + count).map(|place| place % count);
             let ear = turns.clone().find(|&place| count == 3 || self.is_ear(place, t));
-            // Of rings that cross, one that is convex, or any.
+            // In rings that cross themselves, any convex corner, or else any corner.
             let convex = || turns.clone().find(|&place| self.cross(place) > 0.0);
             let ear = ear.or_else(convex).unwrap_or_default();
             let corners = self.around(ear);

@@ -20,7 +20,7 @@ pub const GUARD_BAND: f64 = 131_072.0;
 
 /// Returns the grid point nearest to a screen coordinate in pixels, ties to even.
 ///
-/// The coordinate must lie within ± [`GUARD_BAND`]; others are clamped to it, NaN becomes 0.
+/// Coordinates outside ± [`GUARD_BAND`] are clamped to it; NaN becomes 0.
 #[inline]
 pub fn snap(pixels: f64) -> i32 {
     // Below 1.5 · 2⁵² there are no fractions: adding it rounds, without a call where the processor has no instruction.

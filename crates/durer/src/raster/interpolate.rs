@@ -69,9 +69,9 @@ pub fn area_3d([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).length() * 0.5
 }
 
-/// Returns the signed area of a polygon by the short formula, A = ½ Σ xᵢ (yᵢ₊₁ − yᵢ₋₁); positive
-/// where it turns to the left with y up. The ring is closed by itself. Coordinates are taken from
-/// the first vertex, so that a small polygon far from the origin keeps its area.
+/// Returns the signed area of a polygon by the short formula, A = ½ Σ xᵢ (yᵢ₊₁ − yᵢ₋₁); positive where it turns to the
+/// left with y up. The ring is closed implicitly. Coordinates are relative to the first vertex, so that a small polygon
+/// far from the origin keeps its area.
 ///
 /// ```
 /// use durer::math::DVec2;
@@ -115,7 +115,7 @@ pub fn blend<T: Mul<f64, Output = T> + Add<Output = T>>(weights: [f64; 3], [a, b
     a * weights[0] + b * weights[1] + c * weights[2]
 }
 
-/// Converts weights on the screen to weights in space: each counts as much as its corner is near.
+/// Converts weights on the screen to weights in space: each is scaled by the nearness of its corner.
 ///
 /// `inv_w` is 1/w of the corners, positive. Weights that add up to 1 give weights that add up to 1.
 ///

@@ -12,7 +12,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// Calls `emit` with the columns of `y`, unless there are none.
+    /// Calls `emit` with the columns of row `y`, unless they are empty.
     #[inline]
     pub fn emit_unless_empty(y: i32, x0: i32, x1: i32, emit: &mut impl FnMut(Self)) {
         if x0 < x1 {

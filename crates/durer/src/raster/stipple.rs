@@ -1,8 +1,8 @@
 //! Stippling: tones as dots of one size, the closer the darker, nowhere in rows.
 //!
 //! Adrian Secord, "Weighted Voronoi stippling", NPAR 2002: each dot moves to the centre of gravity of the tone that is
-//! nearer to it than to any other dot (Lloyd's method), again and again. Dots begin in even steps of tone along
-//! Hilbert's curve, so nothing is left to chance. O(pixels) for each of a fixed number of rounds.
+//! nearer to it than to any other dot (Lloyd's method), again and again. Dots start in even steps of tone along
+//! Hilbert's curve, so no random numbers are needed. O(pixels) for each of a fixed number of rounds.
 
 use crate::math::DVec2;
 use crate::target::Pixels;
@@ -36,7 +36,7 @@ fn along_hilbert(density: &Pixels<f32>) -> Vec<DVec2> {
     let scale = (MOST_DOTS / total.max(f64::MIN_POSITIVE)).min(1.0);
     let side = width.max(height).next_power_of_two();
     let mut dots = Vec::new();
-    // The first dot stands in the middle of its share.
+    // The first dot is in the middle of its share.
     let mut sum = 0.5;
     for step in 0..u64::from(side) * u64::from(side) {
         let [x, y] = hilbert(side, step);
@@ -73,7 +73,7 @@ fn hilbert(side: u32, step: u64) -> [u32; 2] {
     [x, y]
 }
 
-/// Moves each dot to the centre of gravity of what is nearest to it, unless nothing is drawn there.
+/// Moves each dot to the centre of gravity of the tone nearest to it, unless that is empty.
 fn settle(density: &Pixels<f32>, dots: &mut [DVec2]) {
     let cells = Cells::new(density, dots);
     let mut sums = vec![(0.0, DVec2::ZERO); dots.len()];
@@ -144,7 +144,7 @@ impl Cells {
         let (cx, cy) = ((p.x / self.side) as i64, (p.y / self.side) as i64);
         let mut best: Option<(f64, usize)> = None;
         for ring in 0..self.columns.max(self.rows) as i64 {
-            // What is in this ring is at least so far away.
+            // Dots in this ring are at least this far away.
             let least = (ring - 1).max(0) as f64 * self.side;
             if best.is_some_and(|(d, _)| d < least * least) {
                 break;

@@ -126,9 +126,9 @@ pub fn triangulate(polygon: &Contours, t: &mut impl Tracer<Step>) -> Triangulati
     found
 }
 
-/// Triangulates what any contours enclose by a winding rule, as OpenGL's tessellator does: they may cross themselves
-/// and one another, and need no order. Where they cross, points are added; the overlay finds them, and the region's
-/// polygons are triangulated one after the other.
+/// Triangulates the region that contours enclose by a winding rule, as OpenGL's tessellator does: they may cross
+/// themselves and one another, and need no order. Where they cross, points are added; the overlay finds them, and the
+/// region's polygons are triangulated one after the other.
 ///
 /// ```
 /// use durer::clip::polygon::WindingRule;

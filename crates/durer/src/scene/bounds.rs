@@ -1,4 +1,4 @@
-//! Boxes and spheres around things.
+//! Bounding boxes and spheres.
 
 use crate::math::DVec3;
 
@@ -48,7 +48,7 @@ impl Aabb {
     }
 }
 
-/// A sphere around something.
+/// A bounding sphere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoundingSphere {
     /// The middle.

@@ -41,7 +41,7 @@ pub struct Camera {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NamedCamera {
-    /// Its name; readers make names unique, and give `camera0`, `camera1` … if there is none.
+    /// Its name. Readers make names unique and name unnamed cameras `camera0`, `camera1` …
     pub name: String,
     /// The camera. Files without a far plane get one from the scene's bounds.
     pub camera: Camera,

@@ -4,16 +4,15 @@ use super::{Aabb, Instance, Mesh, Scene};
 use crate::math::{DMat4, DVec3};
 use crate::{Error, Result};
 
-/// Heights beyond ±this are taken for poles of a function and are missing; squares of what is kept
-/// do not overflow.
+/// Largest magnitude of a height; greater ones are taken for poles of a function and are missing. Squares of kept
+/// heights do not overflow.
 const LARGEST: f64 = 1e100;
 
 /// A surface y = f(x, z) over a grid of points with equal distances along x and along z.
 ///
-/// Rows run along x, the first row has the smallest z; seen from the front (from +z, y up) it is the
-/// farthest. The heights of some points may be missing: a cell of the grid is part of the surface
-/// where all four of its corners are there. A cell is two triangles, parted by the diagonal whose
-/// ends differ less in height.
+/// Rows run along x, the first row has the smallest z; seen from the front (from +z, y up) it is the farthest. The
+/// heights of some points may be missing: a cell of the grid is part of the surface if all four of its corners are
+/// present. A cell is two triangles, divided by the diagonal whose ends differ less in height.
 ///
 /// A surface may be cut off at two [levels](Self::within): parts below or above do not belong to it, and a cell with
 /// corners on both sides, which jumps over all that is between, is left out, as poles of functions make them.
@@ -175,7 +174,7 @@ impl HeightField {
         self.levels
     }
 
-    /// Returns whether a height lies between the levels.
+    /// Returns whether a height is between the levels.
     pub fn keeps(&self, y: f64) -> bool {
         self.levels.is_none_or(|[low, high]| (low..=high).contains(&y))
     }
@@ -234,7 +233,7 @@ impl HeightField {
             let (r, v) = place(row, size[1], self.rows);
             for column in 0..size[0] {
                 let (c, u) = place(column, size[0], self.columns);
-                // What has no weight may be missing, or beyond the last point.
+                // Points without weight may be missing or beyond the last point.
                 let part = |c: usize, r: usize, weight: f64| match weight {
                     0.0 => 0.0,
                     _ => self.height(c, r).unwrap_or(f64::NAN) * weight,
@@ -248,7 +247,7 @@ impl HeightField {
     }
 
     /// Returns the diagonal of the cell between this point and the next column and row; `None` if a
-    /// corner is missing, no part of it lies between the levels, or there is no such cell.
+    /// corner is missing, no part of it is between the levels, or the cell does not exist.
     pub fn cell(&self, column: usize, row: usize) -> Option<Diagonal> {
         let [a, b] = [self.height(column, row)?, self.height(column + 1, row)?];
         let [c, d] = [self.height(column, row + 1)?, self.height(column + 1, row + 1)?];
@@ -336,7 +335,7 @@ pub(crate) fn cut(ring: &mut Vec<DVec3>, levels: Option<[f64; 2]>) -> bool {
     true
 }
 
-/// Returns the part, 0 … 1, of a segment between two heights that lies between two levels.
+/// Returns the range within 0 … 1 of a segment from one height to another that is between two levels.
 pub(crate) fn part_between([from, to]: [f64; 2], levels: Option<[f64; 2]>) -> Option<[f64; 2]> {
     let Some([low, high]) = levels else { return Some([0.0, 1.0]) };
     let (lowest, highest) = (from.min(to), from.max(to));

@@ -176,7 +176,7 @@ impl Mesh {
             return Err(Error::parameter("attribute length", wrong, "0 or the number of vertices"));
         }
         let indices = self.indices.as_deref().unwrap_or_default();
-        // A comparison with what is always the same is sooner done than a search for the largest.
+        // Comparing with a constant is faster than searching for the largest.
         let dangling = |any, &i: &u32| any | (i >= count as u32);
         if indices.iter().fold(false, dangling) {
             let index = indices.iter().copied().max().unwrap_or_default() as usize;

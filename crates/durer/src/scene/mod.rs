@@ -125,9 +125,9 @@ pub struct Scene {
     pub meshes: Vec<Mesh>,
     /// Meshes in their places; item order.
     pub instances: Vec<Instance>,
-    /// For each instance the number of the object that it is a part of, where the file tells objects apart that have
-    /// nothing to do with each other; those beyond the end, and all if it is empty, are of tree 0. Borders of one tree
-    /// that lie on each other are one ([`crate::visibility::object::Weld`]).
+    /// For each instance the number of the object it belongs to, if the file distinguishes unrelated objects; instances
+    /// beyond the end of the list belong to tree 0. Coincident borders within one tree are joined
+    /// ([`crate::visibility::object::Weld`]).
     pub trees: Vec<u32>,
     /// Value of a unit in the last digit of the meshes' coordinates in the file, in their units: 0.001 for three
     /// decimals. 0 if the file is not text, or if it is not known.
@@ -161,7 +161,7 @@ impl Scene {
         meshes + images + lists as u64
     }
 
-    /// Returns the bytes that its meshes would take if each instance had one of its own, as in sections.
+    /// Returns the bytes that its meshes would take if each instance had its own copy, as in sections.
     pub fn bytes_of_instances(&self) -> u64 {
         let of = |i: &Instance| self.meshes.get(i.mesh).map_or(0, Mesh::bytes);
         self.instances.iter().map(of).fold(0, u64::saturating_add)
@@ -218,7 +218,7 @@ impl Scene {
     /// Checks that every index refers to something that exists.
     ///
     /// # Errors
-    /// [`Error::Dangling`] or [`Error::Parameter`] for the first thing that is wrong.
+    /// [`Error::Dangling`] or [`Error::Parameter`] for the first fault.
     pub fn check(&self) -> Result<()> {
         let exists = |what, index: usize, count: usize| {
             if index < count { Ok(()) } else { Err(Error::Dangling { what, index, count }) }

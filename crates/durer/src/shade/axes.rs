@@ -1,4 +1,4 @@
-//! The axes of what surrounds a scene.
+//! The axes of a scene's surroundings.
 
 use super::lane::{Lane, Vec3Lane};
 use crate::math::Vec3;

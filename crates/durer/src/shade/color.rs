@@ -1,4 +1,4 @@
-//! Colours: sRGB's transfer curve both ways by table, luminance, premultiplication.
+//! Colours: sRGB's transfer curve in both directions by table, luminance, premultiplication.
 //!
 //! The tables are made when the crate is compiled, from IEEE basic operations alone, so they are the
 //! same bits on every machine. Curve: IEC 61966-2-1 (1999).
@@ -27,11 +27,10 @@ const FIRST_BUCKET: u32 = LOWEST_EXPONENT << BUCKET_BITS;
 /// The code of each bucket's lower end.
 static BUCKET_CODE: [u8; BUCKETS] = bucket_table();
 
-/// Table of buckets: in the upper half the code of the bucket's lower end, and in the lower half the
-/// number that has to be added to a number's bits below the bucket number to carry into the code
-/// where the next threshold is reached; all of it in the upper half of a word, as
-/// [`Encoding::look_up`] puts two into one. As long as a power of two, so that no index is too
-/// large.
+/// Table of buckets. The upper half of an entry is the code at the bucket's lower end. The lower half, added to a
+/// value's bits below the bucket number, carries into the code if the value reaches the next threshold. Entries use the
+/// upper half of a word, because [`Encoding::look_up`] packs two into one. The length is a power of two, so that no
+/// index is out of range.
 static BUCKET_STEP: [u64; 1 << INDEX_BITS] = step_table();
 
 /// Bits of a bucket's number.
@@ -144,11 +143,11 @@ pub(crate) fn encode_opaque_x16<S: Simd>(simd: S, colors: [f32x16<S>; 3]) -> u32
     encoding.codes(simd)
 }
 
-/// Sixteen colours on their way to codes. Steps of several that are done one after the other need not wait for each
-/// other: vectors that are stored are then long there when their numbers are read one by one, and the other way round.
+/// Sixteen colours on their way to codes. The steps of several encodings are interleaved, so that a stored vector has
+/// long arrived in memory when its numbers are read one by one, and the other way round.
 struct Encoding {
-    /// By channel the buckets, each in the highest bits of 32, later the steps. Two are in one word, so half as many
-    /// are read and written.
+    /// By channel the buckets, each in the highest bits of 32, later the steps. Two share a word, which halves the
+    /// reads and writes.
     steps: [[u64; 8]; 3],
     /// By channel the bits below the buckets.
     below: [[u32; 16]; 3],
@@ -193,7 +192,7 @@ impl Encoding {
     }
 }
 
-/// Returns the buckets of linear values, each in the highest bits, and what is below in their bits.
+/// Returns the buckets of linear values, each in the highest bits, and the values' remaining lower bits.
 #[inline(always)]
 fn buckets_x16<S: Simd>(simd: S, linear: f32x16<S>) -> [u32x16<S>; 2] {
     // From the first bucket to the largest number below 1; NaN is not above the first.

@@ -1,10 +1,9 @@
 //! The surroundings of the scene: light from all around, and the reflections in mirrors.
 //!
-//! Mirrors show nothing where there is nothing around them. By itself the surrounding is a hemisphere of
-//! sky over one of ground, in closed form: a function of the height over the horizon alone, a slope from
-//! nadir to zenith and a soft step at the horizon, both of which can be blurred for rough surfaces without
-//! any table. In place of it metals, smooth plastics and clear layers may mirror a [`Studio`], and everything a
-//! [`Panorama`], which then is the light from all around too.
+//! Mirrors need something around them to show. By default this is a hemisphere of sky over one of ground, in closed
+//! form: a function only of the height over the horizon, a slope from nadir to zenith and a soft step at the horizon,
+//! both of which can be blurred for rough surfaces without a table. Instead, metals, smooth plastics and clear layers
+//! may mirror a [`Studio`], and everything may mirror a [`Panorama`], which then also gives the light from all around.
 
 use super::axes::turned;
 use super::lane::{Lane, Vec3Lane};
@@ -16,7 +15,7 @@ use std::sync::Arc;
 /// Surroundings of a scene, as a picture's options name it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Surroundings {
-    /// Metals, smooth plastics and clear layers mirror a studio; it goes with the camera where the lights do.
+    /// Metals, smooth plastics and clear layers mirror a studio; it follows the camera if the lights do.
     #[default]
     Studio,
     /// Only the sky over the ground that lights make.
@@ -32,7 +31,7 @@ pub struct Environment {
     pub up: Vec3,
     /// Light from all around on a matte surface: at 1 a white one appears white.
     pub ambient: Vec3,
-    /// Part of `ambient` by which a surface facing up gets more, one facing down less; 0…1.
+    /// Part of `ambient` that a surface facing up receives in addition, and one facing down less; 0…1.
     pub slope: f32,
     /// Mean radiance that mirrors show; the factor of a panorama.
     pub radiance: Vec3,
@@ -50,9 +49,9 @@ pub enum Mirrored {
     /// Sky and ground.
     #[default]
     Sky,
-    /// Metals, smooth plastics and clear layers a studio, other things sky and ground.
+    /// A studio for metals, smooth plastics and clear layers; sky and ground for other surfaces.
     Studio(Studio),
-    /// A panorama, to which matte surfaces owe light too.
+    /// A panorama, which lights matte surfaces too.
     Panorama {
         /// The panorama.
         panorama: Arc<Panorama>,
@@ -89,8 +88,8 @@ impl Environment {
         Vec3Lane::new(k * self.ambient.x, k * self.ambient.y, k * self.ambient.z)
     }
 
-    /// Returns the reflection in the unit direction `r`; `alpha` is its roughness, squared. `lamps`: how bright
-    /// the screens of a studio are, for metal, what is smooth and clear layers; `None` shows no studio.
+    /// Returns the reflection in the unit direction `r`; `alpha` is its roughness, squared. `lamps` is the brightness
+    /// of a studio's screens, for metals, smooth surfaces and clear layers; `None` shows no studio.
     #[inline(always)]
     pub(crate) fn reflection<L: Lane>(
         &self,
@@ -118,7 +117,7 @@ impl Environment {
     #[inline(always)]
     fn sky<L: Lane>(&self, r: Vec3Lane<L>, alpha: L) -> L {
         let height = r.dot_all(self.up);
-        // A cosine lobe keeps 2/3 of a slope: what is left at alpha = 1.
+        // A cosine lobe keeps 2/3 of a slope, the value at alpha = 1.
         let slope = height / (alpha * 0.5 + 1.0);
         // x/√(1 + x²): odd, so that the mean stays, and as soft as the mirror is rough.
         let x = height / (alpha + SHARPEST);

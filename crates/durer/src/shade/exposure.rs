@@ -1,12 +1,11 @@
-//! Exposure: how strong the light of a picture is shown.
+//! Exposure: how bright the light of a picture is shown.
 //!
-//! Files give light in units of their own: lux and candela, or what an artist's program makes of watts.
-//! [`Exposure::Auto`] does what a photographer does who measures the light that falls on a scene (incident
-//! light, ISO 2720:1974): it is measured at points that are spread evenly over all surfaces, and of the lit
-//! ones the brightest few are left out of account, because there a lamp is all but touched. All lights then
-//! become weaker or stronger by one factor, so that scenes that differ in the strength of all their lamps
-//! look alike. What shines by itself, or is shown without light, is in parts of white already and stays.
-//! The eye's place has no say, so that all pictures of a scene are exposed alike; nor have shadows.
+//! Files give light in units of their own: lux and candela, or an artist's program's conversion of watts.
+//! [`Exposure::Auto`] works like a photographer's light meter (incident light, ISO 2720:1974): it measures the light at
+//! points spread evenly over all surfaces and ignores the few brightest of the lit points, which almost touch a lamp.
+//! All lights are then scaled by one factor, so that scenes that differ only in the strength of all their lamps look
+//! alike. Emissive and unlit surfaces are given as parts of white already and do not change. The eye's position and
+//! shadows have no influence, so all pictures of a scene are exposed alike.
 //!
 //! Cost: O(triangles / stride) for the areas of at most 2¹⁶ triangles, and 2¹² points × lights.
 
@@ -21,13 +20,13 @@ pub enum Exposure {
     /// module](self). Light that comes with the camera is made so and stays.
     #[default]
     Auto,
-    /// All light, with that of what shines by itself, times two to this power, −64 … 64; 0 shows lights
-    /// in their own unit ([`crate::scene::Light::color`]).
+    /// Factor of two to this power, −64 … 64, for all light including emission; 0 shows lights in their own unit
+    /// ([`crate::scene::Light::color`]).
     Ev(f32),
 }
 
-/// Light of a white matte surface in the bright places of a scene, as part of white. The rest is room for
-/// ambient light and for what is brighter.
+/// Light of a white matte surface in the bright places of a scene, as part of white. The rest is room for ambient light
+/// and brighter places.
 const LEVEL: f64 = 0.8;
 /// The part of all lit points that are at most as bright as [`LEVEL`].
 const PART: f64 = 0.97;
@@ -35,9 +34,8 @@ const PART: f64 = 0.97;
 const TRIANGLES: u64 = 1 << 16;
 /// Number of their points that are measured.
 const POINTS: usize = 1 << 12;
-/// The part of its light on a surface by which a point light is seen in mirrors: as of a directional
-/// light, a quarter of what it is where it falls straight, which is twice what falls on the average
-/// surface that is lit.
+/// The brightness of a point light in mirrors, as a part of its light on the average lit surface: as for a directional
+/// light, a quarter of the light at perpendicular incidence, which is twice the average.
 const IN_MIRRORS: f32 = 0.5;
 
 /// Measured light.
@@ -106,8 +104,7 @@ struct Point {
     normal: Vec3,
 }
 
-/// Returns light on a point by what is infinitely far, a panorama too, and by point and spot
-/// lights.
+/// Returns the light on a point from infinitely distant sources, including a panorama, and from point and spot lights.
 fn irradiance(lights: &PreparedLights, point: &Point) -> (Vec3, Vec3) {
     let side = |normal: Vec3| Vec3::from(lights.environment.diffuse(normal.into()));
     let around = side(point.normal).max(side(-point.normal));
@@ -153,7 +150,7 @@ fn point(triangle: &Summed, i: f64, origin: DVec3) -> Point {
     Point { position: position.as_vec3(), normal: normal.as_vec3() }
 }
 
-/// Returns triangles at even distances in the order of the scene, those that have an area.
+/// Returns triangles at even distances in the order of the scene, without those of zero area.
 fn summed(scene: &Scene) -> Vec<Summed> {
     let stride = scene.triangle_count().div_ceil(TRIANGLES).max(1);
     let (mut skipped, mut area) = (0, 0.0);
@@ -170,7 +167,7 @@ fn summed(scene: &Scene) -> Vec<Summed> {
                 triangles.push(Summed { corners, area });
             }
         }
-        // How many of the next instance come before the next one at the distance.
+        // Number of triangles of the next instance before the next one to take.
         skipped = (stride - (count + stride - skipped) % stride) % stride;
     }
     triangles

@@ -1,8 +1,8 @@
 //! Flat shading: one intensity for a whole face.
 //!
-//! W. J. Bouknight, *A Procedure for Generation of Three-Dimensional Half-Toned Computer Graphics
-//! Presentations*, Communications of the ACM 13(9), 1970. Cost: O(lights) per face. Limits: curved
-//! surfaces look faceted, which is what one may want to see of a mesh.
+//! W. J. Bouknight, *A Procedure for Generation of Three-Dimensional Half-Toned Computer Graphics Presentations*,
+//! Communications of the ACM 13(9), 1970. Cost: O(lights) per face. Limits: curved surfaces look faceted, which shows
+//! the structure of a mesh.
 //!
 //! Intensity is computed at the face's centroid with the face's normal by Phong's formula.
 

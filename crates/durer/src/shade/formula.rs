@@ -20,7 +20,7 @@ pub(super) struct Inputs<'a, L> {
     pub specular: Vec3Lane<L>,
     /// Phong's exponent, the same in all lanes.
     pub shininess: Shininess,
-    /// Light of its own.
+    /// Emitted light.
     pub emission: Vec3Lane<L>,
     /// Further lobes of the metallic-roughness model, the same in all lanes.
     pub lobes: Option<&'a Lobes>,

@@ -4,8 +4,8 @@
 //! Cost: O(lights) per vertex, one interpolation per pixel. Limits: highlights inside a face are
 //! lost, and those at a vertex show the face's shape (Mach bands).
 //!
-//! Diffuse and specular light are interpolated apart, so that textures and vertex colours, which are
-//! looked up per pixel, tint the one and not the other.
+//! Diffuse and specular light are interpolated separately, so that textures and vertex colours, which are looked up per
+//! pixel, tint only the diffuse light.
 
 use super::light::PreparedLights;
 use super::material::PreparedMaterial;

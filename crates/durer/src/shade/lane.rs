@@ -1,7 +1,7 @@
 //! One formula for one pixel and for eight: numbers that are either an `f32` or eight of them.
 //!
-//! The lighting formulas are written once over [`Lane`]. Every operation is an IEEE basic operation
-//! done in the same order, so a pixel has the same bits whichever way it was shaded.
+//! The lighting formulas are written once, generic over [`Lane`]. Every operation is an IEEE basic operation
+//! done in the same order, so a pixel has the same bits with any number of lanes.
 
 #[cfg(test)]
 mod tests;
@@ -37,12 +37,11 @@ pub trait Lane:
     fn exp2_whole(self) -> Self;
     /// Returns the nearest whole number below or equal.
     fn floor(self) -> Self;
-    /// Calls `f` without making it part of the caller: for what is long and seldom requested.
+    /// Calls `f` without inlining it: for long code that is seldom needed.
     fn apart<R>(self, f: impl FnOnce() -> R) -> R;
-    /// Applies a function lane by lane to a number of each value: for functions without a formula, such as look-ups.
+    /// Applies a function lane by lane, for functions without a vector formula, such as look-ups.
     fn lanewise<const N: usize>(values: [Self; N], f: impl Fn([f32; N]) -> f32) -> Self;
-    /// Applies a function lane by lane as [`Self::lanewise`], with three results; the function is not made part of the
-    /// caller.
+    /// Applies a function lane by lane as [`Self::lanewise`], with three results; the function is not inlined.
     fn looked_up<const N: usize>(
         values: [Self; N],
         look_up: &dyn Fn([f32; N]) -> [f32; 3],
@@ -112,7 +111,7 @@ pub trait Lane:
     }
 }
 
-/// Bits of √½: numbers are split so that mantissas lie between it and its double.
+/// Bits of √½: numbers are split so that mantissas are between √½ and √2.
 const SQRT_HALF_BITS: i32 = 0x3f35_04f3;
 const MANTISSA: i32 = 0x007f_ffff;
 
@@ -364,7 +363,7 @@ impl<L: Lane> Vec3Lane<L> {
         )
     }
 
-    /// Returns unit length, where the squared length has a reciprocal; elsewhere anything.
+    /// Returns the vector at unit length where the squared length has a reciprocal; unspecified elsewhere.
     #[inline(always)]
     pub fn unit(self) -> Self {
         let length2 = self.dot(self);

@@ -13,8 +13,8 @@ use crate::math::{DVec3, Vec3};
 use crate::scene::{Camera, Light, LightKind, UpAxis};
 use std::sync::Arc;
 
-/// Ambient light added to lights among which there is none, as a part of white; without it, what no
-/// light reaches would be black. Give [`LightKind::Ambient`] with colour zero to have none.
+/// Ambient light, as a part of white, that is added if the lights include none; without it, surfaces that no light
+/// reaches would be black. Give [`LightKind::Ambient`] with colour zero to prevent it.
 pub const DEFAULT_AMBIENT: f32 = 0.1;
 
 /// A light from infinitely far away.
@@ -47,7 +47,7 @@ pub struct PointLight {
 pub struct PreparedLights {
     /// World space; positions handed to shading are relative to it. It is the eye.
     pub origin: DVec3,
-    /// Ambient light and what mirrors show.
+    /// Ambient light and the surroundings that mirrors show.
     pub environment: Environment,
     /// Lights from infinitely far away.
     pub directional: Vec<DirectionalLight>,
@@ -59,16 +59,16 @@ pub struct PreparedLights {
     pub tone: Tone,
 }
 
-/// A panorama around a scene, and the scene's axis to which its upper border lies.
+/// A panorama around a scene, and the scene's axis that points up in it.
 pub type Around<'a> = Option<(&'a Arc<Panorama>, UpAxis)>;
 
-/// Squared distance below which a point light gets no brighter; keeps its strength finite.
+/// Squared distance below which a point light does not get brighter, which keeps its strength finite.
 const NEAREST2: f32 = 1e-8;
 
 impl PreparedLights {
     /// Prepares lights for pictures from this camera's eye.
     ///
-    /// Directions that are not finite or zero are left out, and so are positions that are not finite. Where there is no
+    /// Directions that are not finite or zero are left out, and so are positions that are not finite. If there is no
     /// ambient light, [`DEFAULT_AMBIENT`] is added. Mirrors show the ambient light and a quarter of the directional
     /// light, as if that were spread over the whole sphere.
     pub fn new(lights: &[Light], camera: &Camera) -> Self {
@@ -83,7 +83,7 @@ impl PreparedLights {
         prepared
     }
 
-    /// Builds it without ambient light and what mirrors show of other lights.
+    /// Builds it without ambient light and without the reflections of other lights.
     pub(super) fn without_ambient(around: Around<'_>, lights: &[Light], camera: &Camera) -> Self {
         let up = camera.up.normalize_or(DVec3::Y).as_vec3();
         let mut environment = Environment { up, ..Environment::uniform(Vec3::ZERO) };
@@ -104,8 +104,8 @@ impl PreparedLights {
         prepared
     }
 
-    /// Sets ambient light and what mirrors show: a panorama times `factor`, or what lights make, of which
-    /// `from_points` is the part of point lights.
+    /// Sets the ambient light and the surroundings that mirrors show: a panorama times `factor`, or the light of all
+    /// lights, where `from_points` is the part of point lights.
     pub(super) fn surround(&mut self, ambient: Option<Vec3>, factor: f32, from_points: Vec3) {
         let directional: Vec3 = self.directional.iter().map(|l| l.color).sum();
         let environment = &mut self.environment;
@@ -185,8 +185,8 @@ pub(super) fn ambient(lights: &[Light]) -> Option<Vec3> {
 }
 
 impl PointLight {
-    /// Returns the unit vector along the axis of a spot light and the cosine of the angle at which its
-    /// light is gone; `None` for a light that shines everywhere.
+    /// Returns the unit vector along the axis of a spot light and the cosine of its outer angle; `None` for a light
+    /// that shines everywhere.
     pub fn cone(&self) -> Option<(Vec3, f32)> {
         (self.axis != Vec3::ZERO).then(|| (self.axis, -self.offset / self.scale))
     }
@@ -208,8 +208,8 @@ impl PointLight {
 /// Returns the light that shows the form of any model: key light from the upper left, weaker fill
 /// light from the right, rim light from behind, ambient light; all of them go with the camera.
 ///
-/// Made so that white matte surfaces stay below white and no side is black: on a matte sphere of
-/// reflectance 0.8 the 8-bit colours lie between 76 and 220.
+/// White matte surfaces stay below white, and no side is black: on a matte sphere of reflectance 0.8 the 8-bit colours
+/// are between 76 and 220.
 pub fn auto_lights(camera: &Camera) -> Vec<Light> {
     let [right, up, back] = camera.axes();
     let from = |x: f64, y: f64, z: f64, intensity: f32| {

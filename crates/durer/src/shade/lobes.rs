@@ -1,11 +1,11 @@
 //! The additions of glTF's extensions to the metallic-roughness formula: another refractive index, a tinted
 //! or weak reflection, a clear coat, sheen, and glass.
 //!
-//! Khronos, *KHR_materials_ior*, *_specular*, *_clearcoat*, *_sheen*, *_transmission*, 2020–2021. Sheen: A.
-//! Estevez and C. Kulla, *Production Friendly Microfacet Sheen BRDF*, SIGGRAPH 2017 (the "Charlie"
-//! distribution) with the visibility of D. Neubelt and M. Pettineo, *Crafting a Next-Gen Material Pipeline
-//! for The Order: 1886*, 2013; its albedo, by which what is under it gets darker, by the fit of three.js
-//! (2021). Deviations: a coat has the normal of what is under it.
+//! Khronos, *KHR_materials_ior*, *_specular*, *_clearcoat*, *_sheen*, *_transmission*, 2020–2021. Sheen: A. Estevez and
+//! C. Kulla, *Production Friendly Microfacet Sheen BRDF*, SIGGRAPH 2017 (the "Charlie" distribution) with the
+//! visibility of D. Neubelt and M. Pettineo, *Crafting a Next-Gen Material Pipeline for The Order: 1886*, 2013; its
+//! albedo, which darkens the layer below, by the fit of three.js (2021). Deviations: a coat has the normal of the layer
+//! below.
 
 #[cfg(test)]
 mod tests;
@@ -49,7 +49,7 @@ struct Sheen {
     more: f32,
 }
 
-/// Returns a number of a file, held; `default` for what is none.
+/// Returns a number from a file, clamped to 0 … `most`; `default` for NaN.
 fn held(value: f32, most: f32, default: f32) -> f32 {
     if value.is_nan() { default } else { value.clamp(0.0, most) }
 }
@@ -87,7 +87,7 @@ impl Lobes {
         self.glass
     }
 
-    /// Returns the light that leaves a point towards the eye, with that of its own.
+    /// Returns the light that leaves a point towards the eye, including emission.
     #[inline(always)]
     pub fn reflect<L: Lane>(
         &self,
@@ -190,7 +190,7 @@ fn dielectric(m: &Material) -> Dielectric {
 }
 
 impl Coat {
-    /// Returns a coat over what leaves the surface.
+    /// Returns the light of the surface seen through a coat, plus the coat's own.
     #[inline(always)]
     fn over<L: Lane>(
         self,

@@ -1,5 +1,4 @@
-//! Sixteen look-ups of one texture at a time: coordinates side by side; texels that lie near to each other are
-//! decoded once.
+//! Sixteen look-ups of one texture at a time, with coordinates in lanes; nearby texels are decoded once.
 //!
 //! Every operation is the one of [`PreparedTexture::sample`], in the same order, so the bits are the
 //! same.
@@ -28,7 +27,7 @@ pub struct TexCoords<L> {
     pub ddy: [L; 2],
 }
 
-/// Sixteen points whose texels are not more are given these decoded.
+/// Largest number of texels that are decoded together for sixteen points.
 const NEAR: i32 = 32;
 
 /// Images up to as many texels wide and high have coordinates that fit 32 bits with their fractions.
@@ -70,7 +69,7 @@ impl PreparedTexture<'_> {
         let down = squared_length(at.ddy, self.size);
         let mut levels = [0; 16];
         let mut weights = [0.0; 16];
-        // The first level of one of the points that lie between two.
+        // The finer level of any point that is between two.
         let mut mixed = None;
         for i in 0..16 {
             match self.detail(across[i].max(down[i])) {
@@ -85,7 +84,7 @@ impl PreparedTexture<'_> {
         let near = self.in_levels(simd, &at.uv, &levels);
         let Some(mixed) = mixed else { return near };
         for i in 0..16 {
-            // What is not between two levels is ignored.
+            // The results of points not between two levels are ignored.
             levels[i] = if weights[i] > 0.0 { levels[i] } else { mixed } + 1;
         }
         let far = self.in_levels(simd, &at.uv, &levels);
@@ -138,7 +137,7 @@ impl PreparedTexture<'_> {
         let beside = (x1 - x0).simd_eq(1) & (y1 - y0).simd_eq(1);
         let mut means = [simd.splat_f32x16(0.0); 4];
         if beside.all_true() && columns.max(rows) <= NEAR && columns * rows <= NEAR {
-            // The points lie so near to each other that they share most of their texels.
+            // The points are so close that they share most of their texels.
             let mut near = [[0.0; 4]; NEAR as usize];
             let (size, first) = ([columns as usize, rows as usize], top as usize * width as usize);
             this.decode_area(level, first + left as usize, size, &mut near);
@@ -209,8 +208,7 @@ fn decode_all(codes: &[[u8; 4]], out: &mut [[f32; 4]], decode: impl Fn([u8; 4]) 
 /// Sixteen colours, four side by side.
 type Rows<S> = [f32x16<S>; 4];
 
-/// Returns four colours side by side: those of the points from `4 i` on, this many texels after
-/// their first.
+/// Returns the colours, side by side, of the four points from `4 i` on, `after` texels behind the first texel of each.
 #[inline(always)]
 fn four_near<S: Simd>(
     simd: S,

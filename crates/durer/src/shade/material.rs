@@ -1,4 +1,4 @@
-//! Materials with their textures, ready for shading, and the one door to all shading models.
+//! Materials with their textures, ready for shading, and the common entry to all shading models.
 
 mod materials;
 mod shaded;
@@ -25,8 +25,8 @@ use crate::scene::{AlphaMode, Material, ShadingModel};
 use fearless_simd::{Simd, f32x16};
 use fearless_simd_macros::simd;
 
-/// Dielectrics up to this roughness mirror what metals do. What rougher ones mirror is so soft that it cannot
-/// be distinguished from the sky, which takes less time.
+/// Roughness up to which dielectrics mirror the same surroundings as metals. The reflections of rougher ones are so
+/// soft that the sky, which takes less time, looks the same.
 const SMOOTH: f32 = 0.4;
 
 /// Returns whether a formula takes Phong's inputs.
@@ -163,8 +163,8 @@ impl<'a> PreparedMaterial<'a> {
         Vec3Lane::splat(texel.0[0], self.base_color.truncate()).times(texel.color())
     }
 
-    /// Returns the alpha that is left of that of the base colour with its texture, without the vertex colour;
-    /// of masked materials 1.
+    /// Returns the alpha of the base colour with its texture, without the vertex colour, by the material's alpha mode;
+    /// 1 for masked materials.
     #[inline(always)]
     pub(super) fn alpha_times<L: Lane>(&self, texel: &Texel<L>) -> L {
         let alpha = texel.0[3] * self.base_color.w;
@@ -227,7 +227,7 @@ impl<'a> PreparedMaterial<'a> {
             specular: Vec3Lane::splat(like, self.phong.specular),
             shininess: self.phong.shininess,
             emission: Vec3Lane::splat(like, self.emissive),
-            // Where materials have lobes, points are not lit by constants alone.
+            // Materials with lobes are never lit from constants alone.
             lobes: None,
         }
     }
@@ -255,7 +255,7 @@ impl<'a> PreparedMaterial<'a> {
         }
     }
 
-    /// Returns the inputs of all formulas, with what the textures say.
+    /// Returns the inputs of all formulas, with textures applied.
     #[inline(always)]
     fn inputs<L: Lane>(
         &self,
@@ -312,7 +312,7 @@ impl<'a> PreparedMaterial<'a> {
         }
     }
 
-    /// Returns a point with what the textures say of it, to be lit with others; its geometric normal must
+    /// Returns a point with its textures applied, to be lit with others; its geometric normal must
     /// be on the viewer's side, as for [`shade_seen`].
     pub(crate) fn sample(&self, surface: &Surface<'_>, shading: Shading) -> Sample<'_> {
         self.sample_with(surface, face_seen, self.base(surface), shading)

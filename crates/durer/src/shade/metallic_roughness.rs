@@ -3,11 +3,10 @@
 //! Khronos, *glTF 2.0*, appendix B, 2017: Lambert's diffuse reflection; microfacets after Trowbridge and Reitz,
 //! *Average Irregularity Representation of a Rough Surface*, JOSA 65(5), 1975 (the "GGX" of Walter et al. 2007);
 //! Smith's height-correlated masking after Heitz, *Understanding the Masking-Shadowing Function*, JCGT 3(2), 2014;
-//! Fresnel reflection after Schlick, *An Inexpensive BRDF Model for Physically-based Rendering*, 1994. What mirrors
-//! show of the surroundings is weighted by the closed form of Karis, *Physically Based Shading on Mobile*, 2014; what
-//! surrounds them is in [`super::environment`]. Light that is reflected more than once between microfacets is given
-//! back by scaling, as in Turquin, *Practical Multiple Scattering Compensation for Microfacet Models*, 2019. Cost:
-//! O(lights) per pixel. Limits: no shadows.
+//! Fresnel reflection after Schlick, *An Inexpensive BRDF Model for Physically-based Rendering*, 1994. Reflections of
+//! the surroundings ([`super::environment`]) are weighted by the closed form of Karis, *Physically Based Shading on
+//! Mobile*, 2014. Light reflected more than once between microfacets is restored by scaling, as in Turquin, *Practical
+//! Multiple Scattering Compensation for Microfacet Models*, 2019. Cost: O(lights) per pixel. Limits: no shadows.
 
 use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
@@ -48,7 +47,7 @@ pub(super) struct Dielectric {
 }
 
 impl Dielectric {
-    /// Dielectric of refractive index 1.5, which is that of most plastics and glasses.
+    /// Dielectric of refractive index 1.5, like most plastics and glasses.
     pub const PLAIN: Self =
         Self { straight: Vec3::splat(0.04), most: 0.04, grazing: 1.0, matte: 1.0 };
 }
@@ -61,7 +60,7 @@ pub(super) struct Substance<L> {
     pub metallic: L,
     /// Perceptual roughness, 0 … 1.
     pub roughness: L,
-    /// Part of the ambient light that gets there.
+    /// Part of the ambient light that arrives.
     pub occlusion: L,
     /// True if the material mirrors the surroundings clearly: metals, smooth surfaces, clear layers.
     pub mirrors: bool,
@@ -129,7 +128,7 @@ pub(super) fn reflect<L: Lane>(
 
     let around = surroundings(frame, &point, substance, (metallic, roughness), lights);
     let around = around.scale(substance.occlusion);
-    // What is not made part of its caller would lose the SIMD level.
+    // Code that is not inlined would lose the SIMD level.
     under_lights(
         frame,
         position,
@@ -140,7 +139,7 @@ pub(super) fn reflect<L: Lane>(
     )
 }
 
-/// Adds what each light sends towards the eye to `sum`; `lit` returns the part of a light's colour by
+/// Adds the light that each light source sends towards the eye to `sum`; `lit` returns the part of a light's colour by
 /// the unit vector to the light.
 #[inline(always)]
 pub(super) fn under_lights<L: Lane>(
@@ -207,7 +206,7 @@ fn lit<L: Lane>(frame: &Frame<L>, p: &Point<L>, l: Vec3Lane<L>) -> Vec3Lane<L> {
     let to_light = p.nv * (nl * nl * rest + p.alpha2).sqrt();
     let visibility = half / (to_eye + to_light).at_least(1e-6);
 
-    // Schlick's Fresnel reflection; what the dielectric lets in is reflected diffusely.
+    // Schlick's Fresnel reflection; the light that enters the dielectric is reflected diffusely.
     let away = vh.one_minus().power(5);
     let keep = away.one_minus();
     let fresnel = p.direct.straight.scale(keep).plus(p.direct.grazing.scale(away));

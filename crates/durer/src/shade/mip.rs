@@ -130,7 +130,7 @@ fn area(
             weighted += texel * (weight * decode_unorm8(code[3]));
         }
     }
-    // Where all texels are transparent their colours still count, for the next level's border.
+    // If all texels are transparent, their colours still count, for the next level's border.
     if usage == Usage::ColorWithAlpha && plain.w > 0.0 {
         let color = weighted / plain.w;
         plain = Vec4::new(color.x, color.y, color.z, plain.w);

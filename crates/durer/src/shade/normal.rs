@@ -17,8 +17,8 @@ pub(crate) struct Frame<L> {
 
 /// Turns face and interpolated normal to the viewer's side of the face.
 ///
-/// The face decides, not the interpolated normal, which near a silhouette may rightly look away; so
-/// nothing is black from behind, whatever the winding.
+/// The face decides, not the interpolated normal, which near a silhouette may legitimately point away; so nothing is
+/// black from behind, whatever the winding.
 #[inline(always)]
 pub(super) fn face_viewer<L: Lane>(
     view: Vec3Lane<L>,
@@ -42,8 +42,8 @@ pub(super) fn face_seen<L: Lane>(
     framed(view.unit_or(Vec3Lane::splat(view.x, Vec3::ZERO)), face, normal)
 }
 
-/// Creates the frame from a unit vector to the eye and a face on its side. Where a normal is missing (zero, NaN), the
-/// next best is taken: the face's, then the direction to the eye.
+/// Creates the frame from a unit vector to the eye and a face on its side. If the normal is missing (zero, NaN), the
+/// face's is taken, or else the direction to the eye.
 #[inline(always)]
 fn framed<L: Lane>(view: Vec3Lane<L>, face: Vec3Lane<L>, normal: Vec3Lane<L>) -> Frame<L> {
     let face = Vec3Lane::if_above(face.dot(face), 0.0, face, view);
@@ -75,7 +75,7 @@ pub(super) fn perturbed(surface: &Surface<'_>, at: TexCoord, map: Vec3) -> Vec3 
 
 /// Returns the tangent and bitangent (towards the top of the image) of the unit normal `n`, of equal scale.
 fn tangents(dpdx: Vec3, dpdy: Vec3, at: TexCoord, n: Vec3) -> (Vec3, Vec3) {
-    // Gradients of u and v on the surface, but for one common factor whose sign matters alone.
+    // Gradients of u and v on the surface, up to a common factor of which only the sign matters.
     let (across_x, across_y) = (n.cross(dpdx), dpdy.cross(n));
     let gradient = |c: fn(Vec2) -> f32| across_y * c(at.ddx) + across_x * c(at.ddy);
     let (t, b) = (gradient(|d| d.x), gradient(|d| d.y));

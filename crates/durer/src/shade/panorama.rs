@@ -1,4 +1,4 @@
-//! A picture of all that surrounds a scene, ready for mirrors of any roughness and for matte surfaces.
+//! A picture of a scene's surroundings, prepared for mirrors of any roughness and for matte surfaces.
 //!
 //! Light on matte surfaces: R. Ramamoorthi and P. Hanrahan, *An Efficient Representation for Irradiance
 //! Environment Maps*, SIGGRAPH 2001, nine numbers per colour. Rough mirrors: B. Karis, *Real Shading in
@@ -12,7 +12,7 @@ use crate::parallel;
 use crate::{Error, Result};
 use std::f64::consts::{PI, TAU};
 
-/// A panorama. Its middle is what an observer who faces the scene's front sees straight ahead. Directions are along its
+/// A panorama. Its middle is straight ahead of an observer who faces the scene's front. Directions are along its
 /// own axes: to the right, up and to the front.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panorama {
@@ -123,8 +123,7 @@ impl Texels {
         self.colors[y * self.width + x]
     }
 
-    /// Creates a picture of at most `widest` × `widest` / 2 texels, each the mean of what it
-    /// covers.
+    /// Creates a picture of at most `widest` × `widest` / 2 texels, each the mean of the texels it covers.
     fn shrunk(
         [width, height]: [usize; 2],
         widest: usize,
@@ -181,7 +180,7 @@ fn direction(x: usize, y: usize, texels: &Texels) -> Vec3 {
     Vec3::new(x as f32, libm::cos(polar) as f32, z as f32)
 }
 
-/// Returns the solid angle of a texel, but for a factor that all have.
+/// Returns the solid angle of a texel, up to a common factor.
 fn solid_angle(y: usize, texels: &Texels) -> f32 {
     libm::sin((y as f64 + 0.5) / texels.height as f64 * PI) as f32
 }
@@ -214,7 +213,7 @@ fn functions<L: Lane>(Vec3Lane { x, y, z }: Vec3Lane<L>) -> [L; 9] {
 /// Returns the factors of the [`functions`]: the panorama's share of each, by how much a matte surface
 /// keeps of it.
 fn harmonics(source: &Texels) -> [Vec3; 9] {
-    /// Squares of the functions' constants, times what a cosine lobe keeps: 1, 2/3 and 1/4.
+    /// Squares of the functions' constants, times the factors of a cosine lobe: 1, 2/3 and 1/4.
     const KEPT: [f64; 9] = {
         let (one, two) = (2.0 / 3.0 * 3.0, 0.25 * 15.0);
         [1.0, one, one, one, two, two, two, 0.25 * 1.25, 0.25 * 3.75]

@@ -50,7 +50,7 @@ pub struct Shininess {
     half: f32,
 }
 
-/// Up to here whole exponents are applied by repeated squaring.
+/// Largest whole exponent that is applied by repeated squaring.
 const LARGEST_WHOLE: f32 = 1024.0;
 
 impl Shininess {
@@ -112,7 +112,7 @@ pub(super) fn reflect<L: Lane>(
         diffuse: lights.environment.diffuse(frame.normal).scale(occlusion),
         specular: Vec3Lane::splat(one, Vec3::ZERO),
     };
-    // Apart, for calls by which shadows are looked up cost time even if there are none.
+    // Two instances, because shadow look-ups cost time even if there are no shadows.
     if lights.shadows.is_empty() {
         add_lights::<L, false>(frame, position, lights, shininess, &mut sums);
     } else {
@@ -121,7 +121,7 @@ pub(super) fn reflect<L: Lane>(
     (sums.diffuse, sums.specular)
 }
 
-/// Adds all lights; where `SHADOWED`, what is left of them in the shadows.
+/// Adds all lights; if `SHADOWED`, the part of them that shadows let through.
 #[inline(always)]
 fn add_lights<L: Lane, const SHADOWED: bool>(
     frame: &Frame<L>,
@@ -171,9 +171,9 @@ pub(super) struct Colors {
 
 /// Returns Phong's parameters for a material written for the metallic-roughness formula.
 ///
-/// The exponent is that of the Blinn–Phong lobe as wide as the GGX lobe, 2/α² − 2, rounded; the
-/// specular colour makes the highlight about as bright. Metals keep part of their colour as diffuse,
-/// as this formula has no surroundings to mirror.
+/// The exponent, 2/α² − 2, rounded, gives a Blinn–Phong lobe as wide as the GGX lobe; the specular colour makes the
+/// highlight about equally bright. Metals keep part of their colour as diffuse, as this formula has no surroundings to
+/// mirror.
 pub(super) fn from_metallic_roughness(base: Vec3, metallic: f32, roughness: f32) -> Colors {
     let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.1, 1.0));
     let alpha2 = roughness * roughness * roughness * roughness;

@@ -26,8 +26,7 @@ pub fn shade_points<S: Simd>(
     [color.x.into(), color.y.into(), color.z.into()]
 }
 
-/// Returns the second half of [`shade_points`], which comes after [`Points::frame`], to become part of the
-/// loop that calls it.
+/// Computes the second half of [`shade_points`], after [`Points::frame`], to be inlined into the caller's loop.
 #[inline(always)]
 pub(crate) fn shade_frame<L: Lane>(
     frame: &Frame<L>,

@@ -3,7 +3,7 @@
 use super::lane::{Lane, Vec3Lane};
 use super::normal::{Frame, face_seen};
 
-/// Surface points, component by component; lanes without a sample may hold anything.
+/// Surface points, component by component; lanes without a sample are unspecified.
 #[derive(Debug, Clone, Copy)]
 pub struct Points<L> {
     /// Relative to the lights' origin. Only read where there are point or spot lights, or shadows.

@@ -26,7 +26,7 @@ const NUMBERS: usize = 27;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Samples<'a> {
     numbers: [[f32; 8]; NUMBERS],
-    /// The same for all of them, as is all that follows.
+    /// Common to all points, like the fields below.
     shininess: Shininess,
     mirrors: bool,
     lobes: Option<&'a Lobes>,

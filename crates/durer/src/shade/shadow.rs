@@ -1,13 +1,13 @@
-//! Shadow maps: how far each light sees.
+//! Shadow maps: the depth of the first surface that each light meets.
 //!
-//! L. Williams, *Casting Curved Shadows on Curved Surfaces*, SIGGRAPH 1978; four comparisons weighted
-//! by distance: W. Reeves, D. Salesin, R. Cook, *Rendering Antialiased Shadows with Depth Maps*,
-//! SIGGRAPH 1987. Image space. A map holds the depth of what a light meets first in each of its texels;
-//! a point farther than that is in shadow. Cost: one picture per map, then O(1) per point and light.
+//! L. Williams, *Casting Curved Shadows on Curved Surfaces*, SIGGRAPH 1978; four comparisons weighted by distance: W.
+//! Reeves, D. Salesin, R. Cook, *Rendering Antialiased Shadows with Depth Maps*, SIGGRAPH 1987. Image space. Each texel
+//! of a map holds the depth of the first surface that the light meets; points farther away are in shadow. Cost: one
+//! picture per map, then O(1) per point and light.
 //!
-//! Limits: shadows are as sharp as the map is fine, steps of a texel along their edges; what is thinner
-//! than a texel may throw none. So that a surface does not shadow itself, points are moved off it along
-//! its normal by what its slope makes of a texel; a shadow begins so much away from the body's foot.
+//! Limits: shadows are as sharp as the map is fine, with steps of a texel along their edges; objects thinner than a
+//! texel may cast none. So that a surface does not shadow itself, points are moved off it along its normal by the size
+//! of a texel on the slope; shadows begin that far from the foot of an object.
 
 use super::lane::{Lane, Vec3Lane};
 use crate::info::{Class, Info, Occluder};
@@ -55,11 +55,11 @@ pub enum Step {
         /// True if that is within the map.
         inside: bool,
     },
-    /// Its depth was compared with that of a texel.
+    /// Comparison of its depth with that of a texel.
     Texel {
         /// Column and row.
         texel: [u32; 2],
-        /// The stored depth, 1 where nothing is.
+        /// The stored depth; 1 if the light meets nothing.
         stored: f32,
         /// The depth of the point.
         depth: f32,
@@ -118,7 +118,7 @@ pub struct ShadowMap {
 }
 
 impl ShadowMap {
-    /// Creates a map from its depths: window depths, 1 where nothing is.
+    /// Creates a map from its depths: window depths, 1 where the light meets nothing.
     ///
     /// `map_from_position` takes points relative to the lights' origin to homogeneous screen space of the
     /// map, as [`crate::view::View::screen_from_world`] does; `texel` is the size of a texel in world
@@ -165,7 +165,7 @@ impl ShadowMap {
             return None;
         }
         let texel = if self.perspective { self.texel * seen.w } else { self.texel };
-        // Texels lie side by side across the axis, wherever in the map the point is.
+        // The size of a texel across the axis is the same everywhere in the map.
         let cosine = face.dot(self.axis).clamp(-1.0, 1.0);
         let sine = (1.0 - cosine * cosine).sqrt();
         let bias = texel * (SLOPE_BIAS * sine + BIAS);
@@ -206,7 +206,7 @@ impl ShadowMap {
     }
 }
 
-/// The maps of all lights of a picture; by default there are none, and no shadows.
+/// The maps of all lights of a picture; by default none, which means no shadows.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ShadowMaps {
     /// Maps by the index in [`super::PreparedLights::directional`].
@@ -225,7 +225,7 @@ impl ShadowMaps {
 /// Returns the share of a light that reaches points, by its maps; all of it without maps and
 /// outside of them.
 ///
-/// What faces away from the light is dark without a map, so all reaches it here.
+/// Surfaces that face away from the light are dark without a map, so here all light reaches them.
 #[inline(always)]
 pub(super) fn reach<L: Lane>(
     maps: Option<&Vec<ShadowMap>>,

@@ -1,9 +1,9 @@
 //! A photographer's studio in closed form: soft boxes over a light floor and a lighter wall, for mirrors.
 //!
-//! What makes metal look like metal is what it mirrors. Each box is a rectangle in front of the scene, seen
-//! from afar; for rough surfaces its borders, and the horizon, grow as soft as what the surface mirrors is
-//! spread, and its light stays as much. So there is neither a table nor a picture, and any roughness costs
-//! the same. Axes: to the right, up, and to the eye.
+//! Metal looks like metal because of its reflections. Each box is a distant rectangle in front of the scene. On rough
+//! surfaces its borders, and the horizon, are softened according to the spread of the reflection, while its total light
+//! stays the same. So there is neither a table nor a picture, and any roughness costs the same. Axes: to the right, up,
+//! and to the eye.
 
 use super::axes::{turned, world_axes};
 use super::lane::{Lane, Vec3Lane};
@@ -29,7 +29,7 @@ struct SoftBox {
 }
 
 /// Positions of the lights that go with the camera, from the left, from the right and from behind
-/// ([`super::light::auto_lights`]), so that their highlights lie in them; and a strip at the left.
+/// ([`super::light::auto_lights`]), so that their highlights are in the boxes; and a strip at the left.
 const BOXES: [SoftBox; 4] = [
     SoftBox {
         to: Vec3::new(-0.402_739, 0.549_189, 0.732_252),
@@ -63,8 +63,8 @@ const BOXES: [SoftBox; 4] = [
     },
 ];
 
-/// Light of the floor at the horizon, of the wall more than that; from nadir to zenith besides, and towards
-/// both of them, so that round things show that they are round.
+/// Light of the floor at the horizon, the additional light of the wall, the increase from nadir to zenith, and the
+/// increase towards both of them, which shows the roundness of objects.
 const FLOOR: f32 = 0.15;
 const WALL: f32 = 0.45;
 const SLOPE: f32 = 0.15;
@@ -74,7 +74,7 @@ const SHARPEST: f32 = 0.035;
 const SPREAD: f32 = 1.1;
 
 impl Studio {
-    /// Returns the studio that goes with a camera.
+    /// Returns the studio that follows a camera.
     pub fn of_camera(camera: &Camera) -> Self {
         let [right, up, back] = camera.axes();
         let unit = |v: DVec3, otherwise: DVec3| v.normalize_or(otherwise).as_vec3();
@@ -102,7 +102,7 @@ impl Studio {
         let one = alpha.splat(1.0);
         let horizon = step(r.y * (one / (alpha * SPREAD + 0.22)));
         let slope = r.y / (alpha * 0.5 + 1.0);
-        // A cosine lobe keeps a quarter of what the square differs from its mean, a third.
+        // A cosine lobe keeps a quarter of the square's difference from its mean, 1/3.
         let poles = r.y * r.y * (alpha * -0.75 + 1.0) + alpha * 0.25;
         let mut sum = horizon * WALL + slope * SLOPE + poles * POLES + FLOOR;
         let sharpness = one / (alpha * SPREAD + SHARPEST);

@@ -32,7 +32,7 @@ pub struct Surface<'a> {
     pub position_dx: Vec3,
     /// Change of `position` from one pixel to the next along y; only for normal maps.
     pub position_dy: Vec3,
-    /// Set by set, as many as the mesh has; sets beyond count as (0, 0).
+    /// All sets of the mesh, in order; further sets count as (0, 0).
     pub tex_coords: &'a [TexCoord],
     /// Vertex colour, linear with straight alpha; multiplies the base colour.
     pub color: Vec4,

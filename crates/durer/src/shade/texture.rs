@@ -131,8 +131,8 @@ pub(super) enum Detail {
 
 /// Returns half the logarithm to base 2 of x > 1: the level for a squared footprint.
 ///
-/// Mitchell's reading of the float's own bits (1962) with a parabola for what it lacks: 0.004 off
-/// at most, less than a hundredth of a level, at a few cycles.
+/// Mitchell's approximation from the float's bits (1962), corrected by a parabola: the error is at most 0.004, less
+/// than a hundredth of a level, at a few cycles.
 #[inline(always)]
 fn half_log2(x: f32) -> f32 {
     let bits = x.to_bits();

@@ -1,5 +1,4 @@
-//! The last steps of every formula: exposure, a tone map if one is requested, and what a display still
-//! cannot show is brought into 0…1.
+//! The last steps of every formula: exposure, a tone map if requested, and clamping to the display's range, 0…1.
 
 use super::lane::{Lane, Vec3Lane};
 use super::tone_map::{self, ToneMap};

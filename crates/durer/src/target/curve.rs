@@ -1,4 +1,4 @@
-//! Chains of lines, arcs and cubic curves: what strokes of a sheet are made of if they are not polylines.
+//! Chains of lines, arcs and cubic curves, for strokes of a sheet that are not polylines.
 
 use crate::math::DVec2;
 use std::f64::consts::TAU;
@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 pub struct Arc {
     /// The middle of the ellipse.
     pub center: DVec2,
-    /// Vector from the centre to the end of the longer axis; of a circle, a radius in any direction.
+    /// Vector from the centre to the end of the longer axis; for a circle, a radius in any direction.
     pub axis: DVec2,
     /// The shorter axis over the longer one, in (0, 1]; 1 for circles.
     pub ratio: f64,
@@ -26,7 +26,7 @@ impl Arc {
         self.center + self.axis * cos + self.axis.perp() * (self.ratio * sin)
     }
 
-    /// Returns the way at an angle, in the direction of the arc; as long as the axes say.
+    /// Returns the derivative at an angle, in the direction of the arc.
     pub fn way(&self, angle: f64) -> DVec2 {
         let (sin, cos) = libm::sincos(angle);
         let way = self.axis.perp() * (self.ratio * cos) - self.axis * sin;
@@ -55,8 +55,8 @@ impl Arc {
 pub enum Piece {
     /// A straight line to a point.
     Line(DVec2),
-    /// An arc and the point that it ends in. That point, and the one in which it begins, are those of the curve; they
-    /// lie on the arc but for rounding.
+    /// An arc and the point where it ends. Its start and end are the curve's points, which are on the arc up to
+    /// rounding.
     Arc(Arc, DVec2),
     /// A cubic Bézier curve: two control points and its end.
     Cubic(DVec2, DVec2, DVec2),
@@ -128,7 +128,7 @@ impl Curve {
         self.pieces.iter().all(|p| matches!(p, Piece::Line(_)))
     }
 
-    /// Returns the arc where nothing but a whole circle or ellipse is there.
+    /// Returns the arc if the curve is one whole circle or ellipse.
     pub fn whole(&self) -> Option<&Arc> {
         match &self.pieces[..] {
             [Piece::Arc(arc, _)] if self.closed && arc.is_whole() => Some(arc),

@@ -1,4 +1,4 @@
-//! Dimensions on a sheet ([`Dimension`](super::sheet::Dimension)): what is measured, and the text.
+//! Dimensions on a sheet ([`Dimension`](super::sheet::Dimension)): the measured points or circles, and the text.
 
 use crate::math::DVec2;
 
@@ -42,7 +42,7 @@ pub enum Measure {
 pub struct DimensionText {
     /// Middle of the base line, in millimetres.
     pub at: DVec2,
-    /// The way it runs, of unit length.
+    /// Direction, of unit length.
     pub along: DVec2,
     /// The text itself.
     pub text: String,

@@ -42,7 +42,7 @@ pub enum LineClass {
 }
 
 impl LineClass {
-    /// Every class, in the order of listing; of lines of two classes at one place, the earlier class is preferred.
+    /// Every class, in the order of listing; if lines of two classes coincide, the earlier class is preferred.
     pub const ALL: &'static [Self] = &[
         Self::Contour,
         Self::Silhouette,
@@ -144,7 +144,7 @@ pub enum RegionKind {
     Cap,
 }
 
-/// Part of the picture that shows one thing in one colour.
+/// Part of the picture that shows one surface in one colour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
     /// Kind of the region's surface.

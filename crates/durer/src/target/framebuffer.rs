@@ -3,8 +3,8 @@
 use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
-/// Row of a picture that comes first in memory. Pictures of scenes have theirs on top; [`crate::commands`] draw in
-/// either order, and [`Framebuffer::with_origin`] takes one to the other.
+/// Row of a picture that comes first in memory. In pictures of scenes it is the top row; [`crate::commands`] draw in
+/// either order, and [`Framebuffer::with_origin`] converts one to the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Origin {
     /// Row 0 is the top row, as in PNG; y grows downwards.
@@ -50,8 +50,8 @@ impl<T: Copy> Pixels<T> {
         Ok(Self { charge, ..Self::new(width, height, value) })
     }
 
-    /// Returns the work that the plane was charged to; one without bounds if it was charged to none. Whoever makes
-    /// something of the plane can charge that to the same budget.
+    /// Returns the work that the plane was charged to; one without bounds if it was charged to none. Results derived
+    /// from the plane can be charged to the same budget.
     pub fn work(&self) -> Work {
         self.charge.work()
     }
@@ -130,7 +130,7 @@ impl<T: Copy> Pixels<T> {
         }
     }
 
-    /// Copies `source` with its first pixel at column x, row y; what falls outside is dropped.
+    /// Copies `source` with its first pixel at column x, row y; parts outside are dropped.
     pub fn paste(&mut self, source: &Self, x: u32, y: u32) {
         let columns = source.width.min(self.width.saturating_sub(x)) as usize;
         for row in 0..source.height.min(self.height.saturating_sub(y)) {
@@ -151,11 +151,11 @@ pub struct Framebuffer {
     pub origin: Origin,
     /// 8-bit sRGB with straight (not premultiplied) alpha.
     pub color: Pixels<[u8; 4]>,
-    /// Window depth 0 (near) … 1 (far) at the pixel centre; 1 where nothing is.
+    /// Window depth 0 (near) … 1 (far) at the pixel centre; 1 at the background.
     pub depth: Option<Pixels<f32>>,
-    /// Index of the visible item at the pixel centre, [`NO_ITEM`] where nothing is.
+    /// Index of the visible item at the pixel centre, [`NO_ITEM`] at the background.
     pub item: Option<Pixels<u32>>,
-    /// Unit normal in world space at the pixel centre; zero if nothing is.
+    /// Unit normal in world space at the pixel centre; zero at the background.
     pub normal: Option<Pixels<[f32; 3]>>,
     /// Stencil values.
     pub stencil: Option<Pixels<u8>>,

@@ -40,14 +40,14 @@ pub enum Mark {
     },
     /// Filled area bounded by straight lines.
     Fill {
-        /// Open rings, filled by the non-zero rule: outer rings run one way, holes the other.
+        /// Open rings, filled by the non-zero rule: outer rings run in one direction, holes in the other.
         rings: Vec<Vec<DVec2>>,
         /// Colour: sRGB with straight alpha.
         color: [u8; 4],
     },
     /// Filled area bounded by lines and curves.
     Area {
-        /// Closed rings, filled by the non-zero rule: outer rings run one way, holes the other.
+        /// Closed rings, filled by the non-zero rule: outer rings run in one direction, holes in the other.
         rings: Vec<Curve>,
         /// Colour: sRGB with straight alpha.
         color: [u8; 4],

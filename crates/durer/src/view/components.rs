@@ -9,14 +9,14 @@ pub struct Component {
     pub name: String,
     /// Number of its instances.
     pub count: usize,
-    /// Indices into [`Scene::instances`] of all that they are made of.
+    /// Indices into [`Scene::instances`] of all their instances.
     pub instances: Vec<usize>,
 }
 
-/// Finds the kinds of parts of a scene: those made of the same meshes are of one kind. In the order of the first of
-/// each; instances without triangles are no parts.
+/// Finds the kinds of parts of a scene: parts made of the same meshes are of one kind. Kinds are in the order of their
+/// first parts; instances without triangles are not parts.
 ///
-/// A kind is called as its parts are, without the numbers that tell them apart: `bolt` for `bolt.001` and
+/// A kind has the name of its parts without the numbers that distinguish them: `bolt` for `bolt.001` and
 /// `bolt.002`. Cost: O(n log n) for n instances.
 pub fn components(scene: &Scene) -> Vec<Component> {
     let is_seen = |i: &usize| {
@@ -44,8 +44,8 @@ pub fn components(scene: &Scene) -> Vec<Component> {
     kinds.into_iter().enumerate().map(component).collect()
 }
 
-/// Returns the instances of each part: those that follow each other in one place under one name, as files
-/// have an instance for each material of an object.
+/// Returns the instances of each part: consecutive ones with the same place and name, because files have an instance
+/// for each material of an object.
 pub(super) fn parts(scene: &Scene) -> Vec<Vec<usize>> {
     let mut parts: Vec<Vec<usize>> = Vec::new();
     let mut last: Option<&Instance> = None;
@@ -65,7 +65,7 @@ pub(super) fn parts(scene: &Scene) -> Vec<Vec<usize>> {
     parts
 }
 
-/// Returns the common name of instances of one kind, or one made of its number.
+/// Returns the common name of instances of one kind, or one made from its number.
 fn common_name(names: &[&str], number: usize) -> String {
     let first = names.first().copied().unwrap_or_default();
     let alike = names.iter().all(|n| *n == first);
@@ -79,7 +79,7 @@ fn common_name(names: &[&str], number: usize) -> String {
     }
 }
 
-/// Returns a name without the number at its end, and what divides the two.
+/// Returns a name without the number at its end and the separator before it.
 pub(super) fn number_off(name: &str) -> &str {
     let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
     name.trim_end_matches(['.', '_', '-', ' ', ':', '#'])

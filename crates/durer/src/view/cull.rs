@@ -1,4 +1,4 @@
-//! The detection of invisible things: boxes and spheres outside a volume, faces turned away.
+//! The detection of invisible objects: boxes and spheres outside a volume, faces turned away.
 //!
 //! Bounding volumes against planes: James Clark, *Hierarchical Geometric Models for Visible Surface
 //! Algorithms*, CACM 1976. Normals of polygons: Martin Newell, in Sutherland, Sproull and Schumacker,
@@ -25,15 +25,15 @@ pub const INFO: Info = Info {
     pseudocode: &[],
 };
 
-/// Relation of a thing to a volume.
+/// Relation of an object to a volume.
 ///
-/// Conservative: `Outside` and `Inside` are certain, also with respect to rounding; `Crossing` may be
-/// said of a thing that lies outside near a corner of the volume.
+/// Conservative: `Outside` and `Inside` are certain, also with respect to rounding; `Crossing` may be returned for an
+/// object outside, near a corner of the volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Containment {
-    /// No part of it lies in the volume.
+    /// No part of it is in the volume.
     Outside,
-    /// All of it lies in the volume.
+    /// All of it is in the volume.
     Inside,
     /// Neither is certain.
     Crossing,
@@ -49,7 +49,7 @@ impl Containment {
     }
 }
 
-/// Returns a box of the plane against a window; exact, as nothing is computed.
+/// Tests a rectangle against a window; exact, because coordinates are only compared.
 pub fn rect_in_window(window: &Rect, thing: &Rect) -> Containment {
     let inside = window.contains(thing.min()) && window.contains(thing.max());
     Containment::of(!window.overlaps(thing), inside)
@@ -97,7 +97,7 @@ impl ConvexVolume {
         &self.planes
     }
 
-    /// Tests a box against the region; two corners a plane are examined, whatever its size.
+    /// Tests a box against the region by two corners per plane.
     pub fn contains_box(&self, b: &Aabb) -> Containment {
         let (center, half) = (b.min * 0.5 + b.max * 0.5, b.max * 0.5 - b.min * 0.5);
         self.contains(center, |normal| normal.abs().dot(half))
@@ -108,7 +108,7 @@ impl ConvexVolume {
         self.contains(s.center, |normal| normal.length() * s.radius)
     }
 
-    /// Tests a thing against the region; `reach` is how far it extends from its centre along a normal.
+    /// Tests an object against the region; `reach` returns its extent from its centre along a normal.
     fn contains(&self, center: DVec3, reach: impl Fn(DVec3) -> f64) -> Containment {
         let mut inside = true;
         for plane in &self.planes {
@@ -132,14 +132,14 @@ pub enum Face {
     Front,
     /// The other side.
     Back,
-    /// Neither: the eye lies in its plane, or it has no area.
+    /// Neither: the eye is in its plane, or it has no area.
     Edge,
 }
 
 /// Returns the vector area of a closed polygon in space by Newell's method: along its normal, on
 /// the side from which the corners run counter-clockwise, as long as its area.
 ///
-/// Right for concave polygons too, and the best plane's where the corners are not quite in one.
+/// Correct for concave polygons too, and for the best-fitting plane if the corners are not exactly in one.
 pub fn newell_area(ring: &[DVec3]) -> DVec3 {
     let Some(&origin) = ring.first() else { return DVec3::ZERO };
     let next = ring.iter().cycle().skip(1);

@@ -1,8 +1,8 @@
 //! Exploded views: the parts of an assembly moved apart, each as a whole.
 //!
-//! Along an axis every part is moved beyond those that it would have to be drawn over to come out: of parts whose boxes
-//! overlap across the axis, the one that reaches farther up lies above, unless it is the one that reaches farthest
-//! down and not farthest up too. From the middle outwards, distances grow alike. It takes O(n²) for n instances.
+//! Along an axis every part is moved beyond the parts in its way out: of parts whose boxes overlap across the axis, the
+//! one that reaches farther up is above, unless it reaches farthest down and not farthest up. From the middle outwards,
+//! all distances grow by the same factor. It takes O(n²) time for n instances.
 
 use super::components;
 use crate::math::{DMat4, DVec3, Vec3};
@@ -36,21 +36,21 @@ impl std::str::FromStr for Way {
     }
 }
 
-/// Without a gap it is this part of the scene's extent; of the largest distance from the middle for [`Way::Radial`].
+/// Default gap, as a part of the scene's extent, or of the largest distance from the middle for [`Way::Radial`].
 const GAP: f64 = 0.08;
 const RADIAL_GAP: f64 = 0.8;
 
 /// Scenes with more instances are not assemblies with distinguishable parts.
 const MOST: usize = 4000;
 
-/// Boxes that overlap by less than this part of the scene's extent lie beside each other.
+/// Overlap, as a part of the scene's extent, below which boxes count as beside each other.
 const BESIDE: f64 = 1e-6;
 
 /// Moves the instances of a scene apart. `gap` is the free space between neighbours along the axis, in the world's
 /// units, or for [`Way::Radial`] how far the outermost part is moved; `None` takes a part of the scene's extent.
 ///
-/// Along an axis the scene gets lines from each part to the one that it was moved away from, as an instance of its
-/// own, the last.
+/// Along an axis the scene gets lines from each part to the one that it was moved away from, in an additional last
+/// instance.
 ///
 /// # Errors
 /// The errors of [`Scene::check`]; [`Error::Parameter`] for a gap that is not above 0, and for a scene of more than
@@ -107,7 +107,7 @@ fn away(parts: &[Part], whole: &Aabb, gap: Option<f64>) -> Vec<DVec3> {
     parts.iter().map(|p| way(p) * share).collect()
 }
 
-/// Shifts along an axis; adds what leads from each part to the one below it.
+/// Shifts along an axis; adds the lines from each part to the one below it.
 fn along(
     parts: &[Part],
     whole: &Aabb,
@@ -160,8 +160,8 @@ impl Stacks<'_> {
         })
     }
 
-    /// Sorts from below upwards: first what reaches farther down than all that it overlaps, and not farther up than
-    /// all of them, then the rest by its upper end.
+    /// Sorts from below upwards: first the boxes that reach farther down than all that they overlap, and not farther up
+    /// than all of them, then the rest by upper end.
     fn order(&self) -> Vec<usize> {
         let ends = |i: usize| (self.parts[i].1.min[self.axis], self.parts[i].1.max[self.axis]);
         let is_base = |i: usize| {
@@ -182,7 +182,7 @@ impl Stacks<'_> {
     }
 }
 
-/// Adds lines to a scene, relative to the middle of the first, for coordinates of meshes have few digits.
+/// Adds lines to a scene, relative to the middle of the first, because coordinates of meshes have few digits.
 fn add_traces(scene: &mut Scene, traces: &[[DVec3; 2]]) {
     let Some(origin) = traces.first().map(|t| t[0]) else { return };
     let positions: Vec<Vec3> = traces.iter().flatten().map(|p| (*p - origin).as_vec3()).collect();

@@ -1,4 +1,4 @@
-//! Cameras for turntables, and what cameras see of a scene: its shape, its middle, its depths.
+//! Cameras for turntables, and a scene as seen by a camera: its aspect ratio, middle and depths.
 
 use super::projection::{
     FitOptions, NamedView, ViewDirection, drawn_bounds, drawn_ends, fit_points,
@@ -11,14 +11,13 @@ use std::f64::consts::TAU;
 /// A perspective near plane is at least this part of the far plane, for depth to keep its precision.
 const NEAREST: f64 = 1e-4;
 
-/// A turning model is taken for this many discs, one above another.
+/// Number of discs, one above another, that approximate a turning model.
 const SLABS: usize = 512;
 
 /// Points on the rim of each disc; at 64 the rim is at most 0.12 % outside of them.
 const AROUND: usize = 64;
 
-/// Returns the up direction for a line of sight, world space; that of the back view if the line runs along the up
-/// axis.
+/// Returns the up direction for a line of sight, world space; if the line runs along the up axis, the back view's.
 pub fn up_for(sight: DVec3, up_axis: UpAxis) -> DVec3 {
     let front = NamedView::Front.direction(up_axis);
     let sideways = sight.normalize_or_zero().cross(front.up()).length();
@@ -38,8 +37,7 @@ pub fn fit_turning(
     fit_points(rims(scene, direction.to_eye(), direction.up()), direction, options)
 }
 
-/// Returns points of the discs that a turning model is taken for, seen from a direction with another
-/// one up.
+/// Returns points of the discs that approximate a turning model, seen from a direction with another one up.
 fn rims(scene: &Scene, to_eye: DVec3, up: DVec3) -> Vec<DVec3> {
     let axis = NamedView::Front.direction(scene.up_axis).up();
     // Level directions, to the viewer and to the right: rims begin there, so that they look the same
@@ -101,7 +99,7 @@ fn circles(scene: &Scene, center: DVec3, axis: DVec3) -> Vec<(f64, f64)> {
     let mut discs: Vec<Option<(f64, f64, f64)>> = vec![None; SLABS];
     for_each_point(scene, |p| {
         let (radius, height) = place(p);
-        // Where all heights are one, the product is not a number and the cast gives slab 0.
+        // If all heights are equal, the product is NaN and the cast gives slab 0.
         let slab = &mut discs[(((height - lowest) * slabs) as usize).min(SLABS - 1)];
         let (r, low, high) = slab.unwrap_or((radius, height, height));
         *slab = Some((r.max(radius), low.min(height), high.max(height)));
@@ -109,7 +107,7 @@ fn circles(scene: &Scene, center: DVec3, axis: DVec3) -> Vec<(f64, f64)> {
     discs.into_iter().flatten().flat_map(|(r, low, high)| [(r, low), (r, high)]).collect()
 }
 
-/// Returns all finite vertices that something is drawn with, in world space.
+/// Returns all finite vertices used by primitives, in world space.
 fn points(scene: &Scene) -> impl Iterator<Item = DVec3> + '_ {
     let used: Vec<Option<Vec<bool>>> = scene.meshes.iter().map(Mesh::used_vertices).collect();
     scene.instances.iter().flat_map(move |instance| {

@@ -1,4 +1,4 @@
-//! The point farthest from a polygon's border: where its label goes.
+//! The point farthest from a polygon's border, the place for its label.
 //!
 //! Best-first search over a quadtree: a square cannot hold a point farther from the border than its
 //! centre's distance plus its half diagonal, so squares that cannot beat the best point found are
@@ -76,14 +76,13 @@ pub const INFO: Info = Info {
 pub struct Interior {
     /// The point.
     pub point: DVec2,
-    /// Its distance from the border; a circle of this radius lies within the polygon.
+    /// Its distance from the border; a circle of this radius is within the polygon.
     pub distance: f64,
 }
 
-/// Returns the point of a polygon that is farthest from its rings — the inside by the even-odd rule — to
-/// within `options.precision`; `None` if nothing is inside. Of points that are as far, as in long rectangles,
-/// the centre of the largest ring's area is taken, if it is one, else one in their middle. Points that are
-/// not finite are left out.
+/// Returns the point of a polygon that is farthest from its rings — the inside by the even-odd rule — to within
+/// `options.precision`; `None` if nothing is inside. Of equally far points, as in long rectangles, the centroid of the
+/// largest ring is chosen if it is one of them, else one in their middle. Points that are not finite are left out.
 ///
 /// ```
 /// use durer::math::DVec2;
@@ -141,10 +140,10 @@ pub fn interior_point(
     Some(Interior { point: center, distance })
 }
 
-/// Number of times that the way to the first point that is too near is halved.
+/// Number of bisections towards the first point that is too near.
 const HALVINGS: u32 = 24;
 
-/// Moves a point up and down, then left and right, to the middle of those that are at least so far from the border.
+/// Moves a point vertically, then horizontally, to the middle of the points that are at least as far from the border.
 fn balanced(best: Interior, least: f64, rings: &[Vec<DVec2>], size: DVec2) -> Interior {
     [DVec2::new(0.0, size.y), DVec2::new(size.x, 0.0)].into_iter().fold(best, |best, way| {
         let reach = |way: DVec2| {
@@ -203,9 +202,9 @@ impl Search<'_> {
 /// A square that may hold a better point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Square {
-    /// No point in it is farther from the border.
+    /// Upper bound of the distance of its points from the border.
     bound: f64,
-    /// In the order of making; the earlier of two equals comes first.
+    /// Number in order of creation; the earlier of two equal ones comes first.
     number: usize,
     center: DVec2,
     half: f64,

@@ -45,8 +45,7 @@ impl Placer {
         Self { bounds, columns, rows, buckets: vec![Vec::new(); columns * rows], taken: Vec::new() }
     }
 
-    /// Takes the first of the candidates that lies within the bounds and overlaps nothing that is taken; returns its
-    /// number.
+    /// Takes the first candidate that is within the bounds and overlaps no place already taken; returns its number.
     ///
     /// ```
     /// use durer::math::{DVec2, Rect};

@@ -33,8 +33,8 @@ impl Layout {
     /// Creates a grid of `columns` × `rows` cells with their names, row by row.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where a name is empty, there are none, or there are more than cells or so
-    /// few that a row stays empty; [`Error::Limit`] above [`MAX_CELLS`].
+    /// [`Error::Parameter`] if a name is empty, there are no names, more names than cells, or so few that a row stays
+    /// empty; [`Error::Limit`] above [`MAX_CELLS`].
     pub fn new(columns: usize, rows: usize, names: Vec<String>) -> Result<Self> {
         let cells = columns.saturating_mul(rows);
         if cells > MAX_CELLS {
@@ -59,7 +59,7 @@ impl Layout {
     /// Returns the viewports with their names, in order, on a screen of this size in pixels.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where a cell would have no pixel, [`Error::Limit`] for a side above
+    /// [`Error::Parameter`] if a cell would have no pixel, [`Error::Limit`] for a side above
     /// 2³¹ − 1.
     pub fn viewports(&self, width: u32, height: u32) -> Result<Vec<(&str, Viewport)>> {
         let screen = PixelRect::of_size(width, height)?;

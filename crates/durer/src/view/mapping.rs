@@ -2,8 +2,8 @@
 //! for each point.
 //!
 //! W. M. Newman and R. F. Sproull, *Principles of Interactive Computer Graphics*, 1973. Object space. Cost: O(n) for n
-//! points. The coefficients are those of [`WindowToViewport`], which keeps them to twice the precision for its own way
-//! to the screen; here they are rounded, so that the numbers on paper are the ones used.
+//! points. The coefficients equal those of [`WindowToViewport`], which keeps them in double the precision for its own
+//! mapping; here they are rounded, so that the printed numbers are the ones used.
 
 use super::window::{Aspect, Viewport, Window, WindowToViewport, YAxis};
 use crate::info::{Class, Info, Occluder};

@@ -1,8 +1,8 @@
 //! Points by place, and which of them rounding may have moved apart.
 //!
-//! Jon Bentley, *Multidimensional binary search trees used for associative searching*, Communications of
-//! the ACM, 1975: a k-d tree. Built in O(n log² n), asked in about O(√n + k) for k points near a segment. Each half
-//! of a range lies on one side of its middle, so the tree is a permutation of the points and an axis each.
+//! Jon Bentley, *Multidimensional binary search trees used for associative searching*, Communications of the ACM, 1975:
+//! a k-d tree. Building takes O(n log² n), a query about O(√n + k) for k points near a segment. Each half of a range is
+//! on one side of its middle, so the tree is a permutation of the points and one axis per point.
 
 use crate::math::DVec3;
 
@@ -24,7 +24,7 @@ pub(crate) struct Found {
 }
 
 impl Places {
-    /// Sorts finite points, which get their numbers in order.
+    /// Sorts finite points, which are numbered in order.
     pub fn new(points: impl Iterator<Item = DVec3>) -> Self {
         let mut points: Vec<(DVec3, u32)> = points.zip(0..).collect();
         let mut axes = vec![0; points.len()];
@@ -74,29 +74,30 @@ impl Places {
 /// The spacing of numbers with 24 bits, as a part of them; or half of it.
 pub(crate) const STEP: f64 = 1.0 / (1u64 << 23) as f64;
 
-/// Borders lie on each other within this many spacings of numbers: 2⁻¹⁶ of the largest coordinate. What programs
-/// compute in single precision is hardly off by more, and no drawing shows less.
+/// Distance, in spacings of numbers, within which borders coincide: 2⁻¹⁶ of the largest coordinate. Errors of programs
+/// that compute in single precision are rarely larger, and no drawing shows smaller distances.
 const STEPS: f64 = 128.0;
 
-/// A coordinate lies within half a unit of the last digit that was written, along each axis.
+/// Units of the last written digit within which borders coincide: each coordinate is rounded by up to half a unit.
 const DIGITS: f64 = 2.0;
 
-/// Files whose last digit is more than this part of the extent mean what they say.
+/// Part of the extent above which a file's last digit is not taken for rounding.
 const COARSEST: f64 = 1.0 / 1024.0;
 
-/// A border's end moves by at most this part of the longest border at it: what is small is not lost.
+/// Largest distance that a border's end moves, as a part of the longest border at it, so that small features are not
+/// lost.
 pub(crate) const OF_EDGE: f64 = 1.0 / 16.0;
 
-/// Returns how far the ends of borders that were one may lie apart, where numbers as large as the largest coordinate
-/// are `step` apart and the last digit of coordinates is worth `digit`, 0 if that is not known.
+/// Returns the largest distance between ends of borders that were one point, where numbers as large as the largest
+/// coordinate are `step` apart and the last digit of coordinates is worth `digit`, 0 if not known.
 pub(crate) fn reach(step: f64, digit: f64, extent: f64) -> f64 {
     let written = if digit <= extent * COARSEST { digit * DIGITS } else { 0.0 };
     (step * STEPS).max(written)
 }
 
 impl Places {
-    /// Returns which of the points become which others: each point, in order, takes those in its reach, in whose reach
-    /// it is, that no earlier one has taken; so what becomes one lies within two reaches, however many lie in a row.
+    /// Returns the point that each point becomes: each one, in order, takes the points that are mutually in reach and
+    /// not taken by an earlier one. So joined points are within two reaches, however many form a chain.
     pub fn joined(
         &self,
         points: &[DVec3],

@@ -6,12 +6,13 @@ use crate::math::{DMat4, DVec3, Vec3};
 use crate::scene::{Aabb, Instance, Mesh, Part, Scene, Topology};
 use std::collections::BTreeMap;
 
-/// Returns a scene in which each named part of a mesh of triangles is an instance of its own; `None` if no mesh has
-/// parts of two names. Files that tell objects apart by names alone are read as one mesh; with this their objects are
+/// Returns a scene in which each named part of a mesh of triangles is a separate instance; `None` if no mesh has
+/// parts of two names. Files that distinguish objects only by names are read as one mesh; with this their objects are
 /// the parts of assemblies ([`super::components`], [`super::explode`]).
 ///
-/// Parts of one name are one object. Objects with like names, as `bolt.001` and `bolt.002`, that are one up to a shift
-/// are instances of one mesh. Memory: that of the meshes again. Cost: O(n log n) for n triangles of such meshes.
+/// Parts of one name are one object. Objects with similar names, such as `bolt.001` and `bolt.002`, that are equal up
+/// to a shift are instances of one mesh. Memory: as much as the meshes. Cost: O(n log n) for n triangles of such
+/// meshes.
 pub fn divided(scene: &Scene) -> Option<Scene> {
     let objects: Vec<Vec<Mesh>> = scene.meshes.iter().map(objects).collect();
     if objects.iter().all(Vec::is_empty) {
@@ -43,7 +44,7 @@ pub fn divided(scene: &Scene) -> Option<Scene> {
 /// A mesh in its place.
 struct Placed {
     mesh: usize,
-    /// `None` for that of the instance.
+    /// `None` to use the instance's name.
     name: Option<String>,
     shift: DVec3,
 }
@@ -53,7 +54,7 @@ fn add(meshes: &mut Vec<Mesh>, mesh: Mesh, name: Option<String>) -> Placed {
     Placed { mesh: meshes.len() - 1, name, shift: DVec3::ZERO }
 }
 
-/// Adds the meshes of objects, those that are one up to a shift once.
+/// Adds the meshes of objects; meshes that are equal up to a shift are added once.
 fn shared(meshes: &mut Vec<Mesh>, objects: Vec<Mesh>, last_digit: f64) -> Vec<Placed> {
     let mut firsts: BTreeMap<String, usize> = BTreeMap::new();
     let mut placed = Vec::with_capacity(objects.len());

@@ -1,7 +1,7 @@
-//! The points of a set that lie outermost along some directions: all that fitting a frame needs.
+//! The outermost points of a set along some directions, as needed to fit a frame.
 //!
-//! Points come in batches; a batch whose box lies within what there is already costs one look per
-//! direction, and so do many batches that together do. Cost: O(points), a few operations each.
+//! Points come in batches; a batch whose box is within the known extents costs one test per direction, and so does a
+//! group of such batches. Cost: O(points), a few operations each.
 
 use crate::math::{DMat3, DMat4, DVec3, Vec3};
 use crate::scene::{Aabb, Scene};
@@ -43,11 +43,11 @@ impl Furthest {
         Self { direction, above_below, distance: f64::NEG_INFINITY, point: DVec3::ZERO }
     }
 
-    /// Returns whether a point in a box may be further. Where the box is not finite, it may.
+    /// Returns whether a point in a box may be further out; true if the box is not finite.
     fn may_be_in(&self, around: &Aabb) -> bool {
         let [above, below] = self.above_below;
-        // Of each sum one half is zero. The other is a product as a point's, at least as large, also when rounded;
-        // and their sums are as a point's.
+        // One half of each sum is zero. The other is at least as large as the corresponding product of any point in the
+        // box, also when rounded; and the sums are formed as for points.
         let most = above * around.max + below * around.min;
         let inside = most.x + most.y + most.z <= self.distance;
         !inside
@@ -94,7 +94,7 @@ impl<const N: usize> Outermost<N> {
         self.furthest.iter_mut().chain(self.extremes.as_flattened_mut())
     }
 
-    /// Adds all finite vertices of a scene that something is drawn with.
+    /// Adds all finite vertices of a scene that primitives use.
     pub fn add_scene(&mut self, scene: &Scene) {
         let used: Vec<_> = scene.meshes.iter().map(|mesh| mesh.used_vertices()).collect();
         for instance in &scene.instances {
@@ -107,8 +107,8 @@ impl<const N: usize> Outermost<N> {
     }
 
     fn add_mesh(&mut self, positions: &[Vec3], used: Option<&[bool]>, place: &DMat4) {
-        // Some from everywhere first: of those that follow few reach beyond, though a file may run
-        // from the bottom of a model to its top.
+        // A sample from everywhere first: then few of the following points are further out, even if a file runs from
+        // the bottom of a model to its top.
         self.add_firsts(positions, used, place);
         self.add_others(positions, used, place);
     }
@@ -160,7 +160,7 @@ struct Placed<'a> {
 }
 
 impl Placed<'_> {
-    /// Adds those of the mesh's batch `i` that are drawn.
+    /// Adds the points of the mesh's batch `i` that are drawn.
     fn add_to<const N: usize>(
         &mut self,
         all: &mut Outermost<N>,
@@ -184,8 +184,7 @@ impl Placed<'_> {
     }
 }
 
-/// The outermost points of a mesh that comes in pieces: of points that are equally far out the same as of the mesh as a
-/// whole.
+/// The outermost points of a mesh that comes in pieces: among equally far points, the same ones as for the whole mesh.
 pub(super) struct OutermostOfPieces<const N: usize> {
     /// Bounds of the first batches of groups, and of the others, which are examined after all of
     /// those.
@@ -198,7 +197,7 @@ impl<const N: usize> OutermostOfPieces<N> {
         Self { found: [Outermost::new(directions), Outermost::new(directions)] }
     }
 
-    /// Adds the vertices of the next piece, a scene of one instance; but for the last, pieces have a multiple of
+    /// Adds the vertices of the next piece, a scene of one instance; all pieces but the last must have a multiple of
     /// [`PIECE`] vertices.
     pub fn add_piece(&mut self, piece: &Scene) {
         for instance in &piece.instances {
@@ -239,12 +238,11 @@ fn around([min, max]: [Vec3; 2], place: &DMat4) -> Aabb {
 /// The extent of no points.
 const NOTHING: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
 
-/// Returns the least and the largest coordinates of points, of those that are numbers; [`NOTHING`] if
-/// there are none.
+/// Returns the smallest and the largest coordinates of points, ignoring NaN; [`NOTHING`] if there are none.
 fn extent(positions: &[Vec3]) -> [Vec3; 2] {
-    // Four points are twelve numbers: three registers, whose lanes are put together in the end.
+    // Four points are twelve numbers: three registers, whose lanes are combined in the end.
     let (mut least, mut most) = ([f32::INFINITY; 12], [f32::NEG_INFINITY; 12]);
-    // NaN is neither smaller nor larger, and such a point is left out in the end.
+    // NaN is neither smaller nor larger; such points are left out in the end.
     let lesser = |least: f32, v: f32| if v < least { v } else { least };
     let larger = |most: f32, v: f32| if v > most { v } else { most };
     let (fours, rest) = positions.as_chunks::<4>();

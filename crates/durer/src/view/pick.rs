@@ -1,12 +1,11 @@
 //! Picking: what is behind a point or a rectangle of the screen.
 //!
-//! A rectangle and the near and far plane bound a part of the view volume; a triangle is hit if its
-//! part within (Blinn & Newell's homogeneous clipping) is not empty. A point is decided by the edge
-//! functions in homogeneous screen space (M. Olano, T. Greer, *Triangle scan conversion using 2D
-//! homogeneous coordinates*, 1997), so that triangles that reach behind the eye need no cutting; the
-//! function of an edge has the same value, but for its sign, in both of its triangles, so no point
-//! falls between them. Lines and points, which have no area, are hit within [`REACH`] of the point.
-//! Object space. Cost: O(triangles of the instances whose boxes are met).
+//! A rectangle and the near and far plane bound a part of the view volume; a triangle is hit if its part within (Blinn
+//! & Newell's homogeneous clipping) is not empty. A point is decided by the edge functions in homogeneous screen space
+//! (M. Olano, T. Greer, *Triangle scan conversion using 2D homogeneous coordinates*, 1997), so that triangles that
+//! reach behind the eye need no cutting; the function of an edge has the same absolute value in both of its triangles,
+//! so no point falls between them. Lines and points, which have no area, are hit within [`REACH`] of the point. Object
+//! space. Cost: O(triangles of the instances whose boxes are met).
 
 use crate::clip::volume::{ClipVertex, Options, clip_polygon, clip_segment};
 use crate::info::{Class, Coherence, Info, Occluder};
@@ -95,7 +94,7 @@ pub enum Step {
     Tested {
         /// Its item.
         item: u32,
-        /// Its hit, if it is one.
+        /// Its hit, if any.
         hit: Option<Hit>,
     },
     /// The hits are in order.
@@ -301,7 +300,7 @@ fn near_point(
     screen_from_mesh: &DMat4,
     p: DVec2,
 ) -> Option<(f64, DVec3)> {
-    // What is left in the square around the point has a place on the screen.
+    // The remaining part in the square around the point has a place on the screen.
     let ends =
         ends.map(|p| ClipVertex { position: *pick_from_mesh * p.extend(1.0), attributes: p });
     let [a, b] = clip_segment(ends, &Options::default(), &mut NoTrace)?.map(|v| v.attributes);

@@ -128,7 +128,7 @@ impl ViewDirection {
         let (front, above) = (up_axis.front(), up_axis.up());
         let ((sa, ca), (se, ce)) = (sin_cos_degrees(azimuth), sin_cos_degrees(elevation));
         let level = front * ca + up_axis.right() * sa;
-        // Up is where the eye would go next: it has a direction in the top view, too.
+        // The up vector is the derivative of the eye's direction with elevation, so it exists in the top view, too.
         Self { to_eye: level * ce + above * se, up: above * ce - level * se }
     }
 
@@ -266,7 +266,7 @@ pub fn drawn_ends(scene: &Scene, direction: DVec3) -> Option<[DVec3; 2]> {
     outermost.bounds().map(|_| outermost.points())
 }
 
-/// Fit of a camera to a scene of one instance that comes in pieces; the result is that of [`fit_scene`], bit for bit.
+/// Fit of a camera to a scene of one instance that comes in pieces, with the same result as [`fit_scene`], bit for bit.
 ///
 /// All pieces but the last have a multiple of [`PIECE`] vertices, in the order of the whole. Vertices that no primitive
 /// uses are not finite or have no index.
@@ -359,7 +359,7 @@ fn fit(
     let (back, front) = range(&corners, 2);
     let (nearest, farthest) = (eye.z - front, eye.z - back);
     let world = |v: DVec3| center + axes[0] * v.x + axes[1] * v.y + axes[2] * v.z;
-    // A line seen end-on has no extent in the picture, or that of rounding.
+    // A line seen end-on has no extent in the picture beyond rounding.
     let height = frame.height_for(&corners).max(radius * 1e-9);
     let target = DVec3::new(eye.x, eye.y, 0.0);
     finished(world(eye), world(target), direction, options, height, nearest..farthest, radius)

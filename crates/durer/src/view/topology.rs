@@ -6,14 +6,14 @@ use crate::math::{DVec3, Vec3};
 use crate::scene::{Aabb, Mesh};
 
 /// Result of [`mesh_topology`]. Vertices at one place count as one: those whose coordinates differ by no more than 2⁻²⁶
-/// of the model's extent, and ends of borders that are as near to each other as rounding may have moved them, as in
+/// of the model's extent, and ends of borders closer than rounding may have moved them, as in
 /// [`crate::visibility::object::Weld::Auto`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MeshTopology {
     /// True if each edge belongs to exactly two triangles: the mesh bounds a body.
     pub closed: bool,
-    /// True if no edge is run through more often in one direction than in the other, borders aside:
-    /// neighbours agree on which side is the front.
+    /// True if no edge is run through more often in one direction than in the other, except borders: neighbours agree
+    /// on the front side.
     pub oriented: bool,
     /// Edges of one triangle only.
     pub boundary_edges: u64,
@@ -99,8 +99,8 @@ fn finite_corners(mesh: &Mesh, corners: [u32; 3]) -> Option<[DVec3; 3]> {
 /// close real gaps, less would leave models open that are closed.
 const WELD: f64 = 1.0 / (1u64 << 26) as f64;
 
-/// Returns, for each vertex, the number of one at the same place, the same for all of them; the last digit of
-/// coordinates is worth `last_digit`, 0 if that is not known.
+/// Returns, for each vertex, a number that is the same for all vertices at one place: the index of one of them. The
+/// last digit of coordinates is worth `last_digit`, 0 if not known.
 pub(super) fn weld(mesh: &Mesh, last_digit: f64) -> Vec<u32> {
     let mut welded = weld_places(&mesh.positions);
     let lone = border_ends(mesh, &welded);

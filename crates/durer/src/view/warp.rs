@@ -7,10 +7,10 @@
 //! window depth is linear on the screen, so squares of one plane join without a gap. Cost: O(pixels of
 //! all pictures + pixels lit); memory O(pixels of the new picture).
 //!
-//! Limits: what no picture shows is a hole; colours are those seen from the old eye; pixels that become larger than
-//! [`LARGEST`] are left out. Depth 1 means that there is no surface: such pixels are treated as infinitely far away,
-//! and show only where no picture shows a surface. Pixels of smoothed outlines get the colour of the surface whose
-//! depth they have.
+//! Limits: surfaces that no picture shows are holes; colours are as seen from the old eye; pixels that become larger
+//! than [`LARGEST`] are left out. Depth 1 means that there is no surface: such pixels are treated as infinitely far
+//! away, and show only where no picture shows a surface. Pixels of smoothed outlines get the colour of the surface
+//! whose depth they have.
 
 mod unmixed;
 
@@ -60,7 +60,7 @@ const HALF_SIDE: f64 = 0.5 + 1.0 / 16.0;
 pub struct Source<'a> {
     /// 8-bit sRGB with straight alpha.
     pub color: &'a Pixels<[u8; 4]>,
-    /// Window depth 0 (near) … 1 (far), 1 where nothing is; of the same size.
+    /// Window depth 0 (near) … 1 (far), 1 at the background; of the same size.
     pub depth: &'a Pixels<f32>,
     /// The eye it was seen from.
     pub camera: Camera,
@@ -95,7 +95,7 @@ pub enum Step {
         to: DVec2,
         /// Its depth there.
         depth: f64,
-        /// Its colour, without that of others at a smoothed outline.
+        /// Its own colour, without the colours mixed in at a smoothed outline.
         color: [u8; 4],
     },
     /// The pixel moved last is the nearest so far at a pixel of the new picture. The nearest pixel of an earlier
@@ -131,10 +131,10 @@ pub struct Warped {
 pub const HOLE: u32 = u32::MAX;
 
 /// Makes the view of a camera from pictures: the surfaces of the first, where it shows none those of the second, and so
-/// on; then, where no picture has a surface, the background.
+/// on; the background where no picture has a surface.
 ///
 /// # Errors
-/// [`Error::Parameter`] where a picture's depth has another size than its colours, or a camera cannot
+/// [`Error::Parameter`] if a picture's depth has another size than its colours, or a camera cannot
 /// see ([`Camera::check`]).
 pub fn warp(
     sources: &[Source<'_>],
@@ -235,7 +235,7 @@ impl Layer {
         work.check().map(|()| layer)
     }
 
-    /// Lights the pixels whose centres lie in a square, where it is nearer than what is there.
+    /// Sets the pixels whose centres are in a square, where it is nearer than the surface there.
     fn splat(
         &mut self,
         corners: &[DVec3; 4],
@@ -276,7 +276,7 @@ impl Layer {
 }
 
 /// Returns the matrix that takes pixels of the old screen to the new one as if they were infinitely far away: only the
-/// turn of the camera moves them. Where projection lines are parallel, they stay where they are in the picture.
+/// rotation of the camera moves them. In parallel projection, they keep their place in the picture.
 fn endless(old: &View, new: &View) -> DMat4 {
     let size = |view: &View| DVec2::new(f64::from(view.width()), f64::from(view.height()));
     let parallel = |view: &View| {
@@ -311,8 +311,8 @@ fn corners(new_from_old: &DMat4, center: DVec3, slope: DVec2) -> Option<[DVec3; 
     Some([corner(-h, -h)?, corner(h, -h)?, corner(h, h)?, corner(-h, h)?])
 }
 
-/// Returns the change of depth per pixel to the right and downwards: towards that neighbour whose depth is nearer, for
-/// the other may belong to another surface.
+/// Returns the change of depth per pixel to the right and downwards: towards the neighbour with the closer depth,
+/// because the other may belong to another surface.
 fn slope(depth: &Pixels<f32>, x: u32, y: u32) -> DVec2 {
     let here = depth.get(x, y).unwrap_or(1.0);
     let along = |before: Option<f32>, after: Option<f32>| {

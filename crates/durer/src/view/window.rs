@@ -23,7 +23,7 @@ impl PixelRect {
     /// Creates a rectangle of pixels from its first column and row and its last ones, which are exclusive.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where `x0 > x1` or `y0 > y1`.
+    /// [`Error::Parameter`] if `x0 > x1` or `y0 > y1`.
     pub fn new(x0: i32, y0: i32, x1: i32, y1: i32) -> Result<Self> {
         if x0 <= x1 && y0 <= y1 {
             Ok(Self { min: [x0, y0], max: [x1, y1] })

@@ -1,18 +1,18 @@
 //! Back-face removal: faces that turn their back to the eye are left out before anything else is done.
 //!
-//! L. G. Roberts, *Machine Perception of Three-Dimensional Solids*, MIT Lincoln Laboratory TR 315, 1963:
-//! the eye is put into the equation of each face's plane. Normals are M. Newell's, from all corners of
-//! a polygon (in I. Sutherland, R. Sproull, R. Schumacker, *A Characterization of Ten Hidden-Surface
-//! Algorithms*, ACM Computing Surveys 1974), so that concave and slightly bent ones have their right
-//! side too. Object space. Cost: O(corners); memory O(1) but for the result.
+//! L. G. Roberts, *Machine Perception of Three-Dimensional Solids*, MIT Lincoln Laboratory TR 315, 1963: the eye is put
+//! into the equation of each face's plane. Normals are M. Newell's, from all corners of a polygon (in I. Sutherland, R.
+//! Sproull, R. Schumacker, *A Characterization of Ten Hidden-Surface Algorithms*, ACM Computing Surveys 1974), so that
+//! concave and slightly bent polygons get the right side too. Object space. Cost: O(corners); memory O(1) besides the
+//! result.
 //!
-//! Limits: of closed bodies only, whose faces run counter-clockwise seen from outside. It finds all that
-//! is visible of one convex body; else it leaves out what certainly is not, about half of the faces.
-//! Coherence used: objects (a body's back is hidden by its front).
+//! Limits: only for closed bodies whose faces run counter-clockwise seen from outside. For one convex body the result
+//! is exactly the visible faces; otherwise it leaves out faces that are certainly hidden, about half of all. Coherence
+//! used: objects (a body's back is hidden by its front).
 //!
-//! The image-space algorithms do the same by the sign of a triangle's area on the screen
-//! ([`super::surface::setup`], switched by [`super::surface::Cull`]): the same triangles go, but for
-//! slivers that rounding to the grid of 1/256 pixel turns over.
+//! The image-space algorithms do the same by the sign of a triangle's area on the screen ([`super::surface::setup`],
+//! switched by [`super::surface::Cull`]): the same triangles are removed, except slivers that rounding to the grid of
+//! 1/256 pixel turns over.
 //!
 //! ```
 //! use durer::math::DVec3;

@@ -1,13 +1,12 @@
 //! Wireframe: every edge of every face, whether something is before it or not.
 //!
-//! L. G. Roberts, *Machine Perception of Three-Dimensional Solids*, MIT Lincoln Laboratory TR 315, 1963,
-//! drew solids so before he found out which lines are hidden. Edges are clipped in homogeneous
-//! coordinates at the near and the far plane and drawn by J. Bresenham's lines, of which exactly the pixels of the
-//! whole line are lit that are in the picture; each edge once, though two faces share it. Cost:
-//! O(edges · log edges + pixels lit); memory O(edges).
+//! L. G. Roberts, *Machine Perception of Three-Dimensional Solids*, MIT Lincoln Laboratory TR 315, 1963, drew solids in
+//! this way before removing hidden lines. Edges are clipped in homogeneous coordinates at the near and the far plane
+//! and drawn as J. Bresenham's lines, lighting exactly those pixels of the whole line that are in the picture; each
+//! edge once, though two faces share it. Cost: O(edges · log edges + pixels lit); memory O(edges).
 //!
-//! Limits: the picture is ambiguous — front and back cannot be distinguished, which is what the
-//! other algorithms are for. Coherence used: none.
+//! Limits: the picture is ambiguous — front and back cannot be distinguished; the other algorithms solve that.
+//! Coherence used: none.
 
 use crate::clip::volume::ClipVertex;
 use crate::info::{Class, Info, Occluder};
@@ -50,8 +49,7 @@ impl Default for Options {
 /// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
-    /// An edge, or what near and far plane leave of it, is drawn between two pixels, which may be outside of the
-    /// picture.
+    /// An edge, clipped by the near and the far plane, is drawn between two pixels, which may be outside the picture.
     Edge {
         /// Index of the instance.
         instance: usize,

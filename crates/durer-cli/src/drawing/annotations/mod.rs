@@ -1,4 +1,4 @@
-//! Annotations of drawings, as the options ask for them.
+//! Annotations of drawings, from the options.
 
 mod file;
 

@@ -16,8 +16,8 @@ pub struct AnnotationArgs {
     pub center_lines: bool,
     /// Dimensions to place beside the views, joined by commas: size, holes, bosses
     ///
-    /// `size` gives the extent of the model in each direction; `holes` the diameters of holes, and `bosses` those
-    /// of other cylinders; equal ones are dimensioned once, with their number. Dimensions are in units of the
+    /// `size` gives the extent of the model in each direction, `holes` the diameters of holes, and `bosses` the
+    /// diameters of other cylinders; equal ones are dimensioned once, with their number. Dimensions are in units of the
     /// model, in the layer `dimension`.
     #[arg(long, value_name = "WHICH", value_delimiter = ',')]
     pub dimension: Vec<Dimensioned>,
@@ -32,7 +32,7 @@ pub struct AnnotationArgs {
     pub annotations: Option<PathBuf>,
     /// Draw the cylinders of an object, or a round part such as `hole 1`, as threads; may be repeated
     ///
-    /// With a size they are labelled: `--thread bolt=M8`, or M8x1 for a pitch other than the coarse one.
+    /// With a size, threads are labelled: `--thread bolt=M8`, or M8x1 for a pitch other than the coarse one.
     #[arg(long, value_name = "NAME[=SIZE]", value_parser = thread)]
     pub thread: Vec<Thread>,
 }

@@ -11,8 +11,8 @@ use durer_formats::drawing::{DrawingFormat, MachineOptions};
 pub struct MachineArgs {
     /// Order strokes so that the pen moves little between them [always on for .hpgl and .gcode]
     ///
-    /// Strokes may be reversed, closed ones may start at any point, and those that meet are joined. Each layer is
-    /// ordered by itself; in .hpgl and .gcode each pen is.
+    /// Strokes may be reversed, closed ones may start at any point, and strokes that meet are joined. Each layer is
+    /// ordered separately; in .hpgl and .gcode, each pen.
     #[arg(long)]
     pub pen_order: bool,
     /// Number of pens in the plotter, for .hpgl and .gcode [default: one for each width and colour]
@@ -34,7 +34,7 @@ pub struct MachineArgs {
     pub gcode_lines: bool,
     /// The G-code that puts the pen down; \n begins a line [default: 'M3 S1000\nG4 P0.2']
     ///
-    /// The default is for a servo on the spindle's output of GRBL, which gets 0.2 seconds to turn. Machines that
+    /// The default is for a servo on the spindle's output of GRBL, with 0.2 seconds to turn. Machines that
     /// lift the pen along Z take e.g. --pen-down 'G1 Z0 F600' --pen-up 'G0 Z5'; lasers need less power than S1000.
     #[arg(long, value_name = "CODE", value_parser = lines)]
     pub pen_down: Option<String>,
@@ -64,7 +64,7 @@ impl MachineArgs {
         }
     }
 
-    /// Refuses what has no meaning in a format; `None` for pixels.
+    /// Refuses options that have no meaning in a format; `None` stands for pixels.
     pub fn check(&self, format: Option<DrawingFormat>) -> Result<(), Failure> {
         let wrong = |message: String| Err(Failure::Usage(message));
         let of_gcode = [

@@ -40,9 +40,9 @@ pub struct DrawingArgs {
     pub crease: Crease,
     /// Classes of lines to draw, separated by commas [default: all but tangent, wire and shadow]
     ///
-    /// silhouette, crease, border, non-manifold, material, intersection, section, tangent, shadow, wire; `all` is
-    /// all but the last three. `tangent` is where curved faces meet others smoothly, as a fillet a plane: --lines
-    /// all,tangent.
+    /// silhouette, crease, border, non-manifold, material, intersection, section, tangent, shadow, wire; `all` is all
+    /// except the last three. `tangent` edges are where curved faces meet others smoothly, such as a fillet and a
+    /// plane: --lines all,tangent.
     #[arg(long, value_name = "CLASSES", value_parser = |s: &str| line_classes(s).map_err(|e| e.to_string()))]
     pub lines: Option<ClassSet>,
     /// Cut back lines with loose ends by at most this much, in percent of the drawing's larger side
@@ -63,15 +63,14 @@ pub struct DrawingArgs {
     pub beneath: Option<f64>,
     /// Widths of strokes in millimetres: WIDTH[,CLASS=WIDTH…]
     ///
-    /// E.g. `0.35,silhouette=0.7,hidden=0.18`; the first applies to all classes that are not named. Classes
-    /// are those of --lines, `contour` and `hidden`. By default outlines are 0.5, edges 0.35, hidden lines
-    /// 0.25 wide.
+    /// E.g. `0.35,silhouette=0.7,hidden=0.18`; a width without a class applies to all classes that are not named.
+    /// Classes are those of --lines, `contour` and `hidden`. By default outlines are 0.5, edges 0.35, hidden lines 0.25
+    /// wide.
     #[arg(long, value_name = "WIDTHS", value_parser = parsed::<Pens>)]
     pub pen: Option<Pens>,
     /// Draw near lines wider and darker than far ones, in four steps with layers of their own
     ///
-    /// Widths go from 1.4 times that of the class's pen to half of it; for parallel views and
-    /// perspective.
+    /// Widths range from 1.4 times the width of the class's pen to half of it, in parallel views and in perspective.
     #[arg(long)]
     pub depth_cue: bool,
     /// Draw outlines that have nothing behind them as a class of their own: `contour`, 0.7 mm wide unless --pen sets
@@ -91,7 +90,7 @@ pub struct DrawingArgs {
     /// .geojson]
     #[arg(long, value_name = "HOW")]
     pub merge: Option<Merge>,
-    /// Extent of areas: to their borders, or a little under those that cover them [default: trapped for
+    /// Extent of areas: to their borders, or a little under the areas that cover them [default: trapped for
     /// .svg, .pdf and .png without --hatch shade, else disjoint]
     #[arg(long, value_name = "HOW")]
     pub fill: Option<Fill>,
@@ -113,7 +112,7 @@ pub struct DrawingArgs {
     /// lines as polylines [default: 0.02; 0 for pictures]
     ///
     /// Lines become circles, arcs, ellipses and cubic curves that pass all their points within this distance. A line
-    /// that turns regularly is taken to be round, and the curve goes through its corners: at least five turns in a row,
+    /// that turns regularly is taken as round, and the curve passes through its corners: at least five turns in a row,
     /// in one direction, by at most 30 degrees, with chords of similar lengths. So a polygon of 12 sides becomes a
     /// circle, and one of 8 does not. Corners, junctions and ends do not move. .geojson has polylines.
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = values::not_negative)]
@@ -141,7 +140,7 @@ pub struct DrawingArgs {
     /// Unit of the model's coordinates [default: m for glTF, COLLADA and FBX, else mm]
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<Unit>,
-    /// Several views on one page with a title block: front, top, right and isometric, or those of --views
+    /// Several views on one page with a title block: front, top, right and isometric, or the views of --views
     ///
     /// Sections with a letter (--section A:…) and details (--detail) are placed beside or below
     /// them.
@@ -165,7 +164,7 @@ pub struct DrawingArgs {
     pub breaks: Vec<Break>,
     /// Number the parts of an assembly around the isometric view, or the only one, and list them
     ///
-    /// Parts are the objects of the file; those that share a mesh have one number and are counted.
+    /// Parts are the objects of the file; parts that share a mesh have one number and are counted.
     #[arg(long)]
     pub callouts: bool,
     /// Text of the title [default: the model's name]
@@ -182,7 +181,7 @@ pub struct DrawingArgs {
     pub annotations: AnnotationArgs,
 }
 
-/// The options above by name, for those that mean nothing without a drawing.
+/// Names of the options above that have no meaning without a drawing.
 pub const NAMES: &[&str] = &[
     "hidden",
     "crease",
@@ -220,13 +219,13 @@ pub const NAMES: &[&str] = &[
     "thread",
 ];
 
-/// Those among them that are about what is written beside a view.
+/// Names of the options among them for annotations beside a view.
 pub const OF_ANNOTATIONS: &[&str] = &["center_lines", "dimension", "annotations", "thread"];
 
 fn style() -> impl TypedValueParser<Value = DrawStyle> {
     let help = |style: DrawStyle| match style {
-        DrawStyle::HiddenLine => "The edges that can be seen, and those that cannot, told apart",
-        DrawStyle::Wireframe => "All edges, whatever lies in front",
+        DrawStyle::HiddenLine => "Visible and hidden edges, distinguished by their lines",
+        DrawStyle::Wireframe => "All edges, visible or not",
         DrawStyle::Regions => "The visible parts of surfaces in flat colours",
         DrawStyle::RegionsAndLines => "The same with lines on top",
         DrawStyle::Shadows => "The same with exact shadows",
@@ -313,7 +312,7 @@ pub enum Hatch {
 /// `--merge`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Merge {
-    /// Each face is an area of its own
+    /// Each face is a separate area
     Face,
     /// Areas with the same material and shade
     Shade,
@@ -398,7 +397,7 @@ pub struct DetailSpec {
     pub radius: f64,
     /// Length on paper over true length.
     pub scale: Option<f64>,
-    /// The view that it is a part of.
+    /// The view that it is part of.
     pub view: Option<NamedView>,
 }
 

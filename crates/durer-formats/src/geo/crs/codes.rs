@@ -1,4 +1,4 @@
-//! The coordinate systems that are known by number.
+//! The coordinate systems known by number.
 
 use super::datum::{self, Datum};
 use super::projection::{Method, Projection, scale_of_parallel};
@@ -39,7 +39,7 @@ const OSGB36: i32 = 4277;
 const DHDN: i32 = 4314;
 const MGI: i32 = 4312;
 
-/// A conic projection: its number, that of longitudes and latitudes, name, origin, parallels and offset.
+/// A conic projection: its number, its geographic system's number, name, origin, parallels and offset.
 type Conic = (i32, i32, &'static str, [f64; 2], [f64; 2], [f64; 2]);
 
 /// Lambert's conformal conic.
@@ -81,7 +81,7 @@ const ALBERS: [Conic; 3] = [
     (3338, NAD83, "NAD_1983_Alaska_Albers", [-154.0, 50.0], [55.0, 65.0], [0.0, 0.0]),
 ];
 
-/// A cylinder: its number, that of longitudes and latitudes, name, meridian, scale and offset.
+/// A cylindrical projection: its number, its geographic system's number, name, meridian, scale and offset.
 type Cylinder = (i32, i32, &'static str, f64, f64, [f64; 2]);
 
 /// Transverse Mercator.
@@ -109,7 +109,7 @@ const TRANSVERSE: [Cylinder; 14] = [
     (31286, MGI, "MGI_Austria_GK_M34", 16.0 + 1.0 / 3.0, 1.0, [750_000.0, 0.0]),
 ];
 
-/// A plane: its number, that of longitudes and latitudes, name, origin and offset.
+/// An azimuthal projection: its number, its geographic system's number, name, origin and offset.
 type Plane = (i32, i32, &'static str, [f64; 2], [f64; 2]);
 
 /// Lambert's azimuthal.
@@ -133,7 +133,7 @@ const POLAR: [(i32, &str, f64, f64); 4] = [
     (3995, "WGS_1984_Arctic_Polar_Stereographic", 0.0, 71.0),
 ];
 
-/// UTM: the number of zone 0, the first and last zone, whether it is the southern half, longitudes and latitudes,
+/// UTM: the number of zone 0, the first and last zone, whether it is the southern half, the geographic system's number,
 /// and the name.
 const UTM: [(i32, i32, i32, bool, i32, &str); 8] = [
     (32600, 1, 60, false, WGS84, "WGS_1984_UTM_Zone_"),
@@ -146,7 +146,7 @@ const UTM: [(i32, i32, i32, bool, i32, &str); 8] = [
     (31960, 17, 25, true, 4674, "SIRGAS_2000_UTM_Zone_"),
 ];
 
-/// Returns a system of the list: its name in definitions, and what it is.
+/// Returns a system of the list: its name in definitions, its datum and its kind.
 fn entry(code: i32) -> Option<(String, &'static Datum, Kind)> {
     if let Some(datum) = datum::of_code(code) {
         return Some((format!("GCS_{}", datum.name), datum, Kind::Geographic));
@@ -288,7 +288,7 @@ fn all() -> impl Iterator<Item = i32> {
         .chain(polar)
 }
 
-/// Returns the number of a system that is like another one but for what rounding does.
+/// Returns the number of a listed system that equals the given one up to rounding.
 pub fn of_crs(crs: &Crs) -> Option<i32> {
     all().find(|&code| {
         entry(code).is_some_and(|(_, datum, kind)| datum == crs.datum && is_close(&kind, &crs.kind))

@@ -1,9 +1,9 @@
 //! Frames of longitudes and latitudes, and the transformations between them.
 //!
-//! Those of today differ from WGS 84 by less than two metres, and by what continents move; coordinates are taken over
-//! between them as they are, as other software does where no grid is at hand. Those of old surveys are hundreds of
-//! metres off; of some, the seven parameters of the EPSG's list bring them there to a few metres. Others need grids,
-//! and are refused.
+//! Current datums differ from WGS 84 by less than two metres plus the drift of continents; coordinates are passed
+//! between them unchanged, as other software does without a grid. Datums of old surveys are hundreds of metres off;
+//! some are transformed by the seven parameters of the EPSG's list, to within a few metres. Others need grids and are
+//! refused.
 
 use super::ellipsoid::Ellipsoid;
 use super::shift::Shift;
@@ -32,7 +32,7 @@ pub struct Datum {
     pub code: i32,
     /// Its name in definitions, without `D_`.
     pub name: &'static str,
-    /// Parts of its names, in lower case and without anything but letters and digits.
+    /// Parts of its names, in lower case, with only letters and digits.
     marks: &'static [&'static str],
     /// Its ellipsoid.
     pub spheroid: Spheroid,
@@ -52,7 +52,7 @@ impl Datum {
     pub fn of_name(name: &str) -> Option<&'static Self> {
         let letters = name.chars().filter(char::is_ascii_alphanumeric);
         let name: String = letters.map(|c| c.to_ascii_lowercase()).collect();
-        // These lie elsewhere than those whose names they have in theirs.
+        // These datums differ from the ones whose names their names contain.
         if ["mgi1901", "ed77"].iter().any(|other| name.contains(other)) {
             return None;
         }

@@ -52,7 +52,7 @@ impl Ellipsoid {
         libm::asinh(libm::tan(lat)) - e * libm::atanh(e * libm::sin(lat))
     }
 
-    /// Returns the tangent of the conformal latitude, from that of the latitude.
+    /// Returns the tangent of the conformal latitude, given the latitude's.
     pub fn conformal_tan(self, tau: f64) -> f64 {
         let e = self.e();
         let root = (1.0 + tau * tau).sqrt();
@@ -62,7 +62,7 @@ impl Ellipsoid {
 
     /// Returns the latitude whose conformal latitude has this tangent, by Newton's method.
     pub fn latitude_of_conformal(self, tan: f64) -> f64 {
-        /// Three suffice for the earth; a few more for flatter bodies.
+        /// Number of iterations: three suffice for the earth, a few more for flatter bodies.
         const STEPS: usize = 8;
         if !tan.is_finite() || tan.abs() > 1e15 {
             return FRAC_PI_2.copysign(tan);

@@ -1,10 +1,10 @@
 //! Coordinate systems, and from one to another.
 //!
-//! Longitude comes before latitude, easting before northing, as in GeoJSON, whatever order a system itself would have.
-//! Between frames that differ by less than two metres (WGS 84, ETRS89, NAD83 …) coordinates are taken over as they are;
-//! of older frames some (OSGB36, DHDN, ED50, MGI, Belge 1972) are brought there by seven parameters, to within a few
-//! metres, which [`Transform::accuracy`] returns; others are refused. All formulas are computed with the functions of
-//! `libm`, so that results are the same on every machine.
+//! Longitude comes before latitude, easting before northing, as in GeoJSON, whatever the system's own order. Between
+//! frames that differ by less than two metres (WGS 84, ETRS89, NAD83 …) coordinates are passed unchanged; some older
+//! frames (OSGB36, DHDN, ED50, MGI, Belge 1972) are transformed by seven parameters, to within a few metres
+//! ([`Transform::accuracy`]); others are refused. All formulas are computed with the functions of `libm`, so that
+//! results are the same on every machine.
 //!
 //! ```
 //! use durer_formats::geo::crs::{Crs, Transform};
@@ -77,8 +77,7 @@ impl Crs {
         let code = number.parse().ok().or_else(|| codes::of_name(&upper));
         let unknown = || match code.and_then(datum::refused) {
             Some(datum) => format!(
-                "`{text}` is on the datum {datum}, and its shift to WGS 84 is not known here; bring it to EPSG:4326 \
-                 with a program that has grids, such as ogr2ogr or QGIS"
+                "`{text}` is on the datum {datum}, and its shift to WGS 84 is not known here; convert it to EPSG:4326 with a program that has grids, such as ogr2ogr or QGIS"
             ),
             None => format!("`{text}` is not known; {}", codes::KNOWN),
         };
@@ -88,7 +87,7 @@ impl Crs {
     /// Returns the system that a file says it is in.
     ///
     /// # Errors
-    /// A sentence that says what of it is not known.
+    /// A message about the part of the system that is not known.
     pub fn of_system(system: &System) -> Result<Self, String> {
         match (system.code.and_then(Self::of_code), system.code, &system.wkt) {
             (Some(crs), ..) => Ok(crs),
@@ -134,7 +133,7 @@ impl Crs {
     }
 }
 
-/// The way from one coordinate system to another.
+/// Transform from one coordinate system to another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transform {
     from: Crs,
@@ -152,7 +151,7 @@ impl Transform {
         self.from.kind == self.to.kind && !self.is_shifted()
     }
 
-    /// Returns whether both lie on frames that are hundreds of metres apart.
+    /// Returns whether the two frames are hundreds of metres apart.
     fn is_shifted(&self) -> bool {
         let [from, to] = [self.from.datum, self.to.datum];
         !std::ptr::eq(from, to) && from.shift != to.shift
@@ -166,7 +165,7 @@ impl Transform {
         self.is_shifted().then_some((worst.name, from.accuracy + to.accuracy))
     }
 
-    /// Returns a place in the other system; `None` if it has none there.
+    /// Transforms a place to the other system; `None` if it has no place there.
     pub fn apply(&self, p: DVec2) -> Option<DVec2> {
         if self.is_identity() {
             return Some(p);

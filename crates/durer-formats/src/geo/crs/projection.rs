@@ -78,7 +78,7 @@ impl Projection {
         Some(p + self.offset).filter(|p| p.is_finite() && p.abs().max_element() < LARGEST)
     }
 
-    /// Returns whether a latitude is that of a pole which lies at infinity.
+    /// Returns whether a latitude is a pole's that the projection maps to infinity.
     fn is_far(&self, lat: f64) -> bool {
         let far = match self.method {
             Method::Mercator { .. } => true,
@@ -89,7 +89,7 @@ impl Projection {
         far && is_pole(lat)
     }
 
-    /// Returns longitude and latitude of a point in radians; `None` if nothing is there.
+    /// Returns longitude and latitude of a point in radians; `None` for points outside the map.
     pub fn inverse(&self, p: DVec2) -> Option<(f64, f64)> {
         let (body, a) = (self.body, self.body.a);
         let p = p - self.offset;
@@ -126,7 +126,7 @@ impl Projection {
     }
 }
 
-/// Places farther off than this, in metres, are beyond what a projection can show: the poles of conformal ones.
+/// Largest coordinate of a map in metres; places beyond, such as poles of conformal projections, cannot be shown.
 const LARGEST: f64 = 1e9;
 
 /// Rounding may lead so far, in radians, beyond the border of the world.
@@ -220,13 +220,12 @@ pub fn scale_of_parallel(body: Ellipsoid, lat: f64) -> f64 {
     body.a * body.parallel(lat) / (polar_radius(body, 1.0) * libm::exp(-body.isometric(lat)))
 }
 
-/// Returns whether a latitude is that of a pole.
+/// Returns whether a latitude is a pole's.
 fn is_pole(lat: f64) -> bool {
     lat.abs() > FRAC_PI_2 - 1e-10
 }
 
-/// Returns the factor by which scales along both axes differ from that of the sphere of the same
-/// area.
+/// Returns the factor by which the scales along both axes differ from those on the sphere of the same area.
 fn skew(body: Ellipsoid, origin: f64, cos_authalic: f64) -> f64 {
     body.a * body.parallel(origin) / (body.authalic_radius() * cos_authalic)
 }

@@ -1,7 +1,7 @@
 //! From one frame to another by seven parameters: the position vector transformation, method 9606 of the EPSG's list,
 //! and Bowring's formula for geographic coordinates (*Transformation from spatial to geographical coordinates*, Survey
-//! Review 23, 1976), repeated. Places lie on the ellipsoid; the heights that this leaves out reach longitudes and
-//! latitudes by millimetres.
+//! Review 23, 1976), repeated. Places are on the ellipsoid; ignoring heights changes longitudes and latitudes by
+//! millimetres.
 
 use super::ellipsoid::Ellipsoid;
 use durer::math::DVec3;
@@ -61,7 +61,7 @@ fn geocentric(body: Ellipsoid, lon: f64, lat: f64) -> DVec3 {
 }
 
 fn geographic(body: Ellipsoid, p: DVec3) -> (f64, f64) {
-    /// Two suffice close to the ellipsoid.
+    /// Number of iterations; two suffice close to the ellipsoid.
     const STEPS: usize = 3;
     let axis = (1.0 - body.e2).sqrt();
     let around = (p.x * p.x + p.y * p.y).sqrt();

@@ -8,7 +8,7 @@ use durer::math::DVec2;
 /// Largest value for which the series is valid; some 80 degrees from the meridian on the equator.
 const FARTHEST: f64 = 2.623_395_162_778;
 
-/// The coefficients of powers of the third flattening, from that of the series' number on.
+/// The coefficients of powers of the third flattening, beginning with the power that is the series' number.
 type Rows = [&'static [f64]; 6];
 
 const THERE: Rows = [

@@ -91,7 +91,7 @@ impl Node {
     /// Returns the coordinate system that it defines.
     ///
     /// # Errors
-    /// What of it is not known.
+    /// A message about the part that is not known.
     pub fn crs(&self) -> Result<Crs, String> {
         let geographic = match &self.keyword[..] {
             "GEOGCS" => self,
@@ -102,12 +102,12 @@ impl Node {
         let datum = Datum::of_name(named.value(0)).or_else(|| Datum::of_name(geographic.value(0)));
         let shifted =
             named.node("TOWGS84").is_some_and(|n| n.values.iter().any(|v| v.parse() != Ok(0.0)));
-        // What is known of a frame goes before what a definition tells of it.
+        // durer's own parameters of a frame take precedence over the definition's.
         let datum = datum.filter(|datum| !shifted || datum.accuracy > 0.0);
         let datum = datum.ok_or_else(|| {
             let name = named.value(0);
             format!(
-                "how its datum {name} lies is not known; bring it to EPSG:4326 with a program that has grids, such as \
+                "the position of its datum {name} is not known; convert it to EPSG:4326 with a program that has grids, such as \
                  ogr2ogr or QGIS"
             )
         })?;
@@ -150,7 +150,7 @@ impl Node {
                 body = body.sphere();
                 Method::Mercator { scale: 1.0 }
             }
-            // How web maps' system is told if there is no name for it.
+            // The form in which the system of web maps is written if it has no name.
             "mercator_1sp"
                 if self.node("EXTENSION").is_some_and(|n| n.value(1).contains("+b=6378137")) =>
             {
@@ -216,9 +216,9 @@ pub fn of_crs(crs: &Crs, name: &str) -> String {
     )
 }
 
-/// Returns the name and the parameters of a projection, but for its offset.
+/// Returns the name and the parameters of a projection, without its offset.
 fn parameters(projection: &Projection) -> (&'static str, Vec<(&'static str, f64)>) {
-    // Degrees as they were given: what radians make of them is beyond what anybody writes.
+    // Degrees as they were given: errors from radians are beyond the digits that are written.
     let degrees = |angle: f64| (angle.to_degrees() * 1e10).round() / 1e10;
     let middle = ("Central_Meridian", degrees(projection.meridian));
     let origin = |lat| ("Latitude_Of_Origin", degrees(lat));
@@ -260,7 +260,7 @@ fn parameters(projection: &Projection) -> (&'static str, Vec<(&'static str, f64)
     }
 }
 
-/// Returns the parallel on which a polar projection of this scale at the pole is true, by halving.
+/// Returns the true parallel of a polar projection with the given scale at the pole, by bisection.
 pub fn parallel_of(body: Ellipsoid, scale: f64) -> f64 {
     let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
     for _ in 0..60 {

@@ -41,9 +41,9 @@ pub fn equal_earth_back(p: DVec2) -> Option<(f64, f64)> {
     (sin.abs() <= 1.0 + 1e-9).then(|| (M * p.x * slope / libm::cos(theta), sin.clamp(-1.0, 1.0)))
 }
 
-/// Distances of x and y from the middle at every fifth degree of latitude, as cubic pieces: value, slope and
-/// further coefficients per degree. A. H. Robinson gave the values, 1974; the pieces are those that other software
-/// uses, so that maps fit theirs.
+/// Distances of x and y from the middle at every fifth degree of latitude, as cubic pieces: value, slope and further
+/// coefficients per degree. The values are A. H. Robinson's, 1974; the pieces are the ones in use in other software, so
+/// that maps match.
 #[rustfmt::skip]
 const ROBINSON_X: [[f32; 4]; 19] = [
     [1.0, 2.2199e-17, -7.15515e-05, 3.1103e-06],
@@ -100,7 +100,7 @@ fn piece(c: &[f32; 4], z: f64) -> (f64, f64) {
     (c0 + z * (c1 + z * (c2 + z * c3)), c1 + z * (2.0 * c2 + z * 3.0 * c3))
 }
 
-/// Returns the piece that a latitude lies in, and how many degrees from its start.
+/// Returns the piece that contains a latitude, and the distance from its start in degrees.
 fn at(lat: f64) -> (usize, f64) {
     /// Five degrees in radians, and how many times they are in one.
     const STEP: f64 = 0.087_266_462_599_716_47;
@@ -139,7 +139,7 @@ pub fn robinson_back(p: DVec2) -> Option<(f64, f64)> {
         }
     }
     let lat = ((i as f64) * 5.0 + z).to_radians().min(FRAC_PI_2);
-    // The width follows from the latitude as there, also where it is in the next piece by rounding.
+    // The width is computed from the latitude as in the other direction, even if rounding puts it into the next piece.
     let (j, z) = at(lat);
     let x = piece(&ROBINSON_X[j], z).0;
     Some((p.x / (WIDTH * x), lat.copysign(p.y)))

@@ -1,5 +1,5 @@
-//! Buffers of FlatBuffers, from front to back: a table comes before what its offsets lead to, its list of fields
-//! before it. Alignment counts from the length that is before each buffer.
+//! Buffers of FlatBuffers, from front to back: a table comes before the targets of its offsets, and its list of fields
+//! before it. Alignment is counted from the length in front of each buffer.
 
 /// A field of a table.
 #[derive(Debug, Clone, Copy)]
@@ -8,7 +8,7 @@ pub enum Value {
     U16(u16),
     I32(i32),
     U64(u64),
-    /// An offset to something that is written later.
+    /// An offset to data written later.
     Later,
 }
 
@@ -51,25 +51,25 @@ impl Builder {
         place.into_iter().for_each(|place| place.copy_from_slice(bytes));
     }
 
-    /// Adds zeros until what follows this many bytes later is aligned.
+    /// Adds zeros until the position `before` bytes further is aligned.
     fn align(&mut self, size: usize, before: usize) {
         while !(self.out.len() + before).is_multiple_of(size) {
             self.out.push(0);
         }
     }
 
-    /// Sets an offset to what is written next.
+    /// Sets an offset to the next value written.
     fn here(&mut self, later: Later) {
         let offset = u32::try_from(self.out.len() - later.0).unwrap_or(u32::MAX);
         self.set(later.0, &offset.to_le_bytes());
     }
 
-    /// Writes a table of fields, by their slots; returns the positions of those that are offsets, in their order.
+    /// Writes a table of fields, by their slots; returns the positions of the offsets among them, in order.
     pub fn table(&mut self, later: Later, fields: &[(usize, Value)]) -> Vec<Later> {
         let slots = fields.iter().map(|(slot, _)| slot + 1).max().unwrap_or(0);
         let mut sorted: Vec<(usize, Value)> = fields.to_vec();
         sorted.sort_by_key(|(_, value)| std::cmp::Reverse(value.size()));
-        // Eight bytes come first, after what leads back to the list.
+        // Eight-byte fields come first, after the offset back to the list.
         let mut at = if sorted.first().is_some_and(|(_, value)| value.size() == 8) { 8 } else { 4 };
         let mut places = vec![0_u16; slots];
         for (slot, value) in &sorted {

@@ -1,5 +1,5 @@
-//! The index of places: a packed tree of boxes over features that follow each other along Hilbert's curve. Its nodes
-//! stand level by level, the root first; those of the lowest level tell the place of a feature.
+//! The spatial index: a packed tree of boxes over features in the order of Hilbert's curve. Its nodes are stored level
+//! by level, the root first; nodes of the lowest level give the position of a feature.
 
 use durer::clip::hilbert;
 use durer::math::{DVec2, Rect};
@@ -53,8 +53,8 @@ impl Node {
     }
 }
 
-/// Returns the order of features along the curve, from its end: those without a place last, and in their
-/// order where they are at the same one.
+/// Returns the order of features along the curve, from its end: features without a place last, and features at the same
+/// place in their original order.
 pub fn order(bounds: &[Option<Rect>]) -> Vec<usize> {
     let corners = bounds.iter().flatten().flat_map(|b| [b.min(), b.max()]);
     let (low, size) = match Rect::around(corners) {
@@ -62,7 +62,7 @@ pub fn order(bounds: &[Option<Rect>]) -> Vec<usize> {
         None => (DVec2::ZERO, DVec2::ZERO),
     };
     let most = f64::from((1u32 << BITS) - 1);
-    // What has no extent lies at 0.
+    // Without an extent, all cells are 0.
     let cell = |at: f64, size: f64| if size > 0.0 { (most * (at / size)) as u32 } else { 0 };
     let place = |bounds: &Option<Rect>| {
         let middle = bounds.map(|b| b.min() * 0.5 + b.max() * 0.5 - low)?;

@@ -1,7 +1,7 @@
 //! FlatGeobuf 3: a header with fields and coordinate system, an index of places, and features one after the
 //! other. <https://github.com/flatgeobuf/flatgeobuf>, files `header.fbs` and `feature.fbs`.
 //!
-//! What is written has an index, for which features are put in order along Hilbert's curve.
+//! Written files have an index, for which features are sorted along Hilbert's curve.
 
 mod build;
 mod index;

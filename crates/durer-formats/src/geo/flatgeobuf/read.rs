@@ -41,7 +41,7 @@ impl Reader {
     /// Reads the header.
     ///
     /// # Errors
-    /// Where there is none.
+    /// If there is none.
     pub fn new(bytes: Vec<u8>) -> Result<Self> {
         if !sniff(&bytes) {
             return Err(Error::byte(0, "a FlatGeobuf of version 3 is expected"));
@@ -178,7 +178,7 @@ fn fields(
         let (column, own) = columns
             .get(number)
             .zip(values.get_mut(number))
-            .ok_or_else(|| wrong("a value is of a column that there is not"))?;
+            .ok_or_else(|| wrong("a value belongs to a column that does not exist"))?;
         let (value, after) = value(column.kind, after)
             .ok_or_else(|| wrong("the values of a feature end within one"))?;
         if value.is_none() {
@@ -193,7 +193,7 @@ fn fields(
         .collect())
 }
 
-/// Returns a value in JSON, nothing where it is binary, and what follows it.
+/// Returns a value as JSON, `None` if it is binary, and the bytes after it.
 fn value(kind: u8, bytes: &[u8]) -> Option<(Option<String>, &[u8])> {
     macro_rules! number {
         ($type:ty) => {{
@@ -215,7 +215,7 @@ fn value(kind: u8, bytes: &[u8]) -> Option<(Option<String>, &[u8])> {
         column::ULONG => number!(u64),
         column::FLOAT => {
             let (own, rest) = bytes.split_first_chunk()?;
-            // The shortest decimal that stands for it.
+            // The shortest decimal that identifies it.
             let short = f32::from_le_bytes(*own).to_string().parse().unwrap_or(f64::NAN);
             Some((Some(number::json(short)), rest))
         }

@@ -1,7 +1,7 @@
-//! Tables of FlatBuffers in bytes that may be anything.
+//! Tables of FlatBuffers in untrusted bytes.
 //!
 //! <https://flatbuffers.dev/internals>: an offset leads from its own place to its target; a table begins with the
-//! way back to the list of where its fields stand.
+//! offset back to the list of its fields' positions.
 
 /// A table in a buffer.
 #[derive(Debug, Clone, Copy)]

@@ -1,4 +1,4 @@
-//! Geometry objects: `coordinates` by their type, with what is repaired.
+//! Geometry objects: `coordinates` by their type, with repairs.
 
 use super::object::{Cursor, RawMember, Text, kind};
 use crate::geo::{Dimensions, Geometry, MAX_DEPTH, Member, Points, Warnings};
@@ -134,7 +134,7 @@ impl Geometries {
 
     /// Returns an array of positions; empty if it had to be left out.
     fn run(&mut self, cursor: &mut Cursor<'_>, kind: Run) -> Result<Points> {
-        // Places cost a look at all of the text before them, so they wait until they are needed.
+        // Computing a place reads all of the text before it, so places are computed only when needed.
         let start = cursor.clone();
         let place = || start.clone().place();
         let mut points = Points::default();
@@ -176,7 +176,7 @@ impl Geometries {
             points.dimensions = Dimensions::new(count > 2, count > 3);
         } else if count.min(4) != points.dimensions.count() {
             points.lift(Dimensions::new(count > 2, count > 3));
-            let message = "a position with more or fewer numbers than the one before; what is missing is taken as 0";
+            let message = "a position with more or fewer numbers than the one before; missing numbers are taken as 0";
             self.warnings.push(place(), message);
         }
         points.push(DVec2::new(numbers[0], numbers[1]), [numbers[2], numbers[3]]);
@@ -184,8 +184,8 @@ impl Geometries {
     }
 }
 
-/// Returns the members of a geometry that the format does not define. As those of features they are kept without
-/// `bbox`.
+/// Returns the members of a geometry that the format does not define. Like the members of features, they are kept
+/// without `bbox`.
 pub fn further_members(members: &[RawMember<'_>]) -> Result<Vec<Member>> {
     let further = members.iter().filter(|(name, _)| !is_of_geometry(name));
     further
@@ -206,8 +206,7 @@ pub fn finish_line(points: &mut Points, place: impl Fn() -> Place, warnings: &mu
     }
 }
 
-/// Opens a ring as [`Geometry`] has it; closes those that are not closed, leaves out those that are
-/// too short.
+/// Opens a ring as [`Geometry`] has it; closes rings that are not closed and leaves out rings that are too short.
 pub fn finish_ring(points: &mut Points, place: impl Fn() -> Place, warnings: &mut Warnings) {
     if points.is_empty() {
         return;

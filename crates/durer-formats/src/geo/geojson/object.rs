@@ -158,7 +158,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Returns the next value, whatever it is.
+    /// Returns the next value, of any type.
     pub fn value(&mut self, what: &str) -> Result<Text<'a>> {
         self.peek();
         let from = self.at;
@@ -222,7 +222,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// Returns whether a number, as it is read elsewhere, follows the stricter grammar of JSON (RFC 8259, 6): no
+/// Returns whether a number that other readers accept follows the stricter grammar of JSON (RFC 8259, 6): no
 /// zeros in front, digits before and after the point.
 fn is_number_of_json(text: &[u8]) -> bool {
     let text = text.strip_prefix(b"-").unwrap_or(text);

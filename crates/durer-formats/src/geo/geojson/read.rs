@@ -1,4 +1,4 @@
-//! Features from a stream, one at a time; only the feature at hand is held.
+//! Features from a stream; only the current feature is held in memory.
 
 use super::coordinates::{Geometries, further_members};
 use super::object::{RawMember, Text, kind};
@@ -42,7 +42,7 @@ impl<R: Read> Stream<R> {
         Ok(self.chunk.get(self.at).copied())
     }
 
-    /// Reads what the source has, so that a slow source is read as it comes.
+    /// Reads the bytes that are available, so that a slow source is read as they arrive.
     fn refill(&mut self) -> Result<()> {
         self.at = 0;
         self.chunk.resize(CHUNK, 0);
@@ -114,7 +114,7 @@ impl<R: Read> Stream<R> {
             }
             if byte == b'\n' && self.by_lines {
                 let message =
-                    "the line ends within a value; each feature before stands on one line";
+                    "the line ends within a value, but each feature before is on one line";
                 return Err(self.error(message));
             }
             piece.bytes.push(byte);
@@ -153,7 +153,8 @@ pub struct Reader<R> {
     in_lines: u64,
 }
 
-/// After this many features on a line each all others do: a line that is cut off is not read on to the end of the file.
+/// Number of features, one per line each, after which all others must be on single lines, too, so that a truncated line
+/// is not read on to the end of the file.
 const LINES: u64 = 2;
 
 impl<R: Read> Reader<R> {
@@ -219,7 +220,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Enters the next document, to its end or its array of features; false if there is none.
+    /// Enters the next document, up to its end or its array of features; returns false if there is none.
     fn begin(&mut self) -> Result<bool> {
         // Byte-order mark, and the separators of RFC 8142.
         if self.documents == 0 && self.stream.peek()? == Some(0xef) {
@@ -266,7 +267,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Returns whether nothing that has been read says that this is not a collection.
+    /// Returns whether the object may still be a collection by the members read so far.
     fn may_be_collection(&self) -> bool {
         let kind = self.open.iter().find(|(name, _)| name.bytes == b"\"type\"");
         kind.is_none_or(|(_, value)| value.bytes == b"\"FeatureCollection\"")

@@ -5,7 +5,7 @@ use crate::geo::MAX_DEPTH;
 /// Effect of a byte on the current value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Progress {
-    /// The value goes on.
+    /// The value continues.
     More,
     /// The value ends with this byte.
     Last,

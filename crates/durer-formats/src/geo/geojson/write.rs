@@ -54,7 +54,7 @@ fn write_geometry<W: Write>(out: &mut W, geometry: &Geometry) -> io::Result<()> 
     out.write_all(b"}")
 }
 
-/// Writes a geometry but for its last bracket.
+/// Writes a geometry without its last bracket.
 fn open_geometry<W: Write>(out: &mut W, geometry: &Geometry) -> io::Result<()> {
     write!(out, r#"{{"type":"{}","#, geometry.name())?;
     if let Geometry::Collection(parts) = geometry {

@@ -15,7 +15,7 @@ const HEAD: usize = 8;
 /// Reads a geometry.
 ///
 /// # Errors
-/// The fault, at a byte of it.
+/// The fault and its byte.
 pub fn read(bytes: &[u8], warnings: &mut Warnings, place: &Place) -> Result<Option<Geometry>> {
     let (&[_, _, _, flags], _) = bytes
         .split_first_chunk()
@@ -34,7 +34,7 @@ pub fn read(bytes: &[u8], warnings: &mut Warnings, place: &Place) -> Result<Opti
     feature.map(|feature| feature.and_then(|feature| feature.geometry))
 }
 
-/// Returns a geometry with its header, with an envelope of x and y but for points.
+/// Returns a geometry with its header, with an envelope of x and y except for points.
 pub fn write(geometry: &Geometry, system: i32) -> Vec<u8> {
     let bounds = geometry.bounds();
     let envelope = bounds.filter(|_| !matches!(geometry, Geometry::Point(_)));
@@ -45,13 +45,12 @@ pub fn write(geometry: &Geometry, system: i32) -> Vec<u8> {
         [low.x, high.x, low.y, high.y].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
     }
     let feature = Feature::of_geometry(geometry.clone());
-    // Nothing that is written to memory fails, but for more than 2³² parts.
+    // Writing to memory fails only for more than 2³² parts.
     let _ = wkb::write_feature(&mut bytes, &feature);
     bytes
 }
 
-/// Returns the name of a kind of geometry, by its number in well-known binary; of any where they
-/// differ.
+/// Returns the name of a kind of geometry, by its number in well-known binary; the general name if they differ.
 pub fn kind_name(kind: Option<u32>) -> &'static str {
     match kind {
         Some(1) => "POINT",

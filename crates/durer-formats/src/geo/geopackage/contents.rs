@@ -22,10 +22,10 @@ pub struct Layer {
     pub system: System,
 }
 
-/// Tables of a database, and those that are left out.
+/// Tables of a database, and the tables left out.
 #[derive(Debug, Default)]
 pub struct Contents {
-    /// Tables of features; then those of attributes, which have no geometry.
+    /// Tables of features, followed by tables of attributes, which have no geometry.
     pub layers: Vec<Layer>,
     /// Names of tables that are left out, with reasons.
     pub left_out: Vec<(String, &'static str)>,
@@ -125,7 +125,7 @@ fn foreign(database: &Database, tables: &[Table]) -> String {
     const TILES: u32 = 0x4d50_4258;
     let has = |name: &str| tables.iter().any(|table| is(&table.name, name));
     let what = if database.application() == TILES || has("metadata") && has("tiles") {
-        "this is MBTiles, which hold tiles; take the data that they were made of"
+        "this is MBTiles, which contains tiles; use the data that they were made from"
     } else if has("geometry_columns") {
         "this is SpatiaLite; export it as a GeoPackage"
     } else {
@@ -142,7 +142,7 @@ type Record = BTreeMap<String, Value<'static>>;
 struct Records(Vec<Record>);
 
 impl Records {
-    /// Returns all rows of the table of a name; `None` if there is none.
+    /// Returns all rows of the table with a name; `None` if there is none.
     fn of(database: &Database, tables: &[Table], name: &str) -> Result<Option<Self>> {
         let Some(table) = tables.iter().find(|t| t.kind == "table" && is(&t.name, name)) else {
             return Ok(None);

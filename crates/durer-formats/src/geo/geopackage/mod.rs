@@ -1,7 +1,7 @@
 //! GeoPackage 1.0 to 1.4 of the OGC, <https://www.geopackage.org/spec140/>: a database of SQLite with tables of
 //! features.
 //!
-//! Tables are read row by row; what is written is one table without an index of places, page by page.
+//! Tables are read row by row; written files have one table without a spatial index, and are written page by page.
 
 mod blob;
 mod contents;
@@ -13,7 +13,7 @@ pub use write::Writer;
 
 use crate::sqlite::MAGIC;
 
-/// "GPKG", what a file says that it is for.
+/// "GPKG", the application id in the file's header.
 const APPLICATION: u32 = 0x4750_4b47;
 
 /// Returns whether the bytes begin like a GeoPackage: a database that says so itself, or by its

@@ -70,7 +70,7 @@ impl Reader {
                 let place = Place::Path(format!("layer {}, row {}", layer.name, row.number));
                 let mut made = Row { layer, place, faults: &mut self.faults, warnings };
                 let mut feature = made.feature(row.number, values);
-                // Of several layers, numbers would come more than once.
+                // With several layers, ids would not be unique.
                 feature.id = feature.id.filter(|_| self.layers.len() == 1);
                 return Ok(Some(feature));
             }
@@ -81,7 +81,7 @@ impl Reader {
         Ok(None)
     }
 
-    /// Refuses layers that lie in different systems.
+    /// Refuses layers in different coordinate systems.
     fn check_systems(&self) -> Result<()> {
         let system = self.system();
         if self.layers.iter().all(|layer| layer.system == system) {
@@ -118,18 +118,18 @@ fn in_layer(layer: &Layer, place: &Place) -> Place {
     )
 }
 
-/// Refuses a file whose last changes another program has not put into it yet.
+/// Refuses a file into which another program has not written its last changes yet.
 fn refuse_changes(beside: &Beside<'_>) -> Result<()> {
     for (suffix, what) in
-        [("-wal", "changes"), ("-journal", "what an interrupted change has replaced")]
+        [("-wal", "changes"), ("-journal", "data replaced by an interrupted change")]
     {
         let name = format!("{}{suffix}", beside.name);
         let found = beside.resources.find(&name, u64::MAX);
-        // A journal that begins with zeros is done with.
+        // A journal that begins with zeros is finished.
         let is_open = |bytes: &[u8]| bytes.first().is_some_and(|b| *b != 0 || suffix == "-wal");
         if !beside.name.is_empty() && found.is_ok_and(|found| is_open(&found.bytes)) {
             let message = format!(
-                "{name} beside it holds {what}, so that the file alone is not what it shall be; close the program \
+                "{name} beside it holds {what}, so that the file alone is not complete; close the program \
                  that writes it, or open it once with SQLite"
             );
             return Err(Error::whole(message));
@@ -212,7 +212,7 @@ impl Row<'_> {
         })
     }
 
-    /// Returns a value in JSON; nothing for what is binary.
+    /// Returns a value as JSON; `None` for binary values.
     fn value(
         &mut self,
         column: &Column,

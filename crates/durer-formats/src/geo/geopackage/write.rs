@@ -1,7 +1,7 @@
 //! Features as a file with one table.
 //!
-//! Pages are written as features come. What a field holds is known at the end, when the table is given its columns:
-//! rows that were written before a field came first have no value for it, and SQLite takes that as null.
+//! Pages are written as features are added. The types of fields are known at the end, when the table gets its columns:
+//! rows that were written before a field first occurred have no value for it, which SQLite reads as null.
 
 use super::{APPLICATION, blob};
 use crate::geo::members::members;
@@ -12,7 +12,7 @@ use crate::sqlite::{NewDatabase, NewTable, Value, index, record};
 use crate::{Error, Place, Result, Warning};
 use durer::math::Rect;
 
-/// Features that are held until what their fields hold is taken for known, and …
+/// Number of features held until the types of their fields count as known, and …
 const HELD: usize = 10_000;
 
 /// … positions that they may have.
@@ -40,7 +40,7 @@ pub struct Writer {
     held: Vec<(Feature, i64)>,
     positions: usize,
     is_settled: bool,
-    /// Kinds in which values of fields were last written.
+    /// Types with which the values of fields were last written.
     written: Vec<FieldKind>,
     /// Fields whose values were numbers first, and texts later.
     mixed: Vec<String>,
@@ -85,7 +85,7 @@ impl Writer {
     /// Adds a feature.
     ///
     /// # Errors
-    /// Where there are too many fields or pages.
+    /// If there are too many fields or pages.
     pub fn add(&mut self, feature: &Feature) -> Result<()> {
         let (feature, number) = with_number(feature, self.last);
         self.last = number;
@@ -190,8 +190,7 @@ impl Writer {
         Ok((first, rest, warnings))
     }
 
-    /// Returns the text that makes the table, the name of its geometries, and fields that got
-    /// another name.
+    /// Returns the statement that creates the table, the name of its geometry column, and fields that were renamed.
     fn definition(&self, name: &str) -> (String, String, Vec<String>) {
         let mut taken: Vec<String> = Vec::new();
         let mut renamed = Vec::new();
@@ -232,7 +231,7 @@ impl Writer {
     }
 }
 
-/// Returns the feature and its number: its id, where that is a whole number above the last one. Any other id
+/// Returns the feature and its number: its id, if that is a whole number above the last one. Any other id
 /// becomes a field.
 fn with_number(feature: &Feature, last: i64) -> (Feature, i64) {
     let number = feature.id.as_ref().and_then(|id| id.parse::<i64>().ok());

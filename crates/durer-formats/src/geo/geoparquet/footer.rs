@@ -1,17 +1,17 @@
-//! A look at the end of a file before the crate does: it follows groups in groups, and would follow them without end.
+//! A check of a file's end before the crate reads it, because the crate recurses into nested groups without a limit.
 
 use crate::{Error, Result};
 
 /// Groups may be nested so deep.
 const MAX_DEPTH: usize = 64;
 
-/// Bytes of a footer, at most: what is made of it is some ten times as large.
+/// Largest footer in bytes: its decoded form is about ten times as large.
 const MAX_FOOTER: usize = 256 << 20;
 
-/// Refuses files whose columns are nested too deep, or whose end is not that of a Parquet file.
+/// Refuses files whose columns are nested too deeply, or that do not end like a Parquet file.
 ///
 /// # Errors
-/// What is wrong.
+/// [`Error::Decode`] with the fault.
 pub fn check(bytes: &[u8]) -> Result<()> {
     let wrong = |message: &str| Error::byte(bytes.len() as u64, message);
     let (rest, _) =

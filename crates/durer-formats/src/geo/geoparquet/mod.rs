@@ -1,7 +1,7 @@
 //! GeoParquet 1.0 and 1.1, <https://geoparquet.org/releases/v1.1.0/>: a Parquet file with geometries as well-known
 //! binary, by the crate `parquet` (feature `geoparquet`).
 //!
-//! Row groups are read one after the other. What is written is held until the end, for its columns come first.
+//! Row groups are read one after the other. Written features are held until the end, because the columns come first.
 
 #[cfg(not(feature = "geoparquet"))]
 mod absent;

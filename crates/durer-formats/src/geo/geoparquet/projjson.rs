@@ -5,7 +5,7 @@ use crate::geo::crs::{Crs, Parameter};
 use crate::geo::{System, Warnings};
 use serde_json::{Value, json};
 
-/// Returns the system of a member `crs`; longitude and latitude if there is none, nothing if it is null.
+/// Returns the system of a member `crs`; longitude and latitude if there is none, unknown if it is null.
 pub fn system(told: Option<&Value>, warnings: &mut Warnings) -> System {
     let Some(told) = told else { return System::LONLAT };
     if told.is_null() {
@@ -21,8 +21,7 @@ pub fn system(told: Option<&Value>, warnings: &mut Warnings) -> System {
     };
     if code.is_none() {
         let name = told["name"].as_str().unwrap_or("without a name");
-        let message =
-            format!("the coordinate system {name} has no number; --from-crs says which it is");
+        let message = format!("the coordinate system {name} has no number; --from-crs sets one");
         warnings.push(Place::Path("metadata `geo`".to_owned()), message);
     }
     System { code, wkt: None }

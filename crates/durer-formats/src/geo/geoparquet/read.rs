@@ -126,7 +126,7 @@ fn shape(bytes: &ByteArray, place: &Place, warnings: &mut Warnings) -> Result<Ge
     feature?.and_then(|f| f.geometry).ok_or_else(|| Error::byte(0, "it is empty"))
 }
 
-/// Refuses geometries that are stored in another way.
+/// Refuses geometries in other encodings.
 fn check(column: &Value, name: &str, warnings: &mut Warnings) -> Result<()> {
     let place = format!("column {name}");
     match column["encoding"].as_str() {

@@ -66,7 +66,7 @@ pub fn json(field: &Field, meaning: Meaning) -> Option<String> {
         (Field::UInt(n), _) => n.to_string(),
         (Field::ULong(n), _) => n.to_string(),
         (Field::Float16(n), _) => number::json(n.to_f32().into()),
-        // The shortest decimal that stands for it.
+        // The shortest decimal that identifies it.
         (Field::Float(n), _) => number::json(n.to_string().parse().unwrap_or(f64::NAN)),
         (Field::Double(n), _) => number::json(*n),
         (Field::Decimal(n), _) => decimal(n),

@@ -53,7 +53,7 @@ pub fn write(out: &mut impl Write, features: &[Feature], system: &System) -> Res
 }
 
 fn failed(_: ParquetError) -> Error {
-    // It is written to memory, so what fails is the table itself.
+    // Writing to memory cannot fail, so the fault is in the table itself.
     Error::Io(std::io::Error::other(
         "the features cannot be put into a table of Parquet; write another format",
     ))
@@ -95,7 +95,7 @@ fn column(features: &[Feature], system: &System) -> Value {
     if let Some(all) = Rect::around(bounds.flat_map(|b| [b.min(), b.max()])) {
         column["bbox"] = json!([all.min().x, all.min().y, all.max().x, all.max().y]);
     }
-    // Without one, coordinates are longitude and latitude.
+    // Without a system, coordinates are longitude and latitude.
     if system.code != Some(4326) {
         column["crs"] = projjson::of_system(system).unwrap_or(Value::Null);
     }

@@ -37,7 +37,7 @@ impl Table {
     /// Reads the head of a table.
     ///
     /// # Errors
-    /// Where the head does not say where rows are.
+    /// If the head does not give the position of rows.
     pub fn new(bytes: Vec<u8>, encoding: Option<Encoding>) -> Result<Self> {
         let wrong = |at: u64, message: &str| Err(Error::byte(at, message));
         let Some(start) = bytes.first_chunk::<FIELD>() else {
@@ -168,7 +168,7 @@ fn columns(bytes: &[u8], head: usize, length: usize, encoding: Option<Encoding>)
         if at + wide > length {
             break;
         }
-        // What FoxPro keeps for itself.
+        // FoxPro's internal fields.
         if field[11] != b'0' {
             columns.push(Column { key, kind: field[11], bytes: at..at + wide });
         }
@@ -183,8 +183,7 @@ fn double(value: f64) -> Option<String> {
     String::from_utf8(text).ok()
 }
 
-/// Returns a decimal number in JSON: with its digits where they are such, but for zeros at their end after
-/// the first.
+/// Returns a decimal number as JSON, with its digits unchanged except for trailing zeros after the first decimal.
 fn decimal(value: &[u8]) -> Option<String> {
     let value: Vec<u8> = value.iter().copied().filter(|b| !matches!(b, b' ' | 0)).collect();
     let text = std::str::from_utf8(&value).ok()?;

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 /// Encoding of texts.
 #[derive(Debug, Clone, Copy)]
 pub enum Encoding {
-    /// One of those that browsers know.
+    /// One of the encodings known to browsers.
     Known(&'static encoding_rs::Encoding),
     /// A code page of MS-DOS: its characters from 0x80 on.
     Page(&'static str),
@@ -88,7 +88,7 @@ impl Encoding {
     pub fn decode<'a>(self, bytes: &'a [u8]) -> (Cow<'a, str>, bool) {
         match self {
             Self::Known(encoding) => {
-                // What is cut off in the middle of a letter is left out.
+                // A letter that is cut off in its middle is left out.
                 let whole =
                     if encoding == encoding_rs::UTF_8 { whole_letters(bytes) } else { bytes };
                 match encoding.decode_without_bom_handling_and_without_replacement(whole) {

@@ -1,6 +1,6 @@
-//! Shapefiles, by *ESRI Shapefile Technical Description*, 1998: geometries in a .shp, their fields in a table
-//! beside it (.dbf) whose encoding a .cpg may name, the coordinate system in a .prj. The index (.shx) is written,
-//! and not needed for reading.
+//! Shapefiles, by *ESRI Shapefile Technical Description*, 1998: geometries in a .shp, their fields in a table beside it
+//! (.dbf) whose encoding a .cpg may name, the coordinate system in a .prj. The index (.shx) is written, but not needed
+//! for reading.
 
 mod dbf;
 mod encoding;
@@ -134,7 +134,7 @@ impl Reader {
         for (tally, what) in [
             (faults.values, "values of the .dbf are not of the kind of their field; they are null"),
             (faults.letters, "texts of the .dbf are not in its encoding; taken as Windows-1252"),
-            (faults.memos, "memos, which stand in a file of their own, are left out"),
+            (faults.memos, "memos, which are in a separate file, are left out"),
             (faults.rows, "records have no row in the .dbf; they have no fields"),
             (faults.infinite, "geometries have coordinates that are not finite; left out"),
             (

@@ -58,7 +58,7 @@ impl Content {
         self.starts.iter().zip(ends).map(|(&start, end)| self.part(start, end))
     }
 
-    /// Returns the positions from one to another, none if they do not come in this order.
+    /// Returns the positions from one to another, or none if they are not in this order.
     fn part(&self, start: usize, end: usize) -> Points {
         let mut part = Points::new(self.points.dimensions);
         part.xy = self.points.xy.get(start..end).unwrap_or_default().to_vec();
@@ -87,7 +87,7 @@ pub fn read(
     }
     let content = content(bytes, kind, shape, place, faults);
     let content = content.ok_or_else(|| wrong("the record ends within its shape".to_owned()))?;
-    // A point that is none is how some programs write that there is nothing.
+    // Some programs write a point without coordinates for an empty geometry.
     if shape == 1 && content.points.xy.iter().any(|p| p.is_nan()) {
         return Ok(None);
     }
@@ -160,7 +160,7 @@ fn content(
     Some(content)
 }
 
-/// Reads heights or measures; those of several positions come after their range.
+/// Reads heights or measures; for several positions, their range comes first.
 fn further(from: &mut Numbers<'_>, shape: u32, count: usize) -> Option<Vec<f64>> {
     if shape != 1 {
         from.at += 16;
@@ -190,7 +190,7 @@ fn areas(content: &Content, place: &Place, warnings: &mut Warnings) -> Vec<Vec<P
         finish_ring(ring, || place.clone(), warnings);
     }
     all.retain(|ring| !ring.is_empty());
-    // The largest ring is not a hole: where it runs the other way, all do, as some programs write them.
+    // The largest ring is not a hole: if it runs in the other direction, all rings do, as some programs write them.
     let areas = all.iter().map(|ring| signed_area(&ring.xy));
     let largest = areas.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
     let is_outer = |ring: &Points| (signed_area(&ring.xy) > 0.0) == (largest > 0.0);

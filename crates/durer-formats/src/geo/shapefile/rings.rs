@@ -13,8 +13,7 @@ struct Outer {
     polygon: usize,
 }
 
-/// Puts each hole into the smallest outer ring around it; one that lies in none becomes a polygon, with a
-/// warning.
+/// Puts each hole into the smallest outer ring around it; a hole outside all rings becomes a polygon, with a warning.
 pub fn polygons(
     rings: Vec<Points>,
     is_outer: impl Fn(&Points) -> bool,
@@ -54,13 +53,12 @@ pub fn polygons(
     polygons
 }
 
-/// Returns whether a ring lies in another, as the first of its points says that is not on the other's
-/// border.
+/// Returns whether a ring is in another, by its first point that is not on the other's border.
 fn surrounds(outer: &[DVec2], hole: &[DVec2]) -> bool {
     hole.iter().find_map(|&p| is_inside(outer, p)).unwrap_or(true)
 }
 
-/// Returns whether a point lies in a ring; `None` on its border.
+/// Returns whether a point is in a ring; `None` on its border.
 fn is_inside(ring: &[DVec2], p: DVec2) -> Option<bool> {
     let mut inside = false;
     let next = ring.iter().cycle().skip(1);

@@ -16,13 +16,13 @@ const MAX_TEXT: usize = 254;
 /// The longest name of a field, in bytes.
 const MAX_KEY: usize = 10;
 
-/// A day for the head of tables, which must have one, but not that of writing: the same input gives the same bytes.
+/// A fixed date for the head of tables, which must have one: the same input gives the same bytes on every day.
 const DAY: [u8; 3] = [95, 7, 26];
 
 /// Files beside the .shp: ends of names, and bytes.
 pub type Sidecars = Vec<(&'static str, Vec<u8>)>;
 
-/// Returns the bytes of a .shp, and what belongs beside it.
+/// Returns the bytes of a .shp, and the files beside it.
 ///
 /// # Errors
 /// If features have several kinds of geometry, as a Shapefile contains only one, or are too many.
@@ -51,7 +51,7 @@ pub fn write(features: &[Feature], system: &System) -> Result<(Vec<u8>, Sidecars
 struct Shape {
     points: Vec<Points>,
     lines: Vec<Points>,
-    /// Closed; outer ones clockwise, holes the other way.
+    /// Closed; outer rings clockwise, holes counter-clockwise.
     rings: Vec<Points>,
 }
 
@@ -184,7 +184,7 @@ fn records(shapes: &[Shape], kind: Kind) -> Result<(Vec<u8>, Vec<u8>)> {
     Ok((shp, shx))
 }
 
-/// Returns the least and the most of numbers, zeros if there are none.
+/// Returns the smallest and the largest of numbers; zeros if there are none.
 fn range(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     let joined = numbers.map(|n| [n, n]).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
     joined.unwrap_or_default()
@@ -241,7 +241,7 @@ fn content(shape: &Shape, kind: Kind) -> Vec<u8> {
 
 /// A field of the table.
 struct Column<'a> {
-    /// Its name, cut where it is long.
+    /// Its name, truncated if it is long.
     key: String,
     /// The field of the features; `None` for their numbers, if there is no field.
     field: Option<&'a Field>,

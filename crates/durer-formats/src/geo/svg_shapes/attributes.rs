@@ -63,8 +63,8 @@ pub fn length(element: &BytesStart<'_>, name: &str) -> Result<Option<f64>, Strin
     Ok(Some(value * pixels))
 }
 
-/// Returns an element's own value for a property that takes one of these words: its style before its
-/// attribute. Inherited properties give nothing; other words are ignored.
+/// Returns an element's own value for a property that takes one of a few keywords: its style takes precedence over its
+/// attribute. `inherit` gives `None`; other words are ignored.
 pub fn property<T: Copy>(
     element: &BytesStart<'_>,
     name: &str,
@@ -80,7 +80,7 @@ pub fn property<T: Copy>(
     let word = given.trim();
     let found = words.iter().find(|(known, _)| word.eq_ignore_ascii_case(known));
     let inherits = ["inherit", "unset", "initial"].iter().any(|w| word.eq_ignore_ascii_case(w));
-    // Of `display` there are many words, of which one alone hides.
+    // `display` has many keywords, of which only one hides.
     if found.is_none() && !inherits && words.len() > 1 {
         let known: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
         let word = crate::text::quote(word.as_bytes());
@@ -89,9 +89,9 @@ pub fn property<T: Copy>(
     Ok(found.map(|(_, value)| *value))
 }
 
-/// Returns the value that declarations of CSS give a property: of several the last, but one that is important
-/// first. simplecss, which usvg reads them with, ends at the first declaration that it cannot read, as
-/// `font:12px/1.5 serif` or `--own:1`.
+/// Returns the value that declarations of CSS give a property: the last of several, but important ones take precedence.
+/// simplecss, which usvg uses, stops at the first declaration that it cannot read, such as `font:12px/1.5 serif` or
+/// `--own:1`.
 fn declared(style: &str, property: &str) -> Option<String> {
     let style = without_comments(style);
     let mut found: Option<(bool, &str)> = None;
@@ -203,7 +203,7 @@ impl<'a> Scanner<'a> {
         self.number()?.ok_or_else(|| "a number is missing at the end".to_owned())
     }
 
-    /// Returns a flag of an arc, which needs nothing to part it from what follows.
+    /// Returns a flag of an arc, which needs no separator after it.
     pub fn flag(&mut self) -> Result<bool, String> {
         self.skip();
         match self.rest {

@@ -1,13 +1,13 @@
-//! The shapes of an SVG document as features, one at a time.
+//! The shapes of an SVG document as features.
 //!
-//! Read are `path`, `polygon`, `polyline`, `line`, `rect`, `circle` and `ellipse`, with the `transform`s and `id`s on
-//! them and on the groups around them, and what `use` shows of them elsewhere. Bézier curves become [`path::STEPS`]
-//! edges each, arcs and round corners as many per quarter turn, with all corners on the curve. Closed parts become
-//! polygons, open parts lines, and open parts without length points. Which points the closed parts of a path enclose
-//! is decided by `fill-rule`, as attribute or in `style`, on it or around it; non-zero by default. What is not drawn
-//! is left out: the content of `defs`, `clipPath` and similar elements, and what `display` or `visibility` hide.
-//! Other styles, style sheets, text, clipping and view boxes of nested documents are ignored. Coordinates are those
-//! of the document turned over, so that y is up, as [`super::svg`] writes them.
+//! The reader takes `path`, `polygon`, `polyline`, `line`, `rect`, `circle` and `ellipse`, with the `transform`s and
+//! `id`s on them and on the groups around them, and their copies by `use`. Bézier curves become [`path::STEPS`] edges
+//! each, arcs and round corners the same number per quarter turn, with all corners on the curve. Closed parts become
+//! polygons, open parts lines, and open parts without length points. The closed parts of a path are filled by
+//! `fill-rule`, as attribute or in `style`, on it or around it; non-zero by default. Elements that are not drawn are
+//! left out: the content of `defs`, `clipPath` and similar elements, and elements hidden by `display` or `visibility`.
+//! Other styles, style sheets, text, clipping and view boxes of nested documents are ignored. Coordinates are the
+//! document's with y reversed, so that y is up, as [`super::svg`] writes them.
 
 mod attributes;
 mod path;
@@ -23,7 +23,7 @@ use quick_xml::events::{BytesStart, Event};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Elements whose content is drawn where something refers to it, or never.
+/// Elements whose content is drawn only by reference, or never.
 const NOT_DRAWN: [&str; 19] = [
     "clipPath",
     "color-profile",
@@ -46,7 +46,7 @@ const NOT_DRAWN: [&str; 19] = [
     "view",
 ];
 
-/// Bytes of the document that `use` may show elsewhere, all together: uses of uses are many soon.
+/// Largest total number of bytes of the document that `use` may copy: nested uses grow quickly.
 const MAX_USED: u64 = 64 << 20;
 
 /// Coordinate system and name that an element inherits.
@@ -129,8 +129,8 @@ struct Walk {
     told: (usize, u64, usize),
 }
 
-/// Returns the events of a text from a byte on. Whether names match is examined by [`Walk`], which goes on
-/// from any byte.
+/// Returns the events of a text from a byte on. Matching of names is checked by [`Walk`], which can continue from any
+/// byte.
 fn events(text: &[u8], from: usize) -> quick_xml::Reader<&[u8]> {
     let mut reader = quick_xml::Reader::from_reader(text.get(from..).unwrap_or_default());
     let config = reader.config_mut();
@@ -206,7 +206,7 @@ impl Walk {
         Error::Decode { place: self.place(text, at), message: message.into() }
     }
 
-    /// Adds a warning, whose place is found only where it is kept.
+    /// Adds a warning, whose place is computed only if it is kept.
     fn warn(&mut self, text: &[u8], at: usize, message: String, warnings: &mut Warnings) {
         let place = if warnings.are_many() { Place::Whole } else { self.place(text, at) };
         warnings.push(place, message);
@@ -332,7 +332,7 @@ impl Walk {
             let around = Level { start: (target, 0), keeps_id, ..level.clone() };
             Frame { at: target, levels: vec![around], is_done: false }
         });
-        // What stands in a `use` is not drawn, but what it shows.
+        // The content of a `use` is not drawn, only the element it refers to.
         level.drawn &= frame.is_none();
         match self.frames.last_mut() {
             Some(around) if is_open => around.levels.push(level),
@@ -355,7 +355,7 @@ impl Walk {
         Ok(())
     }
 
-    /// Returns the first byte of what a `use` shows.
+    /// Returns the first byte of the element that a `use` refers to.
     fn target(&mut self, text: &[u8], element: &BytesStart<'_>) -> Result<usize, String> {
         let uri = reference(element)?.ok_or("`use` needs an `href`")?;
         let quoted = crate::text::quote(uri.as_bytes());
@@ -372,8 +372,7 @@ impl Walk {
     }
 }
 
-/// Returns the first byte of all elements that have an `id`; of several with the same, of the
-/// first.
+/// Returns the first byte of all elements that have an `id`; among several with the same id, the first one's.
 fn ids(text: &[u8]) -> HashMap<Box<str>, usize> {
     let (mut reader, mut ids) = (events(text, 0), HashMap::new());
     loop {
@@ -384,7 +383,7 @@ fn ids(text: &[u8]) -> HashMap<Box<str>, usize> {
                     ids.entry(id.into()).or_insert(at);
                 }
             }
-            // What is wrong is told where the walk gets there.
+            // Errors are reported when the walk gets there.
             Ok(Event::Eof) | Err(_) => return ids,
             Ok(_) => {}
         }
@@ -425,7 +424,7 @@ fn enter(
     Ok(level)
 }
 
-/// Places a document within the document, or a symbol; fails if it has a scale of its own.
+/// Places a nested document or a symbol; fails if it has its own scale.
 fn nested(element: &BytesStart<'_>, level: &mut Level) -> Result<(), String> {
     if attribute(element, "viewBox")?.is_some() {
         let name = element.local_name();

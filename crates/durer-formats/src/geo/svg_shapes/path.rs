@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 /// Edges that a curve, or a quarter of an ellipse, becomes.
 pub const STEPS: u32 = 16;
 
-/// Positions of a path, with those of its curves, of which a short text makes many.
+/// Largest number of positions of a path, including its flattened curves, of which a short text makes many.
 const MAX_POSITIONS: usize = 1 << 24;
 
 /// Sub-paths in the element's coordinates, each open or closed.
@@ -20,7 +20,7 @@ pub struct Path {
     /// Positions of all of them.
     count: usize,
     at: DVec2,
-    /// The last control point, for smooth curves, and of what degree its curve was.
+    /// The last control point, for smooth curves, and the degree of its curve.
     control: Option<(DVec2, u8)>,
 }
 
@@ -198,7 +198,7 @@ impl Path {
             }
             match (closed, xy.len()) {
                 (true, 3..) => rings.push(vec![Points::flat(xy)]),
-                // How a point is drawn: a line without length, with round ends.
+                // A point is drawn as a line without length, with round ends.
                 (false, 2..) if xy.iter().all(|p| *p == xy[0]) => dots.push(xy[0], [0.0; 2]),
                 (false, 2..) => lines.push(Points::flat(xy)),
                 _ => {}

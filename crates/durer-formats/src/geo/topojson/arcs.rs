@@ -1,5 +1,5 @@
 //! The arcs that lines and rings of a layer share, after M. Bostock, *How to Infer Topology*, 2013: a position is a
-//! junction where lines end or what is beside it differs from use to use; arcs run from junction to junction.
+//! junction if a line ends there or its neighbours differ between uses; arcs run from junction to junction.
 
 use crate::geo::Points;
 use std::collections::BTreeMap;
@@ -101,7 +101,7 @@ fn junctions(paths: &[Path], count: usize) -> Vec<bool> {
 
 struct Maker {
     arcs: Vec<Run>,
-    /// Arcs, by their positions in the direction that comes first.
+    /// Arcs, by their positions in the smaller of the two directions.
     known: BTreeMap<Run, i64>,
 }
 
@@ -149,7 +149,7 @@ impl Maker {
     /// Returns the number of an arc, which is kept as it came first.
     fn known(&mut self, key: Run, run: Run, is_turned: bool) -> i64 {
         if let Some(&number) = self.known.get(&key) {
-            // What is kept tells by its sign whether it was turned to get the key.
+            // The sign of the stored index tells whether the arc was reversed to get the key.
             let (index, was_turned) =
                 if number < 0 { (-1 - number, true) } else { (number, false) };
             return if was_turned == is_turned { index } else { -1 - index };

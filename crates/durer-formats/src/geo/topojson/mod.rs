@@ -10,7 +10,7 @@ pub use write::write;
 
 /// Returns whether a JSON text begins like a topology.
 pub fn sniff(text: &[u8]) -> bool {
-    /// Members that may come before the type are short.
+    /// Number of bytes searched for the type; members before it are short.
     const PROBE: usize = 4096;
     let head = text.get(..PROBE).unwrap_or(text);
     let at = head.windows(10).position(|w| w == b"\"Topology\"");

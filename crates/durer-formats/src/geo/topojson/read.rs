@@ -142,7 +142,7 @@ impl Topology<'_> {
         Ok(())
     }
 
-    /// Reads the features of an object: those of a collection, or the object itself.
+    /// Reads the features of an object: a collection's, or the object itself.
     fn object(&mut self, object: Text<'_>) -> Result<()> {
         let members = object.members()?;
         if kind(&members).as_deref() != Some("GeometryCollection")

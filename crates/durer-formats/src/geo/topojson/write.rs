@@ -61,7 +61,7 @@ fn write_feature(out: &mut impl Write, feature: &Feature, paths: &mut Paths<'_>)
     out.write_all(b"}")
 }
 
-/// Writes a geometry but for its last bracket.
+/// Writes a geometry without its last bracket.
 fn write_geometry(
     out: &mut impl Write,
     geometry: &Geometry,

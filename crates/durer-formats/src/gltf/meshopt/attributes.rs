@@ -120,7 +120,7 @@ fn decode_lane(
     Ok(())
 }
 
-/// Decodes sixteen differences of `width` bits; one whose bits are all set follows as a byte of its own.
+/// Decodes sixteen differences of `width` bits; a difference with all bits set is replaced by a following byte.
 fn decode_group(body: &mut Bytes<'_>, group: &mut [u8; GROUP], width: u32) -> Result<(), Refusal> {
     if width == 0 {
         group.fill(0);
@@ -130,7 +130,7 @@ fn decode_group(body: &mut Bytes<'_>, group: &mut [u8; GROUP], width: u32) -> Re
     let per_byte = 8 / width as usize;
     let sentinel = (0xff >> (8 - width)) as u8;
     for (i, value) in group.iter_mut().enumerate() {
-        // Single bits stand lowest first, wider ones highest first.
+        // Single bits are stored lowest first, wider groups highest first.
         let place = i % per_byte;
         let shift = if width == 1 { place } else { (per_byte - 1 - place) * width as usize };
         *value = packed[i / per_byte] >> shift & sentinel;

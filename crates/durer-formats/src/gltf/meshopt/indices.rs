@@ -5,7 +5,7 @@ use super::{Bytes, Refusal, TOO_LONG, TOO_SHORT, unzigzag};
 /// Entries of each queue.
 const QUEUE: usize = 16;
 
-/// The last sixteen things pushed; reading what was never pushed is an error.
+/// The last sixteen values pushed; reading an entry that was never pushed is an error.
 struct Queue<T> {
     entries: [Option<T>; QUEUE],
     pushed: usize,

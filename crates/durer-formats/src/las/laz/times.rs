@@ -1,7 +1,7 @@
 //! GPS times of LAZ's second version, without recursion.
 //!
-//! The crate `laz` follows a change of sequence by a call of itself, as deep as a file has such changes: a few hundred
-//! bytes overflow the stack. Writers change the sequence once per point.
+//! The crate `laz` recurses for each change of sequence in a file: a few hundred bytes overflow the stack. Writers
+//! change the sequence once per point.
 //!
 //! Source: M. Isenburg, *LASzip: lossless compression of LiDAR data*, Photogrammetric Engineering and Remote Sensing 79
 //! (2), 2013.
@@ -18,7 +18,7 @@ const CHANGES: usize = 3;
 const FACTOR: i32 = 500;
 /// Least factor.
 const LEAST: i32 = -10;
-/// Symbol of a time that is that of the point before.
+/// Symbol of a time that equals the time of the point before.
 const SAME: i32 = FACTOR - LEAST + 1;
 /// Symbol of a time that begins a sequence.
 const BEGIN: i32 = SAME + 1;
@@ -64,7 +64,7 @@ impl Default for Times {
 }
 
 impl Times {
-    /// Decompresses one symbol and what belongs to it; returns whether it only changes the sequence.
+    /// Decompresses one symbol and its data; returns whether it only changes the sequence.
     fn step<R: Read>(&mut self, decoder: &mut ArithmeticDecoder<R>) -> io::Result<bool> {
         let Sequence { difference, .. } = self.sequences[self.last];
         if difference == 0 {
@@ -127,7 +127,7 @@ impl Times {
         sequence.extremes = extremes.unwrap_or(sequence.extremes);
     }
 
-    /// Begins a sequence with a time of its own.
+    /// Begins a sequence with an uncompressed time.
     fn begin<R: Read>(&mut self, decoder: &mut ArithmeticDecoder<R>) -> io::Result<()> {
         let high = (self.sequences[self.last].time >> 32) as i32;
         let high = self.numbers.decompress(decoder, high, 8)?;

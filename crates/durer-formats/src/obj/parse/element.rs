@@ -6,8 +6,8 @@ use super::{Parser, Run};
 use crate::{Error, Place, Result, text};
 use durer::scene::Topology;
 
-/// Number of parts from which on a change of name alone starts no new one: a name per face would take more memory than
-/// the file.
+/// Number of parts above which a change of name alone does not start a new one: a name per face would take more memory
+/// than the file.
 const MAX_NAMED_PARTS: usize = 1 << 16;
 
 impl Parser<'_> {
@@ -129,7 +129,7 @@ impl Parser<'_> {
     /// Checks the number of primitives against the limit.
     ///
     /// # Errors
-    /// More primitives than allowed: only joined lines get here beyond what was counted before.
+    /// More primitives than allowed; only joined lines can exceed the number counted before.
     fn check_limit(&self) -> Result<()> {
         let out = &self.out;
         let value = out.triangles.indices.len() / 3 + out.lines.len() / 2 + out.points.len();
@@ -152,9 +152,9 @@ pub(super) struct Part<'a> {
 }
 
 impl Part<'_> {
-    /// Returns whether material and names are equal. Called for every face: equal names are mostly the same place of
-    /// the text. Most files have none, and `memcmp` of nothing at a pointer to nothing takes hundreds of cycles on
-    /// some machines.
+    /// Returns whether material and names are equal. Called for every face. Equal names mostly have the same address in
+    /// the text. Most files have no names, and `memcmp` of an empty slice at a dangling pointer takes hundreds of
+    /// cycles on some machines.
     fn is(&self, other: &Self) -> bool {
         let same = |a: &[u8], b: &[u8]| {
             a.len() == b.len() && (a.is_empty() || a.as_ptr() == b.as_ptr() || a == b)

@@ -31,7 +31,7 @@ impl Parser<'_> {
     /// Checks that something is left to show.
     ///
     /// # Errors
-    /// What was wrong first, where nothing can be shown because of it.
+    /// The first fault, if nothing can be shown because of it.
     fn check_something_left(&self) -> Result<()> {
         let (out, repairs) = (&self.out, &self.out.repairs);
         let no_element =
@@ -48,8 +48,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Returns whether any triangle, line or point has all its coordinates; of a cloud of points, any
-    /// vertex.
+    /// Returns whether any triangle, line or point has all its coordinates; for a cloud of points, any vertex.
     fn has_place(&self, cloud: bool) -> bool {
         let out = &self.out;
         let finite = |&i: &u32| out.positions.get(i as usize).is_some_and(|p| p.is_finite());
@@ -64,8 +63,8 @@ impl Parser<'_> {
             || out.points.iter().any(finite)
     }
 
-    /// Checks files in which lines that look like vertices continued others: there are fewer items
-    /// than counted, and an index may point nowhere.
+    /// Checks files in which lines that look like vertices continued others: there are fewer items than counted, so an
+    /// index may be out of range.
     fn check_joined(&self) -> Result<()> {
         let out = &self.out;
         let positions = out.lines.iter().chain(&out.points).copied();

@@ -11,7 +11,7 @@ use usvg::roxmltree::{Node, NodeId};
 const MAX_COPIED: usize = 100_000;
 
 impl<'a, 'i> Walk<'a, 'i> {
-    /// Copies what `use` elements show if custom properties around them make it look different there.
+    /// Copies the targets of `use` elements if custom properties around these make them look different there.
     pub(super) fn copy_shown(&mut self) -> Result<()> {
         let mut left = MAX_COPIED;
         for (node, scope) in std::mem::take(&mut self.uses) {
@@ -29,7 +29,7 @@ impl<'a, 'i> Walk<'a, 'i> {
             }
             let count = shown.descendants().count();
             if count > left {
-                let what = "there is too much that custom properties change where it is shown";
+                let what = "custom properties change too many copied elements";
                 self.told.push((node.range().start, what.to_owned()));
                 break;
             }

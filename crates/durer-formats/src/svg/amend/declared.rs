@@ -98,7 +98,7 @@ impl<'a, 'i> Walk<'a, 'i> {
                 );
             }
             "width" | "height" if is_root && (value == "auto" || value.ends_with('%')) => {
-                // There is nothing around that it could be a part of.
+                // There is no element around that it could be part of.
                 return;
             }
             "width" | "height" if value == "auto" => return set(name, None),

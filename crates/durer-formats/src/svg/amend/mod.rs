@@ -1,6 +1,6 @@
 //! A drawing's document in terms that usvg knows: attributes with values that it understands, in place of style sheets
-//! and of what is newer than it. What cannot be used gives a warning with its place and is removed: then what is
-//! inherited or the default counts, as CSS has it.
+//! and newer features. Unusable values give a warning with their place and are removed: then the inherited or default
+//! value applies, as in CSS.
 
 mod copies;
 mod declared;
@@ -30,10 +30,10 @@ pub(super) struct Amended {
     pub pictures: Vec<(String, usize)>,
 }
 
-/// Puts a document in terms that usvg knows. Pictures get numbers from `first_picture` on.
+/// Rewrites a document in terms that usvg knows. Pictures get numbers from `first_picture` on.
 ///
 /// # Errors
-/// Where style rules and elements are too many.
+/// If there are too many style rules and elements.
 pub(super) fn amended(document: &Document<'_>, first_picture: usize) -> Result<Amended> {
     let mut walk = Walk::new(document, first_picture);
     let mut stack: Vec<(NodeId, Scope)> = Vec::new();
@@ -260,8 +260,8 @@ impl<'a, 'i> Walk<'a, 'i> {
     ) -> bool {
         let (name, value) = said;
         if kind == Kind::Transform && !can_be_drawn(value) {
-            let what = "it makes everything smaller than 10⁻⁷ of its size, or flat, or reaches beyond all numbers; what \
-                        it applies to is left out";
+            let what = "it makes everything flat or smaller than 10⁻⁷ of its size, or has too large \
+                        numbers; the elements it applies to are left out";
             self.tell(said, element, at, what);
             return false;
         }
@@ -281,7 +281,7 @@ impl<'a, 'i> Walk<'a, 'i> {
         }
     }
 
-    /// Reports references to what does not exist.
+    /// Reports references to missing elements.
     fn check_links(&mut self, node: Node<'a, 'i>, name: &str, value: &str, at: usize) {
         let element = node.tag_name().name();
         let wants = match name {
@@ -300,7 +300,7 @@ impl<'a, 'i> Walk<'a, 'i> {
         }
         let link = match name {
             "href" => value.trim().strip_prefix('#'),
-            // Without something in its place.
+            // Without a replacement.
             _ => filters::links(value)
                 .next()
                 .filter(|_| value.split_once(')').is_some_and(|(_, rest)| rest.trim().is_empty())),
@@ -331,7 +331,7 @@ impl<'a, 'i> Walk<'a, 'i> {
     }
 }
 
-/// Attributes that are properties of which not all is drawn.
+/// Attributes whose properties are only partly drawn.
 const PRESENTATION: [&str; 3] = ["vector-effect", "font-variant", "text-decoration"];
 
 /// Returns whether a value is one that all properties may have.
@@ -345,7 +345,7 @@ fn is_general(value: &str) -> bool {
 fn general(name: &str, value: &str) -> Option<Cow<'static, str>> {
     match (value.to_ascii_lowercase().as_str(), initial(name)) {
         ("initial", Some(value)) => Some(Cow::Borrowed(value)),
-        // Of those that are not taken from around the parent's may be.
+        // Properties that are not inherited may still take the parent's value.
         ("inherit", None) => Some(Cow::Borrowed("inherit")),
         _ => None,
     }

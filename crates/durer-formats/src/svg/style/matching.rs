@@ -41,8 +41,8 @@ impl Matcher {
 
     /// Returns whether an element matches a selector.
     ///
-    /// From the last part on backwards it keeps the elements that may be meant; of several nested ones the innermost is
-    /// enough where any ancestor will do. Cost: parts times ancestors and siblings.
+    /// From the last part backwards it keeps the candidate elements; of several nested ones the innermost suffices if
+    /// any ancestor may match. Cost: parts times ancestors and siblings.
     pub fn matches(&self, selector: &Selector, node: Node<'_, '_>) -> bool {
         if !self.fits(&selector.last, node) {
             return false;
@@ -83,7 +83,7 @@ impl Matcher {
                 Combinator::Descendant => {
                     node.ancestors().skip(1).filter(Node::is_element).for_each(&mut add);
                 }
-                // What stands before an earlier sibling stands before this one too.
+                // An element before an earlier sibling is before this one too.
                 Combinator::LaterSibling if before == node.parent() => {}
                 Combinator::LaterSibling => {
                     node.prev_siblings().skip(1).filter(Node::is_element).for_each(&mut add);
@@ -97,7 +97,7 @@ impl Matcher {
         found
     }
 
-    /// Returns whether an element is all that.
+    /// Returns whether an element meets all conditions.
     fn fits(&self, compound: &Compound, node: Node<'_, '_>) -> bool {
         self.step() && compound.iter().all(|simple| self.is(simple, node))
     }

@@ -22,7 +22,7 @@ impl Screen {
     /// Returns whether one of the queries holds.
     ///
     /// # Errors
-    /// Where none holds and one is not understood.
+    /// If none holds and one is not understood.
     pub fn matches(&self, queries: &[Piece<'_>]) -> Result<bool, ()> {
         let mut is_unknown = false;
         for query in split(queries, ',') {

@@ -33,7 +33,7 @@ const COST: usize = 64;
 /// A warning about a style sheet or attribute, and its place in the document.
 pub(super) type Told = (usize, String);
 
-/// The style sheets of a document, and what of them elements get.
+/// The style sheets of a document, and their declarations for elements.
 pub(super) struct Styles {
     rules: Vec<Rule>,
     /// Selectors of rules that may match elements, by an id, class or type that the elements must
@@ -55,7 +55,7 @@ pub(super) struct Styles {
 /// The declarations that count for an element, by property. Names of custom properties begin with `--`.
 pub(super) type Said = BTreeMap<String, Declared>;
 
-/// A value of a property, and where in the document it was said, where that is in a style sheet.
+/// A value of a property, and its place in the document if it is from a style sheet.
 #[derive(Debug, Clone)]
 pub(super) struct Declared {
     pub value: String,
@@ -104,7 +104,7 @@ impl Styles {
         styles
     }
 
-    /// Sorts selectors by what an element must have.
+    /// Sorts selectors by the id, class or type that they require.
     fn index(&mut self) {
         for (i, rule) in self.rules.iter().enumerate() {
             for (j, selector) in rule.selectors.iter().enumerate() {
@@ -140,7 +140,7 @@ impl Styles {
     /// Returns the declarations for an element, of rules and its own `style`.
     ///
     /// # Errors
-    /// Where rules and elements are too many.
+    /// If there are too many rules and elements.
     pub fn said(&mut self, document: &Document<'_>, node: Node<'_, '_>) -> Result<Said> {
         let own = node.attribute("style").map(|text| self.own(node, text));
         let matching = self.matching(node);
@@ -213,7 +213,7 @@ fn usable(rule: Rule, start: usize, is_sheet: bool, told: &mut Vec<Told>) -> Rul
 fn start_of(document: &Document<'_>, text: Node<'_, '_>, content: &str) -> usize {
     let range = text.range();
     let raw = document.input_text().get(range.clone()).unwrap_or_default();
-    // Within `CDATA` it is later; where there are entities it cannot be said exactly.
+    // Within `CDATA` it is later; with entities it cannot be determined exactly.
     range.start + raw.find(content).unwrap_or_default()
 }
 
@@ -223,8 +223,7 @@ fn screen(document: &Document<'_>) -> Screen {
     Screen { width, height }
 }
 
-/// Returns the width and height of what percentages within an `svg` element are of, where it says
-/// them.
+/// Returns the width and height to which percentages within an `svg` element refer, if it gives them.
 pub(super) fn viewport(svg: Node<'_, '_>) -> Option<[f64; 2]> {
     let view_box = svg.attribute("viewBox").and_then(|text| text.parse::<svgtypes::ViewBox>().ok());
     if let Some(view_box) = view_box {

@@ -140,7 +140,7 @@ fn is_known(name: &str) -> bool {
     initial(name).is_some() || OTHERS.contains(&name)
 }
 
-/// Returns whether a property means something for an element.
+/// Returns whether a property applies to an element.
 pub(crate) fn takes(element: &str, name: &str) -> bool {
     match name {
         "x" | "y" | "width" | "height" => {
@@ -151,7 +151,7 @@ pub(crate) fn takes(element: &str, name: &str) -> bool {
         "r" => element == "circle",
         "rx" | "ry" => matches!(element, "rect" | "ellipse"),
         "d" => element == "path",
-        // Attributes of these names mean something else there.
+        // Attributes with these names have another meaning there.
         "rotate" => !matches!(element, "text" | "tspan" | "altGlyph" | "animateMotion"),
         "scale" => element != "feDisplacementMap",
         _ => true,
@@ -205,7 +205,7 @@ pub(super) fn usable(
         _ => {}
     }
     let Some(kind) = Kind::of_style(name) else { return Ok(vec![declaration.clone()]) };
-    // Of an element's own it is examined when it is known whether they mean something there.
+    // An element's own declarations are checked when it is known whether they apply there.
     if !is_sheet && !takes("g", name) {
         return Ok(vec![declaration.clone()]);
     }
@@ -245,7 +245,7 @@ pub(crate) fn not_drawn(name: &str, value: &str) -> Option<String> {
 /// Lines of `text-decoration` that are drawn.
 const LINES: [&str; 5] = ["underline", "overline", "line-through", "blink", "solid"];
 
-/// Lengths that are none in style sheets without a unit, in browsers.
+/// Properties whose lengths need a unit in style sheets, as in browsers.
 const NEED_UNITS: [&str; 5] = ["font-size", "height", "letter-spacing", "width", "word-spacing"];
 
 /// Returns a context for values that are not relative.

@@ -195,8 +195,7 @@ impl<'a, 'b> Parser<'a, 'b> {
         (self.at > start).then_some(compound)
     }
 
-    /// Returns the name of a type, if there is one; `*` is all, and prefixes of namespaces are
-    /// passed over.
+    /// Returns the name of a type, if there is one; `*` matches all, and prefixes of namespaces are skipped.
     fn type_name(&mut self) -> Option<Option<String>> {
         let mut name = None;
         loop {

@@ -20,7 +20,7 @@ pub(super) struct Declaration {
     pub at: usize,
 }
 
-/// Selectors and what is said of elements that they match.
+/// Selectors and the declarations for elements that they match.
 #[derive(Debug)]
 pub(super) struct Rule {
     pub selectors: Vec<Selector>,
@@ -35,7 +35,7 @@ pub(super) struct Sheet {
     pub told: Vec<(usize, String)>,
 }
 
-/// Letters of what is not understood that a message shows.
+/// Number of letters of an unknown text that a message quotes.
 const SHOWN: usize = 40;
 
 /// Returns the beginning of a text.
@@ -56,7 +56,7 @@ pub(super) fn parse(text: &str, screen: &Screen) -> Sheet {
     reader.sheet
 }
 
-/// Returns the declarations of a `style` attribute, and what in it is not understood.
+/// Returns the declarations of a `style` attribute, and its faults.
 pub(super) fn declarations(text: &str) -> (Vec<Declaration>, Vec<(usize, String)>) {
     let pieces = tokens(text);
     let screen = Screen::default();
@@ -147,7 +147,7 @@ impl Reader<'_, '_> {
                 }
             },
             "layer" if is_block && depth < MAX_DEPTH => {
-                self.tell(at, "rules of `@layer` count as if they stood outside of it".to_owned());
+                self.tell(at, "rules of `@layer` count as if they were outside of it".to_owned());
                 self.rules(open + 1, close, depth + 1);
             }
             // Browsers know nearly all that is requested.

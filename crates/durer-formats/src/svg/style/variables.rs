@@ -8,21 +8,21 @@ use std::collections::BTreeMap;
 /// `var()` may lead to values with `var()` so often.
 const MAX_DEPTH: u32 = 32;
 
-/// Values may become so long, in bytes: what doubles again and again would fill the memory.
+/// Largest length of a value in bytes: repeated doubling would fill the memory.
 const MAX_LENGTH: usize = 1 << 16;
 
 /// The custom properties that elements have, one set within another.
 #[derive(Debug, Default)]
 pub(crate) struct Variables {
     sets: Vec<Set>,
-    /// Bytes of values that were put together.
+    /// Number of bytes of substituted values.
     written: usize,
 }
 
 /// Cost of composing a value, beside its length.
 const COST: usize = 64;
 
-/// All values together may be so long.
+/// Largest total length of all values.
 const MAX_WRITTEN: usize = 1 << 28;
 
 #[derive(Debug)]
@@ -84,8 +84,8 @@ impl Variables {
         self.replace(value, set, &BTreeMap::new(), &mut Vec::new())
     }
 
-    /// Replaces like [`Self::replaced`]; `said` are values that are not replaced yet, `open` the names of those that
-    /// are being replaced.
+    /// Replaces like [`Self::replaced`]; `said` are the values that are not replaced yet, `open` the names being
+    /// replaced.
     fn replace(
         &mut self,
         value: &str,

@@ -6,9 +6,9 @@
 //! only at events, which are ends and crossings. Two segments that cross are neighbours in the status just before, so only
 //! neighbours are compared. Cost: O((n + k) log n) for n segments with k crossings; memory O(n + k).
 //!
-//! Deviations: the paper excludes ends on segments, upright segments and three in a point; here they are defined as
-//! [`crate::clip::crossings`] says. Events are rational numbers, and every comparison is exact, so the order is never
-//! inconsistent. A crossing stays in the queue if its segments are no longer neighbours.
+//! Deviations: the paper excludes ends on segments, vertical segments and three segments in a point; here they are
+//! defined as [`crate::clip::crossings`] says. Events are rational numbers, and every comparison is exact, so the order
+//! is never inconsistent. A crossing stays in the queue if its segments are no longer neighbours.
 
 use super::point::{Meeting, Point, meeting, turn};
 use super::{Crossing, Options, checked};
@@ -70,7 +70,7 @@ pub enum Step {
         /// Its ends in the order of the sweep.
         ends: [DVec2; 2],
     },
-    /// The sweep comes to a point.
+    /// The sweep reaches a point.
     Event {
         /// The point.
         at: DVec2,
@@ -242,7 +242,7 @@ impl Sweep {
         t: &mut impl Tracer<Step>,
     ) {
         let [Some(lower), Some(upper)] = pair else { return };
-        // Where they overlap, the events are their ends.
+        // If they overlap, their ends are the events.
         let meet = match meeting(self.segments[lower], self.segments[upper]) {
             Meeting::At(point) if point > *at => Some(point),
             _ => None,
@@ -260,8 +260,8 @@ impl Sweep {
     }
 }
 
-/// Returns whether a segment that begins at a point or goes through it is above another one, just right of the point. Those
-/// of one line have the order of their numbers.
+/// Returns whether a segment that begins at a point or goes through it is above another one, just right of the point.
+/// Collinear segments have the order of their numbers.
 fn is_above(segments: &[[DVec2; 2]], segment: usize, other: usize, at: &Point) -> bool {
     let side = at.side(segments[other]);
     let turned = |side: Ordering| side.then_with(|| turn(segments[other], segments[segment]));

@@ -6,7 +6,7 @@
 //! - segments that share an end meet there;
 //! - a segment that ends on another one meets it there;
 //! - segments of one line that overlap meet at the two ends of their common piece;
-//! - upright segments run upwards, and a segment of length zero is a point, which may lie on others.
+//! - vertical segments run upwards, and a segment of length zero is a point, which may lie on others.
 //!
 //! ```
 //! use durer::clip::crossings::{Options, all_pairs, bentley_ottmann};

@@ -4,7 +4,7 @@ use crate::clip::exact::{self, Exact};
 use crate::math::DVec2;
 use std::cmp::Ordering;
 
-/// A point of the plane, x / w and y / w with w > 0. The order is that of the sweep: by x, then by y.
+/// A point of the plane, x / w and y / w with w > 0. Points are ordered as in the sweep: by x, then by y.
 #[derive(Debug, Clone)]
 pub struct Point {
     x: Exact,

@@ -1,7 +1,7 @@
-//! Crossings in pairs of floats, of which the second holds what rounding took from the first (T. J.
+//! Crossings in pairs of floats, of which the second holds the rounding error of the first (T. J.
 //! Dekker, *A floating-point technique for extending the available precision*, 1971): about 100 bits.
 //!
-//! Only where that many tell how a coordinate is rounded is it given.
+//! A coordinate is returned only if these bits determine its rounding.
 
 use crate::math::DVec2;
 use std::ops::{Add, Mul, Sub};
@@ -64,8 +64,7 @@ impl Pair {
         self.0 == 0.0 || TAME.contains(&self.0.abs())
     }
 
-    /// Returns the first term, if a value that is off by no more than `error` rounds to it for
-    /// sure.
+    /// Returns the first term if every value within `error` of the sum rounds to it.
     #[inline(always)]
     fn rounded(self, error: f64) -> Option<f64> {
         let next = if self.1 > 0.0 { self.0.next_up() } else { self.0.next_down() };

@@ -1,10 +1,10 @@
 //! Many segments against one rectangle: Liang–Barsky without branches, several segments at a time.
 //!
-//! Segments lie in four arrays, one per coordinate, so that the lanes of a vector register hold the
-//! same coordinate of several segments; segments that differ in what happens to them then cost the
-//! same, where a scalar clipper loses most of its time to mispredicted branches. Lanes that rounding
-//! could have decided wrongly, or that are not finite, are clipped again one by one, so every result
-//! is that of [`liang_barsky::clip`] bit for bit, at every SIMD level and number of threads.
+//! Segments lie in four arrays, one per coordinate, so that the lanes of a vector register hold the same coordinate of
+//! several segments; segments with different outcomes then cost the same, while a scalar clipper loses most of its time
+//! to mispredicted branches. Lanes that rounding could have decided wrongly, or that are not finite, are clipped again
+//! one by one, so every result is that of [`liang_barsky::clip`] bit for bit, at every SIMD level and number of
+//! threads.
 //!
 //! Cost: O(n); about ten arithmetic instructions and two divisions per end and vector.
 
@@ -64,7 +64,7 @@ impl Default for Options {
 /// The result of a batch, in the order of the input; reuse it to spare the allocation.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Clipped {
-    /// x of the starts; of a segment that is not accepted, the input's. The same below.
+    /// x of the starts; the input's for segments that are not accepted, as for the fields below.
     pub x0: Vec<f64>,
     /// y of the starts.
     pub y0: Vec<f64>,
@@ -125,7 +125,8 @@ impl Clipped {
 
 /// Segments clipped at a time: one word of the accept mask.
 const BLOCK: usize = 64;
-/// Segments handed to a thread at a time: 2 MiB in and out, large beside the cost of handing over.
+/// Number of segments handed to a thread at a time: 2 MiB of input and output, which makes the cost of handing over
+/// negligible.
 #[cfg(feature = "parallel")]
 const CHUNK: usize = 512 * BLOCK;
 
@@ -145,7 +146,7 @@ const CHUNK: usize = 512 * BLOCK;
 /// ```
 ///
 /// # Errors
-/// [`Error::Parameter`] where the arrays differ in length. Non-finite segments are no error here:
+/// [`Error::Parameter`] if the arrays differ in length. Non-finite segments are no error here:
 /// they are listed in the result.
 pub fn clip(
     window: &Rect,
@@ -347,12 +348,12 @@ struct Lanes<S: Simd> {
     doubt: u64,
 }
 
-/// Smallest product of distances that is exact but for relative rounding errors.
+/// Smallest product of distances without underflow, exact up to relative rounding errors.
 const LEAST_PRODUCT: f64 = 1e-280;
 /// See [`LEAST_PRODUCT`].
 const GREATEST_PRODUCT: f64 = 1e300;
-/// Rounding errors of the coordinates of cut points, in halves of an ulp, with what a wrong order of
-/// two borders adds; what [`super::border`] uses.
+/// Bound on the rounding errors of the coordinates of cut points, including the error from a wrong order of two
+/// borders; the one that [`super::border`] uses.
 const POINT_DOUBT: f64 = 16.0 * crate::clip::exact::EPSILON;
 
 #[simd]
@@ -375,8 +376,8 @@ fn clip_lanes<S: Simd>(
     let (entry_y, exit_y) = (down.select(w.top, w.bottom), down.select(w.bottom, w.top));
     let (enter_x, leave_x) = (w.left - px, w.right - px);
     let (enter_y, leave_y) = ((entry_y - py).abs(), (exit_y - py).abs());
-    // An end beyond the border on its own side of the segment is cut there; one beyond the border on
-    // the other end's side means that the whole segment is, and what else is computed is not used.
+    // An end beyond the border on its own side of the segment is cut there. An end beyond the border on the other end's
+    // side means that the whole segment is beyond it; the other results are then not used.
     let (p_out_x, q_out_x) = (px.simd_lt(w.left), qx.simd_gt(w.right));
     let (p_below, p_above) = (py.simd_lt(w.bottom), py.simd_gt(w.top));
     let (q_below, q_above) = (qy.simd_lt(w.bottom), qy.simd_gt(w.top));
@@ -399,7 +400,7 @@ fn clip_lanes<S: Simd>(
         & product.simd_lt(S::f64s::splat(simd, GREATEST_PRODUCT));
     let doubt_order = !ordered & (p_out_x | q_out_x) & (p_out_y | q_out_y);
 
-    // The two cut points; near a corner the scalar clipper has to say on which side they are.
+    // The two cut points; near a corner the scalar clipper must decide their sides.
     let line = Lines { p: [px, py], d: [dx, dy], size: [px.abs() + qx.abs(), py.abs() + qy.abs()] };
     let entry = line.cut(simd, w, enters_by_x, (enter_x, w.left), (entry_y - py, entry_y));
     let exit = line.cut(simd, w, leaves_by_x, (leave_x, w.right), (exit_y - py, exit_y));
@@ -455,7 +456,7 @@ impl<S: Simd> Lines<S> {
         let other = by_x.select(self.p[1], self.p[0]) + along;
         let margin = by_x.select(self.size[1], self.size[0]) * POINT_DOUBT + 1e-290;
         let (min, max) = (by_x.select(w.bottom, w.left), by_x.select(w.top, w.right));
-        // Of a segment that misses the window, the cut lies beyond a border, but not near it either.
+        // If a segment misses the window, its cut is beyond a border, but not near it either.
         let doubt = !((other - min).abs().simd_gt(margin) & (max - other).abs().simd_gt(margin));
         CutLanes { x: by_x.select(x.1, other), y: by_x.select(other, y.1), doubt }
     }

@@ -53,7 +53,7 @@ impl ClipBox<3> {
     /// Creates the box between two corners.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where a number is not finite or `min > max` on an axis.
+    /// [`Error::Parameter`] if a number is not finite or `min > max` on an axis.
     pub fn new(min: DVec3, max: DVec3) -> Result<Self> {
         if min.is_finite() && max.is_finite() && min.cmple(max).all() {
             let (min, max) = (min.to_array(), max.to_array());
@@ -149,7 +149,7 @@ impl<const N: usize> Canonical<N> {
     ///
     /// The coordinate on the axis is the border itself; the others are within 4 ulp of the largest
     /// coordinate, and on the side of each border of the window that the exact crossing is on.
-    // A call would pass the cut through memory, which costs as much as making it.
+    // A call would pass the cut through memory, which costs as much as computing it.
     #[inline(always)]
     pub(super) fn cut(&self, window: &ClipBox<N>, axis: usize, upper: usize) -> [f64; N] {
         let border = window.borders[axis][upper];
@@ -230,7 +230,7 @@ impl<const N: usize> Canonical<N> {
         if finite(&point) { point } else { self.at_huge(t) }
     }
 
-    /// Returns the point of [`Self::at`] where a difference overflows: with everything an eighth as large.
+    /// Returns the point of [`Self::at`] where a difference overflows: with everything scaled by an eighth.
     #[cold]
     fn at_huge(&self, t: f64) -> [f64; N] {
         let (p, q) = (self.p.map(|v| v * 0.125), self.q.map(|v| v * 0.125));
@@ -285,8 +285,7 @@ impl<const N: usize> Canonical<N> {
     }
 }
 
-/// Returns whether a comes after b lexicographically; no branches, which half of all segments would
-/// miss.
+/// Returns whether a comes after b lexicographically; without branches, which half of all segments would mispredict.
 #[inline]
 pub(super) fn is_greater<const N: usize>(a: &[f64; N], b: &[f64; N]) -> bool {
     (0..N).rev().fold(false, |rest, k| (a[k] > b[k]) | ((a[k] == b[k]) & rest))

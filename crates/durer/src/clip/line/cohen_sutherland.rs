@@ -156,11 +156,11 @@ fn run<const N: usize, P: From<[f64; N]>>(
         return Ok(None);
     }
     let mut codes = [code_start, code_end];
-    // Axis by axis: what is written as two numbers would be waited for where it is read as one point.
+    // Axis by axis: reading one point just after writing two numbers would stall.
     let mut ends: [[f64; 2]; N] = std::array::from_fn(|k| [start[k], end[k]]);
     let point =
         |ends: &[[f64; 2]; N], which: usize| P::from(std::array::from_fn(|k| ends[k][which]));
-    // Each turn clears at least one bit for good, so 2·N·2 turns would be the end in any case.
+    // Each turn clears at least one bit permanently, so there are at most 2·N·2 turns.
     while !(codes[0] | codes[1]).is_inside() {
         if !(codes[0] & codes[1]).is_inside() {
             t.step(|| Step::Rejected);
@@ -183,8 +183,8 @@ fn run<const N: usize, P: From<[f64; N]>>(
 
 /// A segment that is cut without being turned round: [`Canonical::cut`] with the same bits.
 ///
-/// For a point from p to q, (q − p)·((border − p) / (q − p)) does not hang on the sign of q − p, for
-/// rounding is symmetric. So of the canonical direction only its first end is needed.
+/// For a point from p to q, (q − p)·((border − p) / (q − p)) does not depend on the sign of q − p, because rounding is
+/// symmetric. So only the first end in the canonical direction is needed.
 #[derive(Debug, Clone, Copy)]
 struct Line<const N: usize> {
     ends: [[f64; N]; 2],
@@ -202,7 +202,7 @@ impl<const N: usize> Line<N> {
     ///
     /// # Errors
     /// [`crate::Error::NonFinite`], with index 0 for the start and 1 for the end.
-    // Not in the loop, where the compiler would do it for every segment.
+    // Kept out of the loop, where the compiler would evaluate it for every segment.
     #[cold]
     #[inline(never)]
     fn settle(
@@ -218,11 +218,11 @@ impl<const N: usize> Line<N> {
     }
 
     /// Returns the crossing with a border, which the segment must span, coordinate by coordinate, and its code.
-    /// Segments parallel to the axis take the short way without arithmetic.
+    /// Segments parallel to the axis take a short path without arithmetic.
     ///
-    /// Coordinates that are not finite let none of the quick tests succeed, so that only the cases that these leave
-    /// open have to be tested.
-    // A call would pass the cut through memory, which costs as much as making it.
+    /// Coordinates that are not finite fail all quick tests, so that only the cases that these leave open must be
+    /// checked for them.
+    // A call would pass the cut through memory, which costs as much as computing it.
     #[inline(always)]
     fn cut(
         &self,
@@ -267,8 +267,8 @@ impl<const N: usize> Line<N> {
         Ok(code)
     }
 
-    /// Returns whether the second end is lexicographically smaller. Of a segment in the plane that
-    /// is not parallel to an axis x tells.
+    /// Returns whether the second end is lexicographically smaller. For a segment in the plane that is not parallel to
+    /// an axis, x decides.
     #[inline(always)]
     fn is_turned(&self) -> bool {
         let [start, end] = &self.ends;
@@ -276,7 +276,7 @@ impl<const N: usize> Line<N> {
     }
 
     /// Returns the other coordinate of a crossing with a border at a right angle: it is inside, or the AND
-    /// test would have rejected the segment. Adding zero turns −0 into 0, as the long way does.
+    /// test would have rejected the segment. Adding zero turns −0 into 0, as the long path does.
     #[cold]
     #[inline(never)]
     fn short_way(&self, k: usize) -> Result<f64> {

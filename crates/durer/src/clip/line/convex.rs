@@ -27,8 +27,8 @@ impl HalfPlane {
 /// A convex polygon, its vertices counter-clockwise (y up).
 ///
 /// # Guarantees
-/// All coordinates are finite; at least three vertices; no two neighbours coincide; every turn is
-/// to the left or straight on, and the ring goes round once.
+/// All coordinates are finite; at least three vertices; no two neighbours coincide; every turn is to the left or
+/// straight, and the ring winds around once.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConvexPolygon {
     vertices: Vec<DVec2>,
@@ -39,7 +39,7 @@ impl ConvexPolygon {
     /// dropped.
     ///
     /// # Errors
-    /// [`Error::NonFinite`]; [`Error::Parameter`] where the ring is not convex or has no area.
+    /// [`Error::NonFinite`]; [`Error::Parameter`] if the ring is not convex or has no area.
     pub fn new(vertices: &[DVec2]) -> Result<Self> {
         if let Some(index) = vertices.iter().position(|v| !v.is_finite()) {
             return Err(Error::NonFinite { what: "vertex", index });
@@ -81,8 +81,8 @@ fn turns(ring: &[DVec2]) -> impl Iterator<Item = Orientation> + '_ {
     pairs(ring).zip(ring.iter().cycle().skip(2)).map(|((a, b), c)| orient2d(a, b, *c))
 }
 
-/// Returns whether a ring that only turns left goes round once: whether it goes up and down again only once, and does
-/// not turn back on itself.
+/// Returns whether a ring that only turns left winds around once: whether it goes up and down only once, and does not
+/// turn back on itself.
 fn goes_round_once(ring: &[DVec2]) -> bool {
     let ups: Vec<bool> =
         pairs(ring).filter(|(a, b)| a != b).map(|(a, b)| (b.y, b.x) > (a.y, a.x)).collect();
@@ -209,7 +209,7 @@ impl HalfSpace<3> for Plane {
             [false, false, true] => 2,
             _ => return None,
         };
-        // Only a normal of unit length has a border that is certainly a floating-point number.
+        // Only with a unit normal along an axis is the border's coordinate certainly a floating-point number.
         let n = self.normal.to_array()[axis];
         (n.abs() == 1.0).then_some((axis, -self.distance * n))
     }
@@ -255,7 +255,7 @@ fn exact_crossing<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N
     })
 }
 
-/// Returns a corner that rounding cannot tell from the cut: in the tip of a needle no other number is
+/// Returns a corner that equals the cut up to rounding: in the tip of a needle no other floating-point number is
 /// inside.
 fn nearest_corner<const N: usize, H: HalfSpace<N>>(
     space: &H,

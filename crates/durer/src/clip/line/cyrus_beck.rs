@@ -1,12 +1,12 @@
 //! Cyrus–Beck line clipping.
 //!
-//! Mike Cyrus and Jay Beck, "Generalized two- and three-dimensional clipping", Computers & Graphics
-//! 3(1), 1978. Object space; O(n) for a window with n borders. Every border is crossed inwards or
-//! outwards; the last way in and the first way out bound the visible part.
+//! Mike Cyrus and Jay Beck, "Generalized two- and three-dimensional clipping", Computers & Graphics 3(1), 1978. Object
+//! space; O(n) for a window with n borders. Every border is crossed inwards or outwards; the last entry and the first
+//! exit bound the visible part.
 //!
-//! Rules in place of luck: a segment parallel to a border, or of length zero, crosses it nowhere and
-//! is judged by the side its ends are on. Sides and the order of crossings are exact; a cut point
-//! that rounding puts outside is moved inside by a few ulp.
+//! Special cases have rules: a segment parallel to a border, or of length zero, does not cross it and is judged by the
+//! side of its ends. Sides and the order of crossings are exact; a cut point that rounding puts outside is moved inside
+//! by a few ulp.
 
 use super::border::Canonical;
 use super::passage::clip_convex;

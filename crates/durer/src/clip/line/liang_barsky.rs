@@ -3,7 +3,7 @@
 //! You-Dong Liang and Brian Barsky, "A new concept and method for line clipping", ACM Transactions
 //! on Graphics 3(1), 1984. Object space; O(1) for rectangle and box, O(n) for n half-planes. The
 //! segment is p + t·(q − p); each border bounds t from below where it is crossed inwards and from
-//! above where it is crossed outwards; what is left between the bounds is visible.
+//! above where it is crossed outwards; the part between the bounds is visible.
 //!
 //! The bounds are compared as numbers where rounding cannot matter and exactly where it could.
 

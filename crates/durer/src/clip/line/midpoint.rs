@@ -1,9 +1,8 @@
 //! Midpoint subdivision.
 //!
-//! Robert Sproull and Ivan Sutherland, "A clipping divider", Fall Joint Computer Conference 1968.
-//! Image space: integer pixels, shifts and additions only; at most ⌈log2 n⌉ halvings for each end,
-//! n the larger extent of the segment in pixels. Halving goes on until a visible and an invisible
-//! pixel are neighbours.
+//! Robert Sproull and Ivan Sutherland, "A clipping divider", Fall Joint Computer Conference 1968. Image space: integer
+//! pixels, shifts and additions only; at most ⌈log2 n⌉ halvings for each end, n the larger extent of the segment in
+//! pixels. Halving continues until a visible and an invisible pixel are neighbours.
 //!
 //! Middles are kept with 31 bits below the pixel, because rounding each to a pixel would add up to half
 //! a pixel per halving. A middle is visible if its nearest pixel is in the window. A cut point is within
@@ -62,7 +61,7 @@ impl PixelWindow {
     /// Creates the rectangle between two pixels.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where `min > max` on an axis.
+    /// [`Error::Parameter`] if `min > max` on an axis.
     pub fn new(min: IVec2, max: IVec2) -> Result<Self> {
         if min.cmple(max).all() {
             Ok(Self { min, max })
@@ -171,7 +170,7 @@ pub fn clip(
     Some(result)
 }
 
-/// Bits below the pixel: as many as leave room for the sum of two i32 in i64.
+/// Bits below the pixel, the largest number that leaves room for the sum of two i32 in i64.
 const FRACTION: u32 = 31;
 
 /// A point in units of 2⁻³¹ pixel.
@@ -204,8 +203,7 @@ impl Fine {
     }
 }
 
-/// A point that is not visible and one that is, with the border between them; for an end that is
-/// visible, both are.
+/// An invisible and a visible point with the border between them; for a visible end, both are visible.
 struct Gap {
     outside: Fine,
     visible: Fine,

@@ -3,10 +3,10 @@
 //! Tina Nicholl, D. T. Lee and Robin Nicholl, "An efficient new algorithm for 2-D line clipping: its
 //! development and analysis", SIGGRAPH 1987. Object space; O(1), and no crossing is computed that is
 //! not an end of the result. The rays from the first end through the window's corners divide the
-//! plane into regions; the region of the other end tells which borders are crossed.
+//! plane into regions; the region of the other end determines the borders that are crossed.
 //!
-//! The paper reflects every case to one of three; here the reflection is in the outcodes, and on
-//! which side of a ray the other end lies is decided exactly.
+//! The paper reflects every case to one of three; here the reflection is in the outcodes, and the side of a ray that
+//! the other end is on is decided exactly.
 
 use super::border::{Canonical, bit};
 use super::{ClipBox, End, Segment};

@@ -11,8 +11,8 @@ use std::cmp::Ordering;
 /// Step of an algorithm, in the direction of the caller's segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step<P> {
-    /// A border was examined: every one of a rectangle or box by Liang and Barsky, otherwise all up to the first
-    /// that both ends lie beyond.
+    /// A border was examined. Liang and Barsky examine every border of a rectangle or box; otherwise the search ends at
+    /// the first border that both ends are beyond.
     Border {
         /// Its index in the window; of a rectangle or box 2·axis, plus 1 for the larger coordinate.
         border: usize,
@@ -70,8 +70,8 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// Returns p of Liang and Barsky, the product of the outer normal and the segment's direction: where it is
-    /// negative the segment enters, where it is positive it leaves, if it is zero it runs along the border.
+    /// Returns p of Liang and Barsky, the product of the outer normal and the segment's direction: if it is negative,
+    /// the segment enters; if it is positive, it leaves; if it is zero, it runs along the border.
     pub fn p(&self) -> f64 {
         self.start - self.end
     }
@@ -238,7 +238,7 @@ fn passage<const N: usize, H: HalfSpace<N>>(
     for (i, space) in spaces.iter().enumerate() {
         let relation = relate(space, line);
         report(i, relation);
-        // Of several borders crossed at the same point, the first listed is named.
+        // If several borders are crossed at the same point, the first in the list is reported.
         match relation {
             Relation::Inside => {}
             Relation::Outside => return None,

@@ -2,8 +2,9 @@
 //!
 //! Václav Skala, "A new approach to line and line segment clipping in homogeneous coordinates", The Visual Computer 21(11),
 //! 2005; for convex polygons his "An efficient algorithm for line clipping by convex polygon", Computers & Graphics 17(4),
-//! 1993. Object space; O(n) for a window with n corners, two crossings at most. The line is the cross product of its ends; the
-//! signs of the corners against it are a code, which tells the borders that it crosses before any crossing is computed.
+//! 1993. Object space; O(n) for a window with n corners, two crossings at most. The line is the cross product of its
+//!       ends; the signs of the corners relative to it are a code, which gives the crossed borders before any crossing
+//!       is computed.
 //!
 //! The paper finds the two borders in a table of the 2ⁿ codes; here they are the borders whose corners have different signs,
 //! which are the table's entries for any n. A corner on the line belongs to both sides, so windows are closed. Signs are exact;
@@ -45,7 +46,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// There is nothing to choose.
+/// Empty options: the algorithm has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
@@ -70,8 +71,8 @@ pub enum Step {
     Cut {
         /// End that moves.
         end: End,
-        /// The border: of a rectangle 2·axis, plus 1 for the larger coordinate; of a polygon the number of the corner
-        /// that it begins at.
+        /// The border: for a rectangle 2·axis, plus 1 for the larger coordinate; for a polygon the number of the corner
+        /// where it begins.
         border: usize,
         /// New position of the end.
         point: DVec2,
@@ -208,7 +209,7 @@ impl<H: HalfSpace<2>, F: Fn(usize) -> [usize; 2]> Search<'_, H, F> {
             let [a, b] = (self.ends)(*border).map(|corner| sides[corner]);
             a != b || a == Ordering::Equal
         };
-        // Two borders only where they meet in a corner that the line goes through.
+        // Two borders only if they meet in a corner on the line.
         let find = |p| all.clone().filter(|border| beyond(p, *border)).find(is_crossed);
         let [lower, upper] = [self.line.p, self.line.q].map(find);
         let cut = |border: Option<usize>| border.map(|border| (border, cut(border)));

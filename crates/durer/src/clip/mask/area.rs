@@ -14,7 +14,7 @@ pub struct Area {
     /// The polygons.
     pub shapes: Shapes,
     dimensions: Dimensions,
-    /// One for each of the shapes' points; empty if there is neither height nor measure.
+    /// One for each of the shapes' points; empty if there are neither heights nor measures.
     zm: Vec<Zm>,
 }
 
@@ -42,7 +42,7 @@ impl Area {
 
     fn add_polygon(&mut self, rings: &[Points]) {
         for ring in rings {
-            // Of a position that is repeated on the spot one is enough.
+            // Repeated positions are dropped.
             let last = |&i: &usize| ring.xy[i] != ring.xy[(i + 1) % ring.len()];
             let kept: Vec<usize> = (0..ring.len()).filter(last).collect();
             self.shapes.push_ring(kept.iter().map(|&i| ring.xy[i]));
@@ -53,8 +53,8 @@ impl Area {
         self.shapes.end_polygon();
     }
 
-    /// Adds the polygons of another area. Heights and measures that one of both lacks are 0 there; returns whether
-    /// that is so.
+    /// Adds the polygons of another area. Heights or measures that only one of the two has become 0 in the other;
+    /// returns whether that happened.
     pub fn append(&mut self, other: &Self) -> bool {
         if self.shapes.is_empty() || other.shapes.is_empty() {
             if self.shapes.is_empty() {
@@ -132,7 +132,7 @@ impl Area {
     fn with_values(&self, shapes: Shapes, mut values: Vec<Option<Zm>>) -> Self {
         values.resize(shapes.points().len(), None);
         let of = Values { shapes: &self.shapes, zm: &self.zm };
-        // Corners of the mask may lie on edges, which know the values there.
+        // Corners of the mask may lie on edges of the subject, from which their values are interpolated.
         of.on_edges(shapes.points(), &mut values);
         let open = values.iter().filter(|value| value.is_none()).count();
         if open > 0 && open.saturating_mul(self.zm.len()) <= PAIRS {

@@ -65,8 +65,7 @@ impl Algorithm {
         matches!(self, Self::Polygon(PolygonClipper::Overlay | PolygonClipper::Vatti))
     }
 
-    /// Returns whether polygons are cut on a grid and by a fill rule; so they are beside algorithms
-    /// for lines.
+    /// Returns whether polygons are cut on a grid and by a fill rule; this also holds with algorithms for lines.
     pub fn takes_rules(self) -> bool {
         self.joins() || matches!(self, Self::Line(_))
     }
@@ -101,7 +100,7 @@ impl<'a> Cutter<'a> {
         Self { mask, op: BooleanOp::Intersection, rules: Rules::default(), algorithm: None }
     }
 
-    /// Clips a geometry. Polygons come out valid, outer rings counter-clockwise, holes clockwise.
+    /// Clips a geometry. The resulting polygons are valid, with outer rings counter-clockwise and holes clockwise.
     ///
     /// # Errors
     /// [`Error::Unsupported`] for a geometry that the named algorithm does not take; [`Error::Parameter`] for
@@ -191,7 +190,7 @@ impl<'a> Cutter<'a> {
         match self.algorithm {
             None | Some(Algorithm::Line(_)) => self.production(geometry, &area, bounds),
             Some(Algorithm::Polygon(clipper)) => {
-                // What an SVG says of its paths, for algorithms that take polygons as they are.
+                // The fill rule of an SVG's paths, for algorithms that take polygons as they are.
                 let as_they_are = !Algorithm::Polygon(clipper).takes_rules();
                 let ruled = as_they_are && self.rules.fill != WindingRule::EvenOdd;
                 let area = if ruled { self.rules.clean(geometry)?.area } else { area };
@@ -200,8 +199,8 @@ impl<'a> Cutter<'a> {
         }
     }
 
-    /// Keeps or drops whole what the mask does not come near; cuts valid polygons by the rectangle clip,
-    /// all others by the overlay.
+    /// Keeps or drops polygons as a whole if the mask's border does not come near them; clips valid polygons by the
+    /// rectangle clip, all others by the overlay.
     fn production(&self, geometry: &Geometry, area: &Area, bounds: &Rect) -> Result<Cut> {
         let keeps = self.rules.keep_valid(&area.shapes);
         let apart = keeps && is_valid(&area.shapes, Touching::No);
@@ -243,7 +242,7 @@ impl<'a> Cutter<'a> {
         Ok(match (clipper, self.mask.window) {
             (PolygonClipper::Rectangle, Some(window)) => {
                 let cut = clip_area(&window, area)?;
-                // Where rings touch, what is left of them may be one ring that touches itself.
+                // Where rings touch, their clipped parts may be one ring that touches itself.
                 if !valid(&area.shapes) || !valid(&cut.shapes) {
                     const WHAT: &str =
                         "a polygon whose rings cross, overlap or touch there by the rectangle clip";
@@ -261,13 +260,13 @@ impl<'a> Cutter<'a> {
                     return refused("a polygon whose rings cross or overlap by Sutherland–Hodgman");
                 }
                 let mut cut = clipper.clip(&area.shapes, mask, self.op)?;
-                // Rings that cross are divided where they do: a geometry has valid polygons.
+                // Crossing rings are divided at the crossings, because a geometry has valid polygons.
                 if clipper == PolygonClipper::GreinerHormann && !valid(&cut) {
                     let options = overlay::Options::with_rule(WindingRule::EvenOdd);
                     let union = BooleanOp::Union;
                     cut = overlay(&cut, &Shapes::new(), union, &options, &mut NoTrace)?.shapes;
                 }
-                // Heights and measures are looked for where the new vertices lie.
+                // Heights and measures are interpolated at the new vertices.
                 area.cut(cut, &[])
             }
         })

@@ -70,9 +70,8 @@ impl Rules {
     }
 }
 
-/// Adds to polygons the points that neighbours have on the borders that they share, where these lie on the border but
-/// for the rounding of coordinates ([`matched()`]); returns how many geometries got some. Collections, lines and points
-/// stay as they are.
+/// Adds to polygons the points that their neighbours have on shared borders, up to the rounding of coordinates
+/// ([`matched()`]); returns the number of geometries changed. Collections, lines and points stay as they are.
 pub fn match_points(geometries: &mut [Option<Geometry>]) -> usize {
     let area = |geometry: &Option<Geometry>| match geometry {
         Some(geometry @ (Geometry::Polygon(_) | Geometry::MultiPolygon(_))) => {

@@ -54,7 +54,7 @@ impl<'a> MeanValues<'a> {
 }
 
 fn within(polygon: &[Ring<'_>], place: DVec2) -> Option<Zm> {
-    // Relative to one of the values, so that a constant comes out as it is.
+    // Relative to one of the values, so that a constant is reproduced exactly.
     let base = *polygon.first()?.zm.first()?;
     let mut sums = Sums::default();
     polygon.iter().for_each(|ring| sums.add(ring, place, base));

@@ -19,7 +19,7 @@
 //! # Ok::<(), durer::Error>(())
 //! ```
 //!
-//! Cost: that of the algorithm; geometries that the mask does not touch cost O(their positions).
+//! Cost: the algorithm's; for geometries that the mask does not touch, O(their positions).
 
 mod area;
 mod cutter;
@@ -105,7 +105,7 @@ impl Mask {
         self.polygons.shapes()
     }
 
-    /// Returns whether a point lies in it; its border belongs to it.
+    /// Returns whether a point is inside it or on its border.
     pub fn contains(&self, p: DVec2) -> bool {
         match self.window {
             Some(window) => window.contains(p),

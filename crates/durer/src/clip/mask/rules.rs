@@ -23,7 +23,7 @@ pub struct Rules {
     pub work: Work,
 }
 
-/// Valid polygons made of others.
+/// Valid polygons with the region of others.
 #[derive(Debug, Default)]
 pub struct Made {
     /// The polygons, with heights and measures.
@@ -128,7 +128,7 @@ impl Rules {
     }
 
     /// Returns the region of a geometry as valid polygons, with outer rings counter-clockwise. The polygons of
-    /// a collection are sets of points, joined whatever rule each follows.
+    /// a collection are sets of points, united whatever rule each follows.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] for coordinates that are not finite, and a grid that is too fine for them.

@@ -7,8 +7,8 @@ use crate::geometry::{Geometry, Points};
 use crate::work::Work;
 
 impl Area {
-    /// Returns the union of polygons that are valid, each for itself, with outer rings counter-clockwise: borders
-    /// between them vanish, and what overlaps counts once.
+    /// Returns the union of polygons, each of which is valid, with outer rings counter-clockwise: borders between them
+    /// vanish, and overlaps count once.
     ///
     /// # Errors
     /// As [`Rules::overlay`].
@@ -18,7 +18,7 @@ impl Area {
     }
 }
 
-/// Geometries that become one: their polygons are joined, their lines and points are put together as they are.
+/// Geometries that become one: their polygons are united, their lines and points collected unchanged.
 ///
 /// ```
 /// use durer::clip::mask::{Rules, Union};
@@ -44,8 +44,8 @@ pub struct Union {
 }
 
 impl Union {
-    /// Adds a geometry, with its valid polygons as returned by [`Rules::clean`]. Heights and measures that some of the
-    /// geometries lack are 0 there; returns whether that is so.
+    /// Adds a geometry, with its valid polygons as returned by [`Rules::clean`]. Heights and measures that only some of
+    /// the geometries have are 0 in the others; returns whether that happened.
     pub fn add(&mut self, geometry: &Geometry, valid: &Area) -> bool {
         let mixed = self.area.append(valid);
         self.add_rest(geometry) | mixed

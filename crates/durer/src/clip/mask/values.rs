@@ -43,8 +43,8 @@ impl Values<'_> {
         Some(between(a?, b?, p))
     }
 
-    /// Fills in the values of places on edges, as far as rounding lets them be there; where several
-    /// edges pass, of the first. Each edge is examined once, with the places of its own width.
+    /// Fills in the values of places that are on edges up to rounding; where several edges pass, the first one's. Each
+    /// edge is compared only with the places within its range of x.
     pub fn on_edges(&self, places: &[DVec2], values: &mut [Option<Zm>]) {
         let mut open: Vec<usize> = (0..places.len()).filter(|&i| values[i].is_none()).collect();
         let Some(bounds) = self.shapes.bounds().filter(|_| !open.is_empty()) else { return };

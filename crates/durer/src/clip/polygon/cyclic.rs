@@ -1,13 +1,11 @@
-//! Two sets of rings as cyclic lists of vertices with their crossings linked: what Weiler–Atherton
-//! and Greiner–Hormann walk on.
+//! Two sets of rings as cyclic lists of vertices with their crossings linked, on which Weiler–Atherton and
+//! Greiner–Hormann walk.
 //!
-//! Touching vertices and common edges are distinguished from true crossings in the spirit of E. L.
-//! Foster, K. Hormann and R. T. Popa (*Clipping simple polygons with degenerate intersections*,
-//! Computers & Graphics: X 2, 2019). They look at each pair of borders; we look at a common point
-//! with all the borders that pass it, so that rings of one operand may touch one another there
-//! (`node.rs`). Where they delay a crossing to the end of common edges, we take the subject as
-//! shrunk by less than any number, for union as grown: then no common edge is left that the result
-//! would have on two sides.
+//! Touching vertices and common edges are distinguished from true crossings in the spirit of E. L. Foster, K. Hormann
+//! and R. T. Popa (*Clipping simple polygons with degenerate intersections*, Computers & Graphics: X 2, 2019). They
+//! consider each pair of borders; we consider a common point with all borders through it, so that rings of one operand
+//! may touch one another there (`node.rs`). Where they delay a crossing to the end of common edges, we treat the
+//! subject as shrunk, for union as grown, by an infinitesimal amount: then the result has no common edge on two sides.
 
 use super::group::{group, is_flat};
 use super::lists::{CROSSING_AND_TOUCHING, Lists, NOT_SIMPLE, Start, join};
@@ -27,7 +25,7 @@ use std::cmp::Ordering;
 pub(super) struct Linked {
     /// The lists of subject and clip.
     pub lists: [Lists; 2],
-    /// The rings they are made of.
+    /// The rings that they come from.
     rings: [Shapes; 2],
 }
 
@@ -41,8 +39,8 @@ fn tidy(shapes: &Shapes) -> Shapes {
 /// entries and exits take turns. The rings keep their directions.
 ///
 /// # Errors
-/// [`Error::Unsupported`] where a vertex or an edge of one operand touches the other: which of the two borders crosses
-/// there is decided by neighbours, of which rings that cross may have any number.
+/// [`Error::Unsupported`] if a vertex or an edge of one operand touches the other: which of the borders cross there
+/// depends on their neighbours, of which crossing rings may have any number.
 pub(super) fn link_crossing(subject: &Shapes, clip: &Shapes) -> Result<Linked> {
     let rings = [subject, clip].map(|shapes| Shapes::from_rings(distinct(shapes)));
     let mut linked = Linked { lists: [Lists::new(&rings[0]), Lists::new(&rings[1])], rings };
@@ -56,7 +54,7 @@ pub(super) fn link_crossing(subject: &Shapes, clip: &Shapes) -> Result<Linked> {
     Ok(linked)
 }
 
-/// Returns the rings without repeated points, and without those that are flat.
+/// Returns the rings without repeated points, leaving out flat rings.
 fn distinct(shapes: &Shapes) -> impl Iterator<Item = Vec<DVec2>> {
     let rings = shapes.rings().map(|ring| {
         let mut ring = ring.to_vec();
@@ -277,8 +275,8 @@ fn crossing_point(e: [DVec2; 2], f: [DVec2; 2]) -> DVec2 {
     exact::crossing(e, f).unwrap_or(e[0])
 }
 
-/// Compares the places at which two segments, which do not cross each other, cross a → b; exact. Of
-/// two that do not cross, one lies on one side of the other's line.
+/// Compares the places where two segments that do not cross each other cross a → b; exact. Of two segments that do not
+/// cross, one is on one side of the other's line.
 fn order_along([_, b]: [DVec2; 2], first: [DVec2; 2], second: [DVec2; 2]) -> Ordering {
     let side = |[c, d]: [DVec2; 2], of: [DVec2; 2]| match of.map(|p| orient2d(c, d, p)) {
         [Orientation::Collinear, s] | [s, Orientation::Collinear] => Some(s),

@@ -4,9 +4,9 @@
 //! 17(2), 1998. Touching vertices and common edges after Foster, Hormann and Popa, 2019; where
 //! several borders pass one point, each pair of them is linked there (`node.rs`).
 //!
-//! Rings may cross themselves and one another, as published: entries and exits take turns along each ring from where it
-//! starts, and the rings of the result, which may cross likewise, enclose it by the even-odd rule. The paper moves
-//! vertices that touch the other polygon by a little; here such input is refused where rings cross.
+//! Rings may cross themselves and one another, as published: entries and exits alternate along each ring from its
+//! start, and the rings of the result, which may also cross, enclose it by the even-odd rule. The paper slightly moves
+//! vertices that touch the other polygon; here such input is refused if rings cross.
 
 use super::cyclic::Linked;
 use super::lists::Lists;
@@ -48,8 +48,8 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// Clips polygons with polygons; both with holes, by the even-odd rule. Where rings of an operand cross, the result is
-/// each ring as a polygon of its own, and a point is in it if it is within an odd number of them.
+/// Clips polygons with polygons; both with holes, by the even-odd rule. Where rings of an operand cross, each ring of
+/// the result is a separate polygon, and a point is inside if an odd number of them contain it.
 ///
 /// ```
 /// use durer::clip::polygon::{BooleanOp, Shapes, greiner_hormann::greiner_hormann};
@@ -65,7 +65,7 @@ pub const INFO: Info = Info {
 ///
 /// # Errors
 /// [`NonFinite`](crate::Error::NonFinite) for a point with a NaN or infinite coordinate;
-/// [`Unsupported`](crate::Error::Unsupported) where rings of an operand cross or overlap themselves or
+/// [`Unsupported`](crate::Error::Unsupported) if rings of an operand cross or overlap themselves or
 /// one another, or turn back on themselves, and a vertex of an operand lies on the border of the other.
 pub fn greiner_hormann(
     subject: &Shapes,
@@ -96,7 +96,7 @@ fn walk(linked: &Linked, op: BooleanOp, t: &mut impl Tracer<Step>) -> Vec<Vec<DV
         if vertex.twin.is_some() && !visited[start] {
             t.step(|| Step::Start { at: vertex.at });
             let mut ring = trace(&linked.lists, &entries, start, &mut visited, t);
-            // The result lies where the subject does, on the left of its border.
+            // The result is on the left of the subject's border, like the subject itself.
             if !entries[0][start] {
                 ring.reverse();
             }
@@ -108,8 +108,8 @@ fn walk(linked: &Linked, op: BooleanOp, t: &mut impl Tracer<Step>) -> Vec<Vec<DV
 
 /// Returns for each vertex that crosses whether its list enters the other's region there.
 ///
-/// These alternate along a ring, from where it starts. Of rings that do not cross, the edges tell it of each crossing
-/// alone, and exactly, also where rounding has put several crossings in one place.
+/// Entries and exits alternate along a ring, from its start on. If rings do not cross, the edges at each crossing
+/// decide alone, and exactly, even where rounding has put several crossings in one place.
 fn entries(lists: &Lists) -> Vec<bool> {
     lists.vertices.iter().map(|vertex| vertex.enters).collect()
 }

@@ -21,7 +21,7 @@ pub(super) fn is_flat(ring: &Ring) -> bool {
     ring.iter().all(|&c| orient2d(a, b, c) == Orientation::Collinear)
 }
 
-/// Returns for each ring those that it is within; boxes decide first, in the order of their left sides.
+/// Returns for each ring the rings around it; boxes are compared first, in the order of their left sides.
 fn parents(rings: &[Vec<DVec2>]) -> Vec<Vec<usize>> {
     let mut parents = vec![Vec::new(); rings.len()];
     let boxes = rings.iter().map(|ring| Rect::around(ring.iter().copied()));
@@ -47,7 +47,7 @@ fn parents(rings: &[Vec<DVec2>]) -> Vec<Vec<usize>> {
 }
 
 /// Groups rings into polygons: a ring within an odd number of others is a hole of the innermost of
-/// them. Outer rings come out counter-clockwise, holes clockwise.
+/// them. The resulting outer rings are counter-clockwise, holes clockwise.
 pub(super) fn group(rings: Vec<Vec<DVec2>>) -> Shapes {
     let parents = parents(&rings);
     let depth = |i: usize| parents[i].len();

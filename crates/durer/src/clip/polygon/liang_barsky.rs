@@ -52,7 +52,7 @@ pub enum Step {
         /// Parameters at which it leaves them: the earlier one is t_out1, the later one t_out2.
         leaves: [f64; 2],
     },
-    /// A point where the edge comes in, goes out, or ends.
+    /// A point where the edge enters, leaves, or ends.
     Point(DVec2),
     /// A corner of the window.
     Turn(DVec2),
@@ -129,7 +129,8 @@ struct Slab {
 impl Slab {
     fn new(low: f64, high: f64, from: f64, to: f64) -> Self {
         let way = to - from;
-        // Without a way, it enters at the border that it lies beyond, and is in the slab always or never.
+        // Without movement along the axis, the edge is always in the slab or never, and enters at the border that it is
+        // beyond.
         let forward = way > 0.0 || (way == 0.0 && from > high);
         let (border_in, border_out) = if forward { (low, high) } else { (high, low) };
         if way == 0.0 {

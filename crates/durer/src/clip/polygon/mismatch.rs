@@ -3,9 +3,9 @@
 //!
 //! M. Davis, *Polygonal coverage validation in JTS*, 2022: by edges, without an overlay. An edge of two features must
 //! run the other way in the second one; edges that cross, run along each other in part, or end on one another have no
-//! counterpart. At common vertices no edge may lead into the other, and a polygon that meets no border of another
-//! feature is looked for in it. Gaps are holes of the union. Class: object space, exact but for the gaps. Cost: as of
-//! [validity](super::validity), and of a union where gaps are requested.
+//! counterpart. At common vertices no edge may lead into the other polygon, and a polygon that meets no border of
+//! another feature is tested for being inside it. Gaps are holes of the union. Class: object space, exact but for the
+//! gaps. Cost: as for [validity](super::validity), plus a union if gaps are requested.
 
 use super::rectangle::{Near, Prepared};
 use super::validity::{
@@ -43,7 +43,7 @@ pub enum Mismatch {
     Overlap,
     /// They share a border, or touch, and one has a point there that the other has not.
     Unmatched,
-    /// There is a narrow hole between them and others.
+    /// A narrow hole between them and others.
     Gap,
 }
 
@@ -76,7 +76,7 @@ pub struct Misfit {
     pub mismatch: Mismatch,
     /// A point of it.
     pub at: DVec2,
-    /// The two features, in order; of gaps, one beside it twice.
+    /// The two features, in order; for gaps, one adjacent feature twice.
     pub features: [usize; 2],
 }
 
@@ -99,7 +99,7 @@ pub struct Misfit {
 /// ```
 ///
 /// # Errors
-/// [`Error::NonFinite`] for a coordinate that is not finite, [`Error::Limit`] where it takes more than some thousand
+/// [`Error::NonFinite`] for a coordinate that is not finite, [`Error::Limit`] if it takes more than some thousand
 /// comparisons per edge; with `gap_width` as [`overlay()`].
 pub fn misfits(features: &[Shapes], gap_width: Option<f64>) -> Result<Vec<Misfit>> {
     let layer = Layer::new(features)?;
@@ -118,14 +118,15 @@ pub fn misfits(features: &[Shapes], gap_width: Option<f64>) -> Result<Vec<Misfit
 struct Layer<'a> {
     features: &'a [Shapes],
     whole: Shapes,
-    /// Each ring of the whole: its feature, and whether it runs the other way than outer rings and holes should.
+    /// Each ring of the whole: its feature, and whether it runs against the direction required for outer rings and
+    /// holes.
     rings: Vec<(usize, bool)>,
 }
 
 #[derive(Default)]
 struct Found {
     misfits: Vec<Misfit>,
-    /// Features that overlap: they need not be looked for in each other.
+    /// Overlapping features, which need not be tested for one inside the other.
     overlapping: BTreeSet<[usize; 2]>,
 }
 
@@ -215,7 +216,7 @@ impl<'a> Layer<'a> {
         if all { Ok(()) } else { Err(limit) }
     }
 
-    /// Finds edges that two features have in the same direction: both lie on one side of it.
+    /// Finds edges that two features have in the same direction, so that both are on the same side of it.
     fn compare_directions(&self, found: &mut Found) {
         let mut owners: BTreeMap<[[u64; 2]; 2], Vec<(usize, bool)>> = BTreeMap::new();
         for edge in edges_of(&self.whole) {
@@ -258,8 +259,8 @@ impl<'a> Layer<'a> {
         }
     }
 
-    /// Finds features that have a polygon in another one. What has no edge that crosses the other's or leads into
-    /// it is wholly inside or outside.
+    /// Finds features that have a polygon in another one. A polygon without an edge that crosses the other's or leads
+    /// into it is wholly inside or outside.
     fn look_inside(&self, found: &mut Found) {
         let boxes: Vec<Option<Rect>> = self.features.iter().map(Shapes::bounds).collect();
         let mut order: Vec<(Rect, usize)> =
@@ -313,7 +314,7 @@ impl<'a> Layer<'a> {
     }
 }
 
-/// Returns whether an edge from a corner to `end` leads between its sides, to the left of the way through it, and not
+/// Returns whether an edge from a corner to `end` leads between its sides, to the left of the path through it, and not
 /// along them.
 fn leads_into(end: DVec2, [at, from, to]: Way) -> bool {
     let along = |side: DVec2| {
@@ -345,7 +346,7 @@ fn first_within(inner: &Shapes, outer: &Prepared) -> Option<DVec2> {
     })
 }
 
-/// Returns whether a point lies on a feature's border, but for the rounding of its coordinates.
+/// Returns whether a point is on a feature's border, up to the rounding of its coordinates.
 fn is_on_border(of: &Prepared, p: DVec2) -> bool {
     let reach = 2.0 * reach(p);
     match Rect::new(p - reach, p + reach) {

@@ -1,6 +1,6 @@
 //! The naive polygon clip, which is wrong: every edge is clipped as a line and the pieces are joined.
 //!
-//! It is kept to show why polygon clipping is not line clipping many times over. Where the polygon
+//! It is kept to show why polygon clipping is more than repeated line clipping. Where the polygon
 //! leaves the window at one border and comes back at another, the window's corner between them is
 //! missing, so the area is wrong; a polygon that surrounds the window vanishes; and parts that have
 //! fallen apart are joined by edges across the window. It is not a member of any family of

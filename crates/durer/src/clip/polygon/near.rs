@@ -15,8 +15,8 @@ struct Part {
 }
 
 /// Reports all pairs of closed segments that have a point in common, and others that are near each other, some of them
-/// several times. About O(n √n) time for n segments and O(n √n) memory where all are long, near O(n log n) and O(n)
-/// where they are short.
+/// several times. About O(n √n) time for n segments and O(n √n) memory if all are long, nearly O(n log n) and O(n) if
+/// they are short.
 pub(super) fn pairs(segments: &[[DVec2; 2]], mut tell: impl FnMut(usize, usize)) {
     let mut active: Vec<Part> = Vec::new();
     for mut parts in slabs(segments) {

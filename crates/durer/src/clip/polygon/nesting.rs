@@ -23,8 +23,8 @@ pub struct NestingTree {
 impl NestingTree {
     /// Finds the tree by a sweep over all edges, which finds the edge below the first point of each ring.
     ///
-    /// It is right where the shapes are valid, as results of [`overlay()`](super::overlay()) are; of
-    /// others it is some tree. O(n log n) time and O(n) memory for n points. All decisions are exact.
+    /// It is correct if the shapes are valid, like results of [`overlay()`](super::overlay()); for others it is an
+    /// arbitrary tree. O(n log n) time and O(n) memory for n points. All decisions are exact.
     ///
     /// ```
     /// use durer::clip::polygon::{NestingTree, Shapes};
@@ -50,8 +50,8 @@ impl NestingTree {
         Self::from_parents(sweep.parents.into_iter().map(Place::ring).collect(), &sweep.order)
     }
 
-    /// Returns for each ring the one directly around it, whatever polygons they are of: right where no edges cross or
-    /// overlap and each ring has an area, in the same time.
+    /// Returns for each ring the one directly around it, of any polygon; correct if no edges cross or overlap and each
+    /// ring has an area. Same cost.
     pub(super) fn rings_around<P: Vertex>(shapes: &Shapes<P>) -> Vec<Option<usize>> {
         let mut sweep = Sweep::new(shapes);
         sweep.by_sides = true;
@@ -173,8 +173,7 @@ struct Sweep<P> {
     forward: Vec<bool>,
     /// Outer ring of each ring's polygon; itself for outer rings.
     outers: Vec<usize>,
-    /// True if the edges' directions determine on which side of them the inside of a ring is, and not what valid
-    /// polygons have there.
+    /// True if the edges' directions, not the rules of valid polygons, determine the side that is inside.
     by_sides: bool,
     parents: Vec<Place>,
     /// The lower of the two edges at the first point of each outer ring, once the sweep met it.
@@ -249,7 +248,7 @@ impl<P: Vertex> Sweep<P> {
         let mut chain = Vec::new();
         let mut at = ring;
         while self.parents[at] == Place::Unknown {
-            // Marked, so that what is not valid does not lead around for ever.
+            // Marked, so that invalid polygons do not cause an endless loop.
             self.parents[at] = Place::Root;
             let below = self.lowest[at].and_then(|edge| status.below(edge));
             chain.push((at, below));

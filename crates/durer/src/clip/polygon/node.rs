@@ -1,16 +1,16 @@
-//! A point that several borders pass: which of them cross there, and in what order.
+//! A point that several borders pass through: the borders that cross there, and their order.
 //!
-//! Within a small circle around the point each passage is a chord. Chords of one operand do not
-//! cross; one of the subject crosses one of the clip where its ends lie on different sides of it.
-//! Every such pair gets two linked vertices of its own, all at the same place. Where edges run
-//! together, the subject lies beside the clip, on the side that the operation asks for.
+//! Within a small circle around the point each passage is a chord. Chords of one operand do not cross; one of the
+//! subject crosses one of the clip where its ends lie on different sides of it. Every such pair gets its own two linked
+//! vertices, all at the same place. Where edges coincide, the subject is treated as beside the clip, on the side that
+//! the operation requires.
 
 use super::lists::{Lists, NOT_SIMPLE, join};
 use crate::Result;
 use crate::math::{DVec2, in_sector};
 use std::cmp::Ordering;
 
-/// A border's way through the point.
+/// A border's passage through the point.
 #[derive(Debug, Clone, Copy)]
 struct Passage {
     /// Index in the operand's list.
@@ -55,7 +55,7 @@ impl Node {
         order(self.at, p)
     }
 
-    /// Returns whether a direction that is none of its own lies to the left of a passage.
+    /// Returns whether a direction that is not one of the passage's own is to its left.
     fn is_left(&self, of: &Passage, x: DVec2) -> bool {
         in_sector(self.at, of.to, x, of.from)
     }
@@ -76,7 +76,7 @@ impl Node {
         Ok(())
     }
 
-    /// Returns whether the subject comes, and whether it goes, on the left of a passage of the clip.
+    /// Returns whether the subject arrives, and whether it departs, on the left of a passage of the clip.
     fn sides(&self, s: &Passage, c: &Passage, grown: bool) -> [bool; 2] {
         // Subject shrunk: to its own left, which is the clip's left where they run the same way.
         let side = |x: DVec2, along: DVec2, against: DVec2| match x {
@@ -87,8 +87,8 @@ impl Node {
         [side(s.from, c.from, c.to), side(s.to, c.to, c.from)]
     }
 
-    /// Returns whether the edge from a vertex of an operand goes into the other's inside; `None` if
-    /// the other does not pass here.
+    /// Returns whether the edge from a vertex of an operand leads into the other's inside; `None` if the other does not
+    /// pass here.
     pub fn inside(&self, k: usize, vertex: usize, grown: bool) -> Option<bool> {
         let x = self.passages[k].iter().find(|p| p.vertex == vertex)?.to;
         let rays = self.passages[1 - k].iter().flat_map(|p| [(p.to, true), (p.from, false)]);
@@ -98,7 +98,7 @@ impl Node {
                 let subject = if goes { !grown } else { grown };
                 return Some(if k == 0 { subject } else { grown });
             }
-            // The first clockwise: what goes away has its inside there.
+            // The first clockwise: a departing edge has its inside there.
             if nearest.is_none_or(|(other, _)| in_sector(self.at, other, ray, x)) {
                 nearest = Some((ray, goes));
             }
@@ -149,14 +149,13 @@ impl Node {
         }
     }
 
-    /// Returns whether a passage crosses one of two others first: it comes from where the second is
-    /// not.
+    /// Returns whether a passage crosses one of two others first: it arrives on the side away from the second.
     fn is_before(&self, [k, i]: [usize; 2], m: &Passage, n: &Passage, grown: bool) -> bool {
         let own = &self.passages[k][i];
         let [_, goes] = if k == 0 {
             self.sides(own, m, grown)
         } else {
-            // The clip is on the subject's left where the subject is on its right, and the other way round.
+            // The clip is on the subject's left where the subject is on its right, and vice versa.
             let [comes, _] = self.sides(m, own, grown);
             [false, comes]
         };

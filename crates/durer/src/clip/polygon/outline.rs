@@ -1,8 +1,8 @@
 //! Simple rings from the closed walks that bound a region: OGC-valid polygons have no others.
 //!
-//! Walks may pass a point several times, and two of them may run along one edge in both directions,
-//! which bounds nothing. What is left of the edges is joined anew at such points, so that every joint
-//! has one wedge of the inside on its left; then each closed way is divided where it meets itself.
+//! Walks may pass a point several times, and two of them may run along one edge in both directions, which bounds
+//! nothing. The remaining edges are joined again at such points, so that every joint has one wedge of the inside on its
+//! left; then each closed path is divided where it meets itself.
 
 use super::group::is_flat;
 use crate::math::{DVec2, in_sector};
@@ -29,7 +29,7 @@ pub(super) fn simple_rings(walks: &[Vec<DVec2>]) -> Vec<Vec<DVec2>> {
     let next = joints(&edges, &places);
     let mut rings = Vec::new();
     let mut used = vec![false; edges.len()];
-    // Where on the way a place stands.
+    // Index on the path at which each place occurs.
     let mut standing = vec![usize::MAX; places.len()];
     for start in 0..edges.len() {
         let mut way: Vec<usize> = Vec::new();

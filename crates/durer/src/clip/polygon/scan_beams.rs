@@ -3,13 +3,13 @@
 //! B. R. Vatti, *A generic solution to polygon clipping*, Communications of the ACM 35(7), 1992. Object space. The
 //! heights of all vertices divide the plane into beams, in which no edge begins or ends. Edges come in by pairs, a left
 //! and a right bound, at local minima of the rings, and are followed upwards in a list of active edges; where two
-//! change places within a beam they cross there. From left to right each active edge changes the winding number of
-//! subject or clip; it contributes where it thereby changes whether the result is there.
+//! change places within a beam, they cross. From left to right each active edge changes the winding number of subject
+//! or clip; it contributes where that change enters or leaves the result.
 //!
 //! Cost: O(b a²) for b beams and a active edges, O(trapezoids) memory. Deviations: the result is given as the
 //! trapezoids between contributing edges, which Vatti names as the other form of output; horizontal edges bound beams
-//! and are in no list. Crossings are rounded to f64. It shares nothing with [`super::overlay()`] and serves it as an
-//! oracle; for polygons use that, or [`super::vatti`].
+//! and are in no list. Crossings are rounded to f64. It shares no code with [`super::overlay()`] and serves as its
+//! oracle in tests; for polygons use that, or [`super::vatti`].
 
 use super::{BooleanOp, Shapes, WindingRule};
 use crate::info::{Class, Coherence, Info, Occluder};
@@ -133,7 +133,7 @@ pub fn replay(steps: &[Step]) -> Vec<Trapezoid> {
     steps.iter().filter_map(part).collect()
 }
 
-/// An edge that goes up, whatever the ring does.
+/// An edge directed upwards, whatever the ring's direction.
 #[derive(Debug, Clone, Copy)]
 struct Edge {
     lower: DVec2,

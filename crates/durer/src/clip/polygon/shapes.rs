@@ -139,7 +139,7 @@ impl<P> Shapes<P> {
 }
 
 impl<P: Vertex> Shapes<P> {
-    /// Returns each ring as a polygon of its own.
+    /// Returns each ring as a separate polygon.
     pub fn from_rings<R: AsRef<[P]>>(rings: impl IntoIterator<Item = R>) -> Self {
         let mut shapes = Self::new();
         for ring in rings {

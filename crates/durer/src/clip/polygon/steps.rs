@@ -61,7 +61,7 @@ pub enum Step {
     Turn {
         /// Position of the point.
         at: DVec2,
-        /// True if it goes on along the subject.
+        /// True if the walk continues along the subject.
         to_subject: bool,
     },
     /// Greiner and Hormann: rings of an operand cross themselves or one another. Entries and exits take turns along

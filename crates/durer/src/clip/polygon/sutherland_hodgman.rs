@@ -1,16 +1,16 @@
 //! Sutherland–Hodgman polygon clipping, as re-entrant stages.
 //!
 //! Ivan Sutherland and Gary Hodgman, "Reentrant polygon clipping", Communications of the ACM 17(1),
-//! 1974. Object space; O(n·m) for n vertices and m borders. One stage per border takes vertices one
-//! at a time and hands on those of the part inside; stages are chained, so no ring is stored between
-//! them and the memory per stage is two vertices.
+//! 1974. Object space; O(n·m) for n vertices and m borders. One stage per border takes the vertices one by one and
+//!       passes on those of the part inside; stages are chained, so no ring is stored between them and the memory per
+//!       stage is two vertices.
 //!
 //! **Bridging edges.** The result is one ring even where the part inside falls into several: the
 //! parts stay joined by edges that run to and fro along the border. Its area and every area integral
 //! are right and so is a fill; a stroke shows the bridges. [`super::rectangle`] and
 //! the overlay give separate rings.
 //!
-//! Which side of a border a vertex is on is decided exactly. Cuts are computed from the
+//! The side of a border that a vertex is on is decided exactly. Cuts are computed from the
 //! lexicographically smaller end of an edge, so polygons that share an edge share its cuts.
 
 pub mod by_borders;
@@ -108,7 +108,7 @@ impl<const K: usize> Vertex<3> for (DVec3, [f64; K]) {
     }
 }
 
-/// One stage: it takes the vertices of a ring one at a time, and passes on those of the part inside.
+/// One stage, which takes the vertices of a ring one by one and passes on those of the part inside.
 #[derive(Debug, Clone)]
 pub struct Stage<H, V> {
     border: H,
@@ -122,7 +122,7 @@ impl<H, V> Stage<H, V> {
         Self { border, first: None, previous: None }
     }
 
-    /// Takes the next vertex; up to two come out: the cut of the edge that leads to it, and itself.
+    /// Takes the next vertex; returns up to two: the cut of the edge that leads to it, and itself.
     fn take<const N: usize>(&mut self, vertex: V) -> [Option<V>; 2]
     where
         H: HalfSpace<N>,
@@ -157,7 +157,7 @@ fn cut<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
     if a_in == b_in || on_border(&a) || on_border(&b) {
         return None;
     }
-    // Segments made of vertices that came through a window are finite, but be safe.
+    // Vertices that passed a window are finite, so this cannot fail.
     let line = Canonical::new(a.position(), b.position()).ok()?;
     let t = convex::parameter(border, &line);
     let mut position = line.at(t);
@@ -346,7 +346,7 @@ fn map_rings(
     for polygon in shapes.polygons() {
         for (k, ring) in polygon.rings().enumerate() {
             let ring = clip(ring)?;
-            // What only touches the window from outside comes out flat, along its border.
+            // A ring that only touches the window from outside gives a flat ring along the border.
             if has_area(&ring) {
                 out.push_ring(ring);
             } else if k == 0 {

@@ -1,4 +1,4 @@
-//! Vatti's way: a sweep line with a list of active edges that counts windings.
+//! Vatti's method: a sweep line with a list of active edges that counts winding numbers.
 //!
 //! B. R. Vatti, *A generic solution to polygon clipping*, Communications of the ACM 35(7), 1992.
 //! He sweeps upwards and finds crossings between scan beams; we sweep from left to right over edges
@@ -41,8 +41,8 @@ pub const INFO: Info = Info {
 
 /// Computes a Boolean operation on any two sets of polygons, self-crossing too, by any fill rules.
 ///
-/// The result's polygons nest: each outer ring comes with its own holes, islands in a hole are polygons of their own,
-/// which [`Output::tree`] gives their place. It equals that of [`overlay::overlay()`] bit for bit.
+/// The result's polygons nest: each outer ring comes with its holes, and islands in a hole are separate polygons, whose
+/// place [`Output::tree`] gives. The result equals that of [`overlay::overlay()`] bit for bit.
 ///
 /// ```
 /// use durer::clip::polygon::{BooleanOp, Shapes, vatti::vatti};

@@ -1,4 +1,4 @@
-//! The points that polygons are made of: of f64, or of whole numbers.
+//! The points of polygons, with f64 or integer coordinates.
 
 use std::cmp::Ordering;
 use std::fmt::Debug;

@@ -13,9 +13,9 @@ use crate::trace::Tracer;
 /// Coordinates with exponents in this range have products of products that neither overflow nor underflow.
 const TAME: std::ops::Range<i32> = -200..200;
 
-/// Runs a walk that knows all operations but xor, which is both differences side by side, and makes
-/// polygons of what it finds. Where coordinates are huge or tiny, all is done at a power of two of their size,
-/// which changes no digit but of those beside which nobody sees them.
+/// Runs a walk for all operations and builds polygons from its rings; xor, which the walk does not know, is both
+/// differences together. Huge or tiny coordinates are scaled by a power of two, which changes only digits that are
+/// negligible beside the others.
 ///
 /// `crossing` allows rings that cross, by the even-odd rule, where the walk follows the marks of the lists alone.
 pub(super) fn walk_all<'t, T: Tracer<Step>>(
@@ -38,7 +38,7 @@ pub(super) fn walk_all<'t, T: Tracer<Step>>(
     let framed = inputs.map(|shapes| map(shapes, |p| frame.of(p)));
     let (found, crosses) = walk_tame([&framed[0], &framed[1]], op, crossing, &mut t, walk)?;
     let found = map(&found, |p| frame.back(p));
-    // Rings that cross have no side on which the inside is.
+    // Crossing rings have no inside on one side.
     Ok(if mirrored && !crosses { reversed(&found) } else { found })
 }
 
@@ -85,7 +85,7 @@ fn reversed(shapes: &Shapes) -> Shapes {
     out
 }
 
-/// A tracer that gets the caller's coordinates.
+/// A tracer that receives the caller's coordinates.
 pub(super) struct Scaled<'t, T> {
     to: &'t mut T,
     frame: Frame,

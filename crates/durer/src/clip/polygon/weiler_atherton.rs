@@ -1,9 +1,9 @@
 //! Weiler–Atherton: walk the subject from where it enters the clip to where it leaves, then the
 //! clip until the subject enters again.
 //!
-//! K. Weiler, P. Atherton, *Hidden surface removal using polygon area sorting*, Computer Graphics
-//! (SIGGRAPH) 11(2), 1977. We tell touching vertices and common edges from crossings by the rule of
-//! Foster, Hormann and Popa (2019), and give union and difference by the same lists.
+//! K. Weiler, P. Atherton, *Hidden surface removal using polygon area sorting*, Computer Graphics (SIGGRAPH) 11(2),
+//! 1977. Deviations: touching vertices and common edges are distinguished from crossings by the rule of Foster, Hormann
+//! and Popa (2019), and union and difference use the same lists.
 
 use super::cyclic::Linked;
 use super::walk::walk_all;
@@ -59,7 +59,7 @@ pub const INFO: Info = Info {
 ///
 /// # Errors
 /// [`NonFinite`](crate::Error::NonFinite) for a point with a NaN or infinite coordinate;
-/// [`Unsupported`](crate::Error::Unsupported) where rings of an operand cross or overlap themselves or
+/// [`Unsupported`](crate::Error::Unsupported) if rings of an operand cross or overlap themselves or
 /// one another, or turn back on themselves.
 pub fn weiler_atherton(
     subject: &Shapes,
@@ -72,7 +72,7 @@ pub fn weiler_atherton(
 }
 
 fn walk(linked: &Linked, op: BooleanOp, t: &mut impl Tracer<Step>) -> Vec<Vec<DVec2>> {
-    // Intersection follows the subject where it has come in, the others where it has gone out.
+    // Intersection follows the subject where it has entered, the others where it has left.
     let starts_in = op == BooleanOp::Intersection;
     let subject = &linked.lists[0].vertices;
     let mut visited = vec![false; subject.len()];

@@ -1,15 +1,13 @@
-//! Lines and borders of areas simplified together: what neighbours share stays shared, and nothing comes to
-//! cross.
+//! Lines and borders of areas simplified together: shared borders stay shared, and no new crossings arise.
 //!
-//! The way of the removal is that of the coverage simplifier of the JTS Topology Suite (Martin Davis, 2023), a
-//! restriction of Visvalingam and Whyatt's. Object space; O(n log n) for n points on usual data.
+//! Points are removed as in the coverage simplifier of the JTS Topology Suite (Martin Davis, 2023), a restricted form
+//! of Visvalingam and Whyatt's method. Object space; O(n log n) for n points on usual data.
 //!
-//! Points at the same place are one. Where the lines and rings that pass a place do not agree on its neighbours,
-//! and where lines end, is a node, which stays. All other points are left out in the order of their weights,
-//! each only if no point that is left lies in the triangle that it makes with its neighbours, and if
-//! these are not joined already. So, where nothing crosses at first, nothing does at any time: an edge that
-//! crossed the new one would have to end in the triangle or to cross one of the old two. A point
-//! that is in the way is waited for.
+//! Points at the same place are one. A place is a node, and stays, if the lines and rings through it do not agree on
+//! its neighbours or if a line ends there. All other points are removed in the order of their weights, each only if no
+//! remaining point is in the triangle that it forms with its neighbours, and if these are not joined already. So a
+//! network without crossings stays without crossings: an edge that crossed the new one would have to end in the
+//! triangle or cross one of the two old edges. A blocked point is removed after the point that blocks it.
 //!
 //! It follows that rings keep three points at least, holes stay in their polygons and islands in their holes.
 //! Where the input crosses itself, so may the result, there and nowhere else. Orders and sides are decided exactly.
@@ -55,7 +53,7 @@ pub struct Options {
     /// Method that orders points.
     pub method: LineSimplifier,
     /// Points of a larger weight are ignored and weigh infinitely; infinite for all weights. In units of the
-    /// coordinates. The time falls as it gets smaller.
+    /// coordinates. Smaller limits take less time.
     pub limit: f64,
 }
 
@@ -120,8 +118,8 @@ impl Coverage {
         self.chains.push(Chain { points: start..self.points.len(), closed });
     }
 
-    /// Returns the weights of all points, in the order in which they were added: see [`super`]. Of a point
-    /// that is repeated on the spot the first has the weight of the place, and the others weigh nothing.
+    /// Returns the weights of all points, in the order in which they were added: see [`super`]. Of repeated points, the
+    /// first has the weight of the place, and the others have weight 0.
     ///
     /// # Errors
     /// [`Error::NonFinite`] names the first point with a NaN or infinite coordinate; [`Error::Parameter`] for a
@@ -139,7 +137,7 @@ impl Coverage {
             LineSimplifier::Visvalingam => Measure::Area,
             LineSimplifier::DouglasPeucker => {
                 let weights = self.distances(&network, &links)?;
-                // What holds a closed line in place is not a node of the network.
+                // The points that hold a closed line in place are not nodes of the network.
                 for (link, weight) in links.0.iter_mut().zip(&weights) {
                     if weight.is_infinite() {
                         *link = [super::removal::NONE; 2];
@@ -157,7 +155,7 @@ impl Coverage {
         Ok(self.of_points(&weights, &place_of))
     }
 
-    /// Converts weights of places to those of points.
+    /// Converts weights of places to weights of points.
     fn of_points(&self, weights: &[f64], place_of: &[u32]) -> Vec<f64> {
         let mut all: Vec<f64> = place_of.iter().map(|&place| weights[place as usize]).collect();
         for chain in &self.chains {
@@ -175,8 +173,8 @@ impl Coverage {
         all
     }
 
-    /// Returns the weights of places by Douglas and Peucker, for each stretch between nodes; those of rings
-    /// without a node are held at their smallest place and at the one farthest from it.
+    /// Returns the weights of places by Douglas and Peucker, for each stretch between nodes; rings without a node are
+    /// held at their smallest place and at the place farthest from it.
     fn distances(&self, network: &Network, links: &Links) -> Result<Vec<f64>> {
         let mut weights: Vec<Option<f64>> = (0..network.places.len() as u32)
             .map(|i| (!links.is_free(i)).then_some(f64::INFINITY))

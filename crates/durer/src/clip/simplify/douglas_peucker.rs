@@ -8,9 +8,9 @@
 //! The line from the first to the last point is divided at the point farthest from it, and so are the parts,
 //! as long as that point is farther away than the tolerance.
 //!
-//! Distances are those to the segment and not to the line through it, so that what turns back is kept. A point
-//! weighs no more than the one at which its part began: then one run serves all tolerances. Of several
-//! farthest points the first counts.
+//! Distances are measured to the segment, not to the line through it, so that reversals are kept. A point weighs at
+//! most as much as the one that split off its part, so that one run serves all tolerances. Of several farthest points
+//! the first counts.
 
 use super::{check, or_infinite};
 use crate::Result;

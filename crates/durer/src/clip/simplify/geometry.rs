@@ -1,4 +1,4 @@
-//! Whole geometries with fewer points, and what remains of those that become too small.
+//! Whole geometries with fewer points, and the removal of parts that become too small.
 
 use super::coverage::{Coverage, Options};
 use super::{LineSimplifier, tolerance_for_share};
@@ -10,7 +10,7 @@ use crate::trace::NoTrace;
 /// Number of points to leave out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Amount {
-    /// Points that weigh no more than this, in units of the coordinates.
+    /// Largest weight of points that are left out, in units of the coordinates.
     Tolerance(f64),
     /// All but this share of the points that can be left out, 0 … 1.
     Keep(f64),
@@ -87,7 +87,7 @@ fn chains(geometry: &mut Geometry, f: &mut dyn FnMut(&mut Points, bool)) {
 pub struct Dropped {
     /// Rings that enclose less than requested.
     pub small_rings: u64,
-    /// Rings of fewer than three points and lines of fewer than two, as the input had them but for repeated points.
+    /// Number of rings with fewer than three distinct points and lines with fewer than two, in the input.
     pub degenerate: u64,
 }
 
@@ -108,7 +108,7 @@ impl Dropped {
     }
 
     fn polygon(&mut self, mut rings: Vec<Points>, least: f64) -> Option<Vec<Points>> {
-        // Without its outer ring there is nothing of a polygon.
+        // Without its outer ring a polygon is empty.
         let outer = rings.first().is_some_and(|ring| self.keeps(ring, least));
         let mut first = true;
         rings.retain(|ring| std::mem::take(&mut first) || self.keeps(ring, least));
@@ -121,8 +121,8 @@ impl Dropped {
     }
 
     /// Counts and removes rings that enclose less than `least`, in squared units of the coordinates, and rings and
-    /// lines of too few points; a polygon goes with its outer ring. Returns the rest, `None` if there is none. A
-    /// geometry that was empty before stays.
+    /// lines of too few points; a polygon is removed with its outer ring. Returns the rest, or `None` if nothing is
+    /// left. A geometry that was empty before stays.
     pub fn left(&mut self, geometry: Geometry, least: f64) -> Option<Geometry> {
         if geometry.is_empty() {
             return Some(geometry);

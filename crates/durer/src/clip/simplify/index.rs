@@ -15,7 +15,7 @@ const GRID_BITS: u8 = 16;
 pub struct Index {
     /// The points, those near one another together.
     order: Vec<u32>,
-    /// Positions in that order, so that those of a box are side by side in memory.
+    /// Positions in that order, so that the points of a box are adjacent in memory.
     at: Vec<DVec2>,
     /// The place of each point in that order.
     place_of: Vec<u32>,
@@ -171,7 +171,7 @@ impl Triangle {
         if apart.any() {
             return false;
         }
-        // Thin triangles that lie aslant have large boxes: is the whole box beyond one of the sides?
+        // Thin oblique triangles have large boxes: is the whole box beyond one of the sides?
         let larger = (self.max - self.min).cmpgt(around.max - around.min);
         if !larger.any() {
             return true;
@@ -182,7 +182,7 @@ impl Triangle {
             && !self.is_beyond(a, b, c, around)
     }
 
-    /// Returns whether a box lies on one side of a line, and a point on the other or on the line.
+    /// Returns whether a box is on one side of a line, and a point on the other side or on the line.
     fn is_beyond(&self, a: DVec2, b: DVec2, inner: DVec2, around: &Box) -> bool {
         let side = |p: DVec2| orient2d(a, b, p);
         let own = side(inner);
@@ -193,7 +193,7 @@ impl Triangle {
         first != own && first != Orientation::Collinear && rest.iter().all(|other| *other == first)
     }
 
-    /// Returns whether a point lies in it or on its border; exact.
+    /// Returns whether a point is in it or on its border; exact.
     fn contains(&self, p: DVec2) -> bool {
         let [a, b, c] = self.corners;
         if !(p.cmpge(self.min).all() && p.cmple(self.max).all()) {

@@ -1,11 +1,11 @@
 //! Fewer points for lines and for the borders of areas.
 //!
-//! Every algorithm here tells the **weight** of each point: the tolerance, in units of the coordinates, from
-//! which on the point is left out. So one run serves all tolerances, and shares of the points as well: see
+//! Every algorithm here returns the **weight** of each point: the tolerance, in units of the coordinates, above which
+//! the point is left out. So one run serves all tolerances, and shares of the points as well: see
 //! [`tolerance_for_share`]. Ends of lines weigh infinitely.
 //!
-//! [`douglas_peucker`] and [`visvalingam`] take one line. [`coverage`] takes lines and rings together: what
-//! neighbours share is simplified once, and nothing comes to cross.
+//! [`douglas_peucker`] and [`visvalingam`] take one line. [`coverage`] takes lines and rings together: shared borders
+//! are simplified once, and no new crossings arise.
 
 pub mod coverage;
 pub mod douglas_peucker;
@@ -78,7 +78,7 @@ pub fn tolerance_for_share(weights: &[f64], share: f64) -> f64 {
     finite.sort_unstable_by(f64::total_cmp);
     let kept = (share.clamp(0.0, 1.0) * finite.len() as f64) as usize;
     let dropped = finite.len() - kept.min(finite.len());
-    // Below all weights there are points of no weight at all: repeated ones, and those on straight lines.
+    // −1 keeps even the points of weight 0: repeated ones, and points on straight lines.
     dropped.checked_sub(1).and_then(|last| finite.get(last)).copied().unwrap_or(-1.0)
 }
 
@@ -93,8 +93,7 @@ fn check(points: &[DVec2], tolerance: f64) -> Result<()> {
     Ok(())
 }
 
-/// Returns a measure that is not a number, because numbers overflowed on the way, as one that keeps
-/// the point.
+/// Returns a measure, or infinity, which keeps the point, if it is NaN because of overflow.
 fn or_infinite(measure: f64) -> f64 {
     if measure.is_nan() { f64::INFINITY } else { measure }
 }

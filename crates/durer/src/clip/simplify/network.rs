@@ -48,8 +48,7 @@ impl Network {
         Self { links, ..network }
     }
 
-    /// Returns the places of a chain, those repeated on the spot once; of a closed one the first is not
-    /// repeated at the end.
+    /// Returns the places of a chain without repetitions; the first place of a closed chain is not repeated at the end.
     pub fn walk(&self, chain: &Chain) -> Vec<u32> {
         let mut walk = self.place_of.get(chain.points.clone()).unwrap_or_default().to_vec();
         walk.dedup();
@@ -113,7 +112,7 @@ fn ordered(value: f64) -> u64 {
 #[derive(Debug, Clone, Copy)]
 enum Seen {
     Never,
-    /// Between these two each time, the smaller one first.
+    /// Between the same two each time, the smaller one first.
     Between([u32; 2]),
     Node,
 }

@@ -1,4 +1,4 @@
-//! Leaves points out, one after the other, those that matter least first.
+//! Removes points one by one, the least important first.
 
 use super::or_infinite;
 use crate::math::DVec2;
@@ -67,7 +67,7 @@ impl Measure {
 /// Reason why a point cannot be left out now.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Obstacle {
-    /// This one lies where the line would jump over it.
+    /// This point is where the line would jump over it.
     Point(u32),
     /// The edge that would come is there already.
     Edge,
@@ -108,8 +108,8 @@ type Entry = (u64, u32);
 
 /// Points by how much they matter, then by index.
 ///
-/// Only those of the smallest magnitude are in a heap, which so stays in the processor's cache; the others wait
-/// unsorted, and what is out of date by then never gets there.
+/// Only the entries of the smallest magnitude are in a heap, which therefore stays in the processor's cache; the others
+/// wait unsorted, and those outdated by then never enter the heap.
 #[derive(Default)]
 struct Queue {
     heap: BinaryHeap<Reverse<Entry>>,
@@ -119,7 +119,7 @@ struct Queue {
     later: BTreeMap<u64, Vec<Entry>>,
     /// Current importance of each point; entries that say otherwise are out of date.
     now: Vec<f64>,
-    /// Points that wait until another one is gone, by that one.
+    /// Points that wait until another one is removed, by that one.
     waiting: BTreeMap<u32, Vec<u32>>,
 }
 
@@ -128,7 +128,7 @@ const MAGNITUDE_SHIFT: u32 = 50;
 
 impl Queue {
     fn push(&mut self, point: u32, measure: f64, limit: f64) {
-        // Of numbers that are not negative the bits are in their order.
+        // The bits of non-negative floats are in the order of their values.
         let measure = measure.abs();
         self.now[point as usize] = measure;
         if measure > limit {
@@ -143,7 +143,7 @@ impl Queue {
         }
     }
 
-    /// Returns the next point and what it matters.
+    /// Returns the next point and its measure.
     fn pop(&mut self) -> Option<(u32, f64)> {
         loop {
             while let Some(Reverse(entry)) = self.heap.pop() {
@@ -177,7 +177,7 @@ impl<G: Guard> Removal<'_, G> {
         for point in 0..count as u32 {
             self.queue(&mut queue, point);
         }
-        // A triangle counts as no smaller than one taken before it.
+        // A triangle counts as at least as large as those taken before it.
         let mut least = 0.0f64;
         while let Some((b, measure)) = queue.pop() {
             let [a, c] = self.links.of(b);

@@ -6,9 +6,9 @@
 //! Each inner point makes a triangle with the two points beside it. The point of the smallest triangle is left
 //! out, the triangles beside it change, and so on.
 //!
-//! A triangle counts as no smaller than one that was taken before it, so that one run serves all tolerances.
+//! A triangle counts as at least as large as those removed before it, so that one run serves all tolerances.
 //! The tolerance is a length, the side of a square as large as the triangle, to be comparable with
-//! [Douglas–Peucker](super::douglas_peucker). Of triangles of the same size the first goes first.
+//! [Douglas–Peucker](super::douglas_peucker). Among triangles of the same size, the first one is removed first.
 
 use super::check;
 use super::removal::{Free, Links, Measure, Removal};
@@ -44,8 +44,8 @@ pub const INFO: Info = Info {
 /// Options for simplifying a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// The side of a square as large as the largest triangle that is left out, in units of the coordinates. The
-    /// time falls as it gets smaller.
+    /// The side of a square as large as the largest triangle that is left out, in units of the coordinates. Smaller
+    /// tolerances take less time.
     pub tolerance: f64,
 }
 

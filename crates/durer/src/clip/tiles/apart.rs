@@ -1,9 +1,9 @@
-//! Rings on a grid that neither cross nor touch: they are valid polygons as they are, which costs a fraction of an
-//! overlay to find out.
+//! Rings on a grid that neither cross nor touch: these are valid polygons already, and the check costs a fraction of an
+//! overlay.
 //!
 //! Edges are compared within horizontal slabs, in the order of their left ends. The nesting of rings is found by the
-//! edges on the left of its leftmost point. Object space, exact; O(n √n) for n edges of usual data, and what would take
-//! longer is left to the overlay.
+//! edges on the left of its leftmost point. Object space, exact; O(n √n) for n edges of usual data, slower cases are
+//! left to the overlay.
 
 use crate::clip::polygon::{Shapes, Vertex, WindingRule};
 use crate::math::{I64Vec2, IVec2, Orientation};
@@ -27,8 +27,8 @@ struct Edge {
     ring: u32,
 }
 
-/// Returns the points of a ring without those that are repeated, lie on a straight line, or are the tips of spikes: it
-/// encloses the same without them. Empty if nothing is left.
+/// Returns the points of a ring without repeated points, points on straight lines, and tips of spikes, none of which
+/// changes the enclosed region. Empty if nothing is left.
 pub fn cleaned(points: impl IntoIterator<Item = I64Vec2>) -> Vec<I64Vec2> {
     let mut ring: Vec<I64Vec2> = Vec::new();
     for p in points {
@@ -160,7 +160,7 @@ impl Slabs {
     fn new(edges: Vec<Edge>) -> Option<Self> {
         let top = edges.iter().map(Edge::high).max()?;
         let mut count = (edges.len() / 16).isqrt() as i32 + 1;
-        // The sum of the heights tells how often edges are entered.
+        // The sum of the heights is the number of entries.
         let sum: i64 = edges.iter().map(|edge| i64::from(edge.high() - edge.low())).sum();
         let room = (edges.len() * (ENTRIES_PER_EDGE - 1)) as i64;
         let most = (i64::from(top) + 1) * room / sum.max(1);
@@ -178,7 +178,7 @@ impl Slabs {
         for end in &mut ends {
             sum += std::mem::replace(end, sum);
         }
-        // What begins at their starts ends at their ends when all are filled in.
+        // The starts advance to the ends as entries are filled in.
         let mut entries = vec![*edges.first()?; sum];
         for edge in &edges {
             for slab in slabs(edge) {
@@ -264,7 +264,7 @@ impl Nest {
         for (ring, &p) in self.first.iter().enumerate() {
             let rings = slabs.on_the_left(p);
             let odd = rings.chunk_by(|a, b| a == b).filter(|edges| edges.len() % 2 == 1);
-            // Its own edges are none of them: they begin at its leftmost point or beyond.
+            // Its own edges are not among them: they begin at its leftmost point or further right.
             let odd = odd.filter_map(|edges| edges.first().copied());
             self.around[ring].extend(odd.filter(|&other| other as usize != ring));
         }

@@ -41,9 +41,9 @@ impl<'a> Level<'a> {
         area < side * side
     }
 
-    /// Returns the tiny polygons that a square replaces: those that fill it.
+    /// Returns the tiny polygons that are replaced by a square: those whose areas add up to one.
     fn squares(&self) -> Vec<bool> {
-        /// Polygons in one square of this many times the side count together.
+        /// Side of the squares in which tiny polygons are added up, as a multiple of their size limit.
         const NEAR: f64 = 8.0;
         let side = self.tiny() / self.cells;
         let (mut squares, mut sums) = (Vec::new(), BTreeMap::<(usize, i64, i64), f64>::new());
@@ -121,13 +121,13 @@ impl<'a> Level<'a> {
     }
 }
 
-/// A feature, or a part of it that lies in a tile.
+/// A feature, or the part of it in a tile.
 pub struct Part<'a> {
     level: &'a Level<'a>,
     feature: usize,
     /// Number of worlds by which it is moved to the east.
     shift: f64,
-    /// The part in cells; `None` as long as nothing is cut off.
+    /// The part in cells; `None` until something is cut off.
     cut: Option<Body>,
 }
 

@@ -12,8 +12,8 @@ pub const HALF_WORLD: f64 = PI * 6_378_137.0;
 /// infinitely far away.
 const LAST_LATITUDE: f64 = 89.999;
 
-/// Returns the place of a longitude and latitude in degrees. Longitudes go on beyond ±180°, into the
-/// neighbouring worlds; latitudes beyond ±85.0511° lie beyond the square.
+/// Returns the place of a longitude and latitude in degrees. Longitudes beyond ±180° continue into the neighbouring
+/// worlds; latitudes beyond ±85.0511° are outside the square.
 ///
 /// ```
 /// use durer::clip::tiles::mercator;

@@ -1,9 +1,9 @@
 //! Tiles of web maps: the square of Web Mercator, halved on both axes per zoom level; tile 0/0/0 is
 //! the world, x counts to the east, y to the south.
 //!
-//! [`walk()`] goes down from the world to the tiles of one level and cuts what is in them on the way; [`Tiling`] cuts
-//! geometries as they are; [`Pyramid`] makes of features what vector tiles have: simplified, on a grid of whole
-//! numbers, for many levels.
+//! [`walk()`] descends from the world to the tiles of one level and clips their contents on the way; [`Tiling`] clips
+//! geometries as they are; [`Pyramid`] prepares features for vector tiles: simplified, on a grid of whole numbers, for
+//! many levels.
 
 mod apart;
 mod level;
@@ -54,7 +54,7 @@ impl std::fmt::Display for Tile {
 }
 
 impl Tile {
-    /// The one that has everything.
+    /// The tile that contains the whole world.
     pub const WORLD: Self = Self { zoom: 0, x: 0, y: 0 };
 
     /// The finest level: with a grid of 2^14 in each tile, places are still whole numbers of 38 bits.

@@ -19,9 +19,8 @@ pub struct Options {
     /// Largest distance that lines may move on levels before the last, in cells: 3 of 4096 is three eighths of a
     /// pixel for tiles of 512. 0 leaves out only points on straight lines. The last level has all points.
     pub tolerance: f64,
-    /// Polygons smaller than a square of this side, in cells, are left out; whenever those near to each other
-    /// have the same area together, such a square replaces them. On the last level it is 1 at most; 0 leaves all
-    /// in.
+    /// Polygons smaller than a square of this side, in cells, are left out; when nearby ones add up to the area of such
+    /// a square, it replaces them. On the last level it is at most 1; 0 keeps all.
     pub tiny: f64,
 }
 

@@ -28,7 +28,7 @@ pub enum Body {
 pub enum Shape {
     /// Points.
     Points(Vec<I64Vec2>),
-    /// Lines of two points at least, none of which is repeated on the spot.
+    /// Lines of at least two points, without repeated points.
     Lines(Vec<Vec<I64Vec2>>),
     /// Valid polygons.
     Areas(Shapes<I64Vec2>),
@@ -81,8 +81,8 @@ impl Body {
         Ok((!part.points().is_empty()).then_some(part))
     }
 
-    /// Returns the geometry on the grid, with `origin` as its zero: every place goes to the nearest whole numbers,
-    /// halves up. Lines that become points are left out, and so are parts that have no area any more. Areas are made
+    /// Returns the geometry on the grid, with `origin` as its zero: every place is rounded to the nearest whole
+    /// numbers, halves up. Lines that become points are left out, and so are parts that lose their area. Areas are made
     /// valid.
     ///
     /// # Errors
@@ -169,8 +169,7 @@ impl Shape {
     }
 }
 
-/// Returns the nearest whole number, halves up, so that the grid of one tile is that of all; less
-/// `origin`.
+/// Returns the nearest whole number, halves rounded up so that all tiles have the same grid, minus `origin`.
 fn nearest(value: f64, origin: i64) -> i64 {
     ((value + 0.5).floor() as i64).saturating_sub(origin)
 }

@@ -9,9 +9,9 @@ use crate::math::{DVec2, Rect};
 /// A geometry by kinds, and its peculiarities.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Placed {
-    /// Its areas, lines and points, those that there are; none if it is far.
+    /// Its areas, lines and points, as far as present; empty if it is far.
     pub bodies: Vec<Body>,
-    /// True if it lies beyond all worlds.
+    /// True if it is beyond all worlds.
     pub far: bool,
     /// True if it has a latitude beyond ±90°.
     pub latitude: bool,
@@ -21,7 +21,7 @@ pub struct Placed {
     pub long: bool,
 }
 
-/// The meaning of coordinates, and the way that edges go.
+/// The meaning of coordinates, and the direction of long edges.
 #[derive(Clone, Copy)]
 struct Way {
     coordinates: Coordinates,
@@ -50,8 +50,8 @@ struct Parts {
 
 /// Places a geometry on the map, for [`Pyramid::new`](super::Pyramid::new).
 ///
-/// By the short way, lines and borders never go more than half around the world: a longer edge goes the other way,
-/// across the date line, and rings that go around a pole are closed along it.
+/// With `short_way`, lines and borders never extend more than half around the world: a longer edge goes the other way,
+/// across the date line, and rings around a pole are closed along it.
 ///
 /// ```
 /// use durer::clip::tiles::{Coordinates, place};
@@ -148,8 +148,8 @@ fn close_along_pole(ring: &mut Vec<DVec2>) {
     ring.extend([(end, first.y), (end, pole), (first.x, pole)].map(DVec2::from));
 }
 
-/// Returns whether an edge goes around more than half of the world, and not along a pole, where no map shows which way
-/// it goes.
+/// Returns whether an edge goes around more than half of the world, except along a pole, where no map shows its
+/// direction.
 fn is_long(from: DVec2, to: DVec2) -> bool {
     let is_on_map = |p: DVec2| (0.0..=1.0).contains(&p.y);
     (to.x - from.x).abs() > 0.5 && (is_on_map(from) || is_on_map(to))

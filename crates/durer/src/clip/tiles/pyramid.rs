@@ -1,11 +1,11 @@
 //! Features as vector tiles have them: simplified, on a grid of whole numbers, cut at the tiles' borders.
 //!
-//! All of a layer is simplified together, so that what neighbours share stays shared
-//! ([`crate::clip::simplify::coverage`]); once for all levels. The grid of a level is the same in all tiles, so
-//! that features are put on it, and made valid there, before they are cut, and meet across borders. Where a
-//! cut makes new points, those are put on the grid too, and the part is made valid again.
+//! A whole layer is simplified together, once for all levels, so that shared borders stay shared
+//! ([`crate::clip::simplify::coverage`]). The grid of a level is the same in all tiles, so features are put on it, and
+//! made valid there, before they are clipped, and match across tile borders. New points of a cut are put on the grid
+//! too, and the part is made valid again.
 //!
-//! What lies beyond the world, or reaches beyond it by its buffer, comes from the other side as well.
+//! Parts beyond the world, or within the buffer of its edge, also appear on the other side.
 
 use super::Tile;
 use super::level::{Level, Part};
@@ -18,7 +18,7 @@ use crate::clip::simplify::coverage::Options as Simplify;
 use crate::trace::NoTrace;
 use crate::{Error, Result, parallel};
 
-/// Features made ready for all levels.
+/// Features prepared for all levels.
 #[derive(Debug)]
 pub struct Pyramid {
     features: Vec<Ready>,
@@ -56,8 +56,8 @@ impl Pyramid {
         Level::new(&self.features, &self.options, zoom)
     }
 
-    /// Visits the tiles of a level that something lies in, in the order of their numbers; the pieces are in the
-    /// order of the features. See [`walk()`](super::walk()).
+    /// Visits the non-empty tiles of a level in the order of their numbers; the pieces are in the order of the
+    /// features. See [`walk()`](super::walk()).
     ///
     /// # Errors
     /// Those of the overlay, and of `take`.

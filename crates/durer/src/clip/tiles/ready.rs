@@ -1,4 +1,4 @@
-//! Features made ready for all levels of a pyramid.
+//! Features prepared for all levels of a pyramid.
 
 use super::piece::Body;
 use crate::clip::polygon::{Polygon, WindingRule, signed_area};
@@ -19,7 +19,7 @@ pub struct Feature {
 /// Distance from the square that features may reach, in its sides.
 pub const WORLDS: f64 = 4.0;
 
-/// A feature with what is known of it for all levels.
+/// A feature with the data common to all levels.
 #[derive(Debug)]
 pub(super) struct Ready {
     pub layer: usize,

@@ -78,7 +78,7 @@ pub struct Subject<'a> {
 /// Position of a geometry relative to the world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reach {
-    /// All of it lies where tiles are, or in a neighbouring world.
+    /// All of it is in the range of tiles, or in a neighbouring world.
     Within,
     /// Some or all of it is nearer to a pole than the tiles reach.
     BeyondLatitudes,
@@ -126,8 +126,8 @@ impl Tiling {
         count(&contents(subjects), self.zoom, limit)
     }
 
-    /// Visits the tiles that something lies in, in the order of their numbers, each with the parts of the geometries
-    /// and their indices. Geometry beyond 180 degrees is moved to the other side. See [`walk()`](super::walk()).
+    /// Visits the non-empty tiles in the order of their numbers, each with the parts of the geometries and their
+    /// indices. Geometry beyond 180 degrees is moved to the other side. See [`walk()`](super::walk()).
     ///
     /// # Errors
     /// The errors of the cuts, and those of `take`.
@@ -191,7 +191,7 @@ fn contents<'a>(subjects: &'a [Subject<'a>]) -> Vec<Part<'a>> {
     for subject in subjects {
         let Some(own) = subject.geometry.bounds() else { continue };
         let half = half_world(subject.tiling.coordinates);
-        // What only touches the border of another world is in this one.
+        // Geometry that only touches the border of another world is in this one.
         let first = (((own.min().x - half) / (2.0 * half)).floor() as i64 + 1).min(0);
         let last = (((own.max().x + half) / (2.0 * half)).ceil() as i64 - 1).max(0);
         for world in first..=last {

@@ -4,23 +4,22 @@ use super::Tile;
 use crate::Result;
 use crate::parallel;
 
-/// A feature that lies in tiles, or a part of it.
+/// A feature to be divided into tiles, or a part of it.
 pub trait Content: Send + Sync + Sized {
-    /// Returns the parts in some tiles, which lie in the tile where this part comes from; `None` if
-    /// nothing is.
+    /// Returns the parts in some tiles inside the tile that this part comes from; `None` for tiles without a part.
     ///
     /// # Errors
-    /// Whatever goes wrong.
+    /// Any error of the implementation.
     fn within(&self, tiles: &[Tile]) -> Result<Vec<Option<Self>>>;
 
     /// Returns the amount of work, in positions.
     fn size(&self) -> usize;
 
-    /// Returns whether it covers a tile wholly, so that it lies in all tiles of this one.
+    /// Returns whether it covers a tile wholly, and so all tiles within it.
     fn covers(&self, tile: Tile) -> bool;
 }
 
-/// Subtrees of this many levels are worked on at once by one thread, if they have no more than …
+/// Number of levels of a subtree that one thread processes at once, if it has no more than …
 const LEVELS: u8 = 2;
 
 /// … this many positions.
@@ -31,10 +30,10 @@ const JOBS: usize = 32;
 
 type Open<C> = Vec<(Tile, Vec<C>)>;
 
-/// Visits the tiles of a level that something lies in, in the order of Hilbert's curve: `make` makes something
-/// of a tile's contents, on any thread, and `take` takes it, one after the other.
+/// Visits the non-empty tiles of a level in the order of Hilbert's curve: `make` turns a tile's contents into a result,
+/// on any thread, and `take` takes the results in order.
 ///
-/// The contents are in the order in which they were given. Parts are cut from the parts in the tiles of the level
+/// The contents keep their order. Parts are cut from the parts in the tiles of the level
 /// above, so that the time grows with the contents and not with the number of tiles. At any time, the contents of the
 /// tiles on the way down to one are in memory.
 ///
@@ -89,7 +88,7 @@ fn subtree<C: Content, R>(
 /// Number of contents that one task cuts.
 const TASK: usize = 64;
 
-/// Returns the contents of some tiles, of those that have any.
+/// Returns the contents of those tiles that are not empty.
 fn parts<C: Content>(contents: &[C], tiles: &[Tile]) -> Result<Open<C>> {
     let tasks: Vec<&[C]> = contents.chunks(TASK).collect();
     let cut = parallel::map(tasks, |some| {
@@ -110,7 +109,7 @@ fn parts<C: Content>(contents: &[C], tiles: &[Tile]) -> Result<Open<C>> {
 /// Counts the tiles of a level that are not empty, up to a limit; above it the result exceeds the limit but may
 /// be less than the number.
 ///
-/// Tiles that one content covers wholly are counted without looking at those that they consist of.
+/// Tiles that one content covers wholly are counted without visiting the tiles within them.
 ///
 /// # Errors
 /// The first error of [`Content::within`].

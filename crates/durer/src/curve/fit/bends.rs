@@ -1,4 +1,4 @@
-//! The turns of a polyline: its corners, and the parts that approximate something round.
+//! The turns of a polyline: its corners, and the parts that approximate round curves.
 
 use super::Options;
 use crate::math::DVec2;
@@ -7,26 +7,25 @@ use std::f64::consts::PI;
 /// Larger turns are corners.
 const CORNER: f64 = PI / 6.0 + 1e-3;
 
-/// Like angles are no more than this many times each other: where a line goes over into an arc, the first
-/// turn is half of the others, and seen at an angle arcs turn unevenly.
+/// Largest ratio of angles that count as similar: where a line continues as an arc, the first turn is half of the
+/// others, and arcs seen at an angle turn unevenly.
 const LIKE: f64 = 3.2;
 
-/// A fold turns by less than this many times what its neighbours turn.
+/// Ratio to the turns of its neighbours below which a turn may be a fold.
 const LITTLE: f64 = 0.5;
 
 /// A chord is not longer than this many times both of those beside it.
 const LENGTHS: f64 = 2.5;
 
-/// Number of turns in a row that make something round.
+/// Number of consecutive turns from which a part counts as round.
 const TURNS: usize = 5;
 
-/// Factor by which the curve may leave a chord of something round beyond the sagitta that the turns
-/// imply.
+/// Factor on the sagitta implied by the turns, up to which the curve may leave a chord of a round part.
 const MORE: f64 = 1.1;
 
-/// A polyline with what is known of its turns.
+/// A polyline with data about its turns.
 pub(super) struct Bends {
-    /// The points; those of a closed polyline end with the first again.
+    /// The points; a closed polyline repeats the first one at the end.
     pub points: Vec<DVec2>,
     pub closed: bool,
     /// Length of the polyline up to each point.
@@ -90,8 +89,8 @@ impl Bends {
         (i + self.shift) % self.count()
     }
 
-    /// Begins a closed polyline at its first break or, if it has none, at the end of its longest chord, of those that
-    /// the curve may not leave if there are some: that is where a line between arcs ends.
+    /// Begins a closed polyline at its first break or, if it has none, at the end of its longest chord, preferably one
+    /// that the curve may not leave: there a line between arcs ends.
     pub fn started(self) -> Self {
         if !self.closed {
             return self;
@@ -102,7 +101,7 @@ impl Bends {
         let longest = (0..count).max_by(|a, b| {
             stays(a).cmp(&stays(b)).then(chord(a).total_cmp(&chord(b))).then(b.cmp(a))
         });
-        // What starts in a fold would end in it.
+        // A loop that starts in a fold would end in it.
         let after = |i: usize| (i + 1..=i + count).map(|k| k % count).find(|i| !self.is_fold(*i));
         let first = self.breaks.first().copied().or_else(|| longest.and_then(after));
         self.from(first.unwrap_or(0))
@@ -175,7 +174,7 @@ fn both(turns: &[f64], i: usize) -> Option<[f64; 2]> {
     }
 }
 
-/// Returns for each chord whether it is one of many that turn the same way by like angles.
+/// Returns for each chord whether it is one of many that turn the same way by similar angles.
 fn regular(turns: &[f64], chords: &[f64], closed: bool) -> Vec<bool> {
     let count = chords.len();
     let is_like = |i: usize| {
@@ -216,10 +215,10 @@ fn regular(turns: &[f64], chords: &[f64], closed: bool) -> Vec<bool> {
     regular
 }
 
-/// Returns true for each point that is a fold: two round edges, one behind the other, whose facets are not in step are
-/// seen as a polygon whose points lie on the edges in part, and in part where the chord of one crosses that of the
-/// other. At these, the folds, it turns by little; they are not on the circle but within it, by less than the chords
-/// are. Empty if there are none.
+/// Returns true for each point that is a fold; empty if there are none. Two round edges, one behind the other, whose
+/// facets do not coincide appear as a polygon: some of its points are on the edges, others, the folds, where a chord of
+/// one edge crosses a chord of the other. The polygon turns little at folds; they are not on the circle but inside it,
+/// by less than the chords are.
 fn folds(turns: &[f64], closed: bool, kept: &[bool]) -> Vec<bool> {
     let last = turns.len() - 1;
     let is_fold = |i: usize| {

@@ -9,10 +9,10 @@ use std::f64::consts::TAU;
 /// The fewest chords of a circular arc.
 pub(super) const LEAST: usize = 4;
 
-/// Arcs that turn further are none: what ends where it began is a whole circle.
+/// Largest turn of an arc: a curve that ends where it began is a whole circle.
 const FURTHEST: f64 = TAU - 0.05;
 
-/// Returns the arc on which all points of a run lie exactly. `turned` is the sum of the turns between its ends.
+/// Returns the arc that contains all points of a run exactly. `turned` is the sum of the turns between its ends.
 pub(super) fn exact(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<Arc> {
     let middle = run.points[run.points.len() / 2];
     let found = arc(run.first(), middle, run.last(), turned)?;
@@ -42,7 +42,7 @@ fn arc(first: DVec2, middle: DVec2, last: DVec2, turned: f64) -> Option<Arc> {
     let (a, b) = (first - center, last - center);
     let turn = forwards(libm::atan2(a.perp_dot(b), a.dot(b)), turned);
     let is_one = turned != 0.0 && turned.abs() < FURTHEST && turn.abs() < FURTHEST;
-    // The turns inside are those of all chords but half of the first and the last.
+    // The turns inside cover all chords except half of the first and half of the last.
     (is_one && turn.abs() >= turned.abs() * 0.5).then_some(Arc {
         center,
         axis: a,
@@ -57,7 +57,7 @@ fn center(a: DVec2, b: DVec2, c: DVec2) -> Option<DVec2> {
     let (ab, ac) = (b - a, c - a);
     let twice = 2.0 * ab.perp_dot(ac);
     let offset = (ac.perp() * -ab.length_squared() + ab.perp() * ac.length_squared()) / twice;
-    // Beyond this, rounding alone decides where the middle is.
+    // Beyond this, the centre depends on rounding alone.
     let is_near = offset.length_squared() < 1e12 * ac.length_squared().max(ab.length_squared());
     is_near.then_some(a + offset)
 }

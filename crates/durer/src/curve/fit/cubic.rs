@@ -1,8 +1,8 @@
 //! Cubic Bézier curves near to points.
 //!
-//! P. J. Schneider, *An algorithm for automatically fitting digitized curves*, Graphics Gems, 1990: the ways at both
-//! ends are given, least squares find how far the control points lie on them, and Newton's method moves the parameters
-//! of the points. That the curve stays near to the polyline between its points follows from its control polygon.
+//! P. J. Schneider, *An algorithm for automatically fitting digitized curves*, Graphics Gems, 1990: the directions at
+//! both ends are given, least squares determine the distances of the control points along them, and Newton's method
+//! moves the parameters of the points. The control polygon bounds the distance from the polyline between its points.
 
 use super::measure::Run;
 use crate::math::DVec2;
@@ -13,7 +13,7 @@ const ROUNDS: usize = 4;
 /// An error that is this many times too large is not mended by moving parameters.
 const HOPELESS: f64 = 6.0;
 
-/// The ways, of length 1, in which a curve leaves its start and comes to its end.
+/// The unit directions in which a curve leaves its start and reaches its end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ways {
     pub first: DVec2,
@@ -74,7 +74,7 @@ fn least_squares(points: &[DVec2], parameters: &[f64], ways: Ways) -> Option<[DV
     let determinant = c00 * c11 - c01 * c01;
     let (alpha, beta) = ((x0 * c11 - x1 * c01) / determinant, (c00 * x1 - c01 * x0) / determinant);
     let across = first.distance(last);
-    // A curve whose ends look the other way has a loop or a cusp.
+    // A curve whose ends point backwards has a loop or a cusp.
     let is_sound = |v: f64| v > across * 1e-3 && v.is_finite();
     (is_sound(alpha) && is_sound(beta)).then_some([
         first,
@@ -113,8 +113,8 @@ fn move_parameters(points: &[DVec2], parameters: &mut [f64], curve: &[DVec2; 4])
 /// Returns whether each part of the curve between the parameters of two points stays as near to their chord as is
 /// allowed.
 ///
-/// The distance to a chord is a convex function, so that it is on the curve at most the mean, by the weights of its
-/// control points, of theirs: of the larger one at the ends, and of the larger one of those between.
+/// The distance to a chord is a convex function, so on the curve it is at most the weighted mean of the control points'
+/// distances: here of the larger one at the ends and the larger one between them.
 fn is_inside(run: &Run<'_>, parameters: &[f64], curve: &[DVec2; 4]) -> bool {
     let chords = run.points.windows(2).zip(parameters.windows(2)).zip(run.allowed.iter());
     chords.into_iter().all(|((ends, t), allowed)| {

@@ -6,13 +6,13 @@ use crate::math::DVec2;
 use crate::target::Arc;
 use std::f64::consts::{PI, TAU};
 
-/// Flatter ellipses are taken for none: their ends are corners.
+/// Smallest ratio of an ellipse's axes: the ends of flatter ones are corners.
 const FLATTEST: f64 = 0.01;
 
-/// An ellipse that turns less may be anything.
+/// Smallest turn of an ellipse: shorter arcs are ambiguous.
 const LEAST_TURN: f64 = PI / 3.0;
 
-/// Returns the elliptical arc on which all points of a run lie exactly. `turned` is the sum of the turns between its
+/// Returns the elliptical arc that contains all points of a run exactly. `turned` is the sum of the turns between its
 /// ends.
 pub(super) fn exact(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<Arc> {
     if turned.abs() >= TAU - 0.05 {

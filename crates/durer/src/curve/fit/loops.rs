@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 /// Fewer points make no whole circle.
 const FEWEST: usize = 8;
 
-/// Returns the circle or the ellipse that a closed polyline is: one on which its points lie exactly before one that
-/// they are near to. At most one of them is to be kept.
+/// Returns the circle or ellipse that a closed polyline approximates: preferably one that contains its points exactly,
+/// else one near them. At most one of the points may have to be kept.
 pub(super) fn whole(bends: &Bends) -> Option<Fitted> {
     let count = bends.count();
     let turned: f64 = bends.turns[1..=count].iter().sum();
@@ -25,7 +25,7 @@ pub(super) fn whole(bends: &Bends) -> Option<Fitted> {
         let found = around.iter().flatten().find(|arc| run.is_near(arc, bends.tolerance * within));
         found.and_then(|arc| joined(*arc, run, bends.tolerance))
     };
-    // Folds are those of points that lie on a circle exactly.
+    // Folds exist only among points that are exactly on a circle.
     let all = Run::of_all(&turned_to, 0, count);
     let arc: Arc = near(&run, EXACT).or_else(|| near(&all, 1.0))?;
     let start = run.first();

@@ -32,7 +32,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Returns a run in which folds are points as all others.
+    /// Returns a run in which folds are treated like all other points.
     pub fn of_all(bends: &'a Bends, from: usize, to: usize) -> Self {
         let (points, allowed) = (&bends.points[from..=to], &bends.allowed[from..to]);
         Self { points: points.into(), allowed: allowed.into(), folds: Vec::new() }
@@ -46,7 +46,7 @@ impl<'a> Run<'a> {
         self.points[self.points.len() - 1]
     }
 
-    /// Returns whether all points lie within `tolerance` of an arc, one after the other, and the arc leaves no chord by
+    /// Returns whether all points are within `tolerance` of an arc, in order along it, and the arc leaves no chord by
     /// more than is allowed.
     pub fn is_near(&self, arc: &Arc, tolerance: f64) -> bool {
         let has_folds = self.folds.iter().all(|fold| is_within(arc, *fold, tolerance));
@@ -58,7 +58,7 @@ impl<'a> Run<'a> {
             }
     }
 
-    /// Returns whether all points lie within `tolerance` of the line between the ends, one after the other.
+    /// Returns whether all points are within `tolerance` of the line between the ends, in order along it.
     pub fn is_near_line(&self, tolerance: f64) -> bool {
         let (first, across) = (self.first(), self.last() - self.first());
         let length = across.length();
@@ -108,7 +108,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Returns whether a point lies within an arc's ellipse, or outside by no more than the tolerance.
+/// Returns whether a point is within an arc's ellipse, or outside by at most the tolerance.
 fn is_within(arc: &Arc, p: DVec2, tolerance: f64) -> bool {
     let on = arc.at(angle_of(arc, p));
     on.distance(arc.center) + tolerance >= p.distance(arc.center)
@@ -121,14 +121,13 @@ fn rise(arc: &Arc, angle: f64, step: f64, from: DVec2, to: DVec2) -> f64 {
     height.perp_dot((to - from).normalize_or_zero()).abs()
 }
 
-/// Returns the angle of the point of an arc's ellipse that lies as a point does, counted as the arc's `start` is.
+/// Returns the angle of a point on an arc's ellipse, measured like the arc's `start`.
 pub(super) fn angle_of(arc: &Arc, p: DVec2) -> f64 {
     let v = p - arc.center;
     libm::atan2(arc.axis.perp_dot(v) / arc.ratio, arc.axis.dot(v))
 }
 
-/// Returns an angle as what is turned in the direction of another one: with its sign, less than a
-/// full turn.
+/// Returns an angle as a turn in the direction of another one: with its sign, less than a full turn.
 pub(super) fn forwards(angle: f64, turn: f64) -> f64 {
     match angle {
         a if turn >= 0.0 && a < 0.0 => a + TAU,

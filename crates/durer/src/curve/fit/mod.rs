@@ -1,10 +1,9 @@
 //! Polylines to lines, circles, ellipses, arcs of both and cubic Bézier curves within a tolerance.
 //!
 //! A polyline is divided at its corners and at points that are to be kept. A closed one without such points is tried as
-//! a whole circle or ellipse. In the rest, arcs whose points lie on a circle or ellipse nearly exactly come first:
-//! those of a mesh do, where an arc was meshed. What is between them is taken greedily: from each point the longest
-//! circular arc or cubic curve that fits, or a line where that is about as long. Lengths are found by doubling and
-//! halving.
+//! a whole circle or ellipse. In the rest, arcs with points almost exactly on a circle or ellipse are found first, as
+//! they result from meshed arcs. The stretches between them are fitted greedily: from each point the longest circular
+//! arc or cubic curve that fits, or a line where that is about as long. Lengths are found by doubling and halving.
 //!
 //! Sources: circles through three points and, for whole ones, I. Kåsa, *A circle fitting procedure and its error
 //! analysis*, IEEE Transactions on Instrumentation and Measurement, 1976 (`circle`); ellipses by linear least squares
@@ -32,29 +31,29 @@ use measure::Run;
 pub struct Options {
     /// Largest distance of the polyline's points from the curve, and of the curve from the polyline, in the unit of the
     /// points. 0.02 mm on paper is less than pens, lasers and mills resolve; ten times as much is visible on paper. The
-    /// number of pieces grows slowly as it gets smaller. With 0 and less the polyline comes back.
+    /// number of pieces grows slowly as it gets smaller. With 0 or less the polyline is returned unchanged.
     pub tolerance: f64,
     /// True if polylines that turn regularly represent round curves. Between two of their points, the curve may then
     /// leave their chord by as much as an arc through the points does. They turn one way, five times or more in a row,
-    /// by at most 30° and by like angles, over chords of like lengths: a polygon of twelve sides is round, one of eight
-    /// is not. Where two such polylines of one circle cross each other, the crossings, at which they turn by little,
-    /// may lie within it, as far as the chords do.
+    /// by at most 30° and by similar angles, over chords of similar lengths: a polygon of twelve sides is round, one of
+    /// eight is not. Where two such polylines of one circle cross each other, the crossings, where they turn little,
+    /// may be inside the circle by as much as the chords.
     pub round: bool,
 }
 
 /// Polylines of fewer points are left as they are.
 const FEWEST: usize = 5;
 
-/// Points closer to an arc than this part of the tolerance lie on it.
+/// Part of the tolerance within which points count as on an arc.
 const EXACT: f64 = 0.05;
 
-/// Ends closer to an arc than this part of the tolerance are where it ends.
+/// Part of the tolerance within which the ends of a run count as the ends of an arc.
 const JOINED: f64 = 0.005;
 
 /// A polyline to be fitted.
 #[derive(Debug, Clone, Copy)]
 pub struct Polyline<'a> {
-    /// The points; of a closed one the first is not repeated.
+    /// The points; the first one of a closed polyline is not repeated.
     pub points: &'a [DVec2],
     /// True if the last point is joined to the first.
     pub closed: bool,
@@ -72,8 +71,8 @@ pub struct Fitted {
 }
 
 /// Fits lines and curves to a polyline. Its ends and the points to be kept are ends of pieces, to the bit; a closed
-/// polyline gives a closed curve. `is_met` returns whether something ends on the chord between two points: such a chord
-/// stays within the tolerance, however round the polyline is.
+/// polyline gives a closed curve. `is_met` returns whether another line ends on the chord between two points: the curve
+/// stays within the tolerance of such chords, however round the polyline is.
 ///
 /// `None` if the polyline has fewer than two points, or one that is not finite.
 ///
@@ -127,8 +126,8 @@ fn straight(points: &[DVec2], closed: bool) -> Fitted {
     Fitted { from: (0..pieces.len()).collect(), curve: Curve { start, pieces, closed } }
 }
 
-/// Returns the largest `j` of `least..=end` that `try_to` finds something for, and what it finds, taken that
-/// it does for all below it.
+/// Returns the largest `j` of `least..=end` for which `try_to` succeeds, with its result, assuming that it succeeds for
+/// all smaller ones.
 fn longest<T>(
     from: usize,
     least: usize,
@@ -177,8 +176,7 @@ fn through(arc: &Arc, start: DVec2, end: DVec2) -> Option<Arc> {
     (arc.center.is_finite() && arc.axis.is_finite()).then_some(arc)
 }
 
-/// Returns an arc that begins and ends where a run does: as it is if that is so but for rounding,
-/// else moved.
+/// Returns an arc that begins and ends where a run does: unchanged if it does so up to rounding, else moved.
 fn joined(arc: Arc, run: &Run<'_>, tolerance: f64) -> Option<Arc> {
     let (first, last) = (arc.at(arc.start), arc.at(arc.start + arc.turn));
     let apart = first.distance(run.first()).max(last.distance(run.last()));
@@ -188,7 +186,7 @@ fn joined(arc: Arc, run: &Run<'_>, tolerance: f64) -> Option<Arc> {
     through(&arc, run.first(), run.last()).filter(|moved| run.is_near(moved, tolerance))
 }
 
-/// Returns the part of an arc between two points that lie on it but for rounding.
+/// Returns the part of an arc between two points that are on it up to rounding.
 pub(crate) fn between(arc: &Arc, start: DVec2, end: DVec2, tolerance: f64) -> Option<Arc> {
     let begin = measure::angle_of(arc, start);
     let turn = measure::forwards(measure::angle_of(arc, end) - begin, arc.turn);
@@ -200,7 +198,8 @@ pub(crate) fn between(arc: &Arc, start: DVec2, end: DVec2, tolerance: f64) -> Op
 /// Largest difference between arcs of one circle, as a part of the tolerance.
 const SAME: f64 = 0.25;
 
-/// Returns the part of a whole that an arc from `start` to `end` is but for a small part of the tolerance.
+/// Returns the part of a whole circle or ellipse that matches an arc from `start` to `end`, up to a small part of the
+/// tolerance.
 pub(crate) fn part_of(
     whole: &Arc,
     arc: &Arc,

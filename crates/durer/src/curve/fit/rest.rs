@@ -7,17 +7,16 @@ use super::{EXACT, circle, longest};
 use crate::math::DVec2;
 use crate::target::Piece;
 
-/// The fewest chords that a cubic curve is worth.
+/// Smallest number of chords that a cubic curve replaces.
 const LEAST_CUBIC: usize = 3;
 
 /// The fewest chords that a line is for.
 const LEAST_LINE: usize = 2;
 
-/// A line is taken before a curve, and a circular arc before a cubic curve, that is no longer than this many times
-/// it.
+/// Factor by which a curve must be longer than a line, or a cubic curve longer than a circular arc, to be preferred.
 const FURTHER: f64 = 1.25;
 
-/// Appends the pieces from one point to another, each with the index of the point in which it begins.
+/// Appends the pieces from one point to another, each with the index of its first point.
 pub(super) fn fit(bends: &Bends, from: usize, to: usize, pieces: &mut Vec<(usize, Piece)>) {
     let mut at = from;
     while at < to {
@@ -63,8 +62,8 @@ fn longest_piece(
     }
 }
 
-/// Returns the end of the longest line from a point: one that points lie on exactly is preferred to one that they are
-/// near to and that is not much longer.
+/// Returns the end of the longest line from a point: a line exactly through its points is preferred to one near them
+/// that is not much longer.
 fn longest_line(bends: &Bends, from: usize, to: usize) -> Option<usize> {
     let line = |within: f64| {
         let near = |end: usize| Run::of_all(bends, from, end).is_near_line(within).then_some(());
@@ -85,8 +84,8 @@ fn is_bent(bends: &Bends, from: usize) -> bool {
     })
 }
 
-/// Returns the ways in which the next curve may leave a point: that of the curve before it, where one goes
-/// over into it, then that of the polyline.
+/// Returns the directions in which the next curve may leave a point: first the previous curve's, if one continues
+/// smoothly into it, then the polyline's.
 fn first_ways(
     bends: &Bends,
     from: usize,
@@ -103,7 +102,7 @@ fn first_ways(
     [smooth.map(DVec2::normalize_or_zero), Some(own)]
 }
 
-/// Returns the way in which a curve comes to a point.
+/// Returns the direction in which a curve reaches a point.
 fn last_way(bends: &Bends, from: usize, end: usize, to: usize) -> DVec2 {
     if end == to || end + 1 >= bends.points.len() {
         return -end_way(bends, end, end - 1, end - 2.min(end - from));
@@ -114,7 +113,7 @@ fn last_way(bends: &Bends, from: usize, end: usize, to: usize) -> DVec2 {
     (come / come.length_squared() + go / go.length_squared()).normalize_or_zero()
 }
 
-/// Returns the way in which the circle through three points leaves the first one.
+/// Returns the direction in which the circle through three points leaves the first one.
 fn end_way(bends: &Bends, first: usize, second: usize, third: usize) -> DVec2 {
     let [a, b, c] = [first, second, third].map(|i| bends.points[i]);
     let (go, on) = (b - a, c - b);
@@ -122,7 +121,7 @@ fn end_way(bends: &Bends, first: usize, second: usize, third: usize) -> DVec2 {
         return go.normalize_or_zero();
     }
     let both = (go / go.length_squared() + on / on.length_squared()).normalize_or_zero();
-    // The chord is as far from the way at its one end as at its other.
+    // The chord makes equal angles with the directions at both of its ends.
     let chord = go.normalize_or_zero();
     (2.0 * chord.dot(both) * chord - both).normalize_or_zero()
 }

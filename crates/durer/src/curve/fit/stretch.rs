@@ -1,4 +1,4 @@
-//! The part of a polyline between two breaks: arcs on which points lie exactly, then the rest.
+//! The part of a polyline between two breaks: arcs exactly through its points first, then the rest.
 
 use super::bends::Bends;
 use super::measure::Run;
@@ -9,11 +9,11 @@ use std::f64::consts::PI;
 /// The fewest chords of an elliptical arc.
 const LEAST_ELLIPSE: usize = 6;
 
-/// An arc on which points lie exactly is taken where one to which they are near is no longer than this many times
-/// it: any curve is a circle for a short way.
+/// Factor by which an arc near the points must be longer than one exactly through them to be preferred: over a short
+/// distance, any curve is a circle.
 const FURTHER: f64 = 1.6;
 
-/// An arc that turns so far is one, however far a near one goes.
+/// Turn from which an arc is certain, whatever the length of one near the points.
 const CERTAIN: f64 = PI / 3.0;
 
 /// An arc between two points of a polyline.
@@ -23,7 +23,7 @@ struct Found {
     arc: Arc,
 }
 
-/// Appends the pieces of a stretch, each with the index of the point in which it begins.
+/// Appends the pieces of a stretch, each with the index of its first point.
 pub(super) fn fit(bends: &Bends, from: usize, to: usize, pieces: &mut Vec<(usize, Piece)>) {
     let mut at = from;
     if to - from >= circle::LEAST {
@@ -36,7 +36,7 @@ pub(super) fn fit(bends: &Bends, from: usize, to: usize, pieces: &mut Vec<(usize
     rest::fit(bends, at, to, pieces);
 }
 
-/// Returns the arcs between two points on which points lie exactly.
+/// Returns the arcs between two points that contain their points exactly.
 fn exact_arcs(bends: &Bends, from: usize, to: usize) -> Vec<Found> {
     let mut arcs = Vec::new();
     let mut at = from;
@@ -56,14 +56,14 @@ fn exact_arcs(bends: &Bends, from: usize, to: usize) -> Vec<Found> {
 /// since from every point an almost straight polyline would take forever.
 const STEPS: usize = 16;
 
-/// Returns the longest exact arc from a point, if it is one rather than a short way of another curve; else
-/// over how many chords one would go.
+/// Returns the longest exact arc from a point, if it is really an arc and not a short section of another curve; else
+/// the number of chords that an arc would span.
 fn exact_arc(bends: &Bends, from: usize, to: usize) -> Result<Found, usize> {
     if !goes_round(bends, from) {
         return Err(0);
     }
     let tolerance = bends.tolerance;
-    // Folds tell nothing, so that it takes more points to be certain.
+    // Folds give no evidence, so that more points are needed to be certain.
     let more = if (from..to.min(from + circle::LEAST)).any(|i| bends.is_fold(i)) { 3 } else { 1 };
     let circle = longest(from, circle::LEAST * more, to, |end| {
         circle::exact(&Run::new(bends, from, end), bends.turned(from, end), tolerance)
@@ -87,7 +87,7 @@ fn exact_arc(bends: &Bends, from: usize, to: usize) -> Result<Found, usize> {
     }
 }
 
-/// Returns whether a circular arc that points lie on exactly is one.
+/// Returns whether a circular arc exactly through its points is certain to be one.
 fn is_certain(bends: &Bends, from: usize, to: usize, (end, arc): (usize, &Arc)) -> bool {
     if end == to || arc.turn.abs() >= CERTAIN {
         return true;
@@ -99,15 +99,14 @@ fn is_certain(bends: &Bends, from: usize, to: usize, (end, arc): (usize, &Arc)) 
     near.is_none_or(|(near, _)| length(near) <= length(end) * FURTHER)
 }
 
-/// Returns whether the polyline turns one way at the next points: this excludes most runs that are
-/// no arc.
+/// Returns whether the polyline turns in one direction at the next points, which excludes most runs that are not arcs.
 fn goes_round(bends: &Bends, from: usize) -> bool {
     let turns = &bends.turns[from + 1..from + circle::LEAST];
     turns.iter().all(|t| *t > 0.0) || turns.iter().all(|t| *t < 0.0)
 }
 
-/// Prolongs arcs to the ends of the stretch over a last chord: where something lies in front, a polyline ends between
-/// two points of the arc.
+/// Prolongs arcs to the ends of the stretch over a last chord: where something is in front, a polyline ends between two
+/// points of the arc.
 fn prolonged(bends: &Bends, mut arcs: Vec<Found>, from: usize, to: usize) -> Vec<Found> {
     let try_to = |found: &mut Found, start: usize, end: usize| {
         let run = Run::new(bends, start, end);

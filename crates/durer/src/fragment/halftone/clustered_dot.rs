@@ -2,8 +2,8 @@
 //!
 //! J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes, *Computer Graphics: Principles and Practice*, 2nd ed. 1990,
 //! 13.1.2; the screen of two dots in a square at 45° as in R. Ulichney, *Digital Halftoning*, 1987. Class: image space.
-//! Cost: O(1) per pixel. Dots hold together, where ordered dithering scatters them, so they survive printing; of finer
-//! detail less is left.
+//! Cost: O(1) per pixel. Dots are clustered instead of scattered as in ordered dithering, so they survive printing, at
+//! the cost of fine detail.
 
 use super::light;
 use crate::info::{Class, Info, Occluder};
@@ -38,8 +38,9 @@ pub const INFO: Info = Info {
 /// middle.
 const DOT: [[u8; 4]; 4] = [[12, 11, 10, 9], [13, 2, 1, 8], [14, 3, 0, 7], [15, 4, 5, 6]];
 
-/// The thresholds of the screen, of 32: a pixel is white where light · 32 lies above its own, by half a step. Dark dots
-/// grow in two quarters that touch at their corners; in the others white dots shrink, so that both tones have dots.
+/// The thresholds of the screen, of 32: a pixel is white if light · 32 is at least half a step above its threshold.
+/// Dark dots grow in two quarters that touch at their corners; in the others white dots shrink, so that both tones have
+/// dots.
 pub const SCREEN: [[u8; 8]; 8] = screen();
 
 const fn screen() -> [[u8; 8]; 8] {

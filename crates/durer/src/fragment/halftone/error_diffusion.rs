@@ -1,8 +1,8 @@
-//! Floyd–Steinberg error diffusion: what a pixel's level is wrong by goes to the neighbours that come after it.
+//! Floyd–Steinberg error diffusion: the error of a pixel's level is passed to the neighbours that come after it.
 //!
 //! R. W. Floyd, L. Steinberg, *An adaptive algorithm for spatial greyscale*, Proceedings of the Society for Information
 //! Display 17(2), 1976. Class: image space. Cost: O(1) per pixel, two rows of errors. Of the error 7/16 go to the next
-//! pixel of the row, 3/16, 5/16 and 1/16 to those below: behind, straight and ahead; nothing is lost but at the
+//! pixel of the row, 3/16, 5/16 and 1/16 to those below: behind, straight and ahead; errors are lost only at the
 //! borders.
 
 use super::{light, of_level};
@@ -53,12 +53,12 @@ impl Default for Options {
     }
 }
 
-/// Step of the algorithm: a pixel got its level.
+/// Step of the algorithm: the level of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
     /// Column and row.
     pub pixel: [u32; 2],
-    /// Its value with what errors have come to it.
+    /// Its value with the errors passed to it.
     pub value: f32,
     /// The nearest level.
     pub level: u8,

@@ -1,6 +1,6 @@
 //! Halftones: grey with few levels, beside the ordered dithering of [`super::Dither`].
 //!
-//! Values are linear light from 0 (black) to 1 (white); what is not a number counts as 0. Levels are equal steps of
+//! Values are linear light from 0 (black) to 1 (white); NaN counts as 0. Levels are equal steps of
 //! light, so that the mean over an area is right.
 
 pub mod clustered_dot;

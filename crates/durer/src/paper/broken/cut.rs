@@ -9,13 +9,13 @@ use crate::paper::parts::parts;
 use crate::target::drawing::{Drawing, Line, LineClass, Region};
 use crate::trace::NoTrace;
 
-/// A break line's zigzag goes so far to each side, as a part of the gap; so far along the line from its middle; and so
-/// far does the line go on beyond what it cuts.
+/// Extents of a break line, as parts of the gap: of its zigzag to each side, of the zigzag along the line from its
+/// middle, and of the line beyond the parts that it cuts.
 const SWING: f64 = 0.4;
 const HALF: f64 = 0.75;
 const BEYOND: f64 = 0.6;
 
-/// On short lines the zigzag is smaller: its half is at most so much of the line.
+/// Largest half of a zigzag as a part of the line, which makes it smaller on short lines.
 const MOST: f64 = 0.3;
 
 /// One of the two lines of a break, and the side of it that stays.
@@ -31,7 +31,7 @@ struct Side<'a> {
     ends: [f64; 2],
 }
 
-/// Cuts a drawing at both lines of a break and moves what is above.
+/// Cuts a drawing at both lines of a break and moves the part above.
 pub(super) fn cut(of: &ViewBreak, drawing: Drawing) -> Result<Drawing> {
     let Some(bounds) = drawing.bounds() else { return Ok(drawing) };
     let span = across(of, &drawing);
@@ -57,7 +57,7 @@ pub(super) fn cut(of: &ViewBreak, drawing: Drawing) -> Result<Drawing> {
     Ok(kept)
 }
 
-/// Returns the range of places along the break's lines in which it cuts something.
+/// Returns the range of places along the break's lines in which it cuts lines.
 fn across(of: &ViewBreak, drawing: &Drawing) -> Option<[f64; 2]> {
     let rings = drawing.regions.iter().flat_map(|r| &r.rings).map(|r| (&r[..], true));
     let chains = drawing.lines.iter().map(|l| (&l.points[..], l.closed)).chain(rings);

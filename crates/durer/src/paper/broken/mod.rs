@@ -60,8 +60,7 @@ impl FromStr for Break {
     }
 }
 
-/// The space between what a break leaves, as a part of the longest side of what the views show: 4.5 mm where that is
-/// 180 mm long on paper.
+/// The gap of a break, as a part of the longest side of the views' contents: 4.5 mm if that is 180 mm long on paper.
 const GAP: f64 = 0.025;
 
 /// The breaks of a model, each between ends of it and apart from the others.
@@ -123,7 +122,7 @@ impl Breaks {
     }
 }
 
-/// Returns the longer side of what a view shows of a box without what breaks leave out.
+/// Returns the longer side of a box in a view, without the parts that breaks leave out.
 fn extent(breaks: &[Break], bounds: Aabb, camera: &Camera) -> f64 {
     let mut size = bounds.size();
     for one in breaks.iter().filter(|b| b.is_seen_by(camera)) {
@@ -155,7 +154,7 @@ impl ViewBreak {
     }
 }
 
-/// The breaks of a view, which bring points of its plane from where they are seen to where they are drawn.
+/// The breaks of a view, which map points of its plane to their places in the drawing.
 ///
 /// ```
 /// use durer::math::{DVec2, DVec3};
@@ -210,7 +209,7 @@ impl ViewBreaks {
     /// # Errors
     /// [`Error::NonFinite`] for regions with a corner that is not finite.
     pub fn cut(&self, drawing: Drawing) -> Result<Drawing> {
-        // From the upper end on, as breaks move what is above them only.
+        // From the upper end on, because breaks move only the parts above them.
         self.0.iter().rev().try_fold(drawing, |drawing, b| cut::cut(b, drawing))
     }
 }

@@ -20,7 +20,7 @@ const PAGE: Page = Page::Either(DVec2::new(210.0, 297.0));
 
 /// Number of smaller scales that are tried until all views have room: down to a ten-thousandth.
 const SMALLER: usize = 13;
-/// Halvings of the interval in which the largest scale is looked for.
+/// Number of bisections in the search for the largest scale.
 const HALVINGS: usize = 24;
 /// A sheet that is to be as large as its views need is made larger by this much, this many times at
 /// most.
@@ -50,13 +50,13 @@ pub struct Arranged {
 
 /// A part of the page for views.
 struct Room {
-    /// Its upper left corner is that of the margin.
+    /// Size; the upper left corner is the margin's.
     size: DVec2,
     list: Option<(Shape, DVec2)>,
 }
 
-/// Finds the page, the way round that gives the larger scale, and the largest scale that is requested at which
-/// all views have room.
+/// Finds the page, in the orientation that gives the larger scale, and the largest requested scale at which all views
+/// have room.
 pub fn arrange(contents: &Contents, options: &Options) -> Result<Arranged> {
     let free = matches!((options.page, options.scale), (Page::Fit, Scale::Fit | Scale::Standard));
     let page = if free { PAGE } else { options.page };
@@ -93,13 +93,13 @@ impl<'a> Layout<'a> {
     }
 
     fn arranged(&self) -> Result<Arranged> {
-        // So large are the principal views alone, in the model's units; all else may make them smaller.
+        // The size of the principal views alone, in the model's units; everything else may make them smaller.
         let bare = Contents { callouts: &[], ..self.contents.clone() };
         let grid = Layout::new(&bare, &self.options).grid(1.0 / self.options.unit);
         let taken = self.border() + grid.gaps() * self.gap;
         let size = grid.size();
         let scale = match self.options.scale {
-            // Whether there is room for it is found with all views.
+            // Room for the given scale is checked with all views.
             Scale::Given(_) if self.options.page != Page::Fit => Scale::Fit,
             scale => scale,
         };
@@ -211,7 +211,7 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Returns the views in their places, where they have room.
+    /// Returns the views in their places, if they have room.
     fn at(&self, page: DVec2, scale: f64) -> Option<Arranged> {
         let views = self.contents.views;
         let grid = self.grid(scale);

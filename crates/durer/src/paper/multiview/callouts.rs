@@ -18,7 +18,7 @@ pub struct Callout {
 /// The radius of a circle, and the height of its number, millimetres.
 const RADIUS: f64 = 4.5;
 const TEXT: f64 = 3.5;
-/// The middles of circles are so far from what is drawn, and from each other, at least.
+/// Smallest distance of the centres of circles from the drawing and from each other.
 const AWAY: f64 = 11.0;
 const APART: f64 = 2.0 * RADIUS + 1.5;
 /// The radius of the dot that ends a line on a part.
@@ -74,8 +74,8 @@ fn ports(bounds: &Rect, count: usize) -> (Vec<DVec2>, f64) {
     ((0..number).map(place).collect(), apart)
 }
 
-/// Assigns each point a port of its own; there are at least as many as points. At the end no exchange of two, and no
-/// free port, makes lines shorter in sum: so no two of them cross.
+/// Assigns each point its own port; there are at least as many ports as points. In the end neither exchanging two ports
+/// nor using a free one makes the lines shorter in total, so no two of them cross.
 fn matched(points: &[DVec2], ports: &[DVec2]) -> Vec<usize> {
     let length = |point: usize, port: usize| points[point].distance(ports[port]);
     let mut holder: Vec<Option<usize>> = vec![None; ports.len()];

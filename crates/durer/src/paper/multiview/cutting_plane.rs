@@ -17,10 +17,10 @@ const TO_LETTER: f64 = 1.0 + LETTER * 0.5;
 /// A long-dashed dotted line (ISO 128-2, type 04), thin.
 const CHAIN: [f64; 4] = [6.0, 1.25, 0.25, 1.25];
 
-/// Views whose line of sight lies in a plane up to this sine see it edge on.
+/// Largest sine of the angle between a line of sight and a plane that is seen edge on.
 const EDGE_ON: f64 = 1e-6;
 
-/// Draws the planes of all sections: layer `cutting-planes`. What no view can show is noted.
+/// Draws the planes of all sections in the layer `cutting-planes`. Planes that no view can show are noted.
 pub fn put(
     annotator: &mut Annotator,
     views: &[SheetView],

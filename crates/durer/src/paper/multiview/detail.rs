@@ -30,8 +30,8 @@ pub struct Detail {
 const DIAMETER: f64 = 50.0;
 
 impl Detail {
-    /// Returns the part of a drawing within the circle: lines and filled parts are clipped to it; labels stay if
-    /// their points lie within.
+    /// Returns the part of a drawing within the circle: lines and filled parts are clipped to it; labels stay if their
+    /// points are inside.
     ///
     /// # Errors
     /// [`crate::Error::NonFinite`] for regions with a corner that is not finite.

@@ -109,7 +109,7 @@ impl Grid {
         let (min, max) = (cell.extent.min[axis], cell.extent.max[axis]);
         match cell.at[axis] {
             _ if !cell.aligned => start + (extent - min - max) * 0.5,
-            // As near to the front view as it can.
+            // As near to the front view as possible.
             at if at < 0 => start + extent - max,
             _ => start - min,
         }

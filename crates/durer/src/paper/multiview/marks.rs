@@ -1,4 +1,4 @@
-//! Lines, letters and arrows that stand on sheets beside what is drawn.
+//! Lines, letters and arrows on sheets, beside the drawings.
 
 use super::SheetView;
 use crate::math::DVec2;
@@ -113,8 +113,7 @@ pub fn circle(center: DVec2, radius: f64) -> Vec<DVec2> {
     (0..AROUND).map(corner).collect()
 }
 
-/// Writes the titles of sections and details above them, with their scale where it is another one: layer
-/// `view-titles`.
+/// Writes the titles of sections and details above them, with their scale if it differs: layer `view-titles`.
 pub fn put_titles(
     annotator: &mut Annotator,
     views: &[SheetView],

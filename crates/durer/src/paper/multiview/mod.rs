@@ -1,4 +1,4 @@
-//! Several views of a thing on one sheet: principal views in first-angle or third-angle projection (ISO 5456-2),
+//! Several views of an object on one sheet: principal views in first-angle or third-angle projection (ISO 5456-2),
 //! sections with the planes that cut them and details with their circles (ISO 128-3).
 
 mod arrange;
@@ -37,9 +37,9 @@ pub enum Angle {
 /// Kind of a view.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ViewKind {
-    /// The thing from one of the usual sides; it has its place beside the others.
+    /// A view from one of the usual sides; it has its place beside the others.
     Principal(NamedView),
-    /// The thing from anywhere; it has the place of an isometric view.
+    /// A view from any direction; it has the place of an isometric view.
     Free,
     /// Section: the part of the object on the positive side of a plane ([`Plane`]), seen from the side that is
     /// cut away. Its letter is drawn at the plane in the first principal view that sees it edge on.
@@ -53,7 +53,7 @@ pub enum ViewKind {
     Detail(Detail),
 }
 
-/// A parallel view of a thing; all of a sheet have the same point of the thing at the origin of their planes.
+/// A parallel view of an object; all views of a sheet have the same point of the object at the origin of their planes.
 #[derive(Debug, Clone)]
 pub struct SheetView<'a> {
     /// Kind of the view.
@@ -85,7 +85,7 @@ impl SheetView<'_> {
         }
     }
 
-    /// Returns whether it shows all of the thing.
+    /// Returns whether it shows the whole object.
     fn is_principal(&self) -> bool {
         matches!(self.kind, ViewKind::Principal(_) | ViewKind::Free)
     }
@@ -109,7 +109,7 @@ pub struct Contents<'a> {
 /// Lays views onto a sheet: the principal ones aligned, at one scale, the others beside or below them, with a
 /// frame and a title block.
 ///
-/// Without a page it is A4, or as large as a given scale needs. Layers beside those of [`super::lay_out`]:
+/// The default page is A4, or as large as a given scale needs. Layers beside those of [`super::lay_out`]:
 /// `cutting-planes`, `details`, `view-titles`, `callouts`, `parts-list`, `frame`, `title-block`.
 ///
 /// # Errors

@@ -23,7 +23,7 @@ const TEXT: f64 = 2.5;
 /// Widths of the columns for numbers and quantities, and of that for names at least and at most.
 const NUMBER: f64 = 12.0;
 const NAME: (f64, f64) = (45.0, 90.0);
-/// Below the views a list of this many rows is not divided.
+/// Number of rows up to which a list below the views is not divided.
 const HIGH: usize = 12;
 /// Space between a border and letters.
 const PAD: f64 = 1.6;
@@ -39,8 +39,8 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// Creates a list of blocks that are at most so wide together; of one, unless that is higher than
-    /// [`HIGH`] rows.
+    /// Creates a list of blocks with at most the given total width; a single block, unless that is higher than [`HIGH`]
+    /// rows.
     pub fn within_width(rows: &[PartsListRow], width: f64) -> Self {
         let own = width_of(rows);
         let most = (width / own).floor().max(1.0) as usize;

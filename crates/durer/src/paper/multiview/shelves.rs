@@ -24,7 +24,7 @@ pub struct Shelved {
     pub others: Vec<DVec2>,
 }
 
-/// Rounding may make things this much larger than the room that was made for them; a nanometre.
+/// Tolerance for rounding, which may make items larger than the room made for them; a nanometre.
 const SLACK: f64 = 1e-6;
 
 /// Puts the further views on shelves below the principal ones, or, `beside`, in columns right of them; `None`
@@ -70,7 +70,7 @@ fn height(shelf: &[usize], sizes: &[DVec2]) -> f64 {
     shelf.iter().map(|&i| sizes[i].y).fold(0.0, f64::max)
 }
 
-/// Fills shelves in order; `None` if one thing is too long for any.
+/// Fills shelves in order; `None` if an item is too long for any.
 fn filled(sizes: &[DVec2], length: f64, gap: f64) -> Option<Vec<Vec<usize>>> {
     let mut shelves: Vec<Vec<usize>> = Vec::new();
     let mut used = f64::INFINITY;

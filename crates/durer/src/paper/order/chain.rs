@@ -64,7 +64,7 @@ impl Chain {
         }
     }
 
-    /// Returns the chain as a curve; closed ones, and those without a length, are none.
+    /// Returns the chain as an open curve; closed chains, and chains without a length, are returned as errors.
     fn open(self) -> Result<Curve, Self> {
         match self {
             Self::Curved(curve) if !curve.closed => Ok(curve),

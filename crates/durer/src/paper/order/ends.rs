@@ -57,7 +57,7 @@ impl Ends {
         &self.near[from..to]
     }
 
-    /// Returns the way from end to end; back home it is none, for the pen may stay anywhere.
+    /// Returns the distance from end to end; 0 for the return, because the pen may stay anywhere.
     pub fn distance(&self, a: End, b: End) -> f64 {
         let back = self.points.len() as End - 2;
         if a == back || b == back {
@@ -77,8 +77,8 @@ impl Ends {
         Some(Turn { first, ..turn })
     }
 
-    /// Turns closed strokes to begin where the way past them is shortest, given all in a circle by the ends that they
-    /// are entered at. Returns whether anything got shorter.
+    /// Rotates closed strokes to begin where the path past them is shortest, given all strokes as a cycle of the ends
+    /// at which they are entered. Returns whether the path became shorter.
     pub fn turn_rings(&mut self, strokes: &[Stroke], sequence: &[End]) -> bool {
         let (count, mut shorter) = (sequence.len(), false);
         for (i, &end) in sequence.iter().enumerate() {
@@ -102,8 +102,7 @@ impl Ends {
         shorter
     }
 
-    /// Returns the point of a closed stroke with the shortest way from end to end, where that is shorter than
-    /// by `now`.
+    /// Returns the point of a closed stroke with the shortest path from end to end, if that is shorter than by `now`.
     fn best_first(&self, stroke: &Stroke, now: usize, before: End, after: End) -> Option<usize> {
         let back = self.points.len() as End - 2;
         let way = |p: DVec2| {

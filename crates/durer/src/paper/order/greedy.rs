@@ -7,8 +7,8 @@ use super::nearest::{Nearest, Tree};
 use super::{Stroke, Turn};
 use crate::math::DVec2;
 
-/// Returns the strokes that have points, from the one nearest to `start`. Of equally near ones that of
-/// the lower index, forwards.
+/// Returns the strokes that have points, from the one nearest to `start`. Of equally near strokes the one with the
+/// lower index is first, forwards.
 pub fn turns(strokes: &[Stroke], start: DVec2) -> Vec<Turn> {
     let starts: Vec<Turn> = strokes.iter().enumerate().flat_map(starts_of).collect();
     let place = |turn: &Turn| strokes[turn.index].points[turn.first];

@@ -1,26 +1,26 @@
-//! Exchanges and moves that make a way through strokes shorter.
+//! Exchanges and moves that shorten the path through strokes.
 //!
-//! 2-opt (Croes, *A method for solving traveling-salesman problems*, 1958) and Or-opt (Or, 1976), tried only
-//! between ends that lie near to each other and only where something changed since they were last tried
-//! (Bentley, *Fast algorithms for geometric traveling salesman problems*, 1992). The way is an array in a
-//! circle; of a part to be reversed, the shorter side is.
+//! 2-opt (Croes, *A method for solving traveling-salesman problems*, 1958) and Or-opt (Or, 1976), tried only between
+//! ends that are close together and only where something changed since the last try (Bentley, *Fast algorithms for
+//! geometric traveling salesman problems*, 1992). The path is a circular array; instead of a long part, the rest is
+//! reversed.
 
 use super::ends::{End, Ends};
 
 /// The longest row of strokes that is moved as one.
 const LONGEST_ROW: usize = 3;
 
-/// Largest number of strokes that one change reverses or passes: in larger ways the rare changes that need more
-/// save next to nothing.
+/// Largest number of strokes that one change reverses or passes: in longer paths, the rare changes that need more save
+/// almost nothing.
 const LONGEST_PART: usize = 25_000;
 
 /// Limit on the changed places in the array, for each stroke: it bounds the time.
 const CHANGES: usize = 2000;
 
-/// A change must save this part of the ways that it replaces, so that rounding never makes a circle of changes.
+/// Smallest saving of a change, as a part of the replaced distances, so that rounding never causes a cycle of changes.
 const WORTH: f64 = 1e-9;
 
-/// A way through all strokes and back home.
+/// A path through all strokes and back to the start.
 pub struct Way {
     /// The end that each stroke is entered at.
     sequence: Vec<End>,
@@ -56,7 +56,7 @@ impl Way {
         rest
     }
 
-    /// Changes the way as long as that makes it shorter.
+    /// Changes the path as long as that makes it shorter.
     pub fn improve(&mut self, ends: &Ends) {
         if self.sequence.len() < 3 {
             return;
@@ -80,7 +80,7 @@ impl Way {
         }
     }
 
-    /// Makes one change at a stroke that saves something; returns the ends at which the way changed.
+    /// Makes one saving change at a stroke; returns the ends at which the path changed.
     fn change(&mut self, ends: &Ends, stroke: u32) -> Option<[End; 6]> {
         [stroke * 2, stroke * 2 + 1].into_iter().find_map(|a| {
             let b = self.mate(a);
@@ -102,7 +102,7 @@ impl Way {
         self.sequence[place % self.sequence.len()]
     }
 
-    /// Returns the end that the way through the air connects with an end.
+    /// Returns the end that a move with the pen up connects with an end.
     fn mate(&self, end: End) -> End {
         let (place, count) = (self.place[end as usize / 2] as usize, self.sequence.len());
         if self.is_entry(end) { self.at(place + count - 1) ^ 1 } else { self.at(place + 1) }
@@ -119,7 +119,7 @@ impl Way {
         if !shorter {
             return None;
         }
-        // The part from the entry after the one way to the exit before the other.
+        // The part from the entry after the one move to the exit before the other.
         let (from, to) = if self.is_entry(a) { (a, d) } else { (b, c) };
         let [from, to] = [from, to].map(|end| self.place[end as usize / 2] as usize);
         self.reverse(from, to).then_some([a, b, c, d, a, b])
@@ -146,7 +146,7 @@ impl Way {
             let old = ends.distance(z, y) + gap;
             let new = ends.distance(z, d) + ends.distance(b, y);
             if saved + old - new > WORTH * (saved + old) {
-                // The gap lies after the stroke whose exit it begins with.
+                // The gap is after the stroke whose exit it begins with.
                 let c_leaves = !self.is_entry(c);
                 let gap_after = if c_leaves { target } else { other };
                 let moved = self.shift(first, length, gap_after, forwards != c_leaves);
@@ -163,7 +163,8 @@ impl Way {
         self.left = self.left.saturating_sub(1);
     }
 
-    /// Reverses the part from place to place, or, which is the same way, all else; `false` where that is too much.
+    /// Reverses the part from place to place or, which gives the same path, all else; returns `false` if that is too
+    /// much.
     fn reverse(&mut self, from: usize, to: usize) -> bool {
         let count = self.sequence.len();
         let mut length = (to + count - from) % count + 1;
@@ -192,7 +193,7 @@ impl Way {
             row.reverse();
             row.iter_mut().for_each(|end| *end ^= 1);
         }
-        // What lies between: behind the row, or before it.
+        // The strokes between: behind the row, or before it.
         let behind = (after + count - (first + length - 1) % count) % count;
         let before = count - length - behind;
         if behind.min(before) > LONGEST_PART {

@@ -1,8 +1,8 @@
 //! In which order a pen draws, and from which end.
 //!
-//! Each stroke is first followed by the one that begins or ends nearest (`greedy`); then exchanges and moves
-//! of strokes shorten the way (`improve`), while closed strokes begin where they are passed. Ways are some
-//! fifth shorter than those of the greedy search alone.
+//! Each stroke is first followed by the one that begins or ends nearest (`greedy`); then exchanges and moves of strokes
+//! shorten the path (`improve`), while closed strokes begin where the path passes them. Paths are about a fifth shorter
+//! than with the greedy search alone.
 //!
 //! This is the travelling salesman's problem, here with an end left open, and no optimum is promised. O(n log n) for
 //! strokes spread over the paper, with a bound on the work: about a second for 100 000 strokes.
@@ -18,12 +18,11 @@ use crate::target::sheet::{Mark, Sheet};
 pub use chain::Chain;
 use ends::Ends;
 
-/// Strokes of which one ends within this many millimetres of where the next begins are drawn as one: machines
-/// step some 0.01 mm, and no pen is as thin.
+/// Distance in millimetres between the end of a stroke and the start of the next up to which both are drawn as one:
+/// machines have steps of about 0.01 mm, and every pen is thicker.
 const JOIN: f64 = 0.01;
 
-/// Number of times that closed strokes are turned to where they are passed, and the way is
-/// shortened again.
+/// Number of rounds in which closed strokes are rotated to where the path passes them, and the path is shortened again.
 const ROUNDS: usize = 4;
 
 /// A chain that a pen draws without being lifted.
@@ -31,7 +30,7 @@ const ROUNDS: usize = 4;
 pub struct Stroke {
     /// Its points, millimetres.
     pub points: Vec<DVec2>,
-    /// True if it goes back to the first point, which is not repeated.
+    /// True if it returns to the first point, which is not repeated.
     pub closed: bool,
 }
 
@@ -62,9 +61,9 @@ impl Stroke {
     }
 }
 
-/// Orders strokes so that a pen that begins at `start`, and may end anywhere, goes a short way in the air.
-/// Strokes may be drawn backwards, and closed ones from any of their points. Those without points are left
-/// out; points that are not finite count as the start.
+/// Orders strokes so that a pen that begins at `start`, and may end anywhere, makes short moves in the air. Strokes may
+/// be drawn backwards, and closed ones from any of their points. Strokes without points are left out; points that are
+/// not finite count as the start.
 ///
 /// ```
 /// use durer::math::DVec2;
@@ -169,7 +168,7 @@ impl ByPen {
     }
 }
 
-/// Sorts texts for the way from one beginning to the next.
+/// Sorts texts for short moves from one beginning to the next.
 fn texts_in_turn(texts: Vec<Mark>, at: &mut DVec2) -> Vec<Mark> {
     let place = |mark: &Mark| match mark {
         Mark::Text { at, .. } => Stroke { points: vec![*at], closed: true },

@@ -1,5 +1,5 @@
-//! Points by place: a tree that halves them along one axis and then the other, from which points can be taken
-//! out (Bentley, *K-d trees for semidynamic point sets*, 1990).
+//! Points by place: a tree that halves them along alternating axes, from which points can be removed (Bentley, *K-d
+//! trees for semidynamic point sets*, 1990).
 
 use crate::math::DVec2;
 
@@ -8,7 +8,7 @@ const LEAF: usize = 8;
 
 /// Points with their numbers.
 pub struct Tree {
-    /// Sorted so that each half of a range, and so on, lies on one side of its middle.
+    /// Sorted so that each half of a range, recursively, is on one side of its middle.
     points: Vec<(DVec2, u32)>,
     /// Number of remaining points, by node; the children of node n are 2n and 2n + 1.
     left: Vec<u32>,
@@ -94,8 +94,8 @@ impl Tree {
         }
     }
 
-    /// Finds the nearest points that `wanted` accepts, at most as many as `found` has room for: squared distances and
-    /// numbers, the nearest first; equally near ones by their numbers where all have room.
+    /// Finds the nearest points that `wanted` accepts, limited by the room in `found`: squared distances and numbers,
+    /// the nearest first; equally near ones by their numbers if all have room.
     pub fn nearest(&self, to: DVec2, found: &mut Nearest, wanted: impl Fn(u32) -> bool) {
         found.list.clear();
         self.search(self.root(), to, found, &wanted);

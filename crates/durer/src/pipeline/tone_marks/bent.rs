@@ -2,7 +2,7 @@
 
 use crate::math::DVec3;
 
-/// The two principal directions of a pixel's surface, that of the stronger curvature first.
+/// The two principal directions of a pixel's surface, the one of stronger curvature first.
 pub struct Bent {
     pub directions: [DVec3; 2],
     /// Clarity of the directions: 0 where the surface is flat or bends alike in all directions,
@@ -13,6 +13,6 @@ pub struct Bent {
 }
 
 impl Bent {
-    /// Flat, or where nothing is.
+    /// A flat surface, or the background.
     pub const NOT: Self = Self { directions: [DVec3::ZERO; 2], weight: 0.0, lead: 0.0 };
 }

@@ -1,9 +1,9 @@
-//! The choice of each pixel between its two principal directions, so that lines do not turn aside where the curvatures
-//! change places.
+//! The choice of each pixel between its two principal directions, so that lines do not turn where the order of the
+//! curvatures changes.
 //!
-//! A surface's pixels are taken in the order of how clearly their directions differ, each beside one that is taken
-//! already, and go the way of those around them. In the end the surface as a whole is turned if that gives more of it
-//! the direction of the stronger curvature. O(n log n).
+//! A surface's pixels are processed in the order of how clearly their directions differ, each next to one already
+//! processed, and take the branch of their neighbours. In the end the two branches of the whole surface are exchanged
+//! if that gives more of it the direction of the stronger curvature. O(n log n).
 
 use super::bent::Bent;
 use super::seen::Seen;
@@ -35,7 +35,7 @@ struct Taking<'a> {
     bent: &'a [Bent],
     second: Vec<bool>,
     taken: Vec<bool>,
-    /// The direction that neighbours follow: a pixel's own as far as it is clear, else that of those around it.
+    /// The direction that neighbours follow: a pixel's own as far as it is clear, else its neighbours'.
     carried: Vec<Tensor>,
 }
 

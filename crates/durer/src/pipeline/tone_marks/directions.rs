@@ -1,10 +1,10 @@
 //! In which direction the surface bends most, at each pixel.
 //!
-//! From how places and normals differ between neighbours come the two fundamental forms of the surface, and from these
+//! The differences of positions and normals between neighbours give the two fundamental forms of the surface, and these
 //! the principal curvatures and their directions (M. do Carmo, *Differential Geometry of Curves and Surfaces*, 1976,
-//! 3-3). Where the surface is flat, or bends alike in all directions, lines lie in planes at a slant to the eye.
-//! Both are weighed, and then evened out among neighbours on the same surface, so lines run smoothly over facets.
-//! Of the two principal directions each surface takes one all over ([`branches`]), mostly that of the stronger
+//! 3-3). Where the surface is flat, or curved equally in all directions, lines are in planes oblique to the eye. Both
+//! kinds of directions are weighted and then averaged among neighbours on the same surface, so lines run smoothly over
+//! facets. Each surface uses one of the two principal directions throughout ([`branches`]), mostly the one of stronger
 //! curvature.
 
 use super::bent::Bent;
@@ -32,7 +32,7 @@ pub struct Directions {
 }
 
 /// Normal of the planes whose intersections with flat surfaces give lines their direction: right, down and back to
-/// the eye. A plane that faces the eye gets lines that rise to the right at 45°.
+/// the eye. Lines on a plane that faces the eye rise to the right at 45°.
 const SLANT: DVec3 = DVec3::new(1.0, 1.0, 0.4);
 
 /// Weight of the slant where no curvature is clear.
@@ -51,7 +51,7 @@ struct Evening {
 }
 
 impl Directions {
-    /// Finds the directions; `height` is that of the field of view, in model units.
+    /// Finds the directions; `height` is the field of view's, in model units.
     pub fn new(seen: &Seen, height: f64) -> Self {
         let sides: Vec<Option<Sides>> = seen.places().map(|at| Sides::at(seen, at)).collect();
         let curvature = sides.iter().map(|s| s.as_ref().map_or(Tensor::ZERO, Sides::curvature));

@@ -1,8 +1,8 @@
 //! Tones of a drawing by marks that follow the surfaces: lines along their curvature, or dots.
 //!
-//! Visibility, direction and lightness come from a picture by the z-buffer, a few pixels for each mark, so marks
-//! end within a fraction of a pen's width of where surfaces do. O(pixels), and what [`crate::curve::streamlines`]
-//! and [`crate::raster::stipple`] take.
+//! Visibility, direction and lightness come from a picture by the z-buffer, a few pixels for each mark, so marks end
+//! within a fraction of a pen's width from the ends of surfaces. O(pixels), plus the cost of
+//! [`crate::curve::streamlines`] and [`crate::raster::stipple`].
 
 mod bent;
 mod branches;
@@ -45,7 +45,7 @@ pub enum ToneMarks {
 /// Surfaces of at least this perceived lightness stay empty, as in [`crate::visibility::region::hatch`].
 const WHITE: f64 = 0.85;
 
-/// The share of the paper that dots cover where it is darkest: beyond that they run into each other.
+/// The share of the paper that dots cover where it is darkest: beyond that they merge.
 const FULL: f64 = 0.7;
 
 /// Pixels to the distance of the closest lines, and to the diameter of dots.
@@ -63,8 +63,8 @@ const DOT_LENGTH: f64 = 0.02;
 /// Largest distance that lines may move when points are left out, in pixels.
 const TOLERANCE: f64 = 0.05;
 
-/// Returns marks for the tones of the surfaces that a drawing by the same options shows, in its plane: visible lines to
-/// be drawn with it. Caps of sections have none: [`crate::visibility::region::hatch`] is for these.
+/// Returns marks for the tones of the surfaces that a drawing with the same options shows, in its plane: visible lines
+/// to be drawn with it. Caps of sections have none: [`crate::visibility::region::hatch`] is for these.
 ///
 /// # Errors
 /// A size that is not a number above 0; as [`super::draw`] and [`super::render`].
@@ -207,13 +207,13 @@ struct Tones {
     closest: f64,
     /// Difference in tone at which they are twice as far apart.
     doubled: f64,
-    /// Tone from which on there are none.
+    /// Tone above which there are no marks.
     none: f64,
 }
 
 const ALONG: Tones = Tones { closest: 0.25, doubled: 0.25, none: 1.0 };
 
-/// Crossing lines come in where those along the curvature are twice as far apart as at their closest.
+/// Crossing lines begin where lines along the curvature are twice as far apart as at their closest.
 const ACROSS: Tones = Tones { closest: 0.15, doubled: 0.17, none: 0.5 };
 
 impl Frame {

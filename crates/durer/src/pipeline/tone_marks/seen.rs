@@ -19,13 +19,13 @@ pub struct Seen {
 /// The surface at one pixel.
 #[derive(Clone, Copy)]
 pub struct Pixel {
-    /// Position relative to the eye: to the right, down, and back; model units. NaN where nothing is.
+    /// Position relative to the eye: to the right, down, and back; model units. NaN at the background.
     pub place: DVec3,
     /// Unit normal in the same directions, on the eye's side.
     pub normal: DVec3,
     /// Perceived lightness, 0 … 1.
     tone: f32,
-    /// True if the same surface goes on to the right, and below.
+    /// True if the same surface continues to the right, and below.
     right: bool,
     below: bool,
 }
@@ -38,8 +38,8 @@ impl Pixel {
         !self.place.is_nan()
     }
 
-    /// Returns whether a neighbour shows the same surface: it lies near the plane between the two and is
-    /// turned alike.
+    /// Returns whether a neighbour shows the same surface: it is near the plane between the two and has a similar
+    /// normal.
     fn goes_on_to(&self, other: &Self) -> bool {
         if !(self.is_seen() && other.is_seen() && self.normal.dot(other.normal) > SHARPEST) {
             return false;
@@ -124,7 +124,7 @@ impl Seen {
         self.pixel(x, y).map(|pixel| f64::from(pixel.tone))
     }
 
-    /// Returns whether the surface goes on from one pixel to a neighbour or the pixel itself, straight or around one
+    /// Returns whether the surface continues from one pixel to a neighbour or the pixel itself, straight or around one
     /// corner.
     pub fn goes_on(&self, (x, y): (u32, u32), (u, v): (u32, u32)) -> bool {
         let across = |x: u32, y: u32| {
@@ -138,7 +138,7 @@ impl Seen {
         (across(x, y) && along(u, y)) || (along(x, y) && across(x, v))
     }
 
-    /// Returns whether one surface goes on from one point to another, at most a pixel away.
+    /// Returns whether one surface continues from one point to another, at most a pixel away.
     pub fn joins(&self, from: DVec2, to: DVec2) -> bool {
         let ends = self.around(from).zip(self.around(to));
         ends.is_some_and(|(from, to)| self.goes_on(from, to))

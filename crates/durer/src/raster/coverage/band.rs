@@ -37,7 +37,7 @@ impl PathEdges {
     /// Creates the edges of contours within a target of the given size; a few are added to the
     /// list.
     pub fn new(contours: &Contours, width: u32, height: u32, list: &mut Vec<Edge>) -> Self {
-        // A triangle cannot be anything else.
+        // A triangle is always convex.
         let points = contours.points();
         let convex = contours.iter().nth(1).is_none() && (points.len() <= 3 || is_convex(points));
         let (edges, extent) = outline::edges(contours, (width, height), convex, list);
@@ -62,7 +62,7 @@ impl PathEdges {
     }
 }
 
-/// The edges of a path that comes in parts, of some contours each, which need not be kept.
+/// The edges of a path that is added in parts of some contours each; the parts need not be kept.
 #[derive(Debug)]
 pub(crate) struct PartsOfPath {
     chunks: Vec<Chunk<Edge>>,

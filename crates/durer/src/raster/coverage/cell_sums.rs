@@ -1,4 +1,4 @@
-//! Coverage by cover and area in cells, as published: what [`super::fill`] does with integers, bands and lanes.
+//! Coverage by cover and area in cells, as published; [`super::fill`] does the same with integers, bands and lanes.
 //!
 //! Each edge is cut at the sides of the pixels that it crosses. A piece adds its height to the *cover* of its pixel,
 //! and its height times the distance of its middle from the pixel's right side to the pixel's *area*. Along a row, the
@@ -47,7 +47,7 @@ pub const INFO: Info = Info {
 /// Sums of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Cell {
-    /// Sum of the heights of the pieces of edges, positive for those that run towards larger y; −1 … 1 without
+    /// Sum of the heights of the pieces of edges, positive for edges that run towards larger y; −1 … 1 without
     /// overlaps.
     pub cover: f64,
     /// Sum of those heights, each times the distance from the middle of the piece to the right side of the pixel.
@@ -68,7 +68,7 @@ pub enum Step {
         /// The cell's sums with it.
         cell: Cell,
     },
-    /// A pixel with a cell gets its share.
+    /// Coverage of a pixel with a cell.
     Pixel {
         /// Column and row.
         pixel: [u32; 2],
@@ -79,7 +79,7 @@ pub enum Step {
         /// Coverage 0 … 255.
         coverage: u8,
     },
-    /// Pixels between two cells get one share.
+    /// Coverage of the pixels between two cells.
     Span {
         /// Row.
         y: u32,

@@ -1,10 +1,10 @@
 //! The accumulation buffer of one band of rows: per pixel, how much the covered area changes from
 //! the pixel left of it.
 //!
-//! An edge adds its signed area to the pixels it crosses and its height to the one after; summing a
-//! row from the left gives the integral of the winding number over each pixel. Bits beside the cells
-//! tell which pixels an edge has touched, and which more than one chain of edges has: only in those
-//! can windings differ by more than one, and the sum alone not decide.
+//! An edge adds its signed area to the pixels it crosses and its height to the one after; summing a row from the left
+//! gives the integral of the winding number over each pixel. Bits beside the cells mark the pixels that an edge has
+//! touched, and those that more than one chain of edges has touched: only in the latter can winding numbers differ by
+//! more than one, so that the sum alone does not decide.
 
 use fearless_simd::i32x8;
 use fearless_simd::prelude::*;
@@ -27,8 +27,8 @@ pub(crate) struct Marks {
 
 /// The cells of a band; area in 1/65,536 of a pixel.
 ///
-/// Rows are as long as the path is wide that is being filled, and lie one after the other: those of all but the widest
-/// paths are then in the same few kilobytes, wherever the path is.
+/// Rows are consecutive and as long as the filled path is wide, so that all but the widest paths use the same few
+/// kilobytes, wherever they are on the target.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Cells {
     cells: Vec<i32>,
@@ -63,7 +63,7 @@ impl Cells {
 
     /// Makes room for a path between two columns of pixels; the cells have to be empty.
     pub fn lay_out(&mut self, columns: (i32, i32)) {
-        // Rounding may move an edge by less than a pixel; groups of eight pixels begin where those of the target do.
+        // Rounding may move an edge by less than a pixel; groups of eight pixels are aligned with the target's.
         self.first = (columns.0 - 1).max(0) as usize & !7;
         // Edges also change the two cells after the last pixel they touch.
         let last = (columns.1.max(0) as usize).min(self.width) + 2;
@@ -160,8 +160,8 @@ impl Cells {
         self.wide_part(simd, first, &ramp, self.parts.sign(i));
     }
 
-    /// Marks the pixels of a row from the first to before the second column, of which the first and the
-    /// last may not be taken for shared.
+    /// Marks the pixels of a row from `start` to before `end`. `own` tells whether the first and the last one are also
+    /// the neighbours' in the path, and so do not become shared.
     #[inline(never)]
     fn mark<const SHARED: bool>(
         &mut self,
@@ -195,7 +195,7 @@ impl Cells {
         while x <= ramp.last + 1 {
             let at = first + x as usize;
             let Some(cells) = self.cells.get_mut(at..at + 8) else { return };
-            // A cell gets the difference of its pixel's area from the one before.
+            // A cell stores the difference of its pixel's area from the previous one.
             let area = area(simd, ramp, x);
             let delta = area - before.slide::<7>(area);
             before = area;

@@ -1,8 +1,8 @@
 //! Triangles and thin strips, as most lines are: coverage without cells.
 //!
-//! Few edges meet in a row, mostly two. So rows are summed as they are found, from the same integers that
-//! [`super::cells`] would add up: eight pixels at a time, and eight rows at a time between two steep edges that are
-//! less than two pixels apart, as those of thin lines are.
+//! Few edges cross a row, mostly two. So each row is summed immediately, from the same integers that [`super::cells`]
+//! would add up: eight pixels at a time, or eight rows at a time between two steep edges less than two pixels apart, as
+//! in thin lines.
 
 use fearless_simd::i32x8;
 use fearless_simd::prelude::*;
@@ -18,7 +18,7 @@ use crate::raster::bands::BAND_ROWS;
 
 /// Edges of an outline at most.
 const MOST_EDGES: usize = 4;
-/// Number of pixels inside that are worth a span of their own.
+/// Number of fully covered pixels from which a separate span pays off.
 const FULL: i32 = 8;
 /// Wider strips, in pixels, are filled as other paths are.
 const THIN: f64 = 4.0;
@@ -58,7 +58,7 @@ impl Strip {
     }
 }
 
-/// One edge and how it goes from row to row.
+/// One edge and its steps from row to row.
 #[derive(Debug, Clone, Copy, Default)]
 struct Side {
     edge: Edge,
@@ -111,7 +111,7 @@ impl Side {
         Ramp::new((x >> BITS) as i32, ((x + slope) >> BITS) as i32, ONE, limit)
     }
 
-    /// Returns the left end of what it crosses of a row as a whole, 32.32.
+    /// Returns the left end of its crossing of a whole row, 32.32.
     #[inline(always)]
     fn left(&self, row: i32) -> i64 {
         self.steps.at(row - self.whole.0) + self.steps.slope.min(0)
@@ -124,8 +124,8 @@ impl Side {
     }
 }
 
-/// Fills a convex outline within the target in the band at row `top`; its rows are `rows`, those of the target have
-/// `width` pixels.
+/// Fills a convex outline inside the target, in the band at row `top`; the outline's rows are `rows`, and the target's
+/// rows have `width` pixels.
 #[simd]
 pub(crate) fn fill<S: Simd, K: Sink<S>>(
     simd: S,
@@ -173,7 +173,7 @@ impl Pair {
     #[inline(always)]
     fn narrow(&self, row: i32) -> bool {
         let gap = |row: i32| self.right.left(row) - self.left.left(row);
-        // Some slack for what rounding does pair.
+        // Some slack, because rounding separately moves the edges of the pair.
         let fits = |gap: i64| (1 << BITS..(2 << 32) - (1 << BITS)).contains(&gap);
         self.left.is_steep() && self.right.is_steep() && fits(gap(row)) && fits(gap(self.end - 1))
     }
@@ -249,7 +249,7 @@ fn steep_rows<S: Simd, K: Sink<S>>(
     while row < rows.1 {
         let [l, l0, l1, _] = left.next(simd);
         let [r, r0, r1, _] = right.next(simd);
-        // What the right edge takes of the four pixels from the left one's first on.
+        // The coverage that the right edge subtracts from the four pixels beginning at the left edge's first one.
         let apart = r - l;
         let (same, next) = (apart.simd_eq(zero), apart.simd_eq(i32x8::splat(simd, 1)));
         let c0 = lanes(simd, l0 - same.select(r0, zero), FillRule::NonZero);

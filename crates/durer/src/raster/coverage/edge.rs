@@ -1,7 +1,7 @@
 //! Edges in fixed point: snapped, clipped to the target's columns, directed from top to bottom.
 //!
-//! Everything here depends on the two end points alone and not on the direction of travel, so two
-//! faces that share an edge get the same integers, once with each sign.
+//! All values depend only on the two end points, not on the direction of travel, so two faces that share an edge get
+//! the same integers with opposite signs.
 
 use crate::math::DVec2;
 
@@ -51,7 +51,7 @@ impl Edge {
     /// Creates an edge from one point in the target to another.
     #[inline(always)]
     pub(super) fn new(from: (i32, i32), to: (i32, i32)) -> Self {
-        // In one number each, so that there is nothing to be guessed.
+        // In one number each, so that no branch is predicted wrongly.
         let key = |(x, y): (i32, i32)| (i64::from(y) << 32) | i64::from(x as u32);
         let (a, b) = (key(from), key(to));
         let (upper, lower) = (a.min(b), a.max(b));
@@ -60,7 +60,7 @@ impl Edge {
         Self { x0, y0, x1: lower as i32, y1: (lower >> 32) as i32, flags }
     }
 
-    /// Returns the one division of an edge, made where it is needed.
+    /// Returns the steps from row to row; the only division of an edge, made when needed.
     #[inline(always)]
     pub fn steps(&self) -> Steps {
         let per_row = f64::from(self.x1 - self.x0) / f64::from((self.y1 - self.y0).max(1));
@@ -108,8 +108,8 @@ impl Edge {
         share_pixel((self.x0, self.y0), (self.x1, self.y1))
     }
 
-    /// Chains the end at which the edge starts, or ends, in its path. On a border of pixels the edge and
-    /// its neighbour may touch different ones, so such points do not count.
+    /// Chains the end at which the edge starts, or ends, in its path. Ends on a border of pixels are not chained,
+    /// because the edge and its neighbour may touch different pixels there.
     #[inline(always)]
     pub(super) fn chain(&mut self, start: bool) {
         if !is_on_border(self.course()[usize::from(!start)]) {
@@ -142,13 +142,13 @@ impl Edge {
     }
 }
 
-/// Returns whether a 16.16 point lies on a border of pixels.
+/// Returns whether a 16.16 point is on a border of pixels.
 #[inline(always)]
 pub(super) fn is_on_border((x, y): (i32, i32)) -> bool {
     x & (ONE - 1) == 0 || y & (ONE - 1) == 0
 }
 
-/// Returns whether two 16.16 points lie in the same pixel or on its border.
+/// Returns whether two 16.16 points are in the same pixel or on its border.
 #[inline(always)]
 fn share_pixel(a: (i32, i32), b: (i32, i32)) -> bool {
     let near = |a: i32, b: i32| ((a >> BITS) == (b >> BITS)) | ((a - b).abs() <= 1);

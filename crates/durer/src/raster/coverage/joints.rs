@@ -1,15 +1,15 @@
 //! The edges of a contour that continue into each other without being able to cross.
 //!
-//! Joints with only short edges between them make a group, with the edges that lead to it and away from
-//! it. Two edges with a common end cannot cross; more of them not while all run on in one direction. That
-//! depends neither on where the contour starts nor on which way it runs, nor on the chunks it is made in.
+//! Joints with only short edges between them form a group, with the edges that lead to it and away from it. Two edges
+//! with a common end cannot cross, nor can several as long as all of them advance in one direction. The result does not
+//! depend on the contour's start, its direction, or the chunks it is made in.
 
 use std::ops::Range;
 
 use super::edge::{Edge, is_on_border};
 
-/// Edges of one contour that were made together, between the first and the last of them that a group of joints begins
-/// or ends at; their joints are done.
+/// Edges of one contour that were made together, between the first and the last of them at which a group of joints
+/// begins or ends; the joints between these are done.
 #[derive(Debug, Clone)]
 pub(super) struct Part {
     /// The number of the contour's first point.
@@ -59,8 +59,8 @@ fn is_joint(before: &Edge, after: &Edge) -> bool {
     before.course()[1] == after.course()[0]
 }
 
-/// Chains joints between edges of a contour, with those of the first and the last that are inside. The first edge of
-/// the contour may be among them at place `closing`, after its last one.
+/// Chains the joints between the edges of a contour that are inside, including the first and the last. The first edge
+/// of the contour may appear again at place `closing`, after its last one.
 pub(super) fn chain(edges: &mut [Edge], closing: Option<usize>, gaps: bool) {
     // Joint i is before edge i.
     let mut first = 1;

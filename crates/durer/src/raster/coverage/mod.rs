@@ -115,8 +115,8 @@ pub const INFO: Info = Info {
 /// Returns the coverage 0 … 255 of every pixel of a `width` × `height` target by the outline. All contours count as
 /// closed; coordinates are in pixels, y down.
 ///
-/// Points that are not finite are left out; parts outside the target are clipped. The error is that of rounding to 8
-/// bits, plus 2⁻¹⁷ of a pixel per edge through it.
+/// Points that are not finite are left out; parts outside the target are clipped. The error is at most the rounding to
+/// 8 bits, plus 2⁻¹⁷ of a pixel for each edge through it.
 ///
 /// # Errors
 /// [`Error::Limit`] for sides beyond 32,767 pixels.

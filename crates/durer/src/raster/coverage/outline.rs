@@ -34,8 +34,8 @@ impl Extent {
         self.cut |= other.cut;
     }
 
-    /// Returns the first row touched and one past the last, not larger if there are none; first and last
-    /// pixel touched.
+    /// Returns the first row touched and one past the last (not larger than the first if none is touched), then the
+    /// first and last pixel touched.
     pub fn pixels(&self) -> [(i32, i32); 2] {
         if self.low.0 > self.high.0 {
             return [(i32::MAX, 0); 2];
@@ -45,9 +45,9 @@ impl Extent {
     }
 }
 
-/// Returns the edges of contours within a target of the given size in pixels, at most [`MAX_SIDE`] each way;
-/// a few are added to the list. Each contour is closed; points that are not finite are left out. Nobody asks
-/// which joints of `convex` ones are chained.
+/// Returns the edges of contours within a target of the given size in pixels, at most [`MAX_SIDE`] in each direction;
+/// few edges are added to the list. Each contour is closed; points that are not finite are left out. The joints of
+/// `convex` contours are not chained, because this is never needed.
 pub(super) fn edges(
     contours: &Contours,
     (width, height): (u32, u32),
@@ -65,7 +65,7 @@ pub(super) fn edges(
     (Edges::from_chunks(chunks, list, Edge::rows), extent)
 }
 
-/// Returns the size of a target, at most [`MAX_SIDE`] each way.
+/// Returns the size of a target, at most [`MAX_SIDE`] in each direction.
 pub(super) fn size(width: u32, height: u32) -> DVec2 {
     DVec2::new(f64::from(width.min(MAX_SIDE)), f64::from(height.min(MAX_SIDE)))
 }
@@ -83,7 +83,7 @@ pub(super) fn chunks(
         let mut builder = Builder::new(&mut edges, size, !convex);
         let extent = builder.add(contours, range);
         let parts = builder.parts;
-        // Most of what lies far beyond the target has no edges there.
+        // Most outlines far beyond the target have no edges on it.
         if edges.len() < edges.capacity() / 2 {
             edges.shrink_to_fit();
         }

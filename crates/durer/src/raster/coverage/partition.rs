@@ -1,9 +1,9 @@
 //! Faces that share edges, in one pass and without seams.
 //!
-//! E. Catmull's weights, *A hidden-surface algorithm with anti-aliasing* (SIGGRAPH 1978), with nothing hidden: in
-//! each pixel every face's colour counts as much as its area, and the sums are exact, for both faces of a
-//! shared edge get the same integers. Class: image space. Cost: O(c + p) per face, c pixels crossed by its edges and
-//! p covered. Limits: faces must not overlap; flat colours.
+//! E. Catmull's weights, *A hidden-surface algorithm with anti-aliasing* (SIGGRAPH 1978), with nothing hidden: in each
+//! pixel every face's colour is weighted by its area, and the sums are exact, because both faces of a shared edge get
+//! the same integers. Class: image space. Cost: O(c + p) per face, c pixels crossed by its edges and p covered. Limits:
+//! faces must not overlap; flat colours.
 
 use super::band::{BandFiller, PathEdges, coverage_of_area};
 use super::check_size;
@@ -63,7 +63,7 @@ pub enum Step {
         /// The part, of 65,536.
         area: u32,
     },
-    /// A pixel, its sums complete, gets its colour.
+    /// Colour of a pixel whose sums are complete.
     Pixel {
         /// Column and row.
         pixel: (u32, u32),
@@ -83,10 +83,10 @@ impl Step {
 }
 
 /// Paints faces that do not overlap over the target as one shape: their areas and colours are added in each pixel
-/// before anything is rounded, so that where faces meet nothing behind shines through.
+/// before rounding, so that nothing behind shows through where faces meet.
 ///
-/// The same picture whatever the order of the faces and their vertices. Faces that do overlap mix in
-/// proportion to their areas. Returns how many pixels are fully covered by the faces together.
+/// The picture does not depend on the order of the faces and their vertices. Faces that do overlap mix in
+/// proportion to their areas. Returns the number of pixels that the faces together cover fully.
 ///
 /// # Errors
 /// [`crate::Error::Limit`] for sides beyond 32,767 pixels.
@@ -130,7 +130,7 @@ pub fn fill_partition(
     Ok(full)
 }
 
-/// Returns the sums of a pixel over what was there, straight alpha in and out.
+/// Returns the sums of a pixel composited over its previous colour, straight alpha in and out.
 fn over(sum: &Sums, below: [u8; 4]) -> [u8; 4] {
     // All in units of 1/65,536 · 1/255; faces that overlap are scaled down to one pixel.
     let total = u64::from(sum[0].max(65_536));

@@ -21,8 +21,8 @@ const UP: u32 = 1;
 const OWN_LEFT: u32 = 2;
 const OWN_RIGHT: u32 = 4;
 
-/// Flags in the result of a part: bits of the pixels it touches, from its first on, and of those that count if they
-/// have been touched before.
+/// Flags in the result of a part: bits of the pixels it touches, from its first on, and of the pixels that become
+/// shared if they have been touched before.
 pub(super) const TOUCHED: u32 = 3;
 pub(super) const COUNTED: u32 = 2;
 /// It touches more than two pixels, or the second one's mark is in the next word.
@@ -71,8 +71,7 @@ impl Parts {
         self.count > FULL
     }
 
-    /// Adds what an edge does in the rows of the band whose first row is `top`; a row has this many
-    /// cells.
+    /// Adds the contribution of an edge to the rows of the band whose first row is `top`; a row has `cells` cells.
     ///
     /// Edges of several rows are added eight rows at a time, the first and the last among them: to guess how long an
     /// edge is costs more than rows that are not meant.
@@ -82,11 +81,11 @@ impl Parts {
         // Horizontal edges leave their mark, but not on the border of two rows.
         let end = (edge.y1 + ONE - 1) >> BITS;
         let (from, to) = (first.max(top), end.min(top + BAND_ROWS));
-        // Of paths with few edges all come by in each band.
+        // Paths with few edges pass all of them to each band.
         if from >= to {
             return;
         }
-        // What the edge shares with its neighbour in the path at their common vertex does not count.
+        // The pixel that the edge shares with its neighbour in the path at their common vertex does not count.
         let (upper, lower) = edge.chained();
         let rightwards = edge.x0 <= edge.x1;
         let own = |at: bool, left: bool| match (at, left) {
@@ -114,7 +113,7 @@ impl Parts {
         // The row below the first border that the edge crosses.
         let whole = (edge.y0 + ONE - 1) >> BITS;
         let across = (steps.slope.unsigned_abs() >> BITS) as i32;
-        // Edges that cross no more than two pixels of a row are equally wide in all whole ones.
+        // Edges that cross at most two pixels of a row are equally wide in all whole rows.
         let steep = if steps.slope.unsigned_abs() <= 1 << 32 { ONE } else { i32::MIN };
         let stepped = Stepped::new(simd, steps.slope);
         let mut row = from;

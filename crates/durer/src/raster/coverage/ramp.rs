@@ -17,11 +17,12 @@ pub(super) struct Ramp {
     /// The last one, at least the one after the first.
     pub last: i32,
     pub tail: i32,
-    /// The pixel after the last one touched, of those that cross three or more.
+    /// The pixel after the last one touched, for ramps that cross three or more.
     pub end: i32,
     /// Coverage of all pixels after the last: its height.
     pub height: i32,
-    /// Coverage of the pixels between, with 16 more bits: that of the first, and the increase for each further one.
+    /// Coverage of the pixels between, with 16 more bits: the first pixel's coverage, and the increase for each further
+    /// pixel.
     pub start: u32,
     pub per_pixel: u32,
 }

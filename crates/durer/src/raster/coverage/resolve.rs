@@ -1,10 +1,9 @@
 //! Pixels that several chains of edges cross: their covered area, exactly.
 //!
-//! The integral of the winding number decides a pixel only where that number takes two neighbouring
-//! values. Where it may take more — two contours overlap, a contour crosses itself — the pixel is cut
-//! into slabs at every end and crossing of its edges, and the area is summed where the rule says
-//! "inside". The winding number at the pixel's corner follows from the integral and need not be
-//! carried along: it is the integer that makes the two agree.
+//! The integral of the winding number decides a pixel only if that number takes just two neighbouring values in it.
+//! Where it may take more, because contours overlap or a contour crosses itself, the pixel is cut into slabs at every
+//! end and crossing of its edges, and the area is summed where the rule says "inside". The winding number at the
+//! pixel's corner follows from the integral and need not be carried along: it is the integer that makes the two agree.
 
 use super::FillRule;
 use super::cells::{Cells, Marks};
@@ -16,8 +15,7 @@ use crate::raster::bands::BAND_ROWS;
 const ALL: Limits = Limits { exact: 24, measured: u32::MAX, measures: 6144, lines: (16, 256) };
 /// The same in noise that is to be measured.
 const IN_NOISE: Limits = Limits { exact: 4, measured: 32, measures: 512, lines: (16, 64) };
-/// A band with at most this many edges is resolved, whatever it shows: that takes no long time, and in small
-/// drawings each pixel is examined.
+/// Number of edges up to which a band is always resolved: that is quick, and small drawings get every pixel examined.
 const FEW_EDGES: u32 = 256;
 /// Number of shared pixels, two in a row on average, above which another band's content counts as noise as
 /// well,
@@ -26,7 +24,7 @@ const FEW_SHARED: u32 = 2 * BAND_ROWS as u32;
 const OFTEN: u32 = 5;
 /// and so few of them for each edge that they do not come from long edges side by side.
 const PER_EDGE: u32 = 4;
-/// With more edges than this in a band it does not matter how long they are.
+/// Number of edges in a band above which their lengths are not considered.
 const MANY_EDGES: u32 = 1024;
 /// End of a list.
 const NONE: u32 = u32::MAX;
@@ -34,13 +32,13 @@ const NONE: u32 = u32::MAX;
 /// Limits of resolving pixels.
 #[derive(Debug, Clone, Copy)]
 struct Limits {
-    /// Up to this many pieces exactly,
+    /// Largest number of pieces for the exact area,
     exact: usize,
-    /// with up to this many along lines; those of more keep the integral's answer.
+    /// and for measuring along lines; pixels with more keep the integral's value.
     measured: u32,
     /// Number of measures for all pieces together,
     measures: usize,
-    /// and at least and at most this many.
+    /// and the smallest and largest number of lines.
     lines: (usize, usize),
 }
 
@@ -54,7 +52,7 @@ impl Default for Limits {
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     sign: i32,
-    /// Upper and lower end, 16.16 pixels from the pixel's upper left corner; x may lie outside it.
+    /// Upper and lower end, 16.16 pixels from the pixel's upper left corner; x may be outside it.
     ends: [(i32, i32); 2],
     /// The pixel's next piece.
     next: u32,
@@ -88,7 +86,7 @@ impl Segment {
     }
 }
 
-/// The shared pixels of one band and what crosses them; the memory is used again.
+/// The shared pixels of one band and the pieces of edges that cross them; the memory is reused.
 #[derive(Debug, Default)]
 pub(crate) struct Resolver {
     /// The number of the first shared pixel of each word of marks, row by row.
@@ -108,12 +106,12 @@ pub(crate) struct Resolver {
 pub(crate) enum Noise {
     /// All.
     Resolved,
-    /// All, those that show noise roughly.
+    /// All bands, those with noise only roughly.
     Measured {
         /// Edges of the band.
         edges: u32,
     },
-    /// All but those that show noise.
+    /// All bands except those with noise.
     Left {
         /// Edges of the band.
         edges: u32,
@@ -121,8 +119,8 @@ pub(crate) enum Noise {
 }
 
 impl Resolver {
-    /// Numbers the shared pixels of a band; returns a bit for each row that has some, 0 where it is noise that is
-    /// left as it is.
+    /// Numbers the shared pixels of a band; returns a bit for each row that has some, or 0 for noise that is not
+    /// resolved.
     pub fn begin(&mut self, cells: &Cells, rows: (i32, i32), noise: Noise) -> u64 {
         self.words = cells.marks_of(0).len();
         self.ranks.clear();
@@ -217,7 +215,7 @@ impl Resolver {
         }
     }
 
-    /// Returns the number of the shared pixel at a bit of a word of the row.
+    /// Returns the number of the shared pixel at a bit of a word of a row.
     #[inline(always)]
     fn number(&self, (row, word): (i32, usize), shared: u64, bit: u32) -> usize {
         let word = (row.max(0) as usize) * self.words + word;
@@ -225,8 +223,8 @@ impl Resolver {
         self.ranks.get(word).map_or(usize::MAX, |rank| (rank + before) as usize)
     }
 
-    /// Corrects the coverage 0 … 255 of the shared ones of eight pixels, the first of them at a bit of a
-    /// word of the row, whose integrals are `sums`.
+    /// Corrects the coverage 0 … 255 of the shared pixels among eight, whose integrals are `sums`; the first is at a
+    /// bit of a word of a row.
     #[inline(never)]
     pub fn eight(
         &mut self,
@@ -251,8 +249,7 @@ impl Resolver {
 
     /// Returns the covered area of one pixel; `None` if the integral is enough.
     fn area(&mut self, pixel: Shared, sum: i32, rule: FillRule) -> Option<f64> {
-        // Each piece changes the winding number by one, so it has one sign all over the pixel where its
-        // mean is so far from zero.
+        // Each piece changes the winding number by one, so a mean this far from zero means one sign all over the pixel.
         let mean = sum.unsigned_abs() >> BITS;
         let many = pixel.count > self.limits.measured;
         if many || (rule == FillRule::NonZero && mean >= pixel.count) {
@@ -346,7 +343,7 @@ fn push_segments(piece: &Piece, out: &mut Vec<Segment>) {
     let (mut x0, mut y0) = (unit(upper.0), unit(upper.1));
     let (mut x1, mut y1) = (unit(lower.0), unit(lower.1));
     let sign = piece.sign;
-    // Most lie inside, and need no division.
+    // Most pieces are inside the pixel and need no division.
     let (height, width) = (y1 - y0, x1 - x0);
     let y_at = move |x: f64| y0 + height * ((x - x0) / width);
     // Crossing the left border changes the winding number along it from there on.

@@ -15,11 +15,11 @@ use crate::raster::bands::{BAND_ROWS, running_sums};
 
 /// Pixels between the first and the last one of a row, at most.
 pub(super) const WIDEST: i32 = 31;
-/// Cells of a row: the pixels, and as many as are added at once.
+/// Number of cells in a row: the pixels, and room for one vector addition at the end.
 const CELLS: usize = WIDEST as usize + 9;
 /// Rows that are added at once.
 const AT_ONCE: usize = 8;
-/// No edge is farther to the right, 16.16.
+/// Largest x of an edge, 16.16.
 const LIMIT: i32 = ((WIDEST + 1) << BITS) - 1;
 
 /// A row of cells, as in [`super::cells`].
@@ -131,7 +131,7 @@ fn steep<S: Simd>(simd: S, rows: &mut [Row; AT_ONCE], edge: &Edge, steps: &Steps
     let tail_x = if single { clamped(x0, x1) } else { clamped(end, x1) };
     let tail_height = if single { y1 - y0 } else { y1 & (ONE - 1) };
     let head_height = (whole << BITS) - y0;
-    // Where it enters each row from the left, and how far it goes.
+    // The left end of the edge in each row, and its extent.
     let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
     let left = steps.at(row - whole) + steps.slope.min(0);
     let fraction = lane * splat(steps.slope as i32 & (ONE - 1)) + splat(left as i32 & (ONE - 1));
@@ -175,7 +175,7 @@ fn add<S: Simd>(rows: &mut [Row; AT_ONCE], columns: i32x8<S>, deltas: [i32x8<S>;
     }
 }
 
-/// Adds what an edge that crosses more than a pixel in each whole row does in one row.
+/// Adds the contribution, in one row, of an edge that crosses more than a pixel in each whole row.
 #[inline(always)]
 fn flat<S: Simd>(simd: S, cells: &mut Row, edge: &Edge, steps: &Steps, row: i32) {
     let whole = (edge.y0 + ONE - 1) >> BITS;

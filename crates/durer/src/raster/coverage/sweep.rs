@@ -26,7 +26,7 @@ pub(crate) trait Sink<S: Simd> {
     fn span(&mut self, simd: S, row: i32, x: Range<usize>, coverage: u8);
 }
 
-/// Returns the coverage in the bytes of a number, and none of the next four pixels.
+/// Returns the four coverages in the bytes of a number, followed by four zeros.
 #[inline(always)]
 pub(crate) fn unpacked<S: Simd>(simd: S, coverage: u32) -> u32x8<S> {
     let [a, b, c, d] = coverage.to_le_bytes().map(u32::from);

@@ -1,8 +1,8 @@
-//! Contours that turn one way only.
+//! Contours that turn in only one direction.
 
 use crate::math::DVec2;
 
-/// Returns whether a closed contour turns one way only, once around.
+/// Returns whether a closed contour turns in only one direction, once around.
 pub(super) fn is_convex(points: &[DVec2]) -> bool {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return true };
     let mut from = *last;

@@ -73,7 +73,7 @@ family! {
     }
 }
 
-/// One step: a pixel gets some intensity.
+/// Step of the algorithm: the intensity of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
     /// Column and row.
@@ -101,8 +101,8 @@ pub fn draw(
     mut plot: impl FnMut(IVec2, u8),
     t: &mut impl Tracer<Step>,
 ) {
-    // Neighbours across of the pixels in the window may lie in it though the line does not: next but
-    // one where a tie goes the other way.
+    // Pixels beside the line may be in the window although the line is not: two pixels away where a tie goes the other
+    // way.
     let reach = IVec2::splat(2);
     let wider =
         options.window.map(|(low, high)| (low.saturating_sub(reach), high.saturating_add(reach)));

@@ -74,7 +74,7 @@ pub fn draw(
     for _ in course.first..=course.last {
         plot(pixel);
         error += rise;
-        // Without a branch, for which way it goes cannot be foretold.
+        // Without a branch, which the processor could not predict.
         let turn = i64::from(error >= whole);
         error -= whole * turn;
         pixel = pixel.wrapping_add(along).wrapping_add(across * turn as i32);

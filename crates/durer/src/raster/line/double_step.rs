@@ -1,10 +1,10 @@
 //! The double-step line: two pixels at a time.
 //!
-//! X. Wu, J. G. Rokne, *Double-step incremental generation of lines and circles*, Computer Vision, Graphics, and Image Processing
-//! 37(3), 1987. Class: image space. Two steps along the longer axis go across in one of four patterns: not at all (1), in the
-//! second step (2), in the first (3), in both (4). A line of slope below ½ has no pattern 4, any other no pattern 1; so one
-//! decision tells pattern 1 or 4 from the two others, and only then a second one is needed. Cost: half to all of
-//! Bresenham's decisions, and half of his additions.
+//! X. Wu, J. G. Rokne, *Double-step incremental generation of lines and circles*, Computer Vision, Graphics, and Image
+//! Processing 37(3), 1987. Class: image space. Two steps along the longer axis go across in one of four patterns: not
+//! at all (1), in the second step (2), in the first (3), in both (4). A line of slope below ½ has no pattern 4, any
+//! other no pattern 1; so one decision separates pattern 1 or 4 from the other two, and only these need a second one.
+//! Cost: half to all of Bresenham's decisions, and half of his additions.
 //!
 //! Ties go as in the family. The paper's second idea, to draw a line from both ends at once, is left out.
 

@@ -1,7 +1,7 @@
 //! A line from its equation: for every step along the longer axis, y = y₀ + (x − x₀) · Δy / Δx, rounded.
 //!
-//! Class: image space. Cost: a multiplication and a division per pixel; the plainest way, and the one the
-//! others are checked against. Exact for all 32-bit end points.
+//! Class: image space. Cost: a multiplication and a division per pixel; the simplest method, against which the others
+//! are checked. Exact for all 32-bit end points.
 
 use super::{Course, Options, Step};
 use crate::info::{Class, Info, Occluder};

@@ -1,4 +1,4 @@
-//! Lines: five ways to the pixels of a thin one, smooth ones, and the outline of a wide one.
+//! Lines: five methods for the pixels of thin lines, smooth lines, and the outlines of wide lines.
 //!
 //! The thin ones light one pixel per step along the longer axis: the one nearest to the line, of two equally
 //! near ones that with the smaller coordinate across. All five light the same pixels, from either end.
@@ -20,7 +20,7 @@ use crate::math::IVec2;
 use crate::trace::{NoTrace, Tracer};
 
 family! {
-    /// The ways to the pixels of a thin line.
+    /// Methods for the pixels of a thin line.
     pub enum LineRasterizer {
         /// The equation of the line, solved for every column.
         Equation => equation::INFO,
@@ -36,8 +36,9 @@ family! {
 }
 
 impl LineRasterizer {
-    /// Calls `plot` for the line's pixels within the window, along its longer axis. Of the run-slice and the double-step
-    /// line, too, the tracer gets a step per pixel; [`run_slice::draw`] and [`double_step::draw`] have steps of their own.
+    /// Calls `plot` for the line's pixels within the window, along its longer axis. The tracer gets a step per pixel,
+    /// also from the run-slice and the double-step line; [`run_slice::draw`] and [`double_step::draw`] have their own
+    /// steps.
     pub fn draw(
         self,
         from: IVec2,
@@ -65,8 +66,8 @@ impl LineRasterizer {
 /// Options for drawing a thin line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
-    /// Only pixels from the first corner to the second, both included, are lit; `None` = all. The line is
-    /// entered where it meets the window, not walked to from its end.
+    /// Only pixels from the first corner to the second, both included, are lit; `None` = all. The algorithm enters the
+    /// line where it meets the window and does not walk there from its end.
     pub window: Option<(IVec2, IVec2)>,
 }
 
@@ -80,9 +81,9 @@ pub struct Step {
     /// the sum of the digital differential analyzer; its nearest whole number is the pixel's.
     pub across: f64,
     /// Bresenham's E at this pixel, 2Δy − Δx at the first one: twice the distance, times Δx, from the point midway
-    /// between the two pixels that may come next to the line. Where it is positive the next pixel lies one further
-    /// across and 2Δy − 2Δx is added, where it is negative it lies straight on and 2Δy is added; if it is zero the
-    /// smaller coordinate across decides.
+    /// between the two pixels that may come next to the line. If it is positive, the next step is diagonal and 2Δy −
+    /// 2Δx is added; if it is negative, the next step is axial and 2Δy is added; if it is zero, the pixel with the
+    /// smaller coordinate across is chosen.
     pub e: i64,
 }
 
@@ -163,7 +164,7 @@ impl Course {
         2 * i128::from(self.steps.max(1))
     }
 
-    /// Leaves only the steps whose pixel lies within the window, computed from its borders.
+    /// Restricts the steps to pixels within the window, computed from its borders.
     fn restrict(&mut self, low: (i64, i64), high: (i64, i64)) {
         self.first = self.first.max(low.0 - self.along);
         self.last = self.last.min(high.0 - self.along);

@@ -1,4 +1,4 @@
-//! Thick and patterned lines on pixels: a pen that is moved along a thin line, and a mask that says where it is down.
+//! Thick and patterned lines on pixels: a pen that is moved along a thin line, and a mask that tells where it is down.
 //!
 //! J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes, *Computer Graphics: Principles and Practice*, 2nd ed. 1990, 3.7
 //! and 3.9; the pattern as in OpenGL 1.0 (1992), `glLineStipple`. Class: image space. Cost: O(n · w) for n steps and w
@@ -41,7 +41,7 @@ pub const INFO: Info = Info {
 pub enum Pen {
     /// Pixels across the longer axis, replicated: columns of flat lines, rows of steep ones.
     Replicated(u32),
-    /// A square of this many pixels each way. Pixels may be plotted several times.
+    /// A square with this many pixels per side. Pixels may be plotted several times.
     Square(u32),
 }
 
@@ -137,7 +137,7 @@ fn is_steep(from: IVec2, to: IVec2) -> bool {
     to.y.abs_diff(from.y) > to.x.abs_diff(from.x)
 }
 
-/// Plots the pen at a pixel; of an even width one pixel more is before it than behind. Pixels beyond i32 are left out.
+/// Plots the pen at a pixel; an even width has one pixel more before it than behind. Pixels beyond i32 are left out.
 fn stamp(at: IVec2, pen: Pen, steep: bool, plot: &mut impl FnMut(IVec2)) {
     let reach = |width: u32| {
         let before = i64::from(width / 2);

@@ -83,7 +83,7 @@ fn set_up<S: Simd>(simd: S, ends: &Ends, size: (i32, i32), out: &mut Pieces) {
     let (across, end) = (swap.select(c.1, c.0), swap.select(c.0, c.1));
     let falls = end.simd_lt(across);
     // After k steps the distance across is the whole part of start + k · slope. The slope is too large by less than
-    // four units, the start by one, together by less than the next multiple of 1/(2 · steps) is away.
+    // four units and the start by less than one: together less than the distance to the next multiple of 1/(2 · steps).
     let length = simd.cvt_f32_i32x8(steps.max(unit));
     let one = f32x8::splat(simd, ONE as f32);
     let slope = simd.cvt_i32_f32x8(simd.cvt_f32_i32x8(rise) / length * one) + i32x8::splat(simd, 2);

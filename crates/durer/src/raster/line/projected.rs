@@ -2,8 +2,8 @@
 //! are within a window.
 //!
 //! A line that is cut at the border of the picture and then drawn between the pixels of the cut has another slope than
-//! the whole line. So nothing is cut at the sides; the line algorithm enters the window with the state that it has
-//! there ([`super::Options::window`]). Near and far planes are cut, for they end the line itself.
+//! the whole line. So lines are not cut at the sides; the line algorithm enters the window with the state that it has
+//! there ([`super::Options::window`]). They are cut at the near and far planes, which end the line itself.
 
 use crate::clip::volume::{Blend, Borders, ClipVertex, Options, clip_segment};
 use crate::math::{DVec2, IVec2};

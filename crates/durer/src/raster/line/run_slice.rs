@@ -6,7 +6,8 @@
 //! the first and the last, are q or q + 1 with q = ⌊Δx / Δy⌋. Cost: one division for the line, one decision per run; so it
 //! saves most where lines are nearly horizontal or vertical, and nothing at 45°.
 //!
-//! Runs lie along the longer axis; ties go as in the family. In a window it begins with the run that enters it.
+//! Runs extend along the longer axis; ties are resolved as in the whole family. In a window, the algorithm begins with
+//! the run that enters it.
 
 use super::{Course, Options};
 use crate::info::{Class, Coherence, Info, Occluder};

@@ -1,10 +1,10 @@
 //! Many thin lines of many colours: Bresenham's pixels, tile by tile.
 //!
-//! Lines one by one wait for memory, for each is somewhere else. Here they are first sorted into the tiles that
-//! their boxes touch, as in H. Fuchs et al., *Pixel-Planes 5*, SIGGRAPH 1989, then each tile's lines are drawn in
-//! their order onto a copy of the tile that stays in the cache. Class: image space. Cost: O(lines · tiles touched +
-//! pixels). A piece of a line is entered with the fraction it has there, so the pixels are
-//! [`super::bresenham`]'s, all of them. Limits: as there.
+//! Lines drawn one by one wait for memory, because each is in a different place. Here they are first sorted into the
+//! tiles that their boxes touch, as in H. Fuchs et al., *Pixel-Planes 5*, SIGGRAPH 1989, then each tile's lines are
+//! drawn in their order onto a copy of the tile that stays in the cache. Class: image space. Cost: O(lines · tiles
+//! touched + pixels). A piece of a line starts with the fraction that the whole line has there, so the pixels are
+//! exactly those of [`super::bresenham`]. Limits: as in `bresenham`.
 
 use super::pieces::{AT_ONCE, Ends, PIXELS, Pieces, SHORT, TILE_BITS};
 use super::{Course, Options, bresenham};
@@ -29,8 +29,8 @@ pub const INFO: Info = Info {
     pseudocode: &[],
 };
 
-/// Pixels of a tile's side. With four bytes a pixel a tile is 64 KiB, which the second-level cache holds, and most of
-/// it the first.
+/// Side of a tile, pixels. With four bytes per pixel a tile is 64 KiB, which fits in the second-level cache, and most
+/// of it in the first.
 const TILE: i32 = 1 << TILE_BITS;
 /// Lines that are sorted into tiles at a time, which bounds the memory to twenty bytes or so, with 4-byte pixels, for
 /// each tile that one of them touches.
@@ -68,8 +68,8 @@ pub struct Step<T> {
 /// Draws lines in their order: pixels of several lines have the value of the last. Pixels outside the target are left
 /// out.
 ///
-/// The same pixels as [`super::bresenham::draw`] lights, one line after the other, in less than half the time where
-/// there are many. Memory: a share of the lines at a time, about 10 MB with short lines and 4-byte pixels.
+/// Draws the same pixels as [`super::bresenham::draw`], line by line, in less than half the time if there are many
+/// lines. Memory: a share of the lines at a time, about 10 MB with short lines and 4-byte pixels.
 ///
 /// ```
 /// use durer::math::IVec2;
@@ -134,7 +134,7 @@ impl<T: Copy> Tiles<T> {
         }
     }
 
-    /// Puts lines in the order of their tiles: counted first, then put in their places.
+    /// Sorts lines by their tiles, by counting.
     fn sort(&mut self, lines: &[Line<T>]) {
         let down = (self.size.1 as usize).div_ceil(TILE as usize);
         let mut starts = std::mem::take(&mut self.starts);
@@ -157,7 +157,7 @@ impl<T: Copy> Tiles<T> {
                 starts[tile] += 1;
             });
         }
-        // Each has moved on to the next one's.
+        // Each start has advanced to the start of the next tile.
         starts.rotate_right(1);
         starts[0] = 0;
         (self.starts, self.entries) = (starts, entries);
@@ -199,7 +199,7 @@ fn draw_tile<T: Copy>(
     for (y, row) in rows.clone().zip(copy.chunks_exact_mut(TILE as usize)) {
         row[..columns.len()].copy_from_slice(&target.row(y)[columns.clone()]);
     }
-    // What the first line waits for, a division above all, is under way for some others too when it is drawn.
+    // The set-up of several lines, with its slow divisions, is in progress while the first of them is drawn.
     let mut pieces = [Pieces::default(); AHEAD];
     let size = (end.x - corner.x, end.y - corner.y);
     for lines in lines.chunks(AHEAD * AT_ONCE) {
@@ -257,8 +257,8 @@ fn draw_long<T: Copy>(line: &Line<T>, corner: IVec2, end: IVec2, copy: &mut [T; 
         return;
     }
     let size = course.turned(seen(end));
-    // After k steps the distance across is the whole part of start + k · slope. Both are a little too large, by less
-    // than the next multiple of 1/(2 · steps) is away.
+    // After k steps the distance across is the whole part of start + k · slope. Both are slightly too large, by less
+    // than the distance to the next multiple of 1/(2 · steps).
     let one = (1_i64 << BITS) as f64;
     let whole = course.steps.max(1) as f64;
     let slope = (course.rise as f64 / whole * one) as i64 + 1;

@@ -57,8 +57,7 @@ pub(super) fn render<'a, P: Space>(
     target.data_mut().chunks_mut(rows_per_band).enumerate().for_each(|b| paint(&mut painter, b));
 }
 
-/// Lines are fetched this many at a time: they lie far apart in memory, and so are waited for
-/// together.
+/// Number of lines fetched together: they are far apart in memory, so their waiting times overlap.
 const AT_ONCE: usize = 16;
 
 /// Work to do in a band.
@@ -111,7 +110,7 @@ impl<'a, P: Space> Painter<'a, P> {
             floors: Vec::new(),
             spare: Vec::new(),
             near: Vec::new(),
-            // Where the work is stopped nothing is painted.
+            // If the work is stopped, nothing is painted.
             charge: canvas.work.charge(LAYERS, 0).unwrap_or_default(),
             most_clips: 0,
         }
@@ -442,7 +441,7 @@ fn part_covered<S: Simd>(simd: S, coverage: u8, left: usize) -> u32x8<S> {
     lanes.simd_lt(u32x8::splat(simd, left as u32)).select(all, u32x8::splat(simd, 0))
 }
 
-// No closures here: what they hold would not be compiled for the SIMD level.
+// No closures here: their bodies would not be compiled for the SIMD level.
 
 /// Returns the eight pixels from `first` on, where all of them come before `end`.
 #[inline(always)]
@@ -462,7 +461,7 @@ fn part_of_eight<P: Space>(pixels: &[P], first: usize, end: usize) -> [P; 8] {
     eight
 }
 
-/// Writes what [`part_of_eight`] has lent.
+/// Writes back pixels that [`part_of_eight`] returned.
 #[inline(always)]
 fn put_back<P: Space>(pixels: &mut [P], first: usize, end: usize, eight: &[P; 8]) {
     let some = pixels.get_mut(first..end).unwrap_or_default();

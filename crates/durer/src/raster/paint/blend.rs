@@ -1,4 +1,4 @@
-//! Blend modes: how the colours of a layer and of its backdrop make those that are seen.
+//! Blend modes: the combination of a layer's colours with those of its backdrop.
 //!
 //! Source: W3C, *Compositing and Blending Level 1*, sections 5.8 (general formula), 10.1 (separable) and
 //! 10.2 (non-separable modes).
@@ -8,7 +8,7 @@ use super::color::Space;
 /// Function B(Cb, Cs) that blends a layer's colour Cs with the backdrop's Cb; all 0 … 1, in the space in which
 /// colours are mixed.
 ///
-/// Where the layer or the backdrop lets light through, only the part that both cover is blended:
+/// Where the layer or the backdrop is transparent, only the part that both cover is blended:
 /// Cs·(1 − αb) + B(Cb, Cs)·αb is composited over the backdrop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Blend {
@@ -45,7 +45,7 @@ pub enum Blend {
     Color,
     /// The layer's luminosity, the backdrop's hue and saturation.
     Luminosity,
-    /// Cb + Cs, each as much as it is opaque, at most 1: the sum of both layers ("plus-lighter" of CSS).
+    /// Cb + Cs, each weighted by its alpha, at most 1: the sum of both layers ("plus-lighter" of CSS).
     PlusLighter,
 }
 
@@ -135,7 +135,7 @@ fn soft_light(b: f32, s: f32) -> f32 {
     b + (2.0 * s - 1.0) * (d - b)
 }
 
-/// Returns the luminosity of the specification, which is not that of ITU-R BT.709.
+/// Returns the luminosity as the specification defines it, which differs from ITU-R BT.709.
 fn luminosity([r, g, b]: [f32; 3]) -> f32 {
     0.3 * r + 0.59 * g + 0.11 * b
 }

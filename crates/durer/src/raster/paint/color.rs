@@ -47,7 +47,7 @@ pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
     fn scaled(self, coverage: u8) -> Self;
     /// Returns `self` over `below`, after `self` has been scaled by the coverage.
     fn over(self, coverage: u8, below: Self) -> Self;
-    /// Returns the sum of both, at most what is opaque and white.
+    /// Returns the sum of both, at most opaque white.
     fn plus(self, other: Self) -> Self;
     /// Paints one colour over eight pixels, each with its coverage 0 … 255.
     fn color_over<S: Simd>(simd: S, color: Self, coverage: u32x8<S>, below: &mut [Self; 8]);
@@ -275,7 +275,7 @@ fn div255_half<S: Simd>(simd: S, x: u16x8<S>) -> u16x8<S> {
     (x + (x >> 8)) >> 8
 }
 
-/// A pixel of linear light in 16 bits, premultiplied; a type of its own, because it is not sRGB.
+/// A pixel of linear light in 16 bits, premultiplied; a separate type, because it is not sRGB.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Linear([u16; 4]);
 

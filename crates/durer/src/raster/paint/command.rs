@@ -88,7 +88,7 @@ impl Brush {
     }
 }
 
-/// One thing to do.
+/// A painting command.
 #[derive(Debug)]
 pub(super) enum Command {
     Fill {
@@ -140,7 +140,7 @@ impl Command {
     }
 }
 
-/// A command with its paint made ready for one colour space.
+/// A command with its paint prepared for one colour space.
 pub(super) enum Prepared<'a, P> {
     Fill { outline: Drawn<'a>, how: coverage::Options, source: Source<P> },
     Lines { first: u32, last: u32 },
@@ -152,8 +152,8 @@ pub(super) enum Prepared<'a, P> {
     EndMask { kind: MaskKind },
 }
 
-/// Sorts the commands and lines into bands of `band_rows` rows: fills and lines into those of their rows, everything
-/// else into all bands where there is something between its begin and its end.
+/// Sorts the commands and lines into bands of `band_rows` rows: fills and lines into the bands of their rows,
+/// everything else into all bands that have something between its begin and its end.
 pub(super) fn sort_into_bands<P>(
     commands: &[Prepared<'_, P>],
     lines: &[Line],

@@ -1,8 +1,7 @@
 //! Painting: filled and stroked paths with colours, gradients, opacity, groups and clip paths.
 //!
-//! A [`Canvas`] takes note of what is to be painted and then works through the target in bands of
-//! rows, each band through all commands in their order. Bands are the parallel task; the picture is the
-//! same for any number of threads.
+//! A [`Canvas`] records painting commands and then renders the target in bands of rows, each band with all commands in
+//! order. Bands are the parallel task; the picture is the same for any number of threads.
 
 mod bands;
 mod blend;
@@ -57,14 +56,14 @@ pub enum Blending {
 pub struct Options {
     /// Space in which colours are mixed.
     pub blending: Blending,
-    /// Treatment of pixels in which a path overlaps itself. Strokes, which do so wherever they bend, take
-    /// [`Overlap::Measured`] for [`Overlap::Adaptive`].
+    /// Treatment of pixels in which a path overlaps itself. For strokes, which do so wherever they bend,
+    /// [`Overlap::Adaptive`] means [`Overlap::Measured`].
     pub overlap: Overlap,
     /// Largest distance between a curve and its chords in pixels. 0.025 is at most 6/255 of coverage
     /// where a curve bends most; the number of chords grows with its inverse square root.
     pub tolerance: f64,
     /// True if edges are smoothed; otherwise a pixel is painted when its centre is inside
-    /// ([`super::polygon`]). [`Canvas::set_anti_alias`] changes it for what follows.
+    /// ([`super::polygon`]). [`Canvas::set_anti_alias`] changes it for later commands.
     pub anti_alias: bool,
 }
 
@@ -79,7 +78,7 @@ impl Default for Options {
     }
 }
 
-/// A list of things to paint onto a target of a given size.
+/// A list of commands that paint onto a target of a given size.
 ///
 /// ```
 /// use durer::curve::Path;
@@ -125,7 +124,7 @@ pub struct Canvas {
 /// Number of bytes recorded between two charges.
 const CHARGE: u64 = 1 << 18;
 
-/// Number of points of a stroke's outline whose edges are made before it goes on.
+/// Number of points of a stroke's outline after which their edges are made before the outline continues.
 const PART: usize = 1 << 16;
 
 /// Name of the recorded commands in errors about memory.
@@ -160,8 +159,8 @@ impl Canvas {
         })
     }
 
-    /// Charges the memory for recorded commands to a budget. Where that has too little left, nothing more is recorded
-    /// and [`Self::render`] returns the error, and likewise where the work is stopped.
+    /// Charges the memory for recorded commands to a budget. If the budget is exceeded or the work is stopped, nothing
+    /// more is recorded and [`Self::render`] returns the error.
     pub fn set_work(&mut self, work: &Work) {
         self.work = work.part();
         self.work.enter(NOTED);
@@ -198,7 +197,7 @@ impl Canvas {
     /// Forgets all that has been painted so far and all that is open, and paints later marks over the pixels of the
     /// target: so a long list is painted in parts. Keeps the memory.
     ///
-    /// Where the target is opaque and colours are mixed in sRGB, parts give the same bytes as the whole.
+    /// If the target is opaque and colours are mixed in sRGB, parts give the same bytes as the whole.
     pub fn restart(&mut self) {
         self.background = None;
         self.commands.clear();
@@ -210,7 +209,7 @@ impl Canvas {
         self.set_work(&work);
     }
 
-    /// Charges what has been noted since the last time, where it is much.
+    /// Charges the memory recorded since the last charge, if it is much.
     fn charge(&mut self) {
         let commands = self.commands.capacity() * size_of::<Command>();
         let lines = self.lines.capacity() * size_of::<Line>();
@@ -220,7 +219,7 @@ impl Canvas {
         }
     }
 
-    /// Sets the map from the space of paths and paints to pixels, for what follows.
+    /// Sets the map from the space of paths and paints to pixels, for later commands.
     pub fn set_transform(&mut self, pixel_from_path: DAffine2) {
         self.transform = pixel_from_path;
     }
@@ -270,11 +269,12 @@ impl Canvas {
         let inverse = self.transform.inverse();
         let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
         let corners = corners.map(|p| inverse.transform_point2(p));
-        // What cannot be inverted has no window.
+        // A map that cannot be inverted has no window.
         if corners.iter().all(|p| p.is_finite()) { Rect::around(corners) } else { None }
     }
 
-    /// Returns the edges of a stroke. They are made part by part, for outlines have many times as many points as paths.
+    /// Returns the edges of a stroke. They are made part by part, because outlines have many times as many points as
+    /// paths.
     fn stroked(&mut self, path: &Path, stroke: &Stroke) -> Result<Outline> {
         let tolerance = self.options.tolerance / stretch(self.transform).max(1e-9);
         let (map, size) = (self.transform, (self.width, self.height));
@@ -380,11 +380,11 @@ impl Canvas {
         outline
     }
 
-    /// Restricts what follows to the inside of a path, within the clip paths already in force.
+    /// Restricts later marks to the inside of a path, within the clip paths already in force.
     pub fn push_clip(&mut self, path: &Path, rule: FillRule) {
         let contours = self.flattened(path);
         if holds_all(&contours, [self.width, self.height].map(f64::from)) {
-            // Fills that nothing is cut off from need no mask.
+            // Fills that are not cut need no mask.
             return self.open.push(Open::Everything);
         }
         let outline = self.outline(&contours);
@@ -393,21 +393,21 @@ impl Canvas {
         self.open.push(Open::Clip);
     }
 
-    /// Starts a group: what follows is painted onto an empty layer.
+    /// Starts a group: later marks are painted onto an empty layer.
     pub fn push_group(&mut self) {
         self.commands.push(Command::PushGroup);
         self.open.push(Open::Group);
     }
 
-    /// Starts a mask: what follows is not shown, but painted onto a layer of its own, free of the clip
-    /// paths in force, until [`Canvas::end_mask`].
+    /// Starts a mask: until [`Canvas::end_mask`], marks are not shown but painted onto a separate layer, without the
+    /// clip paths in force.
     pub fn begin_mask(&mut self) {
         self.commands.push(Command::BeginMask);
         self.open.push(Open::Mask);
     }
 
     /// Ends the mask begun last, and everything still open inside it: from here on the marks painted since then
-    /// restrict later ones, as a clip path does, until the mask is popped. Where no mask is open nothing happens.
+    /// restrict later ones, as a clip path does, until the mask is popped. If no mask is open, nothing happens.
     pub fn end_mask(&mut self, kind: MaskKind) {
         if !self.open.contains(&Open::Mask) {
             return;
@@ -421,7 +421,7 @@ impl Canvas {
     }
 
     /// Ends the clip path, mask or group opened last; the layer of a group is laid over the layers below it with the
-    /// given opacity 0 … 1. Without anything open nothing happens.
+    /// given opacity 0 … 1. If nothing is open, nothing happens.
     pub fn pop(&mut self, opacity: f64) {
         self.pop_blended(opacity, Blend::Normal);
     }
@@ -448,12 +448,12 @@ impl Canvas {
         }
     }
 
-    /// Paints everything over the target, which keeps straight alpha. Groups still open are laid down
-    /// fully opaque.
+    /// Paints everything over the target, which keeps straight alpha. Groups still open are composited with full
+    /// opacity.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where the target has another size than the canvas; what stopped its work, where something
-    /// did: the target is of no use then.
+    /// [`Error::Parameter`] if the target differs in size from the canvas; the error of stopped work, after which the
+    /// target's contents are unspecified.
     pub fn render(&self, target: &mut Pixels<Color>) -> Result<()> {
         self.render_at(default_level(), target)
     }
@@ -483,7 +483,7 @@ impl Canvas {
     }
 
     fn prepared<P: Space>(&self) -> Vec<Prepared<'_, P>> {
-        // What was left open is closed.
+        // Clip paths, masks and groups left open are closed.
         let closing = self.open.iter().rev().flat_map(Open::closing);
         self.commands.iter().map(|command| command.prepared(&self.lists)).chain(closing).collect()
     }

@@ -1,4 +1,4 @@
-//! Outlines made ready for filling, with smooth or with hard edges.
+//! Outlines prepared for filling, with smooth or with hard edges.
 
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
@@ -31,7 +31,7 @@ impl Lists {
     }
 }
 
-/// The edges of something filled.
+/// The edges of a filled outline.
 #[derive(Debug)]
 pub(super) enum Outline {
     /// Pixels are covered by the area inside.
@@ -69,8 +69,7 @@ impl Outline {
         }
     }
 
-    /// Returns the first row touched and one past the last; the second is not larger where there is
-    /// nothing to fill.
+    /// Returns the first row touched and one past the last; the second is not larger if there is nothing to fill.
     pub fn rows(&self) -> (i32, i32) {
         match self {
             Self::Smooth(path) => path.rows,

@@ -29,7 +29,7 @@ pub enum Shape {
     Linear {
         /// Point where the parameter is 0.
         start: DVec2,
-        /// Point where it is 1.
+        /// Point where the parameter is 1.
         end: DVec2,
     },
     /// Gradient from a focal circle to an outer circle, as in SVG and PDF.
@@ -71,7 +71,7 @@ pub struct Pattern {
     pub filter: Filter,
 }
 
-/// Filter for colours between the pixels of an image. Colours count as much as they are opaque.
+/// Filter for colours between the pixels of an image. Colours are weighted by their alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Filter {
     /// The nearest pixel.
@@ -82,8 +82,8 @@ pub enum Filter {
     /// A mixture of the sixteen pixels around, for enlarged images: D. Mitchell, A. Netravali, *Reconstruction Filters
     /// in Computer Graphics*, SIGGRAPH 1988, with B = C = 1/3.
     Bicubic,
-    /// The mean of the pixels at 8 × 8 points spread evenly over the one that is painted, for images with
-    /// about eight times as many pixels a side as are painted.
+    /// The mean of the pixels at 8 × 8 points spread evenly over the one that is painted, for images with about eight
+    /// times as many pixels per side as are painted.
     Area,
 }
 
@@ -107,11 +107,11 @@ impl From<Color> for Paint {
 /// Entries of a gradient's table: twice the number that 8 bits distinguish.
 const RAMP: usize = 512;
 
-/// Within half a step of a table's entry colours differ from it by no more than this, of 255; where they do they are
-/// found from the stops, so that hard borders between colours are in the right place and sharp.
+/// Largest difference, of 255, between a table's entry and the colours within half a step of it. Where they differ
+/// more, colours are computed from the stops, so that hard borders between colours are sharp and in the right place.
 const FLAT: f64 = 2.0;
 
-/// A paint made ready: colours premultiplied in the space of the canvas, maps inverted.
+/// A prepared paint: colours premultiplied in the space of the canvas, maps inverted.
 #[derive(Debug, Clone)]
 pub(crate) enum Source<P> {
     Solid(P),
@@ -119,7 +119,7 @@ pub(crate) enum Source<P> {
     Image(Box<Image>),
 }
 
-/// A gradient made ready.
+/// A prepared gradient.
 #[derive(Debug, Clone)]
 pub(crate) struct Ramp<P> {
     gradient: Arc<Gradient>,
@@ -158,14 +158,14 @@ impl<P: Space> Ramp<P> {
         let place = (within * (RAMP - 1) as f64 + 0.5) as usize;
         let tabled = self.colors.get(place).copied().flatten();
         tabled.unwrap_or_else(|| {
-            // Before a first stop at 0 comes its own colour, not that of another stop at 0.
+            // Before a first stop at 0, its own colour applies, not that of another stop at 0.
             let t = if self.gradient.spread == Spread::Pad { t } else { within };
             premultiply_f(stop_color(&self.gradient.stops, t), self.opacity)
         })
     }
 }
 
-/// A pattern made ready.
+/// A prepared pattern.
 #[derive(Debug, Clone)]
 pub(crate) struct Image {
     pattern: Arc<Pattern>,
@@ -173,7 +173,7 @@ pub(crate) struct Image {
     opacity: f64,
 }
 
-/// Returns an opacity 0 … 1; what is not a number is 1.
+/// Returns an opacity clamped to 0 … 1; 1 for NaN.
 pub(super) fn opacity(opacity: f64) -> f64 {
     if opacity.is_finite() { opacity.clamp(0.0, 1.0) } else { 1.0 }
 }
@@ -237,9 +237,8 @@ impl<P: Space> Source<P> {
     }
 }
 
-/// Returns the centres of eight pixels of row `y` from column `x` on, mapped. Steps begin at every eighth
-/// column, so that where a pixel's centre comes to lie does not depend, in its last bits, on the pixels that
-/// are requested with it.
+/// Returns the centres of eight pixels of row `y` from column `x` on, mapped. Steps begin at every eighth column, so
+/// that the last bits of a pixel's mapped centre do not depend on the pixels requested with it.
 fn centers(map: &DAffine2, x: usize, y: usize) -> impl Iterator<Item = DVec2> {
     let step = map.matrix2.x_axis;
     let begin = x & !7;
@@ -271,7 +270,7 @@ fn parameter(shape: &Shape, p: DVec2) -> Option<f64> {
             Some((p - start).dot(d) / d.length_squared())
         }
         Shape::Radial { center, radius, focus, focus_radius } => {
-            // The largest t for which p lies on the circle around focus + t (center − focus) with
+            // The largest t for which p is on the circle around focus + t (center − focus) with
             // radius r0 + t (r1 − r0) ≥ 0.
             let (cd, pd, dr) = (center - focus, p - focus, radius - focus_radius);
             let a = cd.length_squared() - dr * dr;
@@ -328,7 +327,7 @@ fn image_color(pattern: &Pattern, p: DVec2, image_from_pixel: &DAffine2) -> [f64
     }
 }
 
-/// Returns the straight colour of a pixel of a pattern, or of what is outside its image.
+/// Returns the straight colour of a pixel of a pattern, inside or outside its image.
 fn pixel(pattern: &Pattern, x: f64, y: f64) -> [f64; 4] {
     let size = (i64::from(pattern.image.width()), i64::from(pattern.image.height()));
     let place = [(x as i64, size.0), (y as i64, size.1)].map(|(at, n)| within(at, n, pattern));
@@ -349,8 +348,7 @@ fn bilinear(pattern: &Pattern, p: DVec2) -> Mixture {
 
 fn area(pattern: &Pattern, p: DVec2, image_from_pixel: &DAffine2) -> [f64; 4] {
     let size = DVec2::new(pattern.image.width().into(), pattern.image.height().into());
-    // Repeated images are so common, and have this many points, that places in them are found without
-    // division.
+    // Repeated images are so common, and need so many samples, that places in them are found without division.
     let (again, per_size) = (pattern.spread == Some(Spread::Repeat), size.recip());
     let mut sum = Mixture::default();
     for part in 0..64 {
@@ -363,7 +361,7 @@ fn area(pattern: &Pattern, p: DVec2, image_from_pixel: &DAffine2) -> [f64; 4] {
     sum.straight()
 }
 
-/// Returns the colour that [`pixel`] returns, fast for what is within the image.
+/// Returns the same colour as [`pixel`], faster inside the image.
 fn pixel_within(pattern: &Pattern, at: DVec2) -> [f64; 4] {
     let place = (at.x >= 0.0 && at.y >= 0.0).then_some((at.x as u32, at.y as u32));
     let found = place.and_then(|(x, y)| pattern.image.get(x, y));
@@ -383,8 +381,7 @@ fn bicubic(pattern: &Pattern, p: DVec2) -> [f64; 4] {
     sum.straight()
 }
 
-/// Returns the weights of the four pixels in a row around a point that is `f` of the way from the second to
-/// the third.
+/// Returns the weights of the four pixels in a row around a point at the fraction `f` between the second and the third.
 fn mitchell(f: f64) -> [f64; 4] {
     let (near, far) = (
         |x: f64| ((7.0 * x - 12.0) * x * x + 16.0 / 3.0) / 6.0,

@@ -1,6 +1,6 @@
 //! The crossings of edges with the centres of rows, band by band.
 //!
-//! Which pixel a crossing falls on is decided exactly though x is followed in binary fractions: crossings are
+//! The pixel of a crossing is exact although x is kept in binary fractions: crossings are
 //! multiples of 1/(256 · height) of a pixel, heights in 1/256 of a pixel, so x may come out too small by less than
 //! that, and never too large.
 
@@ -17,7 +17,7 @@ use crate::raster::coverage::FillRule;
 use crate::raster::coverage::sweep::Sink;
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS, first_center};
 
-/// Bits of x below the pixel, of 64: 2¹⁷ pixels to each side are twice what edges reach.
+/// Bits of x below the pixel, of 64: 2¹⁷ pixels to each side are twice the range of edges.
 const BITS: u32 = 46;
 /// One pixel.
 const ONE: i64 = 1 << BITS;
@@ -74,11 +74,11 @@ pub(crate) struct CrossingEdges {
     edges: Edges<Edge>,
     /// First row and one past the last whose centres are crossed.
     pub rows: (i32, i32),
-    /// First and last pixel that anything begins or ends at.
+    /// First and last pixel at which edges begin or end.
     columns: (i32, i32),
 }
 
-/// The same of what is made so far.
+/// Extent of the edges made so far.
 #[derive(Debug, Clone, Copy)]
 struct Extent {
     rows: (i32, i32),
@@ -114,7 +114,7 @@ impl CrossingEdges {
         self.edges.bytes()
     }
 
-    /// Creates the edges of contours within a target of the given size, at most 32,767 each way; a few are
+    /// Creates the edges of contours within a target of the given size, at most 32,767 in each direction; few edges are
     /// added to the list.
     pub fn new(contours: &Contours, width: u32, height: u32, list: &mut Vec<Edge>) -> Self {
         let (width, height) = (width as i32, height as i32);
@@ -163,8 +163,8 @@ impl Path<'_> {
         self.path.rows
     }
 
-    /// Calls `f(row of the band, first pixel not left of the edge, whether it goes down)` for all crossings of a
-    /// band, edge by edge, until it says no. The pixel is 0 … `width`.
+    /// Calls `f(row of the band, first pixel not left of the edge, whether it goes down)` for all crossings of a band,
+    /// edge by edge, until it returns false. The pixel is 0 … `width`.
     #[inline(always)]
     pub fn for_each(&self, top: i32, width: usize, mut f: impl FnMut(usize, usize, bool) -> bool) {
         let width = width as i64;

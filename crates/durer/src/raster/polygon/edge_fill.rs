@@ -1,13 +1,13 @@
 //! Polygons by complements: edge fill and fence fill.
 //!
 //! Edge fill: B. D. Ackland, N. H. Weste, *Real time animation playback on a frame store display system*, SIGGRAPH
-//! 1980: for each crossing of an edge with a row, all pixels to the right of it are complemented. What is inside has an
-//! odd number of edges to its left and is complemented an odd number of times. Fence fill: M. R. Dunlavey, *Efficient
-//! polygon-filling algorithms for raster displays*, ACM Transactions on Graphics 2(4), 1983: only the pixels between
-//! the edge and a fence are, which is put through the polygon. Class: image space. Cost: O(pixels right of edges), or
-//! O(pixels between edges and fence); no list, no sorting, edges in any order.
+//! 1980: for each crossing of an edge with a row, all pixels to the right of it are complemented. Pixels inside have an
+//! odd number of edges to their left and are complemented an odd number of times. Fence fill: M. R. Dunlavey,
+//! *Efficient polygon-filling algorithms for raster displays*, ACM Transactions on Graphics 2(4), 1983: only the pixels
+//! between the edge and a fence, a vertical line through the polygon, are complemented. Class: image space. Cost:
+//! O(pixels right of edges), or O(pixels between edges and fence); no list, no sorting, edges in any order.
 //!
-//! Limits: the even-odd rule; a plane of its own, because what is there is complemented; pixels are touched several
+//! Limits: the even-odd rule; a separate plane, because its contents are complemented; pixels are touched several
 //! times. Vertices are snapped to 1/256 of a pixel.
 
 use super::rows::for_each_crossing;

@@ -5,7 +5,7 @@
 //! and each flag turns a bit over that says whether pixels are inside. Class: image space. Cost: O(crossings + pixels
 //! of the box); every pixel is touched once, which suits hardware. Coherence used: spans.
 //!
-//! Limits: the even-odd rule; a plane of its own. Vertices are snapped to 1/256 of a pixel.
+//! Limits: the even-odd rule; a separate plane. Vertices are snapped to 1/256 of a pixel.
 //!
 //! Deviation: two crossings in one pixel complement its flag twice, so that thin parts vanish as they have no centre
 //! inside; the paper's marks may be Bresenham's pixels, which also light parts outside.

@@ -5,7 +5,7 @@
 //! Cost: O(e log e + crossings + spans); an edge costs one division when it starts and none per row.
 //! Limits: vertices are snapped to 1/256 of a pixel.
 //!
-//! The plain way, and the one that [`super::ordered_edge_list`] is checked against.
+//! The simple method, against which [`super::ordered_edge_list`] is checked.
 
 pub use super::Options;
 use super::{is_inside, snapped_edges};
@@ -94,8 +94,8 @@ pub struct Edge {
     pub rows: (i32, i32),
     /// First pixel of the current row whose centre is not left of the edge.
     pub x: i64,
-    /// The accumulator: how far the edge lies right of the centre of that pixel's left neighbour, in 1/`whole` of
-    /// a pixel, less one.
+    /// The accumulator: the distance of the edge to the right of the centre of that pixel's left neighbour, in
+    /// 1/`whole` of a pixel, minus one.
     pub error: i64,
     /// Increment of `x` from row to row without the accumulator: the whole pixels of Δx/Δy.
     pub step: i64,
@@ -209,7 +209,7 @@ pub(crate) fn table(contours: &Contours, height: u32) -> Vec<Edge> {
     table
 }
 
-/// Emits the spans of one row from its edges in order of x; those that touch are joined.
+/// Emits the spans of one row from its edges in order of x; touching spans are joined.
 pub(crate) fn row(active: &[Edge], y: i32, width: u32, rule: FillRule, mut emit: impl FnMut(Span)) {
     let width = i64::from(width.min(i32::MAX as u32));
     let (mut winding, mut span) = (0, Span { y, x0: 0, x1: 0 });

@@ -1,7 +1,7 @@
-//! Polygons by their pixels' centres: scan conversion without smoothing, two ways.
+//! Polygons by their pixels' centres: scan conversion without smoothing, by two methods.
 //!
 //! Both snap vertices to 1/256 of a pixel, decide with exact arithmetic from there on, and emit the same spans:
-//! row by row from the top, from left to right, none of a row touching another. A pixel belongs to the polygon
+//! row by row from the top, from left to right; spans of a row do not touch. A pixel belongs to the polygon
 //! if its centre does; a centre on the border belongs to a left and an upper edge (y down), not to a right or
 //! lower one, so faces that share edges light each pixel once.
 //!
@@ -37,7 +37,7 @@ use crate::raster::clipped::{Lines, lines, pieces};
 use crate::trace::NoTrace;
 
 crate::info::family! {
-    /// The ways to scan convert a polygon.
+    /// Methods to scan convert a polygon.
     pub enum PolygonRasterizer {
         /// Edges in order of their first row, the active ones followed from row to row.
         EdgeTable => edge_table::INFO,

@@ -1,12 +1,11 @@
 //! Polygon scan conversion by the simple ordered edge list: all crossings of edges with rows first, sorted by row
 //! and column, then pairs of them filled.
 //!
-//! D. F. Rogers, *Procedural Elements for Computer Graphics*, McGraw-Hill 1985, section 2-19. Class: image space.
-//! Cost: O(crossings · crossings of their row) where a row has few, O(crossings + pixels) where it has many; an edge
-//! costs two divisions and no row one. Limits: vertices are snapped to 1/256 of a pixel; sides of at most 32,767
-//! pixels.
+//! D. F. Rogers, *Procedural Elements for Computer Graphics*, McGraw-Hill 1985, section 2-19. Class: image space. Cost:
+//! O(crossings · crossings of their row) if a row has few, O(crossings + pixels) if it has many; an edge costs two
+//! divisions, and rows cost none. Limits: vertices are snapped to 1/256 of a pixel; sides of at most 32,767 pixels.
 //!
-//! Deviations: rows are worked on in bands of 32, winding numbers take the place of pairs, and a band in which a row
+//! Deviations: rows are processed in bands of 32, winding numbers take the place of pairs, and a band in which a row
 //! has more than 32 crossings counts them per pixel instead of sorting them (a winding number's difference from
 //! pixel to pixel, summed along the row).
 
@@ -77,8 +76,8 @@ impl Step {
 }
 
 /// Calls `emit` for the spans of the polygon within a `width` × `height` target, row by row and from left to right;
-/// contours count as closed, points that are not finite are left out. Coordinates in pixels. Of larger targets than
-/// 32,767 pixels each way only that part is filled.
+/// contours count as closed, points that are not finite are left out. Coordinates in pixels. Of targets larger than
+/// 32,767 pixels in a direction, only that part is filled.
 pub fn fill(
     contours: &Contours,
     width: u32,

@@ -1,10 +1,10 @@
-//! Seed fills: from one pixel to all that are connected with it and belong together.
+//! Seed fills: from one pixel to all connected pixels of its region.
 //!
-//! A flood fill takes the pixels that are like the seed, a boundary fill those that are not like a boundary. The naive
-//! form keeps a stack of pixels; the span form takes whole runs of a row and looks for runs in the rows above and
-//! below (A. R. Smith, *Tint fill*, SIGGRAPH 1979; P. Heckbert, *A seed fill algorithm*, Graphics Gems, 1990). A
-//! tracer sees that; without one the runs are those of 64 pixels at a time, row after row away from the seed, and only
-//! what is behind a turn of the region is kept on a stack. All fill the same set; none recurses.
+//! A flood fill takes the connected pixels that equal the seed, a boundary fill those that differ from a boundary
+//! value. The naive form keeps a stack of pixels; the span form takes whole runs of a row and looks for runs in the
+//! rows above and below (A. R. Smith, *Tint fill*, SIGGRAPH 1979; P. Heckbert, *A seed fill algorithm*, Graphics Gems,
+//! 1990). A tracer sees that form; without one, runs are found 64 pixels at a time, row after row away from the seed,
+//! and only parts behind a turn of the region are kept on a stack. All fill the same set; none recurses.
 //!
 //! Class: image space. Cost: O(n) for n filled pixels; the naive form touches each up to eight times.
 
@@ -32,8 +32,8 @@ pub enum Connectivity {
 pub struct Options {
     /// Neighbourhood of pixels.
     pub connectivity: Connectivity,
-    /// For [`boundary_fill`]: whether pixels that have the new value already stop it, too, as is taught (`current ≠
-    /// boundary and current ≠ fill`). Then pixels behind them are not reached.
+    /// For [`boundary_fill`]: whether pixels that already have the new value also stop the fill, as is taught (`current
+    /// ≠ boundary and current ≠ fill`). Pixels behind them are then not reached.
     pub stop_at_value: bool,
 }
 
@@ -64,7 +64,7 @@ impl Step {
     }
 }
 
-/// Pixels of a row; those that wait on the stack may lie outside the image.
+/// Pixels of a row; runs on the stack may be outside the image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Run {
     /// Row.
@@ -195,8 +195,7 @@ impl PixelValue for u16 {
     }
 }
 
-/// Four channels are a colour with straight alpha: two of them that are wholly transparent look the same, whatever
-/// their colours are.
+/// Four channels are a colour with straight alpha: all fully transparent colours are equal.
 impl<T: PixelValue, const N: usize> PixelValue for [T; N] {
     type Level = T::Level;
     #[inline]
@@ -333,7 +332,7 @@ fn naive(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer
         found += 1;
         let waiting = stack.len();
         t.step(|| Step::Fill { run: Run::pixel((x, y)), waiting });
-        // The last put there is the first to be taken: pixels come in the order of the recursive form.
+        // The last one pushed is taken first, so pixels are visited in the order of the recursive form.
         stack.extend(neighbours.iter().rev().map(|(dx, dy)| (x + dx, y + dy)));
         stack.iter().skip(waiting).for_each(|&at| t.step(|| Step::Push(Run::pixel(at))));
     }

@@ -34,7 +34,7 @@ impl Region {
         region
     }
 
-    /// Counts a row beside the known ones to them; returns its words.
+    /// Extends the known rows by an adjacent one; returns its words.
     pub fn learn(&mut self, row: usize) -> &mut [u64] {
         self.known = self.known.start.min(row)..self.known.end.max(row + 1);
         &mut self.open[row * self.words..(row + 1) * self.words]
@@ -53,7 +53,7 @@ impl Region {
         inside && self.open[y as usize * self.words + x as usize / 64] >> (x as usize % 64) & 1 != 0
     }
 
-    /// Fills what may be filled in a row of the image but is no longer open.
+    /// Fills the pixels of a row of the image that may be filled and are no longer open.
     pub fn paint<P: Copy>(
         &self,
         y: usize,
@@ -164,7 +164,7 @@ pub(super) fn paint<P: Copy>(row: &mut [P], words: &[u64], value: P) {
     }
 }
 
-/// Writes the value to those of at most 64 pixels whose bits are set.
+/// Writes the value to the pixels, of at most 64, whose bits are set.
 #[inline(always)]
 fn paint_word<P: Copy>(pixels: &mut [P], word: u64, value: P) {
     if word == u64::MAX {

@@ -1,14 +1,14 @@
 //! Seed fill without a tracer: row by row away from the seed, then word by word for the rest.
 //!
-//! Most of a region lies straight below or above what is already reached. So one pass goes down from the seed and
-//! one up: each row is examined, filled and left while it is in the cache. What lies behind a turn of the region
-//! waits as seeds in the rows that have been passed, and is followed by words ([`super::words`]).
+//! Most of a region is directly below or above the part already reached. So one pass goes down from the seed and one
+//! up: each row is examined and filled while it is in the cache. Parts behind a turn of the region are left as seeds in
+//! the rows already passed, and are filled by words ([`super::words`]).
 
 use super::region::{Region, paint, read_row};
 use super::words::{Waiting, leftwards, rightwards, widen};
 use crate::target::Pixels;
 
-/// Fills what is connected with the seed, a pixel inside; returns how many pixels that are.
+/// Fills the pixels connected with the seed, a pixel inside; returns their number.
 pub(super) fn fill<P: Copy>(
     image: &mut Pixels<P>,
     (x, y): (u32, u32),
@@ -25,7 +25,7 @@ pub(super) fn fill<P: Copy>(
     row.spread();
     let mut found = row.fill(image.row_mut(y), value, region.learn(seed));
     let (first, left) = (row.reached.clone(), row.left);
-    // One row further; says whether there is anything to fill.
+    // Advances by one row; returns whether there is anything to fill.
     let mut pass = |row: &mut Row, y: usize, before: usize| {
         row.full = read_row(image.row(y as u32), inside, &mut row.open);
         if !row.enter() {
@@ -58,16 +58,16 @@ pub(super) fn fill<P: Copy>(
     found
 }
 
-/// One row on its way through an image.
+/// The current row of a pass through an image.
 struct Row {
     eight: bool,
     /// Pixels that may be filled.
     open: Vec<u64>,
     /// True if all of it may.
     full: bool,
-    /// Pixels that are reached; once they are filled, those that the rows beside may touch.
+    /// Pixels that are reached; once they are filled, those that adjacent rows may touch.
     reached: Vec<u64>,
-    /// True if something open is left behind in the row filled last.
+    /// True if open pixels are left behind in the row filled last.
     left: bool,
 }
 
@@ -76,8 +76,8 @@ impl Row {
         Self { eight, open: vec![0; words], full: false, reached: vec![0; words], left: false }
     }
 
-    /// Steps from the row before into this one, to what is open beside what was reached there; returns whether there
-    /// is any.
+    /// Steps from the row before into this one, to the open pixels next to those reached there; returns whether there
+    /// are any.
     fn enter(&mut self) -> bool {
         let mut any = 0;
         for (reached, open) in self.reached.iter_mut().zip(&self.open) {
@@ -87,7 +87,7 @@ impl Row {
         any != 0
     }
 
-    /// Extends what is reached to whole runs of open pixels.
+    /// Extends the reached pixels to whole runs of open ones.
     fn spread(&mut self) {
         if self.full {
             return self.reached.copy_from_slice(&self.open);
@@ -105,7 +105,7 @@ impl Row {
         }
     }
 
-    /// Fills what is reached and leaves the rest open; returns how many pixels were filled.
+    /// Fills the reached pixels and leaves the rest open; returns how many pixels were filled.
     fn fill<P: Copy>(&mut self, pixels: &mut [P], value: P, rest: &mut [u64]) -> u64 {
         self.left = !self.full;
         if self.full {

@@ -1,8 +1,8 @@
-//! Seed fill by words: what of 64 pixels of a row is reached, all at once.
+//! Seed fill by words: the reached pixels among 64 of a row are found at once.
 //!
-//! Where runs of open pixels are short, most of a fill by spans is finding where the next one begins. A word takes
-//! all its runs together: seeds run to the right by an addition, whose carries stop at closed pixels, to the left by
-//! doubling steps, and what they reach seeds the words around.
+//! Where runs of open pixels are short, a fill by spans spends most of its time finding the next run. A word takes all
+//! its runs together: seeds run to the right by an addition, whose carries stop at closed pixels, to the left by
+//! doubling steps, and the reached pixels seed the adjacent words.
 
 use super::region::Region;
 use crate::target::Pixels;
@@ -11,7 +11,7 @@ use crate::target::Pixels;
 pub(super) struct Waiting {
     eight: bool,
     seeds: Vec<u64>,
-    /// Row and word of the row.
+    /// Seeded words: row, and word in the row.
     stack: Vec<(u32, u32)>,
 }
 
@@ -31,7 +31,8 @@ impl Waiting {
         }
     }
 
-    /// Adds the open pixels of a row beside those that are reached in a neighbouring row; `reached` is widened.
+    /// Adds the open pixels of a row next to those reached in a neighbouring row; if fills go diagonally too, `reached`
+    /// has been widened by one pixel on each side.
     pub fn add_beside(&mut self, row: usize, reached: &[u64], region: &Region) {
         let start = row * region.words;
         for (i, beside) in reached.iter().enumerate() {

@@ -143,7 +143,7 @@ impl RowWalk {
     }
 }
 
-/// The corners from top to bottom, and the side of the long edge on which the middle one lies.
+/// The corners from top to bottom, and the side of the long edge that the middle one is on.
 struct Chains {
     top: [i32; 2],
     middle: [i32; 2],
@@ -182,8 +182,8 @@ impl Chains {
 
 /// Walk down an edge: x is the first column whose centre is not left of it.
 ///
-/// The same number serves on both sides: inclusive start on the left, exclusive end on the right.
-/// x = ⌈n / d⌉ with n = the edge's abscissa times d; `error` = n − x · d lies in (−d, 0].
+/// The same number is used on both sides: as inclusive start on the left, as exclusive end on the right. x = ⌈n / d⌉
+/// with n = the edge's abscissa times d; `error` = n − x · d is in (−d, 0].
 #[derive(Debug, Clone, Copy)]
 struct Walk {
     x: i64,

@@ -1,4 +1,4 @@
-//! Triangles, three ways, with 8 sub-pixel bits and the top-left rule.
+//! Triangles by three methods, with 8 sub-pixel bits and the top-left rule.
 //!
 //! All three decide with integers on the grid of [`super::fixed`] and emit the same spans in the same
 //! order: rows downwards, one span a row. A sample exactly on an edge belongs to the triangle where
@@ -28,7 +28,7 @@ use crate::view::window::PixelRect;
 use crate::{Error, Result};
 
 crate::info::family! {
-    /// The ways to scan convert a triangle.
+    /// Methods to scan convert a triangle.
     pub enum TriangleRasterizer {
         /// Edge functions over the bounding box.
         EdgeFunction => edge_function::INFO,
@@ -67,7 +67,7 @@ impl Default for Options {
 /// A triangle on the grid of 1/256 pixel, of either winding.
 ///
 /// # Guarantees
-/// All coordinates lie within the guard band, so that edge functions fit i64.
+/// All coordinates are within the guard band, so that edge functions fit into i64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct SnappedTriangle([[i32; 2]; 3]);
 
@@ -98,7 +98,7 @@ impl SnappedTriangle {
         }
     }
 
-    /// Creates a triangle whose coordinates are known to lie within the guard band.
+    /// Creates a triangle whose coordinates are known to be within the guard band.
     #[inline]
     pub(crate) fn within_guard_band(vertices: [[i32; 2]; 3]) -> Self {
         debug_assert!(Self::new(vertices).is_ok());
@@ -129,7 +129,7 @@ impl SnappedTriangle {
         }
     }
 
-    /// Returns the pixels whose centres lie in the closed bounding box, within `clip`.
+    /// Returns the pixels whose centres are in the closed bounding box, within `clip`.
     fn pixels(&self, clip: &PixelRect) -> PixelRect {
         let range = |k: usize| {
             let c = self.0.map(|v| v[k]);

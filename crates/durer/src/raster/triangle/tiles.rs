@@ -4,7 +4,7 @@
 //! Graphics Hardware 2000, with the trivial accept and reject of a tile by its corners (Fuchs et al.,
 //! *Pixel-Planes 5*, 1989; Greene 1996). Image space. A tile is left out where one function is
 //! negative at its most favourable corner, and lit as a whole where all are positive at the least
-//! favourable; only tiles on the outline look at single pixels.
+//! favourable; only tiles on the outline test single pixels.
 
 pub use super::Options;
 use super::{Edge, SnappedTriangle, Span};
@@ -43,9 +43,9 @@ pub const TILE: i32 = 8;
 /// Result of testing a tile's corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Verdict {
-    /// All of it lies outside one edge.
+    /// All of it is outside one edge.
     Rejected,
-    /// All of it lies inside all edges.
+    /// All of it is inside all edges.
     Accepted,
     /// Its pixels were tested.
     Examined,

@@ -50,13 +50,13 @@ impl<'a> PreparedMaterials<'a> {
         self
     }
 
-    /// Returns the material of lines or points: as [`Self::get`], but for `None` the ink.
+    /// Returns the material of lines or points: as [`Self::get`], but the ink for `None`.
     #[inline]
     pub(crate) fn of_marks(&self, index: Option<usize>) -> &PreparedMaterial<'a> {
         index.map_or(&self.ink, |_| self.get(index))
     }
 
-    /// Returns the material of this index; for `None`, or if there is none, the default material.
+    /// Returns the material with an index; for `None`, or if there is no such material, the default material.
     #[inline]
     pub fn get(&self, index: Option<usize>) -> &PreparedMaterial<'a> {
         index.and_then(|i| self.materials.get(i)).unwrap_or(&self.default)

@@ -1,4 +1,4 @@
-//! The colour of a visible point, whatever its material asks for.
+//! The colour of a visible point, for any material.
 
 use super::{Framing, PreparedMaterial};
 use crate::math::{Vec3, Vec4};

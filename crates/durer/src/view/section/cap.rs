@@ -30,7 +30,7 @@ pub fn triangles(
     let mut polygons: Vec<Vec<Vec<u32>>> = outers.into_iter().map(|(ring, _)| vec![ring]).collect();
     for (hole, _) in holes {
         let owner = polygons.iter().rposition(|polygon| flat.contains(&polygon[0], &hole));
-        // A hole in nothing: faces turned inside out. Its own cap looks the other way.
+        // A hole without an outer ring: faces turned inside out. Its own cap faces the other way.
         match owner {
             Some(i) => polygons[i].push(hole),
             None => polygons.push(vec![hole]),
@@ -45,7 +45,7 @@ pub fn triangles(
 
 /// Returns closed walks that use each segment once; `None` if some walk cannot be closed.
 fn loops(segments: &[[u32; 2]]) -> Option<Vec<Vec<u32>>> {
-    // Segments that run both ways bound nothing.
+    // Segments that run in both directions cancel.
     let mut sorted = segments.to_vec();
     sorted.sort_unstable();
     let mut count: HashMap<[u32; 2], i64> = HashMap::new();
@@ -70,7 +70,7 @@ fn loops(segments: &[[u32; 2]]) -> Option<Vec<Vec<u32>>> {
         let mut vertex = start;
         while let Some(next) = out.get_mut(&vertex).and_then(Vec::pop) {
             vertex = next;
-            // Each time the walk comes back to where it was, a simple loop is complete.
+            // Each time the walk returns to an earlier vertex, a simple loop is complete.
             if let Some(&from) = at.get(&vertex) {
                 let ring: Vec<u32> = path.drain(from + 1..).collect();
                 for v in &ring {
@@ -92,7 +92,7 @@ fn loops(segments: &[[u32; 2]]) -> Option<Vec<Vec<u32>>> {
     Some(loops)
 }
 
-/// The plane of the cut without the coordinate along which it is seen most squarely: nothing is rounded.
+/// The plane of the cut projected along the axis closest to its normal, by dropping a coordinate, without rounding.
 struct Flat<'a> {
     positions: &'a [Vec3],
     axes: [usize; 2],
@@ -119,8 +119,7 @@ impl<'a> Flat<'a> {
         DVec2::new(p[self.axes[0]], p[self.axes[1]])
     }
 
-    /// Returns whether a ring lies within another, by its first point that is not one of the
-    /// other's.
+    /// Returns whether a ring is within another, by its first point that is not one of the other's.
     fn contains(&self, outer: &[u32], inner: &[u32]) -> bool {
         let ring: Vec<DVec2> = outer.iter().map(|&v| self.point(v)).collect();
         let test = inner.iter().map(|&v| self.point(v)).find(|p| !ring.contains(p));
@@ -167,7 +166,7 @@ fn use_all(ring: &[u32], start: usize, triangles: &mut Vec<[u32; 3]>) {
     while i < n {
         let from = ring[i];
         // The next vertex of the ring to which a side runs from this one.
-        // A side in the inside has another triangle beside it; one along the border has none.
+        // An inner side has another triangle beside it; a side along the border has none.
         let is_border = |&k: &usize| {
             let to = ring[(i + k) % n];
             sides.contains_key(&(from, to)) && (k == 1 || !sides.contains_key(&(to, from)))
@@ -200,7 +199,7 @@ fn use_all(ring: &[u32], start: usize, triangles: &mut Vec<[u32; 3]>) {
     }
 }
 
-/// Returns whether a point lies inside a simple ring; exact.
+/// Returns whether a point is inside a simple ring; exact.
 fn winds(ring: &Ring, p: DVec2) -> bool {
     let Some(&last) = ring.last() else { return false };
     let mut inside = false;

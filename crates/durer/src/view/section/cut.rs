@@ -58,7 +58,7 @@ fn heights(mesh: &Mesh, welded: &[u32], plane: &Plane) -> Vec<f64> {
     welded.iter().map(height).collect()
 }
 
-/// Returns lines and points whose first vertex lies inside a plane.
+/// Returns the lines and points whose first vertex is inside a plane.
 pub fn primitives(mesh: &Mesh, plane: &Plane) -> Mesh {
     let mut kept = Mesh { indices: None, parts: Vec::new(), ..mesh.clone() };
     let per = if mesh.topology == crate::scene::Topology::Points { 1 } else { 2 };
@@ -116,7 +116,7 @@ struct Cutter<'a> {
     indices: Vec<u32>,
     /// First vertex made at each position on the plane, for caps.
     places: HashMap<[u32; 3], u32>,
-    /// New vertex of each edge of the file, which may have attributes of its own.
+    /// New vertex of each edge of the file, which may have its own attributes.
     vertices: HashMap<(u32, u32), u32>,
     segments: Vec<[u32; 2]>,
 }
@@ -164,7 +164,7 @@ impl Cutter<'_> {
         }
     }
 
-    /// Finds the intersection of an edge and the plane: its own vertex, and that of its place.
+    /// Finds the intersection of an edge and the plane: its own vertex, and the vertex of its place.
     fn meet(&mut self, v: u32, w: u32) -> (u32, u32) {
         // From the smaller of the welded vertices, so that both neighbours find the same place.
         let (v, w) =

@@ -1,12 +1,12 @@
-//! Sections: a scene cut by planes, with caps that close what was closed before.
+//! Sections: a scene cut by planes, with caps that close surfaces that were closed before.
 //!
 //! Each triangle is cut as by Sutherland and Hodgman (*Reentrant polygon clipping*, 1974), with new vertices found
 //! per edge of the welded mesh, so neighbours share them. The cuts of one instance are linked to loops, and
 //! the loops triangulated with all their vertices: a closed mesh stays closed. A vertex on the plane counts
 //! as cut away, so a face in the plane is replaced by a cap, or vanishes with the body behind it.
 //!
-//! Cost: O(n) for n triangles, O(c²) at worst for c new edges of a cap. Limits: bodies that penetrate each
-//! other are capped each by itself.
+//! Cost: O(n) for n triangles, O(c²) at worst for c new edges of a cap. Limits: bodies that penetrate each other are
+//! capped separately.
 
 mod cap;
 mod cut;
@@ -56,13 +56,13 @@ pub struct Section {
     pub cap_material: usize,
     /// The outlines of the cuts, world space, as far as no other plane has taken them away.
     pub outline: Vec<[DVec3; 2]>,
-    /// Cuts through instances that are not closed: these got no cap.
+    /// Number of cuts through instances that are not closed, which have no cap.
     pub open_cuts: u64,
     /// Area of all caps, as cut by their own plane, in squared world units.
     pub cap_area: f64,
 }
 
-/// Cuts a scene: of each instance the part stays that lies inside all planes (`normal · p + distance > 0`,
+/// Cuts a scene: keeps the part of each instance that is inside all planes (`normal · p + distance > 0`,
 /// world space).
 ///
 /// Points and lines of a mesh are left out where their first vertex is. Attributes are interpolated along the edges

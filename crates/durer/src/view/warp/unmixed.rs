@@ -1,7 +1,7 @@
-//! Colours of smoothed outlines, taken back to those of one surface.
+//! Colours of smoothed outlines, restored to those of one surface.
 //!
-//! Where several samples make a pixel, those along an outline are mixed from both sides, but their
-//! depth is that of one. Moved with it, the other side's colour would stay behind as a ghost.
+//! With several samples per pixel, the colours along an outline are mixed from both sides, but each pixel has the depth
+//! of one side. If pixels moved with it, the other side's colour would appear as a ghost.
 
 use super::Source;
 use crate::target::Pixels;
@@ -12,8 +12,8 @@ const ROUNDING: f32 = 4.0 / 65_535.0;
 /// Colours closer than this are the same.
 const SAME: u8 = 2;
 
-/// Returns the source's colours where pixels at a jump of depth have the colour of their own side, if
-/// theirs lies between those of both sides. Cost: O(pixels).
+/// Returns the source's colours, in which a pixel at a jump of depth gets the colour of its own side if its colour is
+/// between those of both sides. Cost: O(pixels).
 pub(super) fn unmixed(source: &Source<'_>) -> Pixels<[u8; 4]> {
     let mut colors = source.color.clone();
     for y in 0..colors.height() {

@@ -1,5 +1,4 @@
-//! The bodies that faces bound: connected pieces of surface, whether they are closed, and which way
-//! is out.
+//! The bodies that faces bound: connected pieces of surface, whether they are closed, and their outward direction.
 
 use super::{Edges, Faces};
 use crate::math::DVec3;
@@ -25,7 +24,7 @@ pub struct Bodies {
     of_item: Vec<u32>,
 }
 
-/// Neither a body nor turned: degenerate triangles and second copies.
+/// Mark of triangles that belong to no body: degenerate ones and second copies.
 const ABSENT: u32 = u32::MAX;
 
 impl Bodies {
@@ -102,8 +101,7 @@ impl Bodies {
         }
     }
 
-    /// Turns closed bodies that are inside out. Open ones stay as most of them is in the file: as
-    /// their first triangle.
+    /// Turns closed bodies that are inside out. Open ones are oriented as their first triangle is in the file.
     fn turn_outwards(&mut self) {
         let inside_out: Vec<bool> =
             self.bodies.iter().map(|b| b.closed && b.volume < 0.0).collect();
@@ -211,7 +209,7 @@ impl TurnedSets {
         }
     }
 
-    /// Returns whether no way of turning makes all neighbours agree.
+    /// Returns whether its triangles cannot be turned so that all neighbours agree.
     fn torn(&self, root: u32) -> bool {
         self.torn.contains(&root)
     }

@@ -22,7 +22,7 @@ impl Side {
     }
 
     /// Returns whether the triangle runs through the edge from the smaller to the larger vertex
-    /// number: it lies to the left of that direction, seen from its front.
+    /// number: the triangle is then to the left of that direction, seen from its front.
     #[inline]
     pub fn forward(self) -> bool {
         self.packed & 1 == 1
@@ -53,7 +53,7 @@ impl Edges {
             sum += *start;
             *start = sum;
         }
-        // Filled from behind, so each start comes to its place and items stay in order.
+        // Filled from the end, so that each start reaches its place and items stay in order.
         let mut sides = vec![Side { other: 0, packed: 0 }; sum as usize];
         for item in (0..faces.len() as u32).rev() {
             let Some(t) = faces.triangle(item).filter(|_| filter(item)) else { continue };
@@ -69,8 +69,8 @@ impl Edges {
         Self { starts, sides }
     }
 
-    /// Returns the edges after some triangles were changed, which are given in item order. Costs less than to find all
-    /// again where they are few.
+    /// Returns the edges after changes of some triangles, given in item order. If they are few, that costs less than
+    /// finding all edges again.
     pub(super) fn renewed(self, faces: &Faces, changed: &[u32]) -> Self {
         let mut is_changed = vec![false; faces.len()];
         changed.iter().for_each(|item| is_changed[*item as usize] = true);
@@ -151,7 +151,7 @@ impl Edges {
         self.from_vertices(0..self.starts.len().saturating_sub(1) as u32)
     }
 
-    /// Returns the triangle at the other side of an edge of two that run alike.
+    /// Returns the triangle at the other side of an edge of two triangles with the same orientation.
     pub(in crate::visibility) fn across(&self, ends: [u32; 2], item: u32) -> Option<u32> {
         match self.at([ends[0].min(ends[1]), ends[0].max(ends[1])]) {
             [a, b] if a.forward() != b.forward() => {

@@ -27,9 +27,9 @@ pub struct FaceRun {
 
 /// The triangles of a scene, and its lines and points.
 ///
-/// Vertices of one mesh that lie at one place are one vertex, so neighbours are found even where the file shares no
+/// Vertices of one mesh at the same place are one vertex, so neighbours are found even where the file shares no
 /// vertices. Vertices at borders are shared with those of other instances too, and triangles without height between
-/// others are left out; [`Weld`] determines how near.
+/// others are left out; [`Weld`] determines the tolerance.
 ///
 /// # Guarantees
 /// All points are finite; the three vertices of a triangle differ.
@@ -40,7 +40,7 @@ pub struct Faces {
     runs: Vec<FaceRun>,
     polygons: Option<Vec<u32>>,
     marks: Vec<[u32; 2]>,
-    /// Triangles on whose sides vertices of others lie, in item order: their outlines, with these.
+    /// Triangles with vertices of others on their sides, in item order: their outlines including these vertices.
     outlines: Vec<(u32, Vec<u32>)>,
     /// True for each item that is among them; empty if none is.
     has_outline: Vec<bool>,
@@ -148,8 +148,8 @@ impl Faces {
         self.outlines = outlines;
     }
 
-    /// Calls `f` with the ends of each side of a triangle, as it runs around; a side on which vertices of others
-    /// lie is several.
+    /// Calls `f` with the ends of each side of a triangle, in its direction; a side with vertices of others on it is
+    /// several.
     #[inline]
     pub(super) fn each_side(&self, item: u32, t: [u32; 3], mut f: impl FnMut(u32, u32)) {
         let [a, b, c] = t;
@@ -213,9 +213,9 @@ impl Faces {
         }
     }
 
-    /// Returns the same with parts in place of some triangles, and of each triangle the item that it was. `edges` are
-    /// those of the faces as they are, `parts` are (item, vertices) in item order, `points` those of the faces and
-    /// more. Parts of one polygon are one polygon.
+    /// Returns the faces with parts in place of some triangles, and for each triangle its former item. `edges` belong
+    /// to the faces before the change, `parts` are (item, vertices) in item order, `points` are the faces' points
+    /// followed by new ones. Parts of one polygon are one polygon.
     pub(in crate::visibility) fn refined(
         &self,
         edges: &Edges,
@@ -292,8 +292,8 @@ impl Faces {
         Some(self.triangle(item)?.map(|v| self.points[v as usize]))
     }
 
-    /// Returns the same by coordinates, whichever comes first in the file and however it turns: copies of a
-    /// triangle are rounded alike.
+    /// Returns the corners sorted by coordinates, independent of their order and direction in the file, so that copies
+    /// of a triangle are rounded alike.
     pub(in crate::visibility) fn sorted_corners(&self, item: u32) -> Option<[DVec3; 3]> {
         let mut corners = self.corners(item)?;
         corners.sort_unstable_by(by_coordinates);

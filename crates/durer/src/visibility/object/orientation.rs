@@ -1,4 +1,4 @@
-//! Orientation of faces: which way each is turned, and which way is out.
+//! Orientation of faces: the turn of each, and the outward direction.
 //!
 //! A. F. Möbius, *Ueber die Bestimmung des Inhaltes eines Polyëders*, Berichte der Königlich Sächsischen Gesellschaft
 //! der Wissenschaften 17, 1865: faces of an orientable surface can be run around so that each edge is run through once
@@ -63,7 +63,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// Test that decides which way is out.
+/// Test that decides the outward direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Outward {
     /// The sign of the volume, for closed pieces; others stay as most of their faces are.
@@ -77,7 +77,7 @@ pub enum Outward {
 /// Options for finding the orientation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
-    /// Test that decides which way is out.
+    /// Test that decides the outward direction.
     pub outward: Outward,
 }
 
@@ -145,7 +145,7 @@ pub struct Piece {
     pub faces: usize,
     /// True if each of its edges has two faces.
     pub closed: bool,
-    /// False if no way of turning makes all neighbours agree.
+    /// False if the faces cannot be turned so that all neighbours agree.
     pub orientable: bool,
     /// True if a closed piece has most of its faces turned inwards.
     pub inside_out: bool,
@@ -215,7 +215,7 @@ fn propagate<F: AsRef<[usize]>>(faces: &[F], t: &mut impl Tracer<Step>) -> Orien
     let of_edge = |a: usize, b: usize| {
         let key = (a.min(b), a.max(b));
         let first = edges.partition_point(|e| (e.0, e.1) < key);
-        // Of three and more faces it does not matter how many there are.
+        // Three faces and more are treated alike.
         let count = edges[first..].iter().take(3).take_while(|e| (e.0, e.1) == key).count();
         &edges[first..first + count]
     };
@@ -242,7 +242,7 @@ fn propagate<F: AsRef<[usize]>>(faces: &[F], t: &mut impl Tracer<Step>) -> Orien
                 let other = if one.2 == from { two } else { one };
                 let face = other.2;
                 let edge = if found.turned[from] { [b, a] } else { [a, b] };
-                // As the other one is in the file, against this one as it is turned.
+                // The other one as in the file, compared with this one as turned.
                 let same = (other.3 == (a < b)) != found.turned[from];
                 if found.piece[face] == none {
                     (found.piece[face], found.turned[face]) = (number, same);

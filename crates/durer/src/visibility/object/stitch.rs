@@ -1,13 +1,13 @@
 //! Faces that meet up to rounding find each other.
 //!
-//! A closed surface has no borders. Where a mesh has some only because one corner of a face was rounded otherwise than
-//! its neighbour's, because each face is a mesh of its own, or because the edge of one face goes along several of
-//! another (a T-junction), its borders lie on each other. Here they become one: first triangles without height are left
-//! out, then ends of borders that lie within a reach of each other are one vertex, and then borders are divided where
-//! ends of others lie on them. Nothing but borders is touched, so walls stay apart however thin they are. After André
-//! Guéziec, Gabriel Taubin, Francis Lazarus and Bill Horn, *Cutting and stitching: converting sets of polygons to
-//! manifold surfaces*, IEEE Transactions on Visualization and Computer Graphics, 2001; the pairs come from a k-d tree,
-//! and no surface is cut. O(n), and O(b log² b) for b borders.
+//! A closed surface has no borders. If a mesh has some only because corners of neighbouring faces were rounded
+//! differently, because each face is a separate mesh, or because the edge of one face runs along several edges of
+//! another (a T-junction), its borders coincide. Here they are joined: first triangles without height are left out,
+//! then ends of borders within reach of each other become one vertex, and then borders are divided where ends of others
+//! lie on them. Only borders are changed, so walls stay apart however thin they are. After André Guéziec, Gabriel
+//! Taubin, Francis Lazarus and Bill Horn, *Cutting and stitching: converting sets of polygons to manifold surfaces*,
+//! IEEE Transactions on Visualization and Computer Graphics, 2001; the pairs come from a k-d tree, and no surface is
+//! cut. O(n), and O(b log² b) for b borders.
 
 use super::{Edges, Faces};
 use crate::math::DVec3;
@@ -31,8 +31,8 @@ pub(super) struct Grain {
 /// Triangles lower than this many spacings have no area.
 const LOW: f64 = 4.0;
 
-/// Borders are divided at no more places than this many times their number, or not at all: some
-/// thousand that lie on each other would be divided by each other.
+/// Largest number of places, per border, at which borders are divided; beyond it none are divided, because thousands of
+/// coincident borders would all divide each other.
 const MOST: usize = 8;
 
 impl Grain {
@@ -58,7 +58,7 @@ pub(super) fn stitch(faces: &mut Faces, grains: &[Grain]) -> Edges {
     divide(faces, edges, grains)
 }
 
-/// Divides borders where the ends of others lie on them, as far as these others lie on them too.
+/// Divides borders where the ends of others lie on them, if these other borders themselves lie on them too.
 pub(super) fn divide(faces: &mut Faces, edges: Edges, grains: &[Grain]) -> Edges {
     let Some(borders) = Borders::new(faces, &edges, grains) else { return edges };
     let outlines = borders.outlines(faces);
@@ -79,7 +79,7 @@ fn without(faces: &mut Faces, edges: Edges, items: &[u32]) -> Edges {
     edges.renewed(faces, items)
 }
 
-/// Returns the triangles without height that lie along others: with them gone the others meet.
+/// Returns the triangles without height that lie along others; without them, the others meet.
 fn all_low(faces: &Faces, edges: &Edges, grains: &[Grain]) -> Vec<u32> {
     let mut found = Vec::new();
     for run in faces.runs() {
@@ -150,7 +150,7 @@ impl Kind {
     }
 }
 
-/// The edges that have but one triangle.
+/// The edges with only one triangle.
 struct Borders {
     all: Vec<Border>,
     /// By vertex.
@@ -199,8 +199,7 @@ impl Borders {
         joined.into_iter().map(|(k, i)| (self.ends[k].vertex, self.ends[i].vertex)).collect()
     }
 
-    /// Returns the triangles at borders that are no higher than a border reaches, and lie along
-    /// others.
+    /// Returns the triangles at borders whose height is within a border's reach and that lie along others.
     fn low(&self, faces: &Faces, edges: &Edges) -> Vec<u32> {
         let mut found = Vec::new();
         for border in &self.all {

@@ -7,11 +7,11 @@ use crate::math::{DVec3, Vec3};
 use crate::scene::Aabb;
 use crate::{Error, Result};
 
-/// Coordinates that differ by no more than this part of the model's extent are one, as in
+/// Largest difference of coordinates that count as equal, as a part of the model's extent, as in
 /// [`crate::view::topology::mesh_topology`].
 const TOLERANCE: f64 = 1.0 / (1u64 << 26) as f64;
 
-/// Cells per extent. A cell is 64 tolerances wide, so few points have to be looked for in two cells,
+/// Cells per extent. A cell is 64 tolerances wide, so few points must be looked up in two cells,
 /// and still so small that hardly any two points share one.
 const CELLS: f64 = (1u64 << 20) as f64;
 
@@ -19,9 +19,8 @@ const CELLS: f64 = (1u64 << 20) as f64;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Weld {
     /// Vertices of one mesh that are at one place, up to 2⁻²⁶ of the mesh's extent; and, within one object
-    /// ([`Scene::trees`]), ends of borders that lie on each other to the precision of their coordinates: 2⁻¹⁶ of the
-    /// largest, or one unit of the last decimal. Borders that go along each other are one too, though their vertices
-    /// are not.
+    /// ([`Scene::trees`]), ends of borders that coincide to the precision of their coordinates: 2⁻¹⁶ of the largest, or
+    /// one unit of the last decimal. Borders along each other are joined too, even if their vertices differ.
     ///
     /// [`Scene::trees`]: crate::scene::Scene::trees
     #[default]

@@ -1,10 +1,10 @@
 //! The A-buffer's arithmetic of one pixel, as published: masks of 4 × 4 sub-pixels, and shares by depth.
 //!
 //! L. Carpenter, *The A-buffer, an Antialiased Hidden Surface Method*, SIGGRAPH 1984. Class: image space. Fragments of
-//! a pixel come by their nearest depth. One takes the sub-pixels that are still searched for; where the next one
-//! overlaps it in depth, the two share them by how far each lies before the other, as if they crossed there. Cost: O(k
-//! log k) for k fragments. [`crate::visibility::surface::a_buffer`] decides by exact areas and planes where faces cut
-//! each other, and renders models.
+//! a pixel are processed by their nearest depth. Each takes the sub-pixels that are still free; if the next one
+//! overlaps it in depth, the two share them in proportion to how far each is in front of the other, as if they crossed
+//! there. Cost: O(k log k) for k fragments. [`crate::visibility::surface::a_buffer`] decides by exact areas and planes
+//! where faces cut each other, and renders models.
 
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Vec4};
@@ -56,8 +56,8 @@ pub fn edge_distance([a, b]: [DVec2; 2], p: DVec2) -> Option<f64> {
     (length > 0.0).then(|| value / length)
 }
 
-/// Returns the mask of a half-plane by the area that it covers: n = round(16 · area) sub-pixels, those that
-/// lie deepest in it. The pixel reaches from (0, 0) to (1, 1); bit 4 · row + column has a sub-pixel.
+/// Returns the mask of a half-plane by the area that it covers: n = round(16 · area) sub-pixels, the ones deepest
+/// inside it. The pixel reaches from (0, 0) to (1, 1); bit 4 · row + column has a sub-pixel.
 pub fn ordered_mask(edge: [DVec2; 2], area: f64) -> u16 {
     let count = (area.clamp(0.0, 1.0) * 16.0 + 0.5) as usize;
     let center = |bit: usize| DVec2::new((bit % 4) as f64 + 0.5, (bit / 4) as f64 + 0.5) / 4.0;
@@ -67,9 +67,8 @@ pub fn ordered_mask(edge: [DVec2; 2], area: f64) -> u16 {
     order.into_iter().take(count).fold(0, |mask, bit| mask | 1 << bit)
 }
 
-/// Returns the visible share of the first of two fragments where both cover: (z₂max − z₁min) /
-/// ((z₁max − z₁min) + (z₂max − z₂min)). 1 if it ends before the other begins, 0 the other way
-/// round, ½ for two that are flat and equally deep.
+/// Returns the visible share of the first of two fragments where both cover: (z₂max − z₁min) / ((z₁max − z₁min) +
+/// (z₂max − z₂min)). 1 if it ends before the other begins, 0 in the opposite case, ½ for two flat ones at equal depth.
 pub fn visible_share(first: [f64; 2], second: [f64; 2]) -> f64 {
     if first[1] <= second[0] && first != second {
         return 1.0;
@@ -117,12 +116,12 @@ pub enum Step {
     Overlap {
         /// The one whose turn it is, and the other.
         fragments: [usize; 2],
-        /// The sub-pixels in question.
+        /// The sub-pixels examined.
         mask: u16,
         /// Share of the first one in them.
         share: f64,
     },
-    /// A fragment gets a weight in the pixel's colour.
+    /// The weight of a fragment in the pixel's colour.
     Weight {
         /// Its index; none for the background.
         fragment: Option<usize>,
@@ -156,8 +155,8 @@ pub fn replay(count: usize, steps: &[Step]) -> (Vec<f64>, f64) {
     (weights, background)
 }
 
-/// Returns the weight of each fragment in the pixel, and that of the background; they add up to 1. Of
-/// fragments that overlap in depth, each pair that follows one another shares what both cover.
+/// Returns the weight of each fragment in the pixel, and that of the background; they add up to 1. Of fragments that
+/// overlap in depth, each consecutive pair shares the sub-pixels that both cover.
 pub fn weights(fragments: &[Fragment], t: &mut impl Tracer<Step>) -> (Vec<f64>, f64) {
     let mut order: Vec<usize> = (0..fragments.len()).collect();
     order.sort_by(|&i, &j| fragments[i].z[0].total_cmp(&fragments[j].z[0]).then(i.cmp(&j)));

@@ -1,12 +1,12 @@
 //! Binary space partition: a tree of planes that orders polygons for any eye.
 //!
 //! H. Fuchs, Z. M. Kedem, B. F. Naylor, *On visible surface generation by a priori tree structures*, SIGGRAPH 1980.
-//! List priority. One polygon's plane divides the others, those that cross it are split, and so on in both halves. The
-//! tree does not hang on the eye: for each eye a walk through it, the far half of each node first, gives an order from
-//! back to front. Cost: O(n²) pieces at worst, O(n log n) as a rule; a walk is linear in the pieces.
+//! List priority. One polygon's plane divides the others, splitting those that cross it, and so on in both halves. The
+//! tree does not depend on the eye: for each eye a walk through it, the far half of each node first, gives an order
+//! from back to front. Cost: O(n²) pieces at worst, O(n log n) as a rule; a walk is linear in the pieces.
 //!
-//! A piece keeps its face and the planes that cut it, and its pixels are those of the face on its side of them; so
-//! pieces share out a face's pixels, and the picture is the z-buffer's.
+//! A piece keeps its face and the planes that cut it, and its pixels are those of the face on its side of them; so the
+//! pieces divide a face's pixels among them, and the picture is the z-buffer's.
 
 mod tree;
 
@@ -74,7 +74,7 @@ pub enum Step {
     Tried {
         /// The piece.
         piece: u32,
-        /// Number of others that its plane would split.
+        /// Number of other polygons that its plane would split.
         splits: usize,
     },
     /// A piece is a node of the tree.
@@ -90,7 +90,7 @@ pub enum Step {
     Sorted {
         /// The piece.
         piece: u32,
-        /// Side of the node's plane that it lies on.
+        /// Side of the node's plane that it is on.
         side: Side,
     },
     /// A piece was split.
@@ -100,7 +100,7 @@ pub enum Step {
         /// Parts in front and behind.
         into: [u32; 2],
     },
-    /// The walk comes to a node: the eye is on this side of its plane, so the other side is painted first.
+    /// The walk visits a node: the eye is on the given side of its plane, so the other side is painted first.
     Visit {
         /// The node.
         node: u32,
@@ -140,7 +140,7 @@ impl Step {
 /// Returns the picture that a list of steps leads to.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     let mut items = screen.plane(NO_ITEM)?;
     for step in steps {
@@ -154,7 +154,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
 /// Returns the index of the nearest face at each pixel's centre, of equally near ones the first.
 ///
 /// # Errors
-/// [`Limit`](crate::Error::Limit) for too many pieces, [`Memory`](crate::Error::Memory) where the screen's budget does
+/// [`Limit`](crate::Error::Limit) for too many pieces, [`Memory`](crate::Error::Memory) if the screen's budget does
 /// not suffice.
 pub fn items(
     faces: &[Face],

@@ -1,13 +1,13 @@
 //! Newell, Newell and Sancha's depth sort on polygons.
 //!
-//! M. Newell, R. Newell, T. Sancha, *A Solution to the Hidden Surface Problem*, ACM Annual Conference 1972. Class: list priority.
-//! Polygons are painted over each other from far to near. Before one is painted, five tests ask, the cheap ones first, whether
-//! it may hide another; what it may hide is moved before it, and what was moved already is split. Cost: O(n²) tests for n
-//! polygons and pieces; memory O(pixels of all pieces).
+//! M. Newell, R. Newell, T. Sancha, *A Solution to the Hidden Surface Problem*, ACM Annual Conference 1972. Class: list
+//! priority. Polygons are painted over each other from far to near. Before one is painted, five tests, the cheap ones
+//! first, check whether it may hide another; a polygon that it may hide is moved before it, or split if it was moved
+//! already. Cost: O(n²) tests for n polygons and pieces; memory O(pixels of all pieces).
 //!
-//! Deviations: each polygon is tested against all that are left. Whether projections overlap is decided at the pixels'
-//! centres. If neither polygon crosses the plane of the other, one is split along an edge of the other. A piece keeps its face
-//! and the planes that cut it, so that the picture is the z-buffer's. After a split all marks are taken away.
+//! Deviations: each polygon is tested against all remaining ones. The overlap of projections is tested at the pixels'
+//! centres. If neither polygon crosses the plane of the other, one is split along an edge of the other. A piece keeps
+//! its face and the planes that cut it, so that the picture is the z-buffer's. After a split all marks are cleared.
 //! [`crate::visibility::surface::depth_sort`] is the same for the triangles of models, with tiles for speed.
 
 use super::pieces::{Pieces, Side};
@@ -134,7 +134,7 @@ impl Step {
 /// Returns the picture that a list of steps leads to.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     let mut items = screen.plane(NO_ITEM)?;
     for step in steps {
@@ -148,7 +148,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
 /// Returns the index of the nearest face at each pixel's centre, of equally near ones the first.
 ///
 /// # Errors
-/// [`Limit`](crate::Error::Limit) for too many pieces, [`Memory`](crate::Error::Memory) where the screen's budget does
+/// [`Limit`](crate::Error::Limit) for too many pieces, [`Memory`](crate::Error::Memory) if the screen's budget does
 /// not suffice.
 pub fn items(
     faces: &[Face],
@@ -185,7 +185,7 @@ pub fn items(
     Ok(items)
 }
 
-/// The list, and what is known of its polygons.
+/// The list, and the state of its polygons.
 struct Sorter<'a> {
     faces: &'a [Face],
     pieces: Pieces,
@@ -249,8 +249,8 @@ impl Sorter<'_> {
         (!self.overlap(p, q)).then_some(Test::Projections)
     }
 
-    /// Returns whether all corners of a polygon are on one side of another one's plane, for sign 1 on the eye's. Of two in one
-    /// plane the first face is painted last.
+    /// Returns whether all corners of a polygon are on one side of another one's plane, for sign 1 on the eye's. Of two
+    /// coplanar polygons, the first face is painted last.
     fn is_beside(&self, polygon: u32, of: u32, sign: f64, p: u32, q: u32) -> bool {
         let plane = self.plane(of);
         let to_eye = if plane.normal.z > 0.0 { -sign } else { sign };
@@ -304,7 +304,8 @@ impl Sorter<'_> {
         Ok(true)
     }
 
-    /// Returns which of two polygons is split, along which, and the plane: that of the other, or one through an edge of it.
+    /// Returns which of two polygons is split, along which, and the plane: the other's own, or one through an edge of
+    /// it.
     fn cut(&self, p: u32, q: u32) -> Option<(u32, u32, Plane)> {
         let splits = |plane: &Plane, polygon: u32| self.pieces.side(plane, polygon) == Side::Both;
         for (polygon, along) in [(q, p), (p, q)] {

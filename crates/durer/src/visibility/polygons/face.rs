@@ -31,8 +31,8 @@ impl Face {
     /// Creates the polygon with these corners, in either direction; it may be concave.
     ///
     /// # Errors
-    /// [`Error::NonFinite`]; [`Error::Parameter`] for a polygon without area, and for one whose corners lie
-    /// in no plane by more than a millionth of its extent.
+    /// [`Error::NonFinite`]; [`Error::Parameter`] for a polygon without area, and for one whose corners are further
+    /// from a common plane than a millionth of its extent.
     pub fn new(corners: &[DVec3]) -> Result<Self> {
         if let Some(index) = corners.iter().position(|c| !c.is_finite()) {
             return Err(Error::NonFinite { what: "corner", index });

@@ -1,15 +1,15 @@
 //! The hierarchical z-buffer: an octree of faces from front to back, and a pyramid of depths that hides whole cells.
 //!
 //! N. Greene, M. Kass, G. Miller, *Hierarchical Z-buffer visibility*, SIGGRAPH 1993. Each entry of the pyramid's level
-//! k is the farthest depth of 2 × 2 entries of level k − 1, and level 0 is the z-buffer: what is farther than an entry
-//! is hidden in all of the entry's pixels. A cell of the octree whose front is hidden is left out with all that is in
-//! it. Class: image space, with object-space coherence by the octree and image-space coherence by the pyramid. Cost:
-//! O(visible cells and faces, and pixels of these); memory O(4/3 pixels + faces).
+//! k is the farthest depth of 2 × 2 entries of level k − 1, and level 0 is the z-buffer: everything farther than an
+//! entry is hidden in all of the entry's pixels. A cell of the octree whose front is hidden is left out with its
+//! contents. Class: image space, with object-space coherence by the octree and image-space coherence by the pyramid.
+//! Cost: O(visible cells and faces, and pixels of these); memory O(4/3 pixels + faces).
 //!
 //! Deviations: the eye looks along z in parallel, so that cells are seen as rectangles, the front of a cell is its
 //! lowest z, and children come in the order of z. A face belongs to the smallest cell that holds it. The paper's
-//! temporal coherence (the faces seen last time first) is left out. What is equally near goes to the first face, as in
-//! the family.
+//! temporal coherence (the faces seen last time first) is left out. Among equally near faces the first wins, as in the
+//! family.
 
 use super::octree::tree::{self, Division, Holding, Octree};
 use super::pyramid::{Entry, Pyramid};
@@ -64,10 +64,10 @@ impl Default for Options {
     }
 }
 
-/// Comparison of something with an entry of the pyramid.
+/// Comparison of a cell or face with an entry of the pyramid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Test {
-    /// Lowest z of the thing.
+    /// Lowest z of the cell or face.
     pub nearest: f64,
     /// Level of the pyramid; 0 is the z-buffer.
     pub level: u32,
@@ -78,7 +78,7 @@ pub struct Test {
 }
 
 impl Test {
-    /// Returns whether the thing is hidden.
+    /// Returns whether the cell or face is hidden.
     pub fn is_hidden(&self) -> bool {
         self.nearest > self.farthest
     }
@@ -103,7 +103,7 @@ pub enum Step {
         /// The comparison.
         test: Test,
     },
-    /// A cell is hidden or outside of the picture, and left out with everything in it.
+    /// A cell is hidden or outside the picture, and left out with its contents.
     LeaveOut {
         /// Number of the cell.
         cell: usize,
@@ -117,7 +117,7 @@ pub enum Step {
         /// The comparison.
         test: Test,
     },
-    /// A pixel gets a nearer face.
+    /// A nearer face is stored for a pixel.
     Store {
         /// Column and row.
         pixel: [u32; 2],
@@ -126,7 +126,7 @@ pub enum Step {
         /// Its depth.
         depth: f64,
     },
-    /// An entry of the pyramid gets a nearer depth.
+    /// A nearer depth is stored in an entry of the pyramid.
     Lower {
         /// Level, 1 or more.
         level: u32,
@@ -160,7 +160,7 @@ impl Step {
 /// Returns the picture that a list of steps leads to.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     let mut items = screen.plane(NO_ITEM)?;
     for step in steps {
@@ -174,7 +174,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
 /// Returns the index of the nearest face at each pixel's centre, of equally near ones the first.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn items(
     faces: &[Face],
     screen: &Screen,

@@ -2,9 +2,9 @@
 //! small enough to be read beside the paper.
 //!
 //! The eye looks along z: x goes to the right and y down, in pixels, and z is the distance from the eye. All methods
-//! find the same nearest polygon at each pixel's centre, of equally near ones the first; [`regions`] finds where each
-//! polygon is seen, without pixels. What renders models is in
-//! [`super::surface`], what makes regions of them in [`super::region`].
+//! find the same nearest polygon at each pixel's centre, of equally near ones the first; [`regions`] finds the visible
+//! region of each polygon, without pixels. Methods that render models are in [`super::surface`], methods that divide
+//! them into visible regions in [`super::region`].
 //!
 //! ```
 //! use durer::math::DVec3;
@@ -63,8 +63,8 @@ impl Screen {
 }
 
 crate::info::family! {
-    /// The methods that find the visible polygon at each pixel. The painter's is none of them: it is wrong where
-    /// no order by depth is right.
+    /// The methods that find the visible polygon at each pixel. The painter's algorithm is not among them: it is wrong
+    /// where no order by depth is right.
     pub enum PolygonMethod {
         /// [`z_buffer`]
         ZBuffer => z_buffer::INFO,

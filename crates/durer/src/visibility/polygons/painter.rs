@@ -62,7 +62,7 @@ pub enum Step {
         /// Depth that it was sorted by.
         z: f64,
     },
-    /// Pixels of a row get a face's item, whatever was there.
+    /// Pixels of a row are overwritten with a face's item.
     Paint {
         /// The face.
         face: u32,
@@ -88,7 +88,7 @@ impl Step {
 /// Returns the picture that a list of steps leads to.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     let mut items = screen.plane(NO_ITEM)?;
     for step in steps {
@@ -99,11 +99,11 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     Ok(items)
 }
 
-/// Returns the index of the face that is painted last at each pixel's centre; of faces with equal keys the
-/// first one is painted last.
+/// Returns the index of the face that is painted last at each pixel's centre; among faces with equal keys the first one
+/// is painted last.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn items(
     faces: &[Face],
     screen: &Screen,

@@ -4,10 +4,11 @@ use super::Face;
 use crate::math::{DVec3, Plane};
 use crate::{Error, Result};
 
-/// So near to a plane, in units of the largest coordinate, a corner lies in it: corners that splitting made are rounded.
+/// Distance from a plane, in units of the largest coordinate, below which a corner counts as in it: corners made by
+/// splitting are rounded.
 const IN_PLANE: f64 = 1e-10;
 
-/// The side of a plane on which a polygon lies.
+/// The side of a plane that a polygon is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Side {
     /// Side that the normal points to.
@@ -42,7 +43,7 @@ struct Cut {
 pub struct Pieces {
     pieces: Vec<Piece>,
     cuts: Vec<Cut>,
-    /// So near to a plane corners lie in it.
+    /// Distance from a plane below which corners count as in it.
     tolerance: f64,
 }
 
@@ -57,7 +58,7 @@ impl Pieces {
         Self { pieces, cuts: Vec::new(), tolerance: largest * IN_PLANE }
     }
 
-    /// Returns the side of a plane on which a piece lies.
+    /// Returns the side of a plane that a piece is on.
     pub fn side(&self, plane: &Plane, piece: u32) -> Side {
         let (mut front, mut back) = (false, false);
         for corner in &self.pieces[piece as usize].corners {
@@ -122,7 +123,7 @@ impl Pieces {
     }
 }
 
-/// Returns the corners of what lies on one side of a plane, by Sutherland and Hodgman.
+/// Returns the corners of the part on one side of a plane, by Sutherland and Hodgman.
 fn part(plane: &Plane, sign: f64, corners: &[DVec3]) -> Vec<DVec3> {
     let mut part = Vec::with_capacity(corners.len() + 1);
     let next = corners.iter().cycle().skip(1);

@@ -1,10 +1,10 @@
 //! Visible regions by cutting polygons along each other.
 //!
 //! K. Weiler, P. Atherton, *Hidden Surface Removal Using Polygon Area Sorting*, SIGGRAPH 1977. Object space. The
-//! nearest polygon cuts all others like a pastry cutter: into what is inside its outline and what is outside. Inside,
-//! what is behind it goes; if nothing is left there, it is seen, else what is left, which is in front of it, is treated
-//! in the same way, and so is the outside. Coherence used: areas. Cost: O(n²) cuts where few overlap; memory
-//! O(regions).
+//! nearest polygon cuts all others like a pastry cutter: into the parts inside and outside its outline. Inside, the
+//! parts behind it are removed; if none are left, it is visible there, else the remaining parts, which are in front of
+//! it, are treated in the same way, and so is the outside. Coherence used: areas. Cost: O(n²) cuts where few overlap;
+//! memory O(regions).
 //!
 //! Deviations: cuts are made by the overlay, which takes any polygons; polygons that pierce each other are divided
 //! where their planes meet. [`crate::visibility::region::planar_map`] finds the same regions of models, in far less
@@ -87,12 +87,12 @@ pub enum Step {
         /// Part that goes to the outside list.
         outside: Shapes,
     },
-    /// The inside part lies behind: it is hidden.
+    /// The inside part is behind and therefore hidden.
     Hidden {
         /// Its face.
         face: u32,
     },
-    /// The inside part, or some of it, lies in front: it is treated in its turn.
+    /// The inside part, or some of it, is in front: it is treated in its turn.
     InFront {
         /// Its face.
         face: u32,
@@ -123,14 +123,13 @@ pub fn replay(steps: &[Step]) -> Vec<Region> {
     steps.iter().filter_map(seen).collect()
 }
 
-/// Polygons that wait, and one that lies behind all of them and shows where they do not.
+/// Waiting polygons, and one behind all of them that shows where they do not.
 struct List {
     polygons: Vec<Region>,
     base: Option<Region>,
 }
 
-/// Returns the visible regions of each face; a face may be visible in several. Of faces in one
-/// plane the first is visible.
+/// Returns the visible regions of each face; a face may be visible in several. Of coplanar faces the first is visible.
 ///
 /// ```
 /// use durer::math::DVec3;
@@ -188,7 +187,7 @@ struct Cutter<'a> {
     around: Rect,
     /// The grid that cuts are rounded to.
     grid: f64,
-    /// So near to each other depths are equal.
+    /// Difference below which depths are equal.
     equal: f64,
 }
 
@@ -210,7 +209,7 @@ impl<'a> Cutter<'a> {
         Some(polygons.remove(place))
     }
 
-    /// Cuts a list along a polygon: what is left inside, with the polygon behind it, and the outside.
+    /// Cuts a list along a polygon: returns the remaining inside, with the polygon behind it, and the outside.
     fn cut(&self, by: Region, list: List, t: &mut impl Tracer<Step>) -> Result<[List; 2]> {
         let (mut inside, mut outside) = (Vec::new(), Vec::new());
         for polygon in list.polygons {
@@ -230,7 +229,7 @@ impl<'a> Cutter<'a> {
                 inside.push(Region { face, shapes: before });
             }
         }
-        // What lies behind the list lies behind the polygon, too: it goes on outside only.
+        // The list's base is behind the polygon, too, so it continues only outside.
         let base = match list.base {
             Some(base) => {
                 let shapes = self.overlay(&base.shapes, &by.shapes, BooleanOp::Difference)?;
@@ -266,7 +265,7 @@ impl<'a> Cutter<'a> {
         self.overlay(&shapes, &Shapes::from_rings([half]), BooleanOp::Intersection)
     }
 
-    /// Returns the overlay on the common grid, without what rounding leaves.
+    /// Returns the overlay on the common grid, without slivers from rounding.
     fn overlay(&self, subject: &Shapes, clip: &Shapes, op: BooleanOp) -> Result<Shapes> {
         let options = overlay::Options { grid: Some(self.grid), ..Default::default() };
         let shapes = overlay(subject, clip, op, &options, &mut NoTrace)?.shapes;

@@ -1,9 +1,9 @@
 //! Warnock's area subdivision on polygons.
 //!
-//! J. Warnock, *A Hidden Surface Algorithm for Computer Generated Halftone Pictures*, University of Utah TR 4-15, 1969. Class:
-//! image space. A window is simple if no polygon, or only one, concerns it, or if one surrounds it in front of all others, or if
-//! it is a pixel; a window that is not simple is divided into four. Cost: O(windows · polygons that concern them), where
-//! windows follow the visible edges; memory O(rows of polygons + windows that wait · polygons).
+//! J. Warnock, *A Hidden Surface Algorithm for Computer Generated Halftone Pictures*, University of Utah TR 4-15, 1969.
+//! Class: image space. A window is simple if at most one polygon meets it, or if one surrounds it in front of all
+//! others, or if it is a pixel; a window that is not simple is divided into four. Cost: O(windows · polygons that meet
+//! them), where windows follow the visible edges; memory O(rows of polygons + windows that wait · polygons).
 //!
 //! Deviations: windows are whole pixels, and a polygon's relation to a window is decided by the centres that it covers, so that
 //! the picture is the z-buffer's. [`crate::visibility::surface::warnock`] is the same for the triangles of models, with samples
@@ -127,7 +127,7 @@ impl Step {
 /// Returns the picture that a list of steps leads to.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     let mut items = screen.plane(NO_ITEM)?;
     for step in steps {
@@ -141,7 +141,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
 /// Returns the index of the nearest face at each pixel's centre, of equally near ones the first.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn items(
     faces: &[Face],
     screen: &Screen,
@@ -174,7 +174,7 @@ pub fn items(
         }
         let [x, y] = division(faces, &window, &concerned, options.division);
         t.step(|| Step::Divide { window, x, y });
-        // The upper left one is looked at first.
+        // The upper left one is examined first.
         let Window { x0, y0, x1, y1 } = window;
         for (x0, y0, x1, y1) in [(x, y, x1, y1), (x0, y, x, y1), (x, y0, x1, y), (x0, y0, x, y)] {
             waiting.push((Window { x0, y0, x1, y1 }, concerned.clone()));
@@ -200,7 +200,7 @@ fn simple(
     let mut surrounding = relations.iter().filter(is_surrounding).map(|(face, _)| *face);
     let is_pixel = window.x1 - window.x0 == 1 && window.y1 - window.y0 == 1;
     let rule = if is_pixel { Rule::Pixel } else { Rule::Surrounded };
-    // What covers the only centre of a pixel surrounds it.
+    // A polygon that covers the only centre of a pixel surrounds it.
     surrounding
         .clone()
         .find(in_front)

@@ -3,11 +3,11 @@
 //! G. S. Watkins, *A Real Time Visible Surface Algorithm*, dissertation, University of Utah, 1970; after W. J.
 //! Bouknight, CACM 13(9), 1970. Class: image space. The edge table has all edges by first row, with x there, last row,
 //! Δx/Δy and their polygon; the polygon table has each polygon's plane and an in/out flag. In each row the active edges
-//! are sorted by x; passing one turns its polygon's flag over, and between two of them the polygons that are in stay
-//! the same. One that is nearest at both ends of such a span is nearest in all of it, for planes are linear; where two
-//! change places the span is halved. Coherence used: edges, scan lines, spans. Cost: O(n log n) for n edges, then per
-//! row O(e log e + spans · d) for e active edges, d deep. What renders models is
-//! [`crate::visibility::surface::spanning_scan_line`].
+//! are sorted by x; passing one inverts its polygon's flag, and between two of them the set of polygons does not
+//! change. A polygon that is nearest at both ends of such a span is nearest in all of it, because planes are linear; if
+//! the nearest one changes, the span is halved. Coherence used: edges, scan lines, spans. Cost: O(n log n) for n edges,
+//! then per row O(e log e + spans · d) for e active edges and d overlapping polygons.
+//! [`crate::visibility::surface::spanning_scan_line`] renders models.
 
 use super::{Face, Screen};
 use crate::Result;
@@ -124,7 +124,7 @@ impl Step {
 /// Returns the picture that a list of steps leads to.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     let mut items = screen.plane(NO_ITEM)?;
     for step in steps {
@@ -138,7 +138,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
 /// Returns the index of the nearest face at each pixel's centre, of equally near ones the first.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn items(faces: &[Face], screen: &Screen, t: &mut impl Tracer<Step>) -> Result<Pixels<u32>> {
     let mut items = screen.plane(NO_ITEM)?;
     let mut waiting = edge_table(faces, screen);
@@ -170,7 +170,7 @@ fn polygon_entry(face: u32, own: &Face) -> Step {
     Step::Polygon { face, slope: DVec2::new(z(1.0, 0.0) - origin, z(0.0, 1.0) - origin), origin }
 }
 
-/// Returns all edges, those of the first rows last.
+/// Returns all edges, ordered so that the first rows' come last.
 fn edge_table(faces: &[Face], screen: &Screen) -> Vec<EdgeEntry> {
     let of = |(face, own): (u32, &Face)| {
         table(&own.contours(), screen.height).into_iter().map(move |edge| EdgeEntry { edge, face })
@@ -233,7 +233,7 @@ impl Row<'_> {
         }
     }
 
-    /// Returns a polygon's depth at a column; none lies at infinity.
+    /// Returns a polygon's depth at a column; infinity for no polygon.
     fn depth(&self, face: u32, x: i32) -> f64 {
         self.faces.get(face as usize).map_or(f64::INFINITY, |face| face.at(x, self.y).z)
     }

@@ -1,8 +1,8 @@
 //! The z-buffer as the plain loop that it is.
 //!
 //! E. Catmull, *A Subdivision Algorithm for Computer Display of Curved Surfaces*, dissertation, University of Utah,
-//! 1974. Class: image space. Cost: O(covered pixels) time, two numbers a pixel. What renders models is
-//! [`crate::visibility::surface::z_buffer`], which finds the same.
+//! 1974. Class: image space. Cost: O(covered pixels) time, two numbers per pixel.
+//!       [`crate::visibility::surface::z_buffer`] renders models with the same result.
 
 use super::{Face, Screen};
 use crate::Result;
@@ -79,7 +79,7 @@ impl Step {
 /// Returns the picture that a list of steps leads to.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     let mut items = screen.plane(NO_ITEM)?;
     for step in steps {
@@ -93,7 +93,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
 /// Returns the index of the nearest face at each pixel's centre, of equally near ones the first.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn items(faces: &[Face], screen: &Screen, t: &mut impl Tracer<Step>) -> Result<Pixels<u32>> {
     let mut depths = screen.plane(f64::INFINITY)?;
     let mut items = screen.plane(NO_ITEM)?;

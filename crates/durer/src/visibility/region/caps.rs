@@ -1,10 +1,10 @@
 //! The visible parts of a section's caps, without solving the rest of the picture.
 //!
-//! All that a section leaves lies on one side of each of its planes. So nothing lies before a cap that is seen
-//! from the other side, and all that the picture shows over a cap lies before it that is seen from this
-//! one: what is seen of it is its polygon less the union of all other faces. Of those only the outline takes
-//! part: where two faces share a side in the picture and lie on both sides of it, that cancels, and what is left
-//! has the same winding numbers. O(n log n) for n faces, and an overlay of the outlines.
+//! After a section, everything is on one side of each of its planes. So nothing hides a cap seen from the removed side,
+//! and every face that overlaps a cap in the picture hides it if the cap is seen from the other side: its visible part
+//! is its polygon minus the union of all other faces. Only the outline of that union is needed: where two faces share a
+//! side in the picture and are on different sides of it, the side cancels, and the rest has the same winding numbers.
+//! O(n log n) for n faces, and an overlay of the outlines.
 
 use super::Options;
 use super::paint::colors;
@@ -21,9 +21,9 @@ use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::surface::setup::Run;
 
-/// Returns the visible parts of a section's caps ([`Options::cap_material`]) alone, disjoint, each connected
-/// part of an instance's a region of kind [`RegionKind::Cap`]; what several instances have in common belongs
-/// to the first. Of the options only the material and the culling count.
+/// Returns the visible parts of a section's caps ([`Options::cap_material`]) alone, disjoint, each connected part of an
+/// instance's a region of kind [`RegionKind::Cap`]; parts common to several instances belong to the first. Of the
+/// options only the material and the culling are used.
 ///
 /// The scene must be a result of [`crate::view::section::cut`]: caps with faces on both of their sides are not
 /// distinguished from others.
@@ -112,7 +112,7 @@ struct Cap {
 }
 
 impl Cap {
-    /// Creates a cap; returns `None` if nothing is in the picture, or nothing has a plane.
+    /// Creates a cap; returns `None` if none of its faces are in the picture or none has a plane.
     fn new(world: &World<'_>, run: &Run, view: &View, faces: Vec<Face>) -> Option<Self> {
         let area = |f: &&Face| f.doubled_area();
         // The plane of the largest is the most certain.
@@ -135,8 +135,8 @@ impl Cap {
     }
 }
 
-/// The cosine above which planes are parallel: of parallel caps none lies before the other, for what is beyond
-/// either plane is cut away.
+/// The cosine above which planes are parallel: parallel caps do not hide each other, because everything beyond either
+/// plane is cut away.
 const PARALLEL: f64 = 1.0 - 1e-12;
 
 fn combined(a: &Shapes, b: &Shapes, op: BooleanOp) -> Result<Shapes> {
@@ -178,7 +178,7 @@ fn outlines(sides: Vec<(Place, Place)>) -> Shapes {
             continue;
         }
         let mut ring = Vec::new();
-        // As many sides begin at each point as end there, so a walk comes back to where it began.
+        // Equally many sides begin and end at each point, so a walk returns to its start.
         while let Some(at) = next.get_mut(first) {
             let Some(&(a, b)) = sides.get(*at).filter(|s| s.0 == sides[first].0) else { break };
             *at += 1;

@@ -1,8 +1,8 @@
 //! Hatching: tones as parallel lines, for pens that know no grey.
 //!
-//! All lines of one direction lie at multiples of one distance, and a region takes every first, second,
-//! fourth, … of them, so lines go on through neighbours of one tone and end where it gets lighter. The
-//! darkest tones are crossed by a second direction.
+//! All lines of one direction are at multiples of one distance, and a region takes every first, second, fourth, … of
+//! them, so lines continue through neighbours of the same tone and end where the tone gets lighter. The darkest tones
+//! are crossed by a second direction.
 
 use crate::math::DVec2;
 use crate::shade::color::decode_srgb8;
@@ -31,8 +31,8 @@ impl Default for Options {
 /// Distinct tones: every 8th, 4th, 2nd or each line.
 const TONES: i32 = 4;
 
-/// In which directions the caps of one part after the other are hatched, degrees beside the first: 45°, and then
-/// what can be distinguished from it and from each other.
+/// Directions of the hatching for the caps of successive parts, degrees relative to the first, which is 45°; all can be
+/// distinguished from one another.
 const PARTS: [f64; 6] = [0.0, 90.0, 15.0, 105.0, -15.0, 75.0];
 
 /// Lines over one region, at most: beyond that it is black anyway.
@@ -42,7 +42,7 @@ const MOST_LINES: f64 = 1e6;
 ///
 /// Caps get the standard hatching of sections, one distance at one angle, whatever their colour; the caps of further
 /// parts ([`Region::part`]) get other angles. Cost:
-/// O(lines · sides of regions that they cross); nothing where the spacing is not a number above 0.
+/// O(lines · sides of regions that they cross); no lines if the spacing is not a number above 0.
 pub fn hatch(regions: &[Region], options: &Options) -> Vec<Line> {
     if !(options.spacing.is_finite() && options.spacing > 0.0 && options.angle.is_finite()) {
         return Vec::new();
@@ -73,7 +73,7 @@ fn by_direction(regions: &[Region]) -> [Vec<&Region>; PARTS.len()] {
     found
 }
 
-/// Every how many lines a region takes; `None` leaves it empty.
+/// A region takes every how-many-th line; `None` leaves it empty.
 type Stride = Option<i64>;
 
 fn first_tone(region: &Region, options: &Options) -> Stride {
@@ -84,7 +84,7 @@ fn first_tone(region: &Region, options: &Options) -> Stride {
     (tone < 1.0).then(|| 1i64 << ((tone.max(0.0) * f64::from(TONES)) as i32).min(TONES - 1))
 }
 
-/// Returns the stride of the crossed lines, which come in where the first direction alone is at its densest.
+/// Returns the stride of the second direction's lines, which are added where the first direction is at its densest.
 fn second_tone(region: &Region, options: &Options) -> Stride {
     let densest = region.kind != RegionKind::Cap && first_tone(region, options) == Some(1);
     let half = luminance(region.color) * f64::from(2 * TONES) < options.white;
@@ -138,11 +138,11 @@ fn family(
 /// Finds the intersections of a side with the lines of every `stride`-th number: (number, place
 /// along the line). A side owns its lower end, so corners are met once or twice, never three times.
 fn crossings(a: DVec2, b: DVec2, spacing: f64, stride: i64, meets: &mut Vec<(i64, f64)>) {
-    // Computed the same way from either end, so neighbours meet in the same place.
+    // Computed from the same end for both directions, so that neighbours meet in the same place.
     let (low, high) = if (a.y, a.x) <= (b.y, b.x) { (a, b) } else { (b, a) };
     let step = spacing * stride as f64;
     let (first, end) = ((low.y / step).ceil(), (high.y / step).ceil());
-    // Written so that numbers beyond all measure, and what is not a number, fall through.
+    // Written so that huge numbers and NaN fail the test.
     if !(end - first <= MOST_LINES && first.abs() < 1e15) {
         return;
     }

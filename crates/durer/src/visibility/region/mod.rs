@@ -1,4 +1,4 @@
-//! Visible regions: what of the faces of a scene can be seen, as exact polygons.
+//! Visible regions: the visible parts of a scene's faces, as exact polygons.
 //!
 //! [`draw`] gives a finished [`Drawing`]: filled regions, flat-shaded, disjoint or trapped, with exact
 //! shadows if requested. [`planar_map::solve`] gives the planar map behind it, whose faces know the

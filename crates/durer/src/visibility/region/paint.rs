@@ -174,7 +174,7 @@ impl Paint {
     }
 }
 
-/// Returns the mean of colours by area, of the bytes as they are: that is what viewers blend.
+/// Returns the mean of colours weighted by area, computed on the sRGB bytes, as viewers blend them.
 fn mean_color(keys: &[(Key, f64)]) -> [u8; 4] {
     let total: f64 = keys.iter().map(|(_, area)| area).sum();
     std::array::from_fn(|k| {
@@ -280,7 +280,7 @@ fn share_colors(map: &VisibleMap, shown: &[Option<Shown>], distinct: &[Shown], k
         (same[0].0, sum)
     });
     let sums: Vec<(Key, i128)> = sums.collect();
-    // The largest of each material or part; of equal areas the first colour.
+    // The largest of each material or part; at equal areas the first colour.
     let mut most: Vec<(Key, i128)> = Vec::new();
     for &(key, area) in &sums {
         match most.last_mut() {

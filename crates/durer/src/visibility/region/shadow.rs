@@ -1,9 +1,9 @@
 //! Exact shadows: the picture that a light sees, divided like the eye's, and laid back on the faces.
 //!
 //! P. Atherton, K. Weiler, D. Greenberg, *Polygon Shadow Generation*, SIGGRAPH 1978. Class: object space. Cost: one
-//! visible-region problem per light (six for a light among the faces). What divides a face in the light's picture
-//! divides it in the eye's; whether a region is lit is asked at a point in it. Deviation: the lit polygons
-//! are not merged into the model; their borders divide the picture beside the faces' own.
+//! visible-region problem per light (six for a light among the faces). The edges that divide a face in the light's
+//! picture divide it in the eye's; a region is lit if an inner point of it is. Deviation: the lit polygons are not
+//! merged into the model; their borders divide the picture beside the faces' own.
 
 use super::planar_map::cells::Cells;
 use super::planar_map::edges::Edge;
@@ -34,7 +34,7 @@ pub const INFO: Info = Info {
     pseudocode: &[],
 };
 
-/// Lights that cast shadows; those beyond shine through everything.
+/// Largest number of lights that cast shadows; further ones shine through everything.
 pub const MOST_LIGHTS: usize = 64;
 
 /// A light reaches everything.
@@ -56,14 +56,14 @@ impl<'a> World<'a> {
         self.runs.get(self.runs.partition_point(|run| run.first_item <= item).checked_sub(1)?)
     }
 
-    /// Returns whether a run's mesh lies above a plane that none of it crosses.
+    /// Returns whether a run's mesh is above a plane that it does not cross.
     pub fn side_of_mesh(&self, run: &Run, plane: &Plane) -> bool {
         let mesh = &self.scene.meshes[run.mesh];
         let matrix = &self.scene.instances[run.instance].world_from_mesh;
         let corners = (0..mesh.triangle_count()).flat_map(|i| mesh.triangle(i));
         let height =
             |v: u32| plane.evaluate(matrix.transform_point3(mesh.positions[v as usize].as_dvec3()));
-        // That of the farthest, for those on the plane are rounded to either side.
+        // The side of the farthest corner, because corners on the plane are rounded to either side.
         let farther = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
         corners.map(height).fold(0.0, farther) > 0.0
     }
@@ -246,7 +246,7 @@ impl Lamp {
         Ok(Self { from, views, errors: all })
     }
 
-    /// Returns whether another face lies between the light and a point of an item.
+    /// Returns whether another face is between the light and a point of an item.
     fn is_hidden(&self, point: DVec3, item: u32) -> bool {
         let error =
             self.errors.get(item as usize).copied().filter(|e| e.is_finite()).unwrap_or(0.0);
@@ -262,7 +262,7 @@ impl Lamp {
     }
 }
 
-/// Returns whether a face of another item lies before a depth at a point.
+/// Returns whether a face of another item is in front of a depth at a point.
 fn is_before(picture: &VisibleMap, at: DVec2, depth: f64, item: u32) -> bool {
     let cells: &Cells = &picture.cells;
     let Some(cell) = cells.at(at) else { return false };
@@ -283,7 +283,7 @@ fn errors(faces: &[Face], scene: &Scene) -> Vec<f64> {
     errors
 }
 
-/// Ends this close to a side of a face, in grid steps, lie on it.
+/// Distance from a side of a face, in grid steps, below which ends count as on it.
 const BESIDE: f64 = 4.0;
 
 /// Returns whether a segment runs along a side of the face.

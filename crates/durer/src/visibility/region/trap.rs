@@ -1,12 +1,12 @@
 //! Trapping: filled shapes reach a little under the neighbours that are painted after them.
 //!
-//! Viewers blend the border of each shape with what is there already, so between two shapes that share
-//! a border the background shines through. A shape that goes on under its neighbour closes the gap, as
-//! printers have always done. Only neighbours painted later are gone under, never the background.
+//! Viewers blend the border of each shape with the colours below it, so the background shines through between two
+//! shapes that share a border. Extending a shape under its neighbour closes the gap, a technique known from printing
+//! (trapping). Shapes extend only under neighbours painted later, never over the background.
 //!
-//! A shape narrower than the reach leaves no room to go under it, and several side by side would let
-//! the background through again. So shapes that hang together and are all that narrow get one shape
-//! beneath them, which is painted first and reaches under whatever lies around.
+//! A shape narrower than the reach has no room for an extension under it, and several side by side would let the
+//! background show again. So connected shapes that are all so narrow get one common shape beneath them, which is
+//! painted first and extends under everything around.
 
 use super::planar_map::faces::float;
 use super::planar_map::merge::{self, NOTHING, Patch, Patches};
@@ -28,11 +28,11 @@ const MITER: f64 = 4.0;
 
 /// Fill beneath narrow patches.
 pub struct Beneath {
-    /// The narrow patches, those that hang together joined; the others as they were.
+    /// The patches: connected narrow ones joined, the others unchanged.
     pub patches: Patches,
-    /// 0 for what lies beneath, 1 for the others.
+    /// 0 for the common shapes beneath, 1 for the others.
     pub rank: Vec<u32>,
-    /// (which lies beneath, which narrow patch above), sorted.
+    /// Pairs (common shape beneath, narrow patch above), sorted.
     pub pairs: Vec<(u32, u32)>,
 }
 
@@ -100,8 +100,8 @@ impl Trap<'_> {
         let around: Vec<u32> = self.map.around(vertex).iter().copied().filter(kept).collect();
         let count = around.len();
         let at = around.iter().position(|&half| half == out).unwrap_or(0);
-        // Each sector lies to the left of its edge. That of `out` is the patch's own; the edge that came
-        // in bounds it on the other side.
+        // Each sector is to the left of its edge. The sector of `out` is the patch's own, bounded on the other side by
+        // the incoming edge.
         let left = |k: usize| self.beside(around[k % count]);
         let outside = |k: &usize| left(*k) != patch;
         let aside = |k: usize| {

@@ -56,7 +56,7 @@ impl<'a> ActiveList<'a> {
 
     /// Goes on to row `y`; rows come one after the other from the window's first.
     ///
-    /// Calls `enter` for each triangle that comes in; those before keep their order.
+    /// Calls `enter` for each triangle that begins; the earlier ones keep their order.
     pub fn advance(&mut self, y: i32, mut enter: impl FnMut(&Active)) -> &[Active] {
         let Self { triangles, columns, active, .. } = self;
         active.retain_mut(|a| {

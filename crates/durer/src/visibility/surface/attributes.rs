@@ -15,7 +15,7 @@ use fearless_simd::{Simd, f32x4, f32x16};
 /// A visible triangle, ready to be interpolated.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct VisibleTriangle {
-    /// Its item, and its normals where they are settled.
+    /// Its item, and its normals if they are settled.
     pub normals: NormalPlane,
     /// Its vertices in the mesh.
     pub corners: [u32; 3],
@@ -24,7 +24,7 @@ pub struct VisibleTriangle {
     pub(super) rows: [Row; 3],
     /// Unit normal of the side of the face that is seen, world axes; zero for lines and faces without area.
     pub seen_face_normal: Vec3,
-    /// True if it is the back that is seen. All points of a plane show the same side.
+    /// True if the back is visible. All points of a plane show the same side.
     pub from_behind: bool,
     /// Edge function i at (x, y), counted from the origin of the normals, is
     /// `edges[0][i] + (edges[1][i]·x + edges[2][i]·y)`; the fourth is not used.
@@ -81,8 +81,8 @@ impl VisibleTriangle {
         &self.edges
     }
 
-    /// Returns the edge functions, and where a pixel's centre lies for them: what [`Self::weights`]
-    /// and [`Self::weights_beside`] start from.
+    /// Returns the edge functions and a pixel's centre in their coordinates, from which [`Self::weights`] and
+    /// [`Self::weights_beside`] are computed.
     #[inline(always)]
     pub fn edge_functions(&self, x: i32, y: i32) -> (&[[f32; 4]; 3], [f32; 2]) {
         (&self.edges, [(x - self.normals.origin[0]) as f32, (y - self.normals.origin[1]) as f32])
@@ -107,7 +107,7 @@ impl VisibleTriangle {
                 ((x - self.normals.origin[0]) as f32, (y - self.normals.origin[1]) as f32);
             let [a, b, c] = self.edges_at(fx, fy);
             let sum = a + b + c;
-            // Beyond the horizon there is no such point: the derivative is that of the border.
+            // Beyond the horizon there is no such point, so the derivative at the border is used.
             if sum > 0.0 { Some([a / sum, b / sum, c / sum]) } else { None }
         };
         let here = || self.weights(x, y, [0.0; 2]);
@@ -154,7 +154,7 @@ impl VisibleTriangle {
         edges
     }
 
-    /// Returns the normals of the side that is seen at the pixels of a patch, but for the side those of
+    /// Returns the normals of the visible side at the pixels of a patch: except for the side, the same as
     /// [`Self::normal`], bit for bit.
     #[inline(always)]
     pub fn normals_x16<S: Simd>(&self, simd: S, patch: Patch) -> [f32x16<S>; 3] {

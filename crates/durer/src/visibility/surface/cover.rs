@@ -15,10 +15,10 @@ impl SampleGrid {
     /// One sample a pixel, at its centre.
     pub const PIXELS: Self = Self { shift: 0 };
 
-    /// 256 samples a pixel; with more, depths would be rounded on the way.
+    /// 256 samples per pixel; with more, intermediate depths would be rounded.
     pub const MAX_SHIFT: u32 = 4;
 
-    /// Creates a grid of 4^`levels` samples a pixel, at most those of [`Self::MAX_SHIFT`].
+    /// Creates a grid of 4^`levels` samples per pixel, at most as many as [`Self::MAX_SHIFT`] allows.
     pub fn below_pixel(levels: u32) -> Self {
         Self { shift: levels.min(Self::MAX_SHIFT) }
     }
@@ -71,7 +71,7 @@ impl SampleGrid {
 pub enum Relation {
     /// It covers no sample.
     Outside,
-    /// It lies within the window.
+    /// It is within the window.
     Inside,
     /// It may cover some samples.
     Crossing,
@@ -93,7 +93,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// Returns whether no sample lies in it.
+    /// Returns whether it contains no sample.
     pub fn is_empty(&self) -> bool {
         self.x0 >= self.x1 || self.y0 >= self.y1
     }
@@ -108,7 +108,7 @@ impl Window {
         }
     }
 
-    /// Returns whether it lies within another.
+    /// Returns whether it is within another window.
     pub fn within(&self, o: &Self) -> bool {
         self.x0 >= o.x0 && self.y0 >= o.y0 && self.x1 <= o.x1 && self.y1 <= o.y1
     }

@@ -22,7 +22,7 @@ impl Gathered {
         self.0[lane % 16] = [v.x, v.y, v.z, 0.0];
     }
 
-    /// Sets the vector of a point to its value elsewhere.
+    /// Copies the vector of a point from another set.
     #[inline(always)]
     pub fn copy(&mut self, lane: usize, from: &Self) {
         self.0[lane % 16] = from.0[lane % 16];
@@ -111,8 +111,7 @@ pub fn narrowed<S: Simd>(simd: S, v: f64x8<S>) -> f32x8<S> {
     simd.narrow_f64x4(a, b)
 }
 
-/// 1.5 · 2⁵²: a number that it is added to is rounded to the nearest integer, ties to even ones, which the low bits
-/// are.
+/// 1.5 · 2⁵²: adding it rounds a number to the nearest integer, ties to even, and puts that into the low bits.
 pub const MAGIC: f64 = 6_755_399_441_055_744.0;
 
 /// Returns the lower 32 bits of eight doubles.

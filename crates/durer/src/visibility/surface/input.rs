@@ -8,7 +8,7 @@ use crate::visibility::surface::setup::{
 };
 use crate::work::Work;
 
-/// The triangles of a scene on the screen, in item order; what each algorithm takes.
+/// The triangles of a scene on the screen, in item order: the input of each algorithm.
 ///
 /// A triangle that was cut at the near plane has several pieces with the same item. The production
 /// z-buffer does without this list; all others read it.
@@ -30,7 +30,7 @@ pub struct SurfaceInput<'a> {
     pub work: Work,
 }
 
-/// Stage of what a method makes of the triangles.
+/// Stage in which a method builds its own lists from the triangles.
 pub(crate) const METHOD: &str = "lists of the method";
 
 /// Primitives that are set up between two checks of their memory.
@@ -40,7 +40,7 @@ impl<'a> SurfaceInput<'a> {
     /// Transforms, clips and snaps the scene's triangles.
     ///
     /// # Errors
-    /// [`crate::Error::Limit`] where the scene has too many primitives to number.
+    /// [`crate::Error::Limit`] if the scene has too many primitives to number.
     pub fn new(scene: &'a Scene, view: &'a View, filter: Filter) -> crate::Result<Self> {
         Self::within(&Work::default(), scene, view, filter)
     }
@@ -49,7 +49,7 @@ impl<'a> SurfaceInput<'a> {
     /// is cancelled.
     ///
     /// # Errors
-    /// As [`Self::new`], and [`crate::Error::Memory`] where the budget has no room for the triangles.
+    /// As [`Self::new`], and [`crate::Error::Memory`] if the budget has no room for the triangles.
     pub fn within(
         work: &Work,
         scene: &'a Scene,
@@ -79,7 +79,7 @@ impl<'a> SurfaceInput<'a> {
         &self.runs[crate::visibility::surface::attributes::run_of(&self.runs, item)]
     }
 
-    /// Returns the triangles of [`Self::triangles`] whose fragments come to be in one way.
+    /// Returns the triangles of [`Self::triangles`] with one kind of coverage.
     pub(crate) fn having(&self, coverage: Coverage) -> TriangleSet {
         let has = |t: &ScreenTriangle| self.run_of(t.item).coverage == coverage;
         match self.runs.iter().any(|run| run.coverage == coverage) {

@@ -1,8 +1,8 @@
 //! Blended surfaces over opaque ones.
 //!
-//! *Over* is T. Porter and T. Duff's (*Compositing Digital Images*, SIGGRAPH 1984), on premultiplied
-//! linear colours. Scan-line methods sort a row's layers by depth, subdivision and rays those of a
-//! sample; depth sort meets them in order.
+//! *Over* is T. Porter and T. Duff's (*Compositing Digital Images*, SIGGRAPH 1984), on premultiplied linear colours.
+//! Scan-line methods sort the layers of a row by depth, subdivision and ray casting the layers of a sample; depth sort
+//! produces them in order.
 
 use crate::math::Vec4;
 use crate::shade::color::premultiply;
@@ -24,8 +24,7 @@ pub(crate) struct Layer {
     pub depth: f32,
 }
 
-/// Sorts layers by place, those of a place from far to near; of equally far ones the lower item is in
-/// front.
+/// Sorts layers by place, and within a place from far to near; at equal depths the lower item is in front.
 pub(crate) fn sort_layers(layers: &mut [Layer]) {
     layers.sort_unstable_by(|a, b| {
         a.place.cmp(&b.place).then(b.depth.total_cmp(&a.depth)).then(b.item.cmp(&a.item))
@@ -42,8 +41,8 @@ pub(crate) struct Layers<'a> {
     charge: Charge,
 }
 
-/// Writes row `y` to all planes: `row` is what is nearest, blended or not; in the colours blended
-/// surfaces, if there are some, lie over what is opaque.
+/// Writes row `y` to all planes. `row` has the nearest surfaces, blended or not; in the colours, blended surfaces are
+/// laid over the opaque ones.
 pub(crate) fn write_row(
     y: i32,
     row: &DepthRow,
@@ -69,8 +68,8 @@ impl<'a> Layers<'a> {
         (!blended.is_empty()).then(|| Self { triangles, blended, opaque, layers, charge })
     }
 
-    /// Writes the colours of row `y`: what is opaque, and over it what is blended and before it, far
-    /// layers first; of equally far ones the lower item is in front.
+    /// Writes the colours of row `y`: the opaque surfaces, and over them the blended ones in front, far layers first;
+    /// at equal depths the lower item is in front.
     fn write(&mut self, y: i32, active: &[Active], masked: &Masked<'_>, picture: &mut Picture<'_>) {
         self.collect(y, active, masked, &mut picture.lit);
         picture.write_color(0, y as u32, &self.opaque.item);
@@ -122,7 +121,7 @@ pub(crate) fn compose(
     blended.into_iter().fold(under, |under, item| over(lit, item, under, at))
 }
 
-/// Returns the mean colour of a pixel's samples; those that show the same are lit once.
+/// Returns the mean colour of a pixel's samples; equal samples are lit once.
 pub(crate) fn mean<T: Ord>(samples: &mut [T], mut color: impl FnMut(&T) -> Vec4) -> Vec4 {
     samples.sort_unstable();
     let share = 1.0 / samples.len() as f32;
@@ -130,8 +129,7 @@ pub(crate) fn mean<T: Ord>(samples: &mut [T], mut color: impl FnMut(&T) -> Vec4)
     parts.fold(Vec4::ZERO, |sum, same| sum + color(&same[0]) * (same.len() as f32 * share))
 }
 
-/// Returns the linear, premultiplied colour of the opaque surface at a pixel; `behind` where
-/// nothing is.
+/// Returns the linear, premultiplied colour of the opaque surface at a pixel; `behind` if there is none.
 pub(crate) fn below_color(lit: &mut Lit<'_>, item: u32, behind: Vec4, [x, y]: [i32; 2]) -> Vec4 {
     if item == NO_ITEM { behind } else { lit.color(item, x, y).truncate().extend(1.0) }
 }

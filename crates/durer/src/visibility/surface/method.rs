@@ -1,4 +1,4 @@
-//! All ways to find visible surfaces: one scene in, the same picture out.
+//! All methods to find visible surfaces: the same scene gives the same picture.
 
 use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;

@@ -8,9 +8,9 @@ use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 /// The depth and the item of the nearest triangle so far at each pixel of a row.
 #[derive(Debug, Clone)]
 pub struct DepthRow {
-    /// Window depth; 1 where nothing is.
+    /// Window depth; 1 at the background.
     pub depth: Vec<f32>,
-    /// The nearest item, [`NO_ITEM`] where nothing is.
+    /// The nearest item; [`NO_ITEM`] at the background.
     pub item: Vec<u32>,
 }
 

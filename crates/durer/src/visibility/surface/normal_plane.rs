@@ -9,19 +9,19 @@ use fearless_simd::{Simd, f32x4, f32x16};
 /// The normals of an item, undivided: weighted by homogeneous edge functions, which are linear, they are linear
 /// themselves, and only their direction matters.
 ///
-/// What points need that are lit together, in one cache line.
+/// Data of a triangle for points that are lit together, in one cache line.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub struct NormalPlane {
-    /// On the side of the face that is seen, world axes, of any length: the constant and the changes along x and y.
-    /// The fourth numbers are 0.
+    /// Normals of the visible side, world axes, of any length: the constant and the changes along x and y. The fourth
+    /// numbers are 0.
     pub(super) planes: [[f32; 4]; 3],
     /// The pixel from whose centre x and y are counted.
     pub(super) origin: [i32; 2],
     /// The item.
     pub item: u32,
-    /// True if the rest can be used: wherever a sample of the item's may be, the normals are well on the side of the
-    /// face that is seen, and their lengths are such that rounding changes nothing of it.
+    /// True if the planes can be used: wherever a sample of the item may be, the normals are clearly on the visible
+    /// side of the face, and their lengths are such that rounding cannot change that.
     pub settled: bool,
 }
 

@@ -76,8 +76,7 @@ impl Patch {
         pixels
     }
 
-    /// Returns columns and rows of the pixels, counted from a place that is given as that of the
-    /// first pixel.
+    /// Returns the columns and rows of the pixels; `x` and `y` are those of the first one.
     #[inline(always)]
     pub fn places<S: Simd>(self, simd: S, [x, y]: [f32; 2]) -> [f32x16<S>; 2] {
         let [columns, rows] = &self.layout.offsets;

@@ -1,8 +1,8 @@
-//! From the visible item of each pixel to the planes of a picture: what all methods that find one
-//! surface per pixel end with.
+//! From the visible item of each pixel to the planes of a picture: the last step of all methods that find one surface
+//! per pixel.
 //!
-//! Blended surfaces count as opaque in the depth, item and normal planes; in the colours those that
-//! come here do too. The module `layers` lays them over each other.
+//! Blended surfaces count as opaque in the depth, item and normal planes; and those passed to this module also in the
+//! colours. The module `layers` lays them over each other.
 
 use crate::math::Vec4;
 use crate::shade::color::{encode_opaque_x16, encode_premultiplied, encode_rgba8};
@@ -94,7 +94,7 @@ impl<'a> Picture<'a> {
     }
 
     /// Writes the pixels of row `y` from column `x`: the item and depth at each pixel's centre,
-    /// [`NO_ITEM`] where nothing is.
+    /// [`NO_ITEM`] at the background.
     pub fn write(&mut self, x: u32, y: u32, items: &[u32], depths: &[f32]) {
         self.write_planes(x, y, items, depths);
         self.write_color(x, y, items);

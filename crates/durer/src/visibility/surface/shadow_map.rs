@@ -54,8 +54,7 @@ const NEAR: f64 = 1e-3;
 /// Makes the maps of all directional, spot and point lights into [`PreparedLights::shadows`].
 ///
 /// # Errors
-/// [`Error::Parameter`] for a side of 0, [`Error::Limit`] above [`MAX_SIDE`], and what
-/// [`SurfaceInput::new`] finds.
+/// [`Error::Parameter`] for a side of 0, [`Error::Limit`] above [`MAX_SIDE`], and the errors of [`SurfaceInput::new`].
 pub fn cast(scene: &Scene, lights: &mut PreparedLights, options: &Options) -> Result<()> {
     cast_within(&Work::default(), scene, lights, options)
 }
@@ -63,7 +62,7 @@ pub fn cast(scene: &Scene, lights: &mut PreparedLights, options: &Options) -> Re
 /// Makes maps like [`cast`], within a budget.
 ///
 /// # Errors
-/// As [`cast`], and [`Error::Memory`] where the budget has no room for the maps.
+/// As [`cast`], and [`Error::Memory`] if the budget has no room for the maps.
 pub fn cast_within(
     work: &Work,
     scene: &Scene,
@@ -111,7 +110,7 @@ fn parallel_camera(sphere: &BoundingSphere, to_light: DVec3) -> Option<Camera> {
     camera.check().is_ok().then_some(camera)
 }
 
-/// Returns cameras that together see wherever a point or spot light shines.
+/// Returns cameras that together cover all directions of a point or spot light.
 fn cameras_of_point(light: &PointLight, eye: DVec3, sphere: &BoundingSphere) -> Vec<Camera> {
     let far = ((sphere.center - eye).length() + sphere.radius) * MARGIN;
     let camera = |axis: DVec3, fov_y: f64| Camera {
@@ -171,7 +170,7 @@ fn maps(
     Ok(maps)
 }
 
-/// Returns the depth of what throws shadows: triangles that are opaque, or masked and there.
+/// Returns the depths of the triangles that cast shadows: opaque ones, and masked ones where they pass the alpha test.
 fn depths(
     (work, scene): (&Work, &Scene),
     view: &View,

@@ -1,4 +1,4 @@
-//! From where pixels are seen.
+//! Directions from pixels to the eye.
 
 use super::patch::Patch;
 use crate::math::{DVec3, Vec3};
@@ -8,8 +8,8 @@ use crate::view::View;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16};
 
-/// The direction to the eye by pixel: a linear function of the place on the screen, for what a pixel shows lies on
-/// one line with the eye, whatever it is.
+/// The direction to the eye by pixel: a linear function of the place on the screen, because all points that a pixel can
+/// show are on one line through the eye.
 #[derive(Debug, Clone, Copy)]
 pub struct Sight {
     /// The middle of the screen, in pixels.

@@ -8,11 +8,10 @@
 //! and the nearest of them is found from the planes at the span's two ends (span coherence).
 //! Penetrating faces change places inside a span, which is split at the crossing.
 //!
-//! Deviations: the picture must be the z-buffer's bit for bit, whose depths are rounded to f32. So
-//! an end decides only by more than rounding can turn over; where planes come closer than that —
-//! around crossings, and where faces lie in each other — the span's pixels are compared one by one,
-//! as they are in spans too short to gain anything, and under masked surfaces. Blended surfaces are
-//! kept in a list per pixel of the row and laid over by depth.
+//! Deviations: the picture must be the z-buffer's bit for bit, whose depths are rounded to f32. So the comparison at a
+//! span's end decides only if the difference is larger than rounding errors. Where planes are closer than that, around
+//! crossings and on coplanar faces, the span's pixels are compared one by one, as in spans too short to gain anything
+//! and under masked surfaces. Blended surfaces are kept in a list per pixel of the row and laid over by depth.
 //!
 //! Cost: O(n log n) for the order by first row, then per row O(e log e + spans · depth complexity + w)
 //! for e edges and w pixels. Memory: the triangles, the active list and one row; nothing grows with
@@ -80,7 +79,7 @@ pub enum Step {
         /// Its depths at the first column and at the last.
         depths: [f32; 2],
     },
-    /// Triangles change places in a span, which is split.
+    /// Triangles cross in depth within a span, which is split.
     Split {
         /// First column of the part around the crossing.
         x0: i32,
@@ -96,11 +95,11 @@ pub enum Step {
     },
 }
 
-/// Spans of fewer pixels are compared at each of them: that is what looking at both ends costs.
+/// Length in pixels below which spans are compared pixel by pixel, which costs no more than comparing both ends.
 const SHORT: i32 = 3;
 
-/// Spans from this length on that cannot be decided are halved first, so that only the part where
-/// faces lie in each other is compared pixel by pixel.
+/// Length from which undecided spans are halved first, so that only the part where faces coincide is compared pixel by
+/// pixel.
 const LONG: i32 = 16;
 
 /// Renders into the planes that the framebuffer has.
@@ -172,7 +171,7 @@ fn edge(key: u64) -> (i32, u32) {
     ((key >> 32) as i32, key as u32)
 }
 
-/// One row: which triangles are in, and what is visible so far.
+/// One row: the triangles in it and the surfaces visible so far.
 struct Line<'a> {
     triangles: &'a [ScreenTriangle],
     masked: Masked<'a>,
@@ -193,7 +192,8 @@ struct Ends {
     item: u32,
     /// At the first and the last pixel.
     depth: [f32; 2],
-    /// True if the plane's own depth holds there, not that of the nearest or farthest vertex.
+    /// True if the depths at both pixels are the plane's own, not clamped to the depth of the nearest or farthest
+    /// vertex.
     linear: bool,
     /// More than rounding moves any depth in between, off the straight line through both.
     slack: f32,

@@ -8,7 +8,8 @@ use crate::visibility::surface::patch::Patch;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16};
 
-/// Up to sixteen pixels with what their texture coordinates follow from; those not set keep their earlier contents.
+/// Up to sixteen pixels with the data from which their texture coordinates are computed; pixels not set keep their
+/// earlier contents.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct GatheredCoords {
     /// Edge functions: constants, changes along x, changes along y, each of the three edges.
@@ -39,8 +40,8 @@ impl GatheredCoords {
         }
     }
 
-    /// Returns the coordinates and, where it is `changing`, their change to the pixels beside and below, bit
-    /// for bit as one by one.
+    /// Returns the coordinates and, where `changing` is set, their change to the pixels beside and below, with the same
+    /// bits as one by one.
     #[inline(always)]
     pub fn coordinates<S: Simd>(&self, simd: S, changing: bool) -> TexCoords<f32x16<S>> {
         let [constant, dx, dy] = &self.edges;
@@ -78,8 +79,8 @@ impl<S: Simd> CoordsOfOne<S> {
         Self { edges, origin: t.normals.origin, corners: [u, v] }
     }
 
-    /// Returns the coordinates at the pixels of a patch and, where it is `changing`, their change to the
-    /// pixels beside and below.
+    /// Returns the coordinates at the pixels of a patch and, where `changing` is set, their change to the pixels beside
+    /// and below.
     #[inline(always)]
     pub fn at(&self, simd: S, patch: Patch, changing: bool) -> TexCoords<f32x16<S>> {
         let ([x, y], [left, top]) = (patch.at, self.origin);

@@ -1,4 +1,4 @@
-//! The result of an image-space algorithm, one item and depth per pixel, and its way to a picture.
+//! The result of an image-space algorithm, one item and depth per pixel, and its conversion to a picture.
 
 use crate::math::Vec4;
 use crate::shade::color::premultiply;
@@ -15,9 +15,9 @@ use crate::visibility::surface::setup::Coverage;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Visible {
     window: Window,
-    /// Row by row; [`NO_ITEM`] where nothing is.
+    /// Row by row; [`NO_ITEM`] at the background.
     pub item: Vec<u32>,
-    /// Row by row; 1 where nothing is.
+    /// Row by row; 1 at the background.
     pub depth: Vec<f32>,
 }
 
@@ -58,7 +58,7 @@ impl Visible {
         (first..).zip(rows).map(move |(y, (items, depths))| ([x, y], items, depths))
     }
 
-    /// Writes a sample, whatever was there; parts beyond the far plane are not seen.
+    /// Overwrites a sample, unless the depth is beyond the far plane.
     #[inline]
     pub fn put(&mut self, x: i32, y: i32, depth: f32, item: u32) {
         if depth < 1.0 {

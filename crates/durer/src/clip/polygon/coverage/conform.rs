@@ -1,6 +1,6 @@
-//! Subject and mask made to meet bit for bit where they come within rounding of each other.
+//! Insertion of vertices so that subject and mask meet bit for bit where they are within rounding of each other.
 //!
-//! The point and the edge of the input alone decide what is near, so that neighbours agree.
+//! Whether a point is near an edge depends only on these two, so that neighbours agree.
 
 use crate::clip::attribute::Source;
 use crate::clip::polygon::rectangle::Near;
@@ -14,7 +14,7 @@ use std::ops::Range;
 #[derive(Debug)]
 pub(super) struct Subject<'a> {
     input: &'a Shapes,
-    /// Shapes with more vertices, if there are any, and where each point comes from.
+    /// Shapes with more vertices, if there are any, and the source of each point.
     divided: Option<(Shapes, Vec<Source>)>,
 }
 
@@ -79,11 +79,11 @@ impl Mask {
 struct Touches {
     /// Edges of the mask by their first points, and the subject's vertex that lies on each.
     on_mask: Vec<(usize, usize)>,
-    /// The mask's vertices and those of the subject that they are.
+    /// Vertices of the mask and the vertices of the subject that they coincide with.
     same: Vec<(usize, usize)>,
     /// Edges of the subject, and the mask's vertex that lies on each.
     on_subject: Vec<(usize, usize)>,
-    /// Edges of the subject, and another vertex of it that lies on each.
+    /// Edges of the subject, and another of its vertices that lies on each.
     on_self: Vec<(usize, usize)>,
 }
 
@@ -110,9 +110,9 @@ fn around(edges: &[Edge]) -> Option<Rect> {
     Rect::around(edges.iter().flat_map(|edge| edge.ends))
 }
 
-/// A vertex of polygons that are not valid lies on another edge of theirs, or one of a neighbour on its edge, within
-/// this many times the usual reach, 32 to 64 ulp: such vertices are mostly crossings that a program found in f64,
-/// several ulp beside the edges. A larger number would bend borders by more than the coordinates are worth.
+/// Factor on the usual reach, giving 32 to 64 ulp, within which a vertex of an invalid polygon counts as on another of
+/// its edges, or a neighbour's vertex as on its edge: such vertices are mostly crossings that a program computed in
+/// f64, several ulp beside the edges. A larger factor would bend borders by more than the precision of the coordinates.
 pub(super) const OWN_REACH: f64 = 16.0;
 
 /// Calls with all edges of ours and theirs whose boxes are near each other, within this many times the usual reach, and
@@ -211,8 +211,8 @@ fn sort_along<T>(touches: &mut Vec<(usize, T)>, of: &Shapes, place: impl Fn(&T) 
     touches.dedup_by(|s, t| s.0 == t.0 && place(&s.1) == place(&t.1));
 }
 
-/// Puts the vertices of each that lie on edges of the other there; with `mend` also those of the subject
-/// that lie on its own edges.
+/// Inserts the vertices of each operand into the edges of the other that they lie on; with `mend`, also the subject's
+/// vertices into its own edges.
 pub(super) fn conform(input: &Shapes, mask: Mask, mend: bool) -> (Subject<'_>, Mask) {
     let mut touches = Touches::between(input, &mask);
     if mend {

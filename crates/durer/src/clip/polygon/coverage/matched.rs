@@ -1,4 +1,4 @@
-//! Neighbours made to have the same points on the borders that they share.
+//! Insertion of points so that neighbours have the same points on shared borders.
 
 use super::conform::{Edge, OWN_REACH, each_near, with_points};
 use crate::clip::attribute::Source;
@@ -16,11 +16,11 @@ pub struct Matched {
     pub sources: Vec<Source>,
 }
 
-/// Returns the features that get points because others have them on their edges, or 32 to 64 ulp beside; `None` for
-/// those that stay as they are. No point is moved.
+/// Returns the features that gain points because others have points on their edges, or within 32 to 64 ulp of them;
+/// `None` for features that do not change. No point is moved.
 ///
-/// So the corner at which two parcels end becomes a point of the third one that lies along both, and
-/// all may be cut or simplified without a gap. The features are valid; one that would not be any more stays as it is.
+/// So the common corner of two parcels becomes a point of a third one that borders on both, and all may be clipped or
+/// simplified without a gap. The features must be valid; a feature that would become invalid does not change.
 ///
 /// Cost: O(n log n) for n edges of usual data.
 ///
@@ -59,8 +59,8 @@ pub fn matched(features: &[Shapes]) -> Vec<Option<Matched>> {
     features.iter().zip(inserted).map(|(shapes, points)| divided(shapes, points)).collect()
 }
 
-/// Returns the shapes with points on their edges; `None` if there are none, or the shapes would not be
-/// valid any more.
+/// Returns the shapes with the points inserted into their edges; `None` if there are none, or if the shapes would
+/// become invalid.
 fn divided(input: &Shapes, inserted: Vec<(usize, DVec2)>) -> Option<Matched> {
     if inserted.is_empty() {
         return None;

@@ -1,14 +1,13 @@
 //! Cuts polygons with a mask so that borders which neighbours share stay shared.
 //!
-//! [`overlay`](mod@super::overlay) decides what belongs to the result, on a grid that depends on the extent
-//! of what is cut; its vertices are not left there. Vertices of the input keep their coordinates bit for
-//! bit, and a cut lies where the edges *of the input* cross, correctly rounded. Both depend on nothing but
-//! those vertices and edges, so that two neighbours, and the inside and the outside part, have the same
-//! points on a common border.
+//! [`overlay`](mod@super::overlay) decides what belongs to the result, on a grid that depends on the extent of the
+//! operands, but the result's vertices do not stay on the grid. Vertices of the input keep their coordinates bit for
+//! bit, and a cut is where the edges *of the input* cross, correctly rounded. Both depend only on those vertices and
+//! edges, so that two neighbours, and the inside and the outside part, have the same points on a common border.
 //!
-//! Before that, vertices that come as near to an edge of the other side as rounding moves a point are made
-//! vertices of it: a cut polygon has such vertices all along the mask, and to be cut once more must change
-//! nothing. Where exact points would make rings cross, those around the fault stay on the grid.
+//! Before the overlay, vertices that are within rounding of an edge of the other operand are inserted into it: a
+//! clipped polygon has such vertices all along the mask, and clipping it again must change nothing. Where exact points
+//! would make rings cross, the points around the fault stay on the grid.
 
 mod conform;
 mod matched;
@@ -31,8 +30,8 @@ use conform::{Mask, Subject};
 pub struct Options {
     /// Winding rule of the subject.
     pub rule: WindingRule,
-    /// True if the subject's own vertices are looked for on its edges too. Of polygons that are not valid some
-    /// lie there but for rounding, and would leave slivers.
+    /// True if the subject's own vertices are searched on its edges too. Invalid polygons have vertices on their own
+    /// edges up to rounding, which would leave slivers.
     pub mend: bool,
     /// True if vertices of the mask also stay where it runs along an edge of the subject on both sides of them: for
     /// cutting the mask with the subject.
@@ -51,9 +50,9 @@ pub struct Cut {
     pub sources: Vec<Source>,
     /// Number of points that stay on the grid, because rings would cross at the exact places.
     pub snapped: usize,
-    /// True if the subject has come out as it was, but for the order of its rings and their first points.
+    /// True if the subject is unchanged except for the order of its rings and their first points.
     pub whole: bool,
-    /// True if a polygon of the mask is smaller than a cell of the grid, so that it may be gone.
+    /// True if a polygon of the mask is smaller than a cell of the grid, so that it may be lost.
     pub lost: bool,
 }
 

@@ -26,7 +26,8 @@ impl Point {
     }
 }
 
-/// Puts the points of an overlay where the input has them, or its edges cross; `keep` is that of the options.
+/// Moves the points of an overlay to the input's points and to the crossings of its edges; `keep` is the one of the
+/// options.
 pub(super) fn place(subject: &Subject, mask: &Mask, keep: bool, output: Output) -> Cut {
     let placer = Placer { subject, mask, keep };
     let points = output.shapes.points().iter().zip(&output.origins);
@@ -81,9 +82,9 @@ impl Placer<'_> {
         Source::on_edge(at, (from, points[from]), (to, points[to]))
     }
 
-    /// Returns for each point whether it is needed. Points that coincide with the next of their ring are
-    /// not, nor vertices of the mask on an edge of the subject along which the mask's border runs on both
-    /// sides, where no neighbour remains to share them with.
+    /// Returns for each point whether it is needed. Not needed are points that coincide with the next of their ring,
+    /// and vertices of the mask inside an edge of the subject that the mask's border follows on both sides of the
+    /// vertex, where no neighbour shares them.
     fn kept(&self, output: &Output, points: &[Point]) -> Vec<bool> {
         let mut kept = vec![true; points.len()];
         for ring in 0..output.shapes.ring_count() {
@@ -120,12 +121,11 @@ impl Placer<'_> {
     }
 }
 
-/// Number of rounds in which only points around faults are put back on the grid; after them all
-/// are.
+/// Number of rounds in which only points around faults are put back on the grid; after them, all points are.
 const ROUNDS: usize = 8;
 
-/// Returns the polygons with the points that are kept; those at which rings would cross stay on the
-/// grid, where they do not.
+/// Returns the polygons with the points that are kept; points at which rings would cross stay on the grid, where they
+/// do not cross.
 fn settled(output: &Shapes, points: &mut [Point], kept: &[bool]) -> Shapes {
     let names: Vec<usize> = (0..points.len()).filter(|&k| kept[k]).collect();
     for _ in 0..ROUNDS {

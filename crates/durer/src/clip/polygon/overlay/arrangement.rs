@@ -1,8 +1,8 @@
 //! The planar graph of the snapped segments: unique edges, their order around each node, and the
 //! winding numbers of subject and clip on both sides of each edge.
 //!
-//! Most points of a coast are passed by one ring and touched by nothing else. Such points are no
-//! nodes of the graph that winding numbers and rings are found on, but lie within an edge of it.
+//! Most points of a coastline are on one ring and touched by nothing else. Such points are not nodes of the graph on
+//! which winding numbers and rings are found, but inner points of its edges.
 
 use std::ops::Range;
 
@@ -16,8 +16,8 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// The planar graph of the snapped segments.
 ///
-/// Nodes come in patches, and edges in those of their low nodes, so that each patch can be worked
-/// on alone but for the few edges that go to other ones.
+/// Nodes are grouped into patches, and edges belong to the patch of their low node, so that each patch can be processed
+/// alone except for the few edges that lead to other patches.
 #[derive(Debug)]
 pub struct Arrangement<'a, C> {
     pub nodes: &'a [Point<C>],
@@ -113,7 +113,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         &self.around[self.range(node)]
     }
 
-    /// Returns the indices, for [`Self::half`], of what leaves a node.
+    /// Returns the indices, for [`Self::half`], of the half-edges that leave a node.
     #[inline(always)]
     pub(super) fn range(&self, node: u32) -> std::ops::Range<usize> {
         self.starts[node as usize] as usize..self.starts[node as usize + 1] as usize
@@ -133,7 +133,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         if half.is_back() { edge.high } else { edge.low }
     }
 
-    /// Returns the node or inner node a half-edge comes to first.
+    /// Returns the first node or inner node along a half-edge.
     #[inline(always)]
     fn toward(&self, half: Half) -> u32 {
         let (edge, inner) = (&self.edges[half.edge()], self.inner(half.edge()));
@@ -217,7 +217,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
     }
 
     /// Sorts the edges around every node, and joins those that coincide in the first of them. Returns the others, which
-    /// have no meaning any more. `arrivals` are for each patch the edges of other ones that end there.
+    /// are no longer valid. `arrivals` are, for each patch, the edges of other patches that end there.
     #[inline(never)]
     fn arrange(&mut self, arrivals: &[Vec<u32>]) -> Vec<u32> {
         let leaving = |edge: &Edge, patch: &Patch| usize::from(!patch.has_node(edge.high));
@@ -278,7 +278,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
             *next -= 1;
             around[*next as usize] = half;
         };
-        // From the end of each list: first what goes to the left, mostly.
+        // From the end of each list: mostly edges to the left first.
         for &e in arrivals {
             put(self.edges[e as usize].high, Half::forward(e as usize).reversed());
         }
@@ -313,7 +313,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         Ray { half, toward, point, left: point < self.nodes[node] }
     }
 
-    /// Drops the edges that were joined with others, and those that are not to be kept: that cancel.
+    /// Drops the edges that were joined with others, and those that cancel each other.
     #[inline(never)]
     fn drop_unkept(&mut self, joined: &[u32], keeps: impl Fn(&Edge) -> bool) {
         let mut kept = 0;
@@ -355,7 +355,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
     }
 }
 
-/// A half-edge on its way out of a node.
+/// A half-edge that leaves a node.
 #[derive(Debug, Clone, Copy)]
 struct Ray<C> {
     half: Half,

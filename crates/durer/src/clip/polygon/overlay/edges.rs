@@ -38,8 +38,8 @@ pub struct Edges {
 struct Batch<'a, C> {
     noding: &'a Noding<C>,
     edges: Vec<Edge>,
-    /// Runs of edges in the same patch, each with its last edge: the next edge is likely to lie
-    /// where the last one does.
+    /// Runs of edges in the same patch, each with its last edge: the next edge is likely to be in the same patch as the
+    /// last one.
     runs: Vec<(u32, u32)>,
     /// The patch of the last edge, and its nodes.
     patch: (usize, Range<usize>),
@@ -70,13 +70,12 @@ struct Loose {
     first: Option<u32>,
     /// Edges before it.
     head: Vec<u32>,
-    /// The last such node and what comes after it.
+    /// The last such node and the nodes after it.
     tail: Vec<u32>,
 }
 
 impl Edges {
-    /// Returns the edges of rings: what one ring passes and nothing else touches lies within an
-    /// edge.
+    /// Returns the edges of rings; points on only one ring that nothing else touches are inner points of an edge.
     #[inline(never)]
     pub fn of_rings<C: Coord>(noding: &Noding<C>, rings: Rings) -> Self {
         let count = rings.sources.len();
@@ -277,7 +276,8 @@ impl<'a, C: Coord> Batch<'a, C> {
         self.edge(path[from], &path[from + 1..], &path[..first], path[first], across);
     }
 
-    /// Adds the edges between the nodes of a part of a ring; returns what belongs to edges that go on in other parts.
+    /// Adds the edges between the nodes of a part of a ring; returns the nodes that belong to edges which continue in
+    /// other parts.
     fn open(
         &mut self,
         ring: usize,

@@ -2,7 +2,7 @@
 //! come near it.
 //!
 //! Every pixel lies in exactly one leaf, and a segment is listed in every leaf it comes within one
-//! pixel of, before and after snap rounding. So leaves can be worked on alone.
+//! pixel of, before and after snap rounding. So leaves can be processed alone.
 
 use std::ops::Range;
 
@@ -16,8 +16,8 @@ const SMALL_LEAF: usize = 24;
 /// sixteenths; long parallel segments do not come apart in squares.
 const GROWTH: usize = 40;
 
-/// All divisions of a square together may make at most this many times its segments: edges that lie on
-/// one another never come apart, and each division would double them, down to single pixels.
+/// Largest factor by which all divisions of a square together may multiply its segments: overlapping edges never come
+/// apart, and each division would double them, down to single pixels.
 const MOST_GROWTH: f64 = 16.0;
 
 /// Segments per square if they were spread evenly; curves leave most squares empty, and the full
@@ -92,7 +92,7 @@ pub struct Spread {
 }
 
 impl<C: Coord> Segment<C> {
-    /// Returns its width and its height, neither more than these.
+    /// Returns the sum of its width and its height, each limited to the given size.
     fn length(&self, width: f64, height: f64) -> f64 {
         let (low, high) = self.y_range();
         (self.b.x.f64() - self.a.x.f64()).min(width) + (high.f64() - low.f64()).min(height)
@@ -115,7 +115,7 @@ struct Node(u32);
 impl Node {
     /// No segment comes near.
     const EMPTY: Self = Self(u32::MAX);
-    /// Below this, the word is the index of a leaf; from here on, that of a division.
+    /// Smallest word that is the index of a division; smaller words are indices of leaves.
     const FIRST_SPLIT: u32 = 1 << 31;
 }
 
@@ -297,8 +297,8 @@ impl Log2Floor for f64 {
     }
 }
 
-/// Returns the order in which segments that start close together have close indices, so that all
-/// that follows finds its data in the cache, `None` if they are in such an order.
+/// Returns the order in which segments that start close together have close indices, so that later steps find their
+/// data in the cache; `None` if they are in such an order.
 #[inline(never)]
 pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> Option<Vec<u32>> {
     let (width, height) = block.size();
@@ -309,7 +309,7 @@ pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> Option<
     order_by_squares(segments.len(), size, square, FEW_JUMPS)
 }
 
-/// Returns the order of things by the squares of a grid, column by column along each row; `None` if
+/// Returns the order of items by the squares of a grid, column by column along each row; `None` if
 /// at most one in `few_jumps` is not in or beside the square of the one before.
 pub fn order_by_squares(
     count: usize,
@@ -368,8 +368,7 @@ impl Spread {
 }
 
 impl Grid {
-    /// Distributes the segments; `block` must hold them all. Those that are but a point are in no
-    /// list.
+    /// Distributes the segments; `block` must hold them all. Segments of zero length are in no list.
     #[inline(never)]
     pub fn new<C: Coord>(segments: &[Segment<C>], block: Block, spread: Spread) -> Self {
         let frame = match segments.len() {
@@ -484,8 +483,8 @@ impl Band {
         band
     }
 
-    /// Divides a square where that parts its segments; `most` is how many times as many the divisions may
-    /// still make of them.
+    /// Divides a square if that separates its segments; `most` is the factor by which the divisions may still multiply
+    /// them.
     fn divide<C: Coord>(
         &mut self,
         segments: &[Segment<C>],

@@ -14,7 +14,7 @@ use crate::clip::polygon::{BooleanOp, Shapes, Vertex};
 use crate::math::Rect;
 use crate::trace::Tracer;
 
-/// Bytes of the lists for each edge of the input, the edges themselves aside.
+/// Bytes of the lists for each edge of the input, without the edges themselves.
 const PER_EDGE: u64 = 24;
 
 /// Bytes of the graph and of the result for each node that an edge passes.
@@ -30,7 +30,7 @@ pub struct Job<'a, P: Vertex> {
     pub winder: Winder,
     /// The boxes around subject and clip.
     pub bounds: [Option<Rect>; 2],
-    /// True if somebody wants to know what made each node.
+    /// True if the cause of each node is to be kept.
     pub causes: bool,
 }
 

@@ -1,4 +1,4 @@
-//! The integer grid that everything is decided on, and the exact predicates on it.
+//! The integer grid on which all decisions are made, and its exact predicates.
 //!
 //! Two widths share one code: [`i32`] with 64-bit products for up to 2³⁰ cells across, [`i64`] with
 //! 128-bit products for up to 2⁴¹. Pixel (x, y) of the grid is the square
@@ -198,8 +198,8 @@ impl<C: Coord> Segment<C> {
         in_box && self.side_of_pixel(p) == Ordering::Equal
     }
 
-    /// Returns the pixel in which two segments cross, each in the other's interior; `None` if they
-    /// touch, overlap or keep apart. Exact, and the same whichever comes first.
+    /// Returns the pixel in which two segments cross, each in the other's interior; `None` if they touch, overlap or
+    /// are apart. Exact, and the same whichever comes first.
     #[inline(always)]
     pub fn crossing(&self, other: &Self) -> Option<Point<C>> {
         let zero = C::Wide::default();
@@ -345,7 +345,7 @@ impl Lattice {
         let origin = if origin.is_finite() { origin } else { middle };
         let reach = (half / cell).ceil() + 1.0;
         if reach > i64::LIMIT as f64 || farthest / cell > 2f64.powi(53) {
-            // Twice the finest: it is told with one digit.
+            // Twice the finest possible grid, for a message with one digit.
             let enough = 2.0 * (half / (i64::LIMIT - 2) as f64).max(farthest / 2f64.powi(53));
             let value = format!("{cell:e}, where {enough:.0e} would do");
             let expected = "coarse enough for 2^41 cells across and 2^53 from the origin";

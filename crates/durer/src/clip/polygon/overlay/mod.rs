@@ -1,4 +1,4 @@
-//! Boolean operations on any polygons, with valid polygons as the result: the robust door.
+//! Boolean operations on any polygons, with valid polygons as the result: the robust choice.
 //!
 //! The points are snapped to a grid, all edges are noded exactly and snap-rounded (Hobby,
 //! *Practical segment intersection with finite precision output*, 1999; Guibas and Marimont 1998):
@@ -7,15 +7,14 @@
 //! these edges winding numbers decide, by connected parts, and the border of the result is cut into
 //! simple rings. All decisions are made with integers.
 //!
-//! Everything is done in patches of the plane that are small enough for the cache and need not know
-//! of each other: bands of the grid, runs of its leaves, the nodes and edges found there, the
-//! windings and rings among these. So threads have independent work, and what crosses the patches'
-//! borders is joined afterwards in a fixed order: the result does not depend on their number. In
-//! tests the patches are tiny.
+//! All steps work on patches of the plane that are small enough for the cache and independent of each other: bands of
+//! the grid, runs of its leaves, the nodes and edges found there, the windings and rings among these. So threads have
+//! independent work, and results across the patches' borders are joined afterwards in a fixed order: the result does
+//! not depend on the number of threads. In tests the patches are tiny.
 //!
-//! It takes 130 to 210 bytes per edge beside the input, the result included. There is no mode that
-//! does without hot pixels: they cost less than a tenth of the time, and without them the graph is
-//! not planar, so that windings would be wrong far from the place.
+//! It takes 130 to 210 bytes per edge beside the input, the result included. There is no mode without hot pixels: they
+//! cost less than a tenth of the time, and without them the graph is not planar, so that winding numbers would be wrong
+//! far away, too.
 
 pub(crate) mod arrangement;
 mod bounds;
@@ -88,8 +87,9 @@ pub struct Options {
     pub grid: Option<f64>,
     /// True if [`Output::origins`] is computed.
     pub origins: bool,
-    /// True if vertices of the input are left out where the border of the result goes straight on. Else
-    /// only what noding added is: neighbours that share a border, and heights along one, need them.
+    /// True if vertices of the input are left out where the border of the result is straight. Otherwise only the
+    /// vertices added by noding are left out: neighbours that share a border, and heights along it, need the input's
+    /// vertices.
     pub drop_collinear: bool,
     /// Budget of memory, and whether to go on.
     pub work: Work,
@@ -126,7 +126,7 @@ pub enum Step<P = DVec2> {
     Ring {
         /// Its points.
         points: Vec<P>,
-        /// True if it is a hole of the last ring that was none.
+        /// True if it is a hole of the last ring that is not a hole.
         hole: bool,
     },
 }
@@ -190,7 +190,7 @@ pub enum Origin {
     },
     /// A crossing of two edges; of more than two, one pair.
     Crossing {
-        /// An edge, and how far along it the vertex lies: 0 at its first point, 1 at its second.
+        /// An edge, and the vertex's position along it: 0 at its first point, 1 at its second.
         first: (EdgeId, f64),
         /// The other edge, likewise.
         second: (EdgeId, f64),

@@ -1,5 +1,5 @@
-//! Finds the hot pixels, those that hold an end or a crossing of segments, and which segments pass
-//! through each: snap rounding after Hobby (1999), leaf by leaf of the grid.
+//! Finds the hot pixels, which contain an end or a crossing of segments, and the segments that pass through each: snap
+//! rounding after Hobby (1999), leaf by leaf of the grid.
 
 use std::ops::Range;
 
@@ -19,11 +19,11 @@ const SEARCHES: usize = if cfg!(test) { 8 } else { 1 << 11 };
 /// Stage of the hot pixels in errors about memory.
 const STAGE: &str = "crossings of the overlay";
 
-/// Bytes that it takes at the most, on the way to the hot pixels, to find two segments that cross: the pair, its pixel,
+/// Upper bound of the temporary bytes for each pair of crossing segments: the pair, its pixel,
 /// and which segments pass there, each in a list that grows.
 const PER_CROSSING: u64 = 128;
 
-/// Cause of a hot pixel, in one word; of several causes the smallest counts, so that an end comes
+/// Cause of a hot pixel, in one word; if there are several causes, the smallest is kept, so that an end comes
 /// before a crossing, and small indices first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct CauseWord(u64);
@@ -91,7 +91,7 @@ pub struct Noding<C> {
     pub starts: Vec<u32>,
     /// Indices into `nodes`.
     pub hits: Vec<u32>,
-    /// Charges of all that to the budget.
+    /// Charges of the fields above to the budget.
     _charges: Vec<Charge>,
 }
 
@@ -153,7 +153,7 @@ struct Workbench<'a, C> {
     near: Vec<u32>,
     pixels: Vec<(Point<C>, CauseWord)>,
     strips: Strips<C>,
-    /// True to keep what made each node.
+    /// True to keep the cause of each node.
     causes: bool,
     work: &'a Work,
 }
@@ -169,8 +169,8 @@ pub enum Ends {
     Both,
 }
 
-/// Nodes all segments; `ends` returns which ends of each no other segment accounts for, `causes` tells whether to keep
-/// the causes of each node.
+/// Nodes all segments; `ends` returns, for each, the ends that no other segment has; `causes` tells whether to keep the
+/// causes of each node.
 ///
 /// # Errors
 /// Those of the work: where crossings take more memory than it may have.
@@ -239,7 +239,7 @@ fn parts<C: Coord>(
             causes,
             work,
         };
-        // About as many nodes as come out of this many entries.
+        // The number of nodes is about proportional to the number of entries.
         let load = leaves.iter().map(|leaf| band.items(leaf).len()).sum::<usize>() * 5 / 8;
         part.nodes.reserve(load);
         if causes {
@@ -297,7 +297,7 @@ impl<C: Coord> Workbench<'_, C> {
         Ok(())
     }
 
-    /// Finds the crossings of a crowded leaf, as many as there is memory for.
+    /// Finds the crossings of a crowded leaf, within the memory available.
     fn build_strips(&mut self, leaf: &Leaf, part: &mut Part<C>) -> Result<()> {
         let left = self.work.budget().saturating_sub(self.work.used());
         let room = left / PER_CROSSING / parallel::threads() as u64;
@@ -332,7 +332,7 @@ impl<C: Coord> Workbench<'_, C> {
         self.near.resize(items.len(), 0);
         for (j, t) in self.segments.iter().enumerate() {
             let (low, high) = self.spans[j];
-            // Which ones come near is hard to foretell: a list without a branch, then the list.
+            // Which ones come near is hard to predict, so a list is built without branches and processed afterwards.
             let mut count = 0;
             let earlier = self.segments[..j].iter().zip(&self.spans[..j]);
             for (i, (s, span)) in (0..).zip(earlier) {

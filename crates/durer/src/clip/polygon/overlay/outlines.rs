@@ -1,4 +1,4 @@
-//! The rings of both inputs in the order in which they are worked on, and their edges on the grid.
+//! The rings of both inputs in the order of processing, and their edges on the grid.
 
 use std::ops::Range;
 
@@ -41,8 +41,8 @@ pub struct Outlines {
 }
 
 impl Outlines {
-    /// Creates the rings that `matters` accepts, those that start close together one after the
-    /// other, so that all that follows finds its data in the cache.
+    /// Creates the rings that `matters` accepts, rings that start close together one after the other, so that later
+    /// steps find their data in the cache.
     pub fn new<P: Vertex>(
         inputs: [(&Shapes<P>, Operand); 2],
         lattice: &P::Lattice,

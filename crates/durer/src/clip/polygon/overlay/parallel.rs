@@ -69,8 +69,8 @@ pub fn range(ends: &[u32], index: usize) -> Range<usize> {
 #[cfg(feature = "parallel")]
 const FILLS: usize = if cfg!(test) { 8 } else { 1 << 16 };
 
-/// Returns a vector of copies of a value: memory that is written for the first time costs the kernel
-/// a fault for each page, so threads share that too.
+/// Returns a vector of copies of a value: the first write to each page of memory costs a page fault, so threads share
+/// that work too.
 pub fn filled<T: Copy + Send + Sync>(value: T, count: usize) -> Vec<T> {
     #[cfg(feature = "parallel")]
     if count > FILLS && threads() > 1 {

@@ -71,7 +71,7 @@ pub fn link<'b, C: Coord>(
     inside: impl Fn(Winding) -> bool + Sync,
 ) -> Rings {
     let courses = courses(&graph, inside);
-    // They have told all they know, and what follows needs the room.
+    // They are no longer needed, and the next steps need the memory.
     graph.right = Vec::new();
     let mut linker = Linker {
         graph,
@@ -111,8 +111,8 @@ fn courses<C: Coord>(
 }
 
 impl<C: Coord> Linker<'_, C> {
-    /// Links edges at each node: an edge that arrives goes on with the edge that leaves on the other side of the piece
-    /// of inside to its left, so that pieces that only touch stay apart.
+    /// Links edges at each node: an arriving edge continues with the departing edge on the other side of the piece of
+    /// inside to its left, so that pieces that only touch stay separate.
     #[inline(never)]
     fn pair(&mut self) {
         let mut next = parallel::filled(NONE, self.graph.edges.len());
@@ -192,7 +192,7 @@ impl<C: Coord> Linker<'_, C> {
         self.collect(found);
     }
 
-    /// Walks that stay within a patch of a group, then those that stay within the group.
+    /// Walks within a patch of a group first, then walks within the group.
     fn trace_group(&self, group: &[&Patch], walk_of: &mut [u32]) -> Found {
         let mut found = Found::default();
         let [Some(first), Some(last)] = [group.first(), group.last()] else { return found };
@@ -242,7 +242,7 @@ impl<C: Coord> Linker<'_, C> {
         }
     }
 
-    /// Returns whether a node stays where the border goes straight on.
+    /// Returns whether a node is kept where the border is straight.
     fn stays(&self, node: u32) -> bool {
         self.kept.get(node as usize).is_some_and(|&kept| kept) || self.touched(node)
     }
@@ -254,9 +254,8 @@ impl<C: Coord> Linker<'_, C> {
         self.graph.around(node).iter().filter(on).count() > 2
     }
 
-    /// Returns the outer ring of each ring's polygon. Every walk without an outer ring is a hole of
-    /// the piece of the edge below its first node. Such walks that start further left are done
-    /// before.
+    /// Returns the outer ring of each ring's polygon. Every walk without an outer ring is a hole of the piece at the
+    /// edge below its first node. Walks that start further left are processed first.
     #[inline(never)]
     fn owners(&self, search: &Search<C>) -> Vec<u32> {
         let nodes = self.graph.nodes;
@@ -291,7 +290,7 @@ impl<C: Coord> Linker<'_, C> {
         let rings = &self.rings;
         let points = |r: u32| rings.ring(r).iter().map(|&n| nodes[n as usize]);
         let first = |r: u32| points(r).next().unwrap_or_default();
-        // The first points differ, but for rings that touch there.
+        // The first points differ, except for rings that touch there.
         let compare = |a: &(Point<C>, u32), b: &(Point<C>, u32)| {
             a.0.cmp(&b.0).then_with(|| points(a.1).cmp(points(b.1)))
         };
@@ -339,8 +338,8 @@ const PER_COLUMN: usize = if cfg!(test) { 2 } else { 64 };
 /// Number of rings that one task sorts.
 const SORTS: usize = if cfg!(test) { 4 } else { 1 << 14 };
 
-/// Sorts rings by their first points and, where those are alike, by `compare`: first into columns
-/// of the plane, of which each is mostly in order already.
+/// Sorts rings by their first points and, if these are equal, by `compare`: first into columns of the plane, each of
+/// which is mostly in order already.
 #[inline(never)]
 fn sort_by_columns<C: Coord>(
     rings: &mut Vec<(Point<C>, u32)>,
@@ -349,7 +348,7 @@ fn sort_by_columns<C: Coord>(
     let xs = || rings.iter().map(|ring| ring.0.x.i64());
     let (Some(left), Some(right)) = (xs().min(), xs().max()) else { return };
     let columns = (rings.len() / PER_COLUMN + 1) as u64;
-    // The smallest power of two that leaves no more columns.
+    // The smallest power of two with at most the allowed number of columns.
     let shift = u64::BITS - ((right - left) as u64 / columns).leading_zeros();
     let column = |ring: &(Point<C>, u32)| ((ring.0.x.i64() - left) as u64 >> shift) as usize;
     let mut ends = vec![0u32; ((right - left) as u64 >> shift) as usize + 1];
@@ -490,8 +489,7 @@ impl<C: Coord> Trace<'_, '_, C> {
         }
     }
 
-    /// Stores a simple ring, from its smallest node on; of the nodes on straight edges only those that
-    /// are to stay.
+    /// Stores a simple ring, from its smallest node on; of the nodes on straight edges only those to be kept.
     fn close(&mut self, path: &[u32], walk: &mut Walk) {
         let nodes = self.linker.graph.nodes;
         let point = |n: u32| nodes[n as usize];
@@ -511,7 +509,7 @@ impl<C: Coord> Trace<'_, '_, C> {
         let (tail, head) = path.split_at(smallest);
         let mut before = *tail.last().or(path.last()).unwrap_or(&first);
         let after = *path.get(smallest + 1).or(path.first()).unwrap_or(&first);
-        // The smallest node is a corner, and the turn there tells the orientation.
+        // The smallest node is a corner, and the turn there gives the orientation.
         if cross(point(before), point(first), point(after)) > C::Wide::default() {
             walk.outer = self.found.ring_ends.len() as u32;
         }

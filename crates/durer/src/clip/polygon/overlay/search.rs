@@ -36,7 +36,8 @@ impl<C: Coord> Search<'_, C> {
         let mut last: Option<(Point<C>, Option<Half>)> = None;
         let below = nodes.map(|node| {
             let p = graph.nodes[node as usize];
-            // Straight below there may be many, as in a lattice of holes: then each one's answer is that of the next.
+            // Many points may be directly below one another, as in a lattice of holes: then the next one has the same
+            // answer.
             let known = last.filter(|(q, _)| q.x == p.x).map(|(q, half)| (q.y.i64(), half));
             let half = self.below(graph, p, known, &take);
             last = Some((p, half));
@@ -104,7 +105,7 @@ impl<C: Coord> Search<'_, C> {
 }
 
 impl<C: Coord> Piece<C> {
-    /// Returns whether it is above another one, where both pass one x and neither is vertical.
+    /// Returns whether it is above another one, if both pass a common x and neither is vertical.
     fn is_above(&self, other: &Self) -> bool {
         let zero = C::Wide::default();
         let ((a, b), (c, d)) = ((self.a, self.b), (other.a, other.b));

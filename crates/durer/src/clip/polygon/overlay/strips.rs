@@ -1,11 +1,10 @@
 //! Crossings among many long segments: vertical strips, halved again and again, after Balaban
 //! (*An optimal algorithm for finding segments intersections*, 1995, the simpler form).
 //!
-//! In each strip, segments that span it and do not cross one another form a staircase; the others
-//! find the stairs they cross or hit by binary search. Stairs divide the others into groups, each
-//! between two of them, and each group goes down into its own two halves of the strip. So neighbours
-//! that run side by side come apart at once, and what is left of each level is small.
-//! O(n log² n + k) time for n segments and k crossings, O(n log n + k) memory.
+//! In each strip, segments that span it and do not cross one another form a staircase; the others find the stairs they
+//! cross or hit by binary search. Stairs divide the others into groups, each between two of them, and each group goes
+//! down into its own two halves of the strip. So neighbours that run side by side are separated at once, and little is
+//! left for each further level. O(n log² n + k) time for n segments and k crossings, O(n log n + k) memory.
 
 mod finder;
 
@@ -18,7 +17,7 @@ use super::parallel;
 /// Strips with no more segments than this are not halved.
 const FEW: usize = 12;
 
-/// Number of segments in one column from which those that lie on each other are compared as one.
+/// Number of segments in one column from which overlapping ones are compared as one.
 const MANY: usize = 4 * FEW;
 
 /// About how many segments are in a group, if stairs keep them apart.
@@ -42,15 +41,15 @@ pub struct Strips<C> {
     /// halved all.
     lists: Vec<u32>,
     found: Found<C>,
-    /// Number of pairs that there is memory for; with more the rest is not looked for.
+    /// Number of pairs that there is memory for; further pairs are not searched.
     pub room: Option<usize>,
-    /// Segments of the strips that are being worked on, those of a part behind the whole's.
+    /// Segments of the strips being processed; those of a part follow those of the whole.
     open: Vec<u32>,
     /// Lowest and highest place on its staircase of each open segment in a strip.
     places: Vec<(u32, u32)>,
     /// Group of each place on a staircase.
     group_of: Vec<u32>,
-    /// Segments that span the strip that is being worked on, and those of them that are stairs.
+    /// Segments that span the strip being processed, and the stairs among them.
     spanning: Vec<Stair>,
     stairs: Vec<Stair>,
     ends: Vec<C>,
@@ -126,7 +125,7 @@ impl<C: Coord> Strips<C> {
         index as u32
     }
 
-    /// Divides open segments into groups, which lie behind them if there are several.
+    /// Divides open segments into groups, which are stored behind them if there are several.
     fn divide(&mut self, start: usize, stairs: u32) {
         let end = self.open.len();
         let count = end - start;
@@ -152,7 +151,7 @@ impl<C: Coord> Strips<C> {
             first + low..first + high + 1
         };
         let copies: usize = self.places.iter().map(|&places| groups(places).len()).sum();
-        // What crosses many stairs would be in many groups.
+        // Segments that cross many stairs would be in many groups.
         if copies > 2 * count {
             self.groups.truncate(first);
             return self.groups.push(whole);
@@ -176,7 +175,7 @@ impl<C: Coord> Strips<C> {
         }
     }
 
-    /// Works on a group, whose open segments are those from `start` on.
+    /// Processes a group, whose open segments are those from `start` on.
     fn group(
         &mut self,
         group: usize,
@@ -203,11 +202,11 @@ impl<C: Coord> Strips<C> {
         self.groups[group].halves = Some((lower, upper));
     }
 
-    /// Opens those of some open segments that `keep` accepts.
+    /// Opens the segments among some open ones that `keep` accepts.
     fn open_half(&mut self, range: Range<usize>, keep: impl Fn(u32) -> bool) {
         let mut end = self.open.len();
         self.open.resize(end + range.len(), 0);
-        // Which half one belongs to is hard to foretell: no branch.
+        // Which half a segment belongs to is hard to predict: no branch.
         for k in range {
             let i = self.open[k];
             self.open[end] = i;
@@ -238,8 +237,8 @@ impl<C: Coord> Strips<C> {
         }
     }
 
-    /// Makes the staircase of a strip: takes from the open segments those that span the strip and do
-    /// not cross one another in it, from low to high, and finds what the others cross there.
+    /// Builds the staircase of a strip: takes from the open segments those that span the strip and do not cross one
+    /// another in it, from low to high, and finds the stairs that the others cross there.
     fn staircase(&mut self, bounds: &Bounds<C>, start: usize) -> (u32, u32) {
         self.spanning.clear();
         self.stairs.clear();
@@ -302,8 +301,8 @@ impl<C: Coord> Strips<C> {
         found.iter().for_each(|found| self.found.extend_from_slice(found));
     }
 
-    /// Returns the median column of the ends within the strip, of many segments those of some, or
-    /// the strip's middle.
+    /// Returns the median column of the ends within the strip (of a sample, if there are many segments), or the strip's
+    /// middle.
     fn middle(&mut self, segments: &[Segment<C>], (left, right): (i64, i64), start: usize) -> i64 {
         let list = &self.open[start..];
         self.ends.clear();
@@ -361,9 +360,9 @@ impl<'a, C: Coord> Bounds<'a, C> {
         Stair { index, heights: self.borders.map(|border| s.height_at(border)) }
     }
 
-    /// Returns whether two segments that span the strip, of which the first is not higher in the
-    /// west, cross in it. What they do on the eastern border belongs to it: both come that far, and
-    /// in the next strip neither would be above the other.
+    /// Returns whether two segments that span the strip, of which the first is not higher in the west, cross in it. A
+    /// crossing on the eastern border counts: both segments reach it, and in the next strip neither would be above the
+    /// other.
     fn crosses(&self, s: &Stair, t: &Stair) -> bool {
         let order = self.compare(EAST, s, t);
         order.is_gt() || (order.is_eq() && self.compare(WEST, s, t).is_lt())
@@ -418,7 +417,7 @@ impl<C: Coord> Climber<'_, C> {
             let east = at(EAST);
             let order = |stair: &Stair| bounds.compare(EAST, stair, &east);
             let end = partition_near(stairs, below.1, |stair| order(stair).is_lt());
-            // What is met on the eastern border is crossed there: see `Bounds::crosses`.
+            // Stairs met on the eastern border are crossed there: see `Bounds::crosses`.
             (end, stairs[end..].iter().take_while(|stair| order(stair).is_eq()).count())
         };
         *below = (start, end);

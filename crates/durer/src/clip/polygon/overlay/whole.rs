@@ -29,7 +29,7 @@ impl GridMap<I64Vec2> for Whole {
         if across > WIDEST {
             return Err(Error::Limit { what: "cells across", value: across, limit: WIDEST });
         }
-        // No overflow: half the way from one to the other.
+        // No overflow: half of the difference is added.
         let middle = |low: i64, high: i64| low + (high - low) / 2;
         let origin = I64Vec2::new(middle(low.x, high.x), middle(low.y, high.y));
         Ok(Self { origin, reach: across.div_ceil(2) as i64 + 1 })

@@ -6,7 +6,7 @@ use super::lattice::{Coord, Point, cross};
 use super::parallel;
 use super::search::Search;
 
-/// A connected part of the graph, or of what one patch has of it.
+/// A connected part of the graph, or of its portion in one patch.
 #[derive(Debug, Clone, Copy)]
 struct Part<C> {
     /// Its smallest point.
@@ -32,8 +32,8 @@ impl<C: Coord> Arrangement<'_, C> {
     /// Finds the winding numbers: relative ones within each connected part by walking its nodes,
     /// then for each part, from left to right, those around it from the edge below its first node.
     ///
-    /// Each patch is walked on its own; where parts of patches meet, their windings tell by how
-    /// much one is to be raised.
+    /// Each patch is walked on its own; where parts of patches meet, the difference of their winding numbers is added
+    /// to one of them.
     #[inline(never)]
     pub fn wind(&mut self, search: &Search<C>) {
         let (mut part_of, walked, mut right) = self.walk();
@@ -180,8 +180,7 @@ impl<C: Coord> Arrangement<'_, C> {
 /// Number of searches in one task.
 const SEARCHES: usize = if cfg!(test) { 2 } else { 64 };
 
-/// Returns the part that a part belongs to, and what makes its windings relative to that one's.
-/// Halves the way there.
+/// Returns the part that a part belongs to, and the difference of their winding numbers. Halves the path there.
 fn find<C: Copy>(parts: &mut [Part<C>], mut part: u32) -> (u32, Winding) {
     let mut offset = Winding::default();
     while parts[part as usize].parent != part {
@@ -209,8 +208,8 @@ fn unite<C: Copy>(parts: &mut [Part<C>], first: u32, second: u32, raise: Winding
     (parts[child as usize].parent, parts[child as usize].offset) = (parent, offset);
 }
 
-/// The walk through one patch, node by node as they are stored: mostly from left to right, so that
-/// nearly every node has neighbours that come before it and tell the winding there.
+/// The walk through one patch, node by node in the order of storage: mostly from left to right, so that nearly every
+/// node has neighbours before it from which its winding number follows.
 struct Walk<'a, 'b, C> {
     graph: &'a Arrangement<'b, C>,
     patch: &'a Patch,

@@ -44,7 +44,7 @@ pub(super) struct BorderPoint {
 }
 
 impl BorderPoint {
-    /// Creates a point of the border at which `edge` goes to the inside.
+    /// Creates a point of the border at which `edge` leads inside.
     pub(super) fn new(window: &Rect, point: DVec2, edge: [DVec2; 2]) -> Self {
         let (min, max) = (window.min(), window.max());
         let side = if point.y == min.y && point.x < max.x {
@@ -68,9 +68,8 @@ impl BorderPoint {
         Self { point, side, from_side_before, edge }
     }
 
-    /// Returns the order in which a walk around the border, counter-clockwise from the lower left
-    /// corner, meets the points; of edges that meet in one point, the one turned furthest back
-    /// comes first.
+    /// Returns the order in which a walk around the border, counter-clockwise from the lower left corner, meets the
+    /// points; among edges that meet in one point, the one turned furthest back comes first.
     pub(super) fn order(&self, other: &Self) -> Ordering {
         let by_side = self.side.cmp(&other.side);
         by_side.then_with(|| self.order_on_side(other))
@@ -121,7 +120,7 @@ impl BorderPoint {
         (near + far, length)
     }
 
-    /// Returns edges from one point of the border, the one nearest to the way back first.
+    /// Compares edges from one point of the border; the one nearest to the backward direction comes first.
     fn turned_back(&self, other: &Self) -> Ordering {
         let e = Exact::from;
         let direction = |b: &Self| {

@@ -169,8 +169,8 @@ fn cut(
             }
         };
         let Some(visible) = cut_inside(window, a, b) else { continue };
-        // Where an edge only touches the window, at its first or last point, that is in already or
-        // comes once.
+        // If an edge only touches the window at its first or last point, that point is in the list already or will be
+        // added once.
         let touches = visible.start == visible.end && a != b;
         if !open {
             push(visible.start);

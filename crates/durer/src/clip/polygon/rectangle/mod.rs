@@ -1,20 +1,18 @@
 //! The production rectangle clip for windows and map tiles: polygons with holes, and polylines.
 //!
-//! The reassembly is that of Weiler and Atherton ("Hidden surface removal using polygon area
-//! sorting", SIGGRAPH 1977) with a rectangle as the clip polygon: the parts of all rings inside the
-//! open window are chains that begin and end on its border; walking the border counter-clockwise
-//! from the end of each to the beginning of the next closes them to rings. Separate parts become
-//! separate rings, no edge runs along the border but where the shape does, and a corner appears only
-//! where the shape covers it. The order of chain ends on the border is decided exactly.
+//! The reassembly follows Weiler and Atherton ("Hidden surface removal using polygon area sorting", SIGGRAPH 1977) with
+//! a rectangle as the clip polygon: the parts of all rings inside the open window are chains that begin and end on its
+//! border; walking the border counter-clockwise from the end of each to the beginning of the next closes them to rings.
+//! Separate parts become separate rings, edges run along the border only where the shape does, and a corner appears
+//! only if the shape covers it. The order of chain ends on the border is decided exactly.
 //!
 //! Object space. O(n) for n vertices, plus O(k log k) for k border crossings; bounding boxes accept
 //! and reject first.
 //!
-//! Input polygons must be valid (simple rings, holes inside the outer ring, interiors connected);
-//! direction of rings does not matter. On others nothing panics, but the region is unspecified. Where
-//! rings of valid polygons touch one another the region is right, but a ring may touch itself there.
-//! Polygons that lie wholly in the closed window are copied bit for bit; those that are cut come out
-//! with counter-clockwise outer rings and clockwise holes (y up).
+//! Input polygons must be valid (simple rings, holes inside the outer ring, interiors connected); the direction of
+//! rings does not matter. Invalid polygons cause no panic, but the region is unspecified. Where rings of valid polygons
+//! touch one another the region is right, but a ring may touch itself there. Polygons wholly in the closed window are
+//! copied bit for bit; clipped ones have counter-clockwise outer rings and clockwise holes (y up).
 
 mod border;
 mod lines;
@@ -67,7 +65,7 @@ pub struct Options;
 /// Step of the algorithm; vertices are reported as they are added to the output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
-    /// A polygon's bounding box lies in the window: it is copied.
+    /// A polygon's bounding box is in the window: the polygon is copied.
     Inside {
         /// Its index in the input.
         polygon: usize,
@@ -84,7 +82,7 @@ pub enum Step {
         /// Point at which it leaves.
         exit: DVec2,
     },
-    /// A vertex of the ring being put out.
+    /// A vertex of the ring being output.
     Vertex {
         /// Position of the vertex.
         point: DVec2,

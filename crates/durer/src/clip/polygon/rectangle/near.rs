@@ -24,8 +24,7 @@ impl Near {
         Self { shapes, lines }
     }
 
-    /// Returns the part around a box, and a little more on every side, so that nothing else reaches
-    /// far.
+    /// Returns the part around a box and a little more on every side, so that no other part reaches far.
     pub fn around(whole: &Prepared, bounds: &Rect) -> Self {
         let farthest = bounds.max().abs().max(bounds.min().abs()).max_element();
         // A window needs a size, also around a line along an axis.

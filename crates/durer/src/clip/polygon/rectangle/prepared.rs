@@ -1,10 +1,10 @@
-//! Polygons made ready for many windows and points.
+//! Polygons prepared for many windows and points.
 //!
-//! Boxes around runs of consecutive edges, around runs of runs and so on, are made once. A run whose
-//! box lies beyond a border of the window has no edge in it. A run whose box lies to the right of a
-//! point crosses the ray from the point to the right an odd number of times where its two ends lie on
-//! different sides of the ray, whatever it does between them; so of the edges around a point only
-//! those of the runs right at it are examined. Rings are found by boxes likewise.
+//! Boxes around runs of consecutive edges, around runs of runs and so on, are computed once. A run whose box lies
+//! beyond a border of the window has no edge in it. A run whose box lies to the right of a point crosses the ray from
+//! the point to the right an odd number of times if its two ends are on different sides of the ray, whatever happens
+//! between them; so only edges in runs whose boxes contain the point's height and are not wholly to one side of it are
+//! examined. Rings are found by boxes in the same way.
 
 use super::rings::{Clipper, Directed, Guide, crosses};
 use super::tree::Tree;
@@ -40,7 +40,7 @@ pub struct Prepared {
     /// The rings of each polygon.
     polygons: Vec<Range<usize>>,
     rings: Vec<PreparedRing>,
-    /// The rings that have points, with those near one another together.
+    /// The rings that have points, sorted so that nearby ones are together.
     order: Vec<usize>,
     /// Boxes around runs of that order.
     tree: Tree,
@@ -131,7 +131,7 @@ impl Prepared {
             let rings = &self.polygons[self.rings[first].polygon];
             let (near, others) = rest.split_at(rest.partition_point(|&ring| ring < rings.end));
             rest = others;
-            // Without its outer ring there is nothing of a polygon.
+            // Without its outer ring a polygon is empty.
             let outer = (first == rings.start).then(|| self.rings[first].tree.around()).flatten();
             let Some(outer) = outer else { continue };
             if window.contains(outer.min()) && window.contains(outer.max()) {
@@ -247,7 +247,7 @@ impl Guide for Prepared {
             }
             !beyond
         });
-        // Once around from the start; the run that it lies in is parted there.
+        // Once around from the start; the run that contains the start is divided there.
         let count = ring.len();
         let first = near.partition_point(|run| run.end <= start);
         let (before, after) = (near[..near.len().min(first + 1)].to_vec(), near.split_off(first));
@@ -275,7 +275,7 @@ impl PreparedRing {
     }
 }
 
-/// Brings things that are near one another together: halves along the longer side, halves of those, ….
+/// Sorts nearby items together: halves along the longer side, halves of those, …
 fn gather(things: &mut [usize], middle: &impl Fn(usize) -> DVec2) {
     let around = Rect::around(things.iter().map(|&thing| middle(thing)));
     let Some(size) = around.map(|r| r.size()).filter(|_| things.len() > Tree::RUN) else { return };

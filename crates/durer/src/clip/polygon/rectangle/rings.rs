@@ -28,9 +28,9 @@ pub(super) struct Clipper<P> {
     points: Vec<DVec2>,
     point_sources: P,
     chains: Vec<Chain>,
-    /// Rings that lie strictly inside or touch the border in one point from within.
+    /// Rings that are strictly inside or touch the border in one point from within.
     islands: Vec<Range<usize>>,
-    /// True if an odd number of rings goes round the whole window.
+    /// True if an odd number of rings surrounds the whole window.
     surrounded: bool,
 }
 
@@ -138,8 +138,8 @@ impl<P: Provenance> Clipper<P> {
         self.output.end_polygon();
     }
 
-    /// Clips a polygon that crosses the window's border or surrounds the window, given by its outer ring
-    /// and those of its holes that do not lie outside of the window.
+    /// Clips a polygon that crosses the window's border or surrounds the window, given by its outer ring and its holes
+    /// that are not outside the window.
     pub(super) fn cut(
         &mut self,
         shapes: &Shapes,
@@ -420,7 +420,7 @@ impl ChainEnd {
 
 /// Returns for each chain the one that follows it on the border, given all ends in the order of the border.
 ///
-/// Where the polygon is valid exits and entries alternate; elsewhere they pair like brackets.
+/// If the polygon is valid, exits and entries alternate; otherwise they pair like brackets.
 fn followers(ends: &[ChainEnd], chains: usize) -> Vec<usize> {
     let mut next = vec![usize::MAX; chains];
     let mut taken = vec![false; chains];

@@ -1,9 +1,9 @@
-//! Boxes within boxes, to find of many things those that are near.
+//! Boxes within boxes, to find the nearby ones of many items.
 
 use crate::math::Rect;
 use std::ops::Range;
 
-/// Boxes around all things, around their halves, and so on down to runs of a few; each is followed by
+/// Boxes around all items, around their halves, and so on down to runs of a few; each is followed by
 /// those within it.
 #[derive(Debug, Clone, Default)]
 pub(in crate::clip::polygon) struct Tree {
@@ -30,7 +30,7 @@ impl Tree {
     /// examining two boxes.
     pub(in crate::clip::polygon) const RUN: usize = if cfg!(test) { 2 } else { 16 };
 
-    /// Creates a tree over things numbered from 0; `around` returns the box around some of them.
+    /// Creates a tree over items numbered from 0; `around` returns the box around some of them.
     pub(in crate::clip::polygon) fn new(
         count: usize,
         around: &impl Fn(Range<usize>) -> Option<Rect>,
@@ -40,7 +40,7 @@ impl Tree {
         tree
     }
 
-    /// Adds the box around some things and those within; the depth is the logarithm of their number.
+    /// Adds the box around some items and the boxes within; the depth is the logarithm of their number.
     fn add(
         &mut self,
         items: Range<usize>,

@@ -1,7 +1,7 @@
 //! The method as it is taught: border after border, each with the whole list of vertices.
 //!
-//! The same cuts as the chain of stages makes, so the same ring, which may begin at another vertex; four rules for
-//! the two ends of an edge, of which the first goes from the last vertex to the first.
+//! The cuts are those of the chain of stages, so the ring is the same but may begin at another vertex. Four rules cover
+//! the two ends of an edge; the first edge leads from the last vertex to the first.
 
 use super::{Vertex, cut, finite_vertices};
 use crate::Result;
@@ -9,7 +9,7 @@ use crate::clip::line::HalfSpace;
 use crate::trace::Tracer;
 use std::cmp::Ordering;
 
-/// Rule for an edge, by the sides of a border on which its two ends lie.
+/// Rule for an edge, by the sides of a border that its two ends are on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Rule {
     /// Both inside: the end is emitted.

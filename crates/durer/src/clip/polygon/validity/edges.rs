@@ -1,4 +1,4 @@
-//! Edges of rings, the pairs of them that may meet, and what these have in common.
+//! Edges of rings, the pairs of them that may meet, and their intersections.
 
 use super::{Fault, Flaw};
 use crate::clip::polygon::Shapes;
@@ -18,7 +18,7 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// Returns a fault between it and another one.
+    /// Returns a fault between it and another edge.
     pub fn flaw(&self, other: &Self, fault: Fault, at: DVec2) -> Flaw {
         let rings = [self.ring.min(other.ring), self.ring.max(other.ring)];
         Flaw { fault, at: at + 0.0, rings }
@@ -67,7 +67,7 @@ fn slabs(edges: &[Edge]) -> Vec<Vec<&Edge>> {
     let low = edges.iter().fold(f64::INFINITY, |y, e| y.min(e.a.y));
     let high = edges.iter().fold(f64::NEG_INFINITY, |y, e| y.max(e.a.y));
     let count = libm::sqrt(edges.len() as f64) as usize + 1;
-    // Halves, because the height of the whole may overflow; what is not finite goes to slab 0.
+    // Halves, because the total height may overflow; values that are not finite go to slab 0.
     let slab = |y: f64| {
         let part = (y * 0.5 - low * 0.5) / (high * 0.5 - low * 0.5) * count as f64;
         (part.max(0.0) as usize).min(count - 1)
@@ -109,7 +109,7 @@ pub fn meeting(p: &Edge, q: &Edge) -> Meeting {
     if qa == 0 && qb == 0 {
         return on_one_line(p, q);
     }
-    // The signs say that they cross, or that an end of one lies on the other.
+    // By the signs, they cross or an end of one lies on the other.
     let ends = [(qa, q.a), (qb, q.b), (pa, p.a), (pb, p.b)];
     match ends.into_iter().find(|(side, _)| *side == 0) {
         None => Meeting::Crossing,
@@ -133,7 +133,7 @@ fn on_one_line(p: &Edge, q: &Edge) -> Meeting {
     }
 }
 
-/// Returns the point nearest to where two edges cross, as far as f64 goes.
+/// Returns the crossing of two edges, as exact as f64 allows.
 pub fn crossing(p: &Edge, q: &Edge) -> DVec2 {
     let (along, other) = (p.b * 0.5 - p.a * 0.5, q.b * 0.5 - q.a * 0.5);
     let t = (q.a * 0.5 - p.a * 0.5).perp_dot(other) / along.perp_dot(other);

@@ -1,8 +1,8 @@
 //! The check that polygons are valid, exactly, with the kind and place of each fault.
 //!
-//! Valid is what the OGC's Simple Features (ISO 19125-1, 2004, 6.1.11) call so, whichever way rings run: rings that
-//! neither cross nor touch themselves, that touch one another in single points only, holes within their outer ring and
-//! not in one another, polygons outside one another, and the inside of each polygon in one piece. All
+//! Validity is defined by the OGC's Simple Features (ISO 19125-1, 2004, 6.1.11), except that rings may run either way:
+//! rings that neither cross nor touch themselves, that touch one another in single points only, holes within their
+//! outer ring and not in one another, polygons outside one another, and the inside of each polygon in one piece. All
 //! decisions are made by exact predicates.
 //!
 //! Edges are compared within horizontal slabs, in the order of their left ends. Cost: O(n √n) for n edges of usual
@@ -111,23 +111,23 @@ pub struct Flaw {
     pub fault: Fault,
     /// A point of it: of crossings the nearest to it, of rings a vertex.
     pub at: DVec2,
-    /// The two rings, by their index over all polygons; twice the same if it is one.
+    /// The two rings, by their index over all polygons; equal if the fault is within one ring.
     pub rings: [usize; 2],
 }
 
 /// Returns whether all rings are simple and apart from one another, except for allowed touches, holes lie in their
-/// outer rings and polygons outside one another. `false` too where that takes too many comparisons.
+/// outer rings and polygons outside one another. Also `false` if that takes too many comparisons.
 ///
 /// With [`Touching::AtPoints`], polygons whose inside is [divided](Fault::Divided) pass.
 pub fn is_valid(shapes: &Shapes, touching: Touching) -> bool {
     edges_are_apart(shapes, touching) && nests(shapes)
 }
 
-/// Returns the faults of polygons, sorted by rings and places; empty if they are valid. Points that come twice in a row
-/// are no fault.
+/// Returns the faults of polygons, sorted by rings and places; empty if they are valid. Repeated points are not a
+/// fault.
 ///
-/// Crossings and touches of one pair of rings come once per place. Where edges cross or overlap, it is
-/// ignored how rings lie in each other.
+/// Crossings and touches of one pair of rings are reported once per place. If edges cross or overlap, the nesting of
+/// rings is not checked.
 ///
 /// ```
 /// use durer::clip::polygon::{Shapes, validity::{Fault, flaws}};
@@ -140,7 +140,7 @@ pub fn is_valid(shapes: &Shapes, touching: Touching) -> bool {
 /// ```
 ///
 /// # Errors
-/// [`Error::NonFinite`] for a coordinate that is not finite, [`Error::Limit`] where it takes more than some thousand
+/// [`Error::NonFinite`] for a coordinate that is not finite, [`Error::Limit`] if it takes more than some thousand
 /// comparisons per edge.
 pub fn flaws(shapes: &Shapes) -> Result<Vec<Flaw>> {
     if let Some(index) = shapes.points().iter().position(|p| !p.is_finite()) {
@@ -185,7 +185,7 @@ fn sort(flaws: &mut Vec<Flaw>) {
     flaws.dedup_by(|a, b| a == b);
 }
 
-/// Returns the shapes without points that come twice in a row, and the rings that are none then.
+/// Returns the shapes without repeated points, and the rings that degenerate by their removal.
 fn without_repeats(shapes: &Shapes) -> (Shapes, Vec<Flaw>) {
     let (mut kept, mut few) = (Shapes::new(), Vec::new());
     for polygon in shapes.polygons() {
@@ -213,8 +213,8 @@ fn without_repeats(shapes: &Shapes) -> (Shapes, Vec<Flaw>) {
     (kept, few)
 }
 
-/// Returns whether no two edges cross, overlap or touch, except for allowed touches. `false` too for rings of less than
-/// three points, for points that come twice in a row, and where it takes too many comparisons.
+/// Returns whether no two edges cross, overlap or touch, except for allowed touches. Also `false` for rings of fewer
+/// than three points, for repeated points, and if there are too many comparisons.
 pub fn edges_are_apart(shapes: &Shapes, touching: Touching) -> bool {
     each_fault(shapes, touching, |_| false)
 }
@@ -232,8 +232,8 @@ pub(super) fn faults(shapes: &Shapes, touching: Touching) -> Option<Vec<usize>> 
     all.then_some(points)
 }
 
-/// Calls with the points of each fault, with none if it takes too many comparisons, as long as the
-/// answer is yes; returns whether that was to the end.
+/// Calls `tell` with the points of each fault, or without a fault if there are too many comparisons, as long as it
+/// returns true; returns whether it always did.
 fn each_fault(shapes: &Shapes, touching: Touching, mut tell: impl FnMut(&[usize]) -> bool) -> bool {
     for ring in 0..shapes.ring_count() {
         let range = shapes.ring_range(ring);
@@ -276,8 +276,8 @@ fn are_neighbours(p: &Edge, q: &Edge, size: usize) -> bool {
     p.ring == q.ring && ((p.index + 1) % size == q.index || (q.index + 1) % size == p.index)
 }
 
-/// Calls with the vertices in which rings do not only touch but pass through each other, as long as the
-/// answer is yes; returns whether that was to the end.
+/// Calls `tell` with the vertices in which rings do not only touch but pass through each other, as long as it returns
+/// true; returns whether it always did.
 fn each_passage(shapes: &Shapes, mut tell: impl FnMut(&[usize]) -> bool) -> bool {
     let of_ring = |ring| shapes.ring_range(ring).zip(ways(shapes.ring(ring)));
     let mut ways: Vec<(usize, Way)> = (0..shapes.ring_count()).flat_map(of_ring).collect();

@@ -6,7 +6,7 @@ use crate::clip::polygon::{NestingTree, Shapes};
 use crate::math::{DVec2, Rect};
 use std::cell::OnceCell;
 
-/// Number of others that overlap a ring from left to right, on average, beyond which pairs of rings are too many.
+/// Average number of rings that overlap a ring in x above which there are too many pairs.
 const CROWD: usize = if cfg!(test) { 2 } else { 512 };
 
 /// Returns whether holes lie in their outer rings, not in one another, and polygons not in one
@@ -24,8 +24,8 @@ pub fn nests(shapes: &Shapes) -> bool {
     nests
 }
 
-/// Calls for each ring that lies where it must not, as long as the answer is yes; the edges are apart. O(n log n) if
-/// there is none, O(n + k) for k pairs of rings of which one's box holds the other's, where there is.
+/// Calls `tell` for each misplaced ring, as long as it returns true; the edges do not meet. O(n log n) if no ring is
+/// misplaced, otherwise O(n + k) for k pairs of rings of which one's box contains the other's.
 pub fn each_misplaced(shapes: &Shapes, tell: impl FnMut(Flaw) -> bool) {
     let rings = rings_of(shapes);
     if !is_crowded(&rings) || !alternates(shapes) {
@@ -33,8 +33,8 @@ pub fn each_misplaced(shapes: &Shapes, tell: impl FnMut(Flaw) -> bool) {
     }
 }
 
-/// Returns whether directly around each hole is its outer ring, and directly around each outer ring a hole or nothing:
-/// then all that is around a ring comes in pairs of a hole and its outer ring, and nothing is misplaced.
+/// Returns whether each hole is directly inside its outer ring, and each outer ring directly inside a hole or nothing:
+/// then the rings around a ring are pairs of a hole and its outer ring, and no ring is misplaced.
 fn alternates(shapes: &Shapes) -> bool {
     let around = NestingTree::rings_around(shapes);
     let mut is_hole = vec![true; around.len()];
@@ -141,8 +141,8 @@ impl Ring<'_> {
     }
 }
 
-/// Calls for each ring and each other one whose box holds its box, as long as the answer is yes: in the
-/// order of their left ends, each with those that it may lie in or around.
+/// Calls `f` for each pair of rings of which one's box contains the other's, as long as it returns true; the rings are
+/// visited in the order of their left ends.
 fn each_within(rings: &[Ring<'_>], mut f: impl FnMut(usize, usize) -> bool) {
     let holds = |i: usize, j: usize| {
         let (outer, inner) = (&rings[i].around, &rings[j].around);
@@ -155,8 +155,8 @@ fn each_within(rings: &[Ring<'_>], mut f: impl FnMut(usize, usize) -> bool) {
     });
 }
 
-/// Calls for each ring, in the order of their left ends, and those before it that overlap it from left to right, as
-/// long as the answer is yes.
+/// Calls `f` for each ring, in the order of their left ends, with the rings before it that overlap it in x, as long as
+/// it returns true.
 fn each_beside(rings: &[Ring<'_>], mut f: impl FnMut(usize, &[usize]) -> bool) {
     let mut order: Vec<usize> = (0..rings.len()).collect();
     order.sort_by(|&i, &j| rings[i].around.min().x.total_cmp(&rings[j].around.min().x));

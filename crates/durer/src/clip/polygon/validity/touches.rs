@@ -6,7 +6,7 @@ use crate::clip::polygon::Shapes;
 use crate::math::{DVec2, in_sector};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A ring at one of its vertices, or at a point of an edge: where it is, comes from, and goes to.
+/// A ring at one of its vertices, or at a point of an edge: this point, the previous and the next one.
 pub type Way = [DVec2; 3];
 
 /// Returns the ways of a ring through its vertices.
@@ -47,7 +47,7 @@ impl Touches {
     pub fn add(&mut self, p: &Edge, q: &Edge, at: DVec2) {
         let ways = self.places.entry(bits(at)).or_default();
         for edge in [p, q] {
-            // At vertices the whole way is known by the shapes.
+            // At vertices, both adjacent edges are known from the shapes.
             let way = [at, edge.a, edge.b].map(bits);
             ways.insert((edge.ring, way));
         }
@@ -120,7 +120,7 @@ impl Chains {
         i
     }
 
-    /// Joins two; `false` where they hung together before.
+    /// Joins two sets; returns `false` if they were joined before.
     fn join(&mut self, i: usize, j: usize) -> bool {
         let (i, j) = (self.root(i), self.root(j));
         self.0[j] = i;

@@ -2,9 +2,10 @@
 //! it from their border.
 //!
 //! The Minkowski sum with a disc (R. Wein, *Exact and efficient construction of planar Minkowski sums using the
-//! convolution method*, ESA 2006), by the outline of a wide line: the border of a polygon as a stroke of twice the
-//! distance is joined to it or taken from it by [`overlay()`]. Class: object space. Cost: that of an overlay
-//! of the outline, O((n + k) log n) for n points of it and k crossings. Limits: arcs are polygons within a tolerance.
+//! convolution method*, ESA 2006), by the outline of a wide line: the border of a polygon is stroked with twice the
+//! distance as width, and the stroke is united with the polygon or subtracted from it by [`overlay()`]. Class: object
+//! space. Cost: an overlay of the outline, O((n + k) log n) for n points of it and k crossings. Limits: arcs are
+//! polygons within a tolerance.
 
 use super::{Cap, Join, Stroke, outline};
 use crate::clip::mask::Area;
@@ -79,7 +80,7 @@ impl Options {
     }
 }
 
-/// Returns the polygons that reach a distance farther than `shapes` do, or less far where it is below 0; the rings of
+/// Returns the polygons of `shapes` enlarged by a distance, or reduced if it is below 0; the rings of
 /// `shapes` may cross, and `rule` decides which points they enclose.
 ///
 /// ```

@@ -61,7 +61,7 @@ impl Contour {
         self.vertices.push(Vertex { at, corner: None });
     }
 
-    /// Appends the element of which these are the points after its start, and its directions at both ends.
+    /// Appends an element, given its points after the start and its directions at both ends.
     fn element(&mut self, points: &[DVec2], ends: impl Fn() -> [Option<DVec2>; 2], near: f64) {
         self.drawn = true;
         let first = self.pieces.len();
@@ -76,7 +76,7 @@ impl Contour {
         };
         let (leave, arrive) = (leave.unwrap_or(start), arrive.unwrap_or(end));
         if let Some(vertex) = self.vertices.get_mut(first) {
-            // What was before; at the start, nothing that turns.
+            // The direction before the element; at the start of the contour, its own, so that nothing turns.
             let before = vertex.corner.map_or(leave, |c| c.0);
             vertex.corner = Some((before, leave));
         }

@@ -1,4 +1,4 @@
-//! Dashes: a path cut where it has run their lengths. Lengths of curves are measured by kurbo.
+//! Dashes: a path cut at their lengths. Lengths of curves are measured by kurbo.
 
 use kurbo::{Affine, BezPath, PathEl, Point};
 
@@ -6,21 +6,21 @@ use super::{Cap, Stroke};
 use crate::curve::{Path, PathElement, chain};
 use crate::math::DVec2;
 
-/// No path gets more dashes and gaps than this; with more the line is drawn solid.
+/// Largest number of dashes and gaps of a path; with more the line is drawn solid.
 const MAX_DASHES: f64 = 100_000.0;
 
-/// Number of dashes and gaps above which lengths are those of chords, not those of curves.
+/// Number of dashes and gaps above which lengths are measured along chords, not along curves.
 const MAX_MEASURED: f64 = 2000.0;
 
 /// Paths that are longer are made this long while they are cut into dashes.
 const MEASURED: f64 = 1e4;
 
-/// Curves whose control points lie nearer together are lines: the squares of their lengths may be too small for
-/// numbers, and kurbo makes dashes of them without end.
+/// Distance of control points below which curves are treated as lines: the squares of their lengths may underflow, and
+/// kurbo would divide them into endless dashes.
 const SHORTEST: f64 = 1e-9;
 
-/// Dots — dashes without length, with round or square caps — are lines as long as this share of the width: too
-/// short to be seen, long enough to have a direction.
+/// Length of the lines that stand for dots (dashes of zero length with round or square caps), as a share of the width:
+/// too short to be seen, long enough to have a direction.
 const DOT: f64 = 1e-4;
 
 /// Returns whether a path has too many dashes and gaps and is drawn solid.
@@ -85,7 +85,7 @@ pub(super) fn dashed(
     let small = Affine::scale(scale) * source;
     let start = small.elements().first().copied();
     let mut dashed = kurbo::dash(small.into_iter(), offset * scale, &dashes).peekable();
-    // Where a dash ends within rounding of the start, what follows comes without its first point.
+    // If a dash ends at the start up to rounding, the following dash comes without its first point.
     let start = start.filter(|_| !matches!(dashed.peek(), None | Some(PathEl::MoveTo(_))));
     let mut out = Path::new();
     for element in start.into_iter().chain(dashed) {
@@ -124,8 +124,7 @@ fn with_ends(
     })
 }
 
-/// Returns the lengths of the lines through all control points, which are not less than those of the
-/// curves.
+/// Returns the total length of the lines through all control points, an upper bound of the curves' length.
 fn control_length(path: &BezPath) -> f64 {
     with_ends(path.iter())
         .map(|(start, element, end)| match element {
@@ -135,7 +134,7 @@ fn control_length(path: &BezPath) -> f64 {
         .sum()
 }
 
-/// Returns the length of one element that begins at a point; of what only moves or closes it is 0.
+/// Returns the length of one element that begins at a point; 0 for moves and closing elements.
 fn chain_length(mut at: Point, element: PathEl) -> f64 {
     let chain = match element {
         PathEl::LineTo(p) => [p, p, p],
@@ -159,9 +158,9 @@ fn lengthen_dots(dashes: &mut [f64], length: f64) {
     }
 }
 
-/// Returns the path with contours that stay in one point made a line as long as a dot, along x, as SVG wants
-/// it; what only moves makes no dot. Without a width there are no dots: kurbo would begin the next dash at
-/// the origin.
+/// Returns the path with each contour that stays in one point replaced by a line of a dot's length along x, as SVG
+/// requires; contours with only moves give no dot. Without a width there are no dots: kurbo would begin the next dash
+/// at the origin.
 fn with_dots(path: &BezPath, width: Option<f64>) -> BezPath {
     let mut out = BezPath::new();
     let starts = |e: &PathEl| matches!(e, PathEl::MoveTo(_));

@@ -2,14 +2,15 @@
 //!
 //! Thick primitives as polygons (J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes, *Computer Graphics: Principles
 //! and Practice*, 2nd ed. 1990, §3.9), with the joins, caps and dashes of PostScript and SVG. Class: object space.
-//! Cost: O(n) points for n pieces of the flattened path, and those of its arcs.
+//! Cost: O(n) points for n pieces of the flattened path, plus the points of its arcs.
 //!
 //! The path is flattened first. A stroke is the union of one rectangle for each piece, one wedge for each corner, and
 //! the caps. Its outline walks along one side of the path and back along the other, and on the inner side of a corner
-//! through the corner itself: then the outline's winding number is a sum of those of rectangles and wedges that
-//! all turn the same way, so the non-zero rule leaves no hole, however short pieces are beside the width. Where
-//! both pieces are long enough the offset lines meet in one point instead. How many points an arc gets and when two
-//! offset lines meet is durer's own; lengths of curves, which dashes need, are measured by kurbo.
+//! through the corner itself: then the outline's winding number is the sum of the winding numbers of rectangles and
+//! wedges that all turn the same way, so the non-zero rule leaves no hole, however short the pieces are compared with
+//! the width. Where both pieces are long enough the offset lines meet in one point instead. The number of points of an
+//! arc and the rule for when two offset lines meet are durer's own; lengths of curves, which dashes need, are measured
+//! by kurbo.
 
 pub mod buffer;
 mod contour;
@@ -66,7 +67,7 @@ pub enum Cap {
 /// Shape of a stroke where two pieces meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Join {
-    /// Sharp corner, cut off where it would be longer than the miter limit.
+    /// Sharp corner, bevelled if it would exceed the miter limit.
     #[default]
     Miter,
     /// Part of a circle.
@@ -139,7 +140,7 @@ impl Step {
 pub enum Part {
     /// The end of a piece's offset line, or where two of them meet.
     Side,
-    /// The way through the vertex, on the inner side of a corner beside short pieces.
+    /// The path through the vertex, on the inner side of a corner beside short pieces.
     Pivot,
     /// A join on the outer side of a corner.
     Join,
@@ -147,9 +148,9 @@ pub enum Part {
     Cap,
 }
 
-/// Returns the outline of a stroke, to be filled by the non-zero rule; its distance from the exact
-/// outline is at most `tolerance`. Elements with points that are not finite are left out; coordinates
-/// and widths beyond ±10¹⁵ count as that.
+/// Returns the outline of a stroke, to be filled by the non-zero rule; its distance from the exact outline is at most
+/// `tolerance`. Elements with points that are not finite are left out; coordinates and widths beyond ±10¹⁵ are clamped
+/// to that.
 ///
 /// ```
 /// use durer::curve::Path;
@@ -174,7 +175,8 @@ pub fn outline(
     outline_in_parts(path, stroke, tolerance, t, |_| {})
 }
 
-/// Returns the outline as [`outline`] does; `part` is shown what there is after each contour or dash, and may take it.
+/// Returns the outline as [`outline`] does; `part` is called with the outline after each contour or dash and may take
+/// it.
 ///
 /// # Errors
 /// As [`outline`].
@@ -225,7 +227,7 @@ pub fn has_too_many_dashes(path: &Path, stroke: &Stroke) -> bool {
     dashes::are_too_many(elements(path), stroke)
 }
 
-/// Reports the steps of the outline of one straight line, whose corners are those of its ends.
+/// Reports the steps of the outline of one straight line, whose corners are at its ends.
 fn trace(outline: &Contours, t: &mut impl Tracer<Step>) {
     for (i, point) in outline.points().iter().enumerate() {
         if i == 0 {

@@ -1,7 +1,7 @@
-//! The parts of a path whose stroke can reach a window, for paths that go far beyond it.
+//! The parts of a path whose stroke can reach a window, for paths that extend far beyond it.
 //!
-//! Curves that are many times as large as the window have thousands of chords, hardly any of which are seen: halved
-//! until their pieces are small or away from the window, they cost what is seen of them.
+//! Curves many times larger than the window have thousands of chords, of which hardly any are visible. Halving curves
+//! until their pieces are small or away from the window makes the cost depend on the visible part.
 
 use super::{Stroke, elements, reach};
 use crate::curve::{Path, PathElement};
@@ -17,8 +17,8 @@ const MOST_HALVINGS: u32 = 40;
 /// A piece of a contour: where it begins, and the element itself.
 type Piece = (DVec2, PathElement);
 
-/// Returns the parts of a path of which the stroke may reach the window, which is in the space of the path; `None` if
-/// that saves nothing, and for dashes, which have to be counted from the start.
+/// Returns the parts of a path whose stroke may reach the window, which is in the path's space; `None` if that saves
+/// nothing, or if the stroke has dashes, which must be counted from the start.
 ///
 /// Contours are cut where they are away from the window, and have ends there.
 pub(crate) fn parts_near(path: &Path, stroke: &Stroke, window: Rect) -> Option<Path> {
@@ -38,7 +38,7 @@ pub(crate) fn parts_near(path: &Path, stroke: &Stroke, window: Rect) -> Option<P
                 (start, at) = (p, p);
             }
             PathElement::Close => {
-                // What has no length is a dot.
+                // A path without length is a dot.
                 if at != start || cut.pieces.is_empty() {
                     cut.add((at, PathElement::LineTo(start)));
                 }

@@ -1,11 +1,11 @@
 //! The walk along the sides of a contour, which makes the outline.
 //!
-//! Between a vertex and the next, outline and piece enclose a strip that turns the same way on both sides; where
-//! the outline passes through vertices its strips are the rectangles of the pieces. On the inner side of a corner
-//! the two offset lines may be cut where they meet as long as that takes no more than half of either piece: what
-//! is cut from one strip is nearer to the other piece and in its rectangle, so by going on from nearer to nearer every
-//! point of the stroke is found in a strip that was not cut there. Within curves the wedges on the inner side belong to
-//! the stroke, too: what the pen sweeps beyond the centre of a tight bend is near to nothing but the ends of the curve.
+//! Between a vertex and the next, outline and piece enclose a strip that turns the same way on both sides; where the
+//! outline passes through vertices its strips are the rectangles of the pieces. On the inner side of a corner the two
+//! offset lines may be cut where they meet as long as that removes at most half of either piece: the area cut from one
+//! strip is nearer to the other piece and inside its rectangle, so repeating the argument, every point of the stroke is
+//! in some strip that was not cut there. Within curves the wedges on the inner side belong to the stroke, too: the area
+//! that the pen sweeps beyond the centre of a tight bend is near only to the ends of the curve.
 
 use super::contour::{Contour, Piece, Vertex};
 use super::{Cap, Join, Part, Step, Stroke};
@@ -13,7 +13,7 @@ use crate::curve::Contours;
 use crate::math::DVec2;
 use crate::trace::Tracer;
 
-/// A full turn gets no more points than this: with widths of millions of pixels the tolerance gives way.
+/// Largest number of points of a full turn: with widths of millions of pixels the tolerance is exceeded instead.
 const MAX_ARC: f64 = 8192.0;
 
 /// Tool that draws contours.
@@ -35,7 +35,7 @@ pub(super) struct Pen<'a, T> {
 impl<'a, T: Tracer<Step>> Pen<'a, T> {
     pub fn new(stroke: &Stroke, tolerance: f64, out: &'a mut Contours, t: &'a mut T) -> Self {
         let half = stroke.width / 2.0;
-        // The points of arcs lie outside: their chords touch the circle.
+        // The points of arcs are outside the circle: their chords touch it.
         let cosine = half / (half + tolerance);
         let arc = (2.0 * libm::acos(cosine)).max(std::f64::consts::TAU / MAX_ARC);
         let cosine = libm::cos(arc / 2.0);
@@ -53,7 +53,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         }
     }
 
-    /// Appends the outline of a contour, which is left in any direction, and shows what there is to `part`.
+    /// Appends the outline of a contour, which may be changed, and passes the outline so far to `part`.
     pub fn stroke(&mut self, contour: &mut Contour, part: &mut impl FnMut(&mut Contours)) {
         self.append(contour);
         part(&mut *self.out);
@@ -160,7 +160,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         }
     }
 
-    /// Returns whether a turn is so small that its joins look all the same.
+    /// Returns whether a turn is so small that all joins look the same.
     fn is_smooth(&self, before: DVec2, after: DVec2) -> bool {
         2.0 <= (1.0 + before.dot(after)) * self.secant
     }
@@ -183,7 +183,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
 
     /// Draws the inner side of a bend within a curve that is tighter than the width: the pen's edge, which turns on
     /// from one direction to the other, sweeps a wedge beyond the centre of the bend, with a part of a circle as its
-    /// far side. It is added the way that all the rest turns.
+    /// far side. It is added in the direction in which all the rest turns.
     fn sweep(&mut self, p: DVec2, from: DVec2, to: DVec2) {
         let wedge = |pen: &mut Self| {
             pen.push(p, p + pen.left(from), Part::Side);

@@ -7,13 +7,13 @@ use crate::visibility::object::{Bodies, Edges, Faces};
 
 /// Orientation of a scene's faces; triangles that are parts of one polygon count as one.
 ///
-/// A closed piece of surface that is turned inwards and lies within another closed one bounds a cavity, and is right.
-/// Pieces with a border stay as most of their triangles are, and those that cannot be oriented as they are.
+/// A closed piece of surface that faces inwards and is within another closed one bounds a cavity, and is right. Pieces
+/// with a border take the direction of most of their triangles; pieces that cannot be oriented stay unchanged.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SceneOrientation {
     /// Number of closed pieces.
     pub closed: u64,
-    /// Number of closed pieces most of whose faces are turned inwards, but for cavities.
+    /// Number of closed pieces, except cavities, most of whose faces are turned inwards.
     pub inside_out: u64,
     /// Number of faces that are turned otherwise than most of their piece.
     pub flipped: u64,
@@ -21,8 +21,7 @@ pub struct SceneOrientation {
     turned: Vec<bool>,
 }
 
-/// The most boxes and triangles that are examined for whether pieces are within others; what is left then counts as
-/// cavities.
+/// Limit on the boxes and triangles examined to find pieces within others; pieces left beyond it count as cavities.
 const MOST_TESTS: u64 = 1 << 26;
 
 impl SceneOrientation {
@@ -73,9 +72,8 @@ impl SceneOrientation {
         !self.turned.contains(&true)
     }
 
-    /// Turns the faces of the scene that have to be turned, which must be the one of [`Self::of`]. Vertex normals that
-    /// look away from the new front are reversed. Instances of one mesh that have to be turned differently get meshes
-    /// of their own.
+    /// Turns the faces that need it in the scene, which must be the one given to [`Self::of`]. Vertex normals that look
+    /// away from the new front are reversed. Instances of one mesh that must be turned differently get separate meshes.
     pub fn apply(&self, scene: &mut Scene) {
         let mut next = 0;
         let mut made: Vec<Option<(Vec<bool>, usize)>> = vec![None; scene.meshes.len()];
@@ -86,7 +84,7 @@ impl SceneOrientation {
             next += count;
             match &made[mesh] {
                 Some((turned, place)) if *turned == own => scene.instances[instance].mesh = *place,
-                // The first instance changes the mesh itself, later ones copies of what it was.
+                // The first instance changes the mesh itself, later ones change copies of the original.
                 Some((turned, place)) => {
                     let mut copy = scene.meshes[*place].clone();
                     let back: Vec<bool> = turned.iter().zip(&own).map(|(a, b)| a != b).collect();
@@ -150,7 +148,7 @@ impl<'a> Pieces<'a> {
         Self { faces, bodies, items, torn, boxes }
     }
 
-    /// Returns whether a piece lies within an odd number of closed ones. `tests` counts triangles.
+    /// Returns whether a piece is within an odd number of closed ones. `tests` counts triangles.
     fn is_cavity(&self, piece: usize, tests: &mut u64) -> bool {
         let Some(own) = &self.boxes[piece] else { return false };
         let corner = self.items[piece].first().and_then(|item| self.faces.corners(*item));

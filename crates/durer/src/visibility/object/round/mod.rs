@@ -1,11 +1,11 @@
 //! Cylinders among the faces: holes, pins, rounded edges.
 //!
-//! Region growing, as in Paul J. Besl and Ramesh C. Jain, *Segmentation through variable-order surface
-//! fitting*, IEEE PAMI, 1988, on triangles: two neighbours that turn a little give a first cylinder, which
-//! takes in neighbours whose corners lie on it, and is fitted anew whenever it has doubled. The vertices of
-//! a mesh lie on the surface that it approximates, so corners must lie on it nearer than the middles of the
-//! mesh's own facets do. Bands of spheres and tori look like short cylinders; they are known by what goes
-//! on smoothly beyond their rims. O(n).
+//! Region growing, as in Paul J. Besl and Ramesh C. Jain, *Segmentation through variable-order surface fitting*, IEEE
+//! PAMI, 1988, on triangles: two neighbours at a small angle give a first cylinder, which absorbs neighbours whose
+//! corners lie on it, and is refitted whenever its size has doubled. The vertices of a mesh lie on the surface that it
+//! approximates, so corners must be nearer to the cylinder than the middles of the mesh's own facets. Bands of spheres
+//! and tori look like short cylinders; they are recognized because the surface continues smoothly beyond their rims.
+//! O(n).
 
 mod fit;
 
@@ -68,16 +68,16 @@ const DIGITS: f64 = 1e-5;
 /// Part cylinders cover at least this angle, and have this many facets.
 const LEAST_ANGLE: f64 = 25.0 * std::f64::consts::PI / 180.0;
 const LEAST_FACETS: usize = 4;
-/// A part cylinder has at least so much of the rectangle that it would be if it were unrolled.
+/// A part cylinder fills at least this part of the rectangle that it would be if it were unrolled.
 const WHOLE: f64 = 0.8;
-/// A triangle that has been in vain in this many regions is in none.
+/// Number of failed regions after which a triangle is not tried again.
 const TRIES: u8 = 8;
 /// Number of triangles that give a first cylinder if two neighbours do not.
 const PATCH: usize = 14;
-/// Edges whose direction has at most so much, or at least so much, of the axis run across, or along.
+/// Edges whose direction has at most this much of the axis run across; `LENGTHWISE` is the bound for edges along it.
 const ACROSS: f64 = 0.25;
 const LENGTHWISE: f64 = 0.98;
-/// A cylinder is at least so much longer than the facets that go on smoothly beyond its rim.
+/// A cylinder is at least this many times as long as the facets that continue smoothly beyond its rim.
 const LONGER: f64 = 2.5;
 
 /// Finds the cylinders of a scene's faces, in the order of their first triangles.
@@ -157,7 +157,7 @@ impl Finder<'_> {
     /// Grows a region from some triangles and returns it, if it is a cylinder.
     fn tried(&mut self, edges: &Edges, items: Vec<u32>, turn: f64) -> Option<Cylinder> {
         let Some(region) = self.seed(&items, turn) else {
-            // Two neighbours may be so by chance; many that are not cylinder stand for what is around them.
+            // Two neighbours may fail by chance; a larger failed region marks all its triangles.
             if items.len() > 2 {
                 self.mark(&items, false);
             }
@@ -169,7 +169,7 @@ impl Finder<'_> {
         cylinder
     }
 
-    /// Records that triangles have found their place, or were tried in a region in vain.
+    /// Records that triangles were taken into a region, or that their region failed.
     fn mark(&mut self, items: &[u32], taken: bool) {
         for item in items {
             let tries = &mut self.tries[*item as usize];
@@ -177,8 +177,8 @@ impl Finder<'_> {
         }
     }
 
-    /// Returns the triangles around two that turn little against them; `None` if they are no more. Where triangles are
-    /// tilted, two normals do not determine the axis.
+    /// Returns the triangles around two whose normals differ little from theirs; `None` if there are no more than the
+    /// two. Where triangles are tilted, two normals do not determine the axis.
     fn patch(&self, edges: &Edges, pair: [u32; 2]) -> Option<Vec<u32>> {
         let normal = self.normal(pair[0])?;
         let mut items = pair.to_vec();
@@ -196,7 +196,7 @@ impl Finder<'_> {
         (items.len() > 3).then_some(items)
     }
 
-    /// Returns the triangles that share an edge with one, and no more than two with it.
+    /// Returns the triangles that share an edge with a triangle, leaving out edges of more than two triangles.
     fn neighbours(&self, edges: &Edges, item: u32) -> Vec<u32> {
         let mut found = Vec::with_capacity(3);
         let Some(t) = self.faces.triangle(item) else { return found };
@@ -271,7 +271,7 @@ impl Finder<'_> {
         region
     }
 
-    /// Returns whether a triangle goes on as the region does, of which a neighbour is a part.
+    /// Returns whether a triangle continues the region that its neighbour belongs to.
     fn belongs(&self, region: &Region, neighbour: u32, item: u32) -> bool {
         let Some(corners) = self.faces.corners(item).filter(|_| self.is_free(item)) else {
             return false;
@@ -320,9 +320,9 @@ impl Finder<'_> {
         })
     }
 
-    /// Returns whether the surface goes on smoothly beyond most of the rims, in facets about as long as the
-    /// region, or beyond a border that runs neither along nor across: then it is a part of something that is round
-    /// in two directions.
+    /// Returns whether the surface continues smoothly beyond most of the rims, in facets about as long as the region,
+    /// or beyond a border that runs neither along nor across the axis: then the region is part of a surface curved in
+    /// two directions.
     fn goes_on(&self, edges: &Edges, region: &Region, length: f64) -> bool {
         let (mut smooth, mut rims, mut ragged, mut all) = (0.0, 0.0, 0.0, 0.0);
         for &item in &region.items {
@@ -350,7 +350,7 @@ impl Finder<'_> {
         smooth > 0.5 * rims || ragged > 0.15 * all
     }
 
-    /// Returns whether two neighbours turn no more than facets of a round part do.
+    /// Returns whether the angle between two neighbours is at most that between facets of a round part.
     fn is_smooth(&self, a: u32, b: u32) -> bool {
         let both = self.normal(a).zip(self.normal(b));
         both.is_some_and(|(n, m)| n.dot(m) > libm::cos(LARGEST_TURN.to_radians()))
@@ -408,8 +408,7 @@ impl Region {
     }
 }
 
-/// Returns the middle of the part of a circle that lies between directions, in order, that are neighbours,
-/// and its angle.
+/// Returns the middle and the angle of the part of a circle that sorted directions cover without large gaps.
 fn covered(directions: &[f64]) -> (f64, f64) {
     let (Some(first), Some(last)) = (directions.first(), directions.last()) else {
         return (0.0, 0.0);
@@ -446,7 +445,7 @@ fn joined(found: Vec<Cylinder>, extent: f64) -> Vec<Cylinder> {
     whole
 }
 
-/// Returns whether two cylinders have one axis and side, and lie beside each other along it.
+/// Returns whether two cylinders have the same axis and side and are adjacent along the axis.
 fn are_one(a: &Cylinder, b: &Cylinder, extent: f64) -> bool {
     let axis = a.axis();
     let surface = Surface { point: a.ends[0], axis, radius: a.radius };

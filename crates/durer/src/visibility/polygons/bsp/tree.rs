@@ -138,8 +138,7 @@ impl Tree {
         self.pieces.face(piece)
     }
 
-    /// Returns the corners of a piece; where it was concave, they may be joined by edges to and fro
-    /// along a cut.
+    /// Returns the corners of a piece; if it was concave, parts may be joined by doubled edges along a cut.
     pub fn corners(&self, piece: u32) -> &[DVec3] {
         self.pieces.corners(piece)
     }

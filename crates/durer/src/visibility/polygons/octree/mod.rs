@@ -6,9 +6,9 @@
 //! it; a cell all of whose pixels are filled is left out with everything in it. Cost: O(cells and parts of faces in them, and
 //! pixels of these); memory O(4/3 pixels + parts of faces in cells).
 //!
-//! Deviations: the paper's cells are full or empty, here the smallest ones hold faces, which are compared by their depths; the
-//! eye looks along z in parallel. That pixels are filled is known from a pyramid, the paper's quadtree. Cells do not have their
-//! upper borders, so that of equally near faces the first one is seen, as in the family.
+//! Deviations: the paper's cells are full or empty, here the smallest ones hold faces, which are compared by their
+//! depths; the eye looks along z in parallel. A pyramid, the paper's quadtree, records filled pixels. Cells do not
+//! include their upper borders, so that among equally near faces the first one is visible, as in the family.
 
 pub(super) mod tree;
 
@@ -55,7 +55,7 @@ pub struct Options {
     pub capacity: usize,
     /// Divisions of a cell by a cell at most.
     pub depth: u32,
-    /// The most faces that all cells may hold together, counted in each of them.
+    /// Largest total number of faces in all cells; a face counts in each of its cells.
     pub max_parts: usize,
 }
 
@@ -124,7 +124,7 @@ impl Step {
 /// Returns the picture that a list of steps leads to.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     let mut items = screen.plane(NO_ITEM)?;
     for step in steps {
@@ -138,7 +138,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
 /// Returns the index of the nearest face at each pixel's centre, of equally near ones the first.
 ///
 /// # Errors
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice; [`Limit`](crate::Error::Limit) for
+/// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice; [`Limit`](crate::Error::Limit) for
 /// more parts of faces than the options allow.
 pub fn items(
     faces: &[Face],
@@ -202,7 +202,7 @@ impl Picture<'_> {
 
     /// Fills the pixels of a smallest cell that are not filled by the nearest of its faces.
     fn fill(&mut self, cell: &Cell, root: &Cell, t: &mut impl Tracer<Step>) {
-        // A border of the root is none: rounding may put a face just beyond it.
+        // Borders of the root are ignored, because rounding may place a face just beyond them.
         let is_in = |p: DVec3| {
             let above = p.cmpge(cell.low) | cell.low.cmpeq(root.low);
             (above & (p.cmplt(cell.high) | cell.high.cmpeq(root.high))).all()
@@ -222,7 +222,7 @@ impl Picture<'_> {
                         continue;
                     }
                     let best = nearest.entry([row, column]).or_insert((point.z, face));
-                    // Faces of a cell come in their order.
+                    // Faces of a cell are in order.
                     if point.z < best.0 {
                         *best = (point.z, face);
                     }

@@ -7,7 +7,7 @@ use crate::{Error, Result};
 /// Part of a cell's size by which a face may pass beside it and still be in it, so that rounding loses none.
 const SLACK: f64 = 1e-9;
 
-/// The cells that a face is put into.
+/// The cells that hold a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Holding {
     /// The smallest cell that holds all of it.
@@ -19,13 +19,13 @@ pub enum Holding {
 /// When to divide.
 #[derive(Debug, Clone, Copy)]
 pub struct Division {
-    /// Cells that a face is put into.
+    /// Cells that hold a face.
     pub holding: Holding,
     /// A cell with more faces than this is divided.
     pub capacity: usize,
     /// Divisions of a cell by a cell at most.
     pub depth: u32,
-    /// The most faces that all cells may hold together, counted in each of them.
+    /// Largest total number of faces in all cells; a face counts in each of its cells.
     pub most: usize,
 }
 
@@ -44,7 +44,7 @@ pub struct Octree {
     pub cells: Vec<Cell>,
 }
 
-/// Returns the box around a face; its depths are those of the plane, too, which is through the corners but for rounding.
+/// Returns the box around a face; its depths include those of the plane, which differ from the corners' by rounding.
 pub fn bounds(face: &Face) -> [DVec3; 2] {
     let corners = face.corners().iter();
     let around = |[low, high]: [DVec3; 2], corner: &DVec3| {
@@ -58,7 +58,7 @@ impl Octree {
     /// Divides the box around all faces.
     ///
     /// # Errors
-    /// [`Error::Limit`] where parts of faces are in too many cells.
+    /// [`Error::Limit`] if parts of faces are in too many cells.
     pub fn new(faces: &[Face], division: &Division) -> Result<Self> {
         let boxes: Vec<[DVec3; 2]> = faces.iter().map(bounds).collect();
         let join = |[a, b]: [DVec3; 2], [c, d]: &[DVec3; 2]| [a.min(*c), b.max(*d)];

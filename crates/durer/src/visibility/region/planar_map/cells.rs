@@ -1,6 +1,5 @@
-//! The picture in cells, each with the faces over it from front to back, up to the first that covers it
-//! all: so every question asks only what is near, and nothing behind what hides everything (after
-//! Warnock 1969).
+//! The picture in cells, each with the faces over it from front to back, up to the first that covers the whole cell: so
+//! each query examines only nearby faces, and none behind a face that hides everything (after Warnock 1969).
 
 use super::faces::{CLEARLY, Face, Place, float};
 use crate::math::DVec2;
@@ -115,7 +114,7 @@ impl Cells {
         float(self.min) + DVec2::new((column << self.shift) as f64, (row << self.shift) as f64)
     }
 
-    /// Returns how much of a closed cell lies under a face; exact.
+    /// Returns how much of a closed cell a face covers; exact.
     fn over(&self, face: &Face, column: usize, row: usize) -> Over {
         let size = 1i64 << self.shift;
         let x = i64::from(self.min.x) + ((column as i64) << self.shift);
@@ -192,8 +191,7 @@ impl Cells {
         }
     }
 
-    /// Returns the face that is seen at a point: the nearest, of equally near ones that of the
-    /// lowest item.
+    /// Returns the face that is visible at a point: the nearest, and of equally near ones the one with the lowest item.
     pub fn nearest(&self, faces: &[Face], p: DVec2) -> Option<u32> {
         let cell = self.at(p)?;
         let mut best: Option<(f64, f64, u32)> = None;

@@ -99,7 +99,7 @@ fn in_cell(faces: &[Face], cells: &Cells, cell: usize, pairs: &mut Vec<(u32, u32
     }
 }
 
-/// Returns whether neither face lies on one side of the other, and their pictures overlap.
+/// Returns whether neither face is on one side of the other, and their projections overlap.
 fn may_penetrate(f: &Face, g: &Face) -> bool {
     let ((f0, f1), (g0, g1)) = (f.bounds(), g.bounds());
     let apart = (f1.x <= g0.x) | (g1.x <= f0.x) | (f1.y <= g0.y) | (g1.y <= f0.y);
@@ -116,7 +116,7 @@ fn shared(f: &Face, g: &Face) -> usize {
     f.corners.into_iter().zip(f.depths).filter(|v| has(v)).count()
 }
 
-/// Returns whether some corner of `f` lies before the plane of `g`, and some behind it.
+/// Returns whether `f` has corners both in front of and behind the plane of `g`.
 fn straddles(f: &Face, g: &Face) -> bool {
     let tolerance = f.error + g.error;
     let over = |k: usize| f.depths[k] - g.plane.depth(float(f.corners[k]));
@@ -179,7 +179,7 @@ const GAP: f64 = 1e-3;
 /// Number of edges in one task.
 const EDGES: usize = 1 << 13;
 
-/// A part of an edge that something lies before, and how far the visible part beside it reaches in.
+/// A hidden part of an edge, and how far the visible parts beside it extend into it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Hidden {
     from: f64,
@@ -203,7 +203,7 @@ pub fn visible(edges: &[Edge], faces: &[Face], cells: &Cells) -> Vec<(Place, Pla
     pieces.into_iter().flatten().collect()
 }
 
-/// Finds the parts of an edge, as parts of its length, that lie behind faces.
+/// Finds the parts of an edge, as parts of its length, that are behind faces.
 fn hidden_parts(edge: &Edge, faces: &[Face], cells: &Cells, hidden: &mut Vec<Hidden>) {
     hidden.clear();
     let (a, b) = (float(edge.a), float(edge.b));
@@ -266,7 +266,7 @@ fn inside(edge: &Edge, face: &Face) -> Option<Hidden> {
     (part.from < part.to).then_some(part)
 }
 
-/// Keeps of a part what lies clearly behind the face; returns whether anything is left.
+/// Reduces a part to the section clearly behind the face; returns whether anything is left.
 #[inline]
 fn behind(edge: &Edge, face: &Face, a: DVec2, b: DVec2, part: &mut Hidden) -> bool {
     let (from, to) = (part.from, part.to);
@@ -309,7 +309,7 @@ fn visible_parts(edge: &Edge, hidden: &mut [Hidden], pieces: &mut Vec<(Place, Pl
     let mut start = Some(0.0);
     let mut rest = hidden.iter().peekable();
     while let Some(&first) = rest.next() {
-        // All that follows without a gap is one part; who begins or ends it tells how far to reach in.
+        // Parts without gaps are one; its first and last ones determine how far the visible parts extend into it.
         let mut whole = first;
         while let Some(next) = rest.next_if(|next| next.from <= whole.to + gap) {
             if next.from <= whole.from + least {

@@ -16,11 +16,11 @@ pub type Place = Point<i32>;
 /// every predicate on the grid is exact.
 pub const REACH: f64 = ((1 << 29) - 64) as f64;
 
-/// Two depths closer than this part of themselves are equal: what a few roundings in f64 leave.
+/// Relative difference below which two depths are equal: the effect of a few roundings in f64.
 const ROUNDING: f64 = 1e-12;
 
-/// Factor on the errors of depths by which hidden points lie behind: an edge that ends, its corners being rounded,
-/// before it meets the next would join separate faces.
+/// Factor on the errors of depths by which hidden points must be behind: an edge that, due to rounded corners, ended
+/// before the next one would join separate faces.
 pub const CLEARLY: f64 = 4.0;
 
 /// Conversion between the grid, the plane of the picture and the world.
@@ -77,7 +77,7 @@ impl Frame {
     /// Returns the grid coordinates and depth of a point in clip space, w > 0.
     pub fn project(&self, p: DVec4) -> (DVec2, f64) {
         let ndc = p.truncate() / p.w;
-        // What grows evenly along a line of the picture: z, or the inverse of the distance.
+        // The quantity that is linear along a line of the picture: z, or the inverse of the distance.
         let depth = if self.perspective { -1.0 / p.w } else { ndc.z };
         let at = ndc.truncate().clamp(DVec2::NEG_ONE, DVec2::ONE) * self.half;
         (at, depth)
@@ -176,7 +176,7 @@ impl Face {
         cross(self.corners[0], self.corners[1], self.corners[2])
     }
 
-    /// Returns the depth over a point of the grid, within that of the corners.
+    /// Returns the depth over a point of the grid, clamped to the range of the corners.
     #[inline(always)]
     pub fn depth(&self, p: DVec2) -> f64 {
         self.plane.depth(p).clamp(self.near, self.far)
@@ -191,7 +191,7 @@ impl Face {
         (min, max)
     }
 
-    /// Returns whether a point lies in the triangle or on its border.
+    /// Returns whether a point is in the triangle or on its border.
     #[inline(always)]
     pub fn covers(&self, p: DVec2) -> bool {
         let [a, b, c] = self.corners.map(float);
@@ -222,7 +222,7 @@ pub fn surfaces(scene: &Scene) -> crate::Result<Vec<Run>> {
     Ok(runs(scene)?.into_iter().filter(|run| is_surface(&scene.meshes[run.mesh])).collect())
 }
 
-/// Projection of runs of triangles into the picture; those of one instance one after the other are cheapest.
+/// Projection of runs of triangles into the picture; consecutive runs of one instance are cheapest.
 pub struct Projector<'a> {
     scene: &'a Scene,
     view: &'a View,
@@ -261,7 +261,7 @@ fn is_surface(mesh: &Mesh) -> bool {
 struct Vertices {
     instance: Option<usize>,
     clip: Vec<DVec4>,
-    /// On the grid, with depth; `None` if it lies outside the picture.
+    /// On the grid, with depth; `None` if it is outside the picture.
     placed: Vec<Option<(Place, f64)>>,
 }
 

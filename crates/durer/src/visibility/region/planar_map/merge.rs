@@ -90,8 +90,8 @@ fn corners(map: &Planar, keep: impl Fn(usize) -> bool) -> Vec<bool> {
     corners
 }
 
-/// Calls `f` with the vertices of each chain of kept edges between two places where not just two of
-/// them meet; a loop without such a place comes back to its first vertex.
+/// Calls `f` with the vertices of each chain of kept edges between two vertices where other than two edges meet; a loop
+/// without such a vertex returns to its first one.
 fn chains(map: &Planar, keep: impl Fn(usize) -> bool, mut f: impl FnMut(&[u32])) {
     let mut done = vec![false; map.edges.len()];
     let kept = |v: u32| map.around(v).iter().copied().filter(|&h| keep(h as usize / 2));

@@ -1,25 +1,25 @@
 //! Visible regions by a planar map: all divisions along edges of faces at once.
 //!
 //! The regions of K. Weiler, P. Atherton, *Hidden Surface Removal Using Polygon Area Sorting*, SIGGRAPH 1977; their own
-//! way is [`crate::visibility::polygons::regions`]. Class: object space; the result does not depend on pixels. Cost:
+//! method is [`crate::visibility::polygons::regions`]. Class: object space; the result does not depend on pixels. Cost:
 //! O((n + k) log n) on usual scenes, for n faces and k visible pieces of edges; at worst every face lies over every
 //! other, O(n²).
 //!
-//! The paper divides the picture along the outline of the nearest polygon, throws away what is behind it,
-//! and goes on with the rest, again and again; polygons that penetrate are split. Here all divisions are
-//! made at once, in four steps, so that cost follows what overlaps and neighbours share their borders:
+//! The paper repeatedly divides the picture along the outline of the nearest polygon, discards the parts behind it, and
+//! continues with the rest; polygons that penetrate are split. Here all divisions are made at once, in four steps, so
+//! that the cost depends on the overlaps, and neighbours share their borders:
 //!
 //! 1. Faces are cut at the border of the picture and their corners snapped to an integer grid of 2³⁰ steps
 //!    across; from then on the sides of a point are decided exactly. Depth is linear over each face.
 //! 2. A grid of cells holds faces from front to back, as far as the first that covers the cell.
-//! 3. Each side of a face, and each segment along which two faces penetrate, is freed of the parts behind
-//!    faces: an interval for each face before it. What is left divides the picture.
+//! 3. Each side of a face, and each segment along which two faces penetrate, is reduced by the parts behind faces: an
+//!    interval for each face in front of it. The remaining pieces divide the picture.
 //! 4. The pieces are noded by snap rounding into a planar map. In each of its faces one face of the scene
 //!    is in front: found at an inner point. Neighbours with one label are joined.
 //!
-//! A piece too many does no harm, since both its sides get one label; so pieces end a little later than
-//! they must, and equally near faces do not hide each other's sides. Of equally near faces the lower item
-//! is shown. Deviations: no recursion, and polygons are triangles.
+//! An unnecessary piece does no harm, because both its sides get the same label; so pieces extend a little further than
+//! needed, and equally near faces do not hide each other's sides. Among equally near faces the lower item is shown.
+//! Deviations: no recursion, and polygons are triangles.
 //!
 //! Limits: every face hides what is behind it, whatever the alpha of its material. Corners move by up to
 //! half a grid step, 2⁻³¹ of the picture.
@@ -107,7 +107,7 @@ pub fn replay(steps: &[Step]) -> Vec<VisibleRegion> {
     steps.iter().find_map(regions).unwrap_or_default()
 }
 
-/// A part of the picture that shows one thing.
+/// A part of the picture that shows one surface or the background.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VisibleRegion {
     /// The triangle, or one of those, that it shows: index in scene order.
@@ -120,7 +120,7 @@ pub struct VisibleRegion {
 /// The picture, divided.
 ///
 /// # Guarantees
-/// A planar map: regions share their borders, point for point, and nothing lies between them.
+/// A planar map: regions share their borders, point for point, without gaps.
 #[derive(Debug)]
 pub struct VisibleMap {
     pub(super) frame: Frame,
@@ -218,7 +218,7 @@ fn look(map: &Planar, faces: &[Face], cells: &Cells) -> Vec<Option<(DVec2, u32)>
     let parts = parallel::map(tasks, |start| {
         let see = |face: usize| {
             let border = &list[starts[face] as usize..starts[face + 1] as usize];
-            // Face 0 lies around everything.
+            // Face 0 is the outside.
             let inside = (face > 0).then(|| map.inner_point(border)).flatten()?;
             Some((inside, cells.nearest(faces, inside)?))
         };

@@ -1,5 +1,5 @@
-//! The planar map of the visible edges: vertices, edges, and the faces between them, with islands given
-//! to the faces that they lie in.
+//! The planar map of the visible edges: vertices, edges, and the faces between them, with islands assigned to the faces
+//! that contain them.
 
 use super::faces::{Place, float};
 use crate::Result;
@@ -111,7 +111,7 @@ impl Planar {
         let (cycle_of, cycles) = cycles(&next);
         let areas: Vec<i128> =
             cycles.iter().map(|&half| self.doubled_area(walk(&next, half))).collect();
-        // Walks around a face come first, in order; walks around a part lie in a face or outside all.
+        // Walks around a face come first, in order; walks around a part are in a face or outside all.
         let mut face_of_cycle = vec![NONE; cycles.len()];
         let mut count = 1;
         for (face, _) in face_of_cycle.iter_mut().zip(&areas).filter(|(_, area)| **area > 0) {
@@ -131,7 +131,7 @@ impl Planar {
         let below = search.below_each(graph, parts.iter().map(|part| part.1), |_| true);
         for ((_, _, cycle), below) in parts.into_iter().zip(below) {
             let face = below.map_or(0, |half| face_of_cycle[cycle_of[half.0 as usize] as usize]);
-            // Parts further left are done before; one that is not found lies around everything.
+            // Parts further left are processed first; if none is found, the part is in the outside.
             face_of_cycle[cycle as usize] = if face == NONE { 0 } else { face };
         }
         self.face_of = cycle_of.iter().map(|&c| face_of_cycle[c as usize]).collect();

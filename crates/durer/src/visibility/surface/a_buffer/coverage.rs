@@ -11,7 +11,7 @@ use fearless_simd::{Simd, f32x4, f32x8};
 /// Offset of each of eight pixels to the right of the first.
 pub const COLUMNS: [f32; EIGHT] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
-/// A part of an edge that lies nowhere.
+/// Position of an edge part that covers no column.
 const NOWHERE: f32 = -2.0;
 
 /// Numbers of the three edges; the fourth lane has no edge.

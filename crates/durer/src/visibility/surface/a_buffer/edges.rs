@@ -52,8 +52,8 @@ impl Slopes {
 pub struct Edges<S: Simd> {
     from: [f64x4<S>; 2],
     to: [f64x4<S>; 2],
-    /// True for edges that go up. Both triangles at an edge count from its upper end, so that they
-    /// get the same numbers.
+    /// True for edges that go up. Both triangles at an edge start from its upper end, so that they get the same
+    /// numbers.
     up: mask64x4<S>,
 }
 
@@ -150,8 +150,8 @@ impl<S: Simd> Functions<S> {
         at
     }
 
-    /// Returns the sub-pixel that lies deepest within a triangle too small for its mask, whose
-    /// functions at the pixel's centre are these.
+    /// Returns the sub-pixel deepest inside a triangle that is too small for its mask, given its edge functions at the
+    /// pixel's centre.
     #[inline(always)]
     pub fn nearest(&self, simd: S, slopes: &Slopes, table: &MaskTable, at: Lanes<f32>) -> u64 {
         let scale = slopes.scale(simd).abs();
@@ -195,7 +195,7 @@ impl Slopes {
 
 /// The parts of a triangle's edges in one row, each from left to right.
 ///
-/// Where an edge is not in the row or horizontal, its part lies nowhere and has no height.
+/// An edge that is horizontal or outside the row has a part of zero height that covers no column.
 #[derive(Clone, Copy)]
 pub struct RowEdges<S: Simd> {
     pub left: f32x4<S>,

@@ -8,8 +8,8 @@ use fearless_simd::Simd;
 
 /// The triangles that touch a row anywhere, not only at pixels' centres.
 ///
-/// They come by their smallest depth, so that most hidden fragments of a pixel come after those that hide them. The
-/// picture does not depend on that order, only the work.
+/// They are ordered by smallest depth, so that most hidden fragments of a pixel follow the fragments that hide them.
+/// The order affects the amount of work, not the picture.
 pub struct Faces<'a> {
     input: &'a SurfaceInput<'a>,
     /// The first row.
@@ -19,11 +19,11 @@ pub struct Faces<'a> {
     /// Start of each row's list; one more than there are rows.
     starts: Vec<u32>,
     active: Vec<Active>,
-    /// The active ones of the row before, while the next row's are put together.
+    /// The active triangles of the previous row, while the next row's list is built.
     before: Vec<Active>,
-    /// Depth and number of those that begin in the row.
+    /// Depths and numbers of the triangles that begin in the row.
     order: Vec<u64>,
-    /// Active triangles, with the data computed for those that were used, by place; some places are free.
+    /// Slots for active triangles, each with its computed data if the triangle has been used; some slots are free.
     places: Vec<(ScreenTriangle, Face)>,
     free: Vec<u32>,
     /// True if some items come in several pieces.
@@ -41,7 +41,7 @@ pub struct Active {
     pub columns: [i32; 2],
     last_row: i32,
     triangle: u32,
-    /// Place where it is kept while it is active.
+    /// Its slot while it is active.
     place: u32,
 }
 
@@ -98,7 +98,7 @@ impl<'a> Faces<'a> {
         }
     }
 
-    /// Goes on to a row; rows come in order.
+    /// Advances to a row; rows must be in order.
     pub fn advance(&mut self, y: i32) {
         let Self { input, waiting, starts, active, before, order, places, free, .. } = self;
         std::mem::swap(active, before);

@@ -1,4 +1,4 @@
-//! Fragments: what a triangle leaves in one pixel, in lists that share one pool.
+//! Fragments, the parts of triangles in single pixels, in lists that share one pool.
 
 use super::coverage::{Areas, COLUMNS};
 use super::edges::{Edges, Functions};
@@ -21,15 +21,14 @@ pub struct Fragment {
     pub triangle: u32,
     /// Sub-pixels that it covers; it hides fragments behind these.
     pub mask: u64,
-    /// The sub-pixels that decide whether it is seen: the mask, or the nearest one where that is
-    /// empty.
+    /// The sub-pixels that decide whether it is visible: the mask, or the nearest sub-pixel if the mask is empty.
     pub seen_by: u64,
     /// The exact area it covers, 0 … 1.
     pub area: f32,
     /// Depths within the pixel.
     pub z_min: f32,
     pub z_max: f32,
-    /// True if it lets something behind it be seen.
+    /// True if surfaces behind it show through.
     pub blended: bool,
 }
 
@@ -44,7 +43,7 @@ pub struct Pool<'a> {
     nexts: Vec<u32>,
     /// The latest fragment of each pixel.
     heads: Vec<u32>,
-    /// Depth behind which nothing is visible, of each pixel, and of seven more.
+    /// For each pixel, the depth behind which nothing is visible; seven more entries pad the last vector.
     hidden_from: Vec<f32>,
     /// Coverage of the fragments of each pixel that has any.
     covers: Vec<Cover>,
@@ -72,7 +71,7 @@ impl<'a> Pool<'a> {
         (fragments + self.heads.len() * columns) as u64
     }
 
-    /// Forgets the fragments; those of pixels x0 … x1 − 1 are looked for next.
+    /// Removes all fragments and prepares for pixels x0 … x1 − 1.
     pub fn clear(&mut self, [x0, x1]: [i32; 2]) {
         let part = x0 as usize..x1 as usize;
         self.fragments.clear();
@@ -81,16 +80,15 @@ impl<'a> Pool<'a> {
         self.hidden_from[part].fill(f32::INFINITY);
     }
 
-    /// Returns a depth behind which nothing of a pixel can be seen: opaque fragments before it
-    /// cover all of the pixel. It depends on the order in which fragments came; infinite if there
-    /// is none.
+    /// Returns a depth behind which nothing is visible in a pixel because opaque fragments in front of it cover the
+    /// whole pixel. Infinite if there is no such depth. It depends on the order in which fragments were added.
     #[inline(always)]
     pub fn hidden_from(&self, x: i32) -> f32 {
         self.hidden_from[x as usize]
     }
 
-    /// Returns, as bits, in which of the first `count` of eight pixels from x on something can be seen at these
-    /// depths.
+    /// Returns, as bits, the pixels among the first `count` of eight from x on in which a fragment at these depths may
+    /// be visible.
     #[inline(always)]
     fn seen<S: Simd>(&self, simd: S, x: i32, count: i32, depths: f32x8<S>) -> u64 {
         let hidden_from = &self.hidden_from[x as usize..][..EIGHT];
@@ -98,8 +96,7 @@ impl<'a> Pool<'a> {
         seen.to_bitmask() & ((1 << count) - 1)
     }
 
-    /// Returns whether a triangle leaves nothing in a part of the row, as far as that can be said
-    /// without looking at its edges.
+    /// Returns whether a triangle certainly leaves nothing in a part of the row, judged without its edges.
     #[inline(always)]
     pub fn rejects<S: Simd>(&self, simd: S, active: &Active, part: [i32; 2]) -> bool {
         let [x0, x1] = [active.columns[0].max(part[0]), active.columns[1].min(part[1])];
@@ -253,8 +250,7 @@ impl<'a> Pool<'a> {
         true
     }
 
-    /// Returns whether all of a face is hidden in pixels x0 … x1 − 1 of row y, of which there is
-    /// one.
+    /// Returns whether a face is completely hidden in pixels x0 … x1 − 1 of row y, at least one pixel.
     fn hides(&self, t: &ScreenTriangle, face: &Face, [x0, x1]: [i32; 2], y: i32) -> bool {
         let [ox, oy] = t.origin();
         let at = |x: i32| plane_depth(t, (x - ox) as f32, (y - oy) as f32);
@@ -325,7 +321,7 @@ impl Cover {
 }
 
 impl Fragment {
-    /// Removes what is beyond the far plane; `depth` is that at the pixel's centre.
+    /// Removes the sub-pixels beyond the far plane; `depth` is the fragment's depth at the pixel's centre.
     #[cold]
     fn cut_off(&mut self, table: &MaskTable, far: &Direction, depth: f32) {
         let before = self.mask & table.half_plane(far, 1.0 - depth);

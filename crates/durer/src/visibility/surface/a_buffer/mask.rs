@@ -1,9 +1,9 @@
 //! Coverage masks by table look-up from the normalized edge function.
 //!
-//! An edge function a·u + b·v + e, with u and v from −½ to ½ in the pixel and |a| + |b| = 1, is
-//! positive in all of the pixel from e = ½ on and nowhere below −½. In between, the table has for
-//! each direction (a, b) and each e the bits of the sub-pixels on the positive side: as many as the
-//! exact area says, those with the largest function.
+//! An edge function a·u + b·v + e, with u and v from −½ to ½ in the pixel and |a| + |b| = 1, is positive in all of the
+//! pixel from e = ½ on and nowhere below −½. In between, the table has for each direction (a, b) and each e the bits of
+//! the sub-pixels on the positive side: their number follows from the exact area, and they are the ones with the
+//! largest values of the function.
 
 use super::Mask;
 use fearless_simd::{Simd, f32x8, prelude::*};
@@ -30,8 +30,8 @@ pub struct MaskTable {
     masks: Masks,
 }
 
-/// Masks by direction, then distance; upper half plane of directions only. As small as they can be, for those of
-/// sixteen bits fit the first-level cache.
+/// Masks by direction, then distance; upper half plane of directions only. Stored in the smallest integer type, because
+/// masks of sixteen bits fit in the first-level cache.
 enum Masks {
     Sixteen(Box<[u16; ENTRIES]>),
     SixtyFour(Box<[u64; ENTRIES]>),
@@ -55,7 +55,7 @@ impl Masks {
 }
 
 /// The last place among a direction's masks. The first mask has no bits and the last has all of them,
-/// so what is beyond is right too.
+/// so distances beyond the table give the right mask too.
 const LAST_DISTANCE: f32 = (DISTANCES - 1) as f32;
 
 /// A linear function on a pixel, divided by |a| + |b|: the direction's part.
@@ -96,7 +96,7 @@ impl Direction {
 pub struct Common {
     /// In the table.
     places: [[i32; EIGHT]; 3],
-    /// The bits of each that are to be turned over.
+    /// The bits to invert in each.
     turned: [u64; 3],
 }
 

@@ -8,10 +8,10 @@
 //! the depths of two overlap within the pixel, a priority mask gives the sub-pixels at which one is
 //! in front of the other, so penetrating faces meet in a clean line. Blended surfaces need no order.
 //!
-//! Deviations: opaque fragments weigh by their exact area, masks only tell what part of it is hidden;
-//! pixels with blended fragments are composed at each sub-pixel. The picture is made row by row.
-//! Depth, item and normal planes show what is at the pixels' centres, as by all methods. Colours are
-//! those at the pixels' centres, and masked surfaces are there or not by their alpha there.
+//! Deviations: opaque fragments are weighted by their exact area, and masks only determine the hidden part of it;
+//! pixels with blended fragments are composed at each sub-pixel. The picture is made row by row. As in all methods, the
+//! depth, item and normal planes hold the values at the pixels' centres. Colours and the alpha test of masked surfaces
+//! are evaluated at the pixels' centres too.
 //!
 //! Cost: O(n log n + triangles · rows + fragments + Σ k²) for k fragments that overlap in a pixel.
 //! Memory: the triangles, the table (64 kB) and at most [`Options::max_fragments`] fragments of 44
@@ -114,7 +114,7 @@ impl Default for Options {
 /// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
-    /// A part of a row begins; where it was begun before, it is begun anew with fewer columns.
+    /// Start of a part of a row; a part that was started before is restarted with fewer columns.
     Row {
         /// The row, from the top.
         y: i32,
@@ -136,7 +136,7 @@ pub enum Step {
         /// The smallest and the largest depth in the pixel.
         depths: [f32; 2],
     },
-    /// The colour of an item at a pixel's centre gets its share in the pixel.
+    /// Share of an item's colour, taken at the pixel's centre, in the pixel.
     Share {
         /// The column.
         x: i32,
@@ -145,7 +145,7 @@ pub enum Step {
         /// Share of the pixel, 0 … 1; alpha included.
         share: f32,
     },
-    /// The background gets the rest of a pixel.
+    /// Share of the background, the rest of the pixel.
     Background {
         /// The column.
         x: i32,

@@ -1,4 +1,4 @@
-//! From the fragments of a pixel to the share that each has in its colour.
+//! The share of each fragment in the colour of its pixel.
 
 use super::fragment::{Fragment, Pool, plane_depth};
 use super::mask::{Direction, MaskTable};
@@ -31,9 +31,9 @@ pub struct Place<'a> {
 }
 
 impl Pixel {
-    /// Collects the fragments of a pixel: those wholly behind opaque fragments that cover all are dropped, pieces of
-    /// one face become one fragment, the rest is sorted front to back. `in_pieces` is true if there are such pieces at
-    /// all.
+    /// Collects the fragments of a pixel: fragments wholly behind opaque ones that cover the pixel are dropped, pieces
+    /// of one face become one fragment, the rest is sorted front to back. `in_pieces` is true if there are such pieces
+    /// at all.
     #[inline(always)]
     pub fn begin(&mut self, pool: &Pool<'_>, x: i32, full: u64, in_pieces: bool) {
         let hidden_from = pool.hidden_from(x);
@@ -64,8 +64,8 @@ impl Pixel {
         sort(&mut self.fragments);
     }
 
-    /// Drops what lies wholly behind opaque fragments that cover all: unlike the depth by which the pool
-    /// leaves fragments out, that does not depend on the order in which they came.
+    /// Removes fragments that are completely behind opaque ones that cover the whole pixel. Unlike the depth at which
+    /// the pool rejects fragments, the result does not depend on the order in which they were added.
     #[inline(always)]
     fn drop_hidden(&mut self, full: u64) {
         // A fragment that hides the farthest may hide the one before it.
@@ -81,7 +81,7 @@ impl Pixel {
         }
     }
 
-    /// Returns whether something can be seen through.
+    /// Returns whether surfaces behind it show through.
     #[inline(always)]
     pub fn is_blended(&self) -> bool {
         self.fragments.iter().any(|f| f.blended)
@@ -120,11 +120,11 @@ impl Pixel {
         self.background = left;
     }
 
-    /// Returns the sub-pixels at which a fragment is seen; `twice` are those that several cover.
+    /// Returns the sub-pixels at which a fragment is visible; `twice` has the sub-pixels that several fragments cover.
     #[inline(always)]
     fn seen_of(&self, i: usize, twice: u64, place: &Place<'_>) -> u64 {
         let f = &self.fragments[i];
-        // All fragments wholly before it come before it.
+        // All fragments wholly in front of it precede it.
         let before = self.fragments[..i].iter();
         let hidden = before.fold(0, |masks, g| masks | if g.z_max < f.z_min { g.mask } else { 0 });
         let mut visible = f.seen_by & !hidden;
@@ -143,8 +143,8 @@ impl Pixel {
         visible
     }
 
-    /// Limits the background's share to that of the areas if the masks leave none; the loss of
-    /// small fragments to their neighbours goes to everything visible.
+    /// Limits the background's share to the one computed from areas if the masks leave no background. The share that
+    /// small fragments lose to their neighbours is distributed among everything visible.
     #[inline(always)]
     fn give_to_all(&mut self, left: f32) -> f32 {
         let areas: f32 = self.fragments.iter().map(|f| f.area).sum();
@@ -181,8 +181,8 @@ impl Pixel {
 
     /// Resolves fragments some of which are blended, [in order](Self::is_in_order): composes them front to back.
     ///
-    /// `alpha` says that of a fragment, by its number; it is not requested what next to nothing of is
-    /// seen.
+    /// `alpha` returns the alpha of a fragment, given its number; it is not called for fragments that are almost
+    /// invisible.
     pub fn resolve_in_order(&mut self, full: u64, mut alpha: impl FnMut(usize, &Fragment) -> f32) {
         let share_of_bit = 1.0 / full.count_ones() as f32;
         let mut through = [share_of_bit; 64];
@@ -211,7 +211,7 @@ impl Pixel {
     /// Resolves fragments some of which are blended: composes them front to back at each sub-pixel, in the order of
     /// their depths there.
     ///
-    /// `alphas` are those of the fragments, in their order; shares are of colour times alpha.
+    /// `alphas` are the fragments' alphas, in the same order; shares apply to colour times alpha.
     pub fn resolve_blended(&mut self, alphas: &[f32], place: &Place<'_>) {
         let share_of_bit = 1.0 / place.table.full().count_ones() as f32;
         self.shares.resize(self.fragments.len(), 0.0);
@@ -263,7 +263,7 @@ fn sort(fragments: &mut [Fragment]) {
     }
 }
 
-/// Up to as many are sorted by insertion.
+/// Largest number of fragments that are sorted by insertion.
 const FEW: usize = 16;
 
 #[inline(always)]
@@ -298,7 +298,7 @@ fn merge(kept: &mut Fragment, piece: &Fragment) -> bool {
     true
 }
 
-/// Returns the priority mask of two fragments: the sub-pixels at which `a` lies in front of `b`.
+/// Returns the priority mask of two fragments: the sub-pixels at which `a` is in front of `b`.
 ///
 /// Where their depths overlap, the difference of the planes is itself a linear function on the pixel,
 /// and its mask is looked up like an edge's.
@@ -308,8 +308,8 @@ fn in_front(a: &Fragment, b: &Fragment, place: &Place<'_>) -> u64 {
     if a.z_max < b.z_min {
         return full;
     }
-    // A sliver without a sub-pixel of its own is in the sub-pixels of its neighbours in the same surface: only
-    // fragments clearly in front hide it.
+    // A sliver that covers no sub-pixel lies in sub-pixels of its neighbours in the same surface, so only fragments
+    // clearly in front hide it.
     if b.z_max < a.z_min || b.mask == 0 {
         return 0;
     }

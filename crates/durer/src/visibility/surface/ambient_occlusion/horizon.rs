@@ -116,7 +116,7 @@ struct Points<S: Simd> {
     y: i32,
     place: Vec3x16<S>,
     normal: Vec3x16<S>,
-    /// True for pixels that show anything.
+    /// True for pixels that show a surface.
     shown: mask32x16<S>,
 }
 
@@ -137,7 +137,7 @@ impl<S: Simd> Points<S> {
     }
 }
 
-/// Returns the places that sixteen pixels show, relative to the eye; NaN where nothing is.
+/// Returns the points that sixteen pixels show, relative to the eye; NaN at background pixels.
 #[inline(always)]
 fn place_of<S: Simd>(simd: S, planes: &Planes, x: i32, y: i32) -> Vec3x16<S> {
     let at = planes.place(x, y);
@@ -154,7 +154,7 @@ fn place_of<S: Simd>(simd: S, planes: &Planes, x: i32, y: i32) -> Vec3x16<S> {
 const COLUMNS: [f32; LANES] =
     [0.0, 4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0, 32.0, 36.0, 40.0, 44.0, 48.0, 52.0, 56.0, 60.0];
 
-/// Sets the part of the light that gets to the pixels of a row, before it is smoothed, in the order of the planes.
+/// Sets the part of the light that reaches the pixels of a row, before smoothing, in the order of the planes.
 #[simd]
 pub fn light_of_row<S: Simd>(
     simd: S,
@@ -277,7 +277,7 @@ fn highest<S: Simd>(
         let fading = squared * around.per_radius_squared;
         let cosine = delta.dot(to_eye) / squared.sqrt();
         let above = low + (cosine - low) * (splat(1.0) - fading);
-        // False where nothing is visible: the values are NaN there.
+        // False at background pixels, whose values are NaN.
         let counts = fading.simd_lt(splat(1.0)) & squared.simd_gt(splat(0.0));
         highest = (counts & above.simd_gt(highest)).select(above, highest);
     }
@@ -315,7 +315,7 @@ pub fn mean_of_row<S: Simd>(
     }
 }
 
-/// Returns the mean of what is on the same surface as each of sixteen pixels; 1 where nothing is.
+/// Returns, for each of sixteen pixels, the mean over neighbours on the same surface; 1 at background pixels.
 #[inline(always)]
 fn mean<S: Simd>(
     simd: S,
@@ -336,7 +336,7 @@ fn mean<S: Simd>(
         for x in points.x - half..points.x + half {
             let apart = place_of(simd, planes, x, y).minus(points.place).dot(points.normal).abs();
             let weight = splat(1.0) - apart * same;
-            // Where nothing is visible the weight is NaN, which is not above 0.
+            // At background pixels the weight is NaN, which is not above 0.
             let weight = weight.simd_gt(splat(0.0)).select(weight, splat(0.0));
             let at = planes.place(x, y);
             sum += weight * f32x16::from_slice(simd, &rough[at..at + LANES]);
@@ -346,7 +346,7 @@ fn mean<S: Simd>(
     weights.simd_gt(splat(0.0)).select(sum / weights, splat(1.0))
 }
 
-/// Returns the nearest whole number; half goes away from zero.
+/// Returns the nearest whole number; halves are rounded away from zero.
 fn nearest(v: f32) -> i32 {
     // Without SSE 4.1, rounding is a function call.
     (v + 0.5_f32.copysign(v)) as i32

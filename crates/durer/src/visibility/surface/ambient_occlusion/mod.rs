@@ -1,16 +1,14 @@
-//! Ambient occlusion: how much of the light from all around gets to what a picture shows.
+//! Ambient occlusion: the part of the light from all around that reaches the surfaces in a picture.
 //!
-//! J. Jiménez, X. Wu, A. Pesce, A. Jarabo, *Practical Real-Time Strategies for Accurate Indirect
-//! Occlusion*, SIGGRAPH 2016 course: around each pixel the highest horizon is looked for in the depth
-//! plane, in a few slices that stand on the picture, and the light above it is integrated in closed
-//! form. L. Bavoil, *Deinterleaved Texturing for Cache-Efficient Interleaved Sampling*, 2013: pixels
-//! that look in the same directions are worked on together. Image space. Cost: O(pixels that show
-//! something), some 30 looks at the depth plane each, sixteen pixels at a time.
+//! J. Jiménez, X. Wu, A. Pesce, A. Jarabo, *Practical Real-Time Strategies for Accurate Indirect Occlusion*, SIGGRAPH
+//! 2016 course: around each pixel, the highest horizon is searched in the depth plane along a few slices perpendicular
+//! to the picture, and the light above it is integrated in closed form. L. Bavoil, *Deinterleaved Texturing for
+//! Cache-Efficient Interleaved Sampling*, 2013: pixels that search in the same directions are processed together. Image
+//! space. Cost: O(pixels that show a surface), about 30 reads of the depth plane each, sixteen pixels at a time.
 //!
-//! Limits: only what the picture shows takes light away, and it is as thick as it is near: what lies
-//! farther away than the radius takes nothing. Deviations: directions and steps are turned in a
-//! pattern of 4 × 4 pixels, which the mean over 4 × 4 neighbours on the same surface takes out again;
-//! how far is looked is rounded down to one of four steps between powers of two.
+//! Limits: only surfaces visible in the picture occlude, and only within the radius. Deviations: directions and steps
+//! vary in a pattern of 4 × 4 pixels, which the mean over 4 × 4 neighbours on the same surface removes; the search
+//! distance is rounded down to one of four steps between powers of two.
 
 mod horizon;
 mod planes;
@@ -39,23 +37,23 @@ pub const INFO: Info = Info {
     pseudocode: &[],
 };
 
-/// Amount of light from which on nothing is taken away: a flat floor seen from aside misses a hundredth by the steps of
-/// its depth.
+/// Amount of light that counts as unoccluded: on a flat floor at a grazing angle, the steps of the depth alone take
+/// away a hundredth.
 const OPEN: f32 = 0.98;
 
 /// Options for finding and showing occlusion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Largest distance of things that take light away, world units, above 0. A tenth to a fifth of the
+    /// Largest distance of occluders, world units, above 0. A tenth to a fifth of the
     /// model's size shows how its parts lie relative to each other.
     pub radius: f64,
     /// Share of the light that full occlusion takes away, 0…1.
     pub strength: f32,
 }
 
-/// Darkens a picture by the occlusion of its surfaces. `depth` is its window depth, 1 where nothing is, `normal` the
-/// unit normals in the world, both at the pixels' centres. Light is taken away by the square of what gets there, as
-/// painters do: where things touch it is dark, and open surfaces stay as they are.
+/// Darkens a picture by the occlusion of its surfaces. `depth` is its window depth, 1 at the background; `normal` has
+/// the unit normals, world axes; both at the pixels' centres. Colours are multiplied by the square of the light that
+/// arrives, as painters exaggerate it: contacts become dark, and open surfaces stay unchanged.
 ///
 /// The same bytes at every SIMD level and for any number of threads.
 pub fn apply(
@@ -77,8 +75,8 @@ pub fn apply(
     }
 }
 
-/// Returns the part of the light from all around that gets to each pixel, 0…1; 1 where nothing is.
-/// `radius` is that of [`Options`].
+/// Returns the part of the light from all around that reaches each pixel, 0…1; 1 at the background. `radius` as in
+/// [`Options`].
 pub fn occlusion(
     view: &View,
     depth: &Pixels<f32>,

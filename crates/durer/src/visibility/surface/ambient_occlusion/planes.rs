@@ -12,13 +12,13 @@ pub const PATTERN: usize = 4;
 /// Samples farther than this many pixels away would miss near surfaces.
 pub const FARTHEST: u32 = 256;
 
-/// Pixels that are worked on together.
+/// Number of pixels processed together.
 pub const LANES: usize = 16;
 
 /// Number of alternating columns that are kept apart, as a shift.
 const PHASES_SHIFT: u32 = PATTERN.trailing_zeros();
 
-/// Numbers before and after those of a row, so that looks beyond the picture find that nothing is there.
+/// Entries before and after each row, so that reads beyond the picture find the background.
 const MARGIN: usize = ((FARTHEST as usize + 1) >> PHASES_SHIFT) + LANES + 1;
 
 /// Distances and normals of the visible surfaces, in the directions of the screen: to the right, down, and back to the
@@ -32,7 +32,7 @@ pub struct Planes {
     pub lens: Lens,
     /// Numbers of one phase of a row, with its margins.
     stride: usize,
-    /// The coordinate back to the eye, relative to it; NaN where nothing is.
+    /// The coordinate along the axis back to the eye, relative to the eye; NaN at background pixels.
     pub back: Vec<f32>,
     /// Unit normals on the eye's side, by component.
     pub normal: [Vec<f32>; 3],
@@ -85,8 +85,8 @@ impl Planes {
         x % PATTERN * self.stride + MARGIN + x / PATTERN
     }
 
-    /// Returns the place of the pixel at the column `x`, which may lie up to [`FARTHEST`] + 1 beside the
-    /// picture, of a row that there is, and from which on every fourth pixel to the right lies.
+    /// Returns the index of the pixel at column `x`, which may be up to [`FARTHEST`] + 1 outside the picture, in an
+    /// existing row. Every fourth pixel to the right follows at consecutive indices.
     #[inline(always)]
     pub fn place(&self, x: i32, y: i32) -> usize {
         let phase = x as usize % PATTERN;
@@ -102,7 +102,7 @@ pub struct Lens {
     pub perspective: bool,
     /// The coordinate back to the eye, from depth: numerator and denominator, each by slope and constant.
     back: [f64; 4],
-    /// The other two coordinates of the pixel 0 before they are scaled, and what each further pixel adds.
+    /// The other two coordinates of pixel 0 before scaling; `step` is the change per pixel.
     pub first: [f32; 2],
     pub step: [f32; 2],
     /// Factor: a constant, and the increase for each unit back to the eye.
@@ -132,8 +132,8 @@ impl Lens {
         }
     }
 
-    /// Returns the coordinate back to the eye and the unit normal of what a pixel shows, where both are
-    /// finite.
+    /// Returns the coordinate along the axis back to the eye and the unit normal of the surface that a pixel shows, if
+    /// both are finite.
     fn point(&self, [x, y]: [u32; 2], depth: f32, normal: Vec3) -> Option<(f32, Vec3)> {
         let [slope, constant, slope_below, below] = self.back;
         let depth = f64::from(depth);

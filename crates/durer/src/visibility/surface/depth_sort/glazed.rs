@@ -1,4 +1,4 @@
-//! Blended surfaces on their way over what was painted before: painter's order does the sorting.
+//! Blended surfaces, laid over everything painted before them: the painter's order has sorted them already.
 
 use crate::math::Vec4;
 use crate::shade::color::{encode_premultiplied, premultiply};

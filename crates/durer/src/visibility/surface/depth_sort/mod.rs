@@ -1,17 +1,15 @@
 //! Depth sort: polygons are put in order, then painted over each other from back to front.
 //!
-//! M. Newell, R. Newell, T. Sancha, *A Solution to the Hidden Surface Problem*, ACM Annual
-//! Conference 1972. List priority. Cost: O(n log n + n · polygons near by and at like depths), but
-//! O(n²) pieces where all faces penetrate each other, each compared with many others, O(n³) and more; that is
-//! cut off by [`Error::Limit`] (300 faces that all penetrate each other are sorted, 500 are not). Memory O(n +
-//! pieces' rows). Coherence used: faces, depth.
+//! M. Newell, R. Newell, T. Sancha, *A Solution to the Hidden Surface Problem*, ACM Annual Conference 1972. List
+//! priority. Cost: O(n log n + n · polygons nearby at similar depths), but O(n²) pieces if all faces penetrate each
+//! other, each compared with many others, O(n³) and more; that is cut off by [`Error::Limit`] (300 faces that all
+//! penetrate each other are sorted, 500 are not). Memory O(n + pieces' rows). Coherence used: faces, depth.
 //!
-//! Deviations: candidates for the tests come from tiles of the screen, in which polygons stand
-//! sorted by depth. The tests keep clear of rounding; what they leave open is decided at the pixel
-//! centres that both polygons cover, with the z-buffer's depths, and pieces of split polygons share
-//! out the centres of the whole. So the painted picture is that of the z-buffer, equal depths
-//! included. Where a plane does not separate cyclically overlapping polygons, an edge does. Blended
-//! surfaces are painted over what is behind them, which the order gives for nothing.
+//! Deviations: candidates for the tests come from tiles of the screen, in which polygons are sorted by depth. The tests
+//! allow for rounding; pairs that they leave undecided are compared at the pixel centres that both polygons cover, with
+//! the z-buffer's depths, and the pieces of a split polygon divide its pixel centres among them. So the painted picture
+//! equals the z-buffer's, also at equal depths. Where a plane does not separate cyclically overlapping polygons, an
+//! edge does. Blended surfaces are painted over what is behind them, which the order provides without extra work.
 
 mod glazed;
 mod piece;
@@ -85,9 +83,9 @@ pub enum Test {
     Depths,
     /// 2a: their boxes on the screen have no pixel in common.
     Boxes,
-    /// 2b: Q lies wholly in front of P's plane.
+    /// 2b: Q is wholly in front of P's plane.
     InFrontOfPlane,
-    /// 2c: P lies wholly behind Q's plane.
+    /// 2c: P is wholly behind Q's plane.
     BehindPlane,
     /// 2d: their projections do not overlap.
     Projections,
@@ -96,7 +94,7 @@ pub enum Test {
 }
 
 impl Test {
-    /// Returns the test's number as it is taught; the last one is none of the paper's.
+    /// Returns the test's number as it is taught; the last test is not in the paper.
     pub const fn number(self) -> &'static str {
         match self {
             Self::Depths => "1",
@@ -200,10 +198,10 @@ fn corners(t: &ScreenTriangle) -> [DVec2; 3] {
 }
 
 /// Puts the triangles of an input into an order in which each may be painted over those before it;
-/// those that penetrate each other or overlap cyclically are split.
+/// triangles that penetrate each other or overlap cyclically are split.
 ///
 /// # Errors
-/// [`Error::Limit`] where it takes too many comparisons, as of hundreds of triangles that all penetrate each other.
+/// [`Error::Limit`] if it takes too many comparisons, as of hundreds of triangles that all penetrate each other.
 pub fn order(input: &SurfaceInput<'_>, t: &mut impl Tracer<Step>) -> Result<Vec<ScreenPolygon>> {
     order_after(input, &[], t)
 }
@@ -223,8 +221,8 @@ pub fn order_after(
     order_within(input, previous, COMPARISONS.saturating_add(more), t)
 }
 
-/// Limit on the comparisons, some seconds' worth, and as many more for each triangle. Models of surfaces take some
-/// hundred per triangle.
+/// Limit on the number of comparisons, some seconds of work, to which `COMPARISONS_PER_TRIANGLE` is added for each
+/// triangle. Models of surfaces take about a hundred per triangle.
 const COMPARISONS: u64 = 1 << 26;
 const COMPARISONS_PER_TRIANGLE: u64 = 4096;
 
@@ -270,8 +268,8 @@ fn order_within(
     Ok(polygons)
 }
 
-/// Returns the rank of each triangle of an input in an order, greater for earlier ones; those that
-/// are in no order come first, by depth.
+/// Returns the rank of each triangle of an input in a previous order, greater for earlier ones; triangles that are not
+/// in it come first, by depth.
 fn turns(input: &SurfaceInput<'_>, previous: &[u32]) -> Vec<u32> {
     let mut places: Vec<(u32, u32)> = previous.iter().copied().zip(0..).collect();
     // Of an item in pieces, the first piece counts.
@@ -341,7 +339,7 @@ fn paint(
 /// A comparison takes as long as about this many looks into the list of a tile.
 const LOOKS_PER_COMPARISON: u64 = 16;
 
-/// The list of polygons on its way to order.
+/// The list of polygons being sorted.
 struct Sorter<'a> {
     pieces: Pieces<'a>,
     tiles: Tiles,
@@ -358,12 +356,12 @@ struct Sorter<'a> {
     round: u32,
     /// Number of lookups in a tile's list; a comparison counts as several.
     looks: u64,
-    /// The polygon in question, below it those that wait for it.
+    /// The polygon under examination on top, below it the polygons that wait for it.
     stack: Vec<u32>,
 }
 
 impl Sorter<'_> {
-    /// Returns the polygon in question.
+    /// Returns the polygon that is being examined, or the next one.
     fn next(&mut self) -> Option<u32> {
         while self.stack.is_empty() {
             let next = self.queue.pop()?.1.polygon;
@@ -386,7 +384,7 @@ impl Sorter<'_> {
         }
     }
 
-    /// Takes one step with the polygon in question; returns whether it can be painted next.
+    /// Takes one step with the polygon that is being examined; returns whether it can be painted next.
     fn advance(&mut self, p: u32, t: &mut impl Tracer<Step>) -> bool {
         t.step(|| Step::Look { polygon: p });
         match self.obstacle(p, t) {
@@ -396,7 +394,7 @@ impl Sorter<'_> {
                 return false;
             }
             Some((q, verdict)) if self.resolve(p, q, verdict, t) => return false,
-            // Nothing is in the way, or nothing that any cut could resolve.
+            // Nothing is in conflict, or no cut could resolve the conflict.
             _ => {}
         }
         t.step(|| Step::Place { polygon: p });
@@ -438,8 +436,8 @@ impl Sorter<'_> {
         None
     }
 
-    /// Splits a polygon where P and Q penetrate each other, or Q waits for P: one that takes part; returns `false`
-    /// where none can be split.
+    /// Splits one of the polygons involved if P and Q penetrate each other or Q already waits for P; returns `false` if
+    /// none can be split.
     fn resolve(&mut self, p: u32, q: u32, verdict: Verdict, t: &mut impl Tracer<Step>) -> bool {
         if self.split(p, &Cut::along(q), t) {
             return true;

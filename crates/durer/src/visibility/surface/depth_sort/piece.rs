@@ -46,8 +46,7 @@ pub struct Part {
     pub spans: Vec<Span>,
 }
 
-/// The place of a polygon in the first order: the farther the greater; of equal ones, the higher
-/// item.
+/// Sort key of a polygon in the first order: greater for farther polygons; at equal depths greater for higher items.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key {
     /// Bits of the farthest depth; depths are not negative, so they compare like the depths.
@@ -162,8 +161,8 @@ impl<'a> Pieces<'a> {
         (SampleGrid::PIXELS.depth(t, x, y), t.item)
     }
 
-    /// Splits a polygon by the first cut that leaves pixels on both sides, or in the middle; `None`
-    /// if it has but one pixel.
+    /// Splits a polygon by the first cut that leaves pixels on both sides, or in the middle; `None` if it has only one
+    /// pixel.
     pub fn split(&mut self, polygon: u32, cuts: &[Cut]) -> Option<(Cut, [u32; 2])> {
         let spans = self.spans(polygon, self.window(polygon));
         let w = box_of(&spans)?;

@@ -46,7 +46,7 @@ impl Pieces<'_> {
         self.compare_pixels(p, q)
     }
 
-    /// Returns whether P is behind Q (test 1); of equal depths the higher item is behind.
+    /// Returns whether P is behind Q (test 1); at equal depths the higher item is behind.
     fn is_behind(&self, p: u32, q: u32) -> bool {
         let p = (self.nearest(p), self.triangle(p).item);
         let q = (self.farthest(q), self.triangle(q).item);
@@ -76,7 +76,7 @@ impl Pieces<'_> {
     }
 }
 
-/// Returns whether all over `area` the plane of `back` is behind that of `front`, beyond doubt.
+/// Returns whether the plane of `back` is certainly behind the plane of `front` everywhere in `area`.
 fn lies_behind(
     area: &ScreenTriangle,
     back: &ScreenTriangle,

@@ -10,7 +10,7 @@ const TILE: i32 = 16;
 
 pub struct Tiles {
     columns: i32,
-    /// Farthest first; those before `first` are done.
+    /// Farthest first; polygons before `first` are done.
     lists: Vec<Vec<Key>>,
     first: Vec<usize>,
 }

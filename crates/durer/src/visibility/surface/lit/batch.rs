@@ -1,5 +1,4 @@
-//! Patches that wait until there are enough of them to be lit in one loop, in which nothing waits for anything but
-//! its own patch.
+//! Patches that are collected until there are enough of them to be lit in one loop, whose iterations are independent.
 
 use super::shares::Shares;
 use super::{KnownNormals, Lit, opaque};
@@ -13,7 +12,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x8, u32x16};
 use fearless_simd_macros::simd;
 
-/// Up to this many patches wait.
+/// Up to this many patches are collected.
 const MOST: usize = 32;
 
 /// Patches of settled points of one plain run under lights from infinitely far away.
@@ -36,14 +35,14 @@ struct Waiting {
 
 /// Destination of colours.
 enum Destination {
-    /// They are those of pixels.
+    /// Colours of whole pixels.
     Pixels {
         /// The items that they show; [`NO_ITEM`] where they show none.
         shown: [u32; 16],
         /// Places of the two halves.
         places: [usize; 2],
     },
-    /// They are parts of those of pixels, whose other parts wait before and behind.
+    /// Parts of the colours of pixels, whose other parts are in neighbouring entries of the queue.
     Share {
         /// Weights of the colours.
         weight: [f32; 16],
@@ -92,9 +91,9 @@ impl Batch {
         self.waiting.push(Waiting { vectors, views, patch, to });
     }
 
-    /// Lights all items of a patch whose pixels have the given samples, and weights them by their samples, as
-    /// [`Self::light`] now or later. Returns `false`, and takes none of them, where there is background among them,
-    /// where their materials, lights or normals need more than normals, or where they are of several runs.
+    /// Lights all items of a patch whose pixels have the given samples, weighted by their samples; like
+    /// [`Self::light`], now or later. Returns `false` and takes none of them if they include background, if their
+    /// materials, lights or normals need more than normals, or if they belong to several runs.
     #[inline(always)]
     pub fn light_samples<S: Simd>(
         &mut self,
@@ -114,7 +113,7 @@ impl Batch {
             let Some(plane) = self.plane_of(lit, item) else {
                 self.waiting.truncate(first);
                 if item != NO_ITEM {
-                    // The waiting pixels may be of a run that is not requested any more.
+                    // The waiting pixels may belong to a run that is no longer requested.
                     Self::flush(simd, self, lit, codes);
                 }
                 return false;
@@ -143,8 +142,8 @@ impl Batch {
         lit.settled_plane(item, info.run)
     }
 
-    /// Adds an item of a patch to those that wait from the number `first` on, with its normals and how much it weighs:
-    /// of each pixel in the order in which they come, but together with others that are shown by other pixels.
+    /// Adds an item of a patch, with its normals and weights, to the queue from the entry `first` on. The items of each
+    /// pixel keep their order; items of different pixels share entries.
     #[inline(always)]
     fn share<S: Simd>(
         &mut self,
@@ -168,7 +167,7 @@ impl Batch {
         if left.any_true() {
             let [x, y, z] = normal;
             let (vectors, views) = ([x.into(), y.into(), z.into()], [[0.0; 16]; 3]);
-            // Where pixels show none of what is here, normals of others stand, and weigh nothing.
+            // Pixels that do not show this item keep the normals of other items, with zero weight.
             let weight = left.select(weight, zero).into();
             let to = Destination::Share { weight, places: None };
             self.waiting.push(Waiting { vectors, views, patch, to });

@@ -28,8 +28,8 @@ impl<'a> Lit<'a> {
         gathered.coordinates(simd, changing)
     }
 
-    /// Returns the texture coordinates at the pixels of a set by computing them at all sixteen pixels of each triangle,
-    /// of which those that show it are taken. Pixels not in the set have coordinates near to the others'.
+    /// Returns the texture coordinates at the pixels of a set: computes them at all sixteen pixels for each triangle
+    /// and selects the pixels that show it. Pixels not in the set have coordinates close to the others'.
     #[inline(always)]
     pub(super) fn coords_by_triangle<S: Simd>(
         &mut self,

@@ -1,7 +1,7 @@
-//! Normals that were found before anybody requested them by items: where triangles were sampled while they were set up.
+//! Normals that were computed before items requested them: where triangles were sampled while they were set up.
 //!
-//! Where pixels have one sample each has room for a normal of its own; where they have four, the samples of a pixel
-//! share those that were found.
+//! With one sample per pixel, each sample has room for its own normal; with four, the samples of a pixel share the
+//! normals found.
 
 use crate::shade::lane::Vec3Lane;
 use crate::target::NO_ITEM;
@@ -12,11 +12,11 @@ use fearless_simd::{Simd, f32x4, f32x16, i32x4, mask32x8, mask32x16, u32x4, u32x
 /// Normals at the samples of a tile, of the side that is seen, settled, of any length.
 pub struct KnownNormals {
     any: bool,
-    /// Whose normal each sample has here; [`NO_ITEM`] if there is none.
+    /// The item whose normal is stored for each sample; [`NO_ITEM`] if none is.
     items: Vec<u32>,
     /// Index of each sample's normal, for pixels of several samples.
     places: Vec<u32>,
-    /// The normals, and a number that means nothing: by pixel where pixels have one sample.
+    /// The normals, and an unused number: by pixel where pixels have one sample.
     normals: Vec<[f32; 4]>,
     /// Number of samples of a pixel.
     samples: usize,
@@ -56,8 +56,8 @@ impl KnownNormals {
         self.normals[pixel] = [x, y, z, 0.0];
     }
 
-    /// Sets the normal of an item at those of a pixel's four samples where all bits of `seen` are set; NaN if it is
-    /// not known.
+    /// Sets the normal of an item at each of a pixel's four samples where all bits of `seen` are set; NaN if it is not
+    /// known.
     #[inline(always)]
     pub fn set_four<S: Simd>(
         &mut self,
@@ -67,7 +67,7 @@ impl KnownNormals {
         [x, y, z]: [f32; 3],
     ) {
         if x.is_nan() {
-            // The normals there belong to other items, and so are not taken for that of this one.
+            // The stored normals belong to other items, so none of them is taken for this item's normal.
             return;
         }
         self.any = true;

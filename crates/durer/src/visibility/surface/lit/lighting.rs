@@ -104,7 +104,7 @@ pub struct RunInfo<'a> {
     pub plain: bool,
     /// True if several pixels can be lit at a time, after their textures were looked up one by one.
     pub together: bool,
-    /// Data by which sixteen pixels can also be looked up at a time.
+    /// Data for looking up the textures of sixteen pixels at a time.
     pub looked_up: Option<LookedUp<'a>>,
 }
 

@@ -9,7 +9,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4};
 use fearless_simd_macros::simd;
 
-/// Number of points that wait, and are lit together.
+/// Number of points that are collected and lit together.
 const LANES: usize = 16;
 
 /// A point of an item, seen at the centre of a pixel.
@@ -25,9 +25,9 @@ pub struct ShadingPoint {
     pub weight: f32,
 }
 
-/// The points of one plain run that wait to be lit, and the sums of the colours of pixels so far.
+/// The points of one plain run that are to be lit, and the colour sums of pixels so far.
 pub struct PointQueue {
-    /// The pixels that were begun, for a caller that needs to find them again.
+    /// The pixels started, for callers that need to find them again.
     pub pixels: Vec<u32>,
     /// Linear, premultiplied; by pixel.
     pub sums: Vec<Vec4>,

@@ -35,7 +35,7 @@ fn chosen<S: Simd>(
 impl<'a> Lit<'a> {
     /// Computes the colours, linear RGBA with straight alpha, of the pixels of a patch that have an item, at least one.
     ///
-    /// Where the material allows it they are lit together, else one by one; the bits are the same.
+    /// They are lit together if the material allows it, else one by one; the bits are the same.
     #[simd]
     pub fn colors_x16<S: Simd>(
         simd: S,
@@ -175,7 +175,7 @@ impl<'a> Lit<'a> {
         self.with_shadows() || !self.shared.lights.points.is_empty()
     }
 
-    /// Returns whether shadows ask where points lie and which way their faces look.
+    /// Returns whether shadows need the positions of points and the normals of their faces.
     #[inline(always)]
     fn with_shadows(&self) -> bool {
         !self.shared.lights.shadows.is_empty()
@@ -200,8 +200,8 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// Returns the points as [`Self::points`] does, where some of the normals may be known; of these, positions are
-    /// not requested.
+    /// Returns the points as [`Self::points`] does, where some of the normals may be known; the positions of these
+    /// points are not requested.
     #[inline(always)]
     pub(super) fn points_known<S: Simd>(
         &mut self,
@@ -230,8 +230,8 @@ impl<'a> Lit<'a> {
         points
     }
 
-    /// Returns the points, each gathered from its triangle; of some, as bits, the normals may be known, which
-    /// are settled then.
+    /// Returns the points, each gathered from its triangle; the bits mark points whose normals are known, and thus
+    /// settled.
     #[inline(always)]
     pub(super) fn points_by_pixel<S: Simd>(
         &mut self,
@@ -278,7 +278,7 @@ impl<'a> Lit<'a> {
         Points { position, view, normal, faces }
     }
 
-    /// Returns the points: of each triangle at all pixels, of which those that show it are taken.
+    /// Returns the points: computes them at all pixels for each triangle and selects the pixels that show it.
     #[inline(always)]
     fn points_by_triangle<S: Simd>(
         &mut self,

@@ -64,7 +64,7 @@ const LEAF: usize = 4;
 
 const BINS: usize = 16;
 
-/// Below this depth nodes are split in halves, so that no input makes a chain.
+/// Depth below which nodes are split into halves, so that no input builds a chain.
 const DEEP: u32 = 40;
 
 /// A part of the boxes that waits to become a node, as right child of `parent`.
@@ -108,7 +108,7 @@ impl Bvh {
     }
 
     /// Visits boxes that a ray meets, near ones first. `enter` returns where the ray enters a box, if it does; `visit`
-    /// tests a box's content and may lower the limit, beyond which nothing is visited any more. `stack` is scratch
+    /// tests a box's content and may lower the limit, beyond which nothing is visited. `stack` is scratch
     /// space.
     #[inline]
     pub fn visit(
@@ -145,7 +145,7 @@ impl Bvh {
     }
 }
 
-/// Divides boxes in two; returns how many are in the first part. `None` if there is no way to.
+/// Divides boxes in two; returns how many are in the first part. `None` if they cannot be divided.
 fn split(boxes: &[Box3], part: &mut [u32], depth: u32, likelihood: Likelihood) -> Option<usize> {
     let middle = |i: u32| boxes[i as usize].middle();
     let (lo, hi) = part

@@ -58,8 +58,8 @@ impl<'a> Eye<'a> {
         blended.or(opaque.map(|o| (o.depth, o.item)))
     }
 
-    /// Returns all hits of the latest ray, which found `opaque`: first the opaque item, or [`NO_ITEM`] if there is
-    /// none, then the blended ones, far ones first.
+    /// Returns the items of all hits of the latest ray, which found `opaque`: first the opaque one, or [`NO_ITEM`],
+    /// then the blended ones, far ones first.
     pub fn items(&self, opaque: Option<ScreenHit>) -> Vec<u32> {
         let opaque = opaque.map_or(NO_ITEM, |o| o.item);
         std::iter::once(opaque).chain(self.layers.iter().map(|l| l.item)).collect()

@@ -5,10 +5,10 @@
 //! CACM 1980. Image space. Cost: O(n log n) for the hierarchy of boxes, about O(log n) for each ray;
 //! memory O(n). Coherence used: objects, by the hierarchy.
 //!
-//! Deviations: rays from the eye are cast in screen space (see `primary`), with the z-buffer's
-//! coverage and depths. Reflection is that of the material: Schlick's approximation of Fresnel's law,
-//! less for rough surfaces. Rays go on through what is blended: without secondary rays straight, to the
-//! first opaque surface. Flat and Gouraud shading light each point where shadows are cast.
+//! Deviations: rays from the eye are cast in screen space (see `primary`), with the z-buffer's coverage and depths.
+//! Reflection follows the material: Schlick's approximation of Fresnel's law, weaker for rough surfaces. Rays continue
+//! through blended surfaces: without secondary rays in a straight line, to the first opaque surface. Flat and Gouraud
+//! shading light each point where shadows are cast.
 
 mod bvh;
 mod eye;
@@ -135,7 +135,7 @@ pub enum Step {
         origin: DVec3,
         /// Its direction, a unit vector.
         direction: DVec3,
-        /// The item that it hits first; for a shadow ray one that is in the way.
+        /// The item that it hits first; for a shadow ray, an item that blocks it.
         hit: Option<u32>,
         /// Distance of the hit from the origin; infinite without one.
         t: f64,

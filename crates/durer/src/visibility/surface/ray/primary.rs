@@ -1,10 +1,9 @@
 //! Rays from the eye, in screen space.
 //!
-//! The transformation to screen space takes lines through the eye to lines along the depth axis. So
-//! what S. Woop, C. Benthin and I. Wald do for each ray (*Watertight Ray/Triangle Intersection*, JCGT
-//! 2013) is done for all of them at once: a triangle is hit if its three edge functions say so, here
-//! as integers on the snapped triangle. Nothing falls through between two triangles, and hits and
-//! depths are those of the z-buffer.
+//! The transformation to screen space takes lines through the eye to lines along the depth axis. So the transformation
+//! that S. Woop, C. Benthin and I. Wald apply for each ray (*Watertight Ray/Triangle Intersection*, JCGT 2013) is
+//! applied once for all rays: a triangle is hit if its three edge functions have the right sign, here as integers on
+//! the snapped triangle. No ray slips through between two triangles, and hits and depths are those of the z-buffer.
 
 use super::bvh::{Box3, Bvh, face};
 use crate::math::Vec3;
@@ -33,8 +32,8 @@ impl<'a> ScreenRays<'a> {
         Self { triangles, bvh: Bvh::new(&boxes, face) }
     }
 
-    /// Returns the nearest triangle at a point `offset` (1/256 pixel) from a pixel's centre of those for which `hides`
-    /// returns that they hide what is behind them. It is called for hits nearer than the nearest so far.
+    /// Returns the nearest triangle for which `hides` returns true, at a point `offset` (1/256 pixel) from a pixel's
+    /// centre. `hides` is called only for hits nearer than the nearest so far.
     #[inline]
     pub fn cast(
         &self,

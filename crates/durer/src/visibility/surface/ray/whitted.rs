@@ -1,7 +1,7 @@
 //! Light on the surface that a ray hits: shadows, mirror images, refraction.
 //!
-//! T. Whitted, *An Improved Illumination Model for Shaded Display*, CACM 1980. How much is reflected:
-//! C. Schlick, *An Inexpensive BRDF Model for Physically-based Rendering*, Eurographics 1994.
+//! T. Whitted, *An Improved Illumination Model for Shaded Display*, CACM 1980. Amount of reflection: C. Schlick, *An
+//! Inexpensive BRDF Model for Physically-based Rendering*, Eurographics 1994.
 
 use super::world::{Ray, WorldHit, WorldTriangles};
 use super::{Options, RayKind};
@@ -18,14 +18,14 @@ use crate::visibility::surface::setup::Coverage;
 /// Contributions below this change no 8-bit colour and are not followed.
 const LEAST: f32 = 1.0 / 512.0;
 
-/// Rays are not followed further than this, whatever the options say.
+/// Largest depth to which rays are followed, whatever the options say.
 const DEEPEST: u32 = 32;
 
 /// Blended surfaces that are looked through behind the last bounce; more count as opaque.
 const MOST_LAYERS: usize = 1024;
 
-/// A ray must be this far away, times the largest coordinate, before it hits anything: more than the
-/// rounding of its origin.
+/// Distance from a ray's origin, as a factor of the largest coordinate, within which it hits nothing: more than the
+/// rounding of the origin.
 const CLEARANCE: f32 = 1.0 / (1 << 18) as f32;
 
 /// Callback for each ray that is cast.
@@ -37,7 +37,7 @@ pub struct Whitted<'a> {
     shared: Lighting<'a>,
     options: &'a Options,
     lit: Lit<'a>,
-    /// The lights, less those that do not reach the point.
+    /// The lights without those that do not reach the point.
     reaching: PreparedLights,
     default_material: Material,
     stack: Vec<(u32, f32)>,
@@ -49,7 +49,7 @@ struct Point {
     item: u32,
     seen: Seen,
     position: Vec3,
-    /// Unit vector towards where it is seen from.
+    /// Unit vector towards the viewpoint.
     view: Vec3,
     /// Unit normals, turned to the viewer.
     normal: Vec3,
@@ -125,7 +125,8 @@ impl<'a> Whitted<'a> {
         Point { item, seen, position, view, normal, face_normal, front }
     }
 
-    /// Returns linear premultiplied colour of a point, with what is seen in and through it.
+    /// Returns the linear premultiplied colour of a point, including its reflection and the surfaces visible through
+    /// it.
     fn light(&mut self, world: &WorldTriangles, p: &Point, path: Path, hear: Hear<'_>) -> Vec4 {
         if self.options.shadows {
             self.find_reaching(world, p, path.generation, hear);
@@ -214,7 +215,7 @@ impl<'a> Whitted<'a> {
         color + path.behind * left
     }
 
-    /// Returns the nearest thing that a ray hits; for shadows, of what is not blended.
+    /// Returns the nearest hit of a ray; for shadows, blended surfaces are left out.
     fn cast(&mut self, world: &WorldTriangles, ray: &Ray, shadow: bool) -> Option<WorldHit> {
         let Self { lit, stack, shared, .. } = self;
         world.nearest(ray, stack, |hit| {
@@ -230,8 +231,7 @@ impl<'a> Whitted<'a> {
         })
     }
 
-    /// Puts out the lights in [`Self::reaching`] that something keeps from a point. Blended surfaces
-    /// throw no shadow.
+    /// Removes from [`Self::reaching`] the lights that are blocked from a point. Blended surfaces cast no shadow.
     fn find_reaching(
         &mut self,
         world: &WorldTriangles,

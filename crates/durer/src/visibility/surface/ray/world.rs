@@ -67,7 +67,7 @@ impl WorldTriangles {
         Self { corners, items, bvh: Bvh::new(&boxes, surface) }
     }
 
-    /// Returns the nearest hit that `accept` lets count; of equally near ones the lower item.
+    /// Returns the nearest hit that `accept` accepts; among equally near ones the lower item.
     pub fn nearest(
         &self,
         ray: &Ray,

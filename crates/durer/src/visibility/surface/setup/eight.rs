@@ -94,8 +94,8 @@ fn four_columns<S: Simd>(simd: S, of: &[&ScreenVertex; EIGHT], from: usize) -> [
     gather::four_columns(simd, rows)
 }
 
-/// Sets up eight triangles: back-face and area test, bounding box test, depth plane; of small triangles, if requested,
-/// which pixels they cover.
+/// Sets up eight triangles: back-face and area test, bounding box test, depth plane; if requested, also the pixels
+/// covered by small triangles.
 #[inline(always)]
 pub fn set_up<S: Simd>(
     simd: S,
@@ -213,7 +213,7 @@ fn depth_planes<S: Simd>(
     let mut x2 = snapped_x2 + (rest_x2 - rest_x);
     let mut y2 = snapped_y2 + (rest_y2 - rest_y);
     let mut area = x1 * y2 - x2 * y1;
-    // A sliver that gets its area only by snapping: its plane is that of the snapped triangle.
+    // A sliver that owes most of its area to snapping takes the plane of the snapped triangle.
     let sliver = area.simd_lt(snapped_area * 0.25);
     (x1, y1) = (sliver.select(snapped_x1, x1), sliver.select(snapped_y1, y1));
     (x2, y2) = (sliver.select(snapped_x2, x2), sliver.select(snapped_y2, y2));

@@ -1,4 +1,4 @@
-//! From a scene to triangles on the screen: what every image-space algorithm starts from.
+//! From a scene to triangles on the screen, the input of every image-space algorithm.
 //!
 //! Vertices are taken to homogeneous screen space in f64, triangles are cut at the near plane and at
 //! the guard band only (the rasterizer does the rest), and snapped to the 24.8 grid. All algorithms
@@ -39,7 +39,7 @@ use rules::Rules;
 use std::ops::Range;
 use vertex::{Behind, Transform};
 
-/// Counts of what happened to triangles.
+/// Numbers of triangles by outcome.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Triangles with a vertex that is not finite.
@@ -53,7 +53,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Adds those of eight triangles that are there and need not be cut.
+    /// Adds the triangles, of up to eight, that are present and need no clipping.
     #[inline(always)]
     fn add(&mut self, eight: &Eight, there: u64) {
         let number = |of: u64| u64::from((of & there).count_ones());
@@ -102,8 +102,8 @@ pub trait Sink {
         &[]
     }
 
-    /// Takes the samples that those of eight triangles cover whose bits are set in `which`. `primitive` returns the
-    /// item of each and its vertices in the mesh.
+    /// Takes the covered samples of the triangles, of eight, whose bits are set in `which`. `primitive` returns a
+    /// triangle's item and its vertices in the mesh.
     fn take_sampled<S: Simd>(
         &mut self,
         _simd: S,
@@ -190,7 +190,7 @@ impl<'a> Assembler<'a> {
         sink: &mut impl Sink,
     ) {
         let mut vertices = std::mem::take(&mut self.vertices);
-        // Without indices, triangles share no vertices, and a few at a time stay in the cache.
+        // Without indices, triangles share no vertices; parts of a few triangles stay in the cache.
         let most = if mesh.indices.is_none() { UNINDEXED } else { u32::MAX };
         let mut start = range.start;
         while start < range.end {
@@ -316,8 +316,7 @@ impl<'a> Assembler<'a> {
     }
 }
 
-/// Returns the least and the largest of some numbers; if there are none, the least is the larger
-/// one.
+/// Returns the smallest and the largest of some numbers; of an empty slice, `u32::MAX` and 0.
 #[simd]
 fn least_and_largest<S: Simd>(simd: S, numbers: &[u32]) -> (u32, u32) {
     let (mut low, mut high) = (u32x16::splat(simd, u32::MAX), u32x16::splat(simd, 0));
@@ -331,7 +330,7 @@ fn least_and_largest<S: Simd>(simd: S, numbers: &[u32]) -> (u32, u32) {
     (least, high.iter().chain(rest).fold(0, |largest, &v| largest.max(v)))
 }
 
-/// Sets up triangles, eight at a time; those that must be cut first one by one.
+/// Sets up triangles eight at a time; triangles that must be clipped are set up one by one.
 #[simd]
 fn assemble<S: Simd>(
     simd: S,

@@ -28,8 +28,8 @@ impl Part<'_> {
         }
     }
 
-    /// Returns the vertices of eight triangles from the i-th on, by corner. Where there are fewer than eight
-    /// left, the last replaces missing ones.
+    /// Returns the vertices of eight triangles from the i-th on, by corner. If fewer than eight are left, the last one
+    /// is repeated.
     #[inline(always)]
     pub(super) fn eight(&self, i: usize) -> [[&ScreenVertex; EIGHT]; 3] {
         let mut vertices = [[&self.vertices[0]; EIGHT]; 3];

@@ -1,5 +1,5 @@
-//! Triangles that are sampled while they are set up: of a mesh as fine as the pixels, nothing but a pixel or two
-//! is left of each, and to keep it as a triangle would cost more than to find these.
+//! Triangles that are sampled during set-up: in a mesh as fine as the pixels, each covers only a pixel or two, and
+//! finding these costs less than storing the triangle.
 //!
 //! Source: micropolygons, after R. L. Cook, L. Carpenter, E. Catmull, *The Reyes image rendering architecture*,
 //! SIGGRAPH 1987; here they are sampled by the same integers as other triangles, eight side by side, in a few
@@ -37,7 +37,7 @@ pub struct Sampled {
     pub depth: [[f32; EIGHT]; 5],
 }
 
-/// Range, along one axis, of the pixels of the screen whose samples may lie between the corners of eight triangles.
+/// Ranges, along one axis, of the screen's pixels whose samples may be within the bounds of eight triangles.
 #[derive(Clone, Copy)]
 pub struct Span<S: Simd> {
     /// The first.
@@ -56,15 +56,16 @@ impl<S: Simd> Span<S> {
         Self { first, end: (high + (HALF_PIXEL + reach)) >> SUBPIXEL_BITS }
     }
 
-    /// Returns which boxes miss a window, as bits; of the window the first pixel, and the one after the last.
+    /// Returns the boxes that miss a window, as bits; the window is given by its first pixel and the one after its
+    /// last.
     #[inline(always)]
     pub fn misses(&self, simd: S, [first, end]: [i32; 2]) -> u64 {
         let nowhere = self.first.simd_ge(self.end) | self.end.simd_le(i32x8::splat(simd, first));
         (nowhere | self.first.simd_ge(i32x8::splat(simd, end))).to_bitmask()
     }
 
-    /// Returns whether there are so few that triangles are sampled at once: at most [`SIDE`] with one sample per pixel.
-    /// With more, larger triangles would leave fragments in more pixels than their own numbers take.
+    /// Returns whether the ranges are small enough for sampling during set-up: at most [`SIDE`] pixels with one sample
+    /// per pixel, fewer with more, so that the fragments take no more memory than the triangle.
     #[inline(always)]
     pub fn is_small(&self, samples: usize) -> mask32x8<S> {
         let most = if samples > 1 { SIDE - 1 } else { SIDE };
@@ -78,8 +79,8 @@ pub fn place_in_box(pixel: usize) -> [i32; 2] {
     [pixel as i32 % SIDE, pixel as i32 / SIDE]
 }
 
-/// Finds which pixels of their boxes triangles cover at each of the given samples, whose corners go clockwise. Of those
-/// whose boxes are larger it finds nothing that means anything.
+/// Finds the pixels of their boxes that triangles, whose corners run clockwise, cover at each of the given samples. The
+/// result for triangles with larger boxes is meaningless.
 #[inline(always)]
 pub fn cover<S: Simd>(
     simd: S,
@@ -144,7 +145,7 @@ fn covered_at<S: Simd>(simd: S, edges: &[Edge<S>; 3], [right, down]: [i32; 2]) -
     covered
 }
 
-/// Returns the pixels of boxes that lie in a window, as bits; others may be set too.
+/// Returns the pixels of boxes that are in a window, as bits; other bits may be set too.
 #[inline(always)]
 fn in_window<S: Simd>(
     simd: S,

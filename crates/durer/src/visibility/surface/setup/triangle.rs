@@ -6,8 +6,8 @@ use crate::raster::triangle::SnappedTriangle;
 /// A triangle on the screen: snapped vertices and the plane of its depth.
 ///
 /// # Guarantees
-/// Twice the area in grid units is above 0 in the order of the vertices (clockwise on the screen,
-/// whatever way the face is turned), all numbers are finite, coordinates lie in the guard band.
+/// In the order of the vertices (clockwise on the screen, whether the face is seen from the front or from behind) twice
+/// the area in grid units is above 0; all numbers are finite; coordinates are inside the guard band.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScreenTriangle {
     /// x of the vertices, 24.8 fixed point, pixels.

@@ -9,7 +9,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, u32x8};
 use fearless_simd_macros::simd;
 
-/// Bits of [`ScreenVertex::code`]: beyond which border of the view volume a vertex lies.
+/// Bits of [`ScreenVertex::code`]: the borders of the view volume that a vertex is beyond.
 pub mod code {
     pub const LEFT: u32 = 1;
     pub const RIGHT: u32 = 2;
@@ -17,7 +17,7 @@ pub mod code {
     pub const BOTTOM: u32 = 8;
     pub const NEAR: u32 = 16;
     pub const FAR: u32 = 32;
-    /// Beyond one of these with all vertices: nothing can be seen.
+    /// A primitive whose vertices are all beyond one of these is invisible.
     pub const OUTSIDE: u32 = LEFT | RIGHT | TOP | BOTTOM | NEAR | FAR;
     /// Too far off the screen for fixed point.
     pub const GUARD: u32 = 64;
@@ -27,9 +27,10 @@ pub mod code {
 /// Index of the code in a [`ScreenVertex`].
 const CODE: usize = 2;
 
-/// A vertex after division and snapping, as a row of numbers, so that eight of them are soon columns: x and y on
-/// the grid; the [`code`]; the depth; what snapping took away from x and y, in grid steps, for the place is
-/// (x + rest, y + rest); two zeros. x and y have no meaning where the code has NEAR or GUARD. Floats are bits.
+/// A vertex after division and snapping, as a row of numbers, so that eight of them are easily transposed: x and y on
+/// the grid; the [`code`]; the depth; the remainders of x and y lost by snapping, in grid steps, so that the exact
+/// place is (x + remainder, y + remainder); two zeros. x and y have no meaning where the code has NEAR or GUARD. Floats
+/// are bits.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ScreenVertex(pub [u32; 8]);
 

@@ -1,7 +1,7 @@
-//! Visible triangles by item: made ready to be interpolated eight at a time, the latest ones kept, for
-//! neighbours share them.
+//! Visible triangles by item: prepared for interpolation eight at a time; the latest ones are kept, because neighbours
+//! share them.
 //!
-//! Most pixels ask for normals alone; then a [`NormalPlane`] is all that is made of a triangle.
+//! Most pixels need only normals, for which a triangle's [`NormalPlane`] suffices.
 
 mod prepare;
 mod read;
@@ -55,8 +55,7 @@ pub struct Triangles<'a> {
     settled: bool,
 }
 
-/// Number of triangles that are kept for pictures made tile by tile: about 200 kB, as many as a tile of a
-/// fine mesh shows.
+/// Number of triangles kept for pictures made tile by tile: about 200 kB, the number that a tile of a fine mesh shows.
 pub const OF_TILES: usize = 1 << 10;
 
 /// Number that is kept for pictures made row by row, about 800 kB: a row shows more than a tile, and most of
@@ -73,7 +72,7 @@ pub enum Part {
     All,
 }
 
-/// Items of one run of which the same part is to be made ready; their places are already theirs.
+/// Items of one run of which the same part is to be prepared; their places are already reserved.
 #[derive(Debug, Clone, Copy, Default)]
 struct Wanted {
     items: [u32; 8],
@@ -147,7 +146,7 @@ impl<'a> Triangles<'a> {
         }
     }
 
-    /// Requests a part of an item, which is ready at the latest after [`Self::make_ready`]; that comes before
+    /// Requests a part of an item, which is ready at the latest after [`Self::make_ready`], which must be called before
     /// [`Self::get`] and [`Self::normals`].
     #[inline(never)]
     pub fn want(&mut self, item: u32, run: usize, part: Part) {
@@ -167,7 +166,7 @@ impl<'a> Triangles<'a> {
         }
     }
 
-    /// Returns the vertices of an item in its mesh; of a line its ends and the first again.
+    /// Returns the vertices of an item in its mesh; for a line, its ends and the first one again.
     fn corners(&self, item: u32, run: usize) -> [u32; 3] {
         let run = &self.runs[run];
         let mesh = &self.scene.meshes[run.mesh];
@@ -241,7 +240,8 @@ impl<'a> RunNormals<'a> {
         Self { mesh: &scene.meshes[run.mesh], transform }
     }
 
-    /// Reads what those of a triangle are found from, by its vertices in the mesh.
+    /// Reads the positions and normals from which a triangle's planes are computed; `corners` are its vertices in the
+    /// mesh.
     #[inline(always)]
     pub fn read(&self, lane: usize, corners: [u32; 3], to: &mut Read) {
         to.set(lane, self.mesh, corners);

@@ -129,7 +129,7 @@ struct OnScreen<'n, S: Simd> {
     edges: [Vectors<S>; 3],
     /// 1 where the front is seen, −1 where the back is.
     sides: f32x8<S>,
-    /// Unit normals of the fronts as far as single precision goes, world axes.
+    /// Unit normals of the fronts, to single precision, world axes.
     front: Vectors<S>,
     /// Normals of the corners, where the mesh has any.
     normals: Option<&'n [Vectors<S>; 3]>,
@@ -287,10 +287,10 @@ impl<S: Simd> Normals<S> {
 /// The w of the farthest vertex of a settled triangle over that of its nearest visible point is less than this.
 const MOST_RANGE: f32 = 1e5;
 
-/// Between these are the squared lengths of a settled triangle's normals.
+/// Bounds of the squared lengths of a settled triangle's normals.
 const LENGTHS2: [f32; 2] = [1e-20, 1e20];
 
-/// Returns the triangles for which points beside them, at which samples of their pixels may lie, have weights of at
+/// Returns the triangles for which the points outside them where samples of their pixels may be have weights of at
 /// least −[`LEAST_WEIGHT`](super::LEAST_WEIGHT), with a sum of at least nine tenths.
 #[inline(always)]
 fn gentle<S: Simd>(simd: S, t: &RunTransform, [_, dx, dy]: &[Vectors<S>; 3]) -> mask32x8<S> {
@@ -312,7 +312,7 @@ fn agreeing<S: Simd>(simd: S, front: Vectors<S>, &[a, b, c]: &[Vectors<S>; 3]) -
     let longest = dot(a, a).max(dot(b, b)).max(dot(c, c));
     let [shortest, most] = LENGTHS2;
     let mut agreeing = simd.simd_lt_f32x8(longest, simd.splat_f32x8(most));
-    // Each by itself, because the maximum with a NaN is not specified.
+    // Tested one by one, because the maximum with a NaN is not specified.
     for normal in [a, b, c] {
         let product = dot(front, normal);
         agreeing &= simd.simd_gt_f32x8(product, simd.splat_f32x8(0.0));
@@ -359,7 +359,7 @@ fn dot<S: Simd>([ax, ay, az]: [f32x8<S>; 3], [bx, by, bz]: [f32x8<S>; 3]) -> f32
     ax * bx + ay * by + az * bz
 }
 
-/// Returns one over the length, of which the square is given; 0 if there is no direction.
+/// Returns one over the length, given its square; 0 if there is no direction.
 #[inline(always)]
 fn inverse_length<S: Simd>(simd: S, length2: f64x8<S>) -> f64x8<S> {
     let zero = simd.splat_f64x8(0.0);

@@ -18,14 +18,14 @@ pub type AtCorners<S> = [Vectors<S>; 3];
 /// because they have to be waited for.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Read {
-    /// By corner and primitive; the fourth numbers mean nothing.
+    /// By corner and primitive; the fourth numbers are unused.
     positions: [[[f32; 4]; 8]; 3],
-    /// The same; without meaning where the mesh has none.
+    /// Normals in the same order; meaningless if the mesh has none.
     pub normals: [[[f32; 4]; 8]; 3],
 }
 
 impl Read {
-    /// Reads those of one.
+    /// Reads the corners of one primitive.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, mesh: &Mesh, corners: [u32; 3]) {
         for (to, corner) in self.positions.iter_mut().zip(corners) {

@@ -4,8 +4,8 @@
 use crate::visibility::surface::cover::{SampleGrid, Window};
 use crate::visibility::surface::setup::ScreenTriangle;
 
-/// Returns the largest depth over a window's samples; exact, for rounding is monotonic, so that
-/// depths increase or decrease along rows and columns and are extreme at corners.
+/// Returns the largest depth over a window's samples; exact, because rounding is monotonic: depths increase or decrease
+/// along rows and columns and are extreme at corners.
 pub fn farthest(t: &ScreenTriangle, grid: SampleGrid, window: &Window) -> f32 {
     window.corners().into_iter().fold(0.0, |far: f32, [x, y]| far.max(grid.depth(t, x, y)))
 }
@@ -36,7 +36,7 @@ pub fn hides(
     if far < near || (far == near && front.item < behind.item) {
         return true;
     }
-    // Depths are kept to the range of the vertices: that must not raise `front` above its plane, nor
+    // Depths are clamped to the range of the vertices; clamping must not raise `front` above its plane, nor
     // lower `behind` to it.
     if front.depth_min >= near || far >= behind.depth_max {
         return false;

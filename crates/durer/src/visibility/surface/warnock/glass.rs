@@ -1,4 +1,4 @@
-//! Windows with blended surfaces: each sample has what is opaque and a list of what is before it.
+//! Windows with blended surfaces: each sample has its opaque surface and a list of the blended ones in front of it.
 
 use super::{BAND, Options, Solver, Step, pixel_mean};
 use crate::math::Vec4;
@@ -31,7 +31,7 @@ impl Glass {
         }
     }
 
-    /// Drops of the layers from `first` on those that something opaque hides.
+    /// Removes, from the layer `first` on, the layers that an opaque surface hides.
     pub fn keep_before(&mut self, first: usize, opaque: (f32, u32)) {
         let mut kept = first;
         for i in first..self.layers.len() {
@@ -93,7 +93,7 @@ fn in_pixels(visible: &Visible, grid: SampleGrid) -> [i32; 4] {
     [x0, x1, y0, y1].map(|v| v / grid.per_pixel())
 }
 
-/// A solver that goes down the picture.
+/// A solver that proceeds down the picture.
 struct Bands<'a> {
     solver: Solver<'a>,
     grid: SampleGrid,

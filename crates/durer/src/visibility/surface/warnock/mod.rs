@@ -6,10 +6,10 @@
 //! most one look per sample and triangle that concerns it; memory O(triangles · log pixels).
 //! Coherence used: areas.
 //!
-//! Deviations: windows consist of whole samples, so their corners are samples and all relations are
-//! decided exactly, with the z-buffer's own coverage and depth. Triangles behind a surrounding one are
-//! dropped before a window is divided. Blended surfaces hide nothing: where they are, windows are divided
-//! until all that is left surrounds them, and a sample keeps a list of them, front to back until opaque.
+//! Deviations: windows consist of whole samples, so their corners are samples and all relations are decided exactly,
+//! with the z-buffer's own coverage and depth. Triangles behind a surrounding one are dropped before a window is
+//! divided. Blended surfaces hide nothing: where they are, windows are divided until all remaining triangles surround
+//! them, and a sample keeps a list of them, front to back until opaque.
 
 mod depth;
 mod glass;
@@ -78,9 +78,8 @@ pub struct Options {
     pub look: picture::Options,
     /// Places at which windows are divided.
     pub division: Division,
-    /// Number of times that a pixel is divided, 0 … 4; colour is the mean of its 4^`sub_levels`
-    /// samples. Time grows about twofold with each level, for only windows along edges are divided
-    /// so far.
+    /// Number of times that a pixel is divided, 0 … 4; colour is the mean of its 4^`sub_levels` samples. Time about
+    /// doubles with each level, because only windows along edges are divided that far.
     pub sub_levels: u32,
 }
 
@@ -181,7 +180,7 @@ pub fn render(
     });
 }
 
-/// Pixel rows of which all samples are held at a time.
+/// Number of pixel rows whose samples are held in memory together.
 const BAND: i32 = 16;
 
 fn anti_aliased(
@@ -258,7 +257,7 @@ struct Solver<'a> {
     masks: Masks<'a>,
     /// Opaque surfaces.
     visible: Visible,
-    /// Blended surfaces and those before them, if anything blends.
+    /// Blended surfaces and the ones before them, if any surface blends.
     glass: Option<Glass>,
     work: &'a Work,
     /// Memory of the lists of windows, and of the glass.
@@ -362,8 +361,8 @@ impl<'a> Solver<'a> {
         });
     }
 
-    /// Draws a window that is empty, has one triangle or one sample, or in which no division would tell blended
-    /// surfaces apart; returns whether it was such a window.
+    /// Draws a window that is empty, has one triangle or one sample, or in which no subdivision would separate blended
+    /// surfaces; returns whether it was such a window.
     fn draw_simple(
         &mut self,
         window: &Window,

@@ -1,4 +1,4 @@
-//! The place of a tile in the picture, and its pixels on their way there.
+//! The place of a tile in the picture, and its pixels before they are copied there.
 
 use super::tile::TILE_PIXELS;
 use crate::math::Vec4;
@@ -13,8 +13,8 @@ pub struct Area<'b> {
     pub background: &'b (dyn Fn(i32) -> Vec4 + Sync),
 }
 
-/// The pixels of a tile, row by row: of each the four bytes of its colour, the first one lowest.
+/// The pixels of a tile, row by row: the four bytes of each colour, the first one lowest.
 ///
-/// They are written here and copied to the picture when all are there: rows of the picture lie far apart, and
-/// going to and fro between them would make each store wait.
+/// They are written here and copied to the picture when the tile is complete: rows of the picture are far apart in
+/// memory, and switching between them would stall each store.
 pub type Codes = [u32; TILE_PIXELS];

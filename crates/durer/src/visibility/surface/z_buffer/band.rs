@@ -75,7 +75,7 @@ pub fn bands<'a>(framebuffer: &'a mut Framebuffer, view: &View) -> Vec<Band<'a>>
     (0..).zip(color).map(band).collect()
 }
 
-/// Divides rows of pixels into those of the first row of tiles, which is `first` pixels, and those of each other one.
+/// Divides pixels into those of the first row of tiles, `first` pixels, and those of each following row of tiles.
 fn parts<T>(pixels: &mut [T], first: usize, width: usize) -> impl Iterator<Item = &mut [T]> {
     let (first, others) = pixels.split_at_mut(first.min(pixels.len()));
     std::iter::once(first).chain(others.chunks_mut((width * TILE as usize).max(1)))

@@ -175,7 +175,7 @@ impl Sink for Sorter<'_> {
     #[inline(always)]
     fn take(&mut self, triangle: ScreenTriangle) {
         let index = self.triangles.len();
-        // First to its place: from there its numbers are read sooner than from the pieces it comes in.
+        // Stored first: reading its numbers from memory is then faster than from its parts.
         self.triangles.push(triangle);
         let touched = &mut self.touched;
         self.screen.touched(&self.triangles[index], self.reach, |tile| {

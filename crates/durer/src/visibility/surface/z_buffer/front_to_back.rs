@@ -1,7 +1,7 @@
-//! A tile's triangles roughly from near to far, so that most of those that nothing is seen of are
-//! skipped by one comparison with the farthest depth where they lie.
+//! A tile's triangles roughly from near to far, so that one comparison with the farthest depth in their area skips most
+//! hidden ones.
 //!
-//! The order does not show in the picture: at equal depths the lower item wins, whatever comes first.
+//! The picture does not depend on the order: at equal depths the lower item wins.
 //!
 //! Source: N. Greene, M. Kass, G. Miller, *Hierarchical Z-buffer visibility*, SIGGRAPH 1993; here with
 //! one level above the samples, and buckets instead of an octree. Cost: O(triangles + samples).
@@ -9,27 +9,27 @@
 use super::bins::Bins;
 use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 
-/// Tiles with fewer triangles are not worth it.
+/// Number of triangles below which sorting a tile costs more than it saves.
 const FEWEST: usize = 64;
 
 /// Ranges of depth into which triangles are sorted.
 const BUCKETS: usize = 64;
 
-/// After these parts of the triangles, in 64ths, the farthest depths are found anew: the first are
-/// small, for the nearest layer hides most.
+/// Parts of the triangles, in 64ths, after which the farthest depths are recomputed: the first parts are small because
+/// the nearest layer hides most.
 const PARTS: [usize; 6] = [1, 4, 16, 32, 48, 64];
 
 /// The triangles of one tile that are ordered.
 #[derive(Default)]
 pub struct FrontToBack<'a> {
     given: Vec<&'a ScreenTriangle>,
-    /// The depth of the nearest vertex of each: read once, for the triangles lie far apart.
+    /// The depth of the nearest vertex of each; read only once, because the triangles are far apart in memory.
     depths: Vec<f32>,
     sorted: Vec<&'a ScreenTriangle>,
 }
 
 impl<'a> FrontToBack<'a> {
-    /// Returns the triangles in parts, near ones first: one part where they are few.
+    /// Returns the triangles in parts, near ones first: a single part if they are few.
     pub fn parts(
         &mut self,
         bins: &'a [Bins],

@@ -95,7 +95,7 @@ impl Default for Options {
     }
 }
 
-/// Seconds of the two halves of the work, and what became of the triangles.
+/// Seconds spent in the two halves of the work, and the fate of the triangles.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Report {
     /// Counts of the triangles by their treatment.
@@ -109,8 +109,8 @@ pub struct Report {
 /// Renders a scene that has passed [`Scene::check`] into the planes that the framebuffer has.
 ///
 /// # Errors
-/// [`crate::Error::Limit`] where the scene has too many primitives to number, [`crate::Error::Memory`] where the budget
-/// has no room for its triangles on the screen, and what stops the work.
+/// [`crate::Error::Limit`] if the scene has too many primitives to number, [`crate::Error::Memory`] if the budget
+/// has no room for its triangles on the screen, and the error of stopped work.
 pub fn render(
     scene: &Scene,
     view: &View,
@@ -295,7 +295,7 @@ impl<'a> Frame<'a> {
         index: u32,
     ) {
         let mut drawn = self.draw_fragments(planes, Some(known), index);
-        // Without faces seen from behind little is hidden, and an order would not pay off.
+        // Without back faces little is hidden, and sorting would not pay off.
         if self.options.cull == Cull::Back {
             return self.rasterize(Coverage::Opaque, planes, area, index, None::<&mut AllPass>);
         }
@@ -312,7 +312,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Fills a tile that shows nothing but the background.
+    /// Fills a tile that shows only the background.
     fn empty_tile(&self, band: &mut Band<'_>, [tile, size]: [[i32; 2]; 2]) {
         let background = background_rows(self.options.background, self.view.height());
         for ([_, y], row) in band.rows_of(tile, size) {

@@ -103,7 +103,7 @@ fn resolve_opaque<S: Simd>(
             let [first, second] = [y, y + 1].map(|y| (y * TILE + x) as usize);
             let row = y as usize % TILE as usize;
             let count = samples_of_block(simd, planes, first, &mut samples);
-            // The last row may have none below; then the pixels written there are not copied.
+            // The last row may have no row below; then the pixels written there are not copied.
             let places = [first, second];
             let samples = &samples[..count];
             let few = samples.first().is_some_and(|first| patch.shows_few(simd, *first));
@@ -152,7 +152,7 @@ fn expect_column<S: Simd>(
     let none = u32x16::splat(simd, NO_ITEM);
     let any_known = known.any();
     for plane in planes {
-        // Rows with 64 items in all: a bit for each item tells whether it is requested.
+        // Rows with 64 items in all: one bit for each item marks it as requested.
         let (rows, across) = if plane.shift > 0 { (2, 32) } else { (8, 8) };
         let (mut before, mut before_that) = (none, none);
         for y in (0..height as usize).step_by(rows) {
@@ -200,8 +200,8 @@ fn expect_column<S: Simd>(
     lit.make_ready();
 }
 
-/// Returns which of sixteen items beside each other are shown neither by the one before nor above nor beside that: most
-/// that are shown there have been requested.
+/// Returns which of sixteen consecutive items differ from the item before, the one above, and the one beside that: most
+/// items that those pixels show have been requested.
 #[inline(always)]
 fn first_shown<S: Simd>(simd: S, shown: u32x16<S>, above: u32x16<S>) -> mask32x16<S> {
     let none = u32x16::splat(simd, NO_ITEM);
@@ -212,8 +212,8 @@ fn first_shown<S: Simd>(simd: S, shown: u32x16<S>, above: u32x16<S>) -> mask32x1
     new & shown.simd_ne(above_left) & shown.simd_ne(above_right)
 }
 
-/// Returns the item that each of eight pixels in a row shows at all samples, [`NO_ITEM`] if there is
-/// none; and a number that is 0 only where all samples show the same.
+/// Returns the item that each of eight pixels in a row shows at all samples, or [`NO_ITEM`]; and a number that is 0
+/// only where all samples show the same item.
 #[inline(always)]
 fn whole_pixels<S: Simd>(simd: S, planes: &[SamplePlane], index: usize) -> (u32x8<S>, [u32; 8]) {
     let [first, mut differs] = planes[0].eight(simd, index);

@@ -1,8 +1,8 @@
 //! Survey of the visible items of a scene that comes in pieces and is never held as a whole.
 //!
-//! Depth and item of the nearest triangle are kept for all samples of the picture, so that memory follows the picture
-//! and not the scene. What is seen then is a scene by itself, of which the ordinary renderer makes the same picture:
-//! opaque surfaces that are nowhere in front do not change it.
+//! Depth and item of the nearest triangle are kept for all samples of the picture, so that the memory needed depends on
+//! the picture, not on the scene. The visible triangles then form a scene of which the ordinary renderer makes the same
+//! picture, because opaque surfaces that are nowhere nearest do not change it.
 
 use super::bins::{ByTile, STAGE, sort_by_tile};
 use super::early_samples;
@@ -107,10 +107,10 @@ impl Sink for Taken<'_> {
 }
 
 impl Survey {
-    /// Creates a survey of nothing so far.
+    /// Creates an empty survey.
     ///
     /// # Errors
-    /// [`Error::Memory`] where the budget has no room for the samples.
+    /// [`Error::Memory`] if the budget has no room for the samples.
     pub fn new(view: &View, options: Options) -> Result<Self> {
         let offsets = options.samples.offsets();
         let mut count = offsets.len() as u64;
@@ -136,7 +136,7 @@ impl Survey {
     ///
     /// # Errors
     /// [`Error::Limit`] for more than [`MOST_ITEMS`], [`Error::Unsupported`] for surfaces that are not opaque,
-    /// [`Error::Memory`] where the budget has no room for the piece, and what stops the work.
+    /// [`Error::Memory`] if the budget has no room for the piece, and the error of stopped work.
     pub fn add(&mut self, piece: &Scene) -> Result<()> {
         self.options.work.check()?;
         let runs = self.numbered(runs(piece)?)?;
@@ -158,11 +158,11 @@ impl Survey {
         Ok(())
     }
 
-    /// Returns the runs with items that go on from those of the pieces before.
+    /// Returns the runs with items numbered on from the pieces before.
     fn numbered(&mut self, mut runs: Vec<Run>) -> Result<Vec<Run>> {
         if runs.iter().any(|run| run.coverage != Coverage::Opaque) {
             let what = "a picture in pieces of surfaces that are not opaque";
-            return Err(Error::Unsupported { what, instead: "all of the scene has to be held" });
+            return Err(Error::Unsupported { what, instead: "the whole scene must be in memory" });
         }
         let own: u64 = runs.iter().map(|run| run.range.len() as u64).sum();
         let value = u64::from(self.count) + own;
@@ -204,7 +204,7 @@ impl Survey {
     /// Returns the visible triangles of all pieces.
     ///
     /// # Errors
-    /// [`Error::Memory`] where the budget has no room for the list.
+    /// [`Error::Memory`] if the budget has no room for the list.
     pub fn finish(self) -> Result<Seen> {
         let Self { tiles, options: Options { work, .. }, counts, charge: _charge, .. } = self;
         let mut charge = work.charge("triangles that are seen", 0)?;
@@ -235,7 +235,7 @@ fn jobs(runs: &[Run]) -> Vec<(&Run, Range<u32>)> {
     runs.iter().flat_map(|run| of_run(run).map(move |range| (run, range))).collect()
 }
 
-/// Draws what touches a tile.
+/// Draws the triangles that touch a tile.
 fn draw(
     planes: &mut [SamplePlane],
     view: &View,

@@ -1,7 +1,7 @@
 //! One tile of the visibility buffer: which triangle is nearest at each sample.
 //!
-//! Depths are kept as the bits of non-negative floats, which compare like integers. The samples of a
-//! pixel, up to four, lie side by side, so that a triangle is tested at all of them in one go.
+//! Depths are kept as the bits of non-negative floats, which compare like integers. The samples of a pixel, up to four,
+//! are adjacent, so that one vector operation tests a triangle at all of them.
 
 use crate::raster::fixed::SUBPIXELS;
 use crate::target::NO_ITEM;
@@ -40,12 +40,12 @@ pub struct SamplePlane {
     pub shift: u32,
     /// The least and the largest offset of a sample, x and y.
     pub reach: [[i32; 2]; 2],
-    /// Positions of as many consecutive samples as any machine tests at a time, from the first one's
-    /// pixel's centre, in 1/256 pixel.
+    /// Positions of consecutive samples, the largest number that a SIMD level tests at once, relative to the first
+    /// sample's pixel centre, in 1/256 pixel.
     pub lanes: [[i32; MOST_LANES]; 2],
     /// The same in pixels.
     pub lanes_in_pixels: [[f32; MOST_LANES]; 2],
-    /// Bits of a depth for each block of 8 × 8 pixels, row by row, beyond which nothing is seen there.
+    /// For each block of 8 × 8 pixels, row by row, the bits of a depth beyond which nothing is visible there.
     pub farthest: [i32; BLOCKS],
     /// Bits of the depths.
     pub depth: Vec<i32>,
@@ -96,13 +96,12 @@ impl SamplePlane {
         find_farthest(simd, &self.depth, self.shift, &mut self.farthest);
     }
 
-    /// Returns bits of a depth beyond which nothing is seen in the whole tile.
+    /// Returns the bits of a depth beyond which nothing is visible in the whole tile.
     pub fn farthest_of_all(&self) -> i32 {
         self.farthest.iter().copied().fold(0, i32::max)
     }
 
-    /// Returns whether nothing that is at least as far as `depth` (bits) can be seen in a box of
-    /// pixels.
+    /// Returns whether everything at `depth` (bits) or farther is hidden in a box of pixels.
     #[inline(always)]
     pub fn hides(&self, [x0, y0, x1, y1]: [i32; 4], depth: i32) -> bool {
         const COLUMNS: i32 = TILE / BLOCK;

@@ -71,7 +71,7 @@ fn tile_range(v: &[i32; 3], reach: i32, [first, end]: [i32; 2]) -> (i32, i32) {
     ((lo >> SHIFT).max(first), (hi >> SHIFT).min(end - 1))
 }
 
-/// Returns whether a tile lies wholly outside one edge of a triangle.
+/// Returns whether a tile is wholly outside one edge of a triangle.
 fn beyond_an_edge(t: &ScreenTriangle, x: i32, y: i32) -> bool {
     let size = i64::from(TILE) << SUBPIXEL_BITS;
     let (left, top) = (i64::from(x) * size, i64::from(y) * size);

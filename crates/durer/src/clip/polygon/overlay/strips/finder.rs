@@ -1,17 +1,17 @@
-//! Finds the segments that pass through pixels: all pixels are looked for in one strip before they go
-//! down into its groups and halves.
+//! Finds the segments that pass through pixels: all pixels are processed in one strip before they descend into its
+//! groups and halves.
 
 use std::cmp::Ordering;
 
 use super::super::lattice::{Coord, Point, Segment};
 use super::{Group, Strip, Strips, partition_near};
 
-/// A pixel on its way down.
+/// A pixel during the descent.
 #[derive(Debug, Clone, Copy, Default)]
 struct Pixel<C> {
     at: Point<C>,
     name: u32,
-    /// True if it went into two groups, so that what hits it may be found twice.
+    /// True if it went into two groups, so that its hits may be found twice.
     twice: bool,
 }
 
@@ -19,11 +19,11 @@ struct Pixel<C> {
 struct Finder<'a, C, F> {
     strips: &'a Strips<C>,
     segments: &'a [Segment<C>],
-    /// Pixels of the strips that are being worked on, those of a part behind the whole's.
+    /// Pixels of the strips being processed; those of a part follow those of the whole.
     open: Vec<Pixel<C>>,
     /// First and last group of each pixel in a strip.
     groups: Vec<(u32, u32)>,
-    /// Starts of each group's open pixels, those of a part behind the whole's.
+    /// Starts of each group's open pixels; those of a part follow those of the whole.
     starts: Vec<usize>,
     /// Pairs that may have been found twice.
     twice: Vec<(u32, u32)>,
@@ -125,7 +125,7 @@ impl<C: Coord, F: FnMut(usize, u32)> Finder<'_, C, F> {
         }
     }
 
-    /// Finds the stairs that pass through pixels, and the groups that these lie in.
+    /// Finds the stairs that pass through pixels, and the groups that the pixels are in.
     fn stairs(&mut self, stairs: (u32, u32), groups: (u32, u32), start: usize) {
         let stairs = &self.strips.lists[stairs.0 as usize..stairs.1 as usize];
         let groups = &self.strips.groups[groups.0 as usize..groups.1 as usize];
@@ -137,7 +137,7 @@ impl<C: Coord, F: FnMut(usize, u32)> Finder<'_, C, F> {
             below = partition_near(stairs, below, |i| side(i) == Ordering::Greater);
             let mut above = below;
             while above < stairs.len() && side(&stairs[above]) == Ordering::Equal {
-                // A stair's line hits; in its y range it is only where the segment itself goes.
+                // A stair's line hits; it counts only within the y range of the segment itself.
                 if self.segments[stairs[above] as usize].hits_pixel(at) {
                     self.tell(stairs[above], k);
                 }

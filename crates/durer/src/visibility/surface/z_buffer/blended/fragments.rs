@@ -1,5 +1,4 @@
-//! Blended triangles of a tile that cover each other at depths that do not tell them apart: their fragments,
-//! sorted pixel by pixel.
+//! Fragments of a tile's blended triangles that overlap in both area and depth range, sorted pixel by pixel.
 
 use super::super::rasterize::{FragmentTest, one_by_one, rasterize};
 use super::super::tile::{SamplePlane, TILE_PIXELS};
@@ -24,10 +23,10 @@ struct Fragment {
     samples: u32,
 }
 
-/// Number of fragments that are collected before those that nothing can precede are lit.
+/// Number of fragments that are collected before the ones known to be nearest are lit.
 const MANY: usize = if cfg!(test) { 64 } else { 4 * TILE_PIXELS };
 
-/// Number of triangles after which it is tested whether anything shines through.
+/// Number of triangles between tests whether any pixel still shows what is behind.
 const AT_ONCE: usize = 8;
 
 /// Lights the first triangles, at least this many, and those whose depths overlap theirs, sorted pixel by pixel;
@@ -88,10 +87,10 @@ impl Fragments {
         Self { list: Vec::new(), by_place: Vec::new(), offsets, tile: [0; 2] }
     }
 
-    /// Sorts the fragments of each pixel, near ones first; of equally near ones the lower item, which is visible,
-    /// first. Mostly they are in that order already.
+    /// Sorts the fragments of each pixel, near ones first; at equal depths the lower item, which is visible, first.
+    /// Mostly they are in that order already.
     fn sort(&mut self) {
-        // Fragments come triangle by triangle, so those of one item at one pixel follow each other.
+        // Fragments are collected triangle by triangle, so fragments of one item at one pixel are consecutive.
         let mut next = [0; TILE_PIXELS + 1];
         for f in &self.list {
             next[f.place as usize + 1] += 1;
@@ -122,7 +121,7 @@ impl Fragments {
     }
 }
 
-/// Fragments are collected where something comes through.
+/// Pixels in which fragments are collected because surfaces behind still show through.
 struct Open<'a> {
     fragments: &'a mut Fragments,
     /// Same as [`Layers::closed`].
@@ -160,7 +159,7 @@ impl FragmentTest for Open<'_> {
     }
 }
 
-/// Lights the fragments that are nearer than `bound`, which is no farther than any that is to come.
+/// Lights the fragments that are nearer than `bound`, a lower bound of the depths still to come.
 #[simd]
 fn light_nearer<S: Simd>(
     simd: S,

@@ -14,12 +14,12 @@ const NONE: u32 = u32::MAX;
 
 /// Lit layers of a tile's blended surfaces.
 pub struct Layers {
-    /// Each is that of a block; 0 at pixels where nothing is.
+    /// One layer of a block each; 0 at pixels that it does not cover.
     all: Vec<Colors>,
-    /// Next nearer layer of each layer's block, in a list of its own, so that distant ones need not be waited
-    /// for one after the other.
+    /// Next nearer layer of each layer's block, in a separate list, so that reads of distant layers need not wait for
+    /// one another.
     nearer: Vec<u32>,
-    /// The samples that each layer covers of each pixel, as bits; not kept where pixels have but one.
+    /// The samples that each layer covers of each pixel, as bits; not kept if pixels have only one.
     covered: Vec<[u32; LANES]>,
     /// Farthest lit layer of each block, and the pixels that have some, as bits.
     pub farthest: Vec<(u32, u16)>,
@@ -27,7 +27,7 @@ pub struct Layers {
     through: Vec<f32>,
     /// All bits are set where next to nothing comes through, and beyond the picture; by place.
     pub closed: Vec<u32>,
-    /// Number of those that are in the picture.
+    /// Number of closed samples in the picture.
     closed_count: usize,
     /// Number of samples of a pixel.
     pub count: usize,
@@ -75,7 +75,7 @@ impl Layers {
         self.closed.clear();
         self.closed.resize(TILE_PIXELS, 0);
         if size != [TILE; 2] {
-            // The rasterizer goes beyond the picture's border.
+            // The rasterizer writes beyond the picture's border.
             for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
                 if x >= size[0] || y >= size[1] {
                     self.closed[place_of(x, y)] = u32::MAX;
@@ -91,7 +91,7 @@ impl Layers {
         self.closed_count >= (size[0] * size[1]) as usize
     }
 
-    /// Lights an item at each pixel of a block if there is one and something comes through; `covered` are its
+    /// Lights an item at each pixel of a block where there is one and surfaces still show through; `covered` has its
     /// samples as bits.
     #[inline(always)]
     pub fn light<S: Simd>(
@@ -120,8 +120,7 @@ impl Layers {
         [self.tile[0] + x, self.tile[1] + y]
     }
 
-    /// Adds a layer of a block: colours, straight, which mean something at the pixels that are `there`, and the samples
-    /// that it covers.
+    /// Adds a layer of a block: straight colours, valid at the pixels in `there`, and the samples that it covers.
     #[inline(always)]
     fn add<S: Simd>(
         &mut self,
@@ -167,7 +166,7 @@ impl Layers {
         }
     }
 
-    /// Lays the layers of a block over what shows at each sample, the farthest first.
+    /// Lays the layers of a block over the opaque colour at each sample, the farthest first.
     #[inline(always)]
     pub fn lay_over<S: Simd>(&self, simd: S, block: usize, under: &mut [[f32x16<S>; 4]]) {
         let mut next = self.farthest[block].0;
@@ -177,7 +176,7 @@ impl Layers {
             for (i, under) in under.iter_mut().enumerate() {
                 for (over, under) in layer.iter().zip(under) {
                     let sum = f32x16::from_slice(simd, over) + *under * (1.0 - alpha);
-                    // Without samples, it is 0 where there is no surface, which changes nothing.
+                    // Without coverage bits, the layer is 0 where there is no surface, which changes nothing.
                     *under = match covered {
                         Some(covered) => {
                             let bit = u32x16::from_slice(simd, covered) & (1 << i);

@@ -1,8 +1,8 @@
-//! Blended surfaces of a tile: lit from near to far until next to nothing comes through, and laid over
-//! what is opaque from far to near.
+//! Blended surfaces of a tile: lit from near to far until almost nothing shows through, and laid over the opaque
+//! surfaces from far to near.
 //!
-//! Triangles that do not cover each other are lit as they come ([`Sheet`]); where they do, and their depths do
-//! not tell them apart either, their fragments are collected and sorted pixel by pixel.
+//! Triangles that do not overlap are lit in any order ([`Sheet`]); if they overlap and their depth ranges do too, their
+//! fragments are collected and sorted pixel by pixel.
 
 mod fragments;
 mod layers;
@@ -103,8 +103,8 @@ pub fn light_blended<S: Simd>(
     }
 }
 
-/// Lights the first triangles, as many as do not cover each other, if all others are behind them, and returns how many
-/// they are; otherwise lights none and returns how many it has examined.
+/// Lights the first triangles up to the first overlap if all others are behind them, and returns their number;
+/// otherwise lights none and returns the number of triangles examined.
 #[inline(always)]
 fn light_sheet<S: Simd>(
     simd: S,
@@ -147,7 +147,7 @@ fn light_sheet<S: Simd>(
         for items in samples.iter_mut() {
             *items = items.simd_eq(over).select(none, *items);
         }
-        // One of the items that the samples of a pixel show at a time; there are no more items than samples.
+        // One of the pixel's items at a time; there are at most as many items as samples.
         for _ in 0..layers.count {
             let mut items = none;
             for of_sample in samples.iter() {
@@ -238,7 +238,7 @@ fn behind_block<S: Simd>(
     let [x, y] = block_at(block);
     let at = [area.tile[0] + x, area.tile[1] + y];
     let patch = Patch::block(at);
-    // The last row may have none below.
+    // The last row may have no row below.
     let below = (y + 1).min(area.size[1] - 1) + area.tile[1];
     let above = premultiply((area.background)(at[1])).to_array();
     let below = premultiply((area.background)(below)).to_array();

@@ -1,4 +1,4 @@
-//! Blended triangles of a tile that do not cover each other: what they show is known without sorting.
+//! Blended triangles of a tile that do not overlap, whose colours need no sorting.
 
 use super::super::rasterize::FragmentTest;
 use super::super::tile::{TILE, TILE_PIXELS, block_of};
@@ -20,7 +20,7 @@ pub struct Sheet {
     /// The blocks with an item, and for each whether it is among them.
     begun: Vec<u32>,
     is_begun: Vec<bool>,
-    /// True if a triangle came to what another covers.
+    /// True if a triangle covers a sample that another covers too.
     pub covers_another: bool,
 }
 

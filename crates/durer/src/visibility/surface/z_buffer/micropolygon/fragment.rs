@@ -11,12 +11,12 @@ use fearless_simd_macros::simd;
 /// Bits of a depth where a sample is not covered: no depth is farther.
 pub const UNCOVERED: i32 = i32::MAX;
 
-/// A pixel of a tile, and in the lower bits those of an item.
+/// A pixel of a tile, with the lower bits of an item.
 #[derive(Debug, Clone, Copy)]
 pub struct Seen(u32);
 
 impl Seen {
-    /// Makes that of an item at a place on the screen, as of [`super::place`].
+    /// Creates the entry of an item at a place on the screen, as returned by [`super::place`].
     #[inline(always)]
     pub fn new(place: u32, item: u32) -> Self {
         Self((place << ITEM_BITS) | (item & LOW_BITS))
@@ -31,7 +31,8 @@ impl Seen {
 
 /// Fragment that can be drawn into a tile.
 trait Draw {
-    /// Tests and writes depths, and in `known` the normal where it is seen. The block's items have these upper bits.
+    /// Tests and writes depths, and in `known` the normal where the fragment is visible. `upper` has the upper bits of
+    /// the block's items.
     fn draw<S: Simd>(
         &self,
         simd: S,
@@ -52,7 +53,7 @@ pub struct Sample<const N: usize> {
 /// The same with a normal.
 #[derive(Debug, Clone, Copy)]
 pub struct Fragment<const N: usize> {
-    /// The normal of the side that is seen, of any length; NaN where it is to be found when it is requested.
+    /// The normal of the visible side, of any length; NaN if it is computed on demand.
     pub normal: [f32; 3],
     pub sample: Sample<N>,
 }
@@ -63,7 +64,7 @@ impl Sample<1> {
     fn test(&self, plane: &mut SamplePlane, pixel: usize, item: u32) -> bool {
         let [depth] = self.depth;
         let (nearest, of_nearest) = (&mut plane.depth[pixel], &mut plane.item[pixel]);
-        // At equal depths the lower item wins, as where triangles are rasterized.
+        // At equal depths the lower item wins, as in rasterization.
         let wins_ties = of_nearest.cast_signed().wrapping_sub(item.cast_signed()) >= 0;
         let seen = depth < *nearest || depth == *nearest && wins_ties;
         if seen {
@@ -74,7 +75,7 @@ impl Sample<1> {
 }
 
 impl Sample<4> {
-    /// Tests and writes the depths of an item at a pixel of four samples; returns where it is seen, all bits set.
+    /// Tests and writes the depths of an item at a pixel of four samples; returns all bits set where it is visible.
     #[inline(always)]
     fn test<S: Simd>(
         &self,
@@ -92,7 +93,7 @@ impl Sample<4> {
         let items = &mut plane.item[first..first + 4];
         let old_item: i32x4<S> = u32x4::from_slice(simd, items).bitcast();
         let item = item.cast_signed();
-        // As where triangles are rasterized: at equal depths the lower item wins.
+        // As in rasterization, the lower item wins at equal depths.
         let tie_lost = !(depth - old) & ((old_item - item) >> 31u32);
         let write = !((old - depth) | tie_lost) >> 31u32;
         (old ^ ((old ^ depth) & write)).store_slice(stored);
@@ -225,7 +226,7 @@ impl Fragments {
         self.one.bytes() + self.four.bytes()
     }
 
-    /// Returns whether there are none in a tile.
+    /// Returns whether a tile has no fragments.
     pub fn nothing_in(&self, tile: u32) -> bool {
         self.one.nothing_in(tile) && self.four.nothing_in(tile)
     }

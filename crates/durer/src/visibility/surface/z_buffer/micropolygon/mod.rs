@@ -1,8 +1,8 @@
-//! Triangles that are sampled while they are set up: what is left of each, a few fragments with their depths and
-//! normals, is kept instead of the triangle.
+//! Triangles that are sampled during set-up: a few fragments with depths and normals are kept in place of each
+//! triangle.
 //!
-//! That a normal is found for what may turn out to be hidden costs less than to read the triangle again where it shows:
-//! here its vertices have just been read.
+//! Computing normals for fragments that may turn out hidden costs less than reading the visible triangles again: during
+//! set-up their vertices are in the cache.
 //!
 //! Source: see [`Sampled`]. Cost: O(1) for each triangle.
 
@@ -26,7 +26,7 @@ use fearless_simd_macros::simd;
 use fragment::{Fragment, Sample, Seen, Store, UNCOVERED};
 use tiles::PIXEL_BITS;
 
-/// Screens of more tiles have places that do not fit 32 bits; nothing is sampled there before its time.
+/// Number of tiles above which places do not fit into 32 bits; on larger screens no triangle is sampled during set-up.
 pub const MOST_TILES: u32 = 1 << (32 - PIXEL_BITS);
 
 /// Small triangles that wait until there are eight.
@@ -165,8 +165,7 @@ struct Lines {
 }
 
 impl Lines {
-    /// Returns the normal and the depth of a triangle at a pixel of its box: bit for bit as they are found
-    /// elsewhere.
+    /// Returns the normal and the depth of a triangle at a pixel of its box: bit for bit as in rasterization.
     #[inline(always)]
     fn at<S: Simd>(&self, simd: S, lane: usize, pixel: usize) -> [f32; 4] {
         let [column, row] = place_in_box(pixel);
@@ -184,8 +183,8 @@ impl Lines {
         found.bitcast::<f32x4<S>>().into()
     }
 
-    /// Returns the bits of the depths at the four samples of a pixel, which lie as given from its centre: bit
-    /// for bit as they are found where triangles are rasterized.
+    /// Returns the bits of the depths at the four samples of a pixel, given their offsets from its centre; bit for bit
+    /// the depths of rasterization.
     #[inline(always)]
     fn depths<S: Simd>(
         &self,
@@ -245,8 +244,8 @@ pub struct Micropolygons<'f> {
 }
 
 impl<'f> Micropolygons<'f> {
-    /// Creates the state for a screen whose pixels have samples at `offsets`, which is empty if nothing is sampled in
-    /// advance.
+    /// Creates the state for a screen whose pixels have samples at `offsets`, which is empty if no triangle is sampled
+    /// during set-up.
     pub fn new(grid: TileGrid, offsets: &[[i32; 2]], fragments: &'f mut Fragments) -> Self {
         if !offsets.is_empty() {
             fragments.have(grid.count() as usize, offsets.len());
@@ -255,8 +254,8 @@ impl<'f> Micropolygons<'f> {
         Self { fronts, backs, fragments, screen: Screen::new(grid, offsets) }
     }
 
-    /// Adds those of eight triangles whose bits are set; if they are given, the normals are made of those whose
-    /// fronts are seen.
+    /// Adds the triangles, of eight, whose bits are set in `which`. If `normals` is given, normals are computed for the
+    /// triangles seen from the front.
     #[inline(always)]
     pub fn add<S: Simd>(
         &mut self,
@@ -278,7 +277,7 @@ impl<'f> Micropolygons<'f> {
         }
     }
 
-    /// Makes fragments of what waits.
+    /// Turns the triangles waiting in both queues into fragments.
     pub fn finish(&mut self, level: Level, normals: Option<&RunNormals<'_>>) {
         for (queue, normals) in [(&mut self.fronts, normals), (&mut self.backs, None)] {
             if queue.count > 0 {
@@ -289,7 +288,7 @@ impl<'f> Micropolygons<'f> {
     }
 }
 
-/// Makes fragments of what waits in a queue.
+/// Turns the triangles waiting in a queue into fragments.
 #[inline(always)]
 fn make<S: Simd>(
     simd: S,

@@ -11,7 +11,7 @@ pub const ITEM_BITS: u32 = 32 - PIXEL_BITS;
 /// The bits of an item's number that are kept with its samples.
 pub const LOW_BITS: u32 = (1 << ITEM_BITS) - 1;
 
-/// Things by tile, in blocks that stay where they are.
+/// Entries by tile, in blocks that are not moved.
 pub struct Tiles<T> {
     by_tile: Vec<Blocks<T>>,
     /// Things that the blocks have room for.
@@ -20,7 +20,7 @@ pub struct Tiles<T> {
 
 /// Blocks of one tile.
 struct Blocks<T> {
-    /// Position of the next item; full or without room when there is none.
+    /// Position of the next item; when there is none, the list is full or has no room.
     open: Vec<T>,
     /// The upper bits of items there.
     upper: u32,
@@ -38,12 +38,12 @@ impl<T> Default for Tiles<T> {
 }
 
 impl<T> Tiles<T> {
-    /// Makes room for the things of this many tiles.
+    /// Makes room for the entries of `tiles` tiles.
     pub fn have(&mut self, tiles: usize) {
         self.by_tile.resize_with(tiles, Blocks::default);
     }
 
-    /// Adds a thing of an item at a place on the screen.
+    /// Adds an entry of an item at a place on the screen.
     #[inline(always)]
     pub fn push(&mut self, place: u32, item: u32, thing: T) {
         let tile = &mut self.by_tile[(place >> PIXEL_BITS) as usize];

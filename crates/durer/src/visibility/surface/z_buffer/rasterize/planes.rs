@@ -37,7 +37,7 @@ impl Edges {
 /// Returns whether an edge is a top or left one: pixels on those belong to the triangle, on others they do not.
 #[inline(always)]
 pub fn top_left(dx: i32, dy: i32) -> bool {
-    // dy < 0, or it is 0 and dx > 0; as one sign, for edges take turns and cannot be foreseen.
+    // dy < 0, or it is 0 and dx > 0; as one sign, because branches on edges would be mispredicted.
     (i64::from(dy) << 33) - i64::from(dx) < 0
 }
 
