@@ -52,6 +52,20 @@ pub fn map_and_keep<S: Send, T: Send, R: Send>(
     (results, states.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
+/// Returns `f` of each number below `count`, in order. `job` numbers in a row are the work of one thread.
+pub fn each<R: Copy + Default + Send>(
+    count: usize,
+    job: usize,
+    f: impl Fn(usize) -> R + Sync + Send,
+) -> Vec<R> {
+    let mut all = vec![R::default(); count];
+    let jobs = all.chunks_mut(job).zip((0..).step_by(job)).collect();
+    map(jobs, |(results, first): (&mut [R], usize)| {
+        results.iter_mut().zip(first..).for_each(|(result, i)| *result = f(i));
+    });
+    all
+}
+
 /// Returns the number of threads that share the work.
 pub fn threads() -> usize {
     #[cfg(feature = "parallel")]

@@ -235,11 +235,12 @@ pub fn make(
     }
     let marked = tones::asked(args).is_some();
     if marked {
-        for ((view, placed), (cut, options)) in shown.iter_mut().zip(&laid.views).zip(&sources) {
+        let of = sources.iter().map(|(cut, options)| {
             let scene = cut.as_ref().map_or(subject.scene, |cut| &cut.0);
-            let marks = tones::marks(args, (scene, options), &view.breaks, placed.factor)?;
-            view.drawing = pipeline::with_marks(std::mem::take(&mut view.drawing), marks);
-        }
+            (scene, options)
+        });
+        let of: Vec<_> = of.collect();
+        tones::add(args, &mut shown, &of, laid.views.iter().map(|placed| placed.factor))?;
     }
     if hatched || marked {
         laid = lay_out(args, kind, subject, (frame, room), (&shown, &called))?;

@@ -239,6 +239,40 @@ fn hidden_line_drawings_are_hatched_where_that_is_asked_for() {
 }
 
 #[test]
+fn details_have_marks_at_the_distance_that_their_views_have() {
+    let folder = Folder::with_models();
+    let sheet =
+        "render round.obj -o a.svg --sheet third-angle --views iso --page A5 --json --hatch";
+    // A cylinder of 48 facets.
+    let mut model = String::new();
+    for i in 0..48 {
+        let (y, x) = (f64::from(i) / 24.0 * std::f64::consts::PI).sin_cos();
+        model += &format!("v {x} {y} -1\nv {x} {y} 1\n");
+    }
+    for i in 0..48 {
+        let k = (i + 1) % 48;
+        model += &format!("f {} {} {} {}\n", 2 * i + 1, 2 * k + 1, 2 * k + 2, 2 * i + 2);
+    }
+    fs::write(folder.path("round.obj"), model).unwrap();
+    // On paper the lines are twice as long, and in the model's units; dots are four times as many.
+    for (hatch, class, of, grows) in
+        [("stipple", "stipple", "polylines", 4.0), ("contour", "hatch", "length", 2.0)]
+    {
+        let marks = |detail: &str| {
+            let json = folder.must(&format!("{sheet} {hatch} {detail}")).json();
+            let lines = json["models"][0]["pictures"][0]["drawing"]["lines"].clone();
+            let lines = lines.as_array().unwrap().iter().filter(|l| l["class"] == class);
+            lines.map(|l| l["visible"][of].as_f64().unwrap()).sum::<f64>()
+        };
+        let plain = marks("");
+        let [same, twice] = ["20:1", "40:1"]
+            .map(|scale| marks(&format!("--detail B:0.7,-0.7,0,0.4,{scale},iso")) - plain);
+        let growth = twice / same;
+        assert!(same > 0.0 && (0.7 * grows..1.4 * grows).contains(&growth), "{class} {growth}");
+    }
+}
+
+#[test]
 fn gcode_takes_its_commands_and_speeds_from_options() {
     let folder = Folder::with_models();
     let drawn = |options: &str| {

@@ -7,7 +7,8 @@ use crate::clip::polygon::overlay::{self, overlay};
 use crate::clip::polygon::{BooleanOp, Shapes, WindingRule};
 use crate::math::{DVec2, Rect};
 use crate::paper::parts::parts;
-use crate::paper::{PlacedView, standard_scale};
+use crate::paper::{PlacedView, ViewBreaks, standard_scale};
+use crate::scene::{Camera, Projection};
 use crate::target::drawing::{Drawing, Line, Region};
 use crate::trace::NoTrace;
 
@@ -51,6 +52,20 @@ impl Detail {
         let labels = drawing.labels.iter().filter(|l| within(l.at)).cloned().collect();
         let window = Some(self.bounds());
         Ok(Drawing { window, regions, lines, labels, nearness, edges: drawing.edges })
+    }
+
+    /// Returns the camera of its view, which is parallel, moved and narrowed to what the detail shows, and the origin of
+    /// the new camera's plane in that of the view before it was broken.
+    pub fn camera(&self, view: &Camera, breaks: &ViewBreaks) -> (Camera, DVec2) {
+        let bounds = self.bounds();
+        let (min, max) = (bounds.min(), bounds.max());
+        let corners = [min, max, DVec2::new(min.x, max.y), DVec2::new(max.x, min.y)];
+        let seen = Rect::around(corners.map(|at| breaks.seen_at(at))).unwrap_or(bounds);
+        let (middle, size) = (seen.min().midpoint(seen.max()), seen.max() - seen.min());
+        let [right, up, _] = view.axes();
+        let way = right * middle.x + up * middle.y;
+        let projection = Projection::Orthographic { height: size.max_element() };
+        (Camera { eye: view.eye + way, target: view.target + way, projection, ..*view }, middle)
     }
 
     fn cut_region(&self, region: &Region) -> Result<Option<Region>> {

@@ -8,7 +8,7 @@ use crate::visibility::object::{Faces, Side};
 const JOB: usize = 1 << 15;
 
 /// The direction and the size of a triangle.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Plane {
     /// Twice the area, along the normal.
     across: DVec3,
@@ -27,10 +27,7 @@ impl Planes {
             let across = corners.map_or(DVec3::ZERO, |[a, b, c]| (b - a).cross(c - a));
             Plane { across, area: across.length() }
         };
-        let jobs: Vec<_> = (0..faces.len()).step_by(JOB).collect();
-        let of =
-            |first: usize| (first..faces.len().min(first + JOB)).map(plane).collect::<Vec<_>>();
-        Self(parallel::map(jobs, of).concat())
+        Self(parallel::each(faces.len(), JOB, plane))
     }
 
     /// Returns twice the area of a triangle along its normal; zero if it has none.

@@ -101,11 +101,8 @@ impl Whole<'_> {
     }
 }
 
-/// A part of a triangle.
-struct Part {
-    item: u32,
-    vertices: [u32; 3],
-}
+/// A part of a triangle: the triangle's item, and the vertices of the part.
+type Part = (u32, [u32; 3]);
 
 /// A corner of a part of a triangle: its vertex, and where it lies on the flat triangle.
 type Corner = (u32, DVec3);
@@ -134,7 +131,7 @@ pub(super) fn divided(
         }
     }
     let Vertices { points, bends, .. } = found;
-    let (faces, origins) = whole.refined(edges, points, parts.iter().map(|p| (p.item, p.vertices)));
+    let (faces, origins) = whole.refined(edges, points, &parts);
     let turn = |(item, origin): (u32, &u32)| {
         let smooth = surface.corners(*origin).and_then(|_| whole.triangle(*origin));
         let Some((part, all)) = faces.triangle(item).zip(smooth) else { return 0 };
@@ -186,9 +183,10 @@ impl<'a> Vertices<'a> {
             crossings,
             starts: starts(crossings, faces.points().len()),
             vertices: Vec::new(),
-            points: faces.points().to_vec(),
+            points: Vec::with_capacity(faces.points().len() + crossings.len()),
             bends: vec![Bend::default(); faces.points().len()],
         };
+        found.points.extend_from_slice(faces.points());
         for on_edge in crossings.chunk_by(|a, b| a.edge == b.edge) {
             let sides = edges.at(on_edge[0].edge).len();
             for same in on_edge.chunk_by(|a, b| a.at == b.at) {
@@ -246,7 +244,7 @@ impl<'a> Vertices<'a> {
         let places = own.iter().map(|v| ring.iter().position(|c| c.0 == *v));
         let places: Vec<usize> = places.flatten().collect();
         let mut push = |ring: Vec<Corner>| {
-            triangulate(ring, |vertices| parts.push(Part { item, vertices }));
+            triangulate(ring, |vertices| parts.push((item, vertices)));
         };
         match places[..] {
             [p, q] if p.abs_diff(q) > 1 && p.abs_diff(q) + 1 < ring.len() => {

@@ -7,7 +7,7 @@
 
 use super::planes::Planes;
 use super::roundness::Round;
-use super::vertex_normals::{Directions, direction, each_normal};
+use super::vertex_normals::{Directions, direction, normals};
 use crate::math::{DMat3, DVec3};
 use crate::scene::{Mesh, Scene};
 use crate::view::picture_plane::PicturePlane;
@@ -171,15 +171,14 @@ impl SmoothSurface {
         for t in added.iter().filter_map(|item| faces.triangle(*item)) {
             t.iter().for_each(|v| asked[*v as usize] = true);
         }
-        let mut normals = vec![[DVec3::ZERO; 3]; added.len()];
+        let mut of_added = vec![[DVec3::ZERO; 3]; added.len()];
         let mut place = vec![NONE; faces.len()];
         added.iter().zip(0..).for_each(|(item, i)| place[*item as usize] = i);
-        each_normal(directions, items, &asked, |a, normal| {
-            if let Some(normals) = normals.get_mut(place[a.item as usize] as usize) {
-                normals[a.corner as usize] = normal;
-            }
-        });
-        for (item, normals) in added.into_iter().zip(normals) {
+        let found = normals(directions, items, &asked, |item| place[item as usize] != NONE);
+        for (item, corner, normal) in found.into_iter().flatten() {
+            of_added[place[item as usize] as usize][usize::from(corner)] = normal;
+        }
+        for (item, normals) in added.into_iter().zip(of_added) {
             self.add(seen, item, normals);
         }
     }

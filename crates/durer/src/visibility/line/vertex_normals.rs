@@ -11,6 +11,7 @@
 use super::planes::Planes;
 use super::roundness::FLAT;
 use crate::math::DVec3;
+use crate::parallel;
 use crate::visibility::object::{Edges, Faces};
 
 /// Triangles lower than this part of their longest side L are slivers. A surface that turns by less than the crease
@@ -43,6 +44,9 @@ pub(super) const UNEVEN: f64 = 8.0;
 
 /// Largest number of triangles in a facet of a round part: two for a quadrilateral, and as many beside.
 const FACET: usize = 4;
+
+/// Vertices per job.
+const JOB: usize = 1 << 13;
 
 /// Vertices of more triangles are hubs, and not round: all pairs of them are too many to examine.
 const HUB: usize = 256;
@@ -305,13 +309,14 @@ impl Around {
     }
 }
 
-/// Calls `f` with the normals of those corners of triangles whose vertices are requested. `items` are in order.
-pub(super) fn each_normal(
+/// Returns the normals of the corners of triangles that are `wanted`, by item and corner, in no particular order. All
+/// vertices of those triangles are `asked`; `items` are in order.
+pub(super) fn normals(
     directions: &Directions<'_>,
     items: &[u32],
     asked: &[bool],
-    mut f: impl FnMut(&Around, DVec3),
-) {
+    wanted: impl Fn(u32) -> bool + Sync + Send,
+) -> Vec<Vec<(u32, u8, DVec3)>> {
     let corners = || {
         let triangles =
             items.iter().filter_map(|item| Some((*item, directions.faces.triangle(*item)?)));
@@ -319,27 +324,38 @@ pub(super) fn each_normal(
         all.filter(|(_, _, v)| asked[*v as usize]).map(|(item, k, v)| (item, k as u8, v))
     };
     // By vertex, at each in item order.
-    let mut ends = vec![0_u32; asked.len()];
-    corners().for_each(|(_, _, v)| ends[v as usize] += 1);
+    let mut ends = vec![0_u32; asked.len() + 1];
+    corners().for_each(|(_, _, v)| ends[v as usize + 1] += 1);
     let mut sum = 0;
     for end in &mut ends {
-        (*end, sum) = (sum, sum + *end);
+        sum += *end;
+        *end = sum;
     }
     let mut sorted = vec![(0, 0_u8); sum as usize];
     for (item, k, v) in corners() {
-        sorted[ends[v as usize] as usize] = (item, k);
-        ends[v as usize] += 1;
+        let start = &mut ends[v as usize];
+        sorted[*start as usize] = (item, k);
+        *start += 1;
     }
-    let (mut start, mut group) = (0, Vec::new());
-    for end in ends {
-        let around = |c: &(u32, u8)| Around::of(directions.faces, directions, c.0, c.1.into());
-        group.clear();
-        group.extend(sorted[start..end as usize].iter().filter_map(around));
-        start = end as usize;
-        if !group.is_empty() {
-            averages(&group, directions, &mut f);
+    let around = |c: &(u32, u8)| Around::of(directions.faces, directions, c.0, c.1.into());
+    let of = |first: usize| {
+        let (mut found, mut group) = (Vec::new(), Vec::new());
+        let mut start = if first == 0 { 0 } else { ends[first - 1] as usize };
+        for end in &ends[first..asked.len().min(first + JOB)] {
+            group.clear();
+            group.extend(sorted[start..*end as usize].iter().filter_map(around));
+            start = *end as usize;
+            if !group.is_empty() {
+                averages(&group, directions, &mut |a, normal| {
+                    if wanted(a.item) {
+                        found.push((a.item, a.corner, normal));
+                    }
+                });
+            }
         }
-    }
+        found
+    };
+    parallel::map((0..asked.len()).step_by(JOB).collect(), of)
 }
 
 /// Calls `f` with the normal of each triangle around a vertex, which are in item order: one for all where it is round,
@@ -349,7 +365,8 @@ fn averages(group: &[Around], directions: &Directions<'_>, f: &mut impl FnMut(&A
         let alike = group.iter().enumerate().filter(|(i, _)| alike(*i));
         alike.fold(DVec3::ZERO, |sum, (_, a)| sum + a.direction * a.weight)
     };
-    let all = sum(&|_| true).normalize_or_zero();
+    let all = group.iter().fold(DVec3::ZERO, |sum, a| sum + a.direction * a.weight);
+    let all = all.normalize_or_zero();
     let least = group.iter().map(|a| a.direction.dot(all)).fold(1.0, f64::min);
     // Within a quarter of the crease angle of one direction no two meet at a sharp edge.
     if least >= directions.quarter {

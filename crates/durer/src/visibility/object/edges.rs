@@ -221,9 +221,8 @@ mod tests {
         points.push(points[a as usize].midpoint(points[b as usize]));
         let middle = points.len() as u32 - 1;
         let [d, e, f] = faces.triangle(9).expect("a triangle");
-        let parts =
-            [(5, [a, middle, c]), (5, [middle, b, c]), (9, [d, e, f]), (9, [f, e, d])].into_iter();
-        let (mut refined, origins) = faces.refined(&edges, points, parts);
+        let parts = [(5, [a, middle, c]), (5, [middle, b, c]), (9, [d, e, f]), (9, [f, e, d])];
+        let (mut refined, origins) = faces.refined(&edges, points, &parts);
         assert_eq!(origins.len(), 26);
         let taken = refined.take_edges();
         assert_eq!(taken, Edges::new(&refined, |_| true));

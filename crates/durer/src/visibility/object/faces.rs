@@ -220,14 +220,15 @@ impl Faces {
         &self,
         edges: &Edges,
         points: Vec<DVec3>,
-        parts: impl Iterator<Item = (u32, [u32; 3])>,
+        parts: &[(u32, [u32; 3])],
     ) -> (Self, Vec<u32>) {
-        let (mut triangles, mut origins) = (Vec::new(), Vec::new());
-        let mut parts = parts.peekable();
+        let most = self.triangles.len() + parts.len();
+        let (mut triangles, mut origins) = (Vec::with_capacity(most), Vec::with_capacity(most));
+        let mut left = parts.iter().peekable();
         for (item, &t) in (0..).zip(&self.triangles) {
             let before = triangles.len();
-            while let Some((_, part)) = parts.next_if(|p| p.0 == item) {
-                triangles.push(part);
+            while let Some((_, part)) = left.next_if(|p| p.0 == item) {
+                triangles.push(*part);
             }
             if triangles.len() == before {
                 triangles.push(t);
@@ -242,14 +243,30 @@ impl Faces {
         let polygons = Some(origins.iter().map(polygon).collect());
         let (marks, grains) = (self.marks.clone(), self.grains.clone());
         let mut refined = Self { points, triangles, runs, polygons, marks, ..Self::default() };
-        refined.edges = Some(if self.outlines.is_empty() {
-            edges.divided(&refined, &origins)
-        } else {
+        refined.edges = Some(if self.is_at_outline(parts) {
             let edges = Edges::new(&refined, |_| true);
             divide(&mut refined, edges, &grains)
+        } else {
+            if !self.outlines.is_empty() {
+                let outlines = self.outlines.iter().map(|(item, o)| (start(*item), o.clone()));
+                refined.set_outlines(outlines.collect());
+            }
+            edges.divided(&refined, &origins)
         });
         refined.grains = grains;
         (refined, origins)
+    }
+
+    /// Returns whether parts of triangles touch one whose sides have vertices of others.
+    fn is_at_outline(&self, parts: &[(u32, [u32; 3])]) -> bool {
+        if self.outlines.is_empty() {
+            return false;
+        }
+        let mut is_of_outline = vec![false; self.points.len()];
+        let vertices = self.outlines.iter().flat_map(|(_, outline)| outline);
+        vertices.for_each(|v| is_of_outline[*v as usize] = true);
+        let touches = |v: &u32| is_of_outline.get(*v as usize) == Some(&true);
+        parts.iter().flat_map(|(_, part)| part).any(touches)
     }
 
     /// Returns the number of triangles: one more than the largest item.
