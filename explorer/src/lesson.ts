@@ -125,7 +125,10 @@ export function lessonPage(
   const notice = h("p", { class: "notice", role: "status", "aria-live": "polite", hidden: true });
   const codePane = h("div", { class: "scroll" }, code.element);
   const bug = lesson.faults.length > 0 ? new Bug(player) : undefined;
-  const quiz = new Quiz(player, stage, transport, code, (hidden) => codePane.classList.toggle("veiled", hidden));
+  const quiz = new Quiz(player, stage, transport, code, (hidden) => {
+    codePane.classList.toggle("veiled", hidden === "line");
+    main.classList.toggle("covered", hidden === "state");
+  });
   let noticeTimer: number | undefined;
 
   function say(text: string, lasting = false): void {
@@ -267,6 +270,7 @@ export function lessonPage(
       player.change({ input: { example: "" }, operation: "", rule: "" }, player.setup, 0);
       return true;
     }
+    if (quiz.key(event)) return true;
     // A frame has nothing to scroll: presenters' remotes send these.
     const pages = embedded ? ["PageUp", "PageDown"].indexOf(event.key) : -1;
     if (pages >= 0) {

@@ -1,12 +1,13 @@
 // Ask-mode: what comes next, checked against the run itself.
 
 import { h } from "./dom";
+import { codeAt, Fields, hasNumbers, questions, textOf, type Question } from "./numbers";
 import type { Code } from "./panes";
 import type { Player } from "./player";
 import type { Stage } from "./stage";
 import { asked, hasPixels, hit, placesInWords } from "./targets";
 import type { Transport } from "./transport";
-import type { Point, Target } from "./types";
+import type { Frame, Point, Target } from "./types";
 import { of, t, type WordName } from "./words";
 
 /** The most answers to choose from. */
@@ -17,13 +18,17 @@ export function gapped(text: string): string {
   return text.replace(/\{\w+\}/g, "…");
 }
 
-/** What is asked for: the place in the picture where there is one, the kind of step, or the line that runs. */
-type Mode = "place" | "kind" | "line";
+/** What is asked for: the place in the picture where there is one, numbers and decisions, the kind of step, or the line that runs. */
+type Mode = "place" | "number" | "kind" | "line";
 const MODES: [Mode, WordName][] = [
   ["place", "byPlace"],
+  ["number", "byNumber"],
   ["kind", "byKind"],
   ["line", "byLine"],
 ];
+
+/** What a question hides: nothing, the line that runs, or all that tells the state. */
+export type Hidden = "" | "line" | "state";
 
 export class Quiz {
   /** The panel that starts and ends the quiz. */
@@ -38,23 +43,29 @@ export class Quiz {
   private open: number | undefined;
   /** Counts questions, so that one that comes late is known. */
   private ticket = 0;
+  /** Fields of the question, if its answer is a number or a decision. */
+  private fields: Fields | undefined;
+  /** True once the first step was in question: it is shown before the quiz begins. */
+  private began = false;
 
   private startButton = h("button", { type: "button", class: "primary", onclick: () => this.toggle() }, t("quizStart"));
   private question = h("p", { class: "question", role: "status", "aria-live": "polite" });
   private answers = h("div", { class: "answers" });
   private verdict = h("p", { class: "verdict", role: "status", "aria-live": "polite" });
   private score = h("p", { class: "score" });
-  private modes = MODES.map(([mode, name]) =>
-    h("button", { type: "button", "data-mode": mode, "aria-pressed": mode === this.mode ? "true" : "false", onclick: () => this.choose(mode) }, t(name)),
-  );
+  private modes: HTMLButtonElement[];
 
   constructor(
     private player: Player,
     private stage: Stage,
     private transport: Transport,
     private code: Code,
-    private veil: (hidden: boolean) => void,
+    private veil: (hidden: Hidden) => void,
   ) {
+    const modes = MODES.filter(([mode]) => mode !== "number" || hasNumbers(player.lesson));
+    this.modes = modes.map(([mode, name]) =>
+      h("button", { type: "button", "data-mode": mode, "aria-pressed": mode === this.mode ? "true" : "false", onclick: () => this.choose(mode) }, t(name)),
+    );
     const end = h("button", { type: "button", class: "quiet", onclick: () => this.toggle() }, t("quizStop"));
     this.element = h("div", { class: "panel quiz" }, h("p", { class: "hint" }, t("quizHint")), h("div", { class: "tools" }, this.startButton, ...this.modes));
     this.bar = h("div", { class: "asking quiz-bar", hidden: true }, this.verdict, this.question, this.answers, h("div", { class: "tools" }, this.score, end));
@@ -63,6 +74,7 @@ export class Quiz {
     });
     player.addEventListener("run", () => {
       this.open = undefined;
+      this.began = false;
     });
   }
 
@@ -77,6 +89,7 @@ export class Quiz {
     this.on = !this.on;
     this.startButton.textContent = this.on ? t("quizStop") : t("quizStart");
     this.right = this.asked = 0;
+    this.began = false;
     this.verdict.textContent = "";
     this.verdict.className = "verdict";
     this.score.textContent = "";
@@ -97,17 +110,30 @@ export class Quiz {
     this.ticket++;
     this.open = undefined;
     this.question.textContent = "";
-    this.answers.replaceChildren();
+    this.clear();
     this.stage.answered("");
+    this.stage.hidesCodes = false;
     this.stage.unpick();
-    this.veil(false);
+    this.veil("");
+  }
+
+  /** Takes the answers of the last question away. */
+  private clear(): void {
+    this.fields = undefined;
+    this.answers.replaceChildren();
   }
 
   private async ask(): Promise<void> {
     const { player } = this;
     const own = ++this.ticket;
+    this.clear();
+    this.stage.hidesCodes = false;
+    if (this.mode === "number" && player.step === 0 && !this.began) {
+      this.began = true;
+      if (await this.askFirst(own)) return;
+      if (own !== this.ticket) return;
+    }
     const next = player.step + 1;
-    this.answers.replaceChildren();
     // The last sentence of a run that was cut off is of no step.
     if (next >= player.steps || player.run!.templates[next]! < 0) {
       this.open = undefined;
@@ -116,28 +142,72 @@ export class Quiz {
     }
     this.open = next;
     this.transport.pause();
-    this.veil(this.mode === "line");
+    this.veil(this.mode === "line" ? "line" : "");
     if (this.mode === "line") {
       this.stage.unpick();
       this.question.textContent = t("askLine");
       return;
     }
-    const targets = this.mode === "place" ? await this.targets(next) : [];
+    const before = player.frame;
+    const frame = this.mode === "kind" ? undefined : await this.frameAt(next);
     if (own !== this.ticket) return;
+    const targets = frame ? asked(frame, before) : [];
+    const numbers = frame ? questions(player.lesson, frame) : [];
+    if (numbers.length > 0 && (this.mode === "number" || targets.length === 0)) return this.askNumbers(numbers);
     if (targets.length > 0) return this.askPlace(next, targets);
     this.stage.unpick();
     this.askKind(next);
   }
 
-  /** Returns what the next step is about in the picture. */
-  private async targets(next: number): Promise<Target[]> {
-    const { frame } = this.player;
+  /** Asks for the numbers of the first step, which hides the state; returns whether it has any. */
+  private async askFirst(own: number): Promise<boolean> {
+    const frame = await this.frameAt(0);
+    const numbers = frame ? questions(this.player.lesson, frame) : [];
+    if (own !== this.ticket || numbers.length === 0) return false;
+    this.open = 0;
+    this.transport.pause();
+    this.veil("state");
+    this.askNumbers(numbers);
+    return true;
+  }
+
+  /** Returns the frame of a step; none where the engine is gone, and starts anew with the run. */
+  private async frameAt(step: number): Promise<Frame | undefined> {
     try {
-      return asked(await this.player.frameAt(next), frame);
+      return await this.player.frameAt(step);
     } catch {
-      // The engine is gone, and starts anew with the run.
-      return [];
+      return undefined;
     }
+  }
+
+  private askNumbers([question, ...rest]: Question[]): void {
+    if (!question) return;
+    const { stage, player } = this;
+    const fields = new Fields(question, (right) => (right && rest.length > 0 ? this.goOn(rest) : this.answer(right)));
+    this.fields = fields;
+    this.question.textContent = textOf(question);
+    this.answers.replaceChildren(fields.element);
+    fields.focus();
+    stage.hidesCodes = "code" in question;
+    if (!stage.hidesCodes) return stage.unpick();
+    stage.pick(false, (at: Point) => {
+      const place = player.frame?.map;
+      const code = place && codeAt(at, place, player.run?.input);
+      if (code) fields.set(code);
+      stage.redraw();
+    });
+  }
+
+  /** Counts a right answer, and asks the next question about the same step. */
+  private goOn(rest: Question[]): void {
+    this.count(true);
+    this.verdict.textContent = `✓ ${t("right")}`;
+    this.askNumbers(rest);
+  }
+
+  /** Takes a key of the question; returns whether it was one. */
+  key(event: KeyboardEvent): boolean {
+    return this.open !== undefined && this.fields?.key(event) === true;
   }
 
   private askPlace(next: number, targets: Target[]): void {
@@ -173,15 +243,21 @@ export class Quiz {
     return true;
   }
 
+  private count(right: boolean): void {
+    this.asked += 1;
+    this.right += right ? 1 : 0;
+    this.score.textContent = `${t("score")}: ${this.right} / ${this.asked}`;
+    this.verdict.className = `verdict ${right ? "right" : "wrong"}`;
+  }
+
   private answer(right: boolean, line?: number, onStage = false): void {
     const next = this.open;
     if (next === undefined) return;
     this.open = undefined;
-    this.asked += 1;
-    this.right += right ? 1 : 0;
+    this.count(right);
+    this.stage.hidesCodes = false;
     this.stage.answered(onStage ? (right ? "right" : "wrong") : "");
-    this.score.textContent = `${t("score")}: ${this.right} / ${this.asked}`;
-    this.verdict.className = `verdict ${right ? "right" : "wrong"}`;
+    this.veil("");
     const words = right ? t("right") : line === undefined ? t("wrong") : `${t("wrongLine")} ${line}.`;
     const told = (): void => {
       this.player.removeEventListener("frame", told);

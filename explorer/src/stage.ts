@@ -88,6 +88,8 @@ export class Stage {
   chosen: Ref | undefined;
   onchoose: (() => void) | undefined;
   editable = true;
+  /** True while an outcode is asked for: the picture does not show any. */
+  hidesCodes = false;
 
   /** Takes the place that is clicked, in the coordinates of the picture, while the quiz asks for one. */
   private onpick: ((at: Point, scale: number) => void) | undefined;
@@ -149,6 +151,9 @@ export class Stage {
     for (const [name, value] of Object.entries(place)) picture.setAttribute(name, String(value));
     picture.setAttribute("overflow", "visible");
     picture.setAttribute("aria-hidden", "true");
+    if (this.hidesCodes) {
+      [...picture.querySelectorAll("text")].filter((text) => /^[01]{4}$/.test(text.textContent ?? "")).forEach((text) => text.remove());
+    }
     const focused = (document.activeElement as SVGElement | null)?.dataset?.ref;
     this.svg.setAttribute("viewBox", `0 0 ${view.size[0]} ${view.size[1]}`);
     this.svg.setAttribute("aria-label", frame.frame.caption);
@@ -162,6 +167,11 @@ export class Stage {
       if (focused) this.svg.querySelector<SVGElement>(`[data-ref="${focused}"]`)?.focus();
       this.resize();
     }
+  }
+
+  /** Draws the step once more. */
+  redraw(): void {
+    this.draw();
   }
 
   /** Asks for a place in the picture: by a click, or by arrow keys and Enter on a cross. */

@@ -97,7 +97,7 @@ export interface Place {
 export type Target = { pixel: Point } | { point: Point } | { line: Point[] } | { area: Point[][] };
 
 export interface Frame {
-  frame: { line: number; kind: string; caption: string; table: Table };
+  frame: { line: number; kind: string; caption: string; values: Record<string, unknown>; table: Table };
   svg: string;
   map: Place;
   targets: Target[];

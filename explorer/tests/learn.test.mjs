@@ -90,6 +90,84 @@ test("a pixel is answered by keys alone", async () => {
   await close();
 });
 
+/** Waits until a question is asked, and returns it. */
+async function question(page, part) {
+  await page.waitForFunction((part) => document.querySelector(".question").textContent.includes(part), part);
+}
+
+test("outcodes and decisions are answered by keys, by number", async () => {
+  const { page, faults, close } = await open(chromium, `${server.url}#a=cohen-sutherland&ex=line-eh&lang=en`);
+  await atStep(page, 1);
+  const codes = async () => (await page.locator(".drawing svg text").allTextContents()).filter((text) => /^[01]{4}$/.test(text));
+  assert.ok((await codes()).includes("0000"));
+  await page.click("#tab-quiz");
+  await page.click("[data-mode=number]");
+  await page.click(".quiz .primary");
+  // E (−3, 1.5) is left of the window, H (13, 4) right of it. Nothing tells: not the caption, the table, or the picture.
+  await question(page, "outcode of A");
+  assert.deepEqual(await codes(), []);
+  for (const hidden of [".picture-pane .caption", ".state-pane .state"]) assert.equal(await page.locator(hidden).isVisible(), false, hidden);
+  await page.keyboard.press("4");
+  assert.equal(await page.locator(".bit .digit").allTextContents().then((all) => all.join("")), "0001");
+  await page.keyboard.press("Enter");
+  await question(page, "outcode of B");
+  assert.match(await page.textContent(".score"), /1 \/ 1/);
+  await accessible(page, "outcode");
+  await page.keyboard.press("1");
+  await page.keyboard.press("1");
+  await page.keyboard.press("3");
+  await page.keyboard.press("Enter");
+  // Both are right: the step is shown, and the next one is asked for.
+  await question(page, "What happens to the line");
+  assert.ok(await page.locator(".picture-pane .caption").isVisible());
+  assert.match(await page.textContent(".verdict"), /Right.*0001.*0010/);
+  assert.ok((await codes()).includes("0000"));
+  await atStep(page, 1);
+  await page.keyboard.press("3");
+  // The line is cut at the left border; what is left begins inside.
+  await question(page, "outcode of the new end");
+  await page.keyboard.press("4");
+  await page.keyboard.press("Enter");
+  await atStep(page, 2);
+  assert.match(await page.textContent(".verdict"), /No.*code 0000/);
+  await question(page, "What happens to the line");
+  await page.click("[data-decision=rejected]");
+  await atStep(page, 3);
+  assert.match(await page.textContent(".verdict"), /No/);
+  assert.match(await page.textContent(".score"), /3 \/ 5/);
+  assert.deepEqual(faults, []);
+  await close();
+});
+
+test("a click in a region answers with its outcode, in German", async () => {
+  const { page, faults, close } = await open(chromium, `${server.url}#a=cohen-sutherland&ex=line-ad&lang=de`);
+  await atStep(page, 1);
+  // Corners of the window, from the corner of the picture.
+  const [stage, low, high] = await Promise.all([".stage", '[data-ref="window-0-0"]', '[data-ref="window-0-2"]'].map((name) => page.locator(name).boundingBox()));
+  await page.click("#tab-quiz");
+  await page.click("[data-mode=number]");
+  await page.click(".quiz .primary");
+  await question(page, "Outcode von A");
+  const bits = () => page.locator(".bit .digit").allTextContents().then((all) => all.join(""));
+  const clickAt = (x, y) => page.locator(".stage").click({ position: { x: x - stage.x, y: y - stage.y } });
+  // Left of the window, at the height of its middle; then above and left of it.
+  await clickAt(low.x - 40, (low.y + high.y) / 2);
+  assert.equal(await bits(), "0001");
+  await clickAt(low.x - 40, high.y - 20);
+  assert.equal(await bits(), "1001");
+  await clickAt(low.x - 40, (low.y + high.y) / 2);
+  await page.click(".check");
+  await question(page, "Outcode von B");
+  assert.match(await page.textContent(".verdict"), /Richtig/);
+  // D (3, 9.5) is above; "oben" is the first bit.
+  await page.click('.bit[aria-label="Bit 1: oben"]');
+  await page.click(".check");
+  await question(page, "Was geschieht jetzt");
+  assert.deepEqual(await page.locator(".decisions button").allTextContents(), ["1annehmen", "2ablehnen", "3schneiden"]);
+  assert.deepEqual(faults, []);
+  await close();
+});
+
 test("lessons with programs have bugs to be found", async () => {
   const { page, faults, close } = await open(chromium, `${server.url}#a=bresenham&lang=en`);
   await atStep(page, 1);

@@ -6,7 +6,8 @@ use crate::lessons::lesson;
 use crate::targets::targets;
 use durer::clip::polygon::{BooleanOp, WindingRule};
 use durer::explain::{
-    self, Frame, Frames, Input, Language, Lesson, Options, Picture, json_string, picture_of_size,
+    self, Frame, Frames, Input, Language, Lesson, Options, Picture, Template, json_string,
+    picture_of_size,
 };
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -49,8 +50,8 @@ impl Runs {
         let mut answer = json!({
             "handle": self.next,
             "steps": run.len(),
-            "lines": run.captions().map(|(line, _)| line).collect::<Vec<_>>(),
-            "templates": run.captions().map(|(_, caption)| place(lesson, caption)).collect::<Vec<_>>(),
+            "lines": run.outline().map(|(line, _)| line).collect::<Vec<_>>(),
+            "templates": run.outline().map(|(_, template)| place(lesson, template)).collect::<Vec<_>>(),
             "input": InputData::of_input(&input),
         });
         if request.choices {
@@ -87,8 +88,8 @@ fn with_fault(lesson: &Lesson, fault: usize, input: &Input, cap: usize) -> durer
 }
 
 /// Returns the number of a caption's template in the lesson; −1 for one that is of no step.
-fn place(lesson: &Lesson, caption: &explain::Caption) -> i64 {
-    let found = lesson.templates.iter().position(|own| *own == caption.template);
+fn place(lesson: &Lesson, template: &Template) -> i64 {
+    let found = lesson.templates.iter().position(|own| *own == template);
     found.map_or(-1, |place| place as i64)
 }
 
@@ -108,7 +109,7 @@ fn options(operation: &str, rule: &str) -> Result<Options, Failure> {
 fn choices(lesson: &Lesson, input: &Input) -> Value {
     let captions = |options: Options| {
         let run = lesson.record(input, &options, COMPARED).ok()?;
-        Some(run.captions().map(|(_, caption)| caption.clone()).collect::<Vec<_>>())
+        Some(run.captions(0).collect::<Vec<_>>())
     };
     let default = Options::default();
     let distinct = |all: Vec<(&'static str, Options)>| {
@@ -152,6 +153,6 @@ fn map(picture: &Picture) -> Value {
 
 /// Returns captions in one language.
 pub(crate) fn captions(run: &Frames, first: usize, count: usize, language: Language) -> Value {
-    let all = run.captions().skip(first).take(count.min(MOST_CAPTIONS));
-    json!({ "captions": all.map(|(_, caption)| caption.text(language)).collect::<Vec<_>>() })
+    let all = run.captions(first).take(count.min(MOST_CAPTIONS));
+    json!({ "captions": all.map(|caption| caption.text(language)).collect::<Vec<_>>() })
 }

@@ -33,10 +33,15 @@ fn captions_are_text_without_an_output() {
     let told = text(&folder, "explain cohen-sutherland --example line-eh");
     let lines: Vec<&str> = told.lines().collect();
     assert_eq!(lines.len(), 4, "{told}");
-    assert_eq!(lines[0], "   1  [ 1]  Codes 0001 of A and 0010 of B: OR is 0011, AND is 0000.");
+    assert_eq!(
+        lines[0],
+        "   1  [ 1]  Codes 0001 of A (left) and 0010 of B (right): OR is 0011, AND is 0000."
+    );
     let german = text(&folder, "explain cohen-sutherland --example line-eh --lang de");
     assert!(
-        german.starts_with("   1  [ 1]  Codes 0001 von A und 0010 von B: ODER gibt 0011"),
+        german.starts_with(
+            "   1  [ 1]  Codes 0001 von A (links) und 0010 von B (rechts): ODER gibt 0011"
+        ),
         "{german}"
     );
 }

@@ -1,6 +1,6 @@
 //! The lesson of barycentric coordinates by areas.
 
-use super::frame::{Frames, Shown, frames, record};
+use super::frame::{Frames, record};
 use super::input::{Figure, Input};
 use super::lesson::{Example, Lesson};
 use super::picture::{Look, Picture};
@@ -105,6 +105,7 @@ fn figure(ring: [(f64, f64); 3], points: &[(f64, f64)]) -> Input {
 }
 
 /// A triangle, and what is known of its points.
+#[derive(Clone)]
 struct State {
     corners: [DVec2; 3],
     area: f64,
@@ -124,10 +125,9 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     })?;
     let area = doubled_area(corners);
     let mut state = State { corners, area, weights: Vec::new(), point: None };
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let caption = state.take(*step);
-        let picture = state.picture(*step);
-        Shown { line: step.line(), caption, table: state.table(), picture }
+        want.shown(step.line(), caption, || state.table(), || state.picture(*step))
     }))
 }
 

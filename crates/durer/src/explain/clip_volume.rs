@@ -1,6 +1,6 @@
 //! Lessons of clipping to the view volume: in homogeneous coordinates, and at five places of the pipeline.
 
-use super::frame::{Frames, Shown, frames, record};
+use super::frame::{Frames, Shown, Want, record};
 use super::input::Input;
 use super::lesson::{Example, Lesson};
 use super::picture::{Look, Picture};
@@ -182,7 +182,7 @@ fn volume(input: &Input, cap: usize) -> Result<Frames> {
             record(cap, |t| Ok(volume::clip_polygon(&ring, &options, t)))?
         }
     };
-    Ok(show_all(points.to_vec(), &steps))
+    Ok(show_all(points.to_vec(), steps))
 }
 
 /// Returns a projection with the eye in the origin: x and y are 1 at the border where they are as large as −z, z from 1
@@ -210,9 +210,10 @@ fn at_place(lesson: &Lesson, input: &Input, cap: usize) -> Result<Frames> {
         ClipPlace::World => corners.iter().map(|p| p.extend(1.0)).collect(),
         _ => corners.iter().map(|&p| matrix * p.extend(1.0)).collect(),
     };
-    Ok(show_all(start, &steps))
+    Ok(show_all(start, steps))
 }
 
+#[derive(Clone)]
 struct State {
     start: Vec<DVec4>,
     /// The ring that goes into the border.
@@ -225,26 +226,39 @@ struct State {
     gone: bool,
 }
 
-fn show_all(start: Vec<DVec4>, steps: &Recorder<Step>) -> Frames {
+fn show_all(start: Vec<DVec4>, steps: Recorder<Step>) -> Frames {
     let (ring, codes) = (start.clone(), Vec::new());
     let mut state = State { start, ring, out: Vec::new(), codes, border: None, gone: false };
-    frames(steps, |step| state.show(step))
+    Frames::new(steps, move |step, want| state.show(step, want))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        let mut picture = self.picture();
-        let axis = self.axis();
-        match *step {
-            Step::Code { vertex, .. } | Step::Keep { vertex } => {
-                let from = if matches!(step, Step::Code { .. }) { &self.start } else { &self.ring };
-                from.get(vertex).into_iter().for_each(|&p| picture.dot(seen(p, axis), Look::Now));
-            }
-            Step::Cut { position, .. } => picture.dot(seen(position, axis), Look::Now),
-            Step::Border(_) | Step::Accepted | Step::Rejected | Step::Dropped => {}
-        }
-        Shown { line: step.line(), caption, table: self.table(), picture }
+        want.shown(
+            step.line(),
+            caption,
+            || self.table(),
+            || {
+                let mut picture = self.picture();
+                let axis = self.axis();
+                match *step {
+                    Step::Code { vertex, .. } | Step::Keep { vertex } => {
+                        let from = if matches!(step, Step::Code { .. }) {
+                            &self.start
+                        } else {
+                            &self.ring
+                        };
+                        from.get(vertex)
+                            .into_iter()
+                            .for_each(|&p| picture.dot(seen(p, axis), Look::Now));
+                    }
+                    Step::Cut { position, .. } => picture.dot(seen(position, axis), Look::Now),
+                    Step::Border(_) | Step::Accepted | Step::Rejected | Step::Dropped => {}
+                }
+                picture
+            },
+        )
     }
 
     fn take(&mut self, step: &Step) -> Caption {

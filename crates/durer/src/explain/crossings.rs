@@ -1,6 +1,6 @@
 //! The lesson of Bentley and Ottmann's sweep.
 
-use super::frame::{Frames, Shown, frames, record};
+use super::frame::{Frames, record};
 use super::grid::letter;
 use super::input::{Figure, Input};
 use super::lesson::{Example, Lesson};
@@ -113,6 +113,7 @@ fn segments(ends: &[[f64; 4]]) -> Input {
 }
 
 /// State of the sweep.
+#[derive(Clone)]
 struct State {
     segments: Vec<Segment<DVec2>>,
     /// Points to come, in their order.
@@ -137,9 +138,9 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let steps = record(cap, |t| crossings(&segments, &Options::default(), t))?;
     let (queue, status, found) = (Vec::new(), Vec::new(), Vec::new());
     let mut state = State { segments, queue, status, at: None, found, tested: None };
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let caption = state.take(step);
-        Shown { line: step.line(), caption, table: state.table(), picture: state.picture(step) }
+        want.shown(step.line(), caption, || state.table(), || state.picture(step))
     }))
 }
 

@@ -1,7 +1,7 @@
 //! The lesson of the fragment operations: the fragments of one row of pixels, from test to test.
 
 use super::faces::Row;
-use super::frame::{Frames, Shown, frames, record};
+use super::frame::{Frames, Shown, Want, record};
 use super::grid::{color, letter};
 use super::input::Input;
 use super::lesson::{Example, Lesson};
@@ -136,6 +136,7 @@ fn state(columns: u32) -> FragmentState {
 }
 
 /// The planes so far, and the fragment on its way.
+#[derive(Clone)]
 struct State {
     row: Row,
     planes: Framebuffer,
@@ -171,7 +172,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     })?;
     let planes = planes(row.columns());
     let mut state = State { row, planes, now: None };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 /// Returns a number with the digits that are shown.
@@ -185,7 +186,7 @@ fn rgb(color: crate::math::Vec4) -> Value {
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         if let Step::Scissor { fragment, .. } = *step {
             self.now = Some(fragment);
         }
@@ -194,7 +195,7 @@ impl State {
         let both: Vec<Step> = place.into_iter().chain([*step]).collect();
         replay(&both, &mut self.planes);
         let caption = caption(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture() }
+        want.shown(step.line(), caption, || self.table(), || self.picture())
     }
 
     /// Returns the planes, column by column.

@@ -1,6 +1,6 @@
 //! The lesson of the pole of inaccessibility, where labels go.
 
-use super::frame::{Frames, Shown, frames, record};
+use super::frame::{Frames, record};
 use super::grid::log;
 use super::input::{Figure, Input};
 use super::lesson::{Example, Lesson};
@@ -106,11 +106,12 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
         interior_point(&rings, &options, t);
         Ok(())
     })?;
+    let rings = figure.rings.clone();
     let mut squares: Vec<Step> = Vec::new();
     let mut best: Option<Step> = None;
     let mut rows: Vec<[Value; 3]> = Vec::new();
     let mut tried = false;
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let farthest = best.map_or(0.0, |best| best.distance);
         let bound = step.distance + step.half * std::f64::consts::SQRT_2;
         let values = [("center", step.center.into()), ("distance", step.distance.into())];
@@ -140,8 +141,12 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
             Word::new("d", "d"),
             Word::new("bound", "Schranke"),
         ];
-        let picture = picture(&around, &figure.rings, &squares, (step, best));
-        Shown { line: step.line(), caption, table: log(heads, &rows), picture }
+        want.shown(
+            step.line(),
+            caption,
+            || log(heads, &rows),
+            || picture(&around, &rings, &squares, (step, best)),
+        )
     }))
 }
 

@@ -1,8 +1,8 @@
 //! Runs as JSON (RFC 8259), written by hand: the library knows no format of files otherwise.
 
 use super::lesson::Lesson;
-use super::packed::Frame;
 use super::picture::{Look, Mark, Picture, Shape};
+use super::replay::Frame;
 use super::table::Table;
 use super::words::{Language, Value};
 use crate::math::DVec2;

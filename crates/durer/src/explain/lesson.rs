@@ -1,7 +1,7 @@
 //! Lessons: an algorithm with its examples, its sentences, and the function that makes frames of its steps.
 
 use super::input::{Input, Options};
-use super::packed::{Frame, Frames};
+use super::replay::{Frame, Frames};
 use super::words::{Template, Word};
 use crate::info::Info;
 use crate::{Error, Result};

@@ -1,7 +1,7 @@
 //! The lesson of picking: what is behind the middle of the picture.
 
 use super::faces::{Scene, TAKES, Triangles, slab};
-use super::frame::{Frames, Shown, frames, record};
+use super::frame::{Frames, Shown, Want, record};
 use super::grid::letter;
 use super::input::Input;
 use super::lesson::{Example, Lesson};
@@ -81,6 +81,7 @@ static NOTHING: Template = Template::new(
 );
 
 /// The faces, the point, and the hits so far.
+#[derive(Clone)]
 struct State {
     scene: Scene,
     triangles: Triangles,
@@ -109,13 +110,13 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
         Ok(())
     })?;
     let mut state = State { scene, triangles, point, hits: Vec::new() };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture(step) }
+        want.shown(step.line(), caption, || self.table(), || self.picture(step))
     }
 
     fn take(&mut self, step: &Step) -> Caption {

@@ -1,6 +1,6 @@
 //! Lessons of shading: flat, Gouraud, Phong, perspective-correct values.
 
-use super::frame::{Frames, Shown, frames, record};
+use super::frame::{Frames, Shown, Want, record};
 use super::grid::{NO_HEAD, Raster, grey};
 use super::input::Input;
 use super::lesson::{Example, Lesson};
@@ -163,6 +163,7 @@ fn light(normal: DVec3) -> f64 {
 const COORDINATES: [f64; 3] = [0.0, 1.0, 0.0];
 
 /// A triangle and its pixels so far.
+#[derive(Clone)]
 struct State {
     kind: Kind,
     raster: Raster,
@@ -182,7 +183,7 @@ fn make(kind: Kind, input: &Input, cap: usize) -> Result<Frames> {
     let options = Options { clip: PixelRect::spanning(0, 0, width, height) };
     let steps = record(cap, |t| interpolate::rows::interpolate(&corners, &options, |_, _| {}, t))?;
     let mut state = State { kind, raster, corners, pixels: Vec::new() };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 /// Returns corners with what is interpolated: normals lean outwards, as on a ball.
@@ -207,9 +208,9 @@ fn corners(kind: Kind, raster: &Raster, points: [DVec3; 3]) -> [Corner; 3] {
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(step), picture: self.picture(step) }
+        want.shown(step.line(), caption, || self.table(step), || self.picture(step))
     }
 
     /// Returns a value as it is shown: a normal, or a number.

@@ -1,7 +1,7 @@
 //! The lesson of shadow maps: points of one row, and the depths that a light above them has stored.
 
 use super::faces::{Scene, TAKES, Triangles, slab};
-use super::frame::{Frames, Numbered, Shown, frames, record};
+use super::frame::{Frames, Numbered, Shown, Want, record};
 use super::grid::letter;
 use super::input::Input;
 use super::lesson::{Example, Lesson};
@@ -101,6 +101,7 @@ const APART: f64 = 1.25;
 const FIRST: f64 = 0.3;
 
 /// A point of a face, as the input has it: x, y, depth.
+#[derive(Clone)]
 struct Point {
     face: usize,
     at: DVec3,
@@ -108,6 +109,7 @@ struct Point {
 }
 
 /// The map and the points so far.
+#[derive(Clone)]
 struct State {
     triangles: Triangles,
     /// Depths in the middle row of the map; none where nothing is.
@@ -143,7 +145,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let (shares, texels) = (Vec::new(), Vec::new());
     let mut state =
         State { triangles, stored, camera, points, shares, texels, now: 0, place: None };
-    Ok(frames(&steps, |(number, step)| state.show(*number, step)))
+    Ok(Frames::new(steps, move |(number, step), want| state.show(*number, step, want)))
 }
 
 /// Returns the depths that the light sees: it looks along −z, in parallel rays.
@@ -193,9 +195,9 @@ fn short(x: f32) -> Value {
 }
 
 impl State {
-    fn show(&mut self, number: usize, step: &Step) -> Shown {
+    fn show(&mut self, number: usize, step: &Step, want: Want) -> Shown {
         let caption = self.take(number, step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture() }
+        want.shown(step.line(), caption, || self.table(), || self.picture())
     }
 
     fn take(&mut self, number: usize, step: &Step) -> Caption {

@@ -1,6 +1,6 @@
 //! Lessons of simplification: points that lines and borders can do without.
 
-use super::frame::{Frames, Shown, frames, record};
+use super::frame::{Frames, record};
 use super::input::{Figure, Input};
 use super::lesson::{Example, Lesson};
 use super::picture::{Look, Picture};
@@ -195,7 +195,7 @@ fn by_distance(input: &Input, cap: usize) -> Result<Frames> {
         Word::new("farthest", "weitester"),
         Word::new("distance", "Abstand"),
     ]);
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let (Step::Kept { part, distance, .. } | Step::Straight { part, distance }) = *step;
         let values = [("a", named(part[0])), ("b", named(part[1])), ("distance", distance.into())];
         let [a, b, distance_of] = values;
@@ -221,20 +221,23 @@ fn by_distance(input: &Input, cap: usize) -> Result<Frames> {
             }
         };
         kept.sort_unstable();
-        let mut picture = before(&all, &kept, Look::Result);
-        let at = |point: usize| all.get(point).copied().unwrap_or_default();
-        let [from, to] = part.map(at);
-        picture.chain([from, to], Look::Dashed);
-        kept.iter().for_each(|&point| picture.dot(at(point), Look::Result));
-        if let Step::Kept { point, .. } = *step {
-            let along = to - from;
-            let length = along.length_squared();
-            let share = if length > 0.0 { (at(point) - from).dot(along) / length } else { 0.0 };
-            picture.chain([at(point), from + along * share.clamp(0.0, 1.0)], Look::Now);
-            picture.dot(at(point), Look::Now);
-        }
-        number_all(&mut picture, &all);
-        Shown { line: step.line(), caption, table: table.clone(), picture }
+        let picture = || {
+            let mut picture = before(&all, &kept, Look::Result);
+            let at = |point: usize| all.get(point).copied().unwrap_or_default();
+            let [from, to] = part.map(at);
+            picture.chain([from, to], Look::Dashed);
+            kept.iter().for_each(|&point| picture.dot(at(point), Look::Result));
+            if let Step::Kept { point, .. } = *step {
+                let along = to - from;
+                let length = along.length_squared();
+                let share = if length > 0.0 { (at(point) - from).dot(along) / length } else { 0.0 };
+                picture.chain([at(point), from + along * share.clamp(0.0, 1.0)], Look::Now);
+                picture.dot(at(point), Look::Now);
+            }
+            number_all(&mut picture, &all);
+            picture
+        };
+        want.shown(step.line(), caption, || table.clone(), picture)
     }))
 }
 
@@ -244,8 +247,8 @@ fn by_area(input: &Input, cap: usize) -> Result<Frames> {
     let tolerance = tolerance(&all);
     let steps = record(cap, |t| simplify(&all, &Options { tolerance }, t))?;
     let mut left: Vec<usize> = (0..all.len()).collect();
-    let at = |point: usize| all.get(point).copied().unwrap_or_default();
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
+        let at = |point: usize| all.get(point).copied().unwrap_or_default();
         let limit = ("tolerance", tolerance.into());
         let mut triangle = Vec::new();
         let caption = match *step {
@@ -259,20 +262,27 @@ fn by_area(input: &Input, cap: usize) -> Result<Frames> {
                 REMOVED.with([("point", named(point)), ("side", side.into()), limit])
             }
         };
-        let mut table = Table::new([Word::new("point", "Punkt"), Word::new("√area", "√Fläche")]);
-        for corners in left.windows(3) {
-            let [a, b, c] = [corners[0], corners[1], corners[2]].map(at);
-            let side = ((b - a).perp_dot(c - a).abs() * 0.5).sqrt();
-            table.row(named(corners[1]), [side.into()]);
-        }
-        let mut picture = before(&all, &left, Look::Result);
-        left.iter().for_each(|&point| picture.dot(at(point), Look::Result));
-        if let [_, corner, _] = triangle[..] {
-            picture.ring(triangle.clone(), Look::Second);
-            picture.dot(corner, Look::Now);
-        }
-        number_all(&mut picture, &all);
-        Shown { line: step.line(), caption, table, picture }
+        let table = || {
+            let mut table =
+                Table::new([Word::new("point", "Punkt"), Word::new("√area", "√Fläche")]);
+            for corners in left.windows(3) {
+                let [a, b, c] = [corners[0], corners[1], corners[2]].map(at);
+                let side = ((b - a).perp_dot(c - a).abs() * 0.5).sqrt();
+                table.row(named(corners[1]), [side.into()]);
+            }
+            table
+        };
+        let picture = || {
+            let mut picture = before(&all, &left, Look::Result);
+            left.iter().for_each(|&point| picture.dot(at(point), Look::Result));
+            if let [_, corner, _] = triangle[..] {
+                picture.ring(triangle.clone(), Look::Second);
+                picture.dot(corner, Look::Now);
+            }
+            number_all(&mut picture, &all);
+            picture
+        };
+        want.shown(step.line(), caption, table, picture)
     }))
 }
 
@@ -285,13 +295,14 @@ fn together(input: &Input, cap: usize) -> Result<Frames> {
     let limit = tolerance(figure.rings.iter().flatten());
     let options = Options { method: LineSimplifier::Visvalingam, limit };
     let steps = record(cap, |t| all.weights(&options, t))?;
-    let mut rings = figure.rings.clone();
+    let given = figure.rings.clone();
+    let mut rings = given.clone();
     let mut table = Table::new([
         Word::new("left out", "fällt weg"),
         Word::new("weight", "Gewicht"),
         Word::new("rings", "Ringe"),
     ]);
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let Step::Removed { at, weight } = *step;
         let of = rings.iter().filter(|ring| ring.contains(&at)).count();
         rings.iter_mut().for_each(|ring| ring.retain(|point| *point != at));
@@ -300,13 +311,16 @@ fn together(input: &Input, cap: usize) -> Result<Frames> {
         let [place, weight] = values;
         let caption =
             SHARED.with([place, weight, ("tolerance", limit.into()), ("count", of.into())]);
-        let mut picture = Picture::around(figure.rings.iter().flatten().copied(), 0.1);
-        picture.rings(&figure.rings, Look::Pale);
-        for ring in &rings {
-            picture.ring(ring.clone(), Look::Result);
-            ring.iter().for_each(|point| picture.dot(*point, Look::First));
-        }
-        picture.dot(at, Look::Now);
-        Shown { line: step.line(), caption, table: table.clone(), picture }
+        let picture = || {
+            let mut picture = Picture::around(given.iter().flatten().copied(), 0.1);
+            picture.rings(&given, Look::Pale);
+            for ring in &rings {
+                picture.ring(ring.clone(), Look::Result);
+                ring.iter().for_each(|point| picture.dot(*point, Look::First));
+            }
+            picture.dot(at, Look::Now);
+            picture
+        };
+        want.shown(step.line(), caption, || table.clone(), picture)
     }))
 }

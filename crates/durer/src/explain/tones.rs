@@ -1,6 +1,6 @@
 //! Lessons of halftones: error diffusion and clustered dots.
 
-use super::frame::{Frames, Shown, frames, record};
+use super::frame::{Frames, record};
 use super::grid::{NO_HEAD, grey};
 use super::input::{Grid, Input};
 use super::lesson::{Example, Lesson};
@@ -88,8 +88,9 @@ fn by_errors(input: &Input, cap: usize) -> Result<Frames> {
         error_diffusion::dither(&image, &Default::default(), t);
         Ok(())
     })?;
+    let grid = grid.clone();
     let mut done: Vec<([u32; 2], bool)> = Vec::new();
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         done.push((step.pixel, step.level > 0));
         let parts = [7.0, 3.0, 5.0, 1.0].map(|part| step.error * (part / 16.0));
         let [a, b, c, d] = parts.map(value);
@@ -108,23 +109,29 @@ fn by_errors(input: &Input, cap: usize) -> Result<Frames> {
             ("c", c),
             ("d", d),
         ]);
-        let mut picture = picture(grid, &done);
-        let [x, y] = step.pixel.map(|side| side as i32);
-        let to = [[x + 1, y], [x - 1, y + 1], [x, y + 1], [x + 1, y + 1]];
-        let inside =
-            |[x, y]: [i32; 2]| x >= 0 && (x as u32) < grid.columns && (y as u32) < grid.rows();
-        let middle = |[x, y]: [i32; 2]| crate::math::DVec2::new(x.into(), y.into()) + 0.5;
-        to.into_iter()
-            .filter(|at| inside(*at))
-            .for_each(|at| picture.arrow(middle([x, y]), middle(at), Look::Now));
-        let mut table = Table::new([NO_HEAD, Word::new("value", "Wert")]);
-        table.row(Word::new("value", "Wert"), [value(step.value)]);
-        table.row(Word::new("error", "Fehler"), [value(step.error)]);
-        for (name, part) in ["7/16 →", "3/16 ↙", "5/16 ↓", "1/16 ↘"].into_iter().zip(parts)
-        {
-            table.row(name, [value(part)]);
-        }
-        Shown { line: step.line(), caption, table, picture }
+        let picture = || {
+            let mut picture = picture(&grid, &done);
+            let [x, y] = step.pixel.map(|side| side as i32);
+            let to = [[x + 1, y], [x - 1, y + 1], [x, y + 1], [x + 1, y + 1]];
+            let inside =
+                |[x, y]: [i32; 2]| x >= 0 && (x as u32) < grid.columns && (y as u32) < grid.rows();
+            let middle = |[x, y]: [i32; 2]| crate::math::DVec2::new(x.into(), y.into()) + 0.5;
+            to.into_iter()
+                .filter(|at| inside(*at))
+                .for_each(|at| picture.arrow(middle([x, y]), middle(at), Look::Now));
+            picture
+        };
+        let table = || {
+            let mut table = Table::new([NO_HEAD, Word::new("value", "Wert")]);
+            table.row(Word::new("value", "Wert"), [value(step.value)]);
+            table.row(Word::new("error", "Fehler"), [value(step.error)]);
+            for (name, part) in ["7/16 →", "3/16 ↙", "5/16 ↓", "1/16 ↘"].into_iter().zip(parts)
+            {
+                table.row(name, [value(part)]);
+            }
+            table
+        };
+        want.shown(step.line(), caption, table, picture)
     }))
 }
 
@@ -135,21 +142,25 @@ fn by_screen(input: &Input, cap: usize) -> Result<Frames> {
         clustered_dot::dither(&image, t);
         Ok(())
     })?;
+    let grid = grid.clone();
     let mut done: Vec<([u32; 2], bool)> = Vec::new();
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         done.push((step.pixel, step.white));
         let template = if step.white { &WHITE } else { &BLACK };
         let threshold = ("threshold", value(step.threshold));
         let caption =
             template.with([("pixel", shown(step.pixel)), ("value", value(step.value)), threshold]);
         // The rows of the screen around the pixel.
-        let mut table = Table::new([Word::new("screen", "Raster"), NO_HEAD]);
-        for (y, row) in clustered_dot::SCREEN.iter().enumerate() {
-            let now = step.pixel[1] as usize % 8 == y;
-            let cells: Vec<Value> = row.iter().map(|&entry| i32::from(entry).into()).collect();
-            table.row(if now { format!("→ {y}") } else { y.to_string() }, [Value::List(cells)]);
-        }
-        Shown { line: step.line(), caption, table, picture: picture(grid, &done) }
+        let table = || {
+            let mut table = Table::new([Word::new("screen", "Raster"), NO_HEAD]);
+            for (y, row) in clustered_dot::SCREEN.iter().enumerate() {
+                let now = step.pixel[1] as usize % 8 == y;
+                let cells: Vec<Value> = row.iter().map(|&entry| i32::from(entry).into()).collect();
+                table.row(if now { format!("→ {y}") } else { y.to_string() }, [Value::List(cells)]);
+            }
+            table
+        };
+        want.shown(step.line(), caption, table, || picture(&grid, &done))
     }))
 }
 

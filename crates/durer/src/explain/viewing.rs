@@ -1,6 +1,6 @@
 //! The lesson of windows and viewports.
 
-use super::frame::{Frames, Shown, frames, record};
+use super::frame::{Frames, record};
 use super::input::{Figure, Input, Options};
 use super::lesson::{Example, Lesson};
 use super::picture::{Look, Picture};
@@ -70,6 +70,7 @@ static POINT: Template = Template::new(
 /// Columns and rows of the lecture's viewport.
 const VIEWPORT: [i32; 4] = [100, 50, 300, 250];
 
+#[derive(Clone)]
 struct State {
     figure: Figure,
     window: Rect,
@@ -87,9 +88,9 @@ fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let options = mapping::Options { y_axis: YAxis::Up, ..Default::default() };
     let steps = record(cap, |t| Ok(map(&window, &viewport, &points, &options, t)))?;
     let mut state = State { figure, window: rect, coefficients: [0.0; 4], done: Vec::new() };
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let caption = state.take(step);
-        Shown { line: step.line(), caption, table: state.table(), picture: state.picture() }
+        want.shown(step.line(), caption, || state.table(), || state.picture())
     }))
 }
 

@@ -1,7 +1,7 @@
 //! The lesson of forward warping: one row of pixels, moved to where a camera beside the first sees them.
 
 use super::faces::{Scene, TAKES, Triangles, row_camera, slab};
-use super::frame::{Frames, Shown, frames, record};
+use super::frame::{Frames, Shown, Want, record};
 use super::grid::{color, letter};
 use super::input::Input;
 use super::lesson::{Example, Lesson};
@@ -80,6 +80,7 @@ const BESIDE: f64 = 0.14;
 type Written = Option<(u32, f64, [u8; 3])>;
 
 /// Both rows.
+#[derive(Clone)]
 struct State {
     old: Pixels<[u8; 4]>,
     faces: Vec<Option<usize>>,
@@ -117,13 +118,13 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let steps = record(cap, |t| warp(&sources, &new, [PIXELS, 1], &Options::default(), t))?;
     let new = vec![None; PIXELS as usize];
     let mut state = State { old, faces, camera, new, now: None, written: None };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture() }
+        want.shown(step.line(), caption, || self.table(), || self.picture())
     }
 
     /// Returns the distance from the plane of the eye at a window depth.

@@ -63,10 +63,10 @@ fn edges_go_from_one_table_to_the_other() {
 fn a_stack_of_pixels_is_shown_with_its_top_above() {
     let frames = frames("naive", "room");
     assert_eq!(rows(&frames[0]), [""; 0]);
-    assert_eq!(rows(&frames[4]), ["4: 3|1", "3: 1|1", "2: 2|2", "1: 2|0"]);
+    assert_eq!(rows(&frames[4]), ["4: (3, 1)", "3: (1, 1)", "2: (2, 2)", "1: (2, 0)"]);
     assert_eq!(
         frames[5].text(Language::English),
-        "Pixel 3|1 is popped, belongs to the region and is filled; 3 wait."
+        "Pixel (3, 1) is popped, belongs to the region and is filled; 3 wait."
     );
 }
 

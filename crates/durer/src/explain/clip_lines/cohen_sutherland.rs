@@ -5,12 +5,12 @@ use crate::Result;
 use crate::clip::line::cohen_sutherland::{INFO, Step, clip};
 use crate::clip::line::{End, Segment};
 use crate::clip::outcode::Outcode;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture, corners};
 use crate::explain::table::Table;
-use crate::explain::words::{Caption, Template, Word};
+use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, Rect};
 use crate::trace::Recorder;
 
@@ -60,8 +60,8 @@ const EXAMPLES: &[Example] = &[
 
 static CODES: Template = Template::new(
     "codes",
-    "Codes {start} of A and {end} of B: OR is {or}, AND is {and}.",
-    "Codes {start} von A und {end} von B: ODER gibt {or}, UND gibt {and}.",
+    "Codes {start} of A ({place_a}) and {end} of B ({place_b}): OR is {or}, AND is {and}.",
+    "Codes {start} von A ({place_a}) und {end} von B ({place_b}): ODER gibt {or}, UND gibt {and}.",
 );
 static CUT: Template = Template::new(
     "cut",
@@ -80,6 +80,7 @@ static REJECTED: Template = Template::new(
 );
 
 /// The segment with the codes of its ends.
+#[derive(Clone)]
 struct State {
     cutting: Cutting,
     codes: [Outcode; 2],
@@ -98,7 +99,22 @@ pub(in crate::explain) fn by_codes(
     let cutting = Cutting::new(input)?;
     let steps = record(cap, |t| program(&cutting.window, cutting.whole, t))?;
     let mut state = State { cutting, codes: [Outcode::INSIDE; 2] };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
+}
+
+/// Returns the region of an outcode in words.
+fn place(code: Outcode) -> Value {
+    let words = [
+        (Outcode::TOP, Word::new("above", "oben")),
+        (Outcode::BOTTOM, Word::new("below", "unten")),
+        (Outcode::LEFT, Word::new("left", "links")),
+        (Outcode::RIGHT, Word::new("right", "rechts")),
+    ];
+    if code.is_inside() {
+        return Word::new("inside", "innen").into();
+    }
+    let set = words.into_iter().filter(|(bit, _)| code.contains(*bit));
+    Value::List(set.map(|(_, word)| word.into()).collect())
 }
 
 /// Returns the ends of a window's border.
@@ -113,17 +129,24 @@ fn side(window: &Rect, border: Outcode) -> [DVec2; 2] {
 }
 
 impl State {
-    fn show(&mut self, step: &Step<DVec2>) -> Shown {
+    fn show(&mut self, step: &Step<DVec2>, want: Want) -> Shown {
         let caption = self.take(step);
-        let mut picture = self.picture();
-        if let Step::Cut { border, point, .. } = *step {
-            picture.chain(side(&self.cutting.window, border), Look::Now);
-            picture.dot(point, Look::Now);
-        }
-        if *step == Step::Accepted {
-            picture.chain([self.cutting.left.start, self.cutting.left.end], Look::Result);
-        }
-        Shown { line: step.line(), caption, table: self.table(), picture }
+        want.shown(
+            step.line(),
+            caption,
+            || self.table(),
+            || {
+                let mut picture = self.picture();
+                if let Step::Cut { border, point, .. } = *step {
+                    picture.chain(side(&self.cutting.window, border), Look::Now);
+                    picture.dot(point, Look::Now);
+                }
+                if *step == Step::Accepted {
+                    picture.chain([self.cutting.left.start, self.cutting.left.end], Look::Result);
+                }
+                picture
+            },
+        )
     }
 
     fn take(&mut self, step: &Step<DVec2>) -> Caption {
@@ -131,8 +154,9 @@ impl State {
             Step::Codes { start, end } => {
                 self.codes = [start, end];
                 let values = [start, end, start | end, start & end].map(Into::into);
-                let [start, end, or, and] = values;
-                CODES.with([("start", start), ("end", end), ("or", or), ("and", and)])
+                let places = [("place_a", place(self.codes[0])), ("place_b", place(self.codes[1]))];
+                let ([start, end, or, and], [a, b]) = (values, places);
+                CODES.with([("start", start), ("end", end), ("or", or), ("and", and), a, b])
             }
             Step::Cut { end, border, point, code } => {
                 self.cutting.cut(end, point);
@@ -180,8 +204,10 @@ impl State {
         picture.frame(&cutting.window, Look::Window);
         for (x0, x1) in [(low.x, a.x), (a.x, b.x), (b.x, high.x)] {
             for (y0, y1) in [(low.y, a.y), (a.y, b.y), (b.y, high.y)] {
-                let middle = p((x0 + x1) / 2.0, (y0 + y1) / 2.0);
-                picture.label(middle, (0.0, 0.0), Outcode::of_point_2d(&cutting.window, middle));
+                // In a corner, where lines are rare.
+                let code =
+                    Outcode::of_point_2d(&cutting.window, p(x0.midpoint(x1), y0.midpoint(y1)));
+                picture.label(p(x0, y1), (24.0, 12.0), code);
             }
         }
         cutting.add_segment(&mut picture);

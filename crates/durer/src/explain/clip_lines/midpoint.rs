@@ -4,7 +4,7 @@ use super::{CODE, Cutting, END, NO_HEAD, START, end_name, figure};
 use crate::clip::line::Segment;
 use crate::clip::line::midpoint::{INFO, PixelWindow, Step, clip};
 use crate::clip::outcode::Outcode;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -82,6 +82,7 @@ static REJECTED: Template = Template::new(
     "Was übrig ist, liegt jenseits eines Rands oder zwischen zwei Pixeln: abgelehnt.",
 );
 
+#[derive(Clone)]
 struct State {
     cutting: Cutting,
     size: [u32; 2],
@@ -107,7 +108,7 @@ fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let size = all.iter().fold(DVec2::ZERO, |a, &b| a.max(b)) + 1.0;
     let size = [size.x as u32, size.y as u32];
     let mut state = State { cutting, size, looked: Vec::new(), code_of_middle: "–".into() };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 /// Returns the middle of a pixel.
@@ -116,24 +117,27 @@ fn center(p: IVec2) -> DVec2 {
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let (count, clear) = (self.looked.len(), matches!(step, Step::Cut { .. }));
         let caption = self.take(step, count);
-        let mut picture = self.picture();
-        match *step {
-            Step::Halved { middle, .. } => picture.dot(center(middle), Look::Now),
-            Step::Cut { point, .. } => picture.dot(center(point), Look::Result),
-            Step::Accepted => {
-                let left = self.cutting.left;
-                picture.chain([left.start + 0.5, left.end + 0.5], Look::Result);
+        let picture = || {
+            let mut picture = self.picture();
+            match *step {
+                Step::Halved { middle, .. } => picture.dot(center(middle), Look::Now),
+                Step::Cut { point, .. } => picture.dot(center(point), Look::Result),
+                Step::Accepted => {
+                    let left = self.cutting.left;
+                    picture.chain([left.start + 0.5, left.end + 0.5], Look::Result);
+                }
+                Step::Rejected => {}
             }
-            Step::Rejected => {}
-        }
-        let table = self.table();
+            picture
+        };
+        let shown = want.shown(step.line(), caption, || self.table(), picture);
         if clear {
             self.looked.clear();
         }
-        Shown { line: step.line(), caption, table, picture }
+        shown
     }
 
     fn take(&mut self, step: &Step, count: usize) -> Caption {

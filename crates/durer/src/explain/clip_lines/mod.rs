@@ -67,6 +67,7 @@ fn figure(size: (f64, f64), start: (f64, f64), end: (f64, f64)) -> Input {
 }
 
 /// A segment before a window, and what is left of it.
+#[derive(Clone)]
 struct Cutting {
     window: Rect,
     whole: Segment<DVec2>,

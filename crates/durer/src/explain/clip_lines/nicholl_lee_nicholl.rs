@@ -4,7 +4,7 @@ use super::{BORDERS, Cutting, NO_HEAD, TAKES, end_name, figure, p};
 use crate::Result;
 use crate::clip::line::nicholl_lee_nicholl::{INFO, Step, clip};
 use crate::clip::outcode::Outcode;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -70,6 +70,7 @@ static REJECTED: Template = Template::new(
     "Abgelehnt: Die Gerade geht am Fenster vorbei; kein Schnitt wurde berechnet.",
 );
 
+#[derive(Clone)]
 struct State {
     cutting: Cutting,
     /// Start of the rays.
@@ -85,7 +86,7 @@ fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let [a, b] = [cutting.whole.start, cutting.whole.end];
     let from = if (a.x, a.y) <= (b.x, b.y) { a } else { b };
     let mut state = State { cutting, from, rays: Vec::new(), cuts: 0 };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl State {
@@ -96,19 +97,27 @@ impl State {
         p(pick(Outcode::RIGHT, min.x, max.x), pick(Outcode::TOP, min.y, max.y))
     }
 
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        let mut picture = self.picture();
-        match *step {
-            Step::Region { .. } => picture.dot(self.from, Look::Now),
-            Step::Corner { corner, .. } => picture.dot(self.corner(corner), Look::Now),
-            Step::Cut { point, .. } => picture.dot(point, Look::Now),
-            Step::Accepted => {
-                picture.chain([self.cutting.left.start, self.cutting.left.end], Look::Result);
-            }
-            Step::Rejected => {}
-        }
-        Shown { line: step.line(), caption, table: self.table(), picture }
+        want.shown(
+            step.line(),
+            caption,
+            || self.table(),
+            || {
+                let mut picture = self.picture();
+                match *step {
+                    Step::Region { .. } => picture.dot(self.from, Look::Now),
+                    Step::Corner { corner, .. } => picture.dot(self.corner(corner), Look::Now),
+                    Step::Cut { point, .. } => picture.dot(point, Look::Now),
+                    Step::Accepted => {
+                        picture
+                            .chain([self.cutting.left.start, self.cutting.left.end], Look::Result);
+                    }
+                    Step::Rejected => {}
+                }
+                picture
+            },
+        )
     }
 
     fn take(&mut self, step: &Step) -> Caption {

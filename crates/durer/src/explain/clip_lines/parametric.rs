@@ -7,7 +7,7 @@ use crate::clip::line::cyrus_beck::{Numbers, Step};
 use crate::clip::line::{
     ConvexPolygon, End, Relation, Segment, cyrus_beck, homogeneous, liang_barsky,
 };
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::{Figure, Input};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture, corners};
@@ -143,14 +143,14 @@ fn cyrus_beck(input: &Input, cap: usize) -> Result<Frames> {
         let cutting = Cutting::new(input)?;
         let steps = record(cap, |t| cyrus_beck::clip(&cutting.window, cutting.whole, t))?;
         let mut state = State::of_rectangle(cutting.whole, corners(&cutting.window));
-        return Ok(frames(&steps, |step| state.show(step)));
+        return Ok(Frames::new(steps, move |step, want| state.show(step, want)));
     };
     let window = ConvexPolygon::new(ring)?;
     let [start, end] = figure.segment(CYRUS_BECK.takes)?;
     let whole = Segment::new(start, end);
     let steps = record(cap, |t| cyrus_beck::clip_polygon(&window, whole, t))?;
     let mut state = State::new(whole, window.vertices().to_vec());
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 fn liang_barsky(input: &Input, cap: usize) -> Result<Frames> {
@@ -166,14 +166,14 @@ pub(in crate::explain) fn by_parameters(
     let cutting = Cutting::new(input)?;
     let steps = record(cap, |t| program(&cutting.window, cutting.whole, t))?;
     let mut state = State::of_rectangle(cutting.whole, corners(&cutting.window));
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 fn homogeneous(input: &Input, cap: usize) -> Result<Frames> {
     let cutting = Cutting::new(input)?;
     let steps = record(cap, |t| homogeneous::clip(&cutting.window, cutting.whole, t))?;
     let mut state = State::of_rectangle(cutting.whole, corners(&cutting.window));
-    Ok(frames(&steps, |step| state.show(&flat(step))))
+    Ok(Frames::new(steps, move |step, want| state.show(&flat(step), want)))
 }
 
 /// Returns the step with its point in the plane.
@@ -191,6 +191,7 @@ fn flat(step: &Step<DVec3>) -> Step<DVec2> {
 }
 
 /// A segment before a convex window, with what is known of the borders.
+#[derive(Clone)]
 struct State {
     whole: Segment<DVec2>,
     left: Segment<DVec2>,
@@ -233,16 +234,25 @@ impl State {
         [lower.into(), upper.into()]
     }
 
-    fn show(&mut self, step: &Step<DVec2>) -> Shown {
+    fn show(&mut self, step: &Step<DVec2>, want: Want) -> Shown {
         let caption = self.take(step);
-        let mut picture = self.picture();
-        match *step {
-            Step::Border { border, numbers, .. } => self.add_border(&mut picture, border, numbers),
-            Step::Cut { point, .. } => picture.dot(point, Look::Now),
-            Step::Accepted => picture.chain([self.left.start, self.left.end], Look::Result),
-            Step::Rejected => {}
-        }
-        Shown { line: step.line(), caption, table: self.table(), picture }
+        want.shown(
+            step.line(),
+            caption,
+            || self.table(),
+            || {
+                let mut picture = self.picture();
+                match *step {
+                    Step::Border { border, numbers, .. } => {
+                        self.add_border(&mut picture, border, numbers)
+                    }
+                    Step::Cut { point, .. } => picture.dot(point, Look::Now),
+                    Step::Accepted => picture.chain([self.left.start, self.left.end], Look::Result),
+                    Step::Rejected => {}
+                }
+                picture
+            },
+        )
     }
 
     fn take(&mut self, step: &Step<DVec2>) -> Caption {

@@ -4,7 +4,7 @@ use super::{NO_HEAD, p};
 use crate::Result;
 use crate::clip::polygon::Shapes;
 use crate::clip::polyline::{self, INFO, Step, clip};
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::input::{Figure, Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -74,23 +74,27 @@ fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
         .collect();
     let options = polyline::Options::default();
     let steps = record(cap, |t| clip(&shapes, &points, &ends, &options, t))?;
+    let figure = figure.clone();
     let mut done: Vec<([DVec2; 2], bool)> = Vec::new();
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let Step::Part { start, end, inside, .. } = *step;
         done.push(([start, end], inside));
-        let mut picture = Picture::around(figure.points(), 0.1);
-        picture.rings(&rings, Look::Pale);
-        figure.lines.iter().for_each(|line| picture.chain(line.clone(), Look::Thin));
-        for &(part, inside) in &done {
-            picture.chain(part, if inside { Look::Result } else { Look::Dashed });
-        }
-        picture.dot(start, Look::First);
-        picture.dot(end, Look::First);
         let middle = (start + end) / 2.0;
-        picture.dot(middle, Look::Now);
+        let picture = || {
+            let mut picture = Picture::around(figure.points(), 0.1);
+            picture.rings(&rings, Look::Pale);
+            figure.lines.iter().for_each(|line| picture.chain(line.clone(), Look::Thin));
+            for &(part, inside) in &done {
+                picture.chain(part, if inside { Look::Result } else { Look::Dashed });
+            }
+            picture.dot(start, Look::First);
+            picture.dot(end, Look::First);
+            picture.dot(middle, Look::Now);
+            picture
+        };
         let template = if inside { &INSIDE } else { &OUTSIDE };
         let values = [("start", start.into()), ("end", end.into()), ("middle", middle.into())];
-        Shown { line: step.line(), caption: template.with(values), table: table(&done), picture }
+        want.shown(step.line(), template.with(values), || table(&done), picture)
     }))
 }
 

@@ -5,7 +5,7 @@ use super::{BORDERS, Cutting, TAKES, end_name, figure};
 use crate::Result;
 use crate::clip::line::skala::{INFO, Step, clip, clip_polygon};
 use crate::clip::line::{ConvexPolygon, End, Segment};
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture, corners};
@@ -95,6 +95,7 @@ static ONE_SIDE: Template = Template::new(
 );
 
 /// A segment before a window, and the signs so far.
+#[derive(Clone)]
 struct State {
     corners: Vec<DVec2>,
     is_rectangle: bool,
@@ -120,10 +121,9 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let is_rectangle = ring.is_none();
     let (signs, left, gone, cuts) = (Vec::new(), whole, false, 0);
     let mut state = State { corners, is_rectangle, whole, left, gone, signs, cuts };
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let caption = state.take(step);
-        let picture = state.picture(step);
-        Shown { line: step.line(), caption, table: state.table(), picture }
+        want.shown(step.line(), caption, || state.table(), || state.picture(step))
     }))
 }
 

@@ -3,7 +3,7 @@
 use super::{Operands, TAKES, letter_and_blade, pair, ring, squares, yes_or_no};
 use crate::Result;
 use crate::clip::polygon::scan_beams::{self, INFO, Step, Trapezoid, scan_beams};
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -79,6 +79,7 @@ static PART: Template = Template::new(
     "Zwischen zwei beitragenden Kanten liegt ein Trapez der Fläche {area}; die Summe ist {sum}.",
 );
 
+#[derive(Clone)]
 struct State {
     operands: Operands,
     /// Heights that bound the beam, and those of crossings in it, from below to above.
@@ -109,19 +110,26 @@ fn make(_: &Lesson, input: &Input, options: &Options, cap: usize) -> Result<Fram
         active: Vec::new(),
         parts: Vec::new(),
     };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        let mut picture = self.picture();
-        match *step {
-            Step::Minimum { at, .. } | Step::Crossing { at } => picture.dot(at, Look::Now),
-            Step::Active { x, .. } => picture.chain(self.edge(x), Look::Now),
-            Step::Beam { .. } | Step::Part(_) => {}
-        }
-        Shown { line: step.line(), caption, table: self.table(), picture }
+        want.shown(
+            step.line(),
+            caption,
+            || self.table(),
+            || {
+                let mut picture = self.picture();
+                match *step {
+                    Step::Minimum { at, .. } | Step::Crossing { at } => picture.dot(at, Look::Now),
+                    Step::Active { x, .. } => picture.chain(self.edge(x), Look::Now),
+                    Step::Beam { .. } | Step::Part(_) => {}
+                }
+                picture
+            },
+        )
     }
 
     /// Returns the sides of the part of the beam that the last reported edge belongs to: each part reports all edges.

@@ -3,7 +3,7 @@
 use super::{TAKES_WINDOW, before, letter, ring, ring_and_window, windowed};
 use crate::Result;
 use crate::clip::polygon::liang_barsky::{INFO, Step, clip};
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -64,6 +64,7 @@ static TURN: Template = Template::new(
     "Die Kante passiert eine Ecke des Fensters: {point} wird als Wendepunkt ausgegeben.",
 );
 
+#[derive(Clone)]
 struct State {
     ring: Vec<DVec2>,
     window: Rect,
@@ -78,18 +79,25 @@ fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let steps = record(cap, |t| clip(&window, &ring, t))?;
     let mut state =
         State { ring, window, edge: 0, enters: [0.0; 2], leaves: [1.0; 2], out: Vec::new() };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        let mut picture = self.picture();
-        match *step {
-            Step::Edge { .. } => {}
-            Step::Point(p) | Step::Turn(p) => picture.dot(p, Look::Now),
-        }
-        Shown { line: step.line(), caption, table: self.table(), picture }
+        want.shown(
+            step.line(),
+            caption,
+            || self.table(),
+            || {
+                let mut picture = self.picture();
+                match *step {
+                    Step::Edge { .. } => {}
+                    Step::Point(p) | Step::Turn(p) => picture.dot(p, Look::Now),
+                }
+                picture
+            },
+        )
     }
 
     fn take(&mut self, step: &Step) -> Caption {

@@ -111,6 +111,7 @@ fn lecture() -> Input {
 }
 
 /// The two operands of an operation.
+#[derive(Clone)]
 struct Operands {
     rings: [Vec<Vec<DVec2>>; 2],
 }

@@ -2,7 +2,7 @@
 
 use super::{letter, ring, yes_or_no};
 use crate::clip::polygon::point::{INFO, Step, winding_number};
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::input::{Figure, Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -87,19 +87,24 @@ fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
         winding_number(figure.rings.iter().map(Vec::as_slice), p, t);
         Ok(())
     })?;
+    let figure = figure.clone();
     let mut w = 0;
     let mut crossed: Vec<[DVec2; 2]> = Vec::new();
-    Ok(frames(&steps, |step| {
-        let mut picture = Picture::around(figure.points(), 0.1);
-        picture.rings(&figure.rings, Look::First);
-        picture.arrow(p, DVec2::new(picture.extent[1].x, p.y), Look::Dashed);
-        crossed.iter().for_each(|edge| picture.chain(*edge, Look::Second));
+    Ok(Frames::new(steps, move |step, want| {
         let (Step::Crosses { edge, .. } | Step::Border { edge }) = *step;
-        picture.arrow(edge[0], edge[1], Look::Now);
-        picture.named(p, "P", Look::Result);
-        crossed.push(edge);
         let caption = caption(step, &mut w);
-        Shown { line: step.line(), caption, table: table(w), picture }
+        let picture = || {
+            let mut picture = Picture::around(figure.points(), 0.1);
+            picture.rings(&figure.rings, Look::First);
+            picture.arrow(p, DVec2::new(picture.extent[1].x, p.y), Look::Dashed);
+            crossed.iter().for_each(|edge| picture.chain(*edge, Look::Second));
+            picture.arrow(edge[0], edge[1], Look::Now);
+            picture.named(p, "P", Look::Result);
+            picture
+        };
+        let shown = want.shown(step.line(), caption, || table(w), picture);
+        crossed.push(edge);
+        shown
     }))
 }
 

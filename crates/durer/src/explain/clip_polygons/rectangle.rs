@@ -4,7 +4,7 @@ use super::{TAKES_WINDOW, letter, ring, windowed};
 use crate::Result;
 use crate::clip::polygon::Shapes;
 use crate::clip::polygon::rectangle::{self, INFO, Step, clip};
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::{Figure, Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture, corners};
@@ -86,8 +86,9 @@ static POLYGON_DONE: Template = Template::new(
     "Der Ring hat alle seine Löcher: Das Polygon ist fertig.",
 );
 
-struct State<'a> {
-    figure: &'a Figure,
+#[derive(Clone)]
+struct State {
+    figure: Figure,
     window: Rect,
     chains: Vec<[DVec2; 2]>,
     ring: Vec<DVec2>,
@@ -100,23 +101,34 @@ fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
     let window = figure.window(TAKES_WINDOW)?;
     let shapes = Shapes::from_rings(&figure.rings);
     let steps = record(cap, |t| clip(&window, &shapes, &rectangle::Options, t))?;
+    let figure = figure.clone();
     let mut state =
         State { figure, window, chains: Vec::new(), ring: Vec::new(), rings: Vec::new() };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
-impl State<'_> {
-    fn show(&mut self, step: &Step) -> Shown {
+impl State {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        let mut picture = self.picture();
-        match *step {
-            Step::Chain { entry, exit } => {
-                [entry, exit].into_iter().for_each(|p| picture.dot(p, Look::Now))
-            }
-            Step::Vertex { point } => picture.dot(point, Look::Now),
-            Step::Inside { .. } | Step::Outside { .. } | Step::RingDone | Step::PolygonDone => {}
-        }
-        Shown { line: step.line(), caption, table: self.table(), picture }
+        want.shown(
+            step.line(),
+            caption,
+            || self.table(),
+            || {
+                let mut picture = self.picture();
+                match *step {
+                    Step::Chain { entry, exit } => {
+                        [entry, exit].into_iter().for_each(|p| picture.dot(p, Look::Now))
+                    }
+                    Step::Vertex { point } => picture.dot(point, Look::Now),
+                    Step::Inside { .. }
+                    | Step::Outside { .. }
+                    | Step::RingDone
+                    | Step::PolygonDone => {}
+                }
+                picture
+            },
+        )
     }
 
     fn take(&mut self, step: &Step) -> Caption {

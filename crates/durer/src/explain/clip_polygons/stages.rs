@@ -5,7 +5,8 @@ use crate::Result;
 use crate::clip::line::HalfPlane;
 use crate::clip::polygon::sutherland_hodgman::INFO;
 use crate::clip::polygon::sutherland_hodgman::by_borders::{Rule, Step, clip};
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
+use crate::explain::grid;
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -49,7 +50,7 @@ pub(super) const LESSON: Lesson = Lesson {
             },
         },
     ],
-    templates: &[&IN_IN, &IN_OUT, &OUT_IN, &OUT_OUT, &LIST],
+    templates: &[&IN_IN, &IN_OUT, &OUT_IN, &OUT_OUT, &LIST, &LAST],
     unreached: &[],
     make,
 };
@@ -79,6 +80,14 @@ static LIST: Template = Template::new(
     "{border} border done: {count} vertices are left and go to the next border.",
     "{border} Rand fertig: {count} Ecken bleiben und gehen zum nächsten Rand.",
 );
+static LAST: Template = Template::new(
+    "list",
+    "{border} border done, the last one: {count} vertices are the result.",
+    "{border} Rand fertig, der letzte: {count} Ecken sind das Ergebnis.",
+);
+
+/// The most vertices that have room for their names.
+const NAMED: usize = 40;
 
 /// The borders in the order of the lecture.
 const BORDERS: [Word; 4] = [
@@ -88,6 +97,7 @@ const BORDERS: [Word; 4] = [
     Word::new("Left", "Linker"),
 ];
 
+#[derive(Clone)]
 struct State {
     ring: Vec<DVec2>,
     window: Rect,
@@ -98,6 +108,8 @@ struct State {
     border: usize,
     /// The lists after the borders that are done.
     lists: Vec<Vec<DVec2>>,
+    /// All vertices, by which they are named: those of the subject by letters, then cuts by numbers.
+    known: Vec<DVec2>,
 }
 
 fn make(_: &Lesson, input: &Input, _: &Options, cap: usize) -> Result<Frames> {
@@ -113,9 +125,10 @@ pub(in crate::explain) fn by_stages(
     let (ring, window) = ring_and_window(input)?;
     let [left, right, bottom, top] = HalfPlane::of_rect(&window);
     let steps = record(cap, |t| program(&[top, right, bottom, left], &ring, t))?;
-    let list = ring.clone();
-    let mut state = State { ring, window, list, out: Vec::new(), border: 0, lists: Vec::new() };
-    Ok(frames(&steps, |step| state.show(step)))
+    let (list, known) = (ring.clone(), ring.clone());
+    let (out, lists) = (Vec::new(), Vec::new());
+    let mut state = State { ring, window, list, out, border: 0, lists, known };
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 fn name(border: usize) -> Value {
@@ -123,33 +136,43 @@ fn name(border: usize) -> Value {
 }
 
 impl State {
-    fn show(&mut self, step: &Step<DVec2>) -> Shown {
+    fn show(&mut self, step: &Step<DVec2>, want: Want) -> Shown {
         let caption = self.take(step);
-        let mut picture = self.picture();
-        let table = self.table();
-        match step {
-            Step::Edge { from, to, emitted, .. } => {
-                picture.arrow(*from, *to, Look::Now);
-                emitted.iter().flatten().for_each(|&p| picture.dot(p, Look::Result));
+        let picture = || {
+            let mut picture = self.picture();
+            let dots = |picture: &mut Picture, p: &DVec2| picture.dot(*p, Look::Result);
+            match step {
+                Step::Edge { from, to, emitted, .. } => {
+                    picture.arrow(*from, *to, Look::Now);
+                    emitted.iter().flatten().for_each(|p| dots(&mut picture, p));
+                }
+                Step::List { vertices, .. } => {
+                    if self.lists.len() == BORDERS.len() {
+                        picture.ring(vertices.clone(), Look::Result);
+                    }
+                    vertices.iter().for_each(|p| dots(&mut picture, p));
+                }
             }
-            Step::List { vertices, .. } => {
-                vertices.iter().for_each(|&p| picture.dot(p, Look::Result));
-                self.list.clone_from(vertices);
-                self.out.clear();
-                self.border += 1;
-            }
+            picture
+        };
+        let shown = want.shown(step.line(), caption, || self.table(), picture);
+        if let Step::List { vertices, .. } = step {
+            self.list.clone_from(vertices);
+            self.out.clear();
+            self.border += 1;
         }
-        Shown { line: step.line(), caption, table, picture }
+        shown
     }
 
     fn take(&mut self, step: &Step<DVec2>) -> Caption {
         match step {
             Step::Edge { border, from, to, rule, emitted } => {
                 self.out.extend(emitted.iter().flatten());
+                emitted.iter().flatten().for_each(|&p| self.learn(p));
                 let border = ("border", name(*border));
-                let (from, to) = (("from", (*from).into()), ("to", (*to).into()));
+                let (from, to) = (("from", self.placed(*from)), ("to", self.placed(*to)));
                 let on = Word::new("(an end on the border)", "(ein Ende auf dem Rand)");
-                let cut = ("cut", emitted[0].map_or(Value::from(on), Value::from));
+                let cut = ("cut", emitted[0].map_or(Value::from(on), |cut| self.placed(cut)));
                 match rule {
                     Rule::InIn => IN_IN.with([border, from, to]),
                     Rule::InOut => IN_OUT.with([border, from, to, cut]),
@@ -160,19 +183,45 @@ impl State {
             Step::List { border, vertices } => {
                 self.lists.push(vertices.clone());
                 self.out.clone_from(vertices);
-                LIST.with([("border", name(*border)), ("count", vertices.len().into())])
+                let template = if self.lists.len() == BORDERS.len() { &LAST } else { &LIST };
+                template.with([("border", name(*border)), ("count", vertices.len().into())])
             }
         }
     }
 
+    /// Names a vertex that has no name yet.
+    fn learn(&mut self, p: DVec2) {
+        if !self.known.contains(&p) {
+            self.known.push(p);
+        }
+    }
+
+    /// Returns the name of a vertex: a letter of the subject, or the number of a cut.
+    fn vertex(&self, p: DVec2) -> Value {
+        match self.known.iter().position(|&known| known == p) {
+            Some(cut) if cut >= self.ring.len() => (cut - self.ring.len() + 1).into(),
+            Some(vertex) => grid::letter(vertex).into(),
+            None => p.into(),
+        }
+    }
+
+    /// Returns the name of a vertex, and its place.
+    fn placed(&self, p: DVec2) -> Value {
+        Value::List(vec![self.vertex(p), p.into()])
+    }
+
+    fn names(&self, list: &[DVec2]) -> Value {
+        Value::List(list.iter().map(|&p| self.vertex(p)).collect())
+    }
+
     fn table(&self) -> Table {
         let mut table = Table::new([Word::new("after", "nach"), Word::new("vertices", "Ecken")]);
-        table.row(Word::new("subject", "Subjekt"), [self.ring.clone().into()]);
+        table.row(Word::new("subject", "Subjekt"), [self.names(&self.ring)]);
         for (border, list) in self.lists.iter().enumerate() {
-            table.row(name(border), [list.clone().into()]);
+            table.row(name(border), [self.names(list)]);
         }
         if self.lists.len() == self.border {
-            table.row(name(self.border), [self.out.clone().into()]);
+            table.row(name(self.border), [self.names(&self.out)]);
         }
         table
     }
@@ -191,6 +240,36 @@ impl State {
         };
         picture.chain(through, Look::Dashed);
         picture.chain(self.out.clone(), Look::Result);
+        // Which side counts as inside is told at an end of the line.
+        let (end, inward) = match self.border {
+            0 => (through[1], (-22.0, 11.0)),
+            1 => (through[1], (-22.0, 11.0)),
+            2 => (through[1], (-22.0, -11.0)),
+            _ => (through[1], (22.0, 11.0)),
+        };
+        let outward =
+            if self.border % 2 == 0 { (inward.0, -inward.1) } else { (-inward.0, inward.1) };
+        picture.label(end, inward, Word::new("in", "innen"));
+        picture.label(end, outward, Word::new("out", "außen"));
+        self.add_names(&mut picture);
         picture
+    }
+
+    /// Writes the names of the vertices that go in and come out beside them, away from the middle.
+    fn add_names(&self, picture: &mut Picture) {
+        let mut all: Vec<DVec2> = Vec::new();
+        for p in self.list.iter().chain(&self.out) {
+            if !all.contains(p) {
+                all.push(*p);
+            }
+        }
+        if all.len() > NAMED {
+            return;
+        }
+        let middle = all.iter().sum::<DVec2>() / all.len().max(1) as f64;
+        for p in all {
+            let out = (p - middle).normalize_or(DVec2::Y) * 12.0;
+            picture.label(p, (out.x, -out.y), self.vertex(p));
+        }
     }
 }

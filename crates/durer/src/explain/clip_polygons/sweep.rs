@@ -3,7 +3,7 @@
 use super::{Operands, TAKES, letter_and_blade, pair, ring};
 use crate::clip::polygon::overlay::{self, Step};
 use crate::clip::polygon::vatti;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::{Figure, Input, Options};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -23,7 +23,7 @@ pub(super) const VATTI: Lesson = Lesson {
         let operands = Operands::new(input)?;
         let [a, b] = operands.shapes();
         let steps = record(cap, |t| vatti::vatti(&a, &b, options.operation, &rules(options), t))?;
-        Ok(show_all(operands, &steps))
+        Ok(show_all(operands, steps))
     },
 };
 
@@ -39,7 +39,7 @@ pub(super) const OVERLAY: Lesson = Lesson {
         let [a, b] = operands.shapes();
         let steps =
             record(cap, |t| overlay::overlay(&a, &b, options.operation, &rules(options), t))?;
-        Ok(show_all(operands, &steps))
+        Ok(show_all(operands, steps))
     },
 };
 
@@ -105,6 +105,7 @@ fn rules(options: &Options) -> overlay::Options {
     overlay::Options::with_rule(options.rule)
 }
 
+#[derive(Clone)]
 struct State {
     operands: Operands,
     crossings: Vec<DVec2>,
@@ -113,26 +114,36 @@ struct State {
     rings: Vec<Vec<DVec2>>,
 }
 
-fn show_all(operands: Operands, steps: &Recorder<Step>) -> Frames {
+fn show_all(operands: Operands, steps: Recorder<Step>) -> Frames {
     let (crossings, passed, rings) = (Vec::new(), Vec::new(), Vec::new());
     let mut state = State { operands, crossings, passed, active: 0, rings };
-    frames(steps, |step| state.show(step))
+    Frames::new(steps, move |step, want| state.show(step, want))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        let mut picture = self.picture();
-        match step {
-            Step::Crossing { at } => picture.dot(*at, Look::Now),
-            Step::Sweep { at, .. } => {
-                let [low, high] = picture.extent;
-                picture.chain([DVec2::new(at.x, low.y), DVec2::new(at.x, high.y)], Look::Dashed);
-                picture.dot(*at, Look::Now);
-            }
-            Step::Grid { .. } | Step::Ring { .. } => {}
-        }
-        Shown { line: step.line(), caption, table: self.table(), picture }
+        want.shown(
+            step.line(),
+            caption,
+            || self.table(),
+            || {
+                let mut picture = self.picture();
+                match step {
+                    Step::Crossing { at } => picture.dot(*at, Look::Now),
+                    Step::Sweep { at, .. } => {
+                        let [low, high] = picture.extent;
+                        picture.chain(
+                            [DVec2::new(at.x, low.y), DVec2::new(at.x, high.y)],
+                            Look::Dashed,
+                        );
+                        picture.dot(*at, Look::Now);
+                    }
+                    Step::Grid { .. } | Step::Ring { .. } => {}
+                }
+                picture
+            },
+        )
     }
 
     fn take(&mut self, step: &Step) -> Caption {

@@ -3,7 +3,7 @@
 use super::{CLIP, Operands, SUBJECT, TAKES, lecture, letter_and_blade, pentagram, squares};
 use crate::clip::polygon::weiler_atherton::{Mark, Operand, Step};
 use crate::clip::polygon::{greiner_hormann, weiler_atherton};
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
@@ -29,7 +29,7 @@ pub(super) const WEILER_ATHERTON: Lesson = Lesson {
                 t,
             )
         })?;
-        Ok(show_all(operands, &steps))
+        Ok(show_all(operands, steps))
     },
 };
 
@@ -52,7 +52,7 @@ pub(super) const GREINER_HORMANN: Lesson = Lesson {
                 t,
             )
         })?;
-        Ok(show_all(operands, &steps))
+        Ok(show_all(operands, steps))
     },
 };
 
@@ -140,6 +140,7 @@ static RING: Template = Template::new(
 );
 
 /// The two lists, and the ring that is being made.
+#[derive(Clone)]
 struct State {
     operands: Operands,
     lists: [Vec<(DVec2, Option<Mark>)>; 2],
@@ -149,7 +150,7 @@ struct State {
     rings: Vec<Vec<DVec2>>,
 }
 
-fn show_all(operands: Operands, steps: &crate::trace::Recorder<Step>) -> Frames {
+fn show_all(operands: Operands, steps: crate::trace::Recorder<Step>) -> Frames {
     let lists = [Vec::new(), Vec::new()];
     // Crossings are named as they are met round the clip.
     let met = |step: &Step| match *step {
@@ -158,7 +159,7 @@ fn show_all(operands: Operands, steps: &crate::trace::Recorder<Step>) -> Frames 
     };
     let crossings = steps.steps().iter().filter_map(met).collect();
     let mut state = State { operands, lists, crossings, ring: Vec::new(), rings: Vec::new() };
-    frames(steps, |step| state.show(step))
+    Frames::new(steps, move |step, want| state.show(step, want))
 }
 
 impl State {
@@ -184,20 +185,27 @@ impl State {
         Value::List(points.iter().map(|&p| self.name(p).into()).collect())
     }
 
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        let mut picture = self.picture();
-        match step {
-            Step::Listed { at, .. }
-            | Step::Start { at }
-            | Step::Passed { at, .. }
-            | Step::Crossing { at, .. }
-            | Step::Turn { at, .. } => {
-                picture.dot(*at, Look::Now);
-            }
-            Step::Ring { .. } | Step::CrossingRings => {}
-        }
-        Shown { line: step.line(), caption, table: self.table(), picture }
+        want.shown(
+            step.line(),
+            caption,
+            || self.table(),
+            || {
+                let mut picture = self.picture();
+                match step {
+                    Step::Listed { at, .. }
+                    | Step::Start { at }
+                    | Step::Passed { at, .. }
+                    | Step::Crossing { at, .. }
+                    | Step::Turn { at, .. } => {
+                        picture.dot(*at, Look::Now);
+                    }
+                    Step::Ring { .. } | Step::CrossingRings => {}
+                }
+                picture
+            },
+        )
     }
 
     fn take(&mut self, step: &Step) -> Caption {
@@ -271,19 +279,25 @@ impl State {
         table
     }
 
+    /// Adds a dot with its name to the upper right, where edges of rectangles do not run.
+    fn add_named(&self, picture: &mut Picture, at: DVec2, look: Look) {
+        picture.dot(at, look);
+        picture.label(at, (9.0, -10.0), self.name(at));
+    }
+
     fn picture(&self) -> Picture {
         let mut picture = self.operands.picture();
         picture.rings(&self.rings, Look::Result);
         picture.chain(self.ring.clone(), Look::Result);
         for (list, look) in self.lists.iter().zip([Look::First, Look::Second]) {
             let plain = list.iter().filter(|(_, mark)| mark.is_none());
-            plain.for_each(|&(at, _)| picture.named(at, self.name(at), look));
+            plain.for_each(|&(at, _)| self.add_named(&mut picture, at, look));
         }
         let listed = self.lists.iter().flatten().filter(|(_, mark)| mark.is_some());
         let mut shown: Vec<DVec2> = Vec::new();
         for &(at, _) in listed {
             if !shown.contains(&at) {
-                picture.named(at, self.name(at), Look::Result);
+                self.add_named(&mut picture, at, Look::Result);
                 shown.push(at);
             }
         }

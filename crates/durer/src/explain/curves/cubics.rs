@@ -3,7 +3,7 @@
 use super::{EXAMPLES, TAKES};
 use crate::curve::bezier::de_casteljau;
 use crate::curve::{catmull_rom, forward_difference};
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -83,8 +83,9 @@ fn through(input: &Input, cap: usize) -> Result<Frames> {
         catmull_rom::pieces(control, &options, t);
         Ok(())
     })?;
+    let control = control.to_vec();
     let (mut tangents, mut pieces) = (Vec::new(), Vec::new());
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let caption = match *step {
             Step::Tangent { index, tangent } => {
                 tangents.push(tangent);
@@ -96,26 +97,36 @@ fn through(input: &Input, cap: usize) -> Result<Frames> {
                 PIECE.with(values)
             }
         };
-        let mut picture = before(control);
-        pieces.iter().for_each(|piece| picture.chain(curve(piece), Look::Result));
-        match *step {
-            Step::Tangent { index, tangent } => {
-                if let Some(&at) = control.get(index) {
-                    picture.arrow(at, at + tangent, Look::Now);
+        let picture = || {
+            let mut picture = before(&control);
+            pieces.iter().for_each(|piece| picture.chain(curve(piece), Look::Result));
+            match *step {
+                Step::Tangent { index, tangent } => {
+                    if let Some(&at) = control.get(index) {
+                        picture.arrow(at, at + tangent, Look::Now);
+                    }
+                }
+                Step::Piece { control, .. } => {
+                    picture.chain(control.to_vec(), Look::First);
+                    picture.chain(curve(&control), Look::Now);
                 }
             }
-            Step::Piece { control, .. } => {
-                pieces.push(control);
-                picture.chain(control.to_vec(), Look::First);
-                picture.chain(curve(&control), Look::Now);
-            }
+            picture
+        };
+        let shown = want.shown(step.line(), caption, || tangents_table(&tangents), picture);
+        if let Step::Piece { control, .. } = *step {
+            pieces.push(control);
         }
-        let mut table = Table::new([Word::new("point", "Punkt"), Word::new("tangent", "Tangente")]);
-        for (number, tangent) in tangents.iter().enumerate() {
-            table.row(format!("P{number}"), [Value::from(*tangent)]);
-        }
-        Shown { line: step.line(), caption, table, picture }
+        shown
     }))
+}
+
+fn tangents_table(tangents: &[DVec2]) -> Table {
+    let mut table = Table::new([Word::new("point", "Punkt"), Word::new("tangent", "Tangente")]);
+    for (number, tangent) in tangents.iter().enumerate() {
+        table.row(format!("P{number}"), [Value::from(*tangent)]);
+    }
+    table
 }
 
 fn forward(input: &Input, cap: usize) -> Result<Frames> {
@@ -126,7 +137,7 @@ fn forward(input: &Input, cap: usize) -> Result<Frames> {
         Ok(())
     })?;
     let mut found: Vec<(DVec2, [DVec2; 3])> = Vec::new();
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let forward_difference::Step { index, point, differences } = *step;
         found.push((point, differences));
         let [first, second, third] = differences.map(Value::from);
@@ -137,22 +148,29 @@ fn forward(input: &Input, cap: usize) -> Result<Frames> {
         } else {
             NEXT.with([("index", index.into()), point, first, second, third])
         };
-        let mut picture = before(&control);
-        picture.chain(found.iter().map(|(p, _)| *p).collect::<Vec<_>>(), Look::Result);
-        found.iter().for_each(|(p, _)| picture.dot(*p, Look::First));
-        picture.dot(step.point, Look::Now);
-        picture.arrow(step.point, step.point + differences[0], Look::Second);
-        let heads = [
-            Word::new("point", "Punkt"),
-            Word::new("p", "p"),
-            Word::new("Δ1", "Δ1"),
-            Word::new("Δ2", "Δ2"),
-            Word::new("Δ3", "Δ3"),
-        ];
-        let mut table = Table::new(heads);
-        for (number, (p, [d1, d2, d3])) in found.iter().enumerate() {
-            table.row(number, [*p, *d1, *d2, *d3].map(Value::from));
-        }
-        Shown { line: step.line(), caption, table, picture }
+        let picture = || {
+            let mut picture = before(&control);
+            picture.chain(found.iter().map(|(p, _)| *p).collect::<Vec<_>>(), Look::Result);
+            found.iter().for_each(|(p, _)| picture.dot(*p, Look::First));
+            picture.dot(step.point, Look::Now);
+            picture.arrow(step.point, step.point + differences[0], Look::Second);
+            picture
+        };
+        want.shown(step.line(), caption, || differences_table(&found), picture)
     }))
+}
+
+fn differences_table(found: &[(DVec2, [DVec2; 3])]) -> Table {
+    let heads = [
+        Word::new("point", "Punkt"),
+        Word::new("p", "p"),
+        Word::new("Δ1", "Δ1"),
+        Word::new("Δ2", "Δ2"),
+        Word::new("Δ3", "Δ3"),
+    ];
+    let mut table = Table::new(heads);
+    for (number, (p, [d1, d2, d3])) in found.iter().enumerate() {
+        table.row(number, [*p, *d1, *d2, *d3].map(Value::from));
+    }
+    table
 }

@@ -1,7 +1,7 @@
 //! The lesson of evaluators: a patch point by point.
 
 use crate::curve::evaluator::{INFO, Step, patch};
-use crate::explain::frame::{Frames, Numbered, Shown, frames, record};
+use crate::explain::frame::{Frames, Numbered, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -78,9 +78,10 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
         }
         Ok(())
     })?;
+    let rows = rows.to_vec();
     let mut points: Vec<DVec3> = Vec::new();
     let mut column: Vec<DVec3> = Vec::new();
-    Ok(frames(&steps, |(number, step)| {
+    Ok(Frames::new(steps, move |(number, step), want| {
         let place = [number % (STEPS + 1), number / (STEPS + 1)];
         let [i, j] = [("i", place[0].into()), ("j", place[1].into())];
         let caption = match *step {
@@ -96,15 +97,18 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
                 POINT.with([i, j, ("v", v.into()), ("point", point.into())])
             }
         };
-        let mut table = Table::new([Word::new("row", "Zeile"), Word::new("point", "Punkt")]);
-        for (row, point) in column.iter().enumerate() {
-            table.row(row, [(*point).into()]);
-        }
-        if let (Step::Point { point, .. }, false) = (step, points.is_empty()) {
-            table.row("P", [(*point).into()]);
-        }
-        let picture = picture(rows, &points, &column, matches!(step, Step::Point { .. }));
-        Shown { line: step.line(), caption, table, picture }
+        let table = || {
+            let mut table = Table::new([Word::new("row", "Zeile"), Word::new("point", "Punkt")]);
+            for (row, point) in column.iter().enumerate() {
+                table.row(row, [(*point).into()]);
+            }
+            if let (Step::Point { point, .. }, false) = (step, points.is_empty()) {
+                table.row("P", [(*point).into()]);
+            }
+            table
+        };
+        let is_point = matches!(step, Step::Point { .. });
+        want.shown(step.line(), caption, table, || picture(&rows, &points, &column, is_point))
     }))
 }
 

@@ -5,7 +5,7 @@ use crate::Error;
 use crate::Result;
 use crate::curve::bezier::de_casteljau;
 use crate::curve::{FLATTEN, FlattenStep as Step, Path, PathElement, flatten_traced};
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -78,15 +78,19 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
             Word::new("error", "Fehler"),
         ]),
     );
-    Ok(frames(&steps, |step| {
+    let control = control.clone();
+    Ok(Frames::new(steps, move |step, want| {
         let caption = take(step, tolerance, &mut chain, &mut table);
-        let mut picture = around.clone();
-        picture.chain(control.clone(), Look::Thin);
-        picture.chain(exact.clone(), Look::Second);
-        picture.chain(chain.clone(), Look::First);
-        chain.iter().for_each(|p| picture.dot(*p, Look::First));
-        chain.last().into_iter().for_each(|p| picture.dot(*p, Look::Now));
-        Shown { line: step.line(), caption, table: table.clone(), picture }
+        let picture = || {
+            let mut picture = around.clone();
+            picture.chain(control.clone(), Look::Thin);
+            picture.chain(exact.clone(), Look::Second);
+            picture.chain(chain.clone(), Look::First);
+            chain.iter().for_each(|p| picture.dot(*p, Look::First));
+            chain.last().into_iter().for_each(|p| picture.dot(*p, Look::Now));
+            picture
+        };
+        want.shown(step.line(), caption, || table.clone(), picture)
     }))
 }
 

@@ -4,7 +4,7 @@ use super::{EXAMPLES, TAKES};
 use crate::curve::b_spline::{self, BSpline, de_boor};
 use crate::curve::bezier::{self, de_casteljau};
 use crate::curve::knot_insertion::{self, insert, refine};
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -98,6 +98,7 @@ static PLACED: Template = Template::new(
 );
 
 /// Control points, the points of all levels, and the curve itself.
+#[derive(Clone)]
 struct State {
     levels: Vec<Vec<Option<DVec2>>>,
     curve: Vec<DVec2>,
@@ -125,17 +126,18 @@ fn control(input: &Input) -> Result<&[DVec2]> {
 
 fn bezier(input: &Input, cap: usize) -> Result<Frames> {
     let control = control(input)?;
+    let count = control.len();
     let at = |t: f64| de_casteljau(control, t, &mut NoTrace).unwrap_or_default();
     let mut state = State::new(control, samples(at));
     let steps = record(cap, |t| {
         de_casteljau(control, PARAMETER, t);
         Ok(())
     })?;
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let bezier::Step { level, index, point } = *step;
         let mix = Mix { level, index, from: [index, index + 1], share: PARAMETER, point };
-        let is_last = level + 1 == control.len();
-        state.show(&mix, if is_last { &FOUND } else { &MIXED }, step.line())
+        let is_last = level + 1 == count;
+        state.show(&mix, if is_last { &FOUND } else { &MIXED }, step.line(), want)
     }))
 }
 
@@ -147,10 +149,10 @@ fn b_spline(input: &Input, cap: usize) -> Result<Frames> {
         de_boor(&spline, PARAMETER, t);
         Ok(())
     })?;
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let b_spline::Step { level, index, share, point } = *step;
         let mix = Mix { level, index, from: [index.saturating_sub(1), index], share, point };
-        state.show(&mix, if level == degree { &REACHED } else { &SHARED }, step.line())
+        state.show(&mix, if level == degree { &REACHED } else { &SHARED }, step.line(), want)
     }))
 }
 
@@ -158,10 +160,10 @@ fn boehm(input: &Input, cap: usize) -> Result<Frames> {
     let (control, spline) = spline(input)?;
     let mut state = State::new(control, samples(|t| spline.point(t)));
     let steps = record(cap, |t| insert(&spline, NEW[0], t))?;
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let knot_insertion::Step { index, share, point } = *step;
         let mix = Mix { level: 1, index, from: [index.saturating_sub(1), index], share, point };
-        let mut shown = state.show(&mix, &INSERTED, step.line());
+        let mut shown = state.show(&mix, &INSERTED, step.line(), want);
         shown.caption.values.push(("index", index.into()));
         shown
     }))
@@ -172,16 +174,17 @@ fn oslo(input: &Input, cap: usize) -> Result<Frames> {
     let curve = samples(|t| spline.point(t));
     let mut state = State::new(control, curve);
     let steps = record(cap, |t| refine(&spline, &NEW, t))?;
-    let mut of_before = 0;
-    Ok(frames(&steps, |step| {
+    let (degree, mut of_before) = (spline.degree(), 0);
+    Ok(Frames::new(steps, move |step, want| {
         let knot_insertion::OsloStep { of, level, index, share, point } = *step;
         if std::mem::replace(&mut of_before, of) != of {
             // The levels begin anew for each new control point.
             state.levels.truncate(1);
         }
         let mix = Mix { level, index, from: [index.saturating_sub(1), index], share, point };
-        let is_last = level == spline.degree();
-        let mut shown = state.show(&mix, if is_last { &PLACED } else { &REFINED }, step.line());
+        let is_last = level == degree;
+        let mut shown =
+            state.show(&mix, if is_last { &PLACED } else { &REFINED }, step.line(), want);
         shown.caption.values.push(("index", of.into()));
         shown
     }))
@@ -208,7 +211,7 @@ impl State {
         self.levels.get(level)?.get(index).copied().flatten()
     }
 
-    fn show(&mut self, mix: &Mix, template: &'static Template, line: usize) -> Shown {
+    fn show(&mut self, mix: &Mix, template: &'static Template, line: usize, want: Want) -> Shown {
         let count = self.levels.first().map_or(0, Vec::len);
         if self.levels.len() <= mix.level {
             self.levels.push(vec![None; count]);
@@ -224,7 +227,7 @@ impl State {
             ("to", to.into()),
             ("point", mix.point.into()),
         ]);
-        Shown { line, caption, table: self.table(), picture: self.picture(mix, [from, to]) }
+        want.shown(line, caption, || self.table(), || self.picture(mix, [from, to]))
     }
 
     /// Returns the triangle of points, a column for each level.

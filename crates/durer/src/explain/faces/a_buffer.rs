@@ -2,7 +2,7 @@
 
 use super::{DEPTH, Scene, TAKES, middle, name, slab};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::grid::{color, upright};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
@@ -75,6 +75,7 @@ static BACKGROUND: Template = Template::new(
 const SUBPIXELS: u32 = 4;
 
 /// Fragments of the pixel, and the share that each has got.
+#[derive(Clone)]
 struct State {
     fragments: Vec<Fragment>,
     weights: Vec<Option<f64>>,
@@ -88,7 +89,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     })?;
     let weights = vec![None; fragments.len()];
     let mut state = State { fragments, weights };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 /// Returns the fragment of each face in the pixel from (0, 0) to (4, 4): its sub-pixels are the grid's pixels.
@@ -107,9 +108,9 @@ fn fragments(scene: &Scene) -> Vec<Fragment> {
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let (caption, mask) = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture(step, mask) }
+        want.shown(step.line(), caption, || self.table(), || self.picture(step, mask))
     }
 
     fn take(&mut self, step: &Step) -> (Caption, u16) {

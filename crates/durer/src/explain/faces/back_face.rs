@@ -2,7 +2,7 @@
 
 use super::{TAKES, name};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::grid::letter;
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
@@ -84,8 +84,9 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
         remove(rings, eye, &Options::default(), t);
         Ok(())
     })?;
+    let faces = faces.to_vec();
     let mut tested: Vec<(DVec3, Face)> = Vec::new();
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let Step::Tested { face, area, side } = *step;
         tested.push((area, side));
         let values =
@@ -96,8 +97,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
             Face::Back => BACK.with([named, normal, dot]),
             Face::Edge => EDGE_ON.with([named, normal]),
         };
-        let picture = picture(faces, &tested);
-        Shown { line: step.line(), caption, table: table(&tested), picture }
+        want.shown(step.line(), caption, || table(&tested), || picture(&faces, &tested))
     }))
 }
 

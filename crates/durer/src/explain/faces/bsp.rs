@@ -2,12 +2,13 @@
 
 use super::{EXAMPLES, Scene, TAKES, name};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
+use crate::math::DVec2;
 use crate::visibility::polygons::bsp::{INFO, Options, Side, Step, items};
 
 pub(super) const LESSON: Lesson = Lesson {
@@ -57,6 +58,7 @@ static PIXEL: Template = Template::new(
 );
 
 /// A node of the tree.
+#[derive(Clone)]
 struct Node {
     piece: u32,
     front: String,
@@ -64,6 +66,7 @@ struct Node {
 }
 
 /// The tree so far, and names of pieces.
+#[derive(Clone)]
 struct State {
     scene: Scene,
     names: Vec<(u32, String)>,
@@ -76,13 +79,13 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let options = Options::default();
     let steps = record(cap, |t| items(&scene.faces, &scene.screen(), &options, t))?;
     let mut state = State { scene, names: Vec::new(), nodes: Vec::new(), now: 0 };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture(step) }
+        want.shown(step.line(), caption, || self.table(), || self.picture(step))
     }
 
     /// Returns a piece's name: a face's letter, with + for the part in front and − for that behind.
@@ -121,7 +124,7 @@ impl State {
             Step::Paint { piece: number, .. } => PAINT.with([piece(number)]),
             Step::Pixel { pixel: pixel @ [x, y], face } => {
                 self.scene.set(pixel, face);
-                let at = crate::math::DVec2::new(x.into(), y.into());
+                let at = DVec2::new(x.into(), y.into());
                 PIXEL.with([("pixel", at.into()), ("face", name(face).into())])
             }
         }
@@ -164,15 +167,41 @@ impl State {
             Step::Visit { node, .. } => self.nodes.get(node as usize).map(|node| node.piece),
             Step::Pixel { .. } => None,
         };
-        if let Some(letter) = piece.map(|piece| self.piece(piece)) {
-            let face = (0..self.scene.faces.len())
-                .find(|&face| name(face as u32) == letter.trim_end_matches(['+', '−']));
-            face.into_iter().for_each(|face| self.scene.outline(&mut picture, face, Look::Now));
+        if let Some(face) = piece.and_then(|piece| self.face_of(piece)) {
+            self.scene.outline(&mut picture, face, Look::Now);
         }
-        if let Step::Pixel { pixel, .. } = *step {
-            picture.dot(super::middle(pixel), Look::Now);
+        match *step {
+            Step::Pixel { pixel, .. } => picture.dot(super::middle(pixel), Look::Now),
+            Step::Split { piece, .. } => {
+                let ends = self.split(piece);
+                picture.chain(ends.clone(), Look::Second);
+                ends.into_iter().for_each(|end| picture.dot(end, Look::Second));
+            }
+            _ => {}
         }
         picture
+    }
+
+    /// Returns the face that a piece is a part of.
+    fn face_of(&self, piece: u32) -> Option<usize> {
+        let letter = self.piece(piece);
+        (0..self.scene.faces.len())
+            .find(|&face| name(face as u32) == letter.trim_end_matches(['+', '−']))
+    }
+
+    /// Returns where the outline of a piece's face meets the plane of the node, on the screen.
+    fn split(&self, piece: u32) -> Vec<DVec2> {
+        let node = self.nodes.get(self.now as usize).and_then(|node| self.face_of(node.piece));
+        let faces = [self.face_of(piece), node].map(|face| self.scene.faces.get(face?));
+        let [Some(own), Some(plane)] = faces else { return Vec::new() };
+        let before = |p: DVec2| own.depth(p) - plane.depth(p);
+        let outline = own.outline();
+        let next = outline.iter().cycle().skip(1);
+        let crossing = |(&p, &q): (&DVec2, &DVec2)| {
+            let (from, to) = (before(p), before(q));
+            (from * to < 0.0).then(|| p.lerp(q, from / (from - to)))
+        };
+        outline.iter().zip(next).filter_map(crossing).collect()
     }
 }
 

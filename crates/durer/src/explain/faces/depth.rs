@@ -2,7 +2,7 @@
 
 use super::{DEPTH, EXAMPLES, FACE, Scene, TAKES, middle, name};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::grid::color;
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
@@ -67,6 +67,7 @@ static PAINT: Template = Template::new(
 );
 
 /// Contents of the z-buffer.
+#[derive(Clone)]
 struct Buffer {
     scene: Scene,
     depths: Vec<Option<f64>>,
@@ -78,18 +79,13 @@ fn by_pixels(input: &Input, cap: usize) -> Result<Frames> {
     let steps = record(cap, |t| z_buffer::items(&scene.faces, &scene.screen(), t))?;
     let depths = vec![None; scene.items.len()];
     let mut buffer = Buffer { scene, depths, face: 0 };
-    Ok(frames(&steps, |step| buffer.show(step)))
+    Ok(Frames::new(steps, move |step, want| buffer.show(step, want)))
 }
 
 impl Buffer {
-    fn show(&mut self, step: &z_buffer::Step) -> Shown {
+    fn show(&mut self, step: &z_buffer::Step, want: Want) -> Shown {
         use z_buffer::Step;
-        let mut table = Table::new([
-            FACE,
-            Word::new("pixel", "Pixel"),
-            DEPTH,
-            Word::new("stored", "gespeichert"),
-        ]);
+        let mut row = None;
         let (caption, pixel) = match *step {
             Step::Clear => (CLEAR.with([]), None),
             Step::Face { face } => {
@@ -98,7 +94,7 @@ impl Buffer {
             }
             Step::Compare { pixel, depth, stored } => {
                 let at = Value::from(DVec2::new(pixel[0].into(), pixel[1].into()));
-                table.row(name(self.face), [at.clone(), depth.into(), stored.into()]);
+                row = Some((name(self.face), [at.clone(), depth.into(), stored.into()]));
                 let template = if depth < stored { &NEARER } else { &FARTHER };
                 let values = [("depth", depth.into()), ("stored", stored.into())];
                 let [depth, stored] = values;
@@ -108,12 +104,18 @@ impl Buffer {
             Step::Store { pixel, face, depth } => {
                 let at = Value::from(DVec2::new(pixel[0].into(), pixel[1].into()));
                 self.store(pixel, face, depth);
-                table.row(name(face), [at.clone(), depth.into(), depth.into()]);
+                row = Some((name(face), [at.clone(), depth.into(), depth.into()]));
                 let face = ("face", name(face).into());
                 (STORE.with([("pixel", at), ("depth", depth.into()), face]), Some(pixel))
             }
         };
-        Shown { line: step.line(), caption, table, picture: self.picture(pixel) }
+        let heads = [FACE, Word::new("pixel", "Pixel"), DEPTH, Word::new("stored", "gespeichert")];
+        let table = || {
+            let mut table = Table::new(heads);
+            row.into_iter().for_each(|(name, cells)| table.row(name, cells));
+            table
+        };
+        want.shown(step.line(), caption, table, || self.picture(pixel))
     }
 
     fn store(&mut self, pixel @ [x, y]: [u32; 2], face: u32, depth: f64) {
@@ -152,7 +154,7 @@ fn by_order(input: &Input, cap: usize) -> Result<Frames> {
     let steps = record(cap, |t| painter::items(&scene.faces, &scene.screen(), &options, t))?;
     let mut order: Vec<(u32, f64)> = Vec::new();
     let mut painted: Option<u32> = None;
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let caption = match *step {
             painter::Step::Sorted { face, z } => {
                 order.push((face, z));
@@ -168,11 +170,13 @@ fn by_order(input: &Input, cap: usize) -> Result<Frames> {
                 PAINT.with([face, ("first", first), ("last", last), ("row", row)])
             }
         };
-        let mut picture = scene.picture();
         let (painter::Step::Sorted { face, .. } | painter::Step::Paint { face, .. }) = *step;
-        scene.outline(&mut picture, face as usize, Look::Now);
-        let table = list(&order, painted);
-        Shown { line: step.line(), caption, table, picture }
+        let picture = || {
+            let mut picture = scene.picture();
+            scene.outline(&mut picture, face as usize, Look::Now);
+            picture
+        };
+        want.shown(step.line(), caption, || list(&order, painted), picture)
     }))
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Scene, TAKES, beams, name, slab};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -76,6 +76,7 @@ static PIXEL: Template =
     Template::new("pixel", "Pixel {pixel} gets {face}.", "Pixel {pixel} bekommt {face}.");
 
 /// The list of polygons and verdicts.
+#[derive(Clone)]
 struct Sorting {
     scene: Scene,
     /// Names and faces of pieces, by their numbers after the faces.
@@ -90,9 +91,9 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let steps = record(cap, |t| items(&scene.faces, &scene.screen(), &Options::default(), t))?;
     let (pieces, verdicts, painted) = (Vec::new(), Vec::new(), Vec::new());
     let mut sorting = Sorting { scene, pieces, verdicts, painted, now: [None; 2] };
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let caption = sorting.take(step);
-        Shown { line: step.line(), caption, table: sorting.table(), picture: sorting.picture() }
+        want.shown(step.line(), caption, || sorting.table(), || sorting.picture())
     }))
 }
 

@@ -3,7 +3,7 @@
 use super::triangles::Triangles;
 use super::{EXAMPLES, Scene, TAKES, slab};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -47,27 +47,29 @@ static PAGE: Template = Template::new(
 );
 static SEEN: Template = Template::new(
     "line",
-    "{class} from {p} to {q}; faces compared: {tried}. None is in front: Q = 0, all of it is seen.",
-    "{class} von {p} nach {q}; verglichene Flächen: {tried}. Keine liegt davor: Q = 0, alles ist zu sehen.",
+    "{class} from {p} to {q}; triangles compared: {tried}. None is in front: Q = 0, all of it is seen.",
+    "{class} von {p} nach {q}; verglichene Dreiecke: {tried}. Keines liegt davor: Q = 0, alles ist zu sehen.",
 );
 static PARTLY: Template = Template::new(
     "line",
-    "{class} from {p} to {q}; faces compared: {tried}. Q changes at t = {cuts} and is {levels}.",
-    "{class} von {p} nach {q}; verglichene Flächen: {tried}. Q ändert sich bei t = {cuts} und ist {levels}.",
+    "{class} from {p} to {q}; triangles compared: {tried}. Q changes at t = {cuts} and is {levels}.",
+    "{class} von {p} nach {q}; verglichene Dreiecke: {tried}. Q ändert sich bei t = {cuts} und ist {levels}.",
 );
 static HIDDEN: Template = Template::new(
     "line",
-    "{class} from {p} to {q}; faces compared: {tried}. Q = {levels} from end to end: nothing of it is seen.",
-    "{class} von {p} nach {q}; verglichene Flächen: {tried}. Q = {levels} von Ende zu Ende: Nichts davon ist zu sehen.",
+    "{class} from {p} to {q}; triangles compared: {tried}. Q = {levels} from end to end: nothing of it is seen.",
+    "{class} von {p} nach {q}; verglichene Dreiecke: {tried}. Q = {levels} von Ende zu Ende: Nichts davon ist zu sehen.",
 );
 
 /// A line whose parts are known.
+#[derive(Clone)]
 struct Known {
     ends: [DVec2; 2],
     spans: Vec<Span>,
 }
 
 /// The faces and the lines so far.
+#[derive(Clone)]
 struct State {
     scene: Scene,
     triangles: Triangles,
@@ -85,13 +87,13 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     };
     let steps = record(cap, |t| draw(&model, &view, &options, t))?;
     let mut state = State { scene, triangles, lines: Vec::new() };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(step), picture: self.picture(step) }
+        want.shown(step.line(), caption, || self.table(step), || self.picture(step))
     }
 
     /// Returns a place on the grid of a point of the picture's plane, whose origin is in the middle.
@@ -123,7 +125,7 @@ impl State {
     /// Returns what hides the line, face by face, and its parts.
     fn table(&self, step: &Step) -> Table {
         let heads = [
-            Word::new("face or part", "Fläche, Teil"),
+            Word::new("triangle or part", "Dreieck, Teil"),
             Word::new("from t", "von t"),
             Word::new("to t", "bis t"),
             Word::new("Q", "Q"),
@@ -152,7 +154,9 @@ impl State {
             let own = self.scene.faces.get(face).map(|face| face.outline()).unwrap_or_default();
             let inner = own.iter().sum::<DVec2>() / own.len().max(1) as f64;
             let first = own.first().copied().unwrap_or_default();
-            picture.label(first + (inner - first) * 0.2, (0.0, 0.0), super::name(face as u32));
+            // Beside both edges of the corner, however thin the face is.
+            let way = (inner - first).signum();
+            picture.label(first, (way.x * 11.0, -way.y * 10.0), super::name(face as u32));
         }
         let now = matches!(step, Step::Line { .. });
         let done = self.lines.len().saturating_sub(usize::from(now));

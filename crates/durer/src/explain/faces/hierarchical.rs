@@ -2,7 +2,7 @@
 
 use super::{DEPTH, EXAMPLES, Scene, TAKES, beams, name, slab};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -87,6 +87,7 @@ pub(super) fn wall() -> Vec<Vec<DVec3>> {
 }
 
 /// State of the run.
+#[derive(Clone)]
 struct State {
     scene: Scene,
     cells: Vec<[DVec3; 2]>,
@@ -99,10 +100,9 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let options = Options { capacity: 1, depth: 3 };
     let steps = record(cap, |t| items(&scene.faces, &scene.screen(), &options, t))?;
     let mut state = State { scene, cells: Vec::new(), tests: Vec::new() };
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let caption = state.take(step);
-        let picture = state.picture(step);
-        Shown { line: step.line(), caption, table: state.table(), picture }
+        want.shown(step.line(), caption, || state.table(), || state.picture(step))
     }))
 }
 

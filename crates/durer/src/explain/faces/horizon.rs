@@ -1,7 +1,7 @@
 //! The lesson of the floating horizon, curve by curve.
 
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::grid::letter;
 use crate::explain::input::{Figure, Input};
 use crate::explain::lesson::{Example, Lesson};
@@ -94,6 +94,7 @@ static HORIZON: Template = Template::new(
 );
 
 /// The curves, the two arrays, and the drawn pieces.
+#[derive(Clone)]
 struct State {
     curves: Vec<Curve>,
     horizons: Vec<[f64; 2]>,
@@ -107,7 +108,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let steps = record(cap, |t| draw(&curves, &Options::columns(columns), t))?;
     let horizons = vec![[f64::INFINITY, f64::NEG_INFINITY]; columns];
     let mut state = State { curves, horizons, drawn: Vec::new() };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 /// Returns the lines as curves: a point in each column, in order.
@@ -127,9 +128,9 @@ fn laid(figure: &Figure) -> Result<Vec<Curve>> {
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture(step) }
+        want.shown(step.line(), caption, || self.table(), || self.picture(step))
     }
 
     fn take(&mut self, step: &Step) -> Caption {

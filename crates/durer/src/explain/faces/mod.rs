@@ -116,6 +116,7 @@ fn beams() -> Vec<Vec<DVec3>> {
 }
 
 /// Faces on a grid of pixels, and the item of each pixel.
+#[derive(Clone)]
 pub(super) struct Scene {
     pub raster: Raster,
     pub faces: Vec<Face>,

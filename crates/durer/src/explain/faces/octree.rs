@@ -3,7 +3,7 @@
 use super::hierarchical::wall;
 use super::{DEPTH, EXAMPLES, Scene, TAKES, name};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -65,6 +65,7 @@ static STORE: Template = Template::new(
 );
 
 /// State of the run.
+#[derive(Clone)]
 struct State {
     scene: Scene,
     cells: Vec<[DVec3; 2]>,
@@ -77,10 +78,9 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let options = Options { capacity: 1, depth: 3, ..Options::default() };
     let steps = record(cap, |t| items(&scene.faces, &scene.screen(), &options, t))?;
     let mut state = State { scene, cells: Vec::new(), visited: Vec::new() };
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let caption = state.take(step);
-        let picture = state.picture(step);
-        Shown { line: step.line(), caption, table: state.table(), picture }
+        want.shown(step.line(), caption, || state.table(), || state.picture(step))
     }))
 }
 

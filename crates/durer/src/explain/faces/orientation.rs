@@ -2,7 +2,7 @@
 
 use super::{TAKES, name};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -127,29 +127,25 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let faces = input.faces(TAKES)?;
     let (points, rings) = shared(faces);
     let steps = record(cap, |t| orient(&points, &rings, &Options::default(), t))?;
-    let mut state = State {
-        faces,
-        points: &points,
-        turned: vec![None; faces.len()],
-        piece: vec![0; faces.len()],
-    };
-    Ok(frames(&steps, |step| {
+    let (turned, piece) = (vec![None; faces.len()], vec![0; faces.len()]);
+    let mut state = State { faces: faces.to_vec(), points, turned, piece };
+    Ok(Frames::new(steps, move |step, want| {
         let (caption, now) = state.take(step);
-        let picture = state.picture(&now, step);
-        Shown { line: step.line(), caption, table: state.table(), picture }
+        want.shown(step.line(), caption, || state.table(), || state.picture(&now, step))
     }))
 }
 
 /// State of the run.
-struct State<'a> {
-    faces: &'a [Vec<DVec3>],
-    points: &'a [DVec3],
+#[derive(Clone)]
+struct State {
+    faces: Vec<Vec<DVec3>>,
+    points: Vec<DVec3>,
     /// True for each reached face that is turned; `None` for faces not reached.
     turned: Vec<Option<bool>>,
     piece: Vec<usize>,
 }
 
-impl State<'_> {
+impl State {
     /// Returns the caption, and the faces in question.
     fn take(&mut self, step: &Step) -> (Caption, Vec<usize>) {
         let letter = |face: usize| Value::from(name(face as u32));

@@ -4,7 +4,7 @@ use super::row::row_camera;
 use super::triangles::Triangles;
 use super::{EXAMPLES, Scene, TAKES, slab};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -96,6 +96,7 @@ static AWAY: Template = Template::new(
 const PIXELS: u32 = 7;
 
 /// The rays of the row so far.
+#[derive(Clone)]
 struct State {
     triangles: Triangles,
     /// Faces cut by the plane of the rays: their ends in it, and their items.
@@ -137,7 +138,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     })?;
     let cuts = cuts(&triangles, eye.y);
     let mut state = State { triangles, cuts, eye, light, rays: Vec::new() };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 /// Assigns a material that mirrors to all faces.
@@ -172,9 +173,9 @@ fn cuts(triangles: &Triangles, y: f64) -> Vec<([DVec2; 2], u32)> {
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture() }
+        want.shown(step.line(), caption, || self.table(), || self.picture())
     }
 
     fn take(&mut self, step: &Step) -> Caption {

@@ -3,7 +3,7 @@
 use super::{EXAMPLES, Scene, TAKES, name};
 use crate::Result;
 use crate::clip::polygon::Shapes;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -49,6 +49,7 @@ static SEEN: Template = Template::new(
 );
 
 /// Regions found so far, and the latest cut.
+#[derive(Clone)]
 struct State {
     scene: Scene,
     seen: Vec<Region>,
@@ -60,13 +61,13 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let scene = Scene::new(input)?;
     let steps = record(cap, |t| regions(&scene.faces, &Default::default(), t))?;
     let mut state = State { scene, seen: Vec::new(), by: 0, cut: None };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture(step) }
+        want.shown(step.line(), caption, || self.table(), || self.picture(step))
     }
 
     fn take(&mut self, step: &Step) -> Caption {

@@ -1,7 +1,7 @@
 //! The lesson of Roberts' hidden lines of convex bodies.
 
 use super::MOST;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::grid::letter;
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
@@ -146,6 +146,7 @@ fn cuboid(low: [f64; 3], high: [f64; 3]) -> Vec<Vec<DVec3>> {
 }
 
 /// Bodies, and what is known of their lines.
+#[derive(Clone)]
 struct State {
     bodies: Vec<Body>,
     lines: Vec<Line>,
@@ -170,9 +171,9 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     })?;
     let (lines, eye) = (Vec::new(), Vec::new());
     let mut state = State { bodies, lines, now: None, eye, bound: None, done: 0 };
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let caption = state.take(step);
-        Shown { line: step.line(), caption, table: state.table(), picture: state.picture(step) }
+        want.shown(step.line(), caption, || state.table(), || state.picture(step))
     }))
 }
 

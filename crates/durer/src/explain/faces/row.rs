@@ -9,6 +9,7 @@ use crate::raster::interpolate::{barycentric_2d, blend};
 use crate::scene::{Camera, Projection};
 
 /// Points of faces behind the centres of a row's pixels.
+#[derive(Clone)]
 pub(in crate::explain) struct Row {
     scene: Scene,
     points: Vec<(usize, u32, f64)>,

@@ -3,7 +3,7 @@
 use super::triangles::Triangles;
 use super::{EXAMPLES, Scene, TAKES};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -55,6 +55,7 @@ static NEARER: Template = Template::new(
 );
 
 /// The row of depths and the picture so far.
+#[derive(Clone)]
 struct State {
     scene: Scene,
     triangles: Triangles,
@@ -80,13 +81,13 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let row = vec![None; scene.raster.columns as usize];
     let camera = *view.camera();
     let mut state = State { scene, triangles, camera, active: Vec::new(), row, y: 0 };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture(step) }
+        want.shown(step.line(), caption, || self.table(), || self.picture(step))
     }
 
     /// Returns the number of the row with rows upwards.

@@ -11,6 +11,7 @@ use crate::view::View;
 const MOST: u64 = 400;
 
 /// Triangles of the faces, in the scene's order, each with its face and its number there.
+#[derive(Clone)]
 pub(in crate::explain) struct Triangles {
     /// Corners of each, in pixels and depth.
     pub corners: Vec<[DVec3; 3]>,

@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, Scene, TAKES, name, slab};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
@@ -85,6 +85,7 @@ static DRAW: Template = Template::new(
 );
 
 /// Windows that wait, and the decisions so far.
+#[derive(Clone)]
 struct Windows {
     scene: Scene,
     stack: Vec<Window>,
@@ -98,9 +99,9 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let steps = record(cap, |t| items(&scene.faces, &scene.screen(), &Options::default(), t))?;
     let (stack, relations, decided) = (Vec::new(), Vec::new(), Vec::new());
     let mut windows = Windows { scene, stack, now: None, relations, decided };
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let caption = windows.take(step);
-        Shown { line: step.line(), caption, table: windows.table(), picture: windows.picture() }
+        want.shown(step.line(), caption, || windows.table(), || windows.picture())
     }))
 }
 

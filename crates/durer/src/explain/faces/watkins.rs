@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, Scene, TAKES, name};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::grid::NO_HEAD;
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
@@ -69,6 +69,7 @@ static SPAN: Template = Template::new(
 );
 
 /// The three tables.
+#[derive(Clone)]
 struct State {
     scene: Scene,
     waiting: Vec<EdgeEntry>,
@@ -83,13 +84,13 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let steps = record(cap, |t| items(&scene.faces, &scene.screen(), t))?;
     let (waiting, active, inside) = (Vec::new(), Vec::new(), Vec::new());
     let mut state = State { scene, waiting, planes: Vec::new(), active, inside, row: -1 };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture(step) }
+        want.shown(step.line(), caption, || self.table(), || self.picture(step))
     }
 
     fn take(&mut self, step: &Step) -> Caption {

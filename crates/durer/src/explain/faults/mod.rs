@@ -11,7 +11,7 @@ mod rows;
 mod stages;
 
 use super::input::Input;
-use super::packed::Frames;
+use super::replay::Frames;
 use crate::{Error, Result};
 
 /// A line of a lesson's pseudocode that a program gets wrong.

@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, Filling, ROW, TAKES, X, add_row, on_row};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -60,6 +60,7 @@ static INSIDE: Template = Template::new(
 );
 
 /// The pixels of a lesson, and how often they were touched.
+#[derive(Clone)]
 struct Plane {
     filling: Filling,
     pixels: Pixels<bool>,
@@ -96,7 +97,7 @@ fn complements(input: &Input, fenced: bool, cap: usize) -> Result<Frames> {
         edge_fill::fill(&contours, &mut work, &options, t);
         Ok(())
     })?;
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let columns = step.columns();
         for x in columns.clone() {
             let set = plane.pixels.get(x, step.y).unwrap_or(false);
@@ -108,20 +109,26 @@ fn complements(input: &Input, fenced: bool, cap: usize) -> Result<Frames> {
             ("first", columns.start.into()),
             ("count", columns.len().into()),
         ];
-        let mut picture = plane.picture(step.y as i32);
-        picture.dot(on_row(step.x.into(), step.y as i32), Look::Now);
-        if fenced {
-            let [low, high] = picture.extent;
-            let x = f64::from(step.fence);
-            let ends = [low.y, high.y].map(|y| crate::math::DVec2::new(x, y));
-            picture.chain(ends, Look::Window);
-        }
-        let mut table = Table::new([ROW, X, Word::new("touched", "berührt")]);
-        let cells: [Value; 3] = [step.y.into(), step.x.into(), plane.touched.into()];
-        table.row("", cells);
+        let picture = || {
+            let mut picture = plane.picture(step.y as i32);
+            picture.dot(on_row(step.x.into(), step.y as i32), Look::Now);
+            if fenced {
+                let [low, high] = picture.extent;
+                let x = f64::from(step.fence);
+                let ends = [low.y, high.y].map(|y| crate::math::DVec2::new(x, y));
+                picture.chain(ends, Look::Window);
+            }
+            picture
+        };
+        let table = || {
+            let mut table = Table::new([ROW, X, Word::new("touched", "berührt")]);
+            let cells: [Value; 3] = [step.y.into(), step.x.into(), plane.touched.into()];
+            table.row("", cells);
+            table
+        };
         // Without a fence inside the polygon all crossings are left of it.
         let line = if fenced { step.line() } else { 6 };
-        Shown { line, caption: COMPLEMENT.with(values), table, picture }
+        want.shown(line, COMPLEMENT.with(values), table, picture)
     }))
 }
 
@@ -135,7 +142,7 @@ fn flags(input: &Input, cap: usize) -> Result<Frames> {
         Ok(())
     })?;
     let mut marks: Vec<[u32; 2]> = Vec::new();
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let (caption, row): (Caption, i32) = match *step {
             Step::Flag { pixel: pixel @ [x, y], set } => {
                 if set {
@@ -154,12 +161,15 @@ fn flags(input: &Input, cap: usize) -> Result<Frames> {
                 (INSIDE.with([("row", row), ("first", first), ("last", last)]), span.y)
             }
         };
-        let mut picture = plane.picture(row);
-        for &[x, y] in &marks {
-            let look = if y as i32 == row { Look::Now } else { Look::Second };
-            picture.dot(on_row(x.into(), y as i32), look);
-        }
-        Shown { line: step.line(), caption, table: table(&marks), picture }
+        let picture = || {
+            let mut picture = plane.picture(row);
+            for &[x, y] in &marks {
+                let look = if y as i32 == row { Look::Now } else { Look::Second };
+                picture.dot(on_row(x.into(), y as i32), look);
+            }
+            picture
+        };
+        want.shown(step.line(), caption, || table(&marks), picture)
     }))
 }
 

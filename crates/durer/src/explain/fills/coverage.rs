@@ -3,7 +3,7 @@
 use super::{EXAMPLES, Filling, ring};
 use crate::Result;
 use crate::curve::Contours;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::grid::{color, grey, letter};
 use crate::explain::input::{Figure, Input, Options};
 use crate::explain::lesson::{Example, Lesson};
@@ -119,6 +119,7 @@ fn signed([x, y]: [u32; 2]) -> [i32; 2] {
 }
 
 /// The cells and pixels of an outline so far.
+#[derive(Clone)]
 struct Cells {
     filling: Filling,
     cells: Vec<([u32; 2], Cell)>,
@@ -132,13 +133,13 @@ fn by_cells(input: &Input, options: &Options, cap: usize) -> Result<Frames> {
     let contours = filling.contours();
     let steps = record(cap, |t| cell_sums::fill(&contours, width, height, rule, t))?;
     let mut state = Cells { filling, cells: Vec::new(), pixels: Vec::new() };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl Cells {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(step), picture: self.picture(step) }
+        want.shown(step.line(), caption, || self.table(step), || self.picture(step))
     }
 
     fn take(&mut self, step: &Step) -> Caption {
@@ -267,7 +268,7 @@ fn by_faces(input: &Input, cap: usize) -> Result<Frames> {
     let steps = record(cap, |t| coverage::fill_partition(&faces, &mut target, t))?;
     let mut areas: Vec<([u32; 2], Areas)> = Vec::new();
     let mut done: Vec<([u32; 2], [u8; 3])> = Vec::new();
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let (PartitionStep::Area { pixel: (x, y), .. }
         | PartitionStep::Pixel { pixel: (x, y), .. }) = *step;
         let pixel = [x, y];
@@ -297,11 +298,14 @@ fn by_faces(input: &Input, cap: usize) -> Result<Frames> {
                 }
             }
         };
-        let mut table = Table::new([Word::new("face", "Fläche"), Word::new("area", "Anteil")]);
-        own.iter().for_each(|(face, area)| table.row(letter(*face), [(*area).into()]));
-        table.row(Word::new("sum", "Summe"), [sum.into()]);
-        let picture = partition_picture(&filling, &areas, &done, pixel);
-        Shown { line: step.line(), caption, table, picture }
+        let table = || {
+            let mut table = Table::new([Word::new("face", "Fläche"), Word::new("area", "Anteil")]);
+            own.iter().for_each(|(face, area)| table.row(letter(*face), [(*area).into()]));
+            table.row(Word::new("sum", "Summe"), [sum.into()]);
+            table
+        };
+        let picture = || partition_picture(&filling, &areas, &done, pixel);
+        want.shown(step.line(), caption, table, picture)
     }))
 }
 

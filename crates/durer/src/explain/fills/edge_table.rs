@@ -3,13 +3,14 @@
 use super::{EXAMPLES, Filling, TAKES, X, add_row, on_row};
 use crate::Result;
 use crate::curve::Contours;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::grid::{NO_HEAD, letter};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
+use crate::math::DVec2;
 use crate::raster::polygon::edge_table::{Edge, INFO, Step, fill};
 use crate::trace::Recorder;
 
@@ -50,6 +51,7 @@ static LEAVE: Template = Template::new(
 );
 
 /// The two tables.
+#[derive(Clone)]
 struct State {
     filling: Filling,
     /// All edges, in the order of the edge table; those that wait are the last ones.
@@ -83,13 +85,13 @@ pub(in crate::explain) fn by_rows(
     })?;
     let edges = Vec::new();
     let mut state = State { filling, edges, entered: 0, active: Vec::new(), row: -1, told: 0 };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture(step) }
+        want.shown(step.line(), caption, || self.table(), || self.picture(step))
     }
 
     fn take(&mut self, step: &Step) -> Caption {
@@ -172,7 +174,14 @@ impl State {
             picture.named(on_row(edge.crossing() + 0.5, row), letter(*number), Look::Second);
         }
         match *step {
-            Step::Table(edge) => picture.dot(on_row(edge.crossing() + 0.5, row), Look::Now),
+            Step::Table(edge) => {
+                // The edge from its first row to its last one.
+                let at = on_row(edge.crossing() + 0.5, row);
+                let rows = f64::from(edge.rows.1 - 1 - edge.rows.0);
+                picture.chain([at, at + DVec2::new(slope(&edge), 1.0) * rows], Look::Now);
+                picture.dot(at, Look::Now);
+                picture.label(at, (10.0, -9.0), letter(self.edges.len() - 1));
+            }
             Step::Active { edge, .. } => picture.dot(on_row(edge.crossing() + 0.5, row), Look::Now),
             Step::Enter { .. } => {
                 let last = self.active.last().map(|(_, edge)| edge.crossing() + 0.5);
@@ -192,7 +201,11 @@ fn is_same(a: &Edge, b: &Edge) -> bool {
 
 /// Returns y_max, x, Δx/Δy and the accumulator of an edge, the last two in parts of a pixel.
 fn cells(edge: &Edge) -> [Value; 4] {
-    let part = |parts: i64| parts as f64 / edge.whole as f64;
-    let slope = edge.step as f64 + part(edge.remainder);
-    [edge.rows.1.into(), edge.x.into(), slope.into(), part(edge.error).into()]
+    let part = edge.error as f64 / edge.whole as f64;
+    [edge.rows.1.into(), edge.x.into(), slope(edge).into(), part.into()]
+}
+
+/// Returns the change of an edge's x from row to row.
+fn slope(edge: &Edge) -> f64 {
+    edge.step as f64 + edge.remainder as f64 / edge.whole as f64
 }

@@ -98,6 +98,7 @@ fn ring(points: &[(f64, f64)]) -> Input {
 }
 
 /// A polygon on its grid, and what of it is filled.
+#[derive(Clone)]
 struct Filling {
     raster: Raster,
     rings: Vec<Vec<DVec2>>,

@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, Filling, ROW, TAKES, X, add_row, on_row};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::Lesson;
 use crate::explain::picture::{Look, Picture};
@@ -46,10 +46,9 @@ fn make(_: &Lesson, input: &Input, options: &Options, cap: usize) -> Result<Fram
         Ok(())
     })?;
     let mut list: Vec<Entry> = Vec::new();
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let caption = take(step, &mut list, &mut filling);
-        let picture = picture(step, &list, &filling);
-        Shown { line: step.line(), caption, table: table(&list), picture }
+        want.shown(step.line(), caption, || table(&list), || picture(step, &list, &filling))
     }))
 }
 

@@ -1,14 +1,14 @@
 //! The lessons of seed fills: with a stack of pixels, and by runs.
 
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::grid::{NO_HEAD, center};
 use crate::explain::input::{Grid, Input};
 use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
-use crate::math::IVec2;
+use crate::math::{DVec2, IVec2};
 use crate::raster::seed_fill::{self, Run, SeedFill, Step, flood_fill};
 use crate::target::Pixels;
 
@@ -105,6 +105,7 @@ fn walls(rows: &[&str], seed: [u32; 2]) -> Input {
 }
 
 /// The picture and the stack.
+#[derive(Clone)]
 struct State {
     grid: Grid,
     by_pixels: bool,
@@ -123,13 +124,13 @@ fn make(method: SeedFill, input: &Input, cap: usize) -> Result<Frames> {
     })?;
     let (filled, stack) = (Vec::new(), Vec::new());
     let mut state = State { grid, by_pixels: method == SeedFill::Naive, filled, stack };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture(step) }
+        want.shown(step.line(), caption, || self.table(), || self.picture(step))
     }
 
     fn take(&mut self, step: &Step) -> Caption {
@@ -156,11 +157,13 @@ impl State {
         }
     }
 
-    /// Returns a pixel as a point, a run by its row and columns.
+    /// Returns a pixel as a point, a run by its columns and row.
     fn name(&self, run: Run) -> Value {
-        let minus = |x: i64| x.to_string().replace('-', "−");
-        let (y, x0, x1) = (minus(run.y), minus(run.x0), minus(run.x1 - 1));
-        if run.x1 - run.x0 == 1 { format!("{x0}|{y}") } else { format!("{x0}…{x1}|{y}") }.into()
+        if run.x1 - run.x0 == 1 {
+            return DVec2::new(run.x0 as f64, run.y as f64).into();
+        }
+        let columns = format!("{}…{}", run.x0, run.x1 - 1).replace('-', "−");
+        Value::List(vec![columns.into(), Word::new("in row", "in Zeile").into(), run.y.into()])
     }
 
     /// Returns the stack, the top above.

@@ -1,7 +1,7 @@
 //! The lessons of triangles in pixels: edge functions, edge walking, tiles.
 
 use super::ring;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::grid::{NO_HEAD, Raster, center};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
@@ -122,6 +122,7 @@ static EXAMINED: Template = Template::new(
 );
 
 /// A triangle on its grid, and the pixels that are set.
+#[derive(Clone)]
 struct Work {
     raster: Raster,
     corners: Vec<DVec2>,
@@ -174,21 +175,24 @@ fn by_functions(input: &Input, cap: usize) -> Result<Frames> {
         edge_function::rasterize(&triangle, &options, |_| {}, t);
         Ok(())
     })?;
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let edge_function::Step::Sample { x, y, edges } = *step;
         let pixel = IVec2::new(x, y);
         let inside = edges.iter().all(|e| *e >= 0);
         if inside {
             work.pixels.push(pixel);
         }
-        let mut picture = work.picture();
-        picture.dot(center(pixel), if inside { Look::Result } else { Look::Now });
+        let picture = || {
+            let mut picture = work.picture();
+            picture.dot(center(pixel), if inside { Look::Result } else { Look::Now });
+            picture
+        };
         let template = if inside { &INSIDE } else { &OUTSIDE };
         let values = edges.map(square_pixels);
         let [e1, e2, e3] = values.clone();
-        let pixel = ("pixel", pixel.as_dvec2().into());
-        let caption = template.with([pixel, ("e1", e1), ("e2", e2), ("e3", e3)]);
-        Shown { line: step.line(), caption, table: functions(values), picture }
+        let named = ("pixel", pixel.as_dvec2().into());
+        let caption = template.with([named, ("e1", e1), ("e2", e2), ("e3", e3)]);
+        want.shown(step.line(), caption, || functions(values), picture)
     }))
 }
 
@@ -213,23 +217,31 @@ fn by_walking(input: &Input, cap: usize) -> Result<Frames> {
         edge_walking::rasterize(&triangle, &options, |_| {}, t);
         Ok(())
     })?;
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let (caption, row) = walked(step);
-        let mut table = Table::new([NO_HEAD, Word::new("pixel", "Pixel")]);
         if let Step::Row { y, left, right } = *step {
             work.set(y, left.max(0) as i32..right.min(i32::MAX.into()) as i32);
-            table.row(Word::new("row", "Zeile"), [y.into()]);
-            table.row(Word::new("left", "links"), [left.into()]);
-            table.row(Word::new("right", "rechts"), [right.into()]);
         }
-        let mut picture = work.picture();
-        super::add_row(&mut picture, row);
-        if let Step::Row { y, left, right } = *step {
-            for x in [left, right] {
-                picture.dot(super::on_row(x as f64, y), Look::Now);
+        let table = || {
+            let mut table = Table::new([NO_HEAD, Word::new("pixel", "Pixel")]);
+            if let Step::Row { y, left, right } = *step {
+                table.row(Word::new("row", "Zeile"), [y.into()]);
+                table.row(Word::new("left", "links"), [left.into()]);
+                table.row(Word::new("right", "rechts"), [right.into()]);
             }
-        }
-        Shown { line: step.line(), caption, table, picture }
+            table
+        };
+        let picture = || {
+            let mut picture = work.picture();
+            super::add_row(&mut picture, row);
+            if let Step::Row { y, left, right } = *step {
+                for x in [left, right] {
+                    picture.dot(super::on_row(x as f64, y), Look::Now);
+                }
+            }
+            picture
+        };
+        want.shown(step.line(), caption, table, picture)
     }))
 }
 
@@ -260,7 +272,7 @@ fn by_tiles(input: &Input, cap: usize) -> Result<Frames> {
         Ok(())
     })?;
     let mut counts = [0_usize; 3];
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         let tiles::Step::Tile { x, y, verdict, rows } = *step;
         for (row, mask) in (y..).zip(rows) {
             let set = (0..TILE).filter(|bit| mask >> bit & 1 == 1);
@@ -272,11 +284,14 @@ fn by_tiles(input: &Input, cap: usize) -> Result<Frames> {
             Verdict::Examined => 2,
         };
         counts[place] += 1;
-        let mut picture = work.picture();
-        let [low, high] = [DVec2::new(x.into(), y.into()), DVec2::splat(TILE.into())];
-        let looks = [Look::Second, Look::Result, Look::Now];
-        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
-        picture.chain(corners.map(|at| low + high * DVec2::from(at)), looks[place]);
+        let [low, size] = [DVec2::new(x.into(), y.into()), DVec2::splat(TILE.into())];
+        let picture = || {
+            let mut picture = work.picture();
+            let looks = [Look::Second, Look::Result, Look::Now];
+            let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
+            picture.chain(corners.map(|at| low + size * DVec2::from(at)), looks[place]);
+            picture
+        };
         let tile = ("tile", low.into());
         let caption = match verdict {
             Verdict::Rejected => REJECTED.with([tile]),
@@ -286,12 +301,16 @@ fn by_tiles(input: &Input, cap: usize) -> Result<Frames> {
                 EXAMINED.with([tile, ("count", count.into())])
             }
         };
-        let mut table = Table::new([NO_HEAD, Word::new("tiles", "Kacheln")]);
-        let names =
-            [("rejected", "verworfen"), ("accepted", "angenommen"), ("examined", "untersucht")];
-        for ((en, de), count) in names.into_iter().zip(counts) {
-            table.row(Word::new(en, de), [count.into()]);
-        }
-        Shown { line: step.line(), caption, table, picture }
+        want.shown(step.line(), caption, || verdicts(counts), picture)
     }))
+}
+
+/// Returns the numbers of tiles that were rejected, accepted and examined.
+fn verdicts(counts: [usize; 3]) -> Table {
+    let mut table = Table::new([NO_HEAD, Word::new("tiles", "Kacheln")]);
+    let names = [("rejected", "verworfen"), ("accepted", "angenommen"), ("examined", "untersucht")];
+    for ((en, de), count) in names.into_iter().zip(counts) {
+        table.row(Word::new(en, de), [count.into()]);
+    }
+    table
 }

@@ -3,7 +3,7 @@
 use super::{EXAMPLES, TAKES, ring};
 use crate::Result;
 use crate::curve::Contours;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::grid::letter;
 use crate::explain::input::{Figure, Input};
 use crate::explain::lesson::{Example, Lesson};
@@ -75,6 +75,7 @@ static LAST: Template = Template::new(
 );
 
 /// The polygon, its corners so far, and its triangles so far.
+#[derive(Clone)]
 struct State {
     rings: Vec<Vec<DVec2>>,
     points: Vec<DVec2>,
@@ -98,13 +99,13 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     })?;
     let (points, triangles, bridges) = (Vec::new(), Vec::new(), Vec::new());
     let mut state = State { rings, points, triangles, bridges, count };
-    Ok(frames(&steps, |step| state.show(step)))
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
 impl State {
-    fn show(&mut self, step: &Step) -> Shown {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
         let caption = self.take(step);
-        Shown { line: step.line(), caption, table: self.table(), picture: self.picture(step) }
+        want.shown(step.line(), caption, || self.table(), || self.picture(step))
     }
 
     fn corners(&self, triangle: [u32; 3]) -> [DVec2; 3] {

@@ -2,7 +2,7 @@
 
 use super::{STEP, line};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::grid::{center, log, shown, upright};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
@@ -125,14 +125,13 @@ fn make(circle: bool, input: &Input, cap: usize) -> Result<Frames> {
         false => conic::ellipse(IVec2::ZERO, radii, |_| {}, t),
     })?;
     let (mut done, mut rows): (Vec<Step>, Vec<[Value; 2]>) = (Vec::new(), Vec::new());
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         done.push(*step);
         let d = decision(step);
         rows.push([shown(step.pixel), d.clone()]);
         let heads = [STEP, Word::new("pixel", "Pixel"), Word::new("d", "d")];
-        let table = log(heads, &rows);
-        let picture = Picture { picture_from_input, ..picture(radii, &done) };
-        Shown { line: step.line(), caption: caption(step, d), table, picture }
+        let picture = || Picture { picture_from_input, ..picture(radii, &done) };
+        want.shown(step.line(), caption(step, d), || log(heads, &rows), picture)
     }))
 }
 

@@ -1,7 +1,7 @@
 //! The lesson of thick and stippled lines on pixels.
 
 use super::{PIXEL, STEP};
-use crate::explain::frame::{Frames, Numbered, Shown, frames, record};
+use crate::explain::frame::{Frames, Numbered, record};
 use crate::explain::grid::{Raster, center, log, shown};
 use crate::explain::input::{Figure, Input};
 use crate::explain::lesson::{Example, Lesson};
@@ -71,6 +71,7 @@ const PATTERN: u16 = 0b0100_1111_0100_1111;
 const PENS: [Pen; 3] = [Pen::Replicated(1), Pen::Replicated(3), Pen::Square(3)];
 
 /// A straight piece with its options.
+#[derive(Clone)]
 struct Piece {
     ends: [IVec2; 2],
     options: Options,
@@ -102,7 +103,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
         Ok(())
     })?;
     let mut rows: Vec<[Value; 4]> = Vec::new();
-    Ok(frames(&steps, |(number, step)| {
+    Ok(Frames::new(steps, move |(number, step), want| {
         let options = pieces[*number].options;
         pieces[*number].steps.push(*step);
         let place = options.offset + step.step;
@@ -119,8 +120,12 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
         ]);
         let heads =
             [STEP, PIXEL, Word::new("s", "s"), Word::new("bit", "Bit"), Word::new("value", "Wert")];
-        let picture = picture(&raster, &pieces, step.pixel);
-        Shown { line: step.line(), caption, table: log(heads, &rows), picture }
+        want.shown(
+            step.line(),
+            caption,
+            || log(heads, &rows),
+            || picture(&raster, &pieces, step.pixel),
+        )
     }))
 }
 

@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, PIXEL, STEP, TAKES, line};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::grid::{Raster, center, log, shown};
 use crate::explain::input::Input;
 use crate::explain::lesson::{Example, Lesson};
@@ -97,6 +97,7 @@ static LAST: Template = Template::new(
 );
 
 /// A line on the grid, and the pixels of each step so far.
+#[derive(Clone)]
 struct State {
     raster: Raster,
     ends: [IVec2; 2],
@@ -135,7 +136,7 @@ fn make_runs(input: &Input, cap: usize) -> Result<Frames> {
         Ok(())
     })?;
     let mut rows: Vec<[Value; 4]> = Vec::new();
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         state.lit.push(step.pixels().collect());
         let count = Value::from(state.lit.last().map_or(0, Vec::len));
         let kind = match step.run {
@@ -153,7 +154,7 @@ fn make_runs(input: &Input, cap: usize) -> Result<Frames> {
             Word::new("pixels", "Pixel"),
         ];
         let (line, caption) = (step.line(), run_caption(step));
-        Shown { line, caption, table: log(heads, &rows), picture: state.picture() }
+        want.shown(line, caption, || log(heads, &rows), || state.picture())
     }))
 }
 
@@ -177,7 +178,7 @@ fn make_pairs(input: &Input, cap: usize) -> Result<Frames> {
         Ok(())
     })?;
     let mut rows: Vec<[Value; 4]> = Vec::new();
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         state.lit.push(step.pixels().to_vec());
         let lit: Value = step.pixels().iter().copied().map(shown).collect::<Vec<_>>().into();
         let (d, pattern, decisions) = match *step {
@@ -196,7 +197,7 @@ fn make_pairs(input: &Input, cap: usize) -> Result<Frames> {
             PIXEL,
         ];
         let (line, caption) = (step.line(), pair_caption(step));
-        Shown { line, caption, table: log(heads, &rows), picture: state.picture() }
+        want.shown(line, caption, || log(heads, &rows), || state.picture())
     }))
 }
 

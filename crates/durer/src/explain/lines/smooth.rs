@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, PIXEL, STEP, TAKES};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, record};
 use crate::explain::grid::{Raster, center, grey, log, shown};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
@@ -52,7 +52,7 @@ fn make(method: SmoothLine, input: &Input, cap: usize) -> Result<Frames> {
         Ok(())
     })?;
     let (mut done, mut rows): (Vec<Step>, Vec<[Value; 3]>) = (Vec::new(), Vec::new());
-    Ok(frames(&steps, |step| {
+    Ok(Frames::new(steps, move |step, want| {
         done.push(*step);
         let d = (step.distance * 1000.0).round() / 1000.0;
         rows.push([shown(step.pixel), d.into(), i32::from(step.intensity).into()]);
@@ -64,8 +64,8 @@ fn make(method: SmoothLine, input: &Input, cap: usize) -> Result<Frames> {
                 FILTERED.with([pixel, ("d", d.into()), ("entry", entry.into()), i])
             }
         };
-        let table = log([STEP, PIXEL, DISTANCE, LIGHT], &rows);
-        Shown { line: step.line(), caption, table, picture: picture(&raster, ends, &done) }
+        let table = || log([STEP, PIXEL, DISTANCE, LIGHT], &rows);
+        want.shown(step.line(), caption, table, || picture(&raster, ends, &done))
     }))
 }
 

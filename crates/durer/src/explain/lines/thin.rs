@@ -2,7 +2,7 @@
 
 use super::{EXAMPLES, PIXEL, STEP, TAKES};
 use crate::Result;
-use crate::explain::frame::{Frames, Shown, frames, record};
+use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::grid::{Raster, add_pixels, center, log, shown};
 use crate::explain::input::Input;
 use crate::explain::lesson::Lesson;
@@ -65,11 +65,13 @@ static LAST: Template = Template::new(
 );
 
 /// A line and its pixels so far.
-struct State<'a> {
+#[derive(Clone)]
+struct State {
     method: LineRasterizer,
     ends: [IVec2; 2],
     raster: Raster,
-    steps: &'a [Step],
+    /// Pixels of all steps.
+    all: Vec<IVec2>,
     pixels: Vec<IVec2>,
     rows: Vec<[Value; 3]>,
 }
@@ -94,15 +96,15 @@ pub(in crate::explain) fn by_pixels(
         program(from, to, t);
         Ok(())
     })?;
-    let all = steps.steps();
+    let all = steps.steps().iter().map(|step| step.pixel).collect();
     let (pixels, rows) = (Vec::new(), Vec::new());
-    let mut state = State { method, ends, raster, steps: all, pixels, rows };
-    Ok(frames(&steps, |step| state.show(step)))
+    let mut state = State { method, ends, raster, all, pixels, rows };
+    Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
-impl State<'_> {
-    fn show(&mut self, step: &Step) -> Shown {
-        let next = self.steps.get(self.pixels.len() + 1).map(|next| next.pixel);
+impl State {
+    fn show(&mut self, step: &Step, want: Want) -> Shown {
+        let next = self.all.get(self.pixels.len() + 1).copied();
         let caption = self.caption(step, next);
         self.pixels.push(step.pixel);
         let what = match self.method {
@@ -112,8 +114,8 @@ impl State<'_> {
         let [a, b] = what;
         self.rows.push([shown(step.pixel), a, b]);
         let [third, fourth] = self.heads();
-        let table = log([STEP, PIXEL, third, fourth], &self.rows);
-        Shown { line: step.line(), caption, table, picture: self.picture(step, next) }
+        let table = || log([STEP, PIXEL, third, fourth], &self.rows);
+        want.shown(step.line(), caption, table, || self.picture(step, next))
     }
 
     fn heads(&self) -> [Word; 2] {

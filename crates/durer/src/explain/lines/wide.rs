@@ -1,7 +1,7 @@
 //! The lesson of outlines of strokes.
 
 use crate::curve::Path;
-use crate::explain::frame::{Frames, Numbered, Shown, frames, record};
+use crate::explain::frame::{Frames, Numbered, Shown, Want, record};
 use crate::explain::grid::log;
 use crate::explain::input::{Figure, Input};
 use crate::explain::lesson::{Example, Lesson};
@@ -108,6 +108,7 @@ fn cap_name(cap: Cap) -> Word {
 }
 
 /// The lines, and their outlines so far.
+#[derive(Clone)]
 struct State {
     lines: Vec<Vec<DVec2>>,
     width: f64,
@@ -137,11 +138,11 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
         Ok(())
     })?;
     let mut state = State { lines, width, rings: Vec::new(), rows: Vec::new() };
-    Ok(frames(&steps, |(number, step)| state.show(*number, step)))
+    Ok(Frames::new(steps, move |(number, step), want| state.show(*number, step, want)))
 }
 
 impl State {
-    fn show(&mut self, number: usize, step: &Step) -> Shown {
+    fn show(&mut self, number: usize, step: &Step, want: Want) -> Shown {
         let caption = self.take(number, step);
         let heads = [
             Word::new("point", "Punkt"),
@@ -149,7 +150,7 @@ impl State {
             Word::new("part", "Teil"),
             Word::new("at", "bei"),
         ];
-        Shown { line: step.line(), caption, table: log(heads, &self.rows), picture: self.picture() }
+        want.shown(step.line(), caption, || log(heads, &self.rows), || self.picture())
     }
 
     fn take(&mut self, number: usize, step: &Step) -> Caption {

@@ -5,8 +5,8 @@ mod hatch;
 mod state;
 
 use super::letters::{width, wrap};
-use super::packed::Frame;
 use super::picture::Picture;
+use super::replay::Frame;
 use super::words::Language;
 use std::fmt::Write;
 
