@@ -101,6 +101,56 @@ def test_lines_points_and_missing_ones():
         durer.clip_by_rect(nan, *RECT)
 
 
+def mixed_geometries(polygons) -> np.ndarray:
+    """Returns polygons of both directions with lines, points, holes, several parts, heights and gaps among them."""
+    out = polygons.copy()
+    out[::2] = shapely.reverse(out[::2])
+    out[:40] = shapely.linestrings(np.random.default_rng(2).uniform(0, 1, (40, 9, 2)))
+    comb = [(0, 0), (1, 0), (1, 0.3), (0.7, 0.3), (0.7, 0.05), (0.3, 0.05), (0.3, 0.3), (0, 0.3)]
+    bow_tie = [(0.3, 0.3), (0.5, 0.5), (0.5, 0.3), (0.3, 0.5)]
+    high = shapely.Polygon([(0, 0, 1), (1, 0, 2), (0.5, 1, 3)])
+    apart = shapely.MultiPolygon([shapely.box(0, 0, 0.3, 0.3), shapely.box(0.5, 0.5, 0.6, 0.6)])
+    special = [None, shapely.Point(0.5, 0.5), shapely.Polygon(comb), shapely.Polygon(bow_tie), high, apart, shapely.Polygon()]
+    for at, geometry in enumerate(special):
+        out[60 + 5 * at] = geometry
+    return out
+
+
+@pytest.mark.parametrize("mask", [RECT, shapely.Point(0.5, 0.5).buffer(0.3)])
+def test_arrays_of_coordinates_give_what_wkb_gives(polygons, mask, monkeypatch):
+    given = mixed_geometries(polygons)
+    fast = durer.clip(given, mask)
+    monkeypatch.setattr("durer._geometry.FEW", 10**9)
+    slow = durer.clip(given, mask)
+    assert (shapely.get_type_id(fast) == shapely.get_type_id(slow)).all()
+    for a, b in zip(fast, slow, strict=True):
+        assert (a is None) == (b is None)
+        assert a is None or shapely.normalize(a).equals_exact(shapely.normalize(b)), (a, b)
+    assert len(set(shapely.get_type_id(fast))) >= 6
+
+
+def test_what_is_inside_whole_is_the_same_object(polygons):
+    made = durer.clip_by_rect(polygons[:100], -1, -1, 2, 2)
+    whole = shapely.get_num_interior_rings(polygons[:100]) == 0
+    assert whole.any() and all(a is b for a, b in zip(made[whole], polygons[:100][whole], strict=True))
+
+
+def test_errors_of_large_arrays_have_their_index(polygons):
+    given = mixed_geometries(polygons)
+    given[131] = shapely.LineString([(5, 5), (np.nan, 6)])
+    with pytest.raises(ValueError, match=r"^geometries\[131\]: .* not finite"):
+        durer.clip_by_rect(given, *RECT)
+    with pytest.raises(ValueError, match="rect"):
+        durer.clip_by_rect(polygons, 9, 9, 8, 8)
+    with pytest.raises(ValueError, match=r"mask\[0\]"):
+        durer.clip(polygons, shapely.LineString([(7, 7), (8, 8)]))
+    broken = polygons.copy()
+    broken[131] = shapely.Polygon([(5, 5), (np.nan, 6), (6, 6)])
+    for pair in [(broken, polygons), (polygons, broken)]:
+        with pytest.raises(ValueError, match=r"^geometries\[131\]: .* not finite"):
+            durer.union(*pair)
+
+
 def test_ragged_arrays_are_as_geometries(polygons):
     ragged = shapely.to_ragged_array(polygons)
     kind, coords, offsets = durer.clip_by_rect(ragged, *RECT)

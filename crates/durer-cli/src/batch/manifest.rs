@@ -7,6 +7,7 @@ use crate::failure::{Failure, in_words};
 use crate::input::display_name;
 use crate::places::is_stream;
 use serde_json::{Map, Value};
+use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
@@ -104,23 +105,26 @@ fn read_csv(
     };
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(source);
     let header = reader.headers().map_err(wrong)?.clone();
-    if let Some(twice) =
-        header.iter().enumerate().find(|(i, h)| header.iter().take(*i).any(|o| o == *h))
-    {
-        return Err(fail(Some(1), format!("column `{}` appears twice", twice.1)));
-    }
-    if !header.is_empty() && !header.iter().any(|column| column == "id") {
-        return Err(fail(
-            Some(1),
-            "there is no column `id`; the first line names the columns".to_owned(),
-        ));
-    }
+    check_columns(&header.iter().collect::<Vec<_>>())
+        .map_err(|what| fail(Some(1), format!("{what}; the first line names the columns")))?;
     let mut row = csv::StringRecord::new();
     while reader.read_record(&mut row).map_err(wrong)? {
         let line = row.position().map_or(0, csv::Position::line);
         let filled = header.iter().zip(&row).filter(|(_, cell)| !cell.is_empty());
         let cells = filled.map(|(column, cell)| (column.to_owned(), cell.into())).collect();
         each(Record { place: format!("line {line}"), cells })?;
+    }
+    Ok(())
+}
+
+/// Checks that the columns of a table have different names, and that one of them is the id; a table without columns has no rows.
+fn check_columns(names: &[&str]) -> Result<(), String> {
+    let mut known = HashSet::new();
+    if let Some(twice) = names.iter().find(|name| !known.insert(**name)) {
+        return Err(format!("column `{twice}` appears twice"));
+    }
+    if !names.is_empty() && !known.contains("id") {
+        return Err("there is no column `id`".to_owned());
     }
     Ok(())
 }

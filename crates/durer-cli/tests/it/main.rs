@@ -3,6 +3,8 @@
 mod algorithms;
 mod annotations;
 mod batch;
+#[cfg(feature = "geoparquet")]
+mod batch_parquet;
 mod budget;
 mod clip;
 mod clip_cells;

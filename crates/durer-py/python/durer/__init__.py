@@ -17,12 +17,12 @@ from ._geometry import (
     clip_lines,
     difference,
     intersection,
-    rasterize,
     symmetric_difference,
     union,
 )
 from ._lines import LINE_CLASSES, Drawing, Lines, drawing, hidden_lines
 from ._picture import Image, Planes, Plot, draw, fill, plot, render, render_planes, tiles, warp
+from ._raster import rasterize
 from ._scene import Scene, read, scene
 from ._steps import Algorithm, Page, Trace, algorithms, lessons, trace
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -53,8 +52,7 @@ def _of_intrinsics(matrix: ArrayLike, size: tuple[int, int] | None) -> float:
     return math.degrees(2.0 * math.atan2(height / 2, fy))
 
 
-@dataclass(frozen=True)
-class _Numbers:
+class _Numbers(NamedTuple):
     eye: Vector
     target: Vector
     up: Vector | None
@@ -217,7 +215,7 @@ class Camera:
 
     def with_planes(self, near: float, far: float) -> Camera:
         """Returns the same camera with other near and far planes."""
-        return Camera._of(replace(self._n, near=float(near), far=float(far)))
+        return Camera._of(self._n._replace(near=float(near), far=float(far)))
 
     @property
     def pose(self) -> F64:

@@ -2,137 +2,31 @@
 
 from __future__ import annotations
 
-import struct
-import sys
+import re
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from . import _durer
+from . import _durer, _runs
 from ._options import threads as count
+from ._wkb import (
+    Wkb,
+    array_to_wkb,
+    column_of,
+    from_wkb,
+    is_frame,
+    is_geometry,
+    is_series,
+    objects,
+    shapely_if_imported,
+    to_wkb_list,
+)
 
-Wkb = list[bytes | None]
 Region = tuple[float, float, float, float] | list[bytes]
-
-#: Numbers of the kinds of geometries in well-known binary, by their names in GeoJSON.
-_CODES = {
-    "Point": 1,
-    "LineString": 2,
-    "Polygon": 3,
-    "MultiPoint": 4,
-    "MultiLineString": 5,
-    "MultiPolygon": 6,
-    "GeometryCollection": 7,
-}
-_PARTS = {"MultiPoint": "Point", "MultiLineString": "LineString", "MultiPolygon": "Polygon"}
-
-
-def wkb_of_mapping(mapping: Mapping[str, Any]) -> bytes:
-    """Returns well-known binary of a geometry of GeoJSON.
-
-    >>> len(wkb_of_mapping({"type": "Point", "coordinates": [1, 2]}))
-    21
-    """
-    kind = mapping.get("type")
-    if kind == "Feature":
-        return wkb_of_mapping(mapping["geometry"])
-    if kind == "FeatureCollection":
-        parts = [feature["geometry"] for feature in mapping["features"] if feature.get("geometry")]
-        return wkb_of_mapping({"type": "GeometryCollection", "geometries": parts})
-    if kind not in _CODES:
-        raise ValueError(f"type is {kind!r}; it must be one of {', '.join(_CODES)}")
-    head = struct.pack("<BI", 1, _CODES[kind])
-    if kind == "GeometryCollection":
-        parts = mapping["geometries"]
-        return head + struct.pack("<I", len(parts)) + b"".join(map(wkb_of_mapping, parts))
-    coordinates = mapping["coordinates"]
-    if kind in _PARTS:
-        own = (wkb_of_mapping({"type": _PARTS[kind], "coordinates": part}) for part in coordinates)
-        return head + struct.pack("<I", len(coordinates)) + b"".join(own)
-
-    def run(points: Any) -> bytes:
-        array = np.asarray(points, dtype="<f8")
-        array = array.reshape(len(points), -1)[:, :2] if len(points) else array.reshape(0, 2)
-        return struct.pack("<I", len(array)) + np.ascontiguousarray(array).tobytes()
-
-    if kind == "Point":
-        return head + struct.pack("<2d", *coordinates[:2])
-    if kind == "LineString":
-        return head + run(coordinates)
-    return head + struct.pack("<I", len(coordinates)) + b"".join(map(run, coordinates))
-
-
-def _shapely() -> Any:
-    """Returns shapely if it has been imported."""
-    return sys.modules.get("shapely")
-
-
-def _is_geometry(value: Any) -> bool:
-    return hasattr(value, "geom_type") and hasattr(value, "wkb") and not hasattr(value, "to_wkb")
-
-
-def _one_to_wkb(value: Any, index: int) -> bytes | None:
-    if value is None:
-        return None
-    if isinstance(value, bytes):
-        return value
-    if isinstance(value, bytearray | memoryview):
-        return bytes(value)
-    if isinstance(value, Mapping):
-        return wkb_of_mapping(value)
-    if hasattr(value, "__geo_interface__"):
-        return wkb_of_mapping(value.__geo_interface__)
-    if value != value:
-        return None
-    raise TypeError(f"geometries[{index}] is a {type(value).__name__}, not a geometry")
-
-
-def _objects(values: Any) -> NDArray[Any]:
-    """Returns a flat array of objects, which numpy must not look into."""
-    if isinstance(values, np.ndarray) and values.dtype == object:
-        return values
-    items = list(values)
-    array = np.empty(len(items), dtype=object)
-    for index, item in enumerate(items):
-        array[index] = item
-    return array
-
-
-def _array_to_wkb(array: NDArray[Any]) -> Wkb:
-    flat = array.reshape(-1)
-    shapely = _shapely()
-    if shapely is not None and all(value is None or _is_geometry(value) for value in flat[:1]):
-        try:
-            return list(shapely.to_wkb(flat, include_srid=True))
-        except TypeError:
-            pass
-    shaped = (value.wkb if _is_geometry(value) else value for value in flat)
-    return [_one_to_wkb(value, index) for index, value in enumerate(shaped)]
-
-
-def _column(obj: Any) -> Any:
-    """Returns a pyarrow array of an Arrow array; ``None`` for anything else."""
-    if hasattr(obj, "buffers") and hasattr(obj, "type"):
-        return obj
-    if hasattr(obj, "chunks") and hasattr(obj, "combine_chunks"):
-        joined = obj.combine_chunks()
-        return joined.chunk(0) if hasattr(joined, "chunk") else joined
-    if hasattr(obj, "__arrow_c_array__") and not hasattr(obj, "geom_type"):
-        import pyarrow
-
-        return pyarrow.array(obj)
-    return None
-
-
-def _is_frame(obj: Any) -> bool:
-    return hasattr(obj, "set_geometry") and hasattr(obj, "crs")
-
-
-def _is_series(obj: Any) -> bool:
-    return hasattr(obj, "to_wkb") and hasattr(obj, "crs") and not _is_frame(obj)
 
 
 def _is_ragged(obj: Any) -> bool:
@@ -160,30 +54,6 @@ def _ragged_like(given: Any, made: tuple[int, Any, list[Any]]) -> Any:
     return (coords, tuple(offsets))
 
 
-def to_wkb_list(obj: Any) -> Wkb:
-    """Returns geometries, one or many of any kind, as a list of well-known binary."""
-    if _is_frame(obj):
-        obj = obj.geometry
-    if _is_series(obj):
-        return _array_to_wkb(np.asarray(obj.values, dtype=object))
-    if _is_geometry(obj):
-        return [bytes(obj.wkb)]
-    if isinstance(obj, bytes | bytearray | memoryview | Mapping) or hasattr(obj, "__geo_interface__"):
-        return [_one_to_wkb(obj, 0)]
-    column = _column(obj)
-    if column is not None:
-        return [None if value is None else bytes(value) for value in column.to_pylist()]
-    return _array_to_wkb(_objects(obj))
-
-
-def _from_wkb(rows: Wkb, shape: tuple[int, ...]) -> NDArray[Any]:
-    shapely = _shapely()
-    array = np.empty(len(rows), dtype=object)
-    array[:] = rows
-    made = shapely.from_wkb(array)
-    return np.asarray(made, dtype=object).reshape(shape)
-
-
 def _raise_first(errors: list[tuple[int, str]]) -> None:
     if errors:
         index, message = errors[0]
@@ -192,18 +62,83 @@ def _raise_first(errors: list[tuple[int, str]]) -> None:
 
 Many = Callable[[Wkb], tuple[Wkb, list[tuple[int, str]]]]
 
+#: Number of geometries from which arrays of coordinates are faster than well-known binary.
+FEW = 16
+
 
 def _over_array(array: NDArray[Any], many: Many) -> NDArray[Any]:
     """Does something with arrays of geometries or of well-known binary; the result holds the same."""
     flat = array.reshape(-1)
     has_bytes = any(isinstance(value, bytes) for value in flat)
-    rows, errors = many(_array_to_wkb(flat))
+    rows, errors = many(array_to_wkb(flat))
     _raise_first(errors)
-    if not has_bytes and _shapely() is not None:
-        return _from_wkb(rows, array.shape)
+    if not has_bytes and shapely_if_imported() is not None:
+        return from_wkb(rows, array.shape)
     out = np.empty(len(rows), dtype=object)
     out[:] = rows
     return out.reshape(array.shape)
+
+
+def _kinds(flat: NDArray[Any]) -> NDArray[np.int8] | None:
+    """Returns which geometries can be arrays of coordinates, as ``_runs.kinds``; ``None`` if there is no use in it."""
+    if flat.size < FEW or shapely_if_imported() is None:
+        return None
+    try:
+        kinds = _runs.kinds(shapely_if_imported(), flat)
+    except TypeError:
+        return None
+    return kinds if kinds.any() else None
+
+
+def _in_parts(parts: list[tuple[NDArray[np.intp], Callable[[], NDArray[Any]]]], size: int) -> NDArray[Any]:
+    """Returns an array whose parts are made one by one; errors have the index in the whole array."""
+    out = np.empty(size, dtype=object)
+    for rows, make in parts:
+        try:
+            out[rows] = make()
+        except ValueError as error:
+            found = re.match(r"geometries\[(\d+)\]", str(error))
+            if found is None:
+                raise
+            raise ValueError(f"geometries[{rows[int(found[1])]}]{str(error)[found.end() :]}") from None
+    return out
+
+
+def _clip_array(array: NDArray[Any], region: Region, grid: float | None, threads: int) -> NDArray[Any]:
+    """Clips an array of geometries or of well-known binary; the result holds the same."""
+    flat, shapely = array.reshape(-1), shapely_if_imported()
+
+    def many(rows: Wkb) -> tuple[Wkb, list[tuple[int, str]]]:
+        return _durer.clip_wkb(rows, region, grid, threads)
+
+    def native(given: _runs.Ragged) -> _runs.Ragged:
+        return _durer.clip_ragged(given, region, grid, threads)
+
+    kinds = _kinds(flat)
+    # Each call makes the mask anew, which may cost more than it saves.
+    if kinds is None or (isinstance(region, list) and sum(map(len, region)) > 64 * np.count_nonzero(kinds)):
+        return _over_array(array, many)
+    if isinstance(region, list):
+        # What is broken is an error below.
+        mask = shapely.from_wkb(np.array(region, dtype=object), on_invalid="ignore")
+        bounds = tuple(shapely.total_bounds(mask).tolist())
+    else:
+        bounds = region
+    apart = np.zeros(flat.shape, np.bool_)
+    apart[kinds > 0] = _runs.outside(shapely, flat[kinds > 0], bounds)
+    out = np.empty(flat.shape, dtype=object)
+    parts: list[Any] = []
+    for kind in (_runs.LINE, _runs.POLYGON):
+        out[apart & (kinds == kind)] = _runs.empty(shapely, kind)
+        rows = np.flatnonzero((kinds == kind) & ~apart)
+        if rows.size:
+            parts.append((rows, partial(_runs.replaced, shapely, flat[rows], kind, native)))
+    rows = np.flatnonzero(kinds == 0)
+    # A region that is wrong is an error, whatever is clipped to it.
+    if rows.size or not parts:
+        parts.append((rows, lambda: _over_array(flat[rows], many)))
+    made = _in_parts(parts, flat.size)
+    return np.where(apart, out, made).reshape(array.shape)
 
 
 def _over_column(column: Any, region: Region, grid: float | None, threads: int) -> Any:
@@ -234,27 +169,19 @@ def _over_column(column: Any, region: Region, grid: float | None, threads: int) 
 
 
 def _clip(geometry: Any, region: Region, grid: float | None, threads: int) -> Any:
-    def many(rows: Wkb) -> tuple[Wkb, list[tuple[int, str]]]:
-        return _durer.clip_wkb(rows, region, grid, threads)
-
-    if _is_frame(geometry):
+    if is_frame(geometry):
         return geometry.set_geometry(_clip(geometry.geometry, region, grid, threads))
-    if _is_series(geometry):
-        made = _over_array(np.asarray(geometry.values, dtype=object), many)
+    if is_series(geometry):
+        made = _clip_array(np.asarray(geometry.values, dtype=object), region, grid, threads)
         return type(geometry)(made, index=geometry.index, crs=geometry.crs, name=geometry.name)
     if _is_ragged(geometry):
         return _ragged_like(geometry, _durer.clip_ragged(_ragged(geometry), region, grid, threads))
-    if _is_geometry(geometry):
-        return _over_array(_objects([geometry]), many)[0]
-    if isinstance(geometry, bytes):
-        rows, errors = many([geometry])
-        _raise_first(errors)
-        return rows[0]
-    column = _column(geometry)
+    if is_geometry(geometry) or isinstance(geometry, bytes):
+        return _clip_array(objects([geometry]), region, grid, threads)[0]
+    column = column_of(geometry)
     if column is not None:
         return _over_column(column, region, grid, threads)
-    array = _objects(geometry)
-    out = _over_array(array, many)
+    out = _clip_array(objects(geometry), region, grid, threads)
     return out.tolist() if isinstance(geometry, list) and out.ndim == 1 else out
 
 
@@ -284,12 +211,12 @@ def clip_by_rect(
     return _clip(geometry, rect, grid_size, count(threads))
 
 
-def _region(mask: Any) -> Region:
+def region_of(mask: Any) -> Region:
     if isinstance(mask, tuple | list | np.ndarray) and len(mask) == 4 and all(_is_number(v) for v in mask):
         xmin, ymin, xmax, ymax = (float(v) for v in mask)
         return (xmin, ymin, xmax, ymax)
     if _is_ragged(mask):
-        shapely = _shapely()
+        shapely = shapely_if_imported()
         if shapely is None:
             raise TypeError("a mask of ragged arrays needs shapely; give WKB or a rectangle")
         mask = shapely.from_ragged_array(*mask)
@@ -319,14 +246,14 @@ def clip(
     >>> clip((square, ([0, 5], [0, 1])), (3, 3, 9, 9))[0].tolist()
     [[4.0, 3.0], [4.0, 4.0], [3.0, 4.0], [3.0, 3.0], [4.0, 3.0]]
     """
-    tabular = _is_frame(geometry) or _is_series(geometry)
-    if tabular and (_is_frame(mask) or _is_series(mask)) and geometry.crs != mask.crs:
+    tabular = is_frame(geometry) or is_series(geometry)
+    if tabular and (is_frame(mask) or is_series(mask)) and geometry.crs != mask.crs:
         message = f"CRS mismatch between the CRS of left geometries and the CRS of the mask: {geometry.crs}, {mask.crs}"
         warnings.warn(message, UserWarning, stacklevel=2)
-    made = _clip(geometry, _region(mask), grid_size, count(threads))
+    made = _clip(geometry, region_of(mask), grid_size, count(threads))
     if not tabular:
         return made
-    column = made.geometry if _is_frame(made) else made
+    column = made.geometry if is_frame(made) else made
     kept = ~(column.is_empty | column.isna())
     if keep_geom_type:
         kept &= column.geom_type != "GeometryCollection"
@@ -337,34 +264,57 @@ def _overlay(operation: str, a: Any, b: Any, grid: float | None, threads: int | 
     native = count(threads)
     if _is_ragged(a) and _is_ragged(b):
         return _ragged_like(a, _durer.overlay_ragged(_ragged(a), _ragged(b), operation, grid, native))
-    scalar = all(_is_geometry(x) or x is None or isinstance(x, bytes) for x in (a, b))
+    scalar = all(is_geometry(x) or x is None or isinstance(x, bytes) for x in (a, b))
     arrays = [_operand(x) for x in (a, b)]
     left, right = np.broadcast_arrays(*arrays)
 
-    def many(rows: Wkb) -> tuple[Wkb, list[tuple[int, str]]]:
-        return _durer.overlay_wkb(rows, _array_to_wkb(np.ascontiguousarray(right)), operation, grid, native)
-
-    made = _over_array(np.ascontiguousarray(left), many)
+    made = _overlay_arrays(operation, np.ascontiguousarray(left), np.ascontiguousarray(right), grid, native)
     if scalar:
         return made.reshape(-1)[0]
-    if _is_series(a):
+    if is_series(a):
         return type(a)(made, index=a.index, crs=a.crs)
     return made
 
 
+def _overlay_arrays(
+    operation: str, a: NDArray[Any], b: NDArray[Any], grid: float | None, threads: int
+) -> NDArray[Any]:
+    """Overlays each geometry of an array with that beside it."""
+    left, right, shapely = a.reshape(-1), b.reshape(-1), shapely_if_imported()
+
+    def bytes_of(rows: Any) -> NDArray[Any]:
+        def many(given: Wkb) -> tuple[Wkb, list[tuple[int, str]]]:
+            return _durer.overlay_wkb(given, array_to_wkb(right[rows]), operation, grid, threads)
+
+        return _over_array(left[rows], many)
+
+    kinds, others = _kinds(left), _kinds(right)
+    if kinds is None or others is None:
+        return bytes_of(slice(None)).reshape(a.shape)
+    plain = (kinds == _runs.POLYGON) & (others == _runs.POLYGON)
+    simple, rest = np.flatnonzero(plain), np.flatnonzero(~plain)
+
+    def polygons() -> NDArray[Any]:
+        given, other = (_runs.ragged(shapely, side[simple], _runs.POLYGON) for side in (left, right))
+        made = _durer.overlay_ragged(given, other, operation, grid, threads)
+        return _runs.results(shapely, _runs.POLYGON, made, np.arange(simple.size))
+
+    return _in_parts([(simple, polygons), (rest, lambda: bytes_of(rest))], left.size).reshape(a.shape)
+
+
 def _operand(value: Any) -> NDArray[Any]:
-    if _is_frame(value):
+    if is_frame(value):
         value = value.geometry
-    if _is_series(value):
+    if is_series(value):
         return np.asarray(value.values, dtype=object)
-    if value is None or _is_geometry(value) or isinstance(value, bytes):
+    if value is None or is_geometry(value) or isinstance(value, bytes):
         one = np.empty(1, dtype=object)
         one[0] = value
         return one
-    column = _column(value)
+    column = column_of(value)
     if column is not None:
-        return _objects(column.to_pylist())
-    return _objects(value)
+        return objects(column.to_pylist())
+    return objects(value)
 
 
 def intersection(a: Any, b: Any, *, grid_size: float | None = None, threads: int | None = None) -> Any:
@@ -433,65 +383,3 @@ def _corners(bounds: NDArray[np.float64]) -> tuple[float, float, float, float]:
 
 def _packed(*arrays: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.ascontiguousarray(np.stack(arrays, axis=1).reshape(-1, 2, 2))
-
-
-def rasterize(
-    shapes: Iterable[Any],
-    out_shape: tuple[int, int],
-    transform: Any = None,
-    *,
-    fill: float = 0,
-    all_touched: bool = False,
-    default_value: float = 1,
-    mode: str = "centers",
-    dtype: Any = None,
-) -> NDArray[Any]:
-    """Gives the pixels of geometries their values, as ``rasterio.features.rasterize``; later shapes are over earlier ones.
-
-    ``shapes`` are geometries of shapely or GeoJSON, or tuples of one and its value. ``transform`` takes columns and rows to
-    coordinates: an ``affine.Affine``, or its six coefficients. Pixels belong to a polygon if their centre does, with
-    ``all_touched`` if any point does; ``mode="coverage"`` weights values by the share of the pixel that is covered.
-
-    >>> square = {"type": "Polygon", "coordinates": [[[1, 1], [3, 1], [3, 3], [1, 3], [1, 1]]]}
-    >>> rasterize([(square, 7)], (4, 4))[2].tolist()
-    [0, 7, 7, 0]
-    """
-    geometries, values = [], []
-    for index, shape in enumerate(shapes):
-        geometry, value = shape if isinstance(shape, tuple) and len(shape) == 2 else (shape, default_value)
-        row = bytes(geometry.wkb) if _is_geometry(geometry) else _one_to_wkb(geometry, index)
-        if row is None:
-            raise TypeError(f"shapes[{index}] has no geometry")
-        geometries.append(row)
-        values.append(float(value))
-    if mode not in ("centers", "coverage"):
-        raise ValueError(f"mode is '{mode}'; it must be centers or coverage")
-    height, width = (int(side) for side in out_shape)
-    if min(height, width) < 1:
-        raise ValueError(f"out_shape is {(height, width)}; it must be (rows, columns) from 1")
-    how = "touched" if all_touched and mode == "centers" else mode
-    out = _durer.rasterize(geometries, values, (width, height), _to_pixels(transform), float(fill), how)
-    return out.astype(_smallest([*values, float(fill)], mode) if dtype is None else dtype)
-
-
-def _to_pixels(transform: Any) -> tuple[float, float, float, float, float, float]:
-    """Returns the inverse of a transform from pixels to coordinates."""
-    if transform is None:
-        return (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
-    a, b, c, d, e, f = (float(v) for v in tuple(transform)[:6])
-    det = a * e - b * d
-    if det == 0.0 or not np.isfinite(det):
-        raise ValueError(f"transform is {(a, b, c, d, e, f)}; it must have an inverse")
-    return (e / det, -b / det, (b * f - c * e) / det, -d / det, a / det, (c * d - a * f) / det)
-
-
-def _smallest(values: ArrayLike, mode: str) -> Any:
-    numbers = np.asarray(values)
-    if mode == "coverage" or not np.isfinite(numbers).all() or (numbers != np.rint(numbers)).any():
-        return np.float32
-    low, high = numbers.min(), numbers.max()
-    for dtype in (np.uint8, np.int16, np.uint16, np.int32, np.uint32):
-        info = np.iinfo(dtype)
-        if info.min <= low and high <= info.max:
-            return dtype
-    return np.float64

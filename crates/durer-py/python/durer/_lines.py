@@ -108,7 +108,10 @@ class Lines:
         """Returns an array of shapely's LineStrings."""
         import shapely
 
-        return np.array([shapely.LineString(chain) for chain in self.chains()], dtype=object)
+        chains = self.chains()
+        numbers = np.repeat(np.arange(len(chains)), [len(chain) for chain in chains])
+        out = shapely.linestrings(np.concatenate([*chains, np.zeros((0, 2))]), indices=numbers)
+        return np.asarray(out, dtype=object)
 
     def to_vpype(self, millimetres: float = 1.0) -> Any:
         """Returns a line collection of vpype, in its pixels with y downwards; a unit of the plane is some millimetres."""

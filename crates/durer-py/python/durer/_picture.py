@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _durer
 from ._camera import Camera, view_words
-from ._geometry import to_wkb_list
 from ._options import call, size_text, words
 from ._options import threads as count
 from ._scene import Scene
 from ._scene import scene as of
+from ._wkb import to_wkb_list
 
 U8 = NDArray[np.uint8]
 

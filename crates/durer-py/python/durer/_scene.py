@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from dataclasses import dataclass
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -185,8 +184,7 @@ def scene(obj: Any, *, up_axis: str | None = None) -> Scene:
     return Scene._of(model, camera)
 
 
-@dataclass(slots=True)
-class _Mesh:
+class _Mesh(NamedTuple):
     """The arrays of one mesh, for the native module."""
 
     vertices: F64
@@ -199,8 +197,7 @@ class _Mesh:
     name: str
 
 
-@dataclass(slots=True)
-class _Material:
+class _Material(NamedTuple):
     """The numbers of one material, for the native module."""
 
     name: str

@@ -8,10 +8,11 @@ from typing import Any
 
 from . import _durer
 from ._errors import ReadWarning
-from ._geometry import _region, to_wkb_list
+from ._geometry import region_of
 from ._options import threads as count
 from ._picture import render
 from ._scene import read
+from ._wkb import to_wkb_list
 
 #: Columns of a batch that say what a row is; all others are options of ``render``.
 GIVEN = ("id", "input", "bytes", "name")
@@ -88,7 +89,7 @@ def clip_batch(batch: Any, mask: Any, *, geometry: str = "geometry", grid_size: 
     column = batch.column(names.index(geometry))
     if isinstance(column, pa.ChunkedArray):
         column = column.combine_chunks()
-    rows, errors = _durer.clip_wkb(to_wkb_list(column), _region(mask), grid_size, count(None))
+    rows, errors = _durer.clip_wkb(to_wkb_list(column), region_of(mask), grid_size, count(None))
     told = dict(errors)
     columns = [pa.array(rows, column.type) if name == geometry else batch.column(i) for i, name in enumerate(names)]
     fields = list(batch.schema)

@@ -27,6 +27,7 @@ fn table(entries: &[&Entry]) -> Result<Vec<u8>, ParquetError> {
     };
     let columns: Vec<String> = COLUMNS.iter().map(column).collect();
     let schema = parse_message_type(&format!("message report {{ {} }}", columns.join(" ")))?;
+    let texts: Vec<_> = entries.iter().map(|entry| cells(entry)).collect();
     let mut content = Vec::new();
     let properties = Arc::new(WriterProperties::builder().build());
     let mut writer = SerializedFileWriter::new(&mut content, Arc::new(schema), properties)?;
@@ -46,8 +47,8 @@ fn table(entries: &[&Entry]) -> Result<Vec<u8>, ParquetError> {
                 to.write_batch(&values, None, None)?;
             }
             ColumnWriter::ByteArrayColumnWriter(to) => {
-                let cell = |entry: &&Entry| ByteArray::from(cells(entry)[number].as_str());
-                let values: Vec<ByteArray> = entries.iter().map(cell).collect();
+                let values: Vec<ByteArray> =
+                    texts.iter().map(|cells| cells[number].as_str().into()).collect();
                 to.write_batch(&values, None, None)?;
             }
             _ => return Err(ParquetError::General("a column has another type".to_owned())),
