@@ -183,6 +183,38 @@ export const IDEAS: Record<string, Words> = {
     en: "Clips a line to a convex window in homogeneous coordinates: the signs of the corners beside the line say which two borders it crosses, before anything is divided.",
     de: "Clippt eine Strecke an einem konvexen Fenster in homogenen Koordinaten: Die Vorzeichen der Ecken neben der Geraden sagen, welche zwei Ränder sie kreuzt, bevor etwas dividiert wird.",
   },
+  "csg-scan-line": {
+    en: "Draws the union, intersection or difference of solids without computing it: along each span of a row the faces are passed from front to back, and the first one behind which the expression holds is seen.",
+    de: "Zeichnet Vereinigung, Schnitt oder Differenz von Körpern, ohne sie zu berechnen: In jeder Strecke einer Zeile geht man die Flächen von vorn nach hinten durch, und die erste, hinter der der Ausdruck gilt, ist zu sehen.",
+  },
+  portals: {
+    en: "Rooms are drawn only through the doors by which they are seen: the rectangle around each door is intersected with the window on the way, and an empty one ends it.",
+    de: "Räume werden nur durch die Türen gezeichnet, durch die man sie sieht: Das Rechteck um jede Tür wird mit dem Fenster auf dem Weg geschnitten, und ist es leer, endet er.",
+  },
+  "bounding-volumes": {
+    en: "Decides whole objects by simple bodies around them: a box outside one plane of the view volume is not drawn, one inside all planes needs no clipping.",
+    de: "Entscheidet ganze Objekte an einfachen Hüllen: Ein Kasten außerhalb einer Ebene des Sichtvolumens wird nicht gezeichnet, einer innerhalb aller Ebenen braucht kein Clipping.",
+  },
+  section: {
+    en: "Cuts a body open at a plane: triangles are kept, dropped or divided, and the new edges form loops that are filled by a cap, so that the body stays closed.",
+    de: "Schneidet einen Körper an einer Ebene auf: Dreiecke bleiben, fallen weg oder werden geteilt, und die neuen Kanten bilden Schleifen, die eine Deckfläche füllt, damit der Körper geschlossen bleibt.",
+  },
+  "greedy-labels": {
+    en: "Places labels in the order of their importance: each takes the first of its places that overlaps nothing, or is left out.",
+    de: "Setzt Beschriftungen in der Reihenfolge ihrer Wichtigkeit: Jede nimmt den ersten ihrer Plätze, der nichts überlappt, oder entfällt.",
+  },
+  unlit: {
+    en: "The colour of the texture as it is, without any light: for models whose textures were photographed with their light.",
+    de: "Die Farbe der Textur, wie sie ist, ohne jedes Licht: für Modelle, deren Texturen mit ihrem Licht fotografiert wurden.",
+  },
+  fog: {
+    en: "What is farther away is mixed with the colour of the air: in proportion between two distances, or by an exponential law.",
+    de: "Was weiter weg ist, wird mit der Farbe der Luft gemischt: proportional zwischen zwei Entfernungen oder nach einem Exponentialgesetz.",
+  },
+  "sobkow-pospisil-yang": {
+    en: "Clips a line to a window by the codes of both ends in one number: a table has a case for each of the 81 pairs of regions, which names the cuts and no others.",
+    de: "Clippt eine Strecke an einem Fenster mit den Codes beider Enden in einer Zahl: Eine Tabelle hat für jedes der 81 Paare von Gebieten einen Fall, der die Schnitte nennt und keine anderen.",
+  },
   homogeneous: {
     en: "Clips a line before the perspective division, by six borders that are inequalities of x, y, z and w: points behind the eye make no trouble.",
     de: "Clippt eine Strecke vor der perspektivischen Division, an sechs Rändern, die Ungleichungen in x, y, z und w sind: Punkte hinter dem Auge stören nicht.",
@@ -194,6 +226,10 @@ export const IDEAS: Record<string, Words> = {
   "bentley-ottmann": {
     en: "Finds all crossings of segments with a line that sweeps over them: only segments that are neighbours on that line can cross next, so few pairs are tested.",
     de: "Findet alle Schnittpunkte von Strecken mit einer Geraden, die über sie hinwegstreicht: Nur Nachbarn auf ihr können sich als Nächste kreuzen, also werden wenige Paare geprüft.",
+  },
+  maillot: {
+    en: "Clips a polygon to a window edge by edge, with Cohen and Sutherland's codes and one bit more for corners: the codes of an edge's ends say around which corners the border must turn.",
+    de: "Clippt ein Polygon Kante für Kante an einem Fenster, mit den Codes von Cohen und Sutherland und einem Bit mehr für Ecken: Die Codes der Enden einer Kante sagen, um welche Ecken der Rand gehen muss.",
   },
   "liang-barsky-polygon": {
     en: "Clips a polygon to a window in one pass: each edge emits what is visible of it, and corners of the window where the polygon turns around them.",
@@ -358,5 +394,21 @@ export const IDEAS: Record<string, Words> = {
   roberts: {
     en: "The first exact hidden lines, for convex bodies: a line is hidden where a ray from it to the eye runs inside a body, which inequalities of its planes decide.",
     de: "Die ersten exakten verdeckten Linien, für konvexe Körper: Eine Linie ist verdeckt, wo ein Strahl von ihr zum Auge im Inneren eines Körpers läuft; das entscheiden Ungleichungen seiner Ebenen.",
+  },
+  "shadow-volumes": {
+    en: "Behind everything that the light meets there is a volume without light: a point is in shadow if the ray from the eye enters more of these volumes before it than it leaves.",
+    de: "Hinter allem, was das Licht trifft, liegt ein Volumen ohne Licht: Ein Punkt ist im Schatten, wenn der Strahl vom Auge vor ihm mehr solche Volumen betritt als verlässt.",
+  },
+  "patch-subdivision": {
+    en: "A curved patch is divided into quarters, and these again, until each piece covers at most one pixel's centre; the z-buffer keeps the nearest.",
+    de: "Ein gekrümmtes Flächenstück wird geviertelt und weiter geviertelt, bis jedes Stück höchstens eine Pixelmitte bedeckt; der z-Puffer behält das nächste.",
+  },
+  appel: {
+    en: "How many faces hide a point changes only behind contour edges: one corner is counted by a ray, all others follow along the edges.",
+    de: "Wie viele Flächen einen Punkt verdecken, ändert sich nur hinter Konturkanten: Eine Ecke wird mit einem Strahl ausgezählt, alle anderen folgen entlang der Kanten.",
+  },
+  "galimberti-montanari": {
+    en: "Every part of an edge knows the set of faces that hide it: faces enter and leave the set where the edge passes their borders, and a part is seen if its set is empty.",
+    de: "Jedes Stück einer Kante kennt die Menge der Flächen, die es verdecken: Flächen kommen und gehen, wo die Kante ihre Ränder passiert, und sichtbar ist ein Stück mit leerer Menge.",
   },
 };

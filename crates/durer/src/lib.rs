@@ -55,6 +55,7 @@
 //! | [Liang–Barsky](clip::line::liang_barsky) | rectangle, box, half-planes | most segments crossing the border |
 //! | [Nicholl–Lee–Nicholl](clip::line::nicholl_lee_nicholl) | rectangle | no unnecessary crossing computed |
 //! | [Skala](clip::line::skala) | rectangle, convex polygon | signs of the window's corners, no unnecessary crossing |
+//! | [Sobkow–Pospisil–Yang](clip::line::sobkow_pospisil_yang) | rectangle | one code for both ends, a case for each |
 //! | [Homogeneous](clip::line::homogeneous) | rectangle | points with a w of any sign |
 //! | [Batches](clip::line::batch) | rectangle | millions of segments |
 //! | [Polylines](clip::polyline) | polygon with holes | chains with attributes, inside or outside part |
@@ -116,16 +117,17 @@
 //! | [A-buffer](visibility::surface::a_buffer) | lists of fragments with masks of samples |
 //! | [Scan-line z-buffer](visibility::surface::scan_line_z) | a depth per pixel of one row |
 //! | [Spanning scan line](visibility::surface::spanning_scan_line) | spans between edges of a row, no depth per pixel |
-//! | [Depth sort](visibility::surface::depth_sort) | painting from back to front, splitting polygons that have no order
-//! |
+//! | [Depth sort](visibility::surface::depth_sort) | painting from back to front, splitting polygons without an order |
 //! | [Warnock](visibility::surface::warnock) | dividing the window until it is simple |
 //! | [Rays](visibility::surface::ray) | casting a ray through each sample; shadows, mirrors and refraction too |
 //!
 //! **And as the papers have it?** [`visibility::polygons`]: the z-buffer's loop, Greene's pyramid of depths, Meagher's
-//! octree, the painter, depth sort, BSP trees, Warnock's windows, Watkins' tables, Weiler and Atherton's cuts and
-//! Carpenter's shares on plane polygons, a file each, to be read beside the paper; [`visibility::line::roberts`],
-//! [`visibility::line::horizon_curves`], [`clip::polygon::scan_beams`] and
-//! [`clip::polygon::sutherland_hodgman::by_borders`] likewise.
+//! octree, the painter, depth sort, BSP trees, Warnock's windows, Watkins' tables, Weiler and Atherton's cuts,
+//! Carpenter's shares, Luebke and Georges' portals, and Atherton's solids on plane polygons, a file each, to be read
+//! beside the paper; [`visibility::line::roberts`], [`visibility::line::appel`],
+//! [`visibility::line::galimberti_montanari`], [`visibility::polygons::patch_subdivision`] (Catmull),
+//! [`visibility::polygons::shadow_volumes`] (Crow), [`visibility::line::horizon_curves`], [`clip::polygon::scan_beams`],
+//! [`clip::polygon::maillot`] and [`clip::polygon::sutherland_hodgman::by_borders`] likewise.
 //!
 //! **Which part of an edge?** [`visibility::line`]: [hidden lines](visibility::line::hidden_line) by
 //! quantitative invisibility, [wireframe](visibility::line::wireframe), as a

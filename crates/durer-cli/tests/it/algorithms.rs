@@ -154,7 +154,7 @@ fn algorithms_are_classified_from_their_facts() {
     };
     let all = names("");
     assert_eq!(all.len(), durer::explain::ALGORITHMS.len());
-    let lines = ["spanning-scan-line", "watkins", "horizon-curves"];
+    let lines = ["spanning-scan-line", "watkins", "csg-scan-line", "horizon-curves"];
     assert_eq!(names("--space image --occluder line"), lines);
     let lists = ["depth-sort", "painter", "depth-sort-polygons", "bsp-tree"];
     assert_eq!(names("--space list-priority"), lists);

@@ -1,7 +1,7 @@
 //! Display lists: commands that are recorded once and replayed often, in each other too.
 
 use super::lighting::MAX_LIGHTS;
-use super::{Command, MAX_STACK, MaterialFace, Pipeline, draw, pixels};
+use super::{Command, MAX_STACK, MaterialFace, Pipeline, bitmap, draw, pixels};
 use crate::target::Framebuffer;
 use crate::{Error, Result};
 
@@ -59,7 +59,7 @@ fn dangling(list: ListId, count: usize) -> Error {
 /// # Errors
 /// [`Error::Dangling`] for a list that is not there; [`Error::Limit`] for lists nested deeper than [`MAX_NESTING`],
 /// more commands than [`MAX_COMMANDS`], a matrix stack above [`MAX_STACK`]; [`Error::Parameter`] for taking back a
-/// matrix that was not kept, a matrix, evaluator, light, material or zoom that is not finite or out of its range, and a
+/// matrix that was not kept, a matrix, evaluator, light, material, zoom or bitmap that is not finite or out of its range, and a
 /// viewport or rectangle beyond the framebuffer; [`Error::Unsupported`] for copying from a plane that the framebuffer
 /// does not have.
 pub fn execute(
@@ -136,6 +136,7 @@ fn one(command: &Command, p: &mut Pipeline, target: &mut Framebuffer) -> Result<
         }
         Command::PixelZoom(zoom) => p.pixel_zoom = *zoom,
         Command::DrawPixels(block) => pixels::draw(p, block, target),
+        Command::Bitmap(bitmap) => bitmap::draw(p, bitmap, target)?,
         Command::CopyPixels(rectangle, plane) => {
             let block = pixels::read_pixels(target, *rectangle, *plane)?;
             pixels::draw(p, &block, target);

@@ -27,6 +27,7 @@
 //! # Ok::<(), durer::Error>(())
 //! ```
 
+mod bitmap;
 mod brush;
 mod draw;
 mod evaluator;
@@ -36,6 +37,7 @@ mod pixels;
 mod state;
 mod texture;
 
+pub use bitmap::Bitmap;
 pub use evaluator::{Curve, Patch};
 pub use lighting::{
     ColorMaterial, Light, LightModel, Lighting, MAX_LIGHTS, Material, MaterialFace, ShadeModel,
@@ -142,6 +144,8 @@ pub enum Command {
     PixelZoom(DVec2),
     /// Draws a rectangle of pixels at the raster position.
     DrawPixels(PixelBlock),
+    /// Draws the set bits of a mask at the raster position, which moves on; nothing if that was clipped away.
+    Bitmap(Bitmap),
     /// Draws a rectangle of the framebuffer at the raster position: first column, first row, width, height.
     CopyPixels([u32; 4], PixelPlane),
     /// Sets the faces to leave out.

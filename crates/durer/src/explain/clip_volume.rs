@@ -28,6 +28,7 @@ pub(super) const LESSONS: &[Lesson] = &[
     place(ClipPlace::AfterDivision, WITHOUT_CODES),
     place(ClipPlace::Viewport, WITHOUT_CODES),
     place(ClipPlace::PerPixel, WITHOUT_CODES),
+    super::section::LESSON,
 ];
 
 const WITH_CODES: &[&Template] = &[&CODE, &BORDER, &KEEP, &CUT, &REJECTED];

@@ -16,11 +16,13 @@
 //! # Ok::<(), durer::Error>(())
 //! ```
 
+mod air;
 mod barycentric;
 mod clip_lines;
 mod clip_polygons;
 mod clip_volume;
 mod crossings;
+mod culling;
 mod curves;
 mod faces;
 mod faults;
@@ -31,6 +33,7 @@ mod grid;
 mod input;
 mod interior;
 mod json;
+mod labels;
 mod lesson;
 mod letters;
 mod lines;
@@ -38,6 +41,7 @@ mod names;
 mod picking;
 mod picture;
 mod replay;
+mod section;
 mod shades;
 mod shadow;
 mod simplify;
@@ -84,7 +88,7 @@ pub const PLANE: &[Family] = &[
     family("Clipping polygons", "Polygone clippen", clip_polygons::LESSONS),
     family("Simplifying borders", "Grenzen vereinfachen", simplify::LESSONS),
     family("Window and viewport", "Fenster und Viewport", viewing::LESSONS),
-    family("Points for labels", "Punkte für Beschriftungen", &[interior::LESSON]),
+    family("Points for labels", "Punkte für Beschriftungen", &[interior::LESSON, labels::LESSON]),
     family("Lines and circles", "Linien und Kreise", lines::LESSONS),
     family("Filling areas", "Flächen füllen", fills::LESSONS),
     family("Halftones", "Halbtöne", tones::LESSONS),
@@ -93,10 +97,14 @@ pub const PLANE: &[Family] = &[
 /// Families of lessons in space, in the order of the pipeline.
 pub const SPACE: &[Family] = &[
     family("Clipping in space", "Clippen im Raum", clip_volume::LESSONS),
-    family("Picking and warping", "Picking und Warping", &[picking::LESSON, warping::LESSON]),
+    family(
+        "Culling, picking and warping",
+        "Culling, Picking und Warping",
+        &[culling::LESSON, picking::LESSON, warping::LESSON],
+    ),
     family("Shading", "Schattierung", shades::LESSONS),
-    family("Shadows", "Schatten", &[shadow::LESSON]),
-    family("Fragments", "Fragmente", &[fragments::LESSON]),
+    family("Shadows", "Schatten", &[shadow::LESSON, faces::SHADOW_VOLUMES]),
+    family("Fragments", "Fragmente", &[fragments::LESSON, air::LESSON]),
     family("Hidden surfaces", "Verdeckte Flächen", faces::LESSONS),
 ];
 
@@ -171,12 +179,14 @@ pub const ALGORITHMS: &[&Info] = &[
     &clip::line::liang_barsky::INFO,
     &clip::line::nicholl_lee_nicholl::INFO,
     &clip::line::skala::INFO,
+    &clip::line::sobkow_pospisil_yang::INFO,
     &clip::line::homogeneous::INFO,
     &clip::line::batch::INFO,
     &clip::polyline::INFO,
     &clip::crossings::bentley_ottmann::INFO,
     &clip::polygon::sutherland_hodgman::INFO,
     &clip::polygon::liang_barsky::INFO,
+    &clip::polygon::maillot::INFO,
     &clip::polygon::weiler_atherton::INFO,
     &clip::polygon::greiner_hormann::INFO,
     &clip::polygon::vatti::INFO,
@@ -260,10 +270,16 @@ pub const ALGORITHMS: &[&Info] = &[
     &visibility::polygons::bsp::INFO,
     &visibility::polygons::warnock::INFO,
     &visibility::polygons::watkins::INFO,
+    &visibility::polygons::patch_subdivision::INFO,
+    &visibility::polygons::shadow_volumes::INFO,
     &visibility::polygons::regions::INFO,
+    &visibility::polygons::portals::INFO,
+    &visibility::polygons::csg::INFO,
     &visibility::region::planar_map::INFO,
     &visibility::region::SHADOWS,
     &visibility::line::roberts::INFO,
+    &visibility::line::appel::INFO,
+    &visibility::line::galimberti_montanari::INFO,
     &visibility::line::hidden_line::INFO,
     &visibility::line::wireframe::INFO,
     &visibility::line::floating_horizon::INFO,

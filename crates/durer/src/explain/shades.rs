@@ -1,4 +1,4 @@
-//! Lessons of shading: flat, Gouraud, Phong, perspective-correct values.
+//! Lessons of shading: unlit, flat, Gouraud, Phong, perspective-correct values.
 
 use super::frame::{Frames, Shown, Want, record};
 use super::grid::{NO_HEAD, Raster, grey};
@@ -11,12 +11,21 @@ use crate::math::{DVec2, DVec3, IVec2};
 use crate::raster::interpolate;
 use crate::raster::interpolate::rows::{Corner, Step};
 use crate::raster::triangle::Options;
-use crate::shade::{flat, gouraud, phong};
+use crate::shade::{flat, gouraud, phong, unlit};
 use crate::view::window::PixelRect;
 use crate::{Error, Result};
 
 pub(super) const LESSONS: &[Lesson] =
-    &[super::barycentric::LESSON, FLAT, GOURAUD, PHONG, PERSPECTIVE];
+    &[super::barycentric::LESSON, UNLIT, FLAT, GOURAUD, PHONG, PERSPECTIVE];
+
+const UNLIT: Lesson = Lesson {
+    name: unlit::INFO.name,
+    info: &unlit::INFO,
+    examples: DEEP,
+    templates: &[&TEXTURE, &TEXEL],
+    make: |_, input, _, cap| make(Kind::Unlit, input, cap),
+    ..GOURAUD
+};
 
 const FLAT: Lesson = Lesson {
     name: flat::INFO.name,
@@ -93,6 +102,16 @@ const DEEP: &[Example] = &[
     },
 ];
 
+static TEXTURE: Template = Template::new(
+    "ends",
+    "Row {row}: along the edges u/w is {a} at x = {x0} and {b} at x = {x1}. Normals and lights play no part.",
+    "Zeile {row}: Längs der Kanten ist u/w {a} bei x = {x0} und {b} bei x = {x1}. Normalen und Lichter zählen nicht.",
+);
+static TEXEL: Template = Template::new(
+    "pixel",
+    "Pixel {pixel}: u = {u}, the texel there is {texel}; times the base colour {base} it is {value}.",
+    "Pixel {pixel}: u = {u}, das Texel dort ist {texel}; mal der Grundfarbe {base} gibt das {value}.",
+);
 static ONE: Template = Template::new(
     "ends",
     "Row {row} from x = {x0} to x = {x1}: all of the face has the intensity at its centre, {a}.",
@@ -140,6 +159,7 @@ fn face(corners: [(f64, f64, f64); 3]) -> Input {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
+    Unlit,
     Flat,
     Gouraud,
     Phong,
@@ -157,6 +177,14 @@ fn light(normal: DVec3) -> f64 {
     // To the 16th.
     let gloss = [0; 4].iter().fold(shine, |power, _| power * power);
     (0.1 + 0.6 * cosine.max(0.0) + 0.3 * gloss).min(1.0)
+}
+
+/// Base colour of the unlit face, grey.
+const BASE: f64 = 0.9;
+
+/// Returns the texel at u of a texture with four stripes.
+fn texel(u: f64) -> f64 {
+    if (u * 4.0).floor() % 2.0 == 0.0 { 1.0 } else { 0.4 }
 }
 
 /// Value of texture coordinates at the corners.
@@ -201,7 +229,9 @@ fn corners(kind: Kind, raster: &Raster, points: [DVec3; 3]) -> [Corner; 3] {
             Kind::Flat => (1.0, DVec3::splat(light(face))),
             Kind::Gouraud => (1.0, DVec3::splat(light(normal))),
             Kind::Phong => (1.0, normal),
-            Kind::Perspective => (1.0 / (eye - points[k].z), DVec3::splat(COORDINATES[k])),
+            Kind::Perspective | Kind::Unlit => {
+                (1.0 / (eye - points[k].z), DVec3::splat(COORDINATES[k]))
+            }
         };
         Corner { at: at[k], inv_w, value }
     })
@@ -224,6 +254,7 @@ impl State {
                 let [a, b] = [("a", self.value(a)), ("b", self.value(b))];
                 let [row, x0, x1] = [("row", y.into()), ("x0", x0.into()), ("x1", x1.into())];
                 match self.kind {
+                    Kind::Unlit => TEXTURE.with([row, a, b, x0, x1]),
                     Kind::Flat => ONE.with([row, a, x0, x1]),
                     Kind::Gouraud => INTENSITIES.with([row, a, b, x0, x1]),
                     Kind::Phong => NORMALS.with([row, a, b, x0, x1]),
@@ -235,10 +266,21 @@ impl State {
             Step::Pixel { pixel, inv_w, over_w, value } => {
                 let at = ("pixel", pixel.as_dvec2().into());
                 let normal = value.normalize_or_zero();
-                let shown = if self.kind == Kind::Phong { light(normal) } else { value.x };
+                let shown = match self.kind {
+                    Kind::Phong => light(normal),
+                    Kind::Unlit => BASE * texel(value.x),
+                    Kind::Flat | Kind::Gouraud | Kind::Perspective => value.x,
+                };
                 self.pixels.push((pixel, shown));
                 let result = ("value", shown.into());
                 match self.kind {
+                    Kind::Unlit => TEXEL.with([
+                        at,
+                        ("u", value.x.into()),
+                        ("texel", texel(value.x).into()),
+                        ("base", BASE.into()),
+                        result,
+                    ]),
                     Kind::Flat => SAME.with([at, result]),
                     Kind::Gouraud => INTENSITY.with([at, result]),
                     Kind::Phong => {

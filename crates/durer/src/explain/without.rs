@@ -1,7 +1,7 @@
 //! Algorithms that have no lesson, each with the reason.
 
 use crate::info::Info;
-use crate::{clip, fragment, raster, shade, view, visibility};
+use crate::{clip, raster, shade, visibility};
 
 const PRODUCTION: &str = "a fast form of an algorithm that has a lesson, with the same result";
 const FORMULA: &str = "one formula: there are no steps to show";
@@ -13,15 +13,10 @@ pub const WITHOUT_LESSON: &[(&Info, &str)] = &[
     (&clip::line::batch::INFO, PRODUCTION),
     (&clip::polygon::validity::INFO, UNTRACED),
     (&clip::polygon::mismatch::INFO, UNTRACED),
-    (&view::cull::INFO, UNTRACED),
-    (&view::section::INFO, UNTRACED),
-    (&view::label::INFO, UNTRACED),
     (&raster::line::wide::buffer::INFO, UNTRACED),
     (&raster::line::tiled::INFO, PRODUCTION),
     (&raster::coverage::INFO, PRODUCTION),
-    (&shade::unlit::INFO, FORMULA),
     (&shade::metallic_roughness::INFO, FORMULA),
-    (&fragment::fog::INFO, FORMULA),
     (&visibility::surface::z_buffer::INFO, PRODUCTION),
     (&visibility::surface::a_buffer::INFO, PRODUCTION),
     (&visibility::surface::ambient_occlusion::INFO, UNTRACED),

@@ -6,6 +6,7 @@
 
 use crate::info::{Class, Info, Occluder};
 use crate::math::{Vec4, exp2};
+use crate::trace::{NoTrace, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -19,7 +20,16 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "O(1) per fragment",
     limits: "the air is the same everywhere",
-    pseudocode: &[],
+    pseudocode: &[
+        "z ← distance of the fragment from the eye",
+        "depth cueing and linear fog:",
+        "    f ← least + (1 − least) · (end − z) / (end − start), held to least … 1",
+        "exponential fog:",
+        "    f ← e^(−ρ z)",
+        "squared fog:",
+        "    f ← e^(−(ρ z)²)",
+        "colour ← f · colour + (1 − f) · colour of the air; alpha stays",
+    ],
 };
 
 /// Formula for the share of a colour that remains at a distance.
@@ -45,6 +55,48 @@ pub enum Fog {
         /// Density per world unit.
         density: f32,
     },
+}
+
+/// Step of the mixing of one colour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// The share that remains was computed.
+    Share {
+        /// The formula.
+        fog: Fog,
+        /// Distance from the eye.
+        z: f32,
+        /// Share that remains, 0 … 1.
+        left: f32,
+    },
+    /// The colour was mixed.
+    Mixed(Vec4),
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Share { fog: Fog::Linear { .. }, .. } => 3,
+            Self::Share { fog: Fog::Exponential { .. }, .. } => 5,
+            Self::Share { fog: Fog::Squared { .. }, .. } => 7,
+            Self::Mixed(_) => 8,
+        }
+    }
+}
+
+/// Returns the colour that a list of steps leads to from a colour in some air.
+pub fn replay(color: Vec4, air: Vec4, steps: &[Step]) -> Vec4 {
+    let share = steps.iter().find_map(|step| match step {
+        Step::Share { left, .. } => Some(*left),
+        Step::Mixed(_) => None,
+    });
+    share.map_or(color, |left| mixed(color, air, left))
+}
+
+/// Returns a colour of which a share is left in the air; alpha stays.
+fn mixed(color: Vec4, air: Vec4, left: f32) -> Vec4 {
+    (color * left + air * (1.0 - left)).truncate().extend(color.w)
 }
 
 impl Fog {
@@ -73,7 +125,15 @@ impl Fog {
 
     /// Returns a colour at a distance, mixed with the air's; alpha stays.
     pub fn apply(&self, color: Vec4, air: Vec4, z: f32) -> Vec4 {
+        self.apply_traced(color, air, z, &mut NoTrace)
+    }
+
+    /// Returns a colour as [`Self::apply`] does, with a listener for its steps.
+    pub fn apply_traced(&self, color: Vec4, air: Vec4, z: f32, t: &mut impl Tracer<Step>) -> Vec4 {
         let left = self.left(z);
-        (color * left + air * (1.0 - left)).truncate().extend(color.w)
+        t.step(|| Step::Share { fog: *self, z, left });
+        let mixed = mixed(color, air, left);
+        t.step(|| Step::Mixed(mixed));
+        mixed
     }
 }

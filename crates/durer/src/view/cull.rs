@@ -9,6 +9,7 @@ use crate::clip::volume::planes_in_source;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, Plane, Rect};
 use crate::scene::{Aabb, BoundingSphere};
+use crate::trace::{NoTrace, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -22,7 +23,16 @@ pub const INFO: Info = Info {
     coherence: &[Coherence::Object],
     cost: "O(p) per box or sphere for p planes",
     limits: "conservative: what lies outside near a corner can pass for crossing",
-    pseudocode: &[],
+    pseudocode: &[
+        "C, h ← centre and half sides of the box",
+        "result ← inside",
+        "for each plane n · P + d = 0 of the region, n inwards:",
+        "    s ← n · C + d, for the centre",
+        "    r ← |n_x| h_x + |n_y| h_y + |n_z| h_z, the reach of the box along n",
+        "    s < −r: return outside; nothing of the box is drawn",
+        "    s < r: result ← crossing",
+        "return result: what is inside is drawn without clipping",
+    ],
 };
 
 /// Relation of an object to a volume.
@@ -47,6 +57,48 @@ impl Containment {
             (false, false) => Self::Crossing,
         }
     }
+}
+
+/// Step of the test of a body against a convex region.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// The body was compared with a plane.
+    Plane {
+        /// Number of the plane.
+        plane: usize,
+        /// n · C + d for the body's centre C, positive inside; lengths are those of the normal.
+        distance: f64,
+        /// Distance that the body extends from its centre along the normal.
+        reach: f64,
+        /// Relation to this plane alone.
+        relation: Containment,
+    },
+    /// The relation to the region was found.
+    Found(Containment),
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Plane { relation: Containment::Inside, .. } => 5,
+            Self::Plane { relation: Containment::Outside, .. } => 6,
+            Self::Plane { relation: Containment::Crossing, .. } => 7,
+            Self::Found(_) => 8,
+        }
+    }
+}
+
+/// Returns the relation that the planes of a list of steps lead to.
+pub fn replay(steps: &[Step]) -> Containment {
+    let relations = || {
+        steps.iter().filter_map(|step| match step {
+            Step::Plane { relation, .. } => Some(*relation),
+            Step::Found(_) => None,
+        })
+    };
+    let outside = relations().any(|relation| relation == Containment::Outside);
+    Containment::of(outside, relations().all(|relation| relation == Containment::Inside))
 }
 
 /// Tests a rectangle against a window; exact, because coordinates are only compared.
@@ -99,29 +151,46 @@ impl ConvexVolume {
 
     /// Tests a box against the region by two corners per plane.
     pub fn contains_box(&self, b: &Aabb) -> Containment {
+        self.contains_box_traced(b, &mut NoTrace)
+    }
+
+    /// Tests a box as [`Self::contains_box`] does, with a listener for its steps.
+    pub fn contains_box_traced(&self, b: &Aabb, t: &mut impl Tracer<Step>) -> Containment {
         let (center, half) = (b.min * 0.5 + b.max * 0.5, b.max * 0.5 - b.min * 0.5);
-        self.contains(center, |normal| normal.abs().dot(half))
+        self.contains(center, |normal| normal.abs().dot(half), t)
     }
 
     /// Tests a sphere against the region.
     pub fn contains_sphere(&self, s: &BoundingSphere) -> Containment {
-        self.contains(s.center, |normal| normal.length() * s.radius)
+        self.contains(s.center, |normal| normal.length() * s.radius, &mut NoTrace)
     }
 
     /// Tests an object against the region; `reach` returns its extent from its centre along a normal.
-    fn contains(&self, center: DVec3, reach: impl Fn(DVec3) -> f64) -> Containment {
-        let mut inside = true;
-        for plane in &self.planes {
+    fn contains(
+        &self,
+        center: DVec3,
+        reach: impl Fn(DVec3) -> f64,
+        t: &mut impl Tracer<Step>,
+    ) -> Containment {
+        let mut found = Containment::Inside;
+        for (index, plane) in self.planes.iter().enumerate() {
             let (distance, reach) = (plane.evaluate(center), reach(plane.normal));
             // A dozen roundings, each at most half an ulp of the largest term.
             let terms = plane.normal.abs().dot(center.abs()) + plane.distance.abs() + reach;
             let slack = 16.0 * f64::EPSILON * terms;
-            if distance + reach < -slack {
-                return Containment::Outside;
+            let relation = Containment::of(distance + reach < -slack, distance - reach >= slack);
+            t.step(|| Step::Plane { plane: index, distance, reach, relation });
+            match relation {
+                Containment::Inside => {}
+                Containment::Crossing => found = Containment::Crossing,
+                Containment::Outside => {
+                    found = Containment::Outside;
+                    break;
+                }
             }
-            inside &= distance - reach >= slack;
         }
-        Containment::of(false, inside)
+        t.step(|| Step::Found(found));
+        found
     }
 }
 

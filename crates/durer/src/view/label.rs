@@ -7,6 +7,7 @@
 
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
+use crate::trace::{NoTrace, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -20,8 +21,68 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "O(1) per candidate for labels of similar size",
     limits: "what has been placed stays: not the most labels that there is room for",
-    pseudocode: &[],
+    pseudocode: &[
+        "taken ← ∅",
+        "for each label, the most important first:",
+        "    for each of its candidate places, the best first:",
+        "        not wholly within the bounds: next candidate",
+        "        for each taken place in the buckets that it touches:",
+        "            the two overlap: next candidate",
+        "        taken ← taken ∪ {candidate}; next label",
+        "    no candidate is left: the label is left out",
+    ],
 };
+
+/// Reason for which a place is not free.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Obstacle {
+    /// It reaches beyond the bounds.
+    Bounds,
+    /// It overlaps a place that was taken before, by its number.
+    Taken(usize),
+}
+
+/// Step of the placement of one label.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// A candidate was tried.
+    Candidate {
+        /// Its number.
+        number: usize,
+        /// The place.
+        place: Rect,
+        /// Obstacle to it; none where it is free.
+        obstacle: Option<Obstacle>,
+    },
+    /// The label has its place.
+    Placed {
+        /// Number of the candidate.
+        number: usize,
+    },
+    /// The label is left out.
+    LeftOut,
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Candidate { obstacle: Some(Obstacle::Bounds), .. } => 4,
+            Self::Candidate { obstacle: None, .. } => 5,
+            Self::Candidate { obstacle: Some(Obstacle::Taken(_)), .. } => 6,
+            Self::Placed { .. } => 7,
+            Self::LeftOut => 8,
+        }
+    }
+}
+
+/// Returns the number of the candidate that a list of steps leads to.
+pub fn replay(steps: &[Step]) -> Option<usize> {
+    steps.iter().find_map(|step| match step {
+        Step::Candidate { number, obstacle: None, .. } => Some(*number),
+        _ => None,
+    })
+}
 
 /// Buckets have this size in pixels: about that of a label.
 const BUCKET: f64 = 64.0;
@@ -60,12 +121,25 @@ impl Placer {
     /// # Ok::<(), durer::Error>(())
     /// ```
     pub fn place(&mut self, candidates: impl IntoIterator<Item = Rect>) -> Option<usize> {
-        for (number, candidate) in candidates.into_iter().enumerate() {
-            if self.is_free(&candidate) {
-                self.take(candidate);
+        self.place_traced(candidates, &mut NoTrace)
+    }
+
+    /// Places a label as [`Self::place`] does, with a listener for its steps.
+    pub fn place_traced(
+        &mut self,
+        candidates: impl IntoIterator<Item = Rect>,
+        t: &mut impl Tracer<Step>,
+    ) -> Option<usize> {
+        for (number, place) in candidates.into_iter().enumerate() {
+            let obstacle = self.obstacle(&place);
+            t.step(|| Step::Candidate { number, place, obstacle });
+            if obstacle.is_none() {
+                self.take(place);
+                t.step(|| Step::Placed { number });
                 return Some(number);
             }
         }
+        t.step(|| Step::LeftOut);
         None
     }
 
@@ -76,7 +150,7 @@ impl Placer {
         candidates: impl IntoIterator<Item = Vec<Rect>>,
     ) -> Option<usize> {
         for (number, parts) in candidates.into_iter().enumerate() {
-            if !parts.is_empty() && parts.iter().all(|part| self.is_free(part)) {
+            if !parts.is_empty() && parts.iter().all(|part| self.obstacle(part).is_none()) {
                 parts.into_iter().for_each(|part| self.take(part));
                 return Some(number);
             }
@@ -89,13 +163,15 @@ impl Placer {
         self.take(place);
     }
 
-    fn is_free(&self, candidate: &Rect) -> bool {
+    /// Returns what keeps a candidate from being placed; `None` where it is free.
+    fn obstacle(&self, candidate: &Rect) -> Option<Obstacle> {
         let bounds = &self.bounds;
-        let within = bounds.contains(candidate.min()) && bounds.contains(candidate.max());
-        within
-            && self.touched(candidate).all(|bucket| {
-                self.buckets[bucket].iter().all(|i| !overlap(&self.taken[*i as usize], candidate))
-            })
+        if !bounds.contains(candidate.min()) || !bounds.contains(candidate.max()) {
+            return Some(Obstacle::Bounds);
+        }
+        let near = self.touched(candidate).flat_map(|bucket| &self.buckets[bucket]);
+        let mut taken = near.map(|number| *number as usize);
+        taken.find(|number| overlap(&self.taken[*number], candidate)).map(Obstacle::Taken)
     }
 
     fn take(&mut self, rect: Rect) {

@@ -3,12 +3,15 @@
 use durer::clip::attribute::Source;
 use durer::clip::line::batch::{self, Clipped, Segments};
 use durer::clip::line::homogeneous::clip_homogeneous;
-use durer::clip::line::{ConvexPolygon, LineClipper, Segment, cyrus_beck};
+use durer::clip::line::sobkow_pospisil_yang::{self as by_code, CASES, Case};
+use durer::clip::line::{ConvexPolygon, End, LineClipper, Segment, cyrus_beck, skala};
+use durer::clip::outcode::Outcode;
 use durer::clip::polygon::Shapes;
 use durer::clip::polygon::rectangle::clip_lines;
 use durer::clip::polyline::{self, Part};
 use durer::math::{DVec2, DVec3, Rect};
-use durer::trace::NoTrace;
+use durer::trace::{NoTrace, Recorder};
+use std::cmp::Ordering;
 
 fn p(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
@@ -192,5 +195,100 @@ fn pieces_never_reach_beyond_their_segment() {
                 }
             }
         }
+    }
+}
+
+/// Outcodes of the nine regions of the plane.
+const REGIONS: [u8; 9] = [0, 1, 2, 4, 8, 5, 6, 9, 10];
+
+#[test]
+fn line_codes_have_a_case_for_each_pair_of_regions() {
+    let cases = REGIONS.map(|a| REGIONS.map(|b| CASES[usize::from(a << 4 | b)]));
+    let count = |is: fn(&Case) -> bool| cases.iter().flatten().filter(|case| is(case)).count();
+    assert_eq!(count(|case| *case == Case::Accept), 1);
+    assert_eq!(count(|case| *case == Case::Reject), 32);
+    assert_eq!(count(|case| matches!(case, Case::Cut { .. })), 48);
+}
+
+#[test]
+fn cuts_of_a_line_code_are_those_of_its_case() {
+    let window = Rect::new(DVec2::ZERO, p(10.0, 6.0)).expect("window");
+    let steps = |a: DVec2, b: DVec2| {
+        let mut steps = Recorder::default();
+        by_code::clip(&window, Segment::new(a, b), &mut steps).expect("finite");
+        steps.steps().to_vec()
+    };
+    let cut = |end, border, point, code| by_code::Step::Cut { end, border, point, code };
+    // From corner to corner: the first cut of the end is above the window, the second one is right.
+    let (start, end) = (Outcode::LEFT | Outcode::BOTTOM, Outcode::RIGHT | Outcode::TOP);
+    let expected = [
+        by_code::Step::Code { start, end },
+        cut(End::Start, Outcode::LEFT, p(0.0, 1.5), Outcode::INSIDE),
+        cut(End::End, Outcode::RIGHT, p(10.0, 6.5), Outcode::TOP),
+        cut(End::End, Outcode::TOP, p(9.0, 6.0), Outcode::INSIDE),
+        by_code::Step::Accepted { at_once: false },
+    ];
+    assert_eq!(steps(p(-4.0, -0.5), p(12.0, 7.5)), expected);
+    // From the left side past a corner: one cut, beyond the border that only the end is beyond.
+    let missed = steps(p(-4.0, 3.0), p(3.0, 10.0));
+    let code = by_code::Step::Code { start: Outcode::LEFT, end: Outcode::TOP };
+    let rejected = by_code::Step::Rejected { at_once: false };
+    assert_eq!(missed, [code, cut(End::Start, Outcode::LEFT, p(0.0, 7.0), Outcode::TOP), rejected]);
+    // From the corner past the next one: two cuts.
+    let missed = steps(p(-4.0, -8.0), p(12.0, 1.0));
+    assert_eq!(missed.len(), 4, "{missed:?}");
+    assert_eq!(missed.last(), Some(&rejected));
+    // From inside no cut is tested.
+    let inside = steps(p(9.0, 5.0), p(12.0, 20.0));
+    assert_eq!(inside.len(), 4, "{inside:?}");
+}
+
+/// Signs of corners are those of the shown values, in the caller's direction, and cuts are at borders whose corners
+/// are on different sides.
+#[test]
+fn signs_of_corners_belong_to_the_callers_line() {
+    let window = Rect::new(DVec2::ZERO, p(10.0, 6.0)).expect("window");
+    let sides = [[3, 0], [1, 2], [0, 1], [2, 3]];
+    let ends = [
+        (p(-4.0, 1.0), p(10.0, 8.0)),
+        (p(-3.0, 5.0), p(5.0, -3.0)),
+        (p(4.0, -2.0), p(5.0, 9.0)),
+        (p(-1.0, 2.0), p(11.0, 3.0)),
+        (p(-2.0, 4.0), p(2.0, 8.0)),
+    ];
+    for (a, b) in ends.into_iter().flat_map(|(a, b)| [(a, b), (b, a)]) {
+        let mut steps = Recorder::default();
+        skala::clip(&window, Segment::new(a, b), &mut steps).expect("finite");
+        let mut signs = [Ordering::Equal; 4];
+        let mut cuts = 0;
+        for step in steps.steps() {
+            match *step {
+                skala::Step::Corner { corner, value, side } => {
+                    assert_eq!(value.partial_cmp(&0.0), Some(side), "{a} {b}: corner {corner}");
+                    signs[corner] = side;
+                }
+                skala::Step::Cut { border, .. } => {
+                    let [first, second] = sides[border].map(|corner| signs[corner]);
+                    assert_ne!(first, second, "{a} {b}: border {border}");
+                    cuts += 1;
+                }
+                _ => {}
+            }
+        }
+        assert_eq!(cuts, 2, "{a} {b}");
+    }
+}
+
+/// Windows without an area have their corners on the line itself.
+#[test]
+fn segments_along_windows_without_an_area_are_cut_at_both_ends() {
+    let slit = Rect::new(p(0.0, 1.0), p(4.0, 1.0)).expect("window");
+    let point = Rect::new(p(2.0, 1.0), p(2.0, 1.0)).expect("window");
+    let along = Segment::new(p(-3.0, 1.0), p(9.0, 1.0));
+    for &clipper in LineClipper::ALL.iter().filter(|c| **c != LineClipper::Midpoint) {
+        let kept = clipper.clip(&slit, along).expect("finite");
+        assert_eq!(kept, Some(Segment::new(p(0.0, 1.0), p(4.0, 1.0))), "{clipper}");
+        let kept = clipper.clip(&point, along).expect("finite");
+        assert_eq!(kept, Some(Segment::new(p(2.0, 1.0), p(2.0, 1.0))), "{clipper}");
     }
 }

@@ -1,7 +1,7 @@
 //! Commands beyond geometry: lighting, textures, the pixel path, clipped lines, the lowest row first.
 
 use durer::commands::{
-    ColorMaterial, Command, CullFace, DisplayLists, Light, LightModel, LightStep, Lighting,
+    Bitmap, ColorMaterial, Command, CullFace, DisplayLists, Light, LightModel, LightStep, Lighting,
     Material, MaterialFace, Patch, Pipeline, PixelBlock, PixelPlane, Primitive, ShadeModel,
     Texture, TextureFunction, Vertex, execute, read_pixels,
 };
@@ -391,4 +391,69 @@ fn pictures_may_begin_with_the_lowest_row() {
         ],
     );
     assert_eq!(reds(&lower, 0..1, 0..7), [255, 255, 255, 255, 10, 20, 0]);
+}
+
+/// A letter L of 9 × 3 bits: its upright in the first column, its foot the whole last row.
+fn letter() -> Bitmap {
+    let rows = vec![0b1000_0000, 0, 0b1000_0000, 0, 0b1111_1111, 0b1000_0000];
+    Bitmap::new(9, 3, rows).expect("rows")
+}
+
+/// Returns the pixels that are not empty, row by row.
+fn drawn(target: &Framebuffer) -> Vec<[u32; 2]> {
+    let all = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| [x, y]));
+    all.filter(|[x, y]| target.color.get(*x, *y) != Some([0; 4])).collect()
+}
+
+#[test]
+fn bitmaps_are_drawn_beside_the_raster_position_which_moves_on() {
+    let place = Command::RasterPosition(at(-0.45, 0.45));
+    let bits = letter().placed(DVec2::new(1.5, 0.5), DVec2::new(3.0, -2.0));
+    let mut pipeline = Pipeline::default();
+    let mut found = target();
+    let green = Command::Color(Vec4::new(0.0, 1.0, 0.0, 1.0));
+    let red = Command::Color(Vec4::new(1.0, 0.0, 0.0, 1.0));
+    // The colour is that of the raster position, and the zoom is for other pixels.
+    let zoom = Command::PixelZoom(DVec2::splat(4.0));
+    let commands = [green, place, red, zoom, Command::Bitmap(bits.clone())];
+    execute(&commands, &DisplayLists::default(), &mut pipeline, &mut found).expect("drawn");
+    // (4.4, 4.4) − (1.5, 0.5), rounded down, is (2, 3).
+    let mut expected = vec![[2, 3], [2, 4]];
+    expected.extend((2..11).map(|x| [x, 5]));
+    assert_eq!(drawn(&found), expected);
+    assert_eq!(found.color.get(2, 3), Some([0, 255, 0, 255]));
+    let moved = pipeline.raster.expect("valid").at;
+    assert!((moved - DVec2::new(7.4, 2.4)).abs().max_element() < 1e-12, "{moved}");
+    // The next one is drawn beside it: (7.4, 2.4) leads to (5, 1).
+    let again =
+        [Command::Clear { color: Some(Vec4::ZERO), depth: None, stencil: None, index: None }];
+    let again = again.into_iter().chain([Command::Bitmap(bits)]).collect::<Vec<_>>();
+    execute(&again, &DisplayLists::default(), &mut pipeline, &mut found).expect("drawn");
+    let mut expected = vec![[5, 1], [5, 2]];
+    expected.extend((5..14).map(|x| [x, 3]));
+    assert_eq!(drawn(&found), expected);
+}
+
+#[test]
+fn bitmaps_are_clipped_tested_and_left_out() {
+    let scissor = Scissor { x0: 0, y0: 0, x1: 3, y1: SIDE };
+    let fragments = FragmentState { scissor: Some(scissor), depth: None, ..Default::default() };
+    let bits =
+        |x: f64, y: f64| Command::Bitmap(letter().placed(DVec2::new(x, y), DVec2::new(-1e9, 0.0)));
+    let start = Command::RasterPosition(at(-1.0, 1.0));
+    let found = on(target(), &[start.clone(), Command::Fragments(fragments), bits(4.0, 1.0)]);
+    assert_eq!(drawn(&found), [[0, 1], [1, 1], [2, 1]]);
+    // Far away nothing is drawn; a position that was clipped away stays so, and does not move.
+    let found = on(target(), &[start, bits(0.0, -2.0), bits(0.0, 0.0)]);
+    assert_eq!(drawn(&found).first(), Some(&[0, 2]));
+    assert_eq!(drawn(&found).len(), 11);
+    let mut pipeline = Pipeline::default();
+    let mut empty = target();
+    let lists = DisplayLists::default();
+    let outside = [Command::RasterPosition(at(2.0, 0.0)), bits(0.0, 0.0)];
+    execute(&outside, &lists, &mut pipeline, &mut empty).expect("drawn");
+    assert!(drawn(&empty).is_empty() && pipeline.raster.is_none());
+    let odd = letter().placed(DVec2::ZERO, DVec2::new(f64::NAN, 0.0));
+    assert!(fails(&[Command::Bitmap(odd)]).contains("bitmap"));
+    assert!(Bitmap::new(u32::MAX, u32::MAX, Vec::new()).is_err());
 }

@@ -1,6 +1,6 @@
 //! Scenes and views for drawings: bodies put together from boxes and triangles.
 
-use durer::math::{DMat4, DVec3, Vec3};
+use durer::math::{DMat3, DMat4, DVec3, Vec3};
 use durer::scene::{Camera, Instance, Mesh, Projection, Scene};
 use durer::view::View;
 
@@ -120,4 +120,20 @@ pub fn torus(around: usize, across: usize) -> Vec<Triangle> {
             [[a, b, c], [a, c, d]]
         })
         .collect()
+}
+
+/// Returns boxes in any position; some go through each other.
+pub fn turned_boxes(count: usize, random: &mut Random) -> Vec<Triangle> {
+    let mut all = Vec::new();
+    for _ in 0..count {
+        let mut number = |low: f64, high: f64| low + random.next() * (high - low);
+        let half = [0; 3].map(|_| number(0.5, 2.0));
+        let middle = DVec3::from([0; 3].map(|_| number(0.0, 7.0)));
+        let axis = DVec3::from([0; 3].map(|_| number(-1.0, 1.0))).normalize();
+        let turn = DMat3::from_axis_angle(axis, number(0.0, 6.0));
+        let low = half.map(|v| -v);
+        let placed = cuboid(low, half);
+        all.extend(placed.iter().map(|t| t.map(|p| middle + turn * p)));
+    }
+    all
 }

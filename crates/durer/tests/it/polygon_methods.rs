@@ -12,6 +12,7 @@ use durer::visibility::polygons::{
     z_buffer,
 };
 use durer::visibility::surface::warnock::Division;
+use durer::work::Work;
 
 fn screen() -> Screen {
     Screen { width: 32, height: 32, ..Screen::default() }
@@ -102,7 +103,7 @@ fn of_equal_depths_the_first_face_is_seen() {
 
 fn seen_areas(faces: &[Face]) -> Vec<f64> {
     let mut areas = vec![0.0; faces.len()];
-    for region in regions(faces, &Default::default(), &mut NoTrace).unwrap() {
+    for region in regions(faces, &Default::default(), &Work::default(), &mut NoTrace).unwrap() {
         areas[region.face as usize] += region.shapes.area();
     }
     areas
@@ -155,7 +156,7 @@ fn the_steps_rebuild_the_pictures() {
     let found = painter::items(&faces, &screen, &how, &mut steps).unwrap();
     assert_eq!(painter::replay(&screen, steps.steps()).unwrap(), found);
     let mut steps = Recorder::default();
-    let mut found = regions(&faces, &Default::default(), &mut steps).unwrap();
+    let mut found = regions(&faces, &Default::default(), &Work::default(), &mut steps).unwrap();
     let mut replayed = regions::replay(steps.steps());
     let by = |a: &Region, b: &Region| a.face.cmp(&b.face);
     found.sort_by(by);
@@ -238,7 +239,7 @@ fn trees_order_pieces_for_every_eye() {
     let faces = scene(&mut random, 8);
     for candidates in [1, 5] {
         let how = bsp::Options { candidates, ..Default::default() };
-        let tree = Tree::new(&faces, &how, &mut NoTrace).unwrap();
+        let tree = Tree::new(&faces, &how, &Work::default(), &mut NoTrace).unwrap();
         for eye in [DVec3::new(16.0, 16.0, -50.0), DVec3::new(-40.0, 3.0, 25.0), DVec3::ZERO] {
             let order = tree.back_to_front(Eye::At(eye), &mut NoTrace);
             // No piece lies, on a ray from the eye, before one that is painted later.
@@ -278,13 +279,75 @@ fn hides(tree: &Tree, faces: &[Face], eye: DVec3, first: u32, second: u32) -> bo
 fn too_many_pieces_are_refused() {
     let how = bsp::Options { candidates: 1, max_pieces: 4 };
     let crossing: Vec<Face> = scene(&mut Random(14), 9);
-    let refused = Tree::new(&crossing, &how, &mut NoTrace).unwrap_err();
+    let refused = Tree::new(&crossing, &how, &Work::default(), &mut NoTrace).unwrap_err();
     assert!(refused.to_string().contains("pieces of a tree"), "{refused}");
     let how = depth_sort::Options { max_pieces: 10 };
     let refused = depth_sort::items(&crossing, &screen(), &how, &mut NoTrace).unwrap_err();
     assert!(refused.to_string().contains("pieces of polygons"), "{refused}");
     let how = regions::Options { max_cuts: 3 };
-    assert!(regions(&crossing, &how, &mut NoTrace).is_err());
+    assert!(regions(&crossing, &how, &Work::default(), &mut NoTrace).is_err());
+}
+
+/// Lists and tables that grow with the polygons are charged, not the planes of the picture alone, and all of it is given back.
+#[test]
+fn lists_of_polygons_are_charged_to_the_budget() {
+    let faces = scene(&mut Random(15), 48);
+    for method in PolygonMethod::ALL {
+        let expected = method.items(&faces, &screen()).unwrap();
+        // The smallest power of two that suffices.
+        let needed = |faces: &[Face]| {
+            let suffices = |bytes: &u64| {
+                let work = Work::with_budget(*bytes, "the budget");
+                let found = method.items(faces, &Screen { work: work.clone(), ..screen() });
+                let found = found.inspect_err(|e| assert!(e.is_of_budget(), "{method}: {e}"));
+                let is_enough = found.is_ok();
+                drop(found);
+                assert_eq!(work.used(), 0, "{method}");
+                is_enough
+            };
+            (8..30).map(|bits| 1 << bits).find(suffices).unwrap()
+        };
+        let [few, many] = [&faces[..6], &faces].map(needed);
+        // The plain loop has nothing but planes.
+        assert_eq!(many > few, *method != PolygonMethod::ZBuffer, "{method}: {few} {many}");
+        let work = Work::with_budget(many, "the budget");
+        let found = method.items(&faces, &Screen { work, ..screen() }).unwrap();
+        assert!(found == expected, "{method}");
+    }
+}
+
+/// Each of these is large where the others are small.
+#[test]
+fn pixels_cells_and_regions_that_wait_are_charged() {
+    let square = |side: f64, z: f64| {
+        let corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)];
+        Face::new(&corners.map(|(x, y)| DVec3::new(x, y, z))).unwrap()
+    };
+    let within = |bytes: u64| Screen { work: Work::with_budget(bytes, "the budget"), ..screen() };
+    // Forty times all pixels of the picture, with the points there.
+    let walls: Vec<Face> = (0..40).map(|k| square(32.0, f64::from(k))).collect();
+    let sorted =
+        |bytes: u64| depth_sort::items(&walls, &within(bytes), &Default::default(), &mut NoTrace);
+    assert!(sorted(1 << 20).is_err_and(|e| e.to_string().contains("pixels of polygons")));
+    assert!(sorted(1 << 21).is_ok());
+    // One face in a thousand cells.
+    let steep = [(0.0, 0.0, 0.0), (32.0, 0.0, 32.0), (32.0, 32.0, 32.0), (0.0, 32.0, 0.0)];
+    let steep = [Face::new(&steep.map(DVec3::from)).unwrap()];
+    let how = octree::Options { capacity: 0, depth: 5, ..Default::default() };
+    let divided = |bytes: u64| octree::items(&steep, &within(bytes), &how, &mut NoTrace);
+    assert!(divided(1 << 16).is_err_and(|e| e.to_string().contains("octree")));
+    assert!(divided(1 << 20).is_ok());
+    // A wall before many things: all of them wait to be cut, and nothing of them is seen.
+    let mut hidden = vec![square(32.0, 1.0)];
+    hidden.extend((0..200).map(|k| square(4.0, f64::from(k + 2))));
+    let found = |bytes: u64| {
+        let work = Work::with_budget(bytes, "the budget");
+        let found = regions(&hidden, &Default::default(), &work, &mut NoTrace);
+        assert_eq!(work.used(), 0);
+        found
+    };
+    assert!(found(1 << 13).is_err_and(|e| e.to_string().contains("regions of polygons")));
+    assert_eq!(found(1 << 20).unwrap().len(), 1);
 }
 
 #[test]
@@ -341,7 +404,7 @@ fn regions_show_the_nearest_face_everywhere() {
     let mut random = Random(15);
     for round in 0..12 {
         let faces = if round == 0 { beams().to_vec() } else { scene(&mut random, 3 + round / 2) };
-        let seen = regions(&faces, &Default::default(), &mut NoTrace).unwrap();
+        let seen = regions(&faces, &Default::default(), &Work::default(), &mut NoTrace).unwrap();
         let inside = |ring: &[DVec2], p: DVec2| {
             let next = ring.iter().cycle().skip(1);
             let crosses = ring.iter().zip(next).filter(|(a, b)| {

@@ -1,7 +1,7 @@
 //! Roberts' hidden lines of convex bodies: the numbers by hand, and the same drawing as by quantitative invisibility.
 
-use crate::line_scenes::{Random, Triangle, cuboid, soup, view};
-use durer::math::{DMat3, DVec3};
+use crate::line_scenes::{Random, Triangle, cuboid, soup, turned_boxes, view};
+use durer::math::DVec3;
 use durer::trace::{NoTrace, Recorder};
 use durer::visibility::back_face::Eye;
 use durer::visibility::line::hidden_line;
@@ -30,23 +30,6 @@ fn length(lines: &[Line], eye: Eye, to_eye: DVec3) -> f64 {
         Eye::Along(_) => p - n * p.dot(n),
     };
     lines.iter().flat_map(Line::parts).map(|[p, q]| place(p).distance(place(q))).sum()
-}
-
-/// Returns boxes in any position, with corners that are short numbers; some go through each other.
-fn turned_boxes(count: usize, random: &mut Random) -> Vec<Triangle> {
-    let mut all = Vec::new();
-    for _ in 0..count {
-        let mut number = |low: f64, high: f64| low + random.next() * (high - low);
-        let half = [0; 3].map(|_| number(0.5, 2.0));
-        let middle = DVec3::from([0; 3].map(|_| number(0.0, 7.0)));
-        let axis = DVec3::from([0; 3].map(|_| number(-1.0, 1.0))).normalize();
-        let turn = DMat3::from_axis_angle(axis, number(0.0, 6.0));
-        let low = half.map(|v| -v);
-        let placed = cuboid(low, half);
-        // Corners of plane faces, as short as those of models: both methods get the same.
-        all.extend(placed.iter().map(|t| t.map(|p| middle + turn * p)));
-    }
-    all
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::raster_coverage::Random;
 use durer::clip::polygon::point::{self, Place, locate, winding_number};
-use durer::clip::polygon::{WindingRule, liang_barsky, signed_area, sutherland_hodgman};
+use durer::clip::polygon::{WindingRule, liang_barsky, maillot, signed_area, sutherland_hodgman};
 use durer::curve::Contours;
 use durer::fragment::fog::Fog;
 use durer::fragment::halftone::{as_light, clustered_dot, error_diffusion};
@@ -289,12 +289,75 @@ fn liang_and_barsky_leave_the_area_that_sutherland_and_hodgman_leave() {
         assert_eq!(liang_barsky::replay(steps.steps()), found);
         assert_eq!(liang_barsky::clip(&window, &ring, &mut NoTrace).unwrap(), found);
         let expected = sutherland_hodgman::clip(&window, &ring, &mut NoTrace).unwrap();
+        agrees_with_maillot(&window, &ring, signed_area(&expected), &mut random);
         let (a, b) = (signed_area(&found), signed_area(&expected));
         assert!((a - b).abs() < 1e-9, "{ring:?}: {a} {b}");
         assert!(found.iter().all(|p| window.contains(p.clamp(DVec2::ZERO, DVec2::splat(10.0)))));
         assert!(found.iter().all(|p| p.cmpge(DVec2::splat(-1e-9)).all()));
         assert!(found.iter().all(|p| p.cmple(DVec2::splat(10.0 + 1e-9)).all()));
     }
+}
+
+/// Checks Maillot's ring: its area, its steps, and that it winds around each point of the window as often as the whole.
+fn agrees_with_maillot(window: &Rect, ring: &[DVec2], area: f64, random: &mut Random) {
+    let mut steps = Recorder::default();
+    let found = maillot::clip(window, ring, &mut steps).unwrap();
+    assert_eq!(maillot::replay(steps.steps()), found);
+    assert_eq!(maillot::clip(window, ring, &mut NoTrace).unwrap(), found);
+    assert!(found.iter().all(|p| window.contains(*p)), "{ring:?}: {found:?}");
+    assert!((signed_area(&found) - area).abs() < 1e-9, "{ring:?}: {found:?}");
+    if found.is_empty() {
+        return;
+    }
+    for _ in 0..8 {
+        let sample = random.point(0.001, 9.999);
+        let turns = [ring, &found[..]].map(|ring| winding_number([ring], sample, &mut NoTrace));
+        assert_eq!(turns[0], turns[1], "{ring:?}: {sample}");
+    }
+}
+
+#[test]
+fn far_rings_go_around_the_window_as_maillot_has_it() {
+    let mut random = Random(34);
+    let window = Rect::new(DVec2::ZERO, DVec2::splat(10.0)).unwrap();
+    for round in 0..1500 {
+        // Far enough for edges from corner to opposite corner beside the window.
+        let ring: Vec<DVec2> = (0..3 + round % 6).map(|_| random.point(-30.0, 40.0)).collect();
+        let expected = sutherland_hodgman::clip(&window, &ring, &mut NoTrace).unwrap();
+        agrees_with_maillot(&window, &ring, signed_area(&expected), &mut random);
+    }
+}
+
+#[test]
+fn corners_between_the_regions_of_two_ends_are_turned_around() {
+    use maillot::Turn::{Basic, BorderToBorder, BorderToCorner, CornerToCorner};
+    let window = Rect::new(DVec2::ZERO, DVec2::splat(10.0)).unwrap();
+    let turns = |from: [f64; 2], to: [f64; 2]| {
+        let ring = [from, to].map(DVec2::from);
+        let mut steps = Recorder::default();
+        maillot::clip(&window, &ring, &mut steps).unwrap();
+        // Those of the first edge.
+        let edges = steps.steps().iter().skip(1);
+        let first = edges.take_while(|step| !matches!(step, maillot::Step::Edge { .. }));
+        let turn = |step: &maillot::Step| match *step {
+            maillot::Step::Turn { corner, turn } => Some((corner.to_array(), turn)),
+            _ => None,
+        };
+        first.filter_map(turn).collect::<Vec<_>>()
+    };
+    let [a, b, c, d] = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]];
+    assert_eq!(turns([-4.0, 3.0], [3.0, -4.0]), [(a, BorderToBorder)]);
+    assert_eq!(turns([-2.0, 1.0], [12.0, -8.0]), [(a, BorderToCorner), (b, Basic)]);
+    assert_eq!(turns([12.0, -8.0], [-2.0, 1.0]), [(a, BorderToCorner)]);
+    // From corner to opposite corner, on both sides and in both directions of both diagonals.
+    assert_eq!(turns([-9.0, -1.0], [11.0, 25.0]), [(d, CornerToCorner), (c, Basic)]);
+    assert_eq!(turns([11.0, 25.0], [-9.0, -1.0]), [(d, CornerToCorner), (a, Basic)]);
+    assert_eq!(turns([-1.0, -9.0], [25.0, 11.0]), [(b, CornerToCorner), (c, Basic)]);
+    assert_eq!(turns([-9.0, 11.0], [11.0, -19.0]), [(a, CornerToCorner), (b, Basic)]);
+    assert_eq!(turns([11.0, -19.0], [-9.0, 11.0]), [(a, CornerToCorner), (d, Basic)]);
+    assert_eq!(turns([-1.0, 23.0], [23.0, -1.0]), [(c, CornerToCorner), (b, Basic)]);
+    // Beyond a common border nothing lies between.
+    assert_eq!(turns([-4.0, -4.0], [5.0, -4.0]), []);
 }
 
 #[test]

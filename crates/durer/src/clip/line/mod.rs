@@ -30,6 +30,7 @@ pub mod midpoint;
 pub mod nicholl_lee_nicholl;
 mod passage;
 pub mod skala;
+pub mod sobkow_pospisil_yang;
 
 pub use border::{ClipBox, End};
 pub use convex::{ConvexPolygon, Edge, HalfPlane, HalfSpace};
@@ -75,6 +76,8 @@ crate::info::family! {
         NichollLeeNicholl => nicholl_lee_nicholl::INFO,
         /// Signs of the window's corners against the line.
         Skala => skala::INFO,
+        /// A case for each pair of regions.
+        SobkowPospisilYang => sobkow_pospisil_yang::INFO,
         /// Boundary coordinates before the division by w.
         Homogeneous => homogeneous::INFO,
     }
@@ -94,6 +97,7 @@ impl LineClipper {
             Self::LiangBarsky => liang_barsky::clip(window, segment, t),
             Self::NichollLeeNicholl => nicholl_lee_nicholl::clip(window, segment, t),
             Self::Skala => skala::clip(window, segment, t),
+            Self::SobkowPospisilYang => sobkow_pospisil_yang::clip(window, segment, t),
             Self::Homogeneous => homogeneous::clip(window, segment, t),
             Self::Midpoint => Err(Error::Unsupported {
                 what: "midpoint subdivision on floating-point coordinates",

@@ -7,12 +7,13 @@ use crate::trace::Recorder;
 use proptest::prelude::*;
 use std::cmp::Ordering;
 
-const FLOAT: [LineClipper; 6] = [
+const FLOAT: [LineClipper; 7] = [
     LineClipper::CohenSutherland,
     LineClipper::CyrusBeck,
     LineClipper::LiangBarsky,
     LineClipper::NichollLeeNicholl,
     LineClipper::Skala,
+    LineClipper::SobkowPospisilYang,
     LineClipper::Homogeneous,
 ];
 
@@ -140,6 +141,9 @@ proptest! {
         let mut steps = Recorder::default();
         let got = skala::clip(&w, s, &mut steps).unwrap();
         prop_assert_eq!(bits(skala::replay(s, steps.steps())), bits(got));
+        let mut steps = Recorder::default();
+        let got = sobkow_pospisil_yang::clip(&w, s, &mut steps).unwrap();
+        prop_assert_eq!(bits(sobkow_pospisil_yang::replay(s, steps.steps())), bits(got));
         let mut steps = Recorder::default();
         let got = homogeneous::clip(&w, s, &mut steps).unwrap();
         let lifted = Segment::new(s.start.extend(1.0), s.end.extend(1.0));

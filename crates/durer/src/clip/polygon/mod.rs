@@ -9,6 +9,7 @@ pub mod greiner_hormann;
 mod group;
 pub mod liang_barsky;
 mod lists;
+pub mod maillot;
 pub mod mismatch;
 pub mod naive;
 mod near;

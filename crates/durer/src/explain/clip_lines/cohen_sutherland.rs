@@ -1,6 +1,8 @@
 //! The lesson of Cohen and Sutherland's outcodes.
 
-use super::{BORDERS, CODE, Cutting, END, NO_HEAD, POINT, START, TAKES, end_name, figure, p};
+use super::{
+    CODE, Cutting, END, NO_HEAD, POINT, START, TAKES, border_name, end_name, figure, side,
+};
 use crate::Result;
 use crate::clip::line::cohen_sutherland::{INFO, Step, clip};
 use crate::clip::line::{End, Segment};
@@ -8,7 +10,7 @@ use crate::clip::outcode::Outcode;
 use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
-use crate::explain::picture::{Look, Picture, corners};
+use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, Rect};
@@ -117,17 +119,6 @@ fn place(code: Outcode) -> Value {
     Value::List(set.map(|(_, word)| word.into()).collect())
 }
 
-/// Returns the ends of a window's border.
-fn side(window: &Rect, border: Outcode) -> [DVec2; 2] {
-    let [a, b, c, d] = corners(window);
-    match border {
-        Outcode::LEFT => [a, d],
-        Outcode::RIGHT => [b, c],
-        Outcode::BOTTOM => [a, b],
-        _ => [d, c],
-    }
-}
-
 impl State {
     fn show(&mut self, step: &Step<DVec2>, want: Want) -> Shown {
         let caption = self.take(step);
@@ -161,10 +152,8 @@ impl State {
             Step::Cut { end, border, point, code } => {
                 self.cutting.cut(end, point);
                 self.codes[usize::from(end == End::End)] = code;
-                let index = border.0.trailing_zeros() as usize;
-                let border = BORDERS.get(index).copied().unwrap_or_default();
                 CUT.with([
-                    ("border", border.into()),
+                    ("border", border_name(border)),
                     ("end", end_name(end)),
                     ("point", point.into()),
                     ("code", code.into()),
@@ -189,28 +178,10 @@ impl State {
         table
     }
 
-    /// Draws the nine regions with their codes, the window and the segment.
+    /// Draws the regions, the window and the segment.
     fn picture(&self) -> Picture {
-        let cutting = &self.cutting;
-        let [low, high] = cutting.extent();
-        let (a, b) = (cutting.window.min(), cutting.window.max());
-        let mut picture = Picture::new([low, high]);
-        for x in [a.x, b.x] {
-            picture.chain([p(x, low.y), p(x, high.y)], Look::Thin);
-        }
-        for y in [a.y, b.y] {
-            picture.chain([p(low.x, y), p(high.x, y)], Look::Thin);
-        }
-        picture.frame(&cutting.window, Look::Window);
-        for (x0, x1) in [(low.x, a.x), (a.x, b.x), (b.x, high.x)] {
-            for (y0, y1) in [(low.y, a.y), (a.y, b.y), (b.y, high.y)] {
-                // In a corner, where lines are rare.
-                let code =
-                    Outcode::of_point_2d(&cutting.window, p(x0.midpoint(x1), y0.midpoint(y1)));
-                picture.label(p(x0, y1), (24.0, 12.0), code);
-            }
-        }
-        cutting.add_segment(&mut picture);
+        let mut picture = self.cutting.regions();
+        self.cutting.add_segment(&mut picture);
         picture
     }
 }

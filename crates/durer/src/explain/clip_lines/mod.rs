@@ -6,16 +6,18 @@ mod nicholl_lee_nicholl;
 mod parametric;
 mod polyline;
 mod skala;
+mod sobkow_pospisil_yang;
 
 pub(super) use cohen_sutherland::by_codes;
 pub(super) use parametric::by_parameters;
 
 use super::input::{Figure, Input};
 use super::lesson::Lesson;
-use super::picture::{Look, Picture};
+use super::picture::{Look, Picture, corners};
 use super::words::{Value, Word};
 use crate::Result;
 use crate::clip::line::{End, Segment};
+use crate::clip::outcode::Outcode;
 use crate::math::{DVec2, Rect};
 
 pub(super) const LESSONS: &[Lesson] = &[
@@ -25,6 +27,7 @@ pub(super) const LESSONS: &[Lesson] = &[
     parametric::LIANG_BARSKY,
     nicholl_lee_nicholl::LESSON,
     skala::LESSON,
+    sobkow_pospisil_yang::LESSON,
     parametric::HOMOGENEOUS,
     polyline::LESSON,
 ];
@@ -66,6 +69,22 @@ fn figure(size: (f64, f64), start: (f64, f64), end: (f64, f64)) -> Input {
     })
 }
 
+/// Returns the adjective for a border of one bit.
+fn border_name(border: Outcode) -> Value {
+    BORDERS.get(border.0.trailing_zeros() as usize).copied().unwrap_or_default().into()
+}
+
+/// Returns the ends of a window's border.
+fn side(window: &Rect, border: Outcode) -> [DVec2; 2] {
+    let [a, b, c, d] = corners(window);
+    match border {
+        Outcode::LEFT => [a, d],
+        Outcode::RIGHT => [b, c],
+        Outcode::BOTTOM => [a, b],
+        _ => [d, c],
+    }
+}
+
 /// A segment before a window, and what is left of it.
 #[derive(Clone)]
 struct Cutting {
@@ -95,6 +114,29 @@ impl Cutting {
     fn extent(&self) -> [DVec2; 2] {
         let (min, max) = (self.window.min(), self.window.max());
         Picture::around([min, max, self.whole.start, self.whole.end], 0.18).extent
+    }
+
+    /// Draws the nine regions with their codes, and the window.
+    fn regions(&self) -> Picture {
+        let [low, high] = self.extent();
+        let (a, b) = (self.window.min(), self.window.max());
+        let mut picture = Picture::new([low, high]);
+        for x in [a.x, b.x] {
+            picture.chain([p(x, low.y), p(x, high.y)], Look::Thin);
+        }
+        for y in [a.y, b.y] {
+            picture.chain([p(low.x, y), p(high.x, y)], Look::Thin);
+        }
+        picture.frame(&self.window, Look::Window);
+        for (x0, x1) in [(low.x, a.x), (a.x, b.x), (b.x, high.x)] {
+            for (y0, y1) in [(low.y, a.y), (a.y, b.y), (b.y, high.y)] {
+                let middle = p(x0.midpoint(x1), y0.midpoint(y1));
+                // In a corner, where lines are rare.
+                let code = Outcode::of_point_2d(&self.window, middle);
+                picture.label(p(x0, y1), (24.0, 12.0), code);
+            }
+        }
+        picture
     }
 
     fn add_segment(&self, picture: &mut Picture) {

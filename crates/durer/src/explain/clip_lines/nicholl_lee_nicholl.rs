@@ -1,6 +1,6 @@
 //! The lesson of Nicholl, Lee and Nicholl's rays.
 
-use super::{BORDERS, Cutting, NO_HEAD, TAKES, end_name, figure, p};
+use super::{Cutting, NO_HEAD, TAKES, border_name, end_name, figure, p};
 use crate::Result;
 use crate::clip::line::nicholl_lee_nicholl::{INFO, Step, clip};
 use crate::clip::outcode::Outcode;
@@ -137,10 +137,8 @@ impl State {
             Step::Cut { end, border, point } => {
                 self.cutting.cut(end, point);
                 self.cuts += 1;
-                let border =
-                    BORDERS.get(border.0.trailing_zeros() as usize).copied().unwrap_or_default();
                 CUT.with([
-                    ("border", border.into()),
+                    ("border", border_name(border)),
                     ("end", end_name(end)),
                     ("point", point.into()),
                 ])

@@ -1,6 +1,6 @@
 //! The lesson of Liang and Barsky's polygon clipping.
 
-use super::{TAKES_WINDOW, before, letter, ring, ring_and_window, windowed};
+use super::{TAKES_WINDOW, letter, ring, ring_and_window, walked, windowed};
 use crate::Result;
 use crate::clip::polygon::liang_barsky::{INFO, Step, clip};
 use crate::explain::frame::{Frames, Shown, Want, record};
@@ -137,21 +137,6 @@ impl State {
     }
 
     fn picture(&self) -> Picture {
-        let mut picture = before(&self.ring, &self.window);
-        let [low, high] = picture.extent;
-        let (min, max) = (self.window.min(), self.window.max());
-        for x in [min.x, max.x] {
-            picture.chain([DVec2::new(x, low.y), DVec2::new(x, high.y)], Look::Thin);
-        }
-        for y in [min.y, max.y] {
-            picture.chain([DVec2::new(low.x, y), DVec2::new(high.x, y)], Look::Thin);
-        }
-        let ends = [self.edge, self.edge + 1].map(|k| self.ring.get(k % self.ring.len().max(1)));
-        if let [Some(&from), Some(&to)] = ends {
-            picture.arrow(from, to, Look::First);
-        }
-        picture.chain(self.out.clone(), Look::Result);
-        self.out.iter().for_each(|&p| picture.dot(p, Look::Result));
-        picture
+        walked(&self.ring, &self.window, self.edge, &self.out)
     }
 }

@@ -6,6 +6,7 @@ mod point;
 mod rectangle;
 mod stages;
 mod sweep;
+mod turns;
 mod walks;
 
 pub(super) use stages::by_stages;
@@ -21,6 +22,7 @@ use crate::math::{DVec2, Rect};
 pub(super) const LESSONS: &[Lesson] = &[
     stages::LESSON,
     edges::LESSON,
+    turns::LESSON,
     walks::WEILER_ATHERTON,
     walks::GREINER_HORMANN,
     beams::LESSON,
@@ -146,6 +148,25 @@ fn before(points: &[DVec2], window: &Rect) -> Picture {
     let mut picture = Picture::around(all, 0.1);
     picture.ring(points, Look::Pale);
     picture.frame(window, Look::Window);
+    picture
+}
+
+/// Returns the picture of one edge of a ring, with the window's borders prolonged and the points emitted so far.
+fn walked(ring: &[DVec2], window: &Rect, edge: usize, out: &[DVec2]) -> Picture {
+    let mut picture = before(ring, window);
+    let [low, high] = picture.extent;
+    let (min, max) = (window.min(), window.max());
+    for x in [min.x, max.x] {
+        picture.chain([DVec2::new(x, low.y), DVec2::new(x, high.y)], Look::Thin);
+    }
+    for y in [min.y, max.y] {
+        picture.chain([DVec2::new(low.x, y), DVec2::new(high.x, y)], Look::Thin);
+    }
+    if let [Some(&from), Some(&to)] = [edge, edge + 1].map(|k| ring.get(k % ring.len().max(1))) {
+        picture.arrow(from, to, Look::First);
+    }
+    picture.chain(out, Look::Result);
+    out.iter().for_each(|&p| picture.dot(p, Look::Result));
     picture
 }
 

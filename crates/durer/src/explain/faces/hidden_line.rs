@@ -25,7 +25,7 @@ pub(super) const LESSON: Lesson = Lesson {
     make: |_, input, _, cap| make(input, cap),
 };
 
-const STRIP: Example = Example {
+pub(super) const STRIP: Example = Example {
     name: "strip",
     title: Word::new(
         "a strip behind two squares: Q = 0, 1, 2, 1, 0; D is hidden",

@@ -2,7 +2,10 @@
 
 mod a_buffer;
 mod back_face;
+mod bodies;
 mod bsp;
+mod carried;
+mod csg;
 mod depth;
 mod depth_sort;
 mod hidden_line;
@@ -10,11 +13,14 @@ mod hierarchical;
 mod horizon;
 mod octree;
 mod orientation;
+mod patches;
+mod portals;
 mod ray;
 mod regions;
 mod roberts;
 mod row;
 mod scan_line_z;
+mod shadow_volumes;
 mod triangles;
 mod warnock;
 mod watkins;
@@ -24,12 +30,13 @@ use super::input::Input;
 use super::lesson::{Example, Lesson};
 use super::picture::{Look, Picture};
 use super::words::Word;
+use crate::Result;
 use crate::math::{DVec2, DVec3};
 use crate::target::NO_ITEM;
 use crate::visibility::polygons::{Face, Screen};
-use crate::{Error, Result};
 
 pub(super) use row::{Row, row_camera};
+pub(super) use shadow_volumes::LESSON as SHADOW_VOLUMES;
 pub(super) use triangles::Triangles;
 
 pub(super) const LESSONS: &[Lesson] = &[
@@ -45,9 +52,14 @@ pub(super) const LESSONS: &[Lesson] = &[
     scan_line_z::LESSON,
     watkins::LESSON,
     a_buffer::LESSON,
+    patches::LESSON,
     ray::LESSON,
     regions::LESSON,
+    portals::LESSON,
+    csg::LESSON,
     roberts::LESSON,
+    carried::APPEL,
+    carried::GALIMBERTI_MONTANARI,
     hidden_line::LESSON,
     horizon::LESSON,
 ];
@@ -128,10 +140,7 @@ impl Scene {
     /// all have negative z.
     pub fn new(input: &Input) -> Result<Self> {
         let given = input.faces(TAKES)?;
-        if given.len() > MOST {
-            let (value, limit) = (given.len() as u64, MOST as u64);
-            return Err(Error::Limit { what: "faces to be explained", value, limit });
-        }
+        bodies::check_count(given)?;
         let raster = Raster::around(given.iter().flatten().map(|corner| corner.truncate()));
         let nearest =
             given.iter().flatten().map(|corner| corner.z).fold(f64::NEG_INFINITY, f64::max);

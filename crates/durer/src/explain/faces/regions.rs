@@ -59,7 +59,8 @@ struct State {
 
 fn make(input: &Input, cap: usize) -> Result<Frames> {
     let scene = Scene::new(input)?;
-    let steps = record(cap, |t| regions(&scene.faces, &Default::default(), t))?;
+    let steps =
+        record(cap, |t| regions(&scene.faces, &Default::default(), &scene.screen().work, t))?;
     let mut state = State { scene, seen: Vec::new(), by: 0, cut: None };
     Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }

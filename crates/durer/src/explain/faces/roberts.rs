@@ -1,6 +1,7 @@
 //! The lesson of Roberts' hidden lines of convex bodies.
 
-use super::MOST;
+use super::bodies::{BOXES, PIERCED, check_count, upright};
+use crate::Result;
 use crate::explain::frame::{Frames, record};
 use crate::explain::grid::letter;
 use crate::explain::input::Input;
@@ -11,31 +12,14 @@ use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
 use crate::visibility::back_face::Eye;
 use crate::visibility::line::roberts::{Body, Bound, INFO, Line, Options, Step, Values, draw};
-use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
     info: &INFO,
     takes: TAKES,
     examples: &[
-        Example {
-            name: "boxes",
-            title: Word::new("a box before a box", "ein Quader vor einem Quader"),
-            input: || {
-                let mut faces = cuboid([0.0, 0.0, 0.0], [4.0, 3.0, 2.0]);
-                faces.extend(cuboid([1.0, -1.0, 4.0], [3.0, 1.5, 5.0]));
-                Input::Faces(faces)
-            },
-        },
-        Example {
-            name: "pierced",
-            title: Word::new("a bar through a box", "ein Stab durch einen Quader"),
-            input: || {
-                let mut faces = cuboid([0.0, 0.0, 0.0], [3.0, 3.0, 3.0]);
-                faces.extend(cuboid([-2.0, 1.0, 1.0], [5.0, 2.0, 2.0]));
-                Input::Faces(faces)
-            },
-        },
+        BOXES,
+        PIERCED,
         Example {
             name: "hidden",
             title: Word::new(
@@ -127,24 +111,6 @@ static INVISIBLE: Template = Template::new(
     "Von der Linie bleibt nichts: Sie wird nicht gezeichnet.",
 );
 
-/// Returns the six faces of a box with sides along the axes.
-fn upright(low: [f64; 3], high: [f64; 3]) -> Vec<Vec<DVec3>> {
-    let corner =
-        |i: usize| DVec3::from([0, 1, 2].map(|k| if i >> k & 1 == 1 { high[k] } else { low[k] }));
-    let faces =
-        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    faces.map(|face| face.map(corner).to_vec()).to_vec()
-}
-
-/// Returns the same turned, so that three faces are seen: by 3-4-5 triangles and 5-12-13 triangles.
-fn cuboid(low: [f64; 3], high: [f64; 3]) -> Vec<Vec<DVec3>> {
-    let turned = |p: DVec3| {
-        let (x, z) = (0.8 * p.x + 0.6 * p.z, 0.8 * p.z - 0.6 * p.x);
-        DVec3::new(x, (12.0 * p.y - 5.0 * z) / 13.0, (5.0 * p.y + 12.0 * z) / 13.0)
-    };
-    upright(low, high).iter().map(|face| face.iter().copied().map(turned).collect()).collect()
-}
-
 /// Bodies, and what is known of their lines.
 #[derive(Clone)]
 struct State {
@@ -160,10 +126,7 @@ struct State {
 
 fn make(input: &Input, cap: usize) -> Result<Frames> {
     let faces = input.faces(TAKES)?;
-    if faces.len() > MOST {
-        let (value, limit) = (faces.len() as u64, MOST as u64);
-        return Err(Error::Limit { what: "faces to be explained", value, limit });
-    }
+    check_count(faces)?;
     let bodies = Body::several(faces)?;
     let steps = record(cap, |t| {
         draw(&bodies, Eye::Along(DVec3::NEG_Z), &Options::default(), t);

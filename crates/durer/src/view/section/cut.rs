@@ -13,8 +13,14 @@ pub struct Cut {
     pub segments: Vec<[u32; 2]>,
 }
 
-/// Returns the part of a mesh of triangles inside a plane.
-pub fn triangles(mesh: &Mesh, plane: &Plane, last_digit: f64) -> Cut {
+/// Returns the part of a mesh of triangles inside a plane; `report` is called with each triangle's index and which of its
+/// corners are inside.
+pub fn triangles(
+    mesh: &Mesh,
+    plane: &Plane,
+    last_digit: f64,
+    mut report: impl FnMut(u32, [bool; 3]),
+) -> Cut {
     let welded = weld(mesh, last_digit);
     let heights = heights(mesh, &welded, plane);
     let mut cutter = Cutter {
@@ -31,7 +37,10 @@ pub fn triangles(mesh: &Mesh, plane: &Plane, last_digit: f64) -> Cut {
     for (range, material) in mesh.material_runs() {
         let start = (cutter.indices.len() / 3) as u32;
         for t in range {
-            cutter.triangle(mesh.triangle(t as usize));
+            let corners = mesh.triangle(t as usize);
+            if let Some(inside) = cutter.triangle(corners) {
+                report(t, inside);
+            }
         }
         let range = start..(cutter.indices.len() / 3) as u32;
         let name = mesh.parts.get(parts.len()).map(|p| p.name.clone()).unwrap_or_default();
@@ -122,17 +131,23 @@ struct Cutter<'a> {
 }
 
 impl Cutter<'_> {
-    fn triangle(&mut self, t: [u32; 3]) {
+    /// Adds the part of a triangle inside the plane, and returns which corners are inside; `None` if one is not finite.
+    fn triangle(&mut self, t: [u32; 3]) -> Option<[bool; 3]> {
         let height = |v: u32| self.heights[v as usize];
         if t.iter().any(|&v| !height(v).is_finite()) {
-            return;
+            return None;
         }
         let inside = t.map(|v| height(v) > 0.0);
         match inside {
-            [true, true, true] => return self.indices.extend(t),
-            [false, false, false] => return,
-            _ => {}
+            [true, true, true] => self.indices.extend(t),
+            [false, false, false] => {}
+            _ => self.divide(t, inside),
         }
+        Some(inside)
+    }
+
+    /// Adds the part inside the plane of a triangle that it cuts, and the new edge.
+    fn divide(&mut self, t: [u32; 3], inside: [bool; 3]) {
         // Turned so that one corner is alone on its side.
         let alone =
             (0..3).find(|&i| inside[i] != inside[(i + 1) % 3] && inside[i] != inside[(i + 2) % 3]);

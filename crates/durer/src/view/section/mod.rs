@@ -11,9 +11,11 @@
 mod cap;
 mod cut;
 
+use super::cull::triangle_area;
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, DVec3, Plane, Vec3, Vec4};
 use crate::scene::{Material, Scene, ShadingModel, Topology};
+use crate::trace::{NoTrace, Tracer};
 use crate::{Error, Result};
 
 /// Facts about the algorithm.
@@ -28,7 +30,17 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "O(n) for n triangles, O(c²) at worst for c new edges of a cap",
     limits: "bodies that penetrate each other are capped each by itself",
-    pseudocode: &[],
+    pseudocode: &[
+        "for each plane n · P + d = 0, n inwards:",
+        "    h(V) ← n · V + d for each vertex V, 0 if V is on the plane but for rounding",
+        "    for each triangle of a mesh:",
+        "        no corner has h > 0: it is cut away; all have h > 0: it is kept",
+        "        else a vertex at t = h / (h − h′) on each edge from h > 0 to h′ ≤ 0; one triangle or two are kept",
+        "        the new edge, turned round, is an edge of the cap",
+        "    link these edges to loops; a loop in another one is its hole",
+        "    triangulate the loops: the cap",
+        "    a walk along the edges does not close: the mesh was open, no cap",
+    ],
 };
 
 /// Options for cutting a scene.
@@ -45,6 +57,62 @@ impl Default for Options {
     fn default() -> Self {
         Self { caps: true, cap_color: Vec3::new(0.6, 0.05, 0.03) }
     }
+}
+
+/// Step of the cutting.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// The next plane cuts, world space.
+    Plane(Plane),
+    /// A triangle was compared with the plane.
+    Triangle {
+        /// The instance.
+        instance: usize,
+        /// Its triangle, numbered as before this plane.
+        triangle: usize,
+        /// For each corner, whether it is inside the plane.
+        inside: [bool; 3],
+    },
+    /// A new edge on the plane, world space.
+    Edge([DVec3; 2]),
+    /// A triangle of a cap, world space.
+    Cap([DVec3; 3]),
+    /// The edges of an instance do not close: it gets no cap.
+    Open {
+        /// The instance.
+        instance: usize,
+    },
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Plane(_) => 1,
+            Self::Triangle { inside: [a, b, c], .. } if a == b && b == c => 4,
+            Self::Triangle { .. } => 5,
+            Self::Edge(_) => 6,
+            Self::Cap(_) => 8,
+            Self::Open { .. } => 9,
+        }
+    }
+}
+
+/// Returns the outline and the area of the caps that a list of steps leads to.
+pub fn replay(steps: &[Step]) -> (Vec<[DVec3; 2]>, f64) {
+    let mut outline: Vec<[DVec3; 2]> = Vec::new();
+    let mut area = 0.0;
+    for step in steps {
+        match step {
+            Step::Plane(plane) => {
+                outline = outline.iter().filter_map(|s| inside(*s, plane)).collect();
+            }
+            Step::Edge(edge) => outline.push(*edge),
+            Step::Cap(corners) => area += triangle_area(*corners).length(),
+            Step::Triangle { .. } | Step::Open { .. } => {}
+        }
+    }
+    (outline, area)
 }
 
 /// A scene after the cut.
@@ -89,6 +157,19 @@ pub struct Section {
 /// # Errors
 /// The errors of [`Scene::check`]; [`Error::Parameter`] for a plane without a direction.
 pub fn cut(scene: &Scene, planes: &[Plane], options: &Options) -> Result<Section> {
+    cut_traced(scene, planes, options, &mut NoTrace)
+}
+
+/// Cuts a scene as [`cut()`] does, with a listener for its steps.
+///
+/// # Errors
+/// As [`cut()`].
+pub fn cut_traced(
+    scene: &Scene,
+    planes: &[Plane],
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<Section> {
     scene.check()?;
     let mut section = Section {
         cap_material: scene.materials.len(),
@@ -112,13 +193,14 @@ pub fn cut(scene: &Scene, planes: &[Plane], options: &Options) -> Result<Section
         let plane = plane.normalized().filter(|p| p.distance.is_finite()).ok_or_else(|| {
             Error::parameter("section plane", plane.normal, "a finite normal other than zero")
         })?;
-        section.cut_by(&plane, options);
+        section.cut_by(&plane, options, t);
     }
     Ok(section)
 }
 
 impl Section {
-    fn cut_by(&mut self, plane: &Plane, options: &Options) {
+    fn cut_by(&mut self, plane: &Plane, options: &Options, t: &mut impl Tracer<Step>) {
+        t.step(|| Step::Plane(*plane));
         self.outline = self.outline.iter().filter_map(|s| inside(*s, plane)).collect();
         for index in 0..self.scene.instances.len() {
             let matrix = self.scene.instances[index].world_from_mesh;
@@ -129,20 +211,31 @@ impl Section {
                 self.scene.meshes[index] = kept;
                 continue;
             }
-            let mut cut = cut::triangles(mesh, &local, self.scene.last_digit);
+            let report = |triangle: u32, inside| {
+                let triangle = triangle as usize;
+                t.step(|| Step::Triangle { instance: index, triangle, inside });
+            };
+            let mut cut = cut::triangles(mesh, &local, self.scene.last_digit, report);
             let world = |p: Vec3| matrix.transform_point3(p.as_dvec3());
-            let segments = cut.segments.iter();
-            self.outline.extend(segments.map(|s| s.map(|v| world(cut.mesh.positions[v as usize]))));
+            for segment in &cut.segments {
+                let edge = segment.map(|v| world(cut.mesh.positions[v as usize]));
+                t.step(|| Step::Edge(edge));
+                self.outline.push(edge);
+            }
             if options.caps && !cut.segments.is_empty() {
                 match cap::triangles(&cut.mesh.positions, &cut.segments, local.normal) {
                     Some(caps) => {
-                        for t in &caps {
-                            let [a, b, c] = t.map(|v| world(cut.mesh.positions[v as usize]));
-                            self.cap_area += 0.5 * (b - a).cross(c - a).length();
+                        for cap in &caps {
+                            let corners = cap.map(|v| world(cut.mesh.positions[v as usize]));
+                            t.step(|| Step::Cap(corners));
+                            self.cap_area += triangle_area(corners).length();
                         }
                         cut::add_caps(&mut cut.mesh, &caps, local.normal, self.cap_material);
                     }
-                    None => self.open_cuts += 1,
+                    None => {
+                        t.step(|| Step::Open { instance: index });
+                        self.open_cuts += 1;
+                    }
                 }
             }
             self.scene.meshes[index] = cut.mesh;

@@ -1,14 +1,17 @@
 //! Visible lines: what of the edges of a scene can be seen, as exact drawings.
 
+pub mod appel;
 mod arrange;
 mod bend;
 mod chain;
 mod crease_chain;
 mod crossing;
 pub mod edge_lines;
+pub mod face_net;
 mod facing;
 mod fading;
 pub mod floating_horizon;
+pub mod galimberti_montanari;
 pub mod hidden_line;
 pub mod horizon_curves;
 mod intersection;

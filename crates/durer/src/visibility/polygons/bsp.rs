@@ -162,7 +162,7 @@ pub fn items(
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Result<Pixels<u32>> {
-    let tree = Tree::new(faces, options, t)?;
+    let tree = Tree::new(faces, options, &screen.work, t)?;
     let mut items = screen.plane(NO_ITEM)?;
     for piece in tree.back_to_front(Eye::Along(DVec3::Z), t) {
         let number = tree.face(piece);

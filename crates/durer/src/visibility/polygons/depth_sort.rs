@@ -18,6 +18,7 @@ use crate::math::{DVec3, Plane};
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 use crate::visibility::surface::depth_sort::Test;
+use crate::work::Charge;
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -157,14 +158,19 @@ pub fn items(
     t: &mut impl Tracer<Step>,
 ) -> Result<Pixels<u32>> {
     let mut items = screen.plane(NO_ITEM)?;
-    let covered = |face: &Face| {
-        let mut pixels = Vec::new();
+    let mut charge = screen.work.charge("pixels of polygons", 0)?;
+    let mut covered = |face: &Face| {
+        let mut count = 0;
+        face.spans(screen, |span| count += u64::from(span.x0.abs_diff(span.x1)));
+        charge.grow(count.saturating_mul(size_of::<([u32; 2], DVec3)>() as u64))?;
+        let mut pixels = Vec::with_capacity(count as usize);
         face.pixels(screen, |[x, y], point| pixels.push(([y, x], point)));
         pixels.sort_by_key(|(pixel, _)| *pixel);
-        pixels
+        Ok(pixels)
     };
-    let pixels = faces.iter().map(covered).collect();
-    let mut sorter = Sorter { faces, pieces: Pieces::new(faces), pixels, list: Vec::new() };
+    let pixels = faces.iter().map(&mut covered).collect::<Result<_>>()?;
+    let pieces = Pieces::new(faces, &screen.work)?;
+    let mut sorter = Sorter { faces, pieces, pixels, list: Vec::new(), charge };
     sorter.list = (0..faces.len() as u32).map(|polygon| (polygon, false)).collect();
     sorter.sort();
     while let Some(&(polygon, _)) = sorter.list.first() {
@@ -193,6 +199,8 @@ struct Sorter<'a> {
     pixels: Vec<Vec<([u32; 2], DVec3)>>,
     /// Polygons, and whether they are marked.
     list: Vec<(u32, bool)>,
+    /// Memory of the pixels.
+    charge: Charge,
 }
 
 impl Sorter<'_> {
@@ -292,6 +300,9 @@ impl Sorter<'_> {
         let limit = ("pieces of polygons", options.max_pieces);
         let pieces = self.pieces.split(&plane, polygon, limit)?;
         t.step(|| Step::Split { polygon, face: self.pieces.face(polygon), along, pieces });
+        // The pixels of both pieces are those of the polygon, which keeps its own.
+        let count = self.pixels[polygon as usize].len();
+        self.charge.grow((count * size_of::<([u32; 2], DVec3)>()) as u64)?;
         for piece in pieces {
             let all = &self.pixels[polygon as usize];
             let own = all.iter().filter(|(_, point)| self.pieces.holds(piece, *point));

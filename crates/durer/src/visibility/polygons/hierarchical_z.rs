@@ -184,7 +184,7 @@ pub fn items(
     let Options { capacity, depth } = *options;
     // Each face is in one cell.
     let division = Division { holding: Holding::Whole, capacity, depth, most: faces.len() };
-    let octree = Octree::new(faces, &division)?;
+    let octree = Octree::new(faces, &division, &screen.work)?;
     for (cell, own) in octree.cells.iter().enumerate() {
         t.step(|| Step::Cell { cell, corners: [own.low, own.high], faces: own.faces.len() });
     }

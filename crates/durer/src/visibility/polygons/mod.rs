@@ -3,8 +3,10 @@
 //!
 //! The eye looks along z: x goes to the right and y down, in pixels, and z is the distance from the eye. All methods
 //! find the same nearest polygon at each pixel's centre, of equally near ones the first; [`regions`] finds the visible
-//! region of each polygon, without pixels. Methods that render models are in [`super::surface`], methods that divide
-//! them into visible regions in [`super::region`].
+//! region of each polygon, without pixels, [`portals`] the rooms that are visible through doors, and [`csg`] the visible
+//! parts of solids that are united, intersected or subtracted. [`patch_subdivision`] does the same as the others for
+//! curved patches, and [`shadow_volumes`] finds which pixels are in shadow. Methods that render models are in
+//! [`super::surface`], methods that divide them into visible regions in [`super::region`].
 //!
 //! ```
 //! use durer::math::DVec3;
@@ -24,14 +26,18 @@
 
 pub mod a_buffer;
 pub mod bsp;
+pub mod csg;
 pub mod depth_sort;
 mod face;
 pub mod hierarchical_z;
 pub mod octree;
 pub mod painter;
+pub mod patch_subdivision;
 mod pieces;
+pub mod portals;
 mod pyramid;
 pub mod regions;
+pub mod shadow_volumes;
 pub mod warnock;
 pub mod watkins;
 pub mod z_buffer;

@@ -2,6 +2,7 @@
 
 use super::Face;
 use crate::math::{DVec3, Plane};
+use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
 /// Distance from a plane, in units of the largest coordinate, below which a corner counts as in it: corners made by
@@ -45,17 +46,23 @@ pub struct Pieces {
     cuts: Vec<Cut>,
     /// Distance from a plane below which corners count as in it.
     tolerance: f64,
+    charge: Charge,
 }
 
 impl Pieces {
     /// Begins with the whole faces.
-    pub fn new(faces: &[Face]) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Memory`] where the budget does not suffice.
+    pub fn new(faces: &[Face], work: &Work) -> Result<Self> {
+        let bytes = faces.iter().map(|face| bytes(face.corners().len())).sum();
+        let charge = work.charge("pieces of polygons", bytes)?;
         let piece =
             |(face, own): (u32, &Face)| Piece { face, corners: own.corners().to_vec(), cut: None };
         let largest = faces.iter().flat_map(Face::corners);
         let largest = largest.fold(0.0, |all: f64, c| all.max(c.abs().max_element()));
         let pieces = (0..).zip(faces).map(piece).collect();
-        Self { pieces, cuts: Vec::new(), tolerance: largest * IN_PLANE }
+        Ok(Self { pieces, cuts: Vec::new(), tolerance: largest * IN_PLANE, charge })
     }
 
     /// Returns the side of a plane that a piece is on.
@@ -77,7 +84,7 @@ impl Pieces {
     /// Returns the parts of a piece in front of a plane and behind it.
     ///
     /// # Errors
-    /// [`Error::Limit`] for more pieces of this kind than allowed.
+    /// [`Error::Limit`] for more pieces of this kind than allowed; [`Error::Memory`] where the budget does not suffice.
     pub fn split(
         &mut self,
         plane: &Plane,
@@ -90,6 +97,8 @@ impl Pieces {
             return Err(Error::Limit { what, value, limit });
         }
         let Piece { face, ref corners, cut: before } = self.pieces[piece as usize];
+        // A cut of a concave ring may leave nearly all corners to both parts.
+        self.charge.grow(2 * bytes(corners.len() + 2))?;
         let parts = [1.0, -1.0].map(|sign| part(plane, sign, corners));
         let first = self.pieces.len() as u32;
         for (corners, front) in parts.into_iter().zip([true, false]) {
@@ -123,8 +132,13 @@ impl Pieces {
     }
 }
 
+/// Returns the bytes that a piece takes with its cut.
+fn bytes(corners: usize) -> u64 {
+    (size_of::<Piece>() + size_of::<Cut>() + corners * size_of::<DVec3>()) as u64
+}
+
 /// Returns the corners of the part on one side of a plane, by Sutherland and Hodgman.
-fn part(plane: &Plane, sign: f64, corners: &[DVec3]) -> Vec<DVec3> {
+pub(super) fn part(plane: &Plane, sign: f64, corners: &[DVec3]) -> Vec<DVec3> {
     let mut part = Vec::with_capacity(corners.len() + 1);
     let next = corners.iter().cycle().skip(1);
     for (&a, &b) in corners.iter().zip(next) {

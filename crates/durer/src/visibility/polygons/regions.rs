@@ -17,6 +17,7 @@ use crate::clip::polygon::{BooleanOp, Shapes, overlay};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DVec2, Rect};
 use crate::trace::{NoTrace, Tracer};
+use crate::work::Work;
 use crate::{Error, Result};
 
 /// Facts about the algorithm.
@@ -129,11 +130,26 @@ struct List {
     base: Option<Region>,
 }
 
+impl List {
+    /// Returns the memory of its regions in bytes.
+    fn bytes(&self) -> u64 {
+        self.polygons.iter().chain(&self.base).map(Region::bytes).sum()
+    }
+}
+
+impl Region {
+    /// Returns its memory in bytes.
+    fn bytes(&self) -> u64 {
+        (size_of::<Self>() + size_of_val(self.shapes.points())) as u64
+    }
+}
+
 /// Returns the visible regions of each face; a face may be visible in several. Of coplanar faces the first is visible.
 ///
 /// ```
 /// use durer::math::DVec3;
 /// use durer::trace::NoTrace;
+/// use durer::work::Work;
 /// use durer::visibility::polygons::{Face, regions::regions};
 ///
 /// let square = |low: f64, high: f64, z: f64| {
@@ -141,29 +157,33 @@ struct List {
 ///     Face::new(&corners.map(|(x, y)| DVec3::new(x, y, z)))
 /// };
 /// let faces = [square(0.0, 4.0, 2.0)?, square(1.0, 2.0, 1.0)?];
-/// let seen = regions(&faces, &Default::default(), &mut NoTrace)?;
+/// let seen = regions(&faces, &Default::default(), &Work::default(), &mut NoTrace)?;
 /// let areas: Vec<_> = seen.iter().map(|region| (region.face, region.shapes.area())).collect();
 /// assert_eq!(areas, [(0, 15.0), (1, 1.0)]);
 /// # Ok::<(), durer::Error>(())
 /// ```
 ///
 /// # Errors
-/// [`Error::Limit`] for more cuts than the options allow.
+/// [`Error::Limit`] for more cuts than the options allow; [`Error::Memory`] where the budget of the work does not suffice.
 pub fn regions(
     faces: &[Face],
     options: &Options,
+    work: &Work,
     t: &mut impl Tracer<Step>,
 ) -> Result<Vec<Region>> {
     let Some(cutter) = Cutter::new(faces) else { return Ok(Vec::new()) };
     let whole =
         |(face, own): (u32, &Face)| Region { face, shapes: Shapes::from_rings([own.outline()]) };
     let all = (0..).zip(faces).filter(|(_, own)| own.plane().normal.z != 0.0);
-    let mut lists = vec![List { polygons: all.map(whole).collect(), base: None }];
+    let charged = |list: List| Ok((work.charge("regions of polygons", list.bytes())?, list));
+    let mut lists = vec![charged(List { polygons: all.map(whole).collect(), base: None })?];
     let (mut seen, mut cuts) = (Vec::new(), 0);
-    while let Some(mut list) = lists.pop() {
+    let mut of_seen = work.charge("regions of polygons", 0)?;
+    while let Some((_charge, mut list)) = lists.pop() {
         let Some(nearest) = cutter.take_nearest(&mut list.polygons) else {
             if let Some(base) = list.base {
                 t.step(|| Step::Seen(base.clone()));
+                of_seen.grow(base.bytes())?;
                 seen.push(base);
             }
             continue;
@@ -175,7 +195,7 @@ pub fn regions(
             return Err(Error::Limit { what: "cuts of polygons", value, limit });
         }
         let [inside, outside] = cutter.cut(nearest, list, t)?;
-        lists.extend([outside, inside]);
+        lists.extend([charged(outside)?, charged(inside)?]);
     }
     seen.sort_by_key(|region| region.face);
     Ok(seen)

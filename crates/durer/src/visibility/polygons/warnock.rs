@@ -148,14 +148,23 @@ pub fn items(
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Result<Pixels<u32>> {
-    let mut painter = Painter {
-        covers: faces.iter().map(|face| Cover::new(face, screen)).collect(),
-        items: screen.plane(NO_ITEM)?,
+    let mut charge = screen.work.charge("polygons in windows", 0)?;
+    let mut cover = |face| {
+        let cover = Cover::new(face, screen);
+        charge.grow((cover.spans.len() * size_of::<Span>()) as u64)?;
+        Ok(cover)
     };
+    let covers = faces.iter().map(&mut cover).collect::<Result<_>>()?;
+    let mut painter = Painter { covers, items: screen.plane(NO_ITEM)? };
+    // The polygons of all windows that wait.
+    let mut lists = screen.work.charge("polygons in windows", 0)?;
+    let mut listed = faces.len();
     let [x1, y1] =
         [screen.width, screen.height].map(|side| i32::try_from(side).unwrap_or(i32::MAX));
     let mut waiting = vec![(Window { x0: 0, y0: 0, x1, y1 }, (0..faces.len() as u32).collect())];
     while let Some((window, concerned)) = waiting.pop() {
+        let concerned: Vec<u32> = concerned;
+        listed -= concerned.len();
         if window.is_empty() {
             continue;
         }
@@ -174,6 +183,8 @@ pub fn items(
         }
         let [x, y] = division(faces, &window, &concerned, options.division);
         t.step(|| Step::Divide { window, x, y });
+        listed += 4 * concerned.len();
+        lists.grow_to((listed * size_of::<u32>()) as u64)?;
         // The upper left one is examined first.
         let Window { x0, y0, x1, y1 } = window;
         for (x0, y0, x1, y1) in [(x, y, x1, y1), (x0, y, x, y1), (x, y0, x1, y), (x0, y0, x, y)] {

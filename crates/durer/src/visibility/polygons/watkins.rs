@@ -141,6 +141,9 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
 /// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn items(faces: &[Face], screen: &Screen, t: &mut impl Tracer<Step>) -> Result<Pixels<u32>> {
     let mut items = screen.plane(NO_ITEM)?;
+    let edges = faces.iter().map(|face| face.corners().len() as u64).sum();
+    // Each edge is in the table, then among the active ones.
+    let _charge = screen.work.charge_for::<[EdgeEntry; 2]>("edge table", edges)?;
     let mut waiting = edge_table(faces, screen);
     waiting.iter().rev().for_each(|&entry| t.step(|| Step::Edge(entry)));
     for (face, own) in (0..).zip(faces) {

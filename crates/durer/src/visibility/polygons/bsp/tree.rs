@@ -8,6 +8,7 @@ use crate::view::cull::Face as Seen;
 use crate::visibility::back_face::Eye;
 use crate::visibility::polygons::Face;
 use crate::visibility::polygons::pieces::Pieces;
+use crate::work::Work;
 
 /// A plane, the polygons in it, and the halves.
 #[derive(Debug, Clone)]
@@ -27,11 +28,13 @@ struct Node {
 /// use durer::trace::NoTrace;
 /// use durer::visibility::back_face::Eye;
 /// use durer::visibility::polygons::{Face, bsp::Tree};
+/// use durer::work::Work;
 ///
 /// let wall = |z: f64| {
 ///     Face::new(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| DVec3::new(x, y, z)))
 /// };
-/// let tree = Tree::new(&[wall(1.0)?, wall(2.0)?], &Default::default(), &mut NoTrace)?;
+/// let (faces, work) = ([wall(1.0)?, wall(2.0)?], Work::default());
+/// let tree = Tree::new(&faces, &Default::default(), &work, &mut NoTrace)?;
 /// // One tree, two eyes.
 /// let order = |z: f64| tree.back_to_front(Eye::At(DVec3::new(0.0, 0.0, z)), &mut NoTrace);
 /// assert_eq!((order(0.0), order(3.0)), (vec![1, 0], vec![0, 1]));
@@ -44,12 +47,18 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// Creates the tree of polygons.
+    /// Creates the tree of polygons; the memory for their pieces is charged to `work` as long as the tree is there.
     ///
     /// # Errors
-    /// [`crate::Error::Limit`] for more pieces than the options allow.
-    pub fn new(faces: &[Face], options: &Options, t: &mut impl Tracer<Step>) -> Result<Self> {
-        let mut tree = Self { pieces: Pieces::new(faces), nodes: Vec::new() };
+    /// [`crate::Error::Limit`] for more pieces than the options allow; [`crate::Error::Memory`] where the budget does not
+    /// suffice.
+    pub fn new(
+        faces: &[Face],
+        options: &Options,
+        work: &Work,
+        t: &mut impl Tracer<Step>,
+    ) -> Result<Self> {
+        let mut tree = Self { pieces: Pieces::new(faces, work)?, nodes: Vec::new() };
         let mut lists = vec![((0..faces.len() as u32).collect::<Vec<u32>>(), None)];
         while let Some((list, below)) = lists.pop() {
             let Some(root) = tree.root(faces, &list, options, t) else { continue };

@@ -148,20 +148,22 @@ pub fn items(
 ) -> Result<Pixels<u32>> {
     let Options { capacity, depth, max_parts: most } = *options;
     let division = Division { holding: Holding::Parts, capacity, depth, most };
-    let octree = Octree::new(faces, &division)?;
+    let octree = Octree::new(faces, &division, &screen.work)?;
     for (cell, own) in octree.cells.iter().enumerate() {
         let corners = [own.low, own.high];
         t.step(|| Step::Cell { cell, corners, children: own.children.clone() });
     }
-    let spans = |face: &Face| {
+    let mut charge = screen.work.charge("runs of pixels", 0)?;
+    let mut spans = |face: &Face| {
         let mut spans = Vec::new();
         face.spans(screen, |span| spans.push(span));
+        charge.grow((spans.len() * size_of::<Span>()) as u64)?;
         spans.sort_by_key(|span| (span.y, span.x0));
-        spans
+        Ok(spans)
     };
     let mut picture = Picture {
         faces,
-        spans: faces.iter().map(spans).collect(),
+        spans: faces.iter().map(&mut spans).collect::<Result<_>>()?,
         pyramid: Pyramid::new(screen)?,
         items: screen.plane(NO_ITEM)?,
     };

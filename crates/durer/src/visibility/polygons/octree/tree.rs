@@ -2,6 +2,7 @@
 
 use crate::math::{DVec3, Plane};
 use crate::visibility::polygons::Face;
+use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
 /// Part of a cell's size by which a face may pass beside it and still be in it, so that rounding loses none.
@@ -42,6 +43,7 @@ pub struct Cell {
 /// The cells; the first is the root, if there is one.
 pub struct Octree {
     pub cells: Vec<Cell>,
+    charge: Charge,
 }
 
 /// Returns the box around a face; its depths include those of the plane, which differ from the corners' by rounding.
@@ -58,11 +60,13 @@ impl Octree {
     /// Divides the box around all faces.
     ///
     /// # Errors
-    /// [`Error::Limit`] if parts of faces are in too many cells.
-    pub fn new(faces: &[Face], division: &Division) -> Result<Self> {
+    /// [`Error::Limit`] if parts of faces are in too many cells; [`Error::Memory`] if the budget does not suffice.
+    pub fn new(faces: &[Face], division: &Division, work: &Work) -> Result<Self> {
+        let of_boxes = (faces.len() * size_of::<[DVec3; 2]>()) as u64;
+        let charge = work.charge("octree", of_boxes)?;
         let boxes: Vec<[DVec3; 2]> = faces.iter().map(bounds).collect();
         let join = |[a, b]: [DVec3; 2], [c, d]: &[DVec3; 2]| [a.min(*c), b.max(*d)];
-        let mut octree = Self { cells: Vec::new() };
+        let mut octree = Self { cells: Vec::new(), charge };
         if faces.is_empty() {
             return Ok(octree);
         }
@@ -83,6 +87,8 @@ impl Octree {
                 let (value, limit) = (count as u64, division.most as u64);
                 return Err(Error::Limit { what: "faces in the cells of an octree", value, limit });
             }
+            let cells = octree.cells.len() * size_of::<Cell>() + count * size_of::<u32>();
+            octree.charge.grow_to(of_boxes + cells as u64)?;
             waiting.extend(children.into_iter().rev().map(|child| (child, depth + 1)));
         }
         Ok(octree)

@@ -1,0 +1,62 @@
+//! Carrying what is known of one corner along edges to all corners that are joined with it.
+
+use super::FaceNet;
+use crate::{Error, Result};
+use std::collections::VecDeque;
+
+/// An algorithm that carries a state along edges.
+pub(in super::super) trait Carrier {
+    /// State of a corner.
+    type State: PartialEq;
+
+    /// Returns the state of the first corner of a connected part.
+    fn find(&mut self, corner: usize) -> Self::State;
+
+    /// Returns the state at the end of an edge, whose corners are in the direction of travel, from that at its beginning.
+    fn along(&mut self, edge: usize, corners: [usize; 2], state: &Self::State) -> Self::State;
+}
+
+impl FaceNet {
+    /// Goes along all edges that are not flat, each once, from a corner whose state is known.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] where two ways to a corner lead to different states: something touches there, so that rounding
+    /// decides which of two is in front.
+    pub(in super::super) fn carry<C: Carrier>(&self, carrier: &mut C) -> Result<()> {
+        let mut known: Vec<Option<C::State>> = self.points.iter().map(|_| None).collect();
+        let mut done = vec![false; self.edges.len()];
+        let mut waiting = VecDeque::new();
+        for first in 0..self.points.len() {
+            if known[first].is_some() || self.around[first].is_empty() {
+                continue;
+            }
+            known[first] = Some(carrier.find(first));
+            waiting.push_back(first);
+            while let Some(from) = waiting.pop_front() {
+                for &edge in &self.around[from] {
+                    if std::mem::replace(&mut done[edge], true) {
+                        continue;
+                    }
+                    let [a, b] = self.edges[edge].corners;
+                    let to = if a == from { b } else { a };
+                    let Some(state) = &known[from] else { continue };
+                    let found = carrier.along(edge, [from, to], state);
+                    match &known[to] {
+                        Some(other) if *other != found => return Err(self.contradiction(to)),
+                        Some(_) => {}
+                        None => {
+                            known[to] = Some(found);
+                            waiting.push_back(to);
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn contradiction(&self, corner: usize) -> Error {
+        let value = format!("touched by another at {}", self.corners[corner]);
+        Error::parameter("face", value, "apart from others, or pierced by them")
+    }
+}
