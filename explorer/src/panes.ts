@@ -60,11 +60,12 @@ export function stateTable(player: Player): HTMLElement {
   const element = h("div", { class: "state" });
   player.addEventListener("frame", () => {
     const table = player.frame?.frame.table;
-    if (!table || table.rows.length === 0) {
+    const isHeaded = table?.heads.some((text) => text !== "") ?? false;
+    if (!table || (table.rows.length === 0 && !isHeaded)) {
       element.replaceChildren(h("p", { class: "hint" }, t("noState")));
       return;
     }
-    const head = table.heads.some((text) => text !== "")
+    const head = isHeaded
       ? h("thead", {}, h("tr", {}, ...table.heads.map((text) => h(text === "" ? "td" : "th", { scope: text === "" ? undefined : "col" }, text))))
       : null;
     const rows = table.rows.map((row) =>
@@ -75,7 +76,9 @@ export function stateTable(player: Player): HTMLElement {
         ...row.cells.map((cell) => h("td", { class: cell.changed ? "changed" : undefined }, cell.text)),
       ),
     );
-    element.replaceChildren(h("table", {}, head, h("tbody", {}, ...rows)));
+    // An empty stack or list is an answer, too.
+    const none = h("tr", {}, h("td", { colspan: Math.max(1, table.heads.length), class: "none" }, t("emptyState")));
+    element.replaceChildren(h("table", {}, head, h("tbody", {}, ...(rows.length > 0 ? rows : [none]))));
   });
   return element;
 }

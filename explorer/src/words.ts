@@ -40,6 +40,7 @@ const WORDS = {
   codeHint: { en: "Click a line to go to the next step that runs it.", de: "Ein Klick auf eine Zeile springt zum nächsten Schritt, der sie ausführt." },
   state: { en: "State", de: "Zustand" },
   noState: { en: "This step has no data to show.", de: "Dieser Schritt hat keine Daten zu zeigen." },
+  emptyState: { en: "empty", de: "leer" },
   step: { en: "Step", de: "Schritt" },
   of: { en: "of", de: "von" },
   first: { en: "First step", de: "Erster Schritt" },

@@ -126,7 +126,7 @@ def test_arrays_of_coordinates_give_what_wkb_gives(polygons, mask, monkeypatch):
     for a, b in zip(fast, slow, strict=True):
         assert (a is None) == (b is None)
         assert a is None or shapely.normalize(a).equals_exact(shapely.normalize(b)), (a, b)
-    assert len(set(shapely.get_type_id(fast))) >= 6
+    assert set(shapely.get_type_id(fast).tolist()) >= {-1, 0, 3, 5, 6}
 
 
 def test_what_is_inside_whole_is_the_same_object(polygons):

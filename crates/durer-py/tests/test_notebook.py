@@ -27,11 +27,13 @@ def test_notebook(name):
     written = nbformat.read(FOLDER / name, as_version=4)
     nbformat.validate(written)
     codes = [cell for cell in written.cells if cell.cell_type == "code"]
-    assert len(codes) >= 5 and sum(bool(shown(cell)) for cell in codes) >= 5
     wanted = [shown(cell) for cell in codes]
     # A cell that fails is an error with its traceback.
     preprocessors.ExecutePreprocessor(timeout=120, kernel_name="python3").preprocess(written, {"metadata": {"path": FOLDER}})
-    assert [shown(cell) for cell in codes] == wanted
+    found = [shown(cell) for cell in codes]
+    assert len(found) >= 5 and all(found)
+    # A notebook may be kept without outputs.
+    assert not any(wanted) or found == wanted
 
 
 def test_the_notebook_is_small():

@@ -6,8 +6,8 @@ use crate::lessons::lesson;
 use crate::targets::targets;
 use durer::clip::polygon::{BooleanOp, WindingRule};
 use durer::explain::{
-    self, Frame, Frames, Input, Language, Lesson, Options, Picture, Template, json_string,
-    picture_of_size,
+    self, Frame, Frames, Input, Language, Lesson, Options, Picture, Row, Table, Template, Word,
+    json_string, picture_of_size,
 };
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -20,6 +20,9 @@ const MOST_STEPS: usize = 100_000;
 
 /// The most captions in an answer.
 const MOST_CAPTIONS: usize = 2_000;
+
+/// The most rows of a table in an answer: a page would take long to show more.
+const MOST_ROWS: usize = 200;
 
 /// Steps by which choices are compared.
 const COMPARED: usize = 400;
@@ -132,7 +135,8 @@ pub(crate) fn made(run: &Frames, step: usize) -> Result<Frame, Failure> {
 
 /// Returns a frame as JSON: its texts and table, the drawing, where the input is in it, and what the step is about.
 pub(crate) fn frame(run: &Frames, request: &FrameRequest) -> Result<String, Failure> {
-    let frame = made(run, request.step)?;
+    let mut frame = made(run, request.step)?;
+    shorten(&mut frame.table);
     let language = request.language.into();
     let drawing = picture_of_size(&frame.picture, request.longest, language);
     Ok(format!(
@@ -142,6 +146,17 @@ pub(crate) fn frame(run: &Frames, request: &FrameRequest) -> Result<String, Fail
         map(&frame.picture),
         targets(&frame.picture)
     ))
+}
+
+/// Leaves rows in the middle of a long table out, with their number in their place.
+fn shorten(table: &mut Table) {
+    let more = table.rows.len().saturating_sub(MOST_ROWS);
+    if more > 0 {
+        let words = Word::new("more rows", "weitere Zeilen");
+        let name = explain::Value::List(vec![more.into(), words.into()]);
+        let first = MOST_ROWS / 2;
+        table.rows.splice(first..first + more, [Row { name, cells: Vec::new() }]);
+    }
 }
 
 /// Returns the part of the plane that a picture shows, and the map that takes points of the input there.

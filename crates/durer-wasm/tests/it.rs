@@ -149,6 +149,30 @@ fn many_steps_are_kept_and_found() {
     }
 }
 
+/// Seed fills keep all pixels that wait on the stack: the table of a large picture is cut in its middle.
+#[test]
+fn long_tables_are_cut_in_the_middle() {
+    let mut engine = Engine::default();
+    let cells = vec![0; 30 * 30];
+    let grid = json!({ "columns": 30, "cells": cells, "seed": [0, 0] });
+    let run = json!({ "do": "run", "name": "naive", "input": { "grid": grid }, "cap": 100_000 });
+    let run = asked(&mut engine, &run);
+    let mut rows = |step: usize| {
+        let frame =
+            json!({ "do": "frame", "handle": run["handle"], "step": step, "language": "de" });
+        asked(&mut engine, &frame)["frame"]["table"]["rows"].as_array().expect("rows").clone()
+    };
+    assert_eq!(rows(3).len(), 3);
+    let long = rows(2_000);
+    assert_eq!(long.len(), 201);
+    let cut = long[100]["name"].as_str().expect("a name");
+    let more: usize =
+        cut.strip_suffix(" weitere Zeilen").expect("the rest").parse().expect("a number");
+    // The top of the stack and its bottom are there.
+    assert_eq!(long[0]["name"], (200 + more).to_string());
+    assert_eq!(long[200]["name"], "1");
+}
+
 #[test]
 fn old_runs_make_room() {
     let mut engine = Engine::default();

@@ -116,6 +116,9 @@ fn wrong_plans_and_too_many_visits_are_errors() {
     let portal = Portal { corners: vec![DVec3::ZERO; 3], to: 7 };
     let cell = Cell { walls: Vec::new(), portals: vec![portal] };
     assert!(Plan::new(vec![cell]).is_err());
+    let bent = [(0.0, 0.0), (4.0, 0.0), (1.0, 1.0), (0.0, 4.0)].map(DVec2::from).to_vec();
+    let error = Plan::of_rooms(&[bent], &[], 2.0).unwrap_err().to_string();
+    assert!(error.contains("convex"), "{error}");
     let odd = vec![DVec2::new(f64::NAN, 0.0), DVec2::X, DVec2::Y];
     assert!(Plan::of_rooms(&[odd], &[], 2.0).is_err());
     let plan = Plan::of_rooms(&[square], &[], 2.0).unwrap();

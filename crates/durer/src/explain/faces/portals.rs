@@ -12,7 +12,7 @@ use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
 use crate::trace::NoTrace;
 use crate::visibility::polygons::Screen;
-use crate::visibility::polygons::portals::{Eye, INFO, Plan, Step, Visit, Window, visits};
+use crate::visibility::polygons::portals::{Eye, INFO, Options, Plan, Step, Visit, Window, visits};
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {
@@ -124,6 +124,9 @@ static SEEN: Template = Template::new(
 const SIZE: [u32; 2] = [40, 20];
 const FOCAL: f64 = 20.0;
 
+/// More visits than anyone follows.
+const OPTIONS: Options = Options { max_visits: 1 << 14 };
+
 /// The plan with the visits so far.
 #[derive(Clone)]
 struct State {
@@ -151,7 +154,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let plan = Plan::of_rooms(&rooms, &doors, 2.0)?;
     let from = Eye { at: DVec3::new(eye.x, 0.0, eye.y), cell, focal: FOCAL };
     let screen = Screen { width: SIZE[0], height: SIZE[1], ..Screen::default() };
-    let steps = record(cap, |t| visits(&plan, &from, &screen, &Default::default(), t))?;
+    let steps = record(cap, |t| visits(&plan, &from, &screen, &OPTIONS, t))?;
     let mut state = State { rooms, doors, plan, eye, seen: Vec::new(), window: None };
     Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }

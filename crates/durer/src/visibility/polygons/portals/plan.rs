@@ -1,5 +1,6 @@
 //! Cells with their walls and portals, and how they come from a plan of rooms.
 
+use crate::clip::line::{ConvexPolygon, Edge};
 use crate::math::{DVec2, DVec3};
 use crate::{Error, Result};
 
@@ -61,7 +62,8 @@ impl Plan {
     /// walls of two rooms. Walls reach from y = −height / 2 to height / 2; there are no floors and ceilings.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a door that is not in the walls of two rooms; those of [`Self::new`].
+    /// [`Error::Parameter`] for a room that is not convex, and for a door that is not in the walls of two rooms; those of
+    /// [`Self::new`].
     pub fn of_rooms(rooms: &[Vec<DVec2>], doors: &[[DVec2; 2]], height: f64) -> Result<Self> {
         let all = || rooms.iter().flatten();
         let extent = all().fold(0.0, |most: f64, p| most.max(p.abs().max_element()));
@@ -73,12 +75,8 @@ impl Plan {
         let mut cells = vec![Cell::default(); rooms.len()];
         let mut sides = vec![Vec::new(); doors.len()];
         for (cell, room) in rooms.iter().enumerate() {
-            // Turned so that seen from the inside, y down, walls are counter-clockwise.
-            let mut ring = room.clone();
-            if crate::clip::polygon::signed_area(&ring) < 0.0 {
-                ring.reverse();
-            }
-            for (&a, &b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+            // Counter-clockwise in x and z, so that walls are so, seen from the inside.
+            for Edge { from: a, to: b } in ConvexPolygon::new(room)?.edges() {
                 let mut openings: Vec<(f64, f64, usize)> = Vec::new();
                 for (door, ends) in doors.iter().enumerate() {
                     if let [Some(s), Some(e)] = ends.map(|end| place(a, b, end, near)) {
