@@ -191,7 +191,7 @@ fn values_that_cannot_be_used_are_told_with_their_place() {
         ("<path d='M0 0L5 5X'/>", "`d` of `path`", "the part before the error is drawn"),
         ("<polygon points='1 1 2 3 4'/>", "`points` of `polygon`", "pairs of numbers"),
         ("<g transform='turn(5)'/>", "`transform` of `g`", "`rotate`"),
-        ("<g transform='scale(1e-7)'/>", "`transform` of `g`", "is left out"),
+        ("<g transform='scale(1e-7)'/>", "`transform` of `g`", "are left out"),
         ("<g stroke-linecap='flat'/>", "`stroke-linecap`", "one of butt, round, square"),
         ("<g style='fill:reddd;x:y'/>", "`fill` of `g` is `reddd`", "a colour"),
         ("<style>g{stroke-width:-2}</style>", "`stroke-width` of `style`", "at least 0"),

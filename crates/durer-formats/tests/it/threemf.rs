@@ -226,7 +226,7 @@ fn triangles_of_missing_vertices_are_left_out() {
     let model = read(&simple("meter", &resources, r#"<item objectid="1"/>"#)).expect("readable");
     assert_eq!(model.scene.meshes[0].indices, Some(vec![0, 0, 0, 0, 1, 3]));
     let text = model.warnings[0].to_string();
-    assert!(text.starts_with("3D/part.model, object 1: 1 triangles name vertices"), "{text}");
+    assert!(text.starts_with("3D/part.model, object 1: 1 triangles refer to vertices"), "{text}");
 }
 
 /// A project whose second part is a hole, on plates.
@@ -327,7 +327,7 @@ fn beams_are_shown() {
     assert!((bounds.min - DVec3::splat(-0.5)).abs().max_element() < 1e-6, "{bounds:?}");
     assert!((bounds.max - DVec3::new(1.5, 1.25, 0.5)).abs().max_element() < 1e-6, "{bounds:?}");
     let [warning] = &model.warnings[..] else { panic!("{:?}", model.warnings) };
-    assert!(warning.message.starts_with("1 beams or balls name vertices"), "{warning}");
+    assert!(warning.message.starts_with("1 beams or balls refer to vertices"), "{warning}");
     let limits = Limits { primitives: 447, ..Limits::default() };
     let bytes = simple("millimeter", &resources, r#"<item objectid="1"/>"#);
     let options = ReadOptions { limits, ..ReadOptions::default() };

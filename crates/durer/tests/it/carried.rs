@@ -251,7 +251,9 @@ fn nets_refuse_what_is_not_before_the_eye() {
     let square = square.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
     let told = |faces: &[Vec<DVec3>], eye| FaceNet::new(faces, eye).unwrap_err().to_string();
     let eye = Eye::At(DVec3::new(0.5, -0.5, 0.0));
-    assert!(FaceNet::new(&[square.clone()], Eye::At(DVec3::new(0.5, 0.5, 1.0))).is_ok());
+    assert!(
+        FaceNet::new(std::slice::from_ref(&square), Eye::At(DVec3::new(0.5, 0.5, 1.0))).is_ok()
+    );
     let behind: Vec<DVec3> = square.iter().map(|p| *p - DVec3::Y * 3.0).collect();
     assert!(told(&[square.clone(), square.clone(), behind], eye).contains("before the eye"));
     let mut bent = square.clone();

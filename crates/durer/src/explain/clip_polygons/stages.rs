@@ -247,8 +247,11 @@ impl State {
             2 => (through[1], (-22.0, -11.0)),
             _ => (through[1], (22.0, 11.0)),
         };
-        let outward =
-            if self.border % 2 == 0 { (inward.0, -inward.1) } else { (-inward.0, inward.1) };
+        let outward = if self.border.is_multiple_of(2) {
+            (inward.0, -inward.1)
+        } else {
+            (-inward.0, inward.1)
+        };
         picture.label(end, inward, Word::new("in", "innen"));
         picture.label(end, outward, Word::new("out", "außen"));
         self.add_names(&mut picture);
