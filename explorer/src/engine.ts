@@ -101,7 +101,7 @@ export class Engine {
   }
 }
 
-/** Engines of lessons by their modules: one for those in the plane, one for those in space; each is loaded at its first use. */
+/** Engines of lessons by their modules: in the plane, in space, and of visibility; each is loaded at its first use. */
 const engines = new Map<string, Engine>();
 
 /** Returns the engine that has a lesson. */

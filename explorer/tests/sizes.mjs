@@ -12,7 +12,7 @@ const assets = readdirSync(`${folder}/assets`).map((name) => `${folder}/assets/$
 const first = html.length + assets.reduce((sum, name) => sum + statSync(name).size, 0) + statSync(`${folder}/icon.svg`).size;
 const zipped = (name) => gzipSync(readFileSync(`${folder}/${name}`), { level: 9 }).length;
 const list = zipped("lessons.json");
-const engines = ["durer-plane.wasm", "durer-space.wasm"].map(zipped);
+const engines = ["durer-plane.wasm", "durer-space.wasm", "durer-visibility.wasm"].map(zipped);
 
 console.log(`first view ${first} bytes and ${list} of the list by gzip (together at most ${FIRST_VIEW})`);
 console.log(`engines ${engines.join(", ")} bytes by gzip (each at most ${ENGINE})`);

@@ -10,6 +10,8 @@ const FAMILIES: &[&[Family]] = &[
     explain::PLANE,
     #[cfg(feature = "space")]
     explain::SPACE,
+    #[cfg(feature = "visibility")]
+    explain::VISIBILITY,
 ];
 
 fn families() -> impl Iterator<Item = &'static Family> + Clone {

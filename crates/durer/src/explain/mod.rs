@@ -94,7 +94,7 @@ pub const PLANE: &[Family] = &[
     family("Halftones", "Halbtöne", tones::LESSONS),
 ];
 
-/// Families of lessons in space, in the order of the pipeline.
+/// Families of lessons in space, in the order of the pipeline, up to visible surfaces and lines.
 pub const SPACE: &[Family] = &[
     family("Clipping in space", "Clippen im Raum", clip_volume::LESSONS),
     family(
@@ -105,19 +105,27 @@ pub const SPACE: &[Family] = &[
     family("Shading", "Schattierung", shades::LESSONS),
     family("Shadows", "Schatten", &[shadow::LESSON, faces::SHADOW_VOLUMES]),
     family("Fragments", "Fragmente", &[fragments::LESSON, air::LESSON]),
-    family("Hidden surfaces", "Verdeckte Flächen", faces::LESSONS),
 ];
 
-/// All lessons by families: those of [`PLANE`], then those of [`SPACE`].
-pub const FAMILIES: &[Family] = &joined::<{ PLANE.len() + SPACE.len() }>();
+/// Families of lessons about visible surfaces and lines.
+pub const VISIBILITY: &[Family] = &[family("Hidden surfaces", "Verdeckte Flächen", faces::LESSONS)];
+
+/// All lessons by families: those of [`PLANE`], then those of [`SPACE`] and of [`VISIBILITY`].
+pub const FAMILIES: &[Family] = &joined::<{ PLANE.len() + SPACE.len() + VISIBILITY.len() }>();
 
 const fn joined<const N: usize>() -> [Family; N] {
     let mut all = [PLANE[0]; N];
-    let mut i = 0;
-    while i < N {
-        all[i] = if i < PLANE.len() { PLANE[i] } else { SPACE[i - PLANE.len()] };
-        i += 1;
+    let parts = [PLANE, SPACE, VISIBILITY];
+    let (mut part, mut i) = (0, 0);
+    while part < parts.len() {
+        let mut k = 0;
+        while k < parts[part].len() {
+            all[i] = parts[part][k];
+            (i, k) = (i + 1, k + 1);
+        }
+        part += 1;
     }
+    assert!(i == N);
     all
 }
 
