@@ -202,15 +202,16 @@ impl<'a> Cutter<'a> {
     /// Keeps or drops polygons as a whole if the mask's border does not come near them; clips valid polygons by the
     /// rectangle clip, all others by the overlay.
     fn production(&self, geometry: &Geometry, area: &Area, bounds: &Rect) -> Result<Cut> {
+        let inside = self.op == BooleanOp::Intersection;
+        let side = self.mask.side(bounds);
+        if side.is_some_and(|side| side != inside) {
+            return Ok(Cut::default());
+        }
         let keeps = self.rules.keep_valid(&area.shapes);
         let apart = keeps && is_valid(&area.shapes, Touching::No);
-        // Rings that touch in points are valid, but nothing for the rectangle clip.
-        let valid = || apart || keeps && is_valid(&area.shapes, Touching::AtPoints);
-        let inside = self.op == BooleanOp::Intersection;
-        match self.mask.side(bounds) {
-            Some(side) if side != inside => return Ok(Cut::default()),
-            Some(_) if valid() => return Ok(Cut::of(Some(oriented(geometry.clone())))),
-            _ => {}
+        // Rings that touch in points are valid, but the rectangle clip does not take them.
+        if side.is_some() && (apart || keeps && is_valid(&area.shapes, Touching::AtPoints)) {
+            return Ok(Cut::of(Some(oriented(geometry.clone()))));
         }
         if let Some(window) = self.mask.window.filter(|_| inside && apart) {
             let cut = clip_area(&window, area)?.into_geometry();
