@@ -1,7 +1,7 @@
-//! Plane polygons with common corners before an eye: what the methods need that carry visibility along edges.
+//! Plane polygons with common corners before an eye, for methods that carry visibility along edges.
 //!
-//! [`super::appel`] and [`super::galimberti_montanari`] find what hides one corner, and change it along the edges to all
-//! others. Corners are on a page: x to the right, y up, z growing with the distance from the eye. In perspective z is the
+//! [`super::appel`] and [`super::galimberti_montanari`] find the faces that hide one corner, and update them along the
+//! edges to all others. Corners are on a page: x to the right, y up, z growing with the distance from the eye. In perspective z is the
 //! negative reciprocal of the distance, so that lines and planes remain lines and planes.
 //!
 //! The eye is turned by some millionths of a radian, or moved as little, so that edges at different distances are not on each
@@ -13,6 +13,7 @@ mod meet;
 pub(super) use carry::Carrier;
 pub use meet::{Crossing, Pierce};
 
+use super::roberts::numbered;
 use crate::math::{DVec2, DVec3, orient2d_value};
 use crate::trace::NoTrace;
 use crate::view::cull::newell_area;
@@ -98,10 +99,8 @@ impl FaceNet {
     /// [`Error::NonFinite`]; [`Error::Parameter`] for faces without an area or with corners off their plane, and for corners that
     /// are not before the eye.
     pub fn new(faces: &[Vec<DVec3>], eye: Eye) -> Result<Self> {
-        if let Some(index) = faces.iter().flatten().position(|corner| !corner.is_finite()) {
-            return Err(Error::NonFinite { what: "corner", index });
-        }
-        let (corners, mut rings) = numbered(faces);
+        let (corners, mut rings) = numbered(faces)?;
+        rings.iter_mut().for_each(without_repeats);
         let orientation = orient(&corners, &rings, &Options::default(), &mut NoTrace)?;
         for (ring, _) in rings.iter_mut().zip(&orientation.turned).filter(|(_, turned)| **turned) {
             ring.reverse();
@@ -170,27 +169,12 @@ impl FaceNet {
     }
 }
 
-/// Returns the distinct corners in their order, and each face as numbers of them.
-fn numbered(faces: &[Vec<DVec3>]) -> (Vec<DVec3>, Vec<Vec<usize>>) {
-    let (mut corners, mut known) = (Vec::new(), BTreeMap::new());
-    let mut number = |corner: &DVec3| {
-        // Adding zero makes −0 and 0 one number.
-        let corner = *corner + DVec3::ZERO;
-        *known.entry(corner.to_array().map(f64::to_bits)).or_insert_with(|| {
-            corners.push(corner);
-            corners.len() - 1
-        })
-    };
-    let ring = |face: &Vec<DVec3>| {
-        let mut ring: Vec<usize> = face.iter().map(&mut number).collect();
-        ring.dedup();
-        if ring.len() > 1 && ring.first() == ring.last() {
-            ring.pop();
-        }
-        ring
-    };
-    let rings = faces.iter().map(ring).collect();
-    (corners, rings)
+/// Leaves out corners that follow themselves around a ring.
+fn without_repeats(ring: &mut Vec<usize>) {
+    ring.dedup();
+    if ring.len() > 1 && ring.first() == ring.last() {
+        ring.pop();
+    }
 }
 
 /// Returns the corners on the page.

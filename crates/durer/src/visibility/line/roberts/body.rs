@@ -135,7 +135,9 @@ fn root(parents: &mut [usize], mut corner: usize) -> usize {
 }
 
 /// Returns the distinct corners in their order, and each face as numbers of them.
-fn numbered(faces: &[Vec<DVec3>]) -> Result<(Vec<DVec3>, Vec<Vec<usize>>)> {
+pub(in crate::visibility::line) fn numbered(
+    faces: &[Vec<DVec3>],
+) -> Result<(Vec<DVec3>, Vec<Vec<usize>>)> {
     let mut corners = Vec::new();
     let mut known = BTreeMap::new();
     let mut rings = Vec::with_capacity(faces.len());

@@ -24,6 +24,7 @@ use crate::math::{DVec3, Plane};
 use crate::trace::Tracer;
 use crate::visibility::back_face::Eye;
 use body::FLATNESS;
+pub(super) use body::numbered;
 use program::{EyePoint, Program};
 
 /// The facts.
