@@ -6,7 +6,7 @@
 //! inside and an outside point the border is met at (d_in · p_out − d_out · p_in) / (d_in − d_out).
 //! Nothing is divided by w, so w may be anything: points behind, in and before the eye plane.
 //!
-//! That form is monotonic in floating point: a new vertex satisfies exactly what both ends satisfy. So results are in
+//! This form is monotonic in floating point: a border that both ends satisfy, a new vertex satisfies exactly. So results are in
 //! the volume without tolerance, clipping twice changes nothing, and because the inside point always comes first, both
 //! directions of an edge give the same bits.
 

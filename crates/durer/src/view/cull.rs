@@ -22,7 +22,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[Coherence::Object],
     cost: "O(p) per box or sphere for p planes",
-    limits: "conservative: what lies outside near a corner can pass for crossing",
+    limits: "conservative: an object outside, near a corner, can be reported as crossing",
     pseudocode: &[
         "C, h ← centre and half sides of the box",
         "result ← inside",

@@ -1,4 +1,4 @@
-//! Boxes for examples, and what is checked of bodies.
+//! Boxes for examples, and the checks of input bodies.
 
 use super::MOST;
 use crate::explain::input::Input;

@@ -166,7 +166,7 @@ static ENDS_BEHIND: Template = Template::new(
     "Kante {edge} endet hinter {own} der Ecke {corner} selbst: Die Natur der Ecke ist {nature}.",
 );
 
-/// A part of an edge: where it begins, what hides it, and whether it is seen.
+/// A part of an edge: its start, the faces that hide it or their number, and whether it is visible.
 type Part = (f64, Value, bool);
 
 /// The corners and lines that are known so far.

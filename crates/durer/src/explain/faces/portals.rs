@@ -1,4 +1,4 @@
-//! The lesson of cells and portals: a plan of rooms from above, and what is seen through the doors.
+//! The lesson of cells and portals: a plan of rooms from above, and the rooms visible through doors.
 
 use crate::clip::polygon::WindingRule;
 use crate::clip::polygon::point::winding_number;

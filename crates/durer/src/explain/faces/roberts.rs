@@ -111,7 +111,7 @@ static INVISIBLE: Template = Template::new(
     "Von der Linie bleibt nichts: Sie wird nicht gezeichnet.",
 );
 
-/// Bodies, and what is known of their lines.
+/// Bodies, and their lines as far as they are decided.
 #[derive(Clone)]
 struct State {
     bodies: Vec<Body>,

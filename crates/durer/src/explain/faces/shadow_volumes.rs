@@ -1,4 +1,4 @@
-//! The lesson of shadow volumes: sides that are counted before what is seen.
+//! The lesson of shadow volumes: counts of the volume sides in front of each visible point.
 
 use super::bodies::{turned, upright};
 use super::{FACE, Scene, TAKES, middle, name, slab};

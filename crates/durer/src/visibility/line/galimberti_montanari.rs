@@ -6,8 +6,8 @@
 //! edges, or pierces the face; a part of an edge is drawn if its nature is empty. Class: object space. Cost: O(e f k) time for
 //! e edges and f faces of k edges; memory O(edges and changes).
 //!
-//! Where [`super::appel`] counts faces, and needs closed bodies for it, here faces have names: any plane polygons will do, and
-//! the result says what hides a part.
+//! [`super::appel`] counts faces, for which it needs closed bodies; here each face has a name, so any plane polygons will
+//! do, and the result names the faces that hide a part.
 //!
 //! Deviations: the paper's faces bound bodies, and those that turn their backs are left out before; here that is done only where
 //! all bodies are closed. Lines in which faces pierce each other are not added.
@@ -113,7 +113,7 @@ impl Line {
 /// Step of the algorithm. Corners, edges and faces have their numbers in the net.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
-    /// The faces that hide what is behind them.
+    /// The faces that can hide points.
     Hiders {
         /// Their numbers.
         faces: Vec<usize>,

@@ -47,8 +47,8 @@ pub const INFO: Info = Info {
 /// Options for the division.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Largest distance, in pixels, of a piece with one centre from the parallelogram that it is compared as; what is seen is off by
-    /// at most as much along outlines. Positive; half of it takes about one more division there.
+    /// Largest distance, in pixels, of a piece with one centre from the parallelogram that approximates it; outlines are
+    /// off by at most as much. Positive; half of it takes about one more division there.
     pub flatness: f64,
     /// The most divisions of a piece of a piece: a patch of 2ⁿ pixels needs about n.
     pub max_depth: u32,
@@ -370,7 +370,7 @@ pub fn render(
 const CHECKED: u64 = 4096;
 
 impl Picture {
-    /// Stores a piece at a pixel if it covers the centre, and is nearer than what is there.
+    /// Stores a piece at a pixel if it covers the centre, and is nearer than the stored depth.
     fn compare(
         &mut self,
         piece: &Patch,

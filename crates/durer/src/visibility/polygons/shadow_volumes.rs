@@ -1,4 +1,4 @@
-//! Shadow volumes: pixels in shadow, found by counting the sides of volumes before what is seen.
+//! Shadow volumes: pixels in shadow, found by counting the sides of volumes in front of the visible point.
 //!
 //! F. C. Crow, *Shadow algorithms for computer graphics*, Computer Graphics 11(2), SIGGRAPH 1977. Behind each face that the
 //! light meets there is a volume without light; its sides go out from the face's outline, away from the light. Along the ray of
@@ -169,7 +169,7 @@ pub enum Step {
         pixel: [u32; 2],
         /// Depth of the side or the caster.
         depth: f64,
-        /// Depth of what is seen.
+        /// Depth of the visible point.
         stored: f64,
         /// Number that is added; 0 if the depths say that it does not count.
         change: i32,

@@ -1,6 +1,6 @@
 //! Insertion of vertices so that subject and mask meet bit for bit where they are within rounding of each other.
 //!
-//! Whether a point is near an edge depends only on these two, so that neighbours agree.
+//! Neighbours agree, because only a point and an edge themselves decide whether they are near.
 
 use crate::clip::attribute::Source;
 use crate::clip::polygon::rectangle::Near;

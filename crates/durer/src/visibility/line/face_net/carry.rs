@@ -1,4 +1,4 @@
-//! Carrying what is known of one corner along edges to all corners that are joined with it.
+//! Traversal that carries the result at one corner along edges to all corners connected with it.
 
 use super::FaceNet;
 use crate::{Error, Result};
