@@ -31,13 +31,10 @@ impl Failure {
         }
     }
 
-    /// Returns the failure for an error of the library: wrong options, or work that costs too much. Limits reported by
-    /// the library are limits of data; limits of options, such as the picture's size, are checked before the work
-    /// begins.
+    /// Returns the failure for an error of the library: wrong options, or work that costs too much.
     pub fn of_library(error: &durer::Error) -> Self {
         let message = error.to_string();
-        let of_data = error.is_of_budget() || matches!(error, durer::Error::Limit { .. });
-        if of_data { Self::Refused(message) } else { Self::Usage(message) }
+        if error.is_of_cost() { Self::Refused(message) } else { Self::Usage(message) }
     }
 
     /// Returns the failure with the file's name, if it is missing.
@@ -89,5 +86,23 @@ pub fn in_words(error: &std::io::Error) -> String {
     match text.find(" (os error") {
         Some(end) => text[..end].to_owned(),
         None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use durer::view::window::PixelRect;
+
+    #[test]
+    fn sizes_that_the_caller_chose_are_usage_and_sizes_of_data_are_not() {
+        let too_wide = PixelRect::of_size(u32::MAX, 1).expect_err("a side above 2³¹");
+        assert!(
+            matches!(too_wide, durer::Error::TooLarge { value: 0xffff_ffff, .. }),
+            "{too_wide:?}"
+        );
+        assert!(matches!(Failure::of_library(&too_wide), Failure::Usage(_)));
+        let too_many = durer::Error::Limit { what: "vertices", value: 9, limit: 8 };
+        assert!(matches!(Failure::of_library(&too_many), Failure::Refused(_)));
     }
 }

@@ -2,20 +2,18 @@
 
 mod cells;
 mod check;
+mod jobs;
+mod scene_options;
 mod streamed;
 
-use crate::camera::{self, Shot};
 use crate::compare;
 use crate::drawing::{self, Annotated, Subject};
 use crate::explode;
 use crate::failure::Failure;
-use crate::film::{self, Film, Sink};
+use crate::film::{Film, Sink};
 use crate::input;
-use crate::kind::Wanted;
 use crate::messages::Messages;
-use crate::names;
-use crate::options::Samples;
-use crate::output::{self, Name, Target};
+use crate::output::{self, Target};
 use crate::render_args::RenderArgs;
 use crate::report::noticed::Noticed;
 use crate::report::{Failed, Growing, ModelReport, PictureReport};
@@ -26,9 +24,9 @@ use crate::watch;
 use cells::shots;
 pub use cells::{Cell, assemble};
 pub use check::check;
-use check::{algorithm, asks_for_rays, check_size, check_tile, wanted};
+use check::{algorithm, check_size, check_tile, wanted};
 use durer::math::{DVec2, Vec4};
-use durer::pipeline::{self, Lighting, Marks, Mask, RenderOptions, SurfaceMethod};
+use durer::pipeline;
 use durer::scene::{AlphaMode, Camera, Material, Scene};
 use durer::target::Framebuffer;
 use durer::view::components::{Component, components};
@@ -36,7 +34,8 @@ use durer::view::objects::divided;
 use durer::visibility::object::SceneOrientation;
 use durer::work::{Charge, Work};
 use durer_formats::{Model, png};
-use std::path::{Path, PathBuf};
+use jobs::{Job, Picture, plan};
+use scene_options::render_options;
 use std::time::Instant;
 
 /// Renders all models, each to its pictures.
@@ -114,107 +113,6 @@ fn sized(args: &RenderArgs, natural: DVec2) -> RenderArgs {
     let mut args = args.clone();
     args.picture.size = args.picture.sides.of_shape(natural);
     args
-}
-
-/// A model and the pictures to be made of it.
-struct Job<'a> {
-    model: &'a Path,
-    /// Its name without folder and suffix.
-    stem: String,
-    /// Plan for all frames in one file, if they go into one.
-    film: Option<film::Plan>,
-    pictures: Vec<Picture>,
-}
-
-/// Files of a picture and its further planes.
-struct Picture {
-    frame: Option<u32>,
-    /// One place for all frames of a film.
-    color: Target,
-    item: Option<Target>,
-    depth: Option<Target>,
-    normal: Option<Target>,
-}
-
-impl Job<'_> {
-    /// Returns the file that all frames go into, if there is one.
-    fn film(&self) -> Option<Film<'_>> {
-        let plan = self.film?;
-        match self.pictures.first().map(|p| &p.color) {
-            Some(Target::File(path)) => Some(Film::new(path, plan)),
-            _ => None,
-        }
-    }
-
-    fn targets(&self) -> impl Iterator<Item = &Target> {
-        let places = if self.film.is_some() { 1 } else { self.pictures.len() };
-        let colors = self.pictures.iter().take(places).map(|p| &p.color);
-        let planes = self.pictures.iter().flat_map(|p| [&p.item, &p.depth, &p.normal]);
-        colors.chain(planes.flatten())
-    }
-}
-
-/// Determines the place of each picture before anything is read, so that a wrong name is found at once.
-fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
-    let frames: Vec<Option<u32>> = match args.picture.turntable {
-        Some(count) => (0..count).map(Some).collect(),
-        None => vec![None],
-    };
-    let names: Vec<Name> = args
-        .models
-        .iter()
-        .flat_map(|model| frames.iter().map(|&frame| Name { input: model.clone(), frame }))
-        .collect();
-    let optional = |option: &str, path: &Option<PathBuf>| match path {
-        Some(path) => {
-            let targets = output::plan(option, path, &names, &Wanted::plane())?;
-            Ok(targets.into_iter().map(Some).collect())
-        }
-        None => Ok(vec![None; names.len()]),
-    };
-    let film = film::wanted(args, wanted(args).kind)?;
-    let color = match film {
-        Some(_) => film::targets(&args.output, &args.models, frames.len(), &wanted(args))?,
-        None => output::plan("--output", &args.output, &names, &wanted(args))?,
-    };
-    let item = optional("--item", &args.planes.item)?;
-    let depth = optional("--depth", &args.planes.depth)?;
-    let normal = optional("--normal", &args.planes.normal)?;
-    let planes = color.into_iter().zip(item).zip(depth).zip(normal);
-    let mut pictures = planes.zip(&names).map(|((((color, item), depth), normal), name)| {
-        let frame = name.frame;
-        Picture { frame, color, item, depth, normal }
-    });
-    let jobs: Vec<Job> = args
-        .models
-        .iter()
-        .map(|model| Job {
-            model,
-            stem: names::stem(model),
-            film,
-            pictures: pictures.by_ref().take(frames.len()).collect(),
-        })
-        .collect();
-    let targets = || jobs.iter().flat_map(Job::targets);
-    output::check_distinct(targets()).map_err(|failure| with_advice(args, failure))?;
-    if args.json && targets().any(|t| *t == Target::Stdout) {
-        let message = "--json: the report goes to standard output, where the picture goes too";
-        return Err(Failure::Usage(message.to_owned()));
-    }
-    Ok(jobs)
-}
-
-/// Adds advice on distinguishing pictures of models with the same name.
-fn with_advice(args: &RenderArgs, failure: Failure) -> Failure {
-    match failure {
-        Failure::Usage(message) if args.models.len() > 1 => {
-            let suffix = wanted(args).kind.suffix();
-            Failure::Usage(format!(
-                "{message}; -o 'DIR/{{folder}}/{{name}}.{suffix}' keeps the folders and suffixes of the models"
-            ))
-        }
-        other => other,
-    }
 }
 
 /// Reads a model and makes its pictures.
@@ -521,67 +419,6 @@ fn deliver(
 /// Returns the failure for options that the renderer refuses.
 fn usage(e: durer::Error) -> Failure {
     Failure::of_library(&e)
-}
-
-/// Returns the options for a picture, given the model, the part that the view is fitted to, and the whole scene.
-fn render_options(
-    args: &RenderArgs,
-    [model, framed, scene]: [&Scene; 3],
-    shot: &Shot,
-    algorithm: Algorithm,
-) -> Result<RenderOptions, Failure> {
-    let camera = camera::camera(&args.view, framed, shot)?;
-    let camera = match std::ptr::eq(framed, scene) {
-        true => camera,
-        false => staging::with_depths(&args.view, &camera, scene),
-    };
-    let ambient_occlusion = staging::occlusion(&args.stage, model);
-    let options = picture_options(args, camera, shot, algorithm);
-    Ok(RenderOptions { ambient_occlusion, ..options })
-}
-
-/// Returns the options for the picture from a camera.
-fn picture_options(
-    args: &RenderArgs,
-    camera: Camera,
-    shot: &Shot,
-    algorithm: Algorithm,
-) -> RenderOptions {
-    let lighting = match &args.look.light[..] {
-        [] => Lighting::Auto,
-        lights => Lighting::Given(lights.to_vec()),
-    };
-    RenderOptions {
-        algorithm: match algorithm {
-            Algorithm::Surfaces(method) => method,
-            Algorithm::Wireframe | Algorithm::All => SurfaceMethod::ZBuffer,
-        },
-        width: shot.size.width,
-        height: shot.size.height,
-        window: args.picture.tile,
-        shading: args.look.shading.map(Into::into),
-        lighting,
-        exposure: args.look.exposure,
-        surroundings: args.look.surroundings.get().cloned().unwrap_or_default(),
-        tone_map: args.look.tone_map.into(),
-        background: args.picture.background,
-        cull: args.look.cull.into(),
-        marks: Marks { line_width: args.look.line_width, point_size: args.look.point_size },
-        samples: args.picture.aa.into(),
-        mask: match args.picture.aa {
-            Samples::SixtyFour => Mask::M64,
-            _ => Mask::M16,
-        },
-        shadows: args.look.shadows.into(),
-        shadow_map_side: args.look.shadow_map,
-        bounces: args.look.bounces,
-        depth: args.planes.depth.is_some(),
-        item: args.planes.item.is_some(),
-        normal: args.planes.normal.is_some(),
-        max_pixels: args.picture.max_pixels,
-        work: args.running.work.clone(),
-        ..RenderOptions::new(camera)
-    }
 }
 
 /// Writes the planes beside colour that are requested; returns the names of the files.

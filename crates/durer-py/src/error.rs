@@ -16,8 +16,7 @@ fn exception(py: Python<'_>, name: &str, args: (String, Option<String>)) -> PyEr
 
 /// Returns a `ValueError`, or a `LimitError` for work that costs more than it may.
 pub fn of_library(py: Python<'_>, error: &durer::Error) -> PyErr {
-    let limit = error.is_of_budget() || matches!(error, durer::Error::Limit { .. });
-    match limit {
+    match error.is_of_cost() {
         true => exception(py, "LimitError", (error.to_string(), None)),
         false => PyValueError::new_err(error.to_string()),
     }
@@ -45,7 +44,7 @@ pub fn of_reader(py: Python<'_>, error: Error, name: &str) -> PyErr {
     };
     match &error {
         Error::Limit { .. } => exception(py, "LimitError", (message, None)),
-        Error::Library(inner) if inner.is_of_budget() => {
+        Error::Library(inner) if inner.is_of_cost() => {
             exception(py, "LimitError", (message, None))
         }
         Error::Decode { place: at, .. }

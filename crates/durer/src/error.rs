@@ -46,12 +46,22 @@ pub enum Error {
         /// Names that exist and are like it.
         near: String,
     },
-    /// A size, or a count of steps of the work, is above a stated limit.
+    /// A size that the caller chose is above a stated limit.
+    #[error("{what} {value} is above the limit of {limit}")]
+    TooLarge {
+        /// Limited size, e.g. `"pixels"`.
+        what: &'static str,
+        /// Size that was chosen.
+        value: u64,
+        /// The limit in force.
+        limit: u64,
+    },
+    /// The size of the data, or a count of steps of the work, is above a stated limit.
     #[error("{what} {value} is above the limit of {limit}")]
     Limit {
-        /// Limited quantity, e.g. `"pixels"`.
+        /// Limited quantity, e.g. `"vertices"`.
         what: &'static str,
-        /// Amount that the input or the caller requires.
+        /// Amount that the input requires.
         value: u64,
         /// The limit in force.
         limit: u64,
@@ -102,6 +112,11 @@ impl Error {
     pub fn is_of_budget(&self) -> bool {
         use Error::{Cancelled, Memory, OutOfMemory, TimedOut};
         matches!(self, Memory { .. } | OutOfMemory { .. } | TimedOut { .. } | Cancelled)
+    }
+
+    /// Returns whether the input is sound but needs more than a limit or a budget allows.
+    pub fn is_of_cost(&self) -> bool {
+        self.is_of_budget() || matches!(self, Self::Limit { .. })
     }
 
     /// Creates a [`Error::Parameter`] from any displayable value.

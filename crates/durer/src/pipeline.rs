@@ -163,7 +163,7 @@ impl RenderOptions {
     ///
     /// # Errors
     /// [`Error::Parameter`] for a size of zero, a window that is empty or goes beyond the picture, and a window of a picture
-    /// with a side above 131,072; [`Error::Limit`] for more pixels than `max_pixels`; [`Error::Unsupported`] for secondary
+    /// with a side above 131,072; [`Error::TooLarge`] for more pixels than `max_pixels`; [`Error::Unsupported`] for secondary
     /// rays with an algorithm that casts none, and for a window with ambient occlusion or by depth sort.
     pub fn check(&self) -> Result<()> {
         if self.width == 0 || self.height == 0 {
@@ -174,7 +174,7 @@ impl RenderOptions {
         let (width, height) = self.rendered_size();
         let pixels = u64::from(width) * u64::from(height);
         if pixels > self.max_pixels {
-            return Err(Error::Limit { what: "pixels", value: pixels, limit: self.max_pixels });
+            return Err(Error::TooLarge { what: "pixels", value: pixels, limit: self.max_pixels });
         }
         if let Some(Exposure::Ev(ev)) = self.exposure
             && !ev.is_finite()

@@ -3,10 +3,10 @@
 //! The file is read three times: for the camera, to find the visible items, and to read the visible triangles, which
 //! form a scene.
 
-use super::{
-    Job, Picture, RenderArgs, algorithm, asks_for_rays, colored, deliver, picture_options, shots,
-    tell_model, tell_picture, usage, with_file,
-};
+use super::check::{algorithm, asks_for_rays};
+use super::jobs::{Job, Picture};
+use super::scene_options::picture_options;
+use super::{RenderArgs, colored, deliver, shots, tell_model, tell_picture, usage, with_file};
 use crate::camera::{self, Shot, Sights};
 use crate::drawing;
 use crate::failure::Failure;

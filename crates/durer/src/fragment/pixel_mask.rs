@@ -25,11 +25,11 @@ impl PixelMask {
     /// Creates a mask of this size without any pixel.
     ///
     /// # Errors
-    /// [`Error::Limit`] above 2³² pixels.
+    /// [`Error::TooLarge`] above 2³² pixels.
     pub fn empty(width: u32, height: u32) -> Result<Self> {
         let pixels = u64::from(width) * u64::from(height);
         if pixels > MAX_PIXELS {
-            return Err(Error::Limit {
+            return Err(Error::TooLarge {
                 what: "pixels of a mask",
                 value: pixels,
                 limit: MAX_PIXELS,

@@ -22,7 +22,7 @@ const FINE: f64 = 0.002;
 /// Marks are freed one by one as they are painted, so that large sheets are not held twice.
 ///
 /// # Errors
-/// [`crate::Error::Limit`] for sides beyond 32,767 pixels; [`crate::Error::Parameter`] for pens that
+/// [`crate::Error::TooLarge`] for sides beyond 32,767 pixels; [`crate::Error::Parameter`] for pens that
 /// are not at least 0 wide.
 pub fn paint(
     sheet: Sheet,

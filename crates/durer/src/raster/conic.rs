@@ -143,7 +143,7 @@ pub fn replay(steps: &[Step]) -> Vec<IVec2> {
 /// ```
 ///
 /// # Errors
-/// [`Error::Limit`] for a radius above [`MAX_RADIUS`].
+/// [`Error::TooLarge`] for a radius above [`MAX_RADIUS`].
 pub fn circle(
     center: IVec2,
     radius: u32,
@@ -171,7 +171,7 @@ pub fn circle(
 /// out. `radii` are half its width and half its height.
 ///
 /// # Errors
-/// [`Error::Limit`] for a radius above [`MAX_RADIUS`].
+/// [`Error::TooLarge`] for a radius above [`MAX_RADIUS`].
 pub fn ellipse(
     center: IVec2,
     radii: [u32; 2],
@@ -221,7 +221,7 @@ pub fn ellipse(
 fn checked(radius: u32) -> Result<i64> {
     if radius > MAX_RADIUS {
         let (value, limit) = (u64::from(radius), u64::from(MAX_RADIUS));
-        return Err(Error::Limit { what: "radius in pixels", value, limit });
+        return Err(Error::TooLarge { what: "radius in pixels", value, limit });
     }
     Ok(i64::from(radius))
 }

@@ -34,12 +34,12 @@ impl Layout {
     ///
     /// # Errors
     /// [`Error::Parameter`] if a name is empty, there are no names, more names than cells, or so few that a row stays
-    /// empty; [`Error::Limit`] above [`MAX_CELLS`].
+    /// empty; [`Error::TooLarge`] above [`MAX_CELLS`].
     pub fn new(columns: usize, rows: usize, names: Vec<String>) -> Result<Self> {
         let cells = columns.saturating_mul(rows);
         if cells > MAX_CELLS {
             let limit = MAX_CELLS as u64;
-            return Err(Error::Limit { what: "viewports", value: cells as u64, limit });
+            return Err(Error::TooLarge { what: "viewports", value: cells as u64, limit });
         }
         if names.iter().any(|n| n.is_empty()) || names.is_empty() {
             return Err(Error::parameter("layout", names.join(","), "names parted by commas"));
@@ -59,7 +59,7 @@ impl Layout {
     /// Returns the viewports with their names, in order, on a screen of this size in pixels.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if a cell would have no pixel, [`Error::Limit`] for a side above
+    /// [`Error::Parameter`] if a cell would have no pixel, [`Error::TooLarge`] for a side above
     /// 2³¹ − 1.
     pub fn viewports(&self, width: u32, height: u32) -> Result<Vec<(&str, Viewport)>> {
         let screen = PixelRect::of_size(width, height)?;

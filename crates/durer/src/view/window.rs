@@ -36,11 +36,11 @@ impl PixelRect {
     /// Returns the rectangle of all pixels of a picture, from the origin.
     ///
     /// # Errors
-    /// [`Error::Limit`] for a side above 2³¹ − 1.
+    /// [`Error::TooLarge`] for a side above 2³¹ − 1.
     pub fn of_size(width: u32, height: u32) -> Result<Self> {
         let side = |value: u32| {
             let limit = i32::MAX as u64;
-            i32::try_from(value).map_err(|_| Error::Limit {
+            i32::try_from(value).map_err(|_| Error::TooLarge {
                 what: "pixels a side",
                 value: value.into(),
                 limit,

@@ -122,7 +122,7 @@ pub fn replay(steps: &[Step], width: u32, height: u32) -> Pixels<u8> {
 /// closed; coordinates in pixels. Points that are not finite are left out; parts outside the target are clipped.
 ///
 /// # Errors
-/// [`crate::Error::Limit`] for sides beyond 32,767 pixels.
+/// [`crate::Error::TooLarge`] for sides beyond 32,767 pixels.
 ///
 /// ```
 /// use durer::curve::Contours;

@@ -119,7 +119,7 @@ pub const INFO: Info = Info {
 /// 8 bits, plus 2⁻¹⁷ of a pixel for each edge through it.
 ///
 /// # Errors
-/// [`Error::Limit`] for sides beyond 32,767 pixels.
+/// [`Error::TooLarge`] for sides beyond 32,767 pixels.
 ///
 /// ```
 /// use durer::curve::Contours;
@@ -213,7 +213,7 @@ impl<S: Simd, T: Tracer<Step>> Sink<S> for Mask<'_, T> {
 pub(crate) fn check_size(width: u32, height: u32) -> Result<()> {
     let side = width.max(height);
     if side > MAX_SIDE {
-        return Err(Error::Limit {
+        return Err(Error::TooLarge {
             what: "pixels per side",
             value: u64::from(side),
             limit: u64::from(MAX_SIDE),

@@ -89,7 +89,7 @@ impl Step {
 /// proportion to their areas. Returns the number of pixels that the faces together cover fully.
 ///
 /// # Errors
-/// [`crate::Error::Limit`] for sides beyond 32,767 pixels.
+/// [`crate::Error::TooLarge`] for sides beyond 32,767 pixels.
 pub fn fill_partition(
     faces: &[Face],
     target: &mut Pixels<[u8; 4]>,

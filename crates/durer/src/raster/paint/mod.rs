@@ -134,7 +134,7 @@ impl Canvas {
     /// Creates an empty list for targets of `width` × `height` pixels.
     ///
     /// # Errors
-    /// [`Error::Limit`] for sides beyond 32,767 pixels.
+    /// [`Error::TooLarge`] for sides beyond 32,767 pixels.
     pub fn new(width: u32, height: u32, options: Options) -> Result<Self> {
         check_size(width, height)?;
         let transform = DAffine2::IDENTITY;

@@ -54,7 +54,7 @@ const NEAR: f64 = 1e-3;
 /// Makes the maps of all directional, spot and point lights into [`PreparedLights::shadows`].
 ///
 /// # Errors
-/// [`Error::Parameter`] for a side of 0, [`Error::Limit`] above [`MAX_SIDE`], and the errors of [`SurfaceInput::new`].
+/// [`Error::Parameter`] for a side of 0, [`Error::TooLarge`] above [`MAX_SIDE`], and the errors of [`SurfaceInput::new`].
 pub fn cast(scene: &Scene, lights: &mut PreparedLights, options: &Options) -> Result<()> {
     cast_within(&Work::default(), scene, lights, options)
 }
@@ -74,7 +74,7 @@ pub fn cast_within(
     }
     if options.side > MAX_SIDE {
         let (value, limit) = (u64::from(options.side), u64::from(MAX_SIDE));
-        return Err(Error::Limit { what: "shadow map's side", value, limit });
+        return Err(Error::TooLarge { what: "shadow map's side", value, limit });
     }
     let Some(sphere) = scene.bounding_sphere() else { return Ok(()) };
     let directions: Vec<DVec3> = lights.directional.iter().map(|l| l.to_light.as_dvec3()).collect();
