@@ -76,7 +76,7 @@ impl<'a> SurfaceInput<'a> {
 
     /// Returns the run that a triangle of [`Self::triangles`] belongs to.
     pub fn run_of(&self, item: u32) -> &Run {
-        &self.runs[crate::visibility::surface::attributes::run_of(&self.runs, item)]
+        &self.runs[crate::visibility::surface::points::attributes::run_of(&self.runs, item)]
     }
 
     /// Returns the triangles of [`Self::triangles`] with one kind of coverage.

@@ -7,11 +7,11 @@
 use crate::math::Vec4;
 use crate::shade::color::premultiply;
 use crate::target::NO_ITEM;
-use crate::visibility::surface::active::Active;
 use crate::visibility::surface::input::{METHOD, SurfaceInput, TriangleSet};
 use crate::visibility::surface::lit::Lit;
-use crate::visibility::surface::nearest::{DepthRow, Masked, is_nearer};
 use crate::visibility::surface::picture::Picture;
+use crate::visibility::surface::rows::active::Active;
+use crate::visibility::surface::rows::nearest::{DepthRow, Masked, is_nearer};
 use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 use crate::work::Charge;
 

@@ -1,9 +1,7 @@
 //! Algorithms for visible surfaces, their input, and the lighting that they share.
 
 pub mod a_buffer;
-pub(crate) mod active;
 pub mod ambient_occlusion;
-pub(crate) mod attributes;
 pub(crate) mod background;
 pub mod cover;
 pub mod depth_sort;
@@ -12,18 +10,14 @@ pub mod input;
 pub(crate) mod layers;
 pub(crate) mod lit;
 pub mod method;
-pub(crate) mod nearest;
-pub(crate) mod normal_plane;
-pub(crate) mod patch;
 pub mod picture;
+pub(crate) mod points;
 pub mod ray;
+pub(crate) mod rows;
 pub mod scan_line_z;
 pub mod setup;
 pub mod shadow_map;
-pub(crate) mod sight;
 pub mod spanning_scan_line;
-pub(crate) mod textured;
-pub(crate) mod triangles;
 pub(crate) mod visible;
 pub mod warnock;
 pub mod z_buffer;

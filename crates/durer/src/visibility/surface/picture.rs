@@ -14,7 +14,7 @@ use crate::visibility::surface::Background;
 use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::lit::{Lighting, Lit, opaque};
-use crate::visibility::surface::patch::Patch;
+use crate::visibility::surface::points::patch::Patch;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, u32x16};
 use fearless_simd_macros::simd;

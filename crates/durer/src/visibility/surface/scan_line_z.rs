@@ -15,12 +15,12 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
-use crate::visibility::surface::active::ActiveList;
 use crate::visibility::surface::input::{METHOD, SurfaceInput};
 use crate::visibility::surface::layers::{Layers, write_row};
-use crate::visibility::surface::nearest::{DepthRow, Masked};
 pub use crate::visibility::surface::picture::Options;
 use crate::visibility::surface::picture::Picture;
+use crate::visibility::surface::rows::active::ActiveList;
+use crate::visibility::surface::rows::nearest::{DepthRow, Masked};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {

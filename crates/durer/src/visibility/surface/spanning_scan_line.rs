@@ -21,13 +21,13 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
-use crate::visibility::surface::active::{Active, ActiveList};
 use crate::visibility::surface::input::{METHOD, SurfaceInput};
 use crate::visibility::surface::layers::{Layers, write_row};
 use crate::visibility::surface::lit::Lit;
-use crate::visibility::surface::nearest::{DepthRow, Masked, is_nearer};
 pub use crate::visibility::surface::picture::Options;
 use crate::visibility::surface::picture::Picture;
+use crate::visibility::surface::rows::active::{Active, ActiveList};
+use crate::visibility::surface::rows::nearest::{DepthRow, Masked, is_nearer};
 use crate::visibility::surface::setup::ScreenTriangle;
 
 /// Facts about the algorithm.

@@ -2,8 +2,8 @@
 
 use super::{Lit, LookedUp};
 use crate::shade::TexCoords;
-use crate::visibility::surface::patch::Patch;
-use crate::visibility::surface::textured::{CoordsOfOne, GatheredCoords};
+use crate::visibility::surface::lit::textured::{CoordsOfOne, GatheredCoords};
+use crate::visibility::surface::points::patch::Patch;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x16};
 

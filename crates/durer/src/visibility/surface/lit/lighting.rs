@@ -6,8 +6,8 @@ use crate::scene::{Mesh, Scene, Topology};
 use crate::shade::{PreparedLights, PreparedMaterial, PreparedMaterials, Shading};
 use crate::simd::Level;
 use crate::view::View;
+use crate::visibility::surface::points::triangles::Part;
 use crate::visibility::surface::setup::Run;
-use crate::visibility::surface::triangles::Part;
 
 /// Data that all threads share.
 #[derive(Clone, Copy)]

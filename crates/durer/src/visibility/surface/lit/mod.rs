@@ -9,6 +9,7 @@ mod shares;
 mod sixteen;
 #[cfg(test)]
 mod tests;
+mod textured;
 
 pub use batch::Batch;
 pub use known::KnownNormals;
@@ -22,9 +23,11 @@ use crate::shade::{
     PreparedLights, PreparedMaterial, Reflected, Shading, Surface, TexCoord, shade, shade_face,
     shade_seen, shade_vertex,
 };
-use crate::visibility::surface::attributes::{VisibleTriangle, Weights, blend, run_of};
-use crate::visibility::surface::sight::Sight;
-use crate::visibility::surface::triangles::{OF_ROWS, OF_TILES, Part, Triangles, parallel_view};
+use crate::visibility::surface::points::attributes::{VisibleTriangle, Weights, blend, run_of};
+use crate::visibility::surface::points::sight::Sight;
+use crate::visibility::surface::points::triangles::{
+    OF_ROWS, OF_TILES, Part, Triangles, parallel_view,
+};
 use lighting::{LookedUp, RunInfo};
 
 /// Sets of texture coordinates that are examined.

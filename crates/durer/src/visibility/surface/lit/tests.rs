@@ -11,7 +11,7 @@ use crate::shade::{PreparedMaterials, ToneMap};
 use crate::simd::{dispatch, levels};
 use crate::target::NO_ITEM;
 use crate::view::View;
-use crate::visibility::surface::patch::Patch;
+use crate::visibility::surface::points::patch::Patch;
 use crate::visibility::surface::setup::runs;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, u32x16};

@@ -10,9 +10,9 @@ use crate::scene::{Material, Projection, ShadingModel};
 use crate::shade::color::premultiply;
 use crate::shade::{PreparedLights, Shading};
 use crate::visibility::surface::Background;
-use crate::visibility::surface::attributes::{blend, run_of};
 use crate::visibility::surface::layers::compose;
 use crate::visibility::surface::lit::{Lighting, Lit, Seen};
+use crate::visibility::surface::points::attributes::{blend, run_of};
 use crate::visibility::surface::setup::Coverage;
 
 /// Contributions below this change no 8-bit colour and are not followed.

@@ -5,8 +5,8 @@
 use super::bvh::{Box3, Bvh, surface};
 use crate::math::Vec3;
 use crate::scene::Topology;
-use crate::visibility::surface::attributes::Weights;
 use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::points::attributes::Weights;
 
 /// A ray; world axes, the origin relative to the eye.
 #[derive(Debug, Clone, Copy)]

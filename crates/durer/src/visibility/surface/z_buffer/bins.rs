@@ -6,10 +6,10 @@ use super::tile_grid::TileGrid;
 use crate::Result;
 use crate::view::View;
 use crate::visibility::surface::lit::Lighting;
+use crate::visibility::surface::points::triangles::RunNormals;
 use crate::visibility::surface::setup::{
     Assembler, Counts, Coverage, Filter, Run, Sampled, ScreenTriangle, ScreenVertex, Sink,
 };
-use crate::visibility::surface::triangles::RunNormals;
 use crate::work::{Charge, Work};
 use fearless_simd::Simd;
 use std::ops::Range;

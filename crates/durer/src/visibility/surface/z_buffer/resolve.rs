@@ -11,7 +11,7 @@ use crate::target::NO_ITEM;
 use crate::visibility::surface::lit::{
     Batch, KnownNormals, Lit, MOST_SAMPLES, PointQueue, ShadingPoint,
 };
-use crate::visibility::surface::patch::Patch;
+use crate::visibility::surface::points::patch::Patch;
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, mask32x16, u32x8, u32x16};

@@ -5,7 +5,7 @@ use super::{BLOCKS, LANES, block_at, place_of};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::LEAST_THROUGH;
 use crate::visibility::surface::lit::{Lit, opaque};
-use crate::visibility::surface::patch::Patch;
+use crate::visibility::surface::points::patch::Patch;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
 

@@ -18,7 +18,7 @@ use crate::raster::fixed::HALF_PIXEL;
 use crate::shade::color::{encode_opaque_x16, encode_premultiplied, premultiply};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::lit::{Lit, MOST_SAMPLES, opaque};
-use crate::visibility::surface::patch::Patch;
+use crate::visibility::surface::points::patch::Patch;
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x16};

@@ -3,8 +3,8 @@
 use crate::math::Vec2;
 use crate::shade::TexCoords;
 use crate::shade::lane::Lane;
-use crate::visibility::surface::attributes::VisibleTriangle;
-use crate::visibility::surface::patch::Patch;
+use crate::visibility::surface::points::attributes::VisibleTriangle;
+use crate::visibility::surface::points::patch::Patch;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16};
 

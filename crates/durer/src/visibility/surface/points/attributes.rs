@@ -6,8 +6,8 @@
 
 use crate::math::{Vec3, Vec4};
 use crate::scene::Mesh;
-use crate::visibility::surface::normal_plane::NormalPlane;
-use crate::visibility::surface::patch::Patch;
+use crate::visibility::surface::points::normal_plane::NormalPlane;
+use crate::visibility::surface::points::patch::Patch;
 use crate::visibility::surface::setup::Run;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4, f32x16};

@@ -2,7 +2,7 @@
 
 use crate::math::Vec3;
 use crate::target::NO_ITEM;
-use crate::visibility::surface::patch::Patch;
+use crate::visibility::surface::points::patch::Patch;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4, f32x16};
 
@@ -17,7 +17,7 @@ pub struct NormalPlane {
     /// numbers are 0.
     pub(super) planes: [[f32; 4]; 3],
     /// The pixel from whose centre x and y are counted.
-    pub(super) origin: [i32; 2],
+    pub origin: [i32; 2],
     /// The item.
     pub item: u32,
     /// True if the planes can be used: wherever a sample of the item may be, the normals are clearly on the visible

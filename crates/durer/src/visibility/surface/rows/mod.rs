@@ -1,0 +1,4 @@
+//! Rows of pixels: the triangles that a scan line crosses, and the nearest of them at each pixel.
+
+pub mod active;
+pub mod nearest;
