@@ -52,6 +52,13 @@ pub fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Image> {
     Ok(Image { name: name.to_owned(), width, height, data })
 }
 
+/// Returns whether the bytes begin like a picture of any format whose beginning is unmistakable.
+pub(crate) fn is_picture(bytes: &[u8]) -> bool {
+    [png::MAGIC, jpeg::MAGIC, gif::MAGIC].iter().any(|magic| bytes.starts_with(magic))
+        || webp::is_webp(bytes)
+        || other_format(bytes).is_some()
+}
+
 fn unsupported(name: &str, format: &str) -> Error {
     Error::Unsupported {
         place: Place::Whole,

@@ -1,9 +1,10 @@
 //! The detection of a model's format: by its content first, then by its name.
 
+use crate::geo::GeoFormat;
 use crate::text::{Cursor, utf8};
 use crate::{
-    Error, Model, ReadOptions, Resources, Result, collada, e57, fbx, gltf, las, obj, off, ply, stl,
-    threemf, xyz,
+    Error, Model, ReadOptions, Resources, Result, collada, e57, fbx, gltf, gzip, image, las, obj,
+    off, ply, stl, threemf, xyz,
 };
 
 /// Number of bytes of a file that are examined.
@@ -121,9 +122,9 @@ impl ModelFormat {
             && !ply::sniff(head)
     }
 
-    /// Returns the format that a file's name speaks for, if any does.
+    /// Returns the format that a file's name speaks for, if any does; `.gz` at its end does not count.
     pub fn of_name(name: &str) -> Option<Self> {
-        let (_, suffix) = name.rsplit_once('.')?;
+        let (_, suffix) = gzip::stem(name).rsplit_once('.')?;
         let suffix = suffix.to_ascii_lowercase();
         Self::ALL.into_iter().find(|f| f.suffixes().contains(&suffix.as_str()))
     }
@@ -131,9 +132,31 @@ impl ModelFormat {
 
 /// Returns whether the bytes are glTF: binary by its magic, text by an object with the key that it must have.
 fn is_gltf(bytes: &[u8]) -> bool {
-    let key = b"\"asset\"";
-    bytes.starts_with(b"glTF")
-        || (starts_as_json(bytes) && bytes.windows(key.len()).any(|w| w == key))
+    bytes.starts_with(b"glTF") || (starts_as_json(bytes) && has_member(bytes, b"asset"))
+}
+
+/// Returns whether the outermost object of a JSON text has a member of this name.
+fn has_member(text: &[u8], name: &[u8]) -> bool {
+    let (mut depth, mut string, mut escaped) = (0_u64, None, false);
+    for (i, byte) in text.iter().enumerate() {
+        match (string, byte) {
+            _ if std::mem::take(&mut escaped) => {}
+            (Some(_), b'\\') => escaped = true,
+            (Some(start), b'"') => {
+                string = None;
+                let follows = || text.get(i + 1..).unwrap_or_default().trim_ascii_start();
+                if depth == 1 && text.get(start..i) == Some(name) && follows().starts_with(b":") {
+                    return true;
+                }
+            }
+            (Some(_), _) => {}
+            (None, b'"') => string = Some(i + 1),
+            (None, b'{' | b'[') => depth += 1,
+            (None, b'}' | b']') => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+    }
+    false
 }
 
 fn starts_as_json(bytes: &[u8]) -> bool {
@@ -160,10 +183,11 @@ fn is_obj(bytes: &[u8]) -> bool {
 }
 
 /// Reads a model of any known format: by its content, or where that says nothing, by the suffix of
-/// `name`.
+/// `name`. The file may be compressed by gzip.
 ///
 /// # Errors
-/// [`Error::Unknown`] if neither content nor name determines the format; else those of the reader: [`obj::read`],
+/// [`Error::Unknown`] if neither content nor name determines the format; [`Error::Decode`] for broken gzip,
+/// [`Error::Limit`] if it unpacks to more than `options.limits.decoded_bytes`; else those of the reader: [`obj::read`],
 /// [`stl::read`], [`ply::read`], [`threemf::read`], [`collada::read`], [`fbx::read`], [`off::read`], [`las::read`],
 /// [`e57::read`], [`xyz::read`].
 pub fn read_model(
@@ -172,6 +196,7 @@ pub fn read_model(
     resources: &dyn Resources,
     options: &ReadOptions,
 ) -> Result<Model> {
+    let bytes = &*gzip::unpacked(bytes, &options.limits)?;
     match ModelFormat::of_content(bytes).or_else(|| ModelFormat::of_name(name)) {
         Some(ModelFormat::Gltf) => gltf::read(bytes, resources, options),
         Some(ModelFormat::Obj) => obj::read(bytes, resources, options),
@@ -191,13 +216,23 @@ pub fn read_model(
 fn unknown(bytes: &[u8]) -> String {
     let formats = ModelFormat::ALL.map(|f| format!("{} (.{})", f.name(), f.suffixes().join(" .")));
     let what = if bytes.is_empty() {
-        "the file is empty"
+        "the file is empty".to_owned()
     } else if Cursor::new(bytes).word() == Some(b"newmtl") {
-        "this is a material library; open the OBJ file that uses it"
+        "this is a material library; open the OBJ file that uses it".to_owned()
+    } else if let Some(flat) = flat(bytes) {
+        format!("this is {}, which has no surfaces; `draw` draws it", flat.name())
+    } else if image::is_picture(bytes) {
+        "this is a picture".to_owned()
     } else {
-        "neither content nor name tell"
+        "neither content nor name tell".to_owned()
     };
     format!("{what}; models are read from {}", formats.join(", "))
+}
+
+/// Returns the format of drawings or map data that the bytes are in without doubt.
+fn flat(bytes: &[u8]) -> Option<GeoFormat> {
+    use GeoFormat::{Csv, Wkb, WkbHex};
+    GeoFormat::of_content(bytes).filter(|format| !matches!(format, Csv | Wkb | WkbHex))
 }
 
 #[cfg(test)]
@@ -212,6 +247,10 @@ mod tests {
             (&b"glTF\x02"[..], Some(ModelFormat::Gltf)),
             (b"\n{ \"asset\": {} }", Some(ModelFormat::Gltf)),
             (b"{}", None),
+            (b"{\"a\\\"\": [{\"b\": 1}], \"asset\" : {}}", Some(ModelFormat::Gltf)),
+            // Map data whose features have a property of that name.
+            (b"{\"type\": \"Feature\", \"properties\": {\"asset\": 1}}", None),
+            (b"{\"type\": \"asset\"}", None),
             (b"ply\r\n", Some(ModelFormat::Ply)),
             (b"PK\x03\x04", Some(ModelFormat::ThreeMf)),
             (
@@ -240,6 +279,30 @@ mod tests {
     }
 
     #[test]
+    fn compressed_models_are_read_by_content_and_by_name() {
+        use std::io::Write;
+        let packed = |bytes: &[u8]| {
+            let fast = flate2::Compression::fast();
+            let mut encoder = flate2::write::GzEncoder::new(Vec::new(), fast);
+            encoder.write_all(bytes).expect("memory");
+            encoder.finish().expect("memory")
+        };
+        let read = |bytes: &[u8], name: &str| {
+            read_model(bytes, name, &NoResources, &ReadOptions::default())
+        };
+        let obj = packed(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        for name in ["a.obj.gz", "a.stl", ""] {
+            let model = read(&obj, name).expect("model");
+            assert_eq!((&model.format[..], model.scene.triangle_count()), ("OBJ", 1), "{name}");
+        }
+        let points = read(&packed(b"1 2 3\n4 5 6\n"), "a.XYZ.gz").expect("points");
+        assert_eq!(points.scene.meshes[0].positions.len(), 2);
+        let cut = read(&obj[..obj.len() - 9], "a.obj.gz").expect_err("cut off").to_string();
+        assert!(cut.contains("broken gzip: the data are cut off"), "{cut}");
+        assert_eq!(ModelFormat::of_name("a.OBJ.GZ"), Some(ModelFormat::Obj));
+    }
+
+    #[test]
     fn the_unknown_is_told_what_is_known() {
         let message = |bytes: &[u8], name: &str| {
             let e = read_model(bytes, name, &NoResources, &ReadOptions::default());
@@ -248,6 +311,9 @@ mod tests {
         let text = message(b"GOFF\n", "x.geom");
         assert!(text.contains("neither content") && text.contains("STL (.stl)"), "{text}");
         assert!(message(b"newmtl a\n", "x.mtl").contains("material library"));
+        let map = message(b"{\"type\": \"Point\", \"coordinates\": [1, 2]}", "x.geojson");
+        assert!(map.contains("this is geojson, which has no surfaces; `draw` draws it"), "{map}");
+        assert!(message(b"\x89PNG\r\n\x1a\n", "x.png").contains("this is a picture"));
         assert!(message(b"", "x").contains("empty"));
     }
 }

@@ -169,7 +169,7 @@ impl Job<'_> {
         let told = self.args.from.filter(|_| !svg);
         let format = told.or_else(|| crate::layer::format_of(&layer.input, &bytes));
         let Some(format) = format else {
-            let (what, read) = (GeoFormat::foreign(&bytes), GeoFormat::READ);
+            let (what, read) = (crate::layer::foreign(&bytes), GeoFormat::READ);
             let message = format!("{name}: {what}; durer draw reads SVG, and map data from {read}");
             return Err(Failure::Data(message));
         };

@@ -18,6 +18,7 @@ use crate::input::{self, display_name};
 use crate::places::is_stream;
 use crate::watch;
 use durer::work::Work;
+use durer_formats::ModelFormat;
 use durer_formats::geo::{Beside, Feature, GeoFormat, Points, Reader, unzipped};
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -45,9 +46,20 @@ pub fn bytes(path: &Path) -> Result<Box<dyn BufRead>, Failure> {
     unzipped(source, PROBE).map_err(|e| fail(in_words(&e)))
 }
 
-/// Returns the format that a name speaks for, or that its first bytes do.
+/// Returns the format that a name speaks for, or that its first bytes do; none for models.
 pub fn format_of(path: &Path, head: &[u8]) -> Option<GeoFormat> {
-    GeoFormat::of_file(&path.to_string_lossy(), head)
+    // Any JSON could be GeoJSON, and any XML SVG.
+    let is_model =
+        matches!(ModelFormat::of_content(head), Some(ModelFormat::Gltf | ModelFormat::Collada));
+    if is_model { None } else { GeoFormat::of_file(&path.to_string_lossy(), head) }
+}
+
+/// Describes a file that holds no map data by its first bytes: a sentence for messages.
+pub fn foreign(head: &[u8]) -> String {
+    match ModelFormat::of_content(head) {
+        Some(model) => format!("this is {}, a model; durer render draws it", model.name()),
+        None => GeoFormat::foreign(head),
+    }
 }
 
 /// Opens a file, or standard input, and finds its format; it can be read until the work is stopped.
@@ -62,7 +74,7 @@ pub fn open(
     let mut source = bytes(path)?;
     let head = source.fill_buf().map_err(|e| fail(in_words(&e)))?;
     let Some(format) = format.or_else(|| format_of(path, head)) else {
-        let what = GeoFormat::foreign(head);
+        let what = foreign(head);
         return Err(fail(format!("{what}; map data are read from {}", GeoFormat::READ)));
     };
     // All layouts of GeoJSON are read alike; the suffix determines the one written to a stream.

@@ -48,13 +48,37 @@ fn files_are_converted_without_a_mask() {
 #[test]
 fn compressed_files_are_read_as_they_are() {
     let folder = folder();
-    let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
-    packed.write_all(PLACES.as_bytes()).expect("memory");
-    folder.write("places.csv.gz", packed.finish().expect("memory"));
+    let write = |name: &str, text: &str| {
+        let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        packed.write_all(text.as_bytes()).expect("memory");
+        folder.write(name, packed.finish().expect("memory"));
+    };
+    write("places.csv.gz", PLACES);
     folder.must("clip places.csv.gz --window 7,46,8,48 -o o.wkt");
     assert_eq!(text(&folder, "o.wkt"), "POINT (7.44 46.95)\nPOINT (7.59 47.56)\n");
     assert!(said(&folder, "info places.csv.gz").contains("3 Point"));
     folder.must("draw places.csv.gz --label name -o o.png");
+    write("one.obj.gz", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert!(said(&folder, "info one.obj.gz").contains("triangles   1"));
+    folder.must("render one.obj.gz -o o.png --size 16x16");
+    write("long.obj.gz", &"v 0 0 0\n".repeat(1000));
+    folder
+        .run("render long.obj.gz -o o.png --max-bytes 7999")
+        .fails(1, "size without compression of 8000 is above the limit of 7999");
+    write("hill.asc.gz", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 4\n");
+    folder.must("plot hill.asc.gz -o o.svg");
+    folder.run("clip one.obj.gz --window 0,0,1,1 -o o.wkt").fails(1, "this is OBJ, a model");
+}
+
+#[test]
+fn features_with_a_property_of_gltf_are_map_data() {
+    let folder = folder();
+    folder.write(
+        "pumps.geojson",
+        r#"{"type":"Feature","properties":{"asset":"pump"},"geometry":{"type":"Point","coordinates":[1,2]}}"#,
+    );
+    assert!(said(&folder, "info pumps.geojson").contains("1 Point"));
+    folder.must("draw pumps.geojson -o o.png");
 }
 
 #[test]

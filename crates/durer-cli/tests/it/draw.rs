@@ -393,6 +393,8 @@ fn wrong_use_and_bad_data_are_told() {
     folder.write("no.svg", "<svg xmlns='http://www.w3.org/2000/svg'><rect></svg>");
     folder.write("empty.geojson", r#"{"type":"FeatureCollection","features":[]}"#);
     folder.write("what.txt", "hello");
+    folder.write("model.gltf", r#"{"scenes":[],"asset":{"version":"2.0"}}"#);
+    folder.write("model.dae", r#"<?xml version="1.0"?><COLLADA version="1.4.1"></COLLADA>"#);
     for (arguments, code, part) in [
         ("draw a.svg map.geojson -o a.png", 2, "an SVG is drawn alone"),
         ("draw a.svg --fill red -o a.png", 2, "an SVG has its own"),
@@ -400,6 +402,8 @@ fn wrong_use_and_bad_data_are_told() {
         ("draw no.svg -o a.png", 1, "no.svg: line 1, column"),
         ("draw empty.geojson -o a.png", 1, "there is nothing to draw"),
         ("draw what.txt -o a.png", 1, "not a known format; durer draw reads SVG"),
+        ("draw model.gltf -o a.png", 1, "this is glTF, a model; durer render draws it"),
+        ("draw model.dae -o a.png", 1, "this is COLLADA, a model; durer render draws it"),
         ("draw a.svg -o a.png --size 40000x1", 2, "32767"),
         ("draw a.svg -o a.png --size 30000x30000", 2, "--max-pixels raises it"),
         ("draw a.svg -o - --json", 2, "the report goes to standard output"),

@@ -3,6 +3,7 @@
 use super::{
     csv, flatgeobuf, foreign, geopackage, geoparquet, markup, shapefile, topojson, wkb, wkt,
 };
+use crate::gzip;
 
 /// A format of geodata.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -197,11 +198,8 @@ impl GeoFormat {
 
     /// Returns the format that a file's name speaks for, if it does.
     pub fn of_name(name: &str) -> Option<Self> {
-        let (stem, suffix) = name.rsplit_once('.')?;
+        let (_, suffix) = gzip::stem(name).rsplit_once('.')?;
         let suffix = suffix.to_ascii_lowercase();
-        if suffix == "gz" {
-            return Self::of_name(stem);
-        }
         Self::ALL.into_iter().find(|f| f.suffixes().contains(&suffix.as_str()))
     }
 }

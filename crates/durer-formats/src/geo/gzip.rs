@@ -1,10 +1,8 @@
 //! Files compressed by gzip, as they are read.
 
+use crate::gzip::MAGIC;
 use flate2::bufread::MultiGzDecoder;
 use std::io::{self, BufRead, BufReader};
-
-/// First bytes of a gzip stream.
-const MAGIC: [u8; 2] = [0x1f, 0x8b];
 
 /// Returns a stream of a source's bytes, decompressed if it is gzip.
 ///

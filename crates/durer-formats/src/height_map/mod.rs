@@ -11,7 +11,7 @@ mod picture;
 mod points;
 mod table;
 
-use crate::{Error, Limits, Place, Result, Warning};
+use crate::{Error, Limits, Place, Result, Warning, gzip};
 use durer::scene::HeightField;
 
 /// The formats of height maps.
@@ -81,7 +81,7 @@ impl HeightMapFormat {
 
     /// Returns the format that a file's name speaks for, if any does.
     pub fn of_name(name: &str) -> Option<Self> {
-        let (_, suffix) = name.rsplit_once('.')?;
+        let (_, suffix) = gzip::stem(name).rsplit_once('.')?;
         let suffix = suffix.to_ascii_lowercase();
         Self::ALL.into_iter().find(|f| f.suffixes().contains(&suffix.as_str()))
     }
@@ -124,13 +124,14 @@ struct Grid {
 }
 
 /// Reads a height map of any known format: by its content, or where that says nothing, by the suffix
-/// of `name`; text that begins with a number is a table.
+/// of `name`; text that begins with a number is a table. The file may be compressed by gzip.
 ///
 /// # Errors
 /// [`Error::Unknown`] if neither gives the format; [`Error::Decode`] with line or byte for broken contents;
 /// [`Error::Limit`] above the limits; [`Error::Unsupported`] for known features that are not read; [`Error::Library`]
 /// for a grid that [`HeightField::new`] refuses.
 pub fn read(bytes: &[u8], name: &str, options: &HeightMapOptions) -> Result<HeightMap> {
+    let bytes = &*gzip::unpacked(bytes, &options.limits)?;
     let format = HeightMapFormat::of_content(bytes)
         .or_else(|| HeightMapFormat::of_name(name).filter(|f| *f == HeightMapFormat::Table))
         .or_else(|| table::looks_like_one(bytes).then_some(HeightMapFormat::Table));

@@ -1,14 +1,8 @@
 //! The text of a drawing from its bytes, which may be compressed and in any encoding.
 
-use crate::foreign;
-use crate::{Error, Limits, Place, Result};
+use crate::{Error, Limits, Result, gzip};
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE};
-use flate2::bufread::MultiGzDecoder;
 use std::borrow::Cow;
-use std::io::Read;
-
-/// First bytes of a gzip stream.
-const MAGIC: [u8; 2] = [0x1f, 0x8b];
 
 /// Number of bytes at the start that are searched for the name of the encoding.
 const DECLARATION: usize = 256;
@@ -19,24 +13,10 @@ const DECLARATION: usize = 256;
 /// [`Error::Decode`] for broken gzip, and for bytes that are not in the encoding that is said or an encoding that is
 /// not known; [`Error::Limit`] if it is larger than `limits.decoded_bytes`.
 pub(super) fn text<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Cow<'a, str>> {
-    if !bytes.starts_with(&MAGIC) {
-        return decoded(bytes);
+    match gzip::unpacked(bytes, limits)? {
+        Cow::Borrowed(bytes) => decoded(bytes),
+        Cow::Owned(bytes) => decoded(&bytes).map(|text| Cow::Owned(text.into_owned())),
     }
-    let (mut unpacked, limit) = (Vec::new(), limits.decoded_bytes);
-    let mut source = MultiGzDecoder::new(bytes).take(limit.saturating_add(1));
-    source
-        .read_to_end(&mut unpacked)
-        .map_err(|e| Error::whole(format!("broken gzip: {}", foreign::inflating(&e))))?;
-    if unpacked.len() as u64 > limit {
-        let what = "size of a drawing without its compression";
-        return Err(Error::Limit {
-            place: Place::Whole,
-            what,
-            value: unpacked.len() as u64,
-            limit,
-        });
-    }
-    decoded(&unpacked).map(|text| Cow::Owned(text.into_owned()))
 }
 
 fn decoded(bytes: &[u8]) -> Result<Cow<'_, str>> {
