@@ -11,7 +11,7 @@ const MOST = 2;
 
 export class Compare {
   readonly element: HTMLElement;
-  /** Is called when others are chosen. */
+  /** Called when others are chosen. */
   onchange: (() => void) | undefined;
   private others: { player: Player; stage: Stage; caption: HTMLElement; card: HTMLElement }[] = [];
   private cards = h("div", { class: "cards" });

@@ -1,4 +1,4 @@
-// Elements in a few letters.
+// Short functions that create elements.
 
 type Child = Node | string | null | undefined | false;
 type Attributes = Record<string, string | number | boolean | ((event: never) => void) | undefined>;

@@ -1,4 +1,4 @@
-// The engine as the pages see it: promises of answers. A trap starts a new engine, and whoever has a run starts it again.
+// The engine as the pages use it: promises of answers. After a trap a new engine is started, and owners of runs start them again.
 
 import type { Family, Frame, Input, Language, Lesson, Run, RunRequest } from "./types";
 import EngineWorker from "./worker?worker";
@@ -28,9 +28,9 @@ export class Engine {
   private worker: Worker | undefined;
   private waiting = new Map<number, Waiting>();
   private next = 1;
-  /** Counts engines, so that runs of one that is gone are known. */
+  /** Counts engines, to recognize runs of a previous one. */
   generation = 0;
-  /** Is called when an engine was started anew. */
+  /** Called after an engine was restarted. */
   onrestart: (() => void) | undefined;
 
   constructor(readonly module: string) {}
@@ -91,7 +91,7 @@ export class Engine {
     return (await this.ask<{ tikz: string }>({ do: "tikz", handle, step, language })).tikz;
   }
 
-  /** Ends the engine with all that it does. */
+  /** Ends the engine and all of its work. */
   stop(): void {
     if (this.worker) this.restart(new Trapped("stopped"));
   }

@@ -1,4 +1,4 @@
-// Exercises: inputs whose runs have to be of a kind, and programs with a line that is wrong.
+// Exercises: inputs whose runs must meet a goal, and programs with one wrong line.
 
 import { h } from "./dom";
 import { engineOf } from "./engine";
@@ -10,7 +10,7 @@ import { of, t } from "./words";
 /** Sentences by which a run with a fault is compared with the right one. */
 const COMPARED = 1_000;
 
-/** The exercise that runs a program with one wrong line: the student says which. */
+/** The exercise that runs a program with one wrong line, which the student must find. */
 export class Bug {
   /** The part of the panel that starts it. */
   readonly element: HTMLElement;
@@ -42,7 +42,7 @@ export class Bug {
     if (this.fault && !this.solved) this.words.textContent = t("bugAsk");
   }
 
-  /** Returns whether a fault changes what is seen of a run. */
+  /** Returns whether a fault visibly changes a run. */
   private async shows(fault: number, input: Input): Promise<boolean> {
     const { lesson, setup } = this.player;
     const sentences = async (own: number | undefined): Promise<string> => {
@@ -55,7 +55,7 @@ export class Bug {
     return (await sentences(fault)) !== (await sentences(undefined));
   }
 
-  /** Returns the input of the page if a fault is seen on it, else an example on which it is. */
+  /** Returns the input of the page if a fault is visible on it, else an example on which it is. */
   private async inputFor(fault: number): Promise<Input> {
     const { lesson, setup } = this.player;
     const all: Input[] = [setup.input, ...lesson.examples.map(({ name }) => ({ example: name }))];
@@ -93,7 +93,7 @@ export class Bug {
     this.verdict.className = "verdict right";
   }
 
-  /** Takes a click on a line of the pseudocode; returns whether it was an answer. */
+  /** Handles a click on a line of the pseudocode; returns whether it was an answer. */
   line(line: number): boolean {
     const { fault } = this;
     if (!fault || this.solved) return false;
@@ -112,12 +112,12 @@ interface Goal {
   solved(): boolean;
 }
 
-/** Returns exercises that any lesson has: goals for the input, which the run of it checks. */
+/** Returns the exercises of every lesson: goals for the input, checked by its run. */
 export function exercises(player: Player, bug: Bug | undefined): HTMLElement {
   const { lesson } = player;
   const list = h("ul", { class: "goals" });
   const kinds = kindsOf(lesson);
-  /** Counts of the first run, which the goals are about. */
+  /** Counts of the first run, on which the goals are based. */
   let base: { counts: Map<string, number>; steps: number } | undefined;
 
   function sentence(kind: string): string {

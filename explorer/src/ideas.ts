@@ -8,27 +8,27 @@ export const IDEAS: Record<string, Words> = {
     de: "Ein Punkt der Bézierkurve entsteht, indem man benachbarte Kontrollpunkte in einem Verhältnis mischt, dann die Mischungen, bis ein Punkt bleibt.",
   },
   "cohen-sutherland": {
-    en: "Clips a line to a window. Four bits for each end say beyond which borders it lies; they accept or reject most lines at once, and the others are cut at one border after the other.",
+    en: "Clips a line to a window. Four bits for each end tell which borders it is beyond; they accept or reject most lines at once, and the others are cut at one border after the other.",
     de: "Clippt eine Strecke an einem Fenster. Vier Bits je Ende sagen, jenseits welcher Ränder es liegt; die meisten Strecken sind damit sofort angenommen oder abgelehnt, die übrigen werden an einem Rand nach dem anderen geschnitten.",
   },
   midpoint: {
-    en: "Clips a line to a window without a division: it is halved again and again, and the half that cannot contain the border is left out.",
+    en: "Clips a line to a window without a division: it is halved repeatedly, and the half that cannot contain the border is dropped.",
     de: "Clippt eine Strecke ohne Division: Sie wird immer wieder halbiert, und die Hälfte, die den Rand nicht enthalten kann, fällt weg.",
   },
   "cyrus-beck": {
-    en: "Clips a line to any convex window. Each border is either entered or left by the line; what is visible lies between the last entry and the first exit.",
+    en: "Clips a line to any convex window. The line either enters or leaves each border; the part between the last entry and the first exit is visible.",
     de: "Clippt eine Strecke an einem konvexen Fenster. Jeder Rand wird von der Geraden betreten oder verlassen; sichtbar ist, was zwischen letztem Eintritt und erstem Austritt liegt.",
   },
   "liang-barsky": {
-    en: "Clips a line to a window by its parameter alone: borders that it enters raise the lower bound, those that it leaves lower the upper one. Only the ends that are left are computed.",
+    en: "Clips a line to a window by its parameter alone: borders that it enters raise the lower bound, borders that it leaves lower the upper one. Only the resulting ends are computed.",
     de: "Clippt eine Strecke allein über ihren Parameter: Ränder, die sie betritt, heben die untere Schranke, die sie verlässt, senken die obere. Nur die übrigen Enden werden berechnet.",
   },
   "nicholl-lee-nicholl": {
-    en: "Clips a line to a window with the fewest divisions: rays from its start through the corners divide the plane, and the region of its end says which borders to cut.",
+    en: "Clips a line to a window with the fewest divisions: rays from its start through the corners divide the plane, and the region of its end determines the borders to cut.",
     de: "Clippt eine Strecke mit den wenigsten Divisionen: Strahlen vom Anfang durch die Ecken teilen die Ebene, und das Gebiet des Endes sagt, welche Ränder zu schneiden sind.",
   },
   "sutherland-hodgman": {
-    en: "Clips a polygon to a window, one border at a time. Every border walks round the whole list of vertices, keeps those inside, and adds a vertex where an edge crosses it; its output is the input of the next.",
+    en: "Clips a polygon to a window, one border at a time. Each border goes through the whole list of vertices, keeps those inside, and adds a vertex where an edge crosses it; its output is the input of the next.",
     de: "Clippt ein Polygon an einem Fenster, einen Rand nach dem anderen. Jeder Rand geht die ganze Liste der Ecken durch, behält die inneren und fügt eine Ecke hinzu, wo eine Kante ihn kreuzt; was er ausgibt, bekommt der nächste.",
   },
   "weiler-atherton": {
@@ -44,7 +44,7 @@ export const IDEAS: Record<string, Words> = {
     de: "Verknüpft beliebige Polygone, während eine waagerechte Linie über sie läuft: Sie hält die getroffenen Kanten in Ordnung und beginnt, verlängert und schließt Stücke des Ergebnisses.",
   },
   "douglas-peucker": {
-    en: "Simplifies a line: it keeps the point farthest from the chord if that is far enough, and does the same on both sides; all others go.",
+    en: "Simplifies a line: it keeps the point farthest from the chord if that is far enough, and does the same on both sides; all others are dropped.",
     de: "Vereinfacht eine Linie: Der Punkt, der am weitesten von der Sehne liegt, bleibt, wenn er weit genug weg ist, und beide Seiten werden ebenso behandelt; alle anderen fallen weg.",
   },
   "window-viewport": {
@@ -60,7 +60,7 @@ export const IDEAS: Record<string, Words> = {
     de: "Zeichnet eine Strecke, indem von Spalte zu Spalte die Steigung addiert und gerundet wird: eine Addition statt einer Multiplikation.",
   },
   bresenham: {
-    en: "Draws a line with whole numbers only. The next pixel lies straight on or aslant; the sign of E says on which side of the middle between the two the line passes.",
+    en: "Draws a line with whole numbers only. The next pixel is straight ahead or diagonal; the sign of E tells on which side of the midpoint between the two the line passes.",
     de: "Zeichnet eine Strecke nur mit ganzen Zahlen. Das nächste Pixel liegt geradeaus oder schräg; das Vorzeichen von E sagt, auf welcher Seite der Mitte zwischen beiden die Strecke verläuft.",
   },
   wu: {
@@ -68,11 +68,11 @@ export const IDEAS: Record<string, Words> = {
     de: "Zeichnet eine glatte Linie: In jeder Spalte teilen sich die zwei nächsten Pixel die Schwärze nach ihrem Abstand.",
   },
   "midpoint-circle": {
-    en: "Draws a circle with whole numbers: one eighth is computed like a line by Bresenham, and the rest mirrored.",
+    en: "Draws a circle with whole numbers: one eighth is computed as in Bresenham's line, and the rest is mirrored.",
     de: "Zeichnet einen Kreis mit ganzen Zahlen: Ein Achtel wird wie eine Linie nach Bresenham berechnet, der Rest gespiegelt.",
   },
   "edge-table": {
-    en: "Fills a polygon row by row. The edges that cross the row are kept sorted by x; between the first and the second, the third and the fourth … lies the inside.",
+    en: "Fills a polygon row by row. The edges that cross the row are kept sorted by x; the inside is between the first and the second, the third and the fourth …",
     de: "Füllt ein Polygon Zeile für Zeile. Die Kanten, die die Zeile kreuzen, bleiben nach x sortiert; zwischen der ersten und zweiten, der dritten und vierten … liegt das Innere.",
   },
   "ordered-edge-list": {
@@ -80,7 +80,7 @@ export const IDEAS: Record<string, Words> = {
     de: "Füllt ein Polygon aus allen Schnittpunkten seiner Kanten mit den Zeilen, sortiert nach Zeile und x und paarweise genommen.",
   },
   "edge-fill": {
-    en: "Fills a polygon without any sorting: each edge inverts all pixels to its right, and what is inverted an odd number of times is inside.",
+    en: "Fills a polygon without any sorting: each edge inverts all pixels to its right, and pixels inverted an odd number of times are inside.",
     de: "Füllt ein Polygon ohne Sortieren: Jede Kante kehrt alle Pixel rechts von ihr um; was ungerade oft umgekehrt wurde, liegt innen.",
   },
   naive: {
@@ -108,7 +108,7 @@ export const IDEAS: Record<string, Words> = {
     de: "Schattiert ein Dreieck weich und mit Glanzlichtern: Normalen werden interpoliert, und das Licht wird in jedem Pixel berechnet.",
   },
   "shadow-map": {
-    en: "The scene is seen from the light first, and its depths are kept. A point is in shadow if something lies nearer to the light there.",
+    en: "The scene is first rendered from the light, and its depths are kept. A point is in shadow if something there is nearer to the light.",
     de: "Zuerst wird die Szene vom Licht aus gesehen, und die Tiefen werden behalten. Ein Punkt liegt im Schatten, wenn dort etwas näher am Licht ist.",
   },
   "back-face-removal": {
@@ -120,7 +120,7 @@ export const IDEAS: Record<string, Words> = {
     de: "Zeichnet Flächen in beliebiger Reihenfolge: Jedes Pixel merkt sich die Tiefe der bisher nächsten, und eine neue wird nur gezeichnet, wo sie näher liegt.",
   },
   painter: {
-    en: "Sorts faces from far to near and paints one over the other, as in oil. Simple, and wrong where faces overlap in a circle.",
+    en: "Sorts faces from far to near and paints one over the other, as in oil. Simple, but wrong where faces overlap cyclically.",
     de: "Sortiert Flächen von fern nach nah und malt sie übereinander, wie in Öl. Einfach, und falsch, wo Flächen sich reihum überlappen.",
   },
   "depth-sort": {
@@ -128,19 +128,19 @@ export const IDEAS: Record<string, Words> = {
     de: "Die Reihenfolge des Malers, richtig gemacht: Bevor eine Fläche gemalt wird, sichern Tests von billig bis teuer, dass sie keine andere fälschlich verdeckt; sonst werden zwei vertauscht oder eine geteilt.",
   },
   "bsp-tree": {
-    en: "The plane of a face divides all others into those before and behind it, again and again. Walking the tree gives the order from far to near for any eye.",
+    en: "The plane of a face divides all others into those in front of it and those behind it, recursively. Walking the tree gives the order from far to near for any eye.",
     de: "Die Ebene einer Fläche teilt alle anderen in die davor und dahinter, immer wieder. Der Gang durch den Baum ergibt für jedes Auge die Reihenfolge von fern nach nah.",
   },
   warnock: {
-    en: "Looks at a window of the picture: if it is simple (empty, one face, one in front of all), it is drawn; else it is divided into four, down to single pixels.",
+    en: "Examines a window of the picture: if it is simple (empty, one face, one in front of all), it is drawn; else it is divided into four, down to single pixels.",
     de: "Betrachtet ein Fenster des Bildes: Ist es einfach (leer, eine Fläche, eine vor allen), wird es gezeichnet; sonst wird es in vier geteilt, bis hinab zu einzelnen Pixeln.",
   },
   "scan-line-z": {
-    en: "Finds visible surfaces row by row, with the memory of one row of depths in place of a whole picture.",
+    en: "Finds visible surfaces row by row, with memory for one row of depths instead of a whole picture.",
     de: "Findet sichtbare Flächen Zeile für Zeile, mit dem Speicher für eine Zeile von Tiefen statt eines ganzen Bildes.",
   },
   ray: {
-    en: "Sends a ray from the eye through each pixel and takes the nearest hit; from there further rays ask for shadows, mirrors and glass.",
+    en: "Sends a ray from the eye through each pixel and takes the nearest hit; further rays from there find shadows, mirrors and glass.",
     de: "Schickt vom Auge einen Strahl durch jedes Pixel und nimmt den nächsten Treffer; von dort fragen weitere Strahlen nach Schatten, Spiegeln und Glas.",
   },
   "hidden-line": {
@@ -148,11 +148,11 @@ export const IDEAS: Record<string, Words> = {
     de: "Verfolgt jede Kante und zählt die Flächen vor ihr: Die Zahl ändert sich nur, wo die Kante einen Umriss kreuzt, und wo sie 0 ist, wird gezeichnet.",
   },
   "horizon-curves": {
-    en: "Draws a surface as curves from near to far: a curve is seen where it rises above all before it, or falls below them.",
+    en: "Draws a surface as curves from near to far: a curve is visible where it rises above all curves in front of it, or falls below them.",
     de: "Zeichnet eine Fläche als Kurven von nah nach fern: Eine Kurve ist sichtbar, wo sie über alle vor ihr steigt oder unter sie fällt.",
   },
   "de-boor": {
-    en: "A point of a B-spline is found like one of a Bézier curve, by mixing control points that are neighbours; the ratios follow from the knots, and only the few points whose curves reach there take part.",
+    en: "A point of a B-spline is found like one of a Bézier curve, by mixing control points that are neighbours; the ratios follow from the knots, and only the few points that influence the curve there take part.",
     de: "Ein Punkt einer B-Spline-Kurve entsteht wie bei Bézier durch Mischen benachbarter Kontrollpunkte; die Verhältnisse folgen aus den Knoten, und nur die wenigen Punkte, die dort wirken, nehmen teil.",
   },
   boehm: {
@@ -160,7 +160,7 @@ export const IDEAS: Record<string, Words> = {
     de: "Fügt einer B-Spline-Kurve einen Knoten hinzu, ohne sie zu ändern: Die Kontrollpunkte in der Nähe werden durch Mischungen von Nachbarn ersetzt, einer mehr als zuvor.",
   },
   oslo: {
-    en: "Adds many knots to a B-spline at once: each new control point is computed by itself, from the old ones, by a recursion over the degree.",
+    en: "Adds many knots to a B-spline at once: each new control point is computed separately from the old ones, by a recursion over the degree.",
     de: "Fügt einer B-Spline-Kurve viele Knoten auf einmal hinzu: Jeder neue Kontrollpunkt wird für sich aus den alten berechnet, rekursiv über den Grad.",
   },
   "catmull-rom": {
@@ -180,19 +180,19 @@ export const IDEAS: Record<string, Words> = {
     de: "Berechnet Ecken einer Bézierfläche auf einem Gitter von Parametern, wie die Auswerter von OpenGL.",
   },
   skala: {
-    en: "Clips a line to a convex window in homogeneous coordinates: the signs of the corners beside the line say which two borders it crosses, before anything is divided.",
+    en: "Clips a line to a convex window in homogeneous coordinates: the signs of the corners, that is, their sides of the line, determine the two borders that it crosses, before any division.",
     de: "Clippt eine Strecke an einem konvexen Fenster in homogenen Koordinaten: Die Vorzeichen der Ecken neben der Geraden sagen, welche zwei Ränder sie kreuzt, bevor etwas dividiert wird.",
   },
   "csg-scan-line": {
-    en: "Draws the union, intersection or difference of solids without computing it: along each span of a row the faces are passed from front to back, and the first one behind which the expression holds is seen.",
+    en: "Draws the union, intersection or difference of solids without computing it: along each span of a row the faces are passed from front to back, and the first one behind which the expression holds is visible.",
     de: "Zeichnet Vereinigung, Schnitt oder Differenz von Körpern, ohne sie zu berechnen: In jeder Strecke einer Zeile geht man die Flächen von vorn nach hinten durch, und die erste, hinter der der Ausdruck gilt, ist zu sehen.",
   },
   portals: {
-    en: "Rooms are drawn only through the doors by which they are seen: the rectangle around each door is intersected with the window on the way, and an empty one ends it.",
+    en: "Rooms are drawn only through the doors through which they are visible: the rectangle around each door is intersected with the window on the way, and an empty one ends it.",
     de: "Räume werden nur durch die Türen gezeichnet, durch die man sie sieht: Das Rechteck um jede Tür wird mit dem Fenster auf dem Weg geschnitten, und ist es leer, endet er.",
   },
   "bounding-volumes": {
-    en: "Decides whole objects by simple bodies around them: a box outside one plane of the view volume is not drawn, one inside all planes needs no clipping.",
+    en: "Accepts or rejects whole objects by simple bodies around them: a box outside one plane of the view volume is not drawn, one inside all planes needs no clipping.",
     de: "Entscheidet ganze Objekte an einfachen Hüllen: Ein Kasten außerhalb einer Ebene des Sichtvolumens wird nicht gezeichnet, einer innerhalb aller Ebenen braucht kein Clipping.",
   },
   section: {
@@ -204,19 +204,19 @@ export const IDEAS: Record<string, Words> = {
     de: "Setzt Beschriftungen in der Reihenfolge ihrer Wichtigkeit: Jede nimmt den ersten ihrer Plätze, der nichts überlappt, oder entfällt.",
   },
   unlit: {
-    en: "The colour of the texture as it is, without any light: for models whose textures were photographed with their light.",
+    en: "The unchanged colour of the texture, without any light: for models whose textures were photographed with their light.",
     de: "Die Farbe der Textur, wie sie ist, ohne jedes Licht: für Modelle, deren Texturen mit ihrem Licht fotografiert wurden.",
   },
   fog: {
-    en: "What is farther away is mixed with the colour of the air: in proportion between two distances, or by an exponential law.",
+    en: "Distant surfaces are mixed with the colour of the air: in proportion between two distances, or by an exponential law.",
     de: "Was weiter weg ist, wird mit der Farbe der Luft gemischt: proportional zwischen zwei Entfernungen oder nach einem Exponentialgesetz.",
   },
   "sobkow-pospisil-yang": {
-    en: "Clips a line to a window by the codes of both ends in one number: a table has a case for each of the 81 pairs of regions, which names the cuts and no others.",
+    en: "Clips a line to a window by the codes of both ends in one number: a table has a case for each of the 81 pairs of regions, which names exactly the necessary cuts.",
     de: "Clippt eine Strecke an einem Fenster mit den Codes beider Enden in einer Zahl: Eine Tabelle hat für jedes der 81 Paare von Gebieten einen Fall, der die Schnitte nennt und keine anderen.",
   },
   homogeneous: {
-    en: "Clips a line before the perspective division, by six borders that are inequalities of x, y, z and w: points behind the eye make no trouble.",
+    en: "Clips a line before the perspective division, by six borders that are inequalities of x, y, z and w: points behind the eye are no problem.",
     de: "Clippt eine Strecke vor der perspektivischen Division, an sechs Rändern, die Ungleichungen in x, y, z und w sind: Punkte hinter dem Auge stören nicht.",
   },
   polyline: {
@@ -228,23 +228,23 @@ export const IDEAS: Record<string, Words> = {
     de: "Findet alle Schnittpunkte von Strecken mit einer Geraden, die über sie hinwegstreicht: Nur Nachbarn auf ihr können sich als Nächste kreuzen, also werden wenige Paare geprüft.",
   },
   maillot: {
-    en: "Clips a polygon to a window edge by edge, with Cohen and Sutherland's codes and one bit more for corners: the codes of an edge's ends say around which corners the border must turn.",
+    en: "Clips a polygon to a window edge by edge, with Cohen and Sutherland's codes and one bit more for corners: the codes of an edge's ends determine the corners around which the border must turn.",
     de: "Clippt ein Polygon Kante für Kante an einem Fenster, mit den Codes von Cohen und Sutherland und einem Bit mehr für Ecken: Die Codes der Enden einer Kante sagen, um welche Ecken der Rand gehen muss.",
   },
   "liang-barsky-polygon": {
-    en: "Clips a polygon to a window in one pass: each edge emits what is visible of it, and corners of the window where the polygon turns around them.",
+    en: "Clips a polygon to a window in one pass: each edge emits its visible part, and corners of the window where the polygon turns around them.",
     de: "Clippt ein Polygon in einem Durchgang an einem Fenster: Jede Kante gibt aus, was von ihr sichtbar ist, und Ecken des Fensters, wo das Polygon um sie herumgeht.",
   },
   "scan-beams": {
-    en: "Clips any polygons: between the heights of all vertices and crossings lie beams in which edges only run side by side; each beam is filled by trapezoids.",
+    en: "Clips any polygons: between the heights of all vertices and crossings there are beams in which edges do not cross; each beam is filled by trapezoids.",
     de: "Clippt beliebige Polygone: Zwischen den Höhen aller Ecken und Schnittpunkte liegen Streifen, in denen Kanten nur nebeneinander laufen; jeder wird mit Trapezen gefüllt.",
   },
   overlay: {
-    en: "Combines any two sets of polygons robustly: all edges are divided where they meet, points are snapped to a grid, and winding numbers decide what belongs to the result.",
+    en: "Combines any two sets of polygons robustly: all edges are divided where they meet, points are snapped to a grid, and winding numbers determine the result.",
     de: "Verschneidet zwei beliebige Mengen von Polygonen robust: Alle Kanten werden an ihren Treffpunkten geteilt, Punkte auf ein Gitter gerundet, und Windungszahlen entscheiden, was zum Ergebnis gehört.",
   },
   rectangle: {
-    en: "Clips a polygon to a rectangle in the time of a walk around it: chains inside are joined along the border of the window.",
+    en: "Clips a polygon to a rectangle in a single walk around it: chains inside are joined along the border of the window.",
     de: "Clippt ein Polygon an einem Rechteck in der Zeit eines Umlaufs: Die Stücke im Inneren werden entlang des Fensterrands verbunden.",
   },
   "point-in-polygon": {
@@ -252,7 +252,7 @@ export const IDEAS: Record<string, Words> = {
     de: "Zählt, wie oft ein Polygon um einen Punkt läuft: Kanten, die einen Strahl von ihm aus nach oben kreuzen, zählen +1, nach unten −1.",
   },
   visvalingam: {
-    en: "Simplifies a line by leaving out, again and again, the vertex whose triangle with its neighbours has the smallest area.",
+    en: "Simplifies a line by repeatedly dropping the vertex whose triangle with its neighbours has the smallest area.",
     de: "Vereinfacht eine Linie, indem immer wieder die Ecke wegfällt, deren Dreieck mit ihren Nachbarn die kleinste Fläche hat.",
   },
   coverage: {
@@ -260,15 +260,15 @@ export const IDEAS: Record<string, Words> = {
     de: "Vereinfacht Flächen mit gemeinsamen Grenzen so, dass sie gemeinsam bleiben: Jede Grenze wird einmal vereinfacht.",
   },
   "interior-point": {
-    en: "Finds the point of a polygon that is farthest from its border, for a label: cells are divided where they may hold a better one.",
+    en: "Finds the point of a polygon that is farthest from its border, for a label: cells are divided where they may contain a better one.",
     de: "Findet den Punkt eines Polygons, der am weitesten vom Rand liegt, für eine Beschriftung: Zellen werden geteilt, wo sie einen besseren enthalten können.",
   },
   "run-slice": {
-    en: "Draws Bresenham's line run by run: a flat line has long rows of pixels, and one division tells how long each is.",
+    en: "Draws Bresenham's line run by run: a flat line has long rows of pixels, and one division gives the length of each.",
     de: "Zeichnet Bresenhams Linie Lauf um Lauf: Eine flache Linie hat lange Reihen von Pixeln, und eine Division sagt, wie lang jede ist.",
   },
   "double-step": {
-    en: "Draws Bresenham's line two pixels at a time: of the four patterns that two steps can have, one test chooses.",
+    en: "Draws Bresenham's line two pixels at a time: one test chooses among the four possible patterns of two steps.",
     de: "Zeichnet Bresenhams Linie zwei Pixel auf einmal: Unter den vier Mustern, die zwei Schritte haben können, wählt ein Test.",
   },
   "gupta-sproull": {
@@ -276,7 +276,7 @@ export const IDEAS: Record<string, Words> = {
     de: "Zeichnet eine geglättete Linie: Die Helligkeit eines Pixels folgt aus seinem Abstand zur Linie, nach einer Tabelle.",
   },
   "line-pattern": {
-    en: "Draws dashed lines on pixels: a pattern of bits is read step by step, and it goes on around corners.",
+    en: "Draws dashed lines on pixels: a pattern of bits is read step by step and continues around corners.",
     de: "Zeichnet gestrichelte Linien auf Pixeln: Ein Muster aus Bits wird Schritt um Schritt gelesen und läuft um Ecken weiter.",
   },
   stroke: {
@@ -284,11 +284,11 @@ export const IDEAS: Record<string, Words> = {
     de: "Macht aus einer breiten Linie eine Fläche: ein Umriss aus ihren Seiten, Verbindungen an den Ecken und Abschlüssen an den Enden.",
   },
   "midpoint-ellipse": {
-    en: "Draws an ellipse by integers: a decision at the midpoint between two candidates chooses each pixel, first where the slope is flat, then where it is steep.",
+    en: "Draws an ellipse with integers: a decision at the midpoint between two candidates chooses each pixel, first where the slope is flat, then where it is steep.",
     de: "Zeichnet eine Ellipse mit ganzen Zahlen: Eine Entscheidung am Mittelpunkt zwischen zwei Kandidaten wählt jedes Pixel, erst im flachen, dann im steilen Teil.",
   },
   "fence-fill": {
-    en: "Fills a polygon by inverting, for each edge, the pixels between it and a fence; what is inverted an odd number of times is inside.",
+    en: "Fills a polygon by inverting, for each edge, the pixels between it and a fence; pixels inverted an odd number of times are inside.",
     de: "Füllt ein Polygon, indem für jede Kante die Pixel zwischen ihr und einem Zaun umgekehrt werden; was ungerade oft umgekehrt wurde, liegt innen.",
   },
   "edge-flag": {
@@ -300,11 +300,11 @@ export const IDEAS: Record<string, Words> = {
     de: "Füllt ein Dreieck Zeile um Zeile: Zwei Kanten werden nach unten verfolgt, und die Pixel dazwischen gesetzt.",
   },
   tiles: {
-    en: "Fills a triangle by blocks of pixels: a block is outside, inside, or is divided, by the edge functions at one corner each.",
+    en: "Fills a triangle by blocks of pixels: the edge functions, at one corner each, show whether a block is outside, inside, or must be divided.",
     de: "Füllt ein Dreieck in Blöcken: Ein Block liegt außen, innen oder wird geteilt, nach den Kantenfunktionen an je einer Ecke.",
   },
   "cell-sums": {
-    en: "Computes exactly how much of each pixel an area covers: edges leave their heights and areas in the cells they cross, and a sum along each row gives the coverage.",
+    en: "Computes the exact share of each pixel that an area covers: edges add their heights and areas to the cells that they cross, and a sum along each row gives the coverage.",
     de: "Berechnet genau, wie viel eine Fläche von jedem Pixel bedeckt: Kanten hinterlassen Höhe und Fläche in den Zellen, die sie kreuzen, und die Summe entlang der Zeile ergibt die Bedeckung.",
   },
   partition: {
@@ -312,7 +312,7 @@ export const IDEAS: Record<string, Words> = {
     de: "Flächen mit gemeinsamen Kanten lassen keine Naht: Jede trägt ihre Farbe mit ihrer genauen Fläche im Pixel bei, und die Summe wird durch die Fläche aller geteilt.",
   },
   "floyd-steinberg": {
-    en: "Shows greys with black and white: the error of each pixel is handed on to its neighbours that are still to come.",
+    en: "Shows greys with black and white: the error of each pixel is passed on to neighbours not yet processed.",
     de: "Zeigt Grau mit Schwarz und Weiß: Der Fehler jedes Pixels wird an die Nachbarn weitergegeben, die noch kommen.",
   },
   "clustered-dot": {
@@ -332,11 +332,11 @@ export const IDEAS: Record<string, Words> = {
     de: "Clippt nach der Projektion, vor der Division: Dort sind alle sechs Ränder einfache Ungleichungen.",
   },
   "after-division": {
-    en: "Clips after the division, to a cube; what is behind the eye has to be removed before.",
+    en: "Clips after the division, to a cube; parts behind the eye must be removed before.",
     de: "Clippt nach der Division, an einem Würfel; was hinter dem Auge liegt, muss vorher weg.",
   },
   viewport: {
-    en: "Clips last of all, in two dimensions, to the window on the screen.",
+    en: "Clips as the last step, in two dimensions, to the window on the screen.",
     de: "Clippt ganz zuletzt, in zwei Dimensionen, am Fenster auf dem Bildschirm.",
   },
   "per-pixel": {
@@ -344,15 +344,15 @@ export const IDEAS: Record<string, Words> = {
     de: "Clippt gar nicht: Jedes Pixel wird geprüft, wenn es geschrieben wird.",
   },
   pick: {
-    en: "Finds what is under a point or in a rectangle of the picture: objects are clipped to the small view volume behind it.",
+    en: "Finds the objects under a point or in a rectangle of the picture: objects are clipped to the small view volume behind it.",
     de: "Findet, was unter einem Punkt oder in einem Rechteck des Bildes liegt: Objekte werden am kleinen Sichtvolumen dahinter geclippt.",
   },
   "forward-warp": {
-    en: "Makes the picture of a nearby camera from a picture with depths: each pixel is moved to its new place, the nearest one wins, and holes stay where nothing was known.",
+    en: "Makes the picture of a nearby camera from a picture with depths: each pixel is moved to its new place, the nearest one wins, and holes remain where nothing was known.",
     de: "Macht aus einem Bild mit Tiefen das einer nahen Kamera: Jedes Pixel wandert an seinen neuen Ort, das nächste gewinnt, und Löcher bleiben, wo nichts bekannt war.",
   },
   barycentric: {
-    en: "Three weights say where a point is in a triangle; whatever is known at the corners is mixed by them.",
+    en: "Three weights describe the position of a point in a triangle; values at the corners are mixed by them.",
     de: "Drei Gewichte sagen, wo ein Punkt im Dreieck liegt; mit ihnen wird gemischt, was an den Ecken bekannt ist.",
   },
   flat: {
@@ -364,19 +364,19 @@ export const IDEAS: Record<string, Words> = {
     de: "Werte auf einer Fläche ändern sich auf dem Bildschirm nicht gleichmäßig, Wert/w und 1/w aber schon: Sie werden interpoliert und an jedem Pixel dividiert.",
   },
   "fragment-operations": {
-    en: "What happens to a fragment before it becomes a pixel: scissor, alpha, stencil and depth tests, blending, and masks, in this order.",
+    en: "The operations on a fragment before it becomes a pixel: scissor, alpha, stencil and depth tests, blending, and masks, in this order.",
     de: "Was mit einem Fragment geschieht, bevor es ein Pixel wird: Scissor-, Alpha-, Stencil- und Tiefentest, Mischen und Masken, in dieser Reihenfolge.",
   },
   orientation: {
-    en: "Makes all faces of a body look outwards: neighbours are turned alike over their common edges, and the volume says whether all of them have to be turned.",
+    en: "Makes all faces of a body face outwards: neighbours are oriented alike across their common edges, and the volume tells whether all must be turned.",
     de: "Lässt alle Flächen eines Körpers nach außen zeigen: Nachbarn werden über gemeinsame Kanten gleich gerichtet, und das Volumen sagt, ob alle zu wenden sind.",
   },
   "hierarchical-z-buffer": {
-    en: "A z-buffer with a pyramid of farthest depths above it: boxes that are behind a cell of the pyramid are left out with all faces in them.",
+    en: "A z-buffer with a pyramid of farthest depths above it: boxes behind a cell of the pyramid are skipped with all faces in them.",
     de: "Ein z-Puffer mit einer Pyramide der größten Tiefen darüber: Kästen, die hinter einer Zelle der Pyramide liegen, fallen mit all ihren Flächen weg.",
   },
   octree: {
-    en: "Space is divided into boxes, which are visited from front to back: a pixel that is filled needs no more, and boxes behind filled pixels are left out.",
+    en: "Space is divided into boxes, which are visited from front to back: a filled pixel is finished, and boxes behind filled pixels are skipped.",
     de: "Der Raum wird in Kästen geteilt, die von vorn nach hinten besucht werden: Ein gefülltes Pixel braucht nichts mehr, und Kästen hinter gefüllten Pixeln fallen weg.",
   },
   watkins: {
@@ -384,19 +384,19 @@ export const IDEAS: Record<string, Words> = {
     de: "Geht das Bild Zeile um Zeile durch und jede Zeile Abschnitt um Abschnitt: Tiefen werden je Abschnitt verglichen, nicht je Pixel.",
   },
   "a-buffer-shares": {
-    en: "Keeps a list of fragments for each pixel, each with a mask of what it covers, and shares the pixel's colour out from the nearest to the farthest.",
+    en: "Keeps a list of fragments for each pixel, each with a mask of the sub-pixels that it covers, and divides the pixel among them from the nearest to the farthest.",
     de: "Hält für jedes Pixel eine Liste von Fragmenten mit Masken dessen, was sie bedecken, und teilt die Farbe des Pixels vom nächsten zum fernsten auf.",
   },
   "area-sorting": {
-    en: "Finds visible areas exactly: the picture is cut along the nearest polygon, what lies behind it is removed, and the rest is treated alike.",
+    en: "Finds visible areas exactly: the picture is cut along the nearest polygon, everything behind it is removed, and the rest is treated in the same way.",
     de: "Findet sichtbare Flächen genau: Das Bild wird entlang des nächsten Polygons geschnitten, was dahinter liegt, fällt weg, und der Rest wird ebenso behandelt.",
   },
   roberts: {
-    en: "The first exact hidden lines, for convex bodies: a line is hidden where a ray from it to the eye runs inside a body, which inequalities of its planes decide.",
+    en: "The first exact hidden lines, for convex bodies: a line is hidden where a ray from it to the eye passes through a body, which is decided by inequalities of its planes.",
     de: "Die ersten exakten verdeckten Linien, für konvexe Körper: Eine Linie ist verdeckt, wo ein Strahl von ihr zum Auge im Inneren eines Körpers läuft; das entscheiden Ungleichungen seiner Ebenen.",
   },
   "shadow-volumes": {
-    en: "Behind everything that the light meets there is a volume without light: a point is in shadow if the ray from the eye enters more of these volumes before it than it leaves.",
+    en: "Behind everything that the light hits there is a volume without light: a point is in shadow if the ray from the eye enters more of these volumes before it than it leaves.",
     de: "Hinter allem, was das Licht trifft, liegt ein Volumen ohne Licht: Ein Punkt ist im Schatten, wenn der Strahl vom Auge vor ihm mehr solche Volumen betritt als verlässt.",
   },
   "patch-subdivision": {
@@ -404,11 +404,11 @@ export const IDEAS: Record<string, Words> = {
     de: "Ein gekrümmtes Flächenstück wird geviertelt und weiter geviertelt, bis jedes Stück höchstens eine Pixelmitte bedeckt; der z-Puffer behält das nächste.",
   },
   appel: {
-    en: "How many faces hide a point changes only behind contour edges: one corner is counted by a ray, all others follow along the edges.",
+    en: "The number of faces that hide a point changes only behind contour edges: it is counted at one corner by a ray, and all others follow along the edges.",
     de: "Wie viele Flächen einen Punkt verdecken, ändert sich nur hinter Konturkanten: Eine Ecke wird mit einem Strahl ausgezählt, alle anderen folgen entlang der Kanten.",
   },
   "galimberti-montanari": {
-    en: "Every part of an edge knows the set of faces that hide it: faces enter and leave the set where the edge passes their borders, and a part is seen if its set is empty.",
+    en: "Every part of an edge knows the set of faces that hide it: faces enter and leave the set where the edge passes their borders, and a part is visible if its set is empty.",
     de: "Jedes Stück einer Kante kennt die Menge der Flächen, die es verdecken: Flächen kommen und gehen, wo die Kante ihre Ränder passiert, und sichtbar ist ein Stück mit leerer Menge.",
   },
 };

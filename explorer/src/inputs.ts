@@ -7,13 +7,13 @@ import type { Stage } from "./stage";
 import type { Input } from "./types";
 import { named, of, t } from "./words";
 
-/** Points of a curve, and curves, of a surface by a formula: as many as can be told apart. */
+/** Numbers of points of a curve and of curves for a surface given by a formula: as many as can be distinguished. */
 const COLUMNS = 33;
 const CURVES = 9;
 
 const SNAPS = [0, 0.1, 0.25, 0.5, 1];
 
-/** Returns an input with the window and the clip polygon of another one, where it has none: files of map data have only shapes. */
+/** Returns an input with the window and the clip polygon of another one if it has none, as for map data, which have only shapes. */
 function withWindow(input: Input, other: Input | undefined): Input {
   if (!("figure" in input) || !other || !("figure" in other)) return input;
   const { window, clip } = other.figure;

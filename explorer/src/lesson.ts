@@ -51,7 +51,7 @@ function facts(lesson: Lesson): HTMLElement {
   );
 }
 
-/** Buttons that choose a pane beside the picture, for screens where one has room; others show all. */
+/** Buttons that choose a pane beside the picture, for screens with room for one; larger ones show all. */
 function sideTabsOf(twin: HTMLDetailsElement): HTMLElement {
   const panes: [WordName, string][] = [
     ["code", "code"],
@@ -165,7 +165,7 @@ export function lessonPage(
     clearTimeout(timer);
     timer = window.setTimeout(async () => {
       const text = format(await current());
-      // Another address was chosen meanwhile: that page is on its way.
+      // Another address was chosen meanwhile: its page is loading.
       if (closed || location.hash !== written) return;
       history.replaceState(null, "", text);
       written = location.hash;
@@ -179,7 +179,7 @@ export function lessonPage(
     if (quiz.line(line) || bug?.line(line)) return;
     const runs = (step: number): boolean => player.run?.lines[step] === line;
     let found = player.find(1, runs);
-    // From the end it begins anew.
+    // At the end it starts again.
     if (found < 0) found = player.run?.lines.indexOf(line) ?? -1;
     if (found >= 0) transport.seek(found);
     else say(t("noLine"));

@@ -1,4 +1,4 @@
-// The address of what is shown: everything after `#`, so that any server and any folder will do.
+// The address of a view: everything after `#`, so that any server and any folder will do.
 
 import type { Input, Language } from "./types";
 
@@ -75,7 +75,7 @@ export async function pack(input: Input): Promise<string> {
   return btoa(letters).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
 }
 
-/** Unpacks an input; the engine checks what is in it. */
+/** Unpacks an input; the engine checks its contents. */
 export async function unpack(text: string): Promise<Input> {
   const letters = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
   const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));

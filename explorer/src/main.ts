@@ -34,7 +34,7 @@ function remember(name: string, value: string): void {
   try {
     localStorage.setItem(name, value);
   } catch {
-    // It is chosen anew the next time.
+    // It is chosen again the next time.
   }
 }
 

@@ -7,7 +7,7 @@ import { t, type WordName } from "./words";
 /** A question about a step. */
 export type Question = { code: string; name: string } | { decides: string[]; truth: string };
 
-/** Kinds of steps that end a test of a line: what the student decides. */
+/** Kinds of steps that end a test of a line: the student's decisions. */
 const DECISIONS = ["accepted", "rejected", "cut"];
 
 /** Values of captions that are outcodes, in the lessons that have them, and the kinds of steps that are decisions. */
@@ -36,7 +36,7 @@ function isCode(value: unknown): value is string {
   return typeof value === "string" && /^[01]{4}([01]{2})?$/.test(value);
 }
 
-/** Returns the questions about a step: what is decided, and then the outcodes that it computes. */
+/** Returns the questions about a step: the decision, then the outcodes that it computes. */
 export function questions(lesson: Lesson, { frame }: Frame): Question[] {
   const asked = ASKED[lesson.name];
   if (!asked) return [];
@@ -46,7 +46,7 @@ export function questions(lesson: Lesson, { frame }: Frame): Question[] {
   return [...decides, ...codes];
 }
 
-/** Returns the name of the point that an outcode is of. */
+/** Returns the name of the point that has an outcode. */
 function nameOf(name: string, values: Record<string, unknown>): string {
   if (name === "start") return "A";
   if (name === "end") return "B";
@@ -85,7 +85,7 @@ export class Fields {
     this.element = "code" in question ? this.code(question.code.length) : this.decision(question.decides);
   }
 
-  /** Takes the focus from the button that was pressed last, which Enter would press once more. */
+  /** Removes the focus from the last pressed button, which Enter would press again. */
   focus(): void {
     this.element.focus({ preventScroll: true });
   }
@@ -136,7 +136,7 @@ export class Fields {
     this.onanswer("code" in this.question && given === this.question.code);
   }
 
-  /** Takes a key; returns whether it was one of its own. */
+  /** Handles a key; returns whether it was used. */
   key(event: KeyboardEvent): boolean {
     if (event.ctrlKey || event.metaKey || event.altKey) return false;
     const index = /^[1-6]$/.test(event.key) ? Number(event.key) - 1 : -1;

@@ -11,7 +11,7 @@ const PAGE = 60;
 /** The pseudocode with the line that runs. */
 export class Code {
   readonly element: HTMLElement;
-  /** Is called when a line is clicked, counted from 1. */
+  /** Called when a line is clicked, counted from 1. */
   online: ((line: number) => void) | undefined;
   private lines: HTMLElement[];
 

@@ -4,11 +4,11 @@ import { Engine, engineOf, Refused, Trapped, Unloaded } from "./engine";
 import type { Frame, Input, Lesson, Run, RunRequest } from "./types";
 import { language, of, t } from "./words";
 
-/** The most steps that a page asks for, those that it shows before there are more, and the most while a vertex is dragged. */
+/** Largest number of steps of a page, number shown before the rest arrives, and largest number while a vertex is dragged. */
 const CAP = 100_000;
 const FIRST = 4_000;
 const DRAGGED = 2_000;
-/** Frames that are kept, and those that are made ahead. */
+/** Number of frames kept, and number made ahead. */
 const KEPT = 400;
 const AHEAD = 3;
 
@@ -33,14 +33,14 @@ export class Player extends EventTarget {
 
   /** Numbers of steps of each kind, once they are counted. */
   private known: Map<string, number> | undefined;
-  /** The engine that has the run: one of its own for a run of many steps, which takes its time meanwhile. */
+  /** The engine of the run: a separate one for a run of many steps, which takes longer. */
   engine: Engine;
-  /** The engine of all pages of such lessons. */
+  /** The engine shared by all pages of such lessons. */
   private shared: Engine;
   private patient: Engine;
   private frames = new Map<number, Frame>();
   private generation = 0;
-  /** True while a frame is on its way, and if another one is wanted after it. */
+  /** True while a frame is being made, and if another one is wanted after it. */
   private fetching = false;
   private late = false;
   private running = false;
@@ -76,7 +76,7 @@ export class Player extends EventTarget {
     this.dispatchEvent(new Event(name));
   }
 
-  /** Runs the algorithm; while one run is on its way only the latest further one is kept. */
+  /** Runs the algorithm; during a run, only the latest further request is kept. */
   async start(setup: Setup, step = this.step, cap = CAP): Promise<void> {
     this.setup = setup;
     if (this.running) {
@@ -99,7 +99,7 @@ export class Player extends EventTarget {
     try {
       const choices = this.run === undefined;
       const asked = { name: this.lesson.name, input, operation, rule, fault };
-      // What the last input had under way is of no use any more.
+      // Pending work for the last input is useless now.
       this.patient.stop();
       const run = await this.shared.run({ ...asked, cap: Math.min(cap, FIRST), choices });
       if (run.steps === 0) throw new Refused(t("noState"));
@@ -128,12 +128,12 @@ export class Player extends EventTarget {
     this.tell("run");
   }
 
-  /** Runs all steps in an engine of its own, while the first ones can be looked at already. */
+  /** Runs all steps in a separate engine, while the first ones can already be viewed. */
   private async extend(asked: RunRequest, first: Run, step: number): Promise<void> {
     try {
       const run = await this.patient.run(asked);
       if (this.run !== first) return;
-      // Whoever has gone on to another step stays there.
+      // A user who has moved to another step stays there.
       this.replace(run, this.patient, this.step === first.steps - 1 ? step : this.step);
       await this.show();
     } catch (e) {
@@ -149,7 +149,7 @@ export class Player extends EventTarget {
     void this.show();
   }
 
-  /** Makes the frames anew, in another size or language. */
+  /** Makes the frames again, in another size or language. */
   refresh(): void {
     this.frames.clear();
     void this.show();
@@ -167,7 +167,7 @@ export class Player extends EventTarget {
     await this.lookAhead();
   }
 
-  /** Has the frame of the step made: one request at a time, so that a scrubber waits for none that it has left behind. */
+  /** Requests the frame of the step, one at a time, so that a scrubber never waits for frames that it has passed. */
   private async fetch(): Promise<void> {
     this.late = true;
     if (this.fetching) return;
@@ -187,7 +187,7 @@ export class Player extends EventTarget {
     this.fetching = false;
   }
 
-  /** Has the frames of the next steps made. */
+  /** Requests the frames of the next steps. */
   private async lookAhead(): Promise<void> {
     const { run, step } = this;
     for (let ahead = 1; ahead <= AHEAD; ahead++) {
@@ -201,7 +201,7 @@ export class Player extends EventTarget {
   }
 
   private failed(e: unknown, run: Run | undefined, step: number): void {
-    // The run is gone with its engine.
+    // The run ended with its engine.
     if (e instanceof Trapped && run === this.run) void this.start(this.setup, step);
     else if (!(e instanceof Refused || e instanceof Trapped)) throw e;
   }

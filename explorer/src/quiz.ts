@@ -1,4 +1,4 @@
-// Ask-mode: what comes next, checked against the run itself.
+// The quiz: questions about the next step, checked against the run itself.
 
 import { h } from "./dom";
 import { codeAt, Fields, hasNumbers, questions, textOf, type Question } from "./numbers";
@@ -13,12 +13,12 @@ import { of, t, type WordName } from "./words";
 /** The most answers to choose from. */
 const ANSWERS = 4;
 
-/** Returns a sentence with gaps where values are. */
+/** Returns a sentence with gaps in place of values. */
 export function gapped(text: string): string {
   return text.replace(/\{\w+\}/g, "…");
 }
 
-/** What is asked for: the place in the picture where there is one, numbers and decisions, the kind of step, or the line that runs. */
+/** Subject of a question: the place in the picture if there is one, numbers and decisions, the kind of step, or the line that runs. */
 type Mode = "place" | "number" | "kind" | "line";
 const MODES: [Mode, WordName][] = [
   ["place", "byPlace"],
@@ -27,7 +27,7 @@ const MODES: [Mode, WordName][] = [
   ["line", "byLine"],
 ];
 
-/** What a question hides: nothing, the line that runs, or all that tells the state. */
+/** Parts hidden by a question: none, the line that runs, or everything that shows the state. */
 export type Hidden = "" | "line" | "state";
 
 export class Quiz {
@@ -41,11 +41,11 @@ export class Quiz {
   private asked = 0;
   /** The step in question; undefined while there is none. */
   private open: number | undefined;
-  /** Counts questions, so that one that comes late is known. */
+  /** Counts questions, to recognize late answers. */
   private ticket = 0;
   /** Fields of the question, if its answer is a number or a decision. */
   private fields: Fields | undefined;
-  /** True once the first step was in question: it is shown before the quiz begins. */
+  /** True once the first step was asked about; it is shown before the quiz begins. */
   private began = false;
 
   private startButton = h("button", { type: "button", class: "primary", onclick: () => this.toggle() }, t("quizStart"));
@@ -78,7 +78,7 @@ export class Quiz {
     });
   }
 
-  /** Returns whether a step may be shown: while it is in question, only the answer shows it. */
+  /** Returns whether a step may be shown: during its question only the answer shows it. */
   allow(to: number): boolean {
     const allowed = !this.on || this.open === undefined || to < this.open;
     if (!allowed) this.bar.scrollIntoView({ block: "nearest" });
@@ -117,7 +117,7 @@ export class Quiz {
     this.veil("");
   }
 
-  /** Takes the answers of the last question away. */
+  /** Removes the answers of the last question. */
   private clear(): void {
     this.fields = undefined;
     this.answers.replaceChildren();
@@ -134,7 +134,7 @@ export class Quiz {
       if (own !== this.ticket) return;
     }
     const next = player.step + 1;
-    // The last sentence of a run that was cut off is of no step.
+    // The last sentence of a run that was cut off belongs to no step.
     if (next >= player.steps || player.run!.templates[next]! < 0) {
       this.open = undefined;
       this.question.textContent = t("quizEnd");
@@ -171,7 +171,7 @@ export class Quiz {
     return true;
   }
 
-  /** Returns the frame of a step; none where the engine is gone, and starts anew with the run. */
+  /** Returns the frame of a step; none if the engine has ended, in which case it restarts with the run. */
   private async frameAt(step: number): Promise<Frame | undefined> {
     try {
       return await this.player.frameAt(step);
@@ -205,7 +205,7 @@ export class Quiz {
     this.askNumbers(rest);
   }
 
-  /** Takes a key of the question; returns whether it was one. */
+  /** Handles a key of the question; returns whether it was used. */
   key(event: KeyboardEvent): boolean {
     return this.open !== undefined && this.fields?.key(event) === true;
   }
@@ -235,7 +235,7 @@ export class Quiz {
     );
   }
 
-  /** Takes a click on a line of the pseudocode; returns whether it was an answer. */
+  /** Handles a click on a line of the pseudocode; returns whether it was an answer. */
   line(line: number): boolean {
     if (!this.on || this.mode !== "line" || this.open === undefined) return false;
     const truth = this.player.run?.lines[this.open];

@@ -1,4 +1,4 @@
-// Copies of the step that is shown: as a link, a picture, code; the run as an animation.
+// Copies of the step shown: as a link, a picture, code; the run as an animation.
 
 import { drawn, joined, type Picture } from "./apng";
 import { command, python, rust } from "./code";
@@ -7,7 +7,7 @@ import { format, type Address } from "./link";
 import type { Player } from "./player";
 import { language, of, t, type WordName } from "./words";
 
-/** The most pictures of an animation: of longer runs it shows steps at equal distances. */
+/** Largest number of pictures in an animation; of longer runs it shows steps at equal distances. */
 const MOST_PICTURES = 240;
 /** Longer side of an animation in pixels, and the time that a picture is shown in milliseconds. */
 const SIDE = 720;
@@ -55,7 +55,7 @@ export function sharePanel(player: Player, address: () => Promise<Address>, noti
       await navigator.clipboard.writeText(text);
       notice(`${t("copied")}: ${t(name)}`);
     } catch {
-      // Pages without permission show the text, chosen.
+      // Pages without permission show the text, selected.
       shown.select();
     }
   }

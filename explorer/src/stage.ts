@@ -6,12 +6,12 @@ import type { Player } from "./player";
 import type { Input, Place, Point } from "./types";
 import { t } from "./words";
 
-/** Drawings are made this much smaller than they are shown, so that their letters can be read. */
+/** Ratio by which drawings are made smaller than shown, so that their letters are readable. */
 const ENLARGED = 1.3;
 /** Distance within which a double click adds a vertex to an edge, in pixels of the drawing. */
 const NEAR = 30;
 
-/** Way between points of the input and pixels of a drawing. */
+/** Map between points of the input and pixels of a drawing. */
 class View {
   readonly scale: number;
   readonly size: Point;
@@ -88,10 +88,10 @@ export class Stage {
   chosen: Ref | undefined;
   onchoose: (() => void) | undefined;
   editable = true;
-  /** True while an outcode is asked for: the picture does not show any. */
+  /** True during a question for an outcode: the picture shows none. */
   hidesCodes = false;
 
-  /** Takes the place that is clicked, in the coordinates of the picture, while the quiz asks for one. */
+  /** Receives the place clicked, in the coordinates of the picture, while the quiz asks for one. */
   private onpick: ((at: Point, scale: number) => void) | undefined;
   /** Size of a step of the arrow keys in the picture: a pixel, or none for a share of the width. */
   private pickStep = 0;
@@ -124,7 +124,7 @@ export class Stage {
     return this.player.run?.input;
   }
 
-  /** Has drawings made in the size in which they are shown. */
+  /** Requests drawings in the size in which they are shown. */
   private resize(): void {
     const { clientWidth, clientHeight } = this.element;
     if (clientWidth === 0 || !this.view || this.held) return;
@@ -158,7 +158,7 @@ export class Stage {
     this.svg.setAttribute("viewBox", `0 0 ${view.size[0]} ${view.size[1]}`);
     this.svg.setAttribute("aria-label", frame.frame.caption);
     if (this.held) {
-      // The handle that is dragged has to stay: only the picture behind it is replaced.
+      // The dragged handle must stay: only the picture behind it is replaced.
       this.svg.firstElementChild?.replaceWith(picture);
       this.place();
     } else {
@@ -189,7 +189,7 @@ export class Stage {
     this.draw();
   }
 
-  /** Shows the place that was picked, until the next one is; an empty look takes it away. */
+  /** Shows the place picked, until the next one; an empty look removes it. */
   answered(look: "" | "right" | "wrong"): void {
     this.mark = look !== "" && this.cross ? { at: this.cross, look } : undefined;
   }
@@ -287,7 +287,7 @@ export class Stage {
     return [to(x), to(y)];
   }
 
-  /** Returns where a pointer is in the drawing. */
+  /** Returns the position of a pointer in the drawing. */
   private pointer(event: MouseEvent): Point {
     const matrix = this.svg.getScreenCTM();
     if (!matrix) return [0, 0];
@@ -364,7 +364,7 @@ export class Stage {
       if (!at || at.ref.part === "seed" || at.ref.part === "window") return undefined;
       const inList = all.filter(({ ref }) => ref.part === at.ref.part && ref.list === at.ref.list);
       const next = inList[at.ref.index + 1] ?? inList[0] ?? at;
-      // Behind the end of a line comes nothing: the vertex is put before it.
+      // Nothing follows the end of a line: the vertex is put before it.
       const isEnd = at.ref.part === "lines" && at.ref.index + 1 === inList.length;
       const [from, to] = isEnd ? [inList[at.ref.index - 1]!, at] : [at, next];
       const middle: Point = [(from.at[0] + to.at[0]) / 2, (from.at[1] + to.at[1]) / 2];

@@ -1,4 +1,4 @@
-// What a step is about, as places in its picture: found by a click, and named in questions.
+// The subjects of a step as places in its picture: found by a click, and named in questions.
 
 import type { Frame, Point, Target } from "./types";
 import { t, type WordName } from "./words";
@@ -6,7 +6,7 @@ import { t, type WordName } from "./words";
 /** Distances within which a click finds a point or a line, in pixels of the drawing. */
 const AT_POINT = 16;
 const AT_LINE = 11;
-/** More marks than these cannot be asked for: nearly every click would find one. */
+/** Largest number of marks that questions allow: with more, nearly every click would find one. */
 const MOST = 40;
 
 type Kind = "pixel" | "point" | "line" | "area";
@@ -17,10 +17,10 @@ function kindOf(target: Target): Kind {
   return Object.keys(target)[0] as Kind;
 }
 
-/** Returns the places of the next step that the one before does not mark: those a student can be asked for. */
+/** Returns the places of the next step that the one before does not mark, about which a student can be asked. */
 export function asked(next: Frame, before: Frame | undefined): Target[] {
   const same = before && JSON.stringify(before.map) === JSON.stringify(next.map);
-  // Another part of the plane would show the answer where the question is not.
+  // Another part of the plane would show the answer outside the question's picture.
   if (before && !same) return [];
   const known = new Set((before?.targets ?? []).map((target) => JSON.stringify(target)));
   const fresh = next.targets.filter((target) => !known.has(JSON.stringify(target)));

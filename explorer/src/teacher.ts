@@ -6,11 +6,11 @@ import { language, t } from "./words";
 
 const TEXT = {
   en: [
-    ["In the lecture", "Open a page of a track and step with the arrow keys. Shift with an arrow goes to the next step of the same kind, a click on a line of the pseudocode to the next step that runs it. Drag a vertex while the class looks on: the run follows."],
+    ["In the lecture", "Open a page of a track and step with the arrow keys. Shift with an arrow goes to the next step of the same kind, a click on a line of the pseudocode to the next step that runs it. Drag a vertex in front of the class: the run follows."],
     ["Prepare an hour", "Build the input that you want to show, go to the step at which the hour begins, and copy the link under Share: it holds the input, the step and the language. Links need no server, and nothing of the input is sent anywhere."],
     ["Embed a step", "Share → Frame for a page gives an iframe. It shows picture, caption and buttons only. It reports {step, of, algorithm} to the page around it by postMessage, and takes {goto: n}. Opened by itself it fills the screen, and a presenter's remote steps through it."],
     ["Print", "Printing shows picture, caption, pseudocode and table of the step. For sheets with all steps side by side, use the command line: durer explain NAME -o steps.svg. Share → Picture for LaTeX gives TikZ."],
-    ["Set questions", "Each page has a quiz, which hides the next step and asks where it happens in the picture, and exercises, which the run checks. Both work on any input: send a link with your own one, and ask for the line of the pseudocode where the sentences give too much away. Some algorithms have programs with a bug to find; a link copied while one runs asks for the same bug."],
+    ["Set questions", "Each page has a quiz, which hides the next step and asks where it happens in the picture, and exercises, which the run checks. Both work on any input: send a link with your own one, and ask for the line of the pseudocode if the sentences give too much away. Some algorithms have programs with a bug to find; a link copied while one runs asks for the same bug."],
     ["Offline", "durer explore serves these pages from the command itself. They can also be copied to any folder of a web server."],
   ],
   de: [

@@ -24,7 +24,7 @@ export const TRACKS: Track[] = [
   {
     name: "clipping",
     title: { en: "Windows and clipping", de: "Fenster und Clippen" },
-    lead: { en: "What of a line or polygon lies inside a window: outcodes, parameters, stages and walks.", de: "Was von Linie oder Polygon im Fenster liegt: Outcodes, Parameter, Stufen und Wege." },
+    lead: { en: "The part of a line or polygon inside a window: outcodes, parameters, stages and walks.", de: "Was von Linie oder Polygon im Fenster liegt: Outcodes, Parameter, Stufen und Wege." },
     stops: [
       { lesson: "cohen-sutherland", example: "line-eh", text: { en: "EH: which bits make which cuts? Then load AD, which is cut once and still rejected.", de: "EH: Welche Bits führen zu welchen Schnitten? Danach AD, das einmal geschnitten und doch abgelehnt wird." } },
       { lesson: "midpoint", example: "", text: { en: "The same by halving: no division, only shifts.", de: "Dasselbe durch Halbieren: keine Division, nur Schieben." } },
@@ -42,7 +42,7 @@ export const TRACKS: Track[] = [
     stops: [
       { lesson: "window-viewport", example: "", text: { en: "Two equations give a, b, c and d; then every point is one product and one sum.", de: "Zwei Gleichungen ergeben a, b, c und d; danach kostet jeder Punkt ein Produkt und eine Summe." } },
       { lesson: "homogeneous-volume", example: "", text: { en: "Before the division, −w ≤ x ≤ w is a wedge: see why points with w < 0 need it.", de: "Vor der Division ist −w ≤ x ≤ w ein Keil: So wird klar, warum Punkte mit w < 0 ihn brauchen." } },
-      { lesson: "back-face-removal", example: "", text: { en: "The normal against the direction of sight: half of the faces go before anything else.", de: "Normale gegen Blickrichtung: Die Hälfte der Flächen fällt vorab weg." } },
+      { lesson: "back-face-removal", example: "", text: { en: "The normal against the direction of sight: half of the faces are removed before anything else.", de: "Normale gegen Blickrichtung: Die Hälfte der Flächen fällt vorab weg." } },
     ],
   },
   {
@@ -50,8 +50,8 @@ export const TRACKS: Track[] = [
     title: { en: "Lines and areas in pixels", de: "Linien und Flächen in Pixeln" },
     lead: { en: "Decision variables, tables of edges, stacks of seeds.", de: "Entscheidungsvariablen, Kantentabellen, Stapel von Startpunkten." },
     stops: [
-      { lesson: "dda", example: "lecture", text: { en: "One addition and one rounding a pixel.", de: "Je Pixel eine Addition und eine Rundung." } },
-      { lesson: "bresenham", example: "lecture", text: { en: "E = 1, −3, 3, −1, 5: whole numbers only. Predict the turn of each step.", de: "E = 1, −3, 3, −1, 5: nur ganze Zahlen. Sagen Sie jeden Schritt voraus." } },
+      { lesson: "dda", example: "lecture", text: { en: "One addition and one rounding per pixel.", de: "Je Pixel eine Addition und eine Rundung." } },
+      { lesson: "bresenham", example: "lecture", text: { en: "E = 1, −3, 3, −1, 5: whole numbers only. Predict each step.", de: "E = 1, −3, 3, −1, 5: nur ganze Zahlen. Sagen Sie jeden Schritt voraus." } },
       { lesson: "midpoint-circle", example: "radius-10", text: { en: "One octant; the midpoint between two candidates decides.", de: "Ein Oktant; der Mittelpunkt zwischen zwei Kandidaten entscheidet." } },
       { lesson: "edge-table", example: "triangle", text: { en: "Buckets by first row, then the active edges from row to row.", de: "Fächer nach erster Zeile, dann die aktiven Kanten von Zeile zu Zeile." } },
       { lesson: "naive", example: "", text: { en: "A pixel pushes four neighbours: watch the stack grow.", de: "Ein Pixel legt vier Nachbarn ab: Der Stapel wächst." } },
@@ -61,12 +61,12 @@ export const TRACKS: Track[] = [
   {
     name: "shading",
     title: { en: "Clipping and rasterization of triangles", de: "Dreiecke clippen und rastern" },
-    lead: { en: "Half-planes, rows, and what is interpolated in between.", de: "Halbebenen, Zeilen und was dazwischen interpoliert wird." },
+    lead: { en: "Half-planes, rows, and interpolation between them.", de: "Halbebenen, Zeilen und was dazwischen interpoliert wird." },
     stops: [
       { lesson: "edge-function", example: "", text: { en: "Three signs decide a pixel; the rule for edges gives each pixel to one triangle.", de: "Drei Vorzeichen entscheiden ein Pixel; die Kantenregel gibt jedes Pixel genau einem Dreieck." } },
       { lesson: "edge-walking", example: "", text: { en: "The same pixels by rows.", de: "Dieselben Pixel zeilenweise." } },
       { lesson: "gouraud", example: "", text: { en: "Light at the corners, along the edges, along the row.", de: "Licht an den Ecken, längs der Kanten, längs der Zeile." } },
-      { lesson: "phong", example: "", text: { en: "Normals instead of light: mind their length before the division.", de: "Normalen statt Licht: Achten Sie auf die Länge vor der Division." } },
+      { lesson: "phong", example: "", text: { en: "Normals instead of light: note their length before the division.", de: "Normalen statt Licht: Achten Sie auf die Länge vor der Division." } },
       { lesson: "perspective-correct", example: "", text: { en: "u/w and 1/w are linear on the screen, u is not.", de: "u/w und 1/w sind auf dem Schirm linear, u ist es nicht." } },
     ],
   },
@@ -77,11 +77,11 @@ export const TRACKS: Track[] = [
     stops: [
       { lesson: "z-buffer-loop", example: "penetration", text: { en: "Two loops and a comparison.", de: "Zwei Schleifen und ein Vergleich." } },
       { lesson: "painter", example: "penetration", text: { en: "From far to near, and where that fails.", de: "Von hinten nach vorn, und wo das scheitert." } },
-      { lesson: "depth-sort", example: "", text: { en: "Which of the five tests decides? Only then a face is cut.", de: "Welcher der fünf Tests entscheidet? Erst dann wird geteilt." } },
+      { lesson: "depth-sort", example: "", text: { en: "Which of the five tests decides? Only if none does, a face is cut.", de: "Welcher der fünf Tests entscheidet? Erst dann wird geteilt." } },
       { lesson: "bsp-tree", example: "", text: { en: "The planes of the faces divide space: the order follows from the tree.", de: "Die Ebenen der Flächen teilen den Raum: Die Reihenfolge folgt aus dem Baum." } },
       { lesson: "warnock", example: "", text: { en: "A window is simple or is divided: empty, one, surrounded.", de: "Ein Fenster ist einfach oder wird geteilt: leer, eine, umgeben." } },
       { lesson: "watkins", example: "", text: { en: "Row by row: which span is nearest?", de: "Zeile für Zeile: Welcher Abschnitt liegt vorn?" } },
-      { lesson: "horizon-curves", example: "", text: { en: "Two arrays, the horizons, decide what of a curve is seen.", de: "Zwei Felder, die Horizonte, entscheiden, was von einer Kurve zu sehen ist." } },
+      { lesson: "horizon-curves", example: "", text: { en: "Two arrays, the horizons, decide which part of a curve is visible.", de: "Zwei Felder, die Horizonte, entscheiden, was von einer Kurve zu sehen ist." } },
     ],
   },
 ];

@@ -24,12 +24,12 @@ const ICONS = {
 
 export class Transport {
   readonly element: HTMLElement;
-  /** Is asked before a step forward; returns false to keep it from being shown. */
+  /** Called before a step forward; returns false to prevent it from being shown. */
   allow: (to: number) => boolean = () => true;
   onnotice: ((text: string) => void) | undefined;
 
   private roll = h("canvas", { class: "roll", "aria-hidden": "true" });
-  /** All ticks: a run of many steps is not drawn anew with each step. */
+  /** All ticks, kept so that a run of many steps is not redrawn with each step. */
   private ticks = h("canvas");
   private drawn: { size: string; run: Run | undefined } = { size: "", run: undefined };
   private range = h("input", { type: "range", min: 0, max: 0, value: 0, class: "scrubber" });
@@ -240,7 +240,7 @@ export class Transport {
     }
   }
 
-  /** Takes a key; returns whether it was one of its own. */
+  /** Handles a key; returns whether it was used. */
   key(event: KeyboardEvent): boolean {
     if (event.ctrlKey || event.metaKey || event.altKey) return false;
     const way = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;

@@ -1,4 +1,4 @@
-// Data that the engine answers with; crates/durer-wasm makes them.
+// Types of the engine's answers, which crates/durer-wasm makes.
 
 export type Language = "en" | "de";
 export type Words = Record<Language, string>;

@@ -1,4 +1,4 @@
-// Words of the pages, in every language; the engine has those of lessons.
+// Texts of the pages in every language; those of lessons are in the engine.
 
 import type { Language, Words } from "./types";
 
@@ -8,7 +8,7 @@ const WORDS = {
   gallery: { en: "Gallery", de: "Galerie" },
   teachers: { en: "For teachers", de: "Für Lehrende" },
   lead: {
-    en: "Algorithms of computer graphics, step by step, on your own input. It is the code of the library that runs, forward and back.",
+    en: "Algorithms of computer graphics, step by step, forward and back, on your own input. The library's own code runs.",
     de: "Algorithmen der Computergrafik, Schritt für Schritt, auf eigenen Daten. Es läuft der Code der Bibliothek selbst, vorwärts und zurück.",
   },
   find: { en: "Find an algorithm", de: "Algorithmus suchen" },
@@ -17,7 +17,7 @@ const WORDS = {
   loading: { en: "Loading the algorithms …", de: "Die Algorithmen werden geladen …" },
   failed: { en: "The engine could not be loaded", de: "Der Rechenkern lässt sich nicht laden" },
   restarted: {
-    en: "The engine stopped on this input and was started anew. The last good run is shown.",
+    en: "The engine stopped on this input and was restarted. The last good run is shown.",
     de: "Der Rechenkern ist an dieser Eingabe stehen geblieben und neu gestartet. Gezeigt wird der letzte gute Lauf.",
   },
   unknown: { en: "There is no such algorithm", de: "Diesen Algorithmus gibt es nicht" },
@@ -34,7 +34,7 @@ const WORDS = {
   "list-priority": { en: "list priority", de: "Prioritätsliste" },
   cost: { en: "Cost", de: "Aufwand" },
   limits: { en: "Limits", de: "Grenzen" },
-  takes: { en: "Takes", de: "Eingabe" },
+  takes: { en: "Input", de: "Eingabe" },
   picture: { en: "Picture", de: "Bild" },
   code: { en: "Pseudocode", de: "Pseudocode" },
   codeHint: { en: "Click a line to go to the next step that runs it.", de: "Ein Klick auf eine Zeile springt zum nächsten Schritt, der sie ausführt." },
@@ -103,7 +103,7 @@ const WORDS = {
   quizStart: { en: "Start the quiz", de: "Quiz starten" },
   quizStop: { en: "End the quiz", de: "Quiz beenden" },
   quizHint: {
-    en: "The next step is hidden. Say what happens, then see it: the run itself is the answer, on any input.",
+    en: "The next step is hidden. Predict it, then see it: the run itself gives the answer, on any input.",
     de: "Der nächste Schritt ist verdeckt. Sagen Sie, was geschieht, und sehen Sie es dann: Die Antwort ist der Lauf selbst, auf jeder Eingabe.",
   },
   askKind: { en: "What happens next?", de: "Was geschieht als Nächstes?" },
@@ -113,11 +113,11 @@ const WORDS = {
   aLine: { en: "the line", de: "die Linie" },
   anArea: { en: "the area", de: "die Fläche" },
   or: { en: "or", de: "oder" },
-  crossHint: { en: "Your answer: arrow keys move it, Enter gives it", de: "Ihre Antwort: Pfeiltasten bewegen sie, Enter gibt sie ab" },
+  crossHint: { en: "Your answer: arrow keys move it, Enter submits it", de: "Ihre Antwort: Pfeiltasten bewegen sie, Enter gibt sie ab" },
   byPlace: { en: "Ask for the place", de: "Nach dem Ort fragen" },
   bug: { en: "Find the bug", de: "Finde den Fehler" },
   bugHint: {
-    en: "Runs a program of this algorithm in which one line is wrong. Which one? The captions say what each step is meant to do, with the numbers that the program got.",
+    en: "Runs a program of this algorithm in which one line is wrong. Which one? The captions describe what each step should do, with the numbers that the program computed.",
     de: "Führt ein Programm dieses Algorithmus aus, in dem eine Zeile falsch ist. Welche? Die Sätze sagen, was jeder Schritt tun soll, mit den Zahlen, die das Programm errechnet.",
   },
   bugStart: { en: "Run a program with a bug", de: "Ein fehlerhaftes Programm ausführen" },
@@ -128,8 +128,8 @@ const WORDS = {
     en: "One line of this program is wrong. Step through the run, check its numbers, and click the wrong line of the pseudocode.",
     de: "Eine Zeile dieses Programms ist falsch. Gehen Sie den Lauf durch, prüfen Sie die Zahlen und klicken Sie die falsche Zeile im Pseudocode an.",
   },
-  bugFirst: { en: "✓ Found at the first try.", de: "✓ Beim ersten Versuch gefunden." },
-  bugFound: { en: "✓ Found at try {tries}.", de: "✓ Beim {tries}. Versuch gefunden." },
+  bugFirst: { en: "✓ Found on the first try.", de: "✓ Beim ersten Versuch gefunden." },
+  bugFound: { en: "✓ Found on try {tries}.", de: "✓ Beim {tries}. Versuch gefunden." },
   bugTold: { en: "This was it.", de: "Das war es." },
   bugNot: { en: "Line {line} is right.", de: "Zeile {line} ist richtig." },
   bugWas: { en: "Line {line} should be “{right}”; the program had “{wrong}”.", de: "Zeile {line} müsste „{right}“ lauten; im Programm stand „{wrong}“." },
@@ -137,7 +137,7 @@ const WORDS = {
   byNumber: { en: "Ask for numbers", de: "Nach Zahlen fragen" },
   askCode: {
     en: "Which bits are set in the outcode of {name}? Keys 1 to {count}, or a click in a region of the picture; then Enter.",
-    de: "Welche Bits stehen im Outcode von {name}? Tasten 1 bis {count} oder ein Klick in ein Gebiet des Bildes, dann Eingabe.",
+    de: "Welche Bits sind im Outcode von {name} gesetzt? Tasten 1 bis {count} oder ein Klick in ein Gebiet des Bildes, dann Eingabe.",
   },
   askDecision: { en: "What happens to the line now?", de: "Was geschieht jetzt mit der Linie?" },
   theNewEnd: { en: "the new end", de: "dem neuen Ende" },
@@ -173,7 +173,7 @@ const WORDS = {
   compare: { en: "Compare", de: "Vergleichen" },
   compareHint: { en: "Run other algorithms on the same input, side by side.", de: "Andere Algorithmen auf derselben Eingabe, nebeneinander." },
   compareWith: { en: "Compare with", de: "Vergleichen mit" },
-  cannot: { en: "does not take this input", de: "nimmt diese Eingabe nicht" },
+  cannot: { en: "does not support this input", de: "kann diese Eingabe nicht verarbeiten" },
   counts: { en: "Work done", de: "Geleistete Arbeit" },
   steps: { en: "steps", de: "Schritte" },
   share: { en: "Share", de: "Weitergeben" },
@@ -205,12 +205,12 @@ const WORDS = {
   noLine: { en: "No further step runs this line.", de: "Kein weiterer Schritt führt diese Zeile aus." },
   steps1: { en: "{count} steps", de: "{count} Schritte" },
   galleryLead: {
-    en: "One model by every method for visible surfaces. Pixels that differ from the first picture are shown below. All methods take one sample a pixel; the A-buffer shares pixels among surfaces, so its edges differ.",
+    en: "One model by every method for visible surfaces. Pixels that differ from the first picture are shown below. All methods take one sample per pixel; the A-buffer shares pixels among surfaces, so its edges differ.",
     de: "Ein Modell nach jedem Verfahren für sichtbare Flächen. Pixel, die vom ersten Bild abweichen, sind darunter gezeigt. Alle nehmen eine Probe je Pixel; nur der A-Buffer teilt Pixel unter Flächen auf, seine Kanten weichen also ab.",
   },
   teapot: { en: "Render the teapot", de: "Teekanne rendern" },
-  azimuth: { en: "Around", de: "Drehung" },
-  elevation: { en: "Above", de: "Höhe" },
+  azimuth: { en: "Rotation", de: "Drehung" },
+  elevation: { en: "Elevation", de: "Höhe" },
   differs: { en: "{count} pixels differ", de: "{count} Pixel weichen ab" },
   seeFull: { en: "Open in the explorer", de: "Im Explorer öffnen" },
 } satisfies Record<string, Words>;
@@ -233,7 +233,7 @@ export function t(name: WordName, values: Record<string, string | number> = {}):
   return WORDS[name][current].replace(/\{(\w+)\}/g, (whole, key: string) => String(values[key] ?? whole));
 }
 
-/** Returns a text of the pages if there is one of this name, else the name: for names that the engine gives. */
+/** Returns the text of the pages with this name, else the name itself: for names from the engine. */
 export function named(name: string): string {
   return (WORDS as Record<string, Words>)[name]?.[current] ?? name;
 }
@@ -243,7 +243,7 @@ export function of(words: Words): string {
   return words[current];
 }
 
-/** Keys with what they do. */
+/** Keys and their effects. */
 export const KEYS: { keys: string; text: Words }[] = [
   { keys: "← →", text: { en: "step back and forward", de: "Schritt zurück und vor" } },
   { keys: "⇧ ← →", text: { en: "to the next step of this kind", de: "zum nächsten Schritt dieser Art" } },

@@ -18,7 +18,7 @@ interface Asked {
 
 let engine: Promise<Exports> | undefined;
 
-/** Functions that a module imports and never calls: reading compressed files brings a source of random numbers along. */
+/** Functions that a module imports but never calls: the reader of compressed files depends on a source of random numbers. */
 function unused(module: WebAssembly.Module): WebAssembly.Imports {
   const imports: Record<string, Record<string, () => never>> = {};
   for (const { module: from, name } of WebAssembly.Module.imports(module)) {
@@ -32,7 +32,7 @@ function unused(module: WebAssembly.Module): WebAssembly.Imports {
 async function load(url: string): Promise<Exports> {
   const response = await fetch(url);
   if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
-  // Servers that do not know the type of modules are common: bytes are compiled then.
+  // Many servers send the wrong content type for modules: then the bytes are compiled.
   const bytes = await response.arrayBuffer();
   const module = await WebAssembly.compile(bytes);
   const instance = await WebAssembly.instantiate(module, unused(module));

@@ -245,7 +245,7 @@ test("a trap starts the engine anew", async () => {
   const module = Buffer.from(readFileSync(new URL("./trap.wasm.b64", import.meta.url), "utf8"), "base64");
   await page.route("**/durer-plane.wasm", (route) => route.fulfill({ body: module, contentType: "application/wasm" }));
   await page.reload();
-  await page.waitForFunction(() => document.querySelector(".picture-pane")?.textContent.includes("was started anew"));
+  await page.waitForFunction(() => document.querySelector(".picture-pane")?.textContent.includes("was restarted"));
   await page.unroute("**/durer-plane.wasm");
   await page.keyboard.press("r");
   await atStep(page, 1);

@@ -1,4 +1,4 @@
-"""Runs the adaptors of Ray, Dask and Spark on their engines, and compares each row with the one rendered here.
+"""Runs the adaptors of Ray, Dask and Spark on their engines, and compares each row with one rendered locally.
 
     unshare -rn sh -c 'ip link set lo up && python engines.py ray dask spark'
 
@@ -46,7 +46,7 @@ def table(rows: int) -> pa.Table:
 
 
 def outcomes(rows: list[dict[str, Any]]) -> dict[str, tuple[str | None, str | None]]:
-    """Returns of each row the hash of its picture and its error, after a check that the picture has that hash."""
+    """Returns the hash of each row's picture and its error, after checking that the picture has this hash."""
     import hashlib
 
     for row in rows:
@@ -57,7 +57,7 @@ def outcomes(rows: list[dict[str, Any]]) -> dict[str, tuple[str | None, str | No
 
 
 def killer(name: str, after: float, times: int, done: threading.Event, killed: list[int]) -> threading.Thread:
-    """Starts a thread that kills processes whose title has a name."""
+    """Starts a thread that kills processes whose title contains a name."""
 
     def run() -> None:
         time.sleep(after)
@@ -134,7 +134,7 @@ def on_spark(given: pa.Table, kill: int) -> tuple[list[dict[str, Any]], str]:
 
     import durer.spark
 
-    # Otherwise workers run whichever Python comes first on the path.
+    # Otherwise workers run the first Python on the path.
     os.environ["PYSPARK_PYTHON"] = sys.executable
     session = (
         SparkSession.builder.master("local[2]")
@@ -166,7 +166,7 @@ def main() -> None:
     parser.add_argument("--kill", type=int, default=1, help="processes to kill (Ray, Dask)")
     arguments = parser.parse_args()
     given = table(arguments.rows)
-    # Workers import the package from where this process has it.
+    # Workers import the package from the same folder as this process.
     start = time.perf_counter()
     local = outcomes(render_batch(given, threads=1, **OPTIONS).to_pylist())
     seconds = time.perf_counter() - start

@@ -1,4 +1,4 @@
-"""Measures the Python package beside pyrender, f3d, shapely, geopandas and rasterio, all in one run.
+"""Compares the speed of the Python package with pyrender, f3d, shapely, geopandas and rasterio, all in one run.
 
     python peers/python/measure.py [--quick] > table.md
 
@@ -25,14 +25,14 @@ import durer
 SAMPLES = Path(__file__).resolve().parents[2] / "samples"
 SIZE = (256, 256)
 
-#: A name, what durer does, and what others do.
+#: A name, durer's function, and those of other packages.
 Row = tuple[str, Callable[[], object], dict[str, Callable[[], object]]]
 
 left_out: list[str] = []
 
 
 def optional(name: str, make: Callable[[], dict[str, Callable[[], object]]]) -> dict[str, Callable[[], object]]:
-    """Returns the runs of a library; none, with its reason noted, where it does not work here."""
+    """Returns the runs of a library; none, with the reason noted, if it does not work here."""
     try:
         runs = make()
         for run in runs.values():
@@ -186,7 +186,7 @@ def polygons(count: int) -> list[Row]:
 
 
 def median(runs: int, all: list[Callable[[], object]]) -> list[float]:
-    """Returns the median times of several things that are done in turn, in milliseconds."""
+    """Returns the median times of several functions, run alternately, in milliseconds."""
     times: list[list[float]] = [[] for _ in all]
     for turn in range(runs + 1):
         for run, own in zip(all, times, strict=True):
@@ -198,7 +198,7 @@ def median(runs: int, all: list[Callable[[], object]]) -> list[float]:
 
 
 def import_time() -> float:
-    """Returns the time that the import takes beyond that of numpy, in milliseconds."""
+    """Returns the import time beyond that of numpy, in milliseconds."""
     code = "import time, numpy; t = time.perf_counter(); import durer; print(time.perf_counter() - t)"
     runs = [subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True) for _ in range(7)]
     return 1000 * statistics.median(float(run.stdout) for run in runs)

@@ -1,4 +1,4 @@
-//! Reads a model and says what it holds, how fast that went, and what was repaired.
+//! Reads a model and prints its contents, the time taken, and the repairs made.
 //!
 //! `cargo run --release --example read -- model.stl`
 

@@ -3,7 +3,7 @@
 use durer::math::{Vec3, Vec4, powf};
 use durer::scene::Material;
 
-/// Returns linear light from an sRGB value, IEC 61966-2-1; values above 1 go on by the same curve.
+/// Returns linear light from an sRGB value, IEC 61966-2-1; values above 1 follow the same curve.
 pub(crate) fn linear(srgb: f32) -> f32 {
     if srgb <= 0.04045 { srgb / 12.92 } else { powf((srgb + 0.055) / 1.055, 2.4) }
 }

@@ -182,13 +182,13 @@ mod tests {
             falloff,
         };
         for (x, falloff, unit, expected) in [
-            // As strong everywhere.
+            // Equally strong everywhere.
             (10.0, [1.0, 0.0, 0.0, 0.0], 0.01, 2.0),
             (10.0, [1.0, 0.0, 1e-9, 0.0], 0.01, 2.0 / 1.001),
             // Inside the scene: 2 at its radius.
             (0.0, [1.0, 0.0, 0.0, 0.0], 0.01, 2.0),
             (10.0, [0.0, 1.0, 0.0, 0.0], 0.01, 0.2),
-            // Whatever the distance, the law is the library's own.
+            // Whatever the distance, the falloff is the library's own.
             (10.0, [0.0, 0.0, 0.5, 0.0], 1.0, 4.0),
             (70.0, [0.0, 0.0, 0.5, 0.0], 1.0, 4.0),
             (70.0, [0.0, 0.0, 1.0, 0.0], 0.01, 2e-4),

@@ -67,7 +67,7 @@ impl Digit {
         let decimals = decimals.len().min(400) as i32;
         let Some(exponent) = exponent else { return Some(Self::Fixed(decimals)) };
         let exponent: i32 = std::str::from_utf8(exponent).ok()?.parse().ok()?;
-        // Of zero the power says nothing.
+        // The power of a zero has no meaning.
         let is_zero = mantissa.iter().all(|b| matches!(b, b'0' | b'.'));
         let power = if is_zero { -400 } else { exponent.clamp(-400, 400) };
         Some(Self::Exponent(power, decimals))

@@ -199,7 +199,7 @@ mod tests {
         assert_eq!(alphas("newmtl m\nTr 0.25", &["m"]), (vec![0.75], vec![]));
         let (alpha, warnings) = alphas("newmtl m\nTr 1.0", &["m"]);
         assert!(alpha == [1.0] && warnings[0].contains("`m`: `Tr` without `d`"), "{warnings:?}");
-        // All materials of a file mean the same by `Tr`; with a 0 among them it is the manual's.
+        // All materials of a file use `Tr` in the same sense; if one of them is 0, it is the manual's.
         let (alpha, warnings) = alphas("newmtl a\nTr 1\nnewmtl b\nTr 0.25", &["a", "b"]);
         assert!(alpha == [1.0, 0.25] && warnings[0].starts_with("2 materials"), "{warnings:?}");
         let (alpha, _) =
@@ -250,7 +250,7 @@ mod tests {
     #[test]
     fn a_map_of_alpha_has_it_in_one_channel_for_all_pixels() {
         let mtl = "newmtl a\nmap_d d.png\nKd 1 0 0";
-        // Opaque black and half-transparent white: the second says that the first's grey is none.
+        // Opaque black and half-transparent white: the second shows that the first's grey is not a default.
         let files = vec![("d.png", png(2, 1, &[0, 0, 0, 255, 255, 255, 255, 128]))];
         let model = loaded(mtl, &["a"], files);
         assert_eq!(model.scene.images[0].data, [[255, 255, 255, 255], [255, 255, 255, 128]]);
@@ -307,7 +307,7 @@ mod tests {
         assert_eq!((model.scene.images.len(), model.scene.textures.len()), (1, 2));
         let texture = model.scene.materials[0].base_color_texture.expect("texture");
         assert_eq!(model.scene.textures[texture.texture].sampler.wrap_u, Wrap::ClampToEdge);
-        // v = 1 (top in the file's sense) is 0 here: u' = 2u + 0.25, v' = 3v + 0.5 from below.
+        // v = 1 (the top in the file's convention) is 0 here: u' = 2u + 0.25, v' = 3v + 0.5 from below.
         let uv = texture.transform.transform_point2(durer::math::DVec2::new(0.5, 1.0));
         assert_eq!((uv.x, uv.y), (1.25, 0.5));
         assert_eq!(model.scene.materials[1].base_color.x, 1.0);

@@ -66,7 +66,7 @@ pub fn write_color<W: Write>(
 fn without_alpha(row: &[[u8; 4]], bytes: &mut [[u8; 3]]) {
     let Some((last, others)) = row.split_last() else { return };
     let bytes = bytes.as_flattened_mut();
-    // All four in one go: the next pixel takes the place of the fourth.
+    // All four at once: the next pixel overwrites the fourth.
     for (i, pixel) in others.iter().enumerate() {
         bytes[3 * i..][..4].copy_from_slice(pixel);
     }

@@ -175,7 +175,7 @@ impl<'a> Cursor<'a> {
         self.word_start = self.at;
     }
 
-    /// Returns whether nothing but blanks and a comment is left of the line.
+    /// Returns whether the rest of the line has only blanks and a comment.
     pub fn line_is_over(&mut self) -> bool {
         self.skip_blanks();
         self.peek().is_none_or(|b| ends_line(b) || b == b'#')

@@ -11,7 +11,7 @@ const WINDOWS: [char; 32] = [
 ];
 
 /// Returns an XML text as UTF-8: from UTF-8 and UTF-16 with or without a mark, else from
-/// Windows-1252, of which Latin-1 is a part.
+/// Windows-1252, which includes Latin-1.
 pub(crate) fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     match bytes {
         [b'<', 0, ..] => Cow::Owned(text::utf16_le(bytes)),

@@ -15,8 +15,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-/// Number of segments handed to a thread at a time: their columns and results stay in the second-level cache, and are
-/// too small for the allocator to request each from the system.
+/// Number of segments given to a thread at a time: their columns and results stay in the second-level cache, and are
+/// small enough for the allocator not to request each from the system.
 const CHUNK: usize = 1 << 12;
 
 /// Segments with their flags.
@@ -111,7 +111,7 @@ fn packed<'py>(py: Python<'py>, out: Vec<[f64; 4]>, kept: Vec<bool>) -> PyResult
     Ok((segments, flat(py, kept)))
 }
 
-/// Buffers of a thread, for one part of the segments after the other.
+/// Buffers of a thread, reused for one part of the segments after another.
 #[derive(Default)]
 struct Columns {
     given: [Vec<f64>; 4],

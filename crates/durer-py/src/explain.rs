@@ -100,7 +100,7 @@ fn trace_page(
     traced(py, algorithm, (&given, cap, code), embedded::page)
 }
 
-/// Runs a lesson; returns what `shown` makes of its frames.
+/// Runs a lesson; returns the result of `shown` for its frames.
 fn traced(
     py: Python<'_>,
     algorithm: &str,

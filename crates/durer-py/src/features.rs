@@ -19,7 +19,7 @@ use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::PyBytes;
 use rayon::prelude::*;
 
-/// Features that a thread takes at least.
+/// Smallest number of features for a thread.
 const LEAST: usize = 16;
 
 /// Region to clip to: a rectangle, or polygons as well-known binary.
@@ -151,7 +151,7 @@ fn clip_wkb<'py>(
     Ok((binary(py, rows), errors))
 }
 
-/// Overlays rows of well-known binary, each with the row beside it.
+/// Overlays rows of well-known binary, each with the row at the same index.
 #[pyfunction]
 fn overlay_wkb<'py>(
     py: Python<'py>,
@@ -221,7 +221,7 @@ fn clip_column<'py>(
 /// A kind, coordinates and offsets.
 type RaggedArrays<'py> = (u8, Bound<'py, PyArray2<f64>>, Vec<Bound<'py, PyArray1<i64>>>);
 
-/// The same as they are given.
+/// Ragged arrays as arguments.
 type Given<'py> = (u8, PyReadonlyArray2<'py, f64>, Vec<PyReadonlyArray1<'py, i64>>);
 
 fn ragged<'a>((kind, coords, offsets): &'a Given<'_>) -> PyResult<Ragged<'a>> {
@@ -275,7 +275,7 @@ fn clip_ragged<'py>(
     arrays(py, made.map_err(PyValueError::new_err::<String>)?)
 }
 
-/// Overlays ragged arrays, each geometry with that beside it.
+/// Overlays ragged arrays, each geometry with the one at the same index.
 #[pyfunction]
 fn overlay_ragged<'py>(
     py: Python<'py>,

@@ -5,7 +5,7 @@
 use durer::geometry::{Dimensions, Geometry, Points};
 use durer::math::DVec2;
 
-/// Kinds of geometries that have a layout, with their numbers in shapely.
+/// Kinds of geometries with a layout, with their numbers in shapely.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     Point = 0,
@@ -127,7 +127,7 @@ impl Ragged<'_> {
         self.span(level, at).map(|ring| self.ring(ring)).filter(|ring| ring.len() > 2).collect()
     }
 
-    /// Returns a geometry; the arrays have been checked. An empty point is one that is not a number.
+    /// Returns a geometry; the arrays have been checked. A point of NaN is empty.
     pub fn geometry(&self, at: usize) -> Geometry {
         match self.kind {
             Kind::Point => {
@@ -150,7 +150,7 @@ impl Ragged<'_> {
     }
 }
 
-/// Arrays of geometries that are put together one by one.
+/// Arrays of geometries, filled one by one.
 #[derive(Debug)]
 pub struct RaggedOut {
     /// Kind of all of them.

@@ -1,8 +1,8 @@
 //! `durer._durer`, the compiled part of the Python package: functions from arrays and option strings to arrays and
 //! bytes.
 //!
-//! Arrays come in the one layout that each function names, which the package's Python code converts to; arrays that are
-//! returned own their memory, moved into them without a copy. Work is done without the interpreter's lock.
+//! The package's Python code converts arrays to the layout that each function names; returned arrays own their memory,
+//! moved into them without a copy. Work is done without the interpreter's lock.
 
 mod args;
 mod clip;

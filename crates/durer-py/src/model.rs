@@ -11,7 +11,7 @@ use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::{PyBytes, PyDict};
 use std::path::PathBuf;
 
-/// A scene with the name and format of the file that it is from.
+/// A scene with the name and format of its file.
 #[pyclass(frozen, module = "durer._durer")]
 pub struct Model {
     /// Meshes, materials, lights and cameras; passes [`Scene::check`].
@@ -23,12 +23,12 @@ pub struct Model {
 }
 
 impl Model {
-    /// Creates a model that is of no file.
+    /// Creates a model without a file.
     pub fn of_scene(scene: Scene, name: String) -> Self {
         Self { scene, name, format: String::new(), warnings: Vec::new(), animations: Vec::new() }
     }
 
-    /// Returns the model in the form that the command's functions take.
+    /// Returns the model in the form of the command's functions.
     pub fn subject(&self) -> InMemory<'_> {
         InMemory { scene: &self.scene, name: &self.name, format: &self.format }
     }
@@ -47,7 +47,7 @@ pub fn numbers(camera: &Camera) -> CameraNumbers {
     (eye, target, up, fov, height, camera.near, camera.far)
 }
 
-/// Returns the camera of numbers.
+/// Returns a camera from its numbers.
 pub fn camera((eye, target, up, fov, height, near, far): CameraNumbers) -> Camera {
     let projection = match (fov, height) {
         (_, Some(height)) => Projection::Orthographic { height },
@@ -113,7 +113,7 @@ impl Model {
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// Returns the model of bytes that `to_bytes` gave.
+    /// Returns the model from bytes returned by `to_bytes`.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, bytes: PyBackedBytes) -> PyResult<Self> {
         type All = (Scene, String, String, Vec<String>, Vec<String>);
@@ -125,7 +125,7 @@ impl Model {
     }
 }
 
-/// Reads a model from bytes; `path` is the file beside which others are looked for.
+/// Reads a model from bytes; files that it refers to are searched for beside `path`.
 #[pyfunction]
 #[pyo3(signature = (data, name, path, threads, limits, pose))]
 fn read(

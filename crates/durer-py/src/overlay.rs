@@ -16,7 +16,7 @@ pub fn op(name: &str) -> Result<BooleanOp, String> {
     }
 }
 
-/// Returns the rules of a grid.
+/// Returns the overlay rules for a grid size.
 pub fn rules(grid: Option<f64>) -> Rules {
     Rules { grid, ..Rules::default() }
 }
@@ -56,12 +56,12 @@ pub fn mask(polygons: &[Geometry]) -> Result<Mask, String> {
     Mask::polygons(shapes.unwrap_or_default()).map_err(|e| e.to_string())
 }
 
-/// Returns whether a geometry has polygons only.
+/// Returns whether a geometry consists only of polygons.
 fn is_area(geometry: &Geometry) -> bool {
     matches!(geometry, Geometry::Polygon(_) | Geometry::MultiPolygon(_))
 }
 
-/// Overlays two geometries; `None` if nothing is left.
+/// Overlays two geometries; `None` if the result is empty.
 pub fn overlay(
     a: &Geometry,
     b: &Geometry,

@@ -28,7 +28,7 @@ struct MeshArrays<'py> {
     name: String,
 }
 
-/// A material of metallic-roughness.
+/// A metallic-roughness material.
 #[derive(FromPyObject)]
 struct MaterialNumbers<'py> {
     name: String,
@@ -59,7 +59,7 @@ fn rows<T: numpy::Element + Copy, const N: usize>(
     Ok(contiguous(array, name)?.as_chunks::<N>().0.to_vec())
 }
 
-/// Returns vertices in single precision around an offset: zero where that loses nothing, else the middle of their box.
+/// Returns vertices in single precision around an offset: zero if that loses nothing, else the middle of their box.
 fn centred(vertices: &[[f64; 3]]) -> (Vec<Vec3>, DVec3) {
     let is_exact = |v: &[f64; 3]| v.iter().all(|&x| f64::from(x as f32) == x);
     let offset = if vertices.iter().all(is_exact) {
@@ -185,7 +185,7 @@ fn material(numbers: &MaterialNumbers<'_>, scene: &mut Scene) -> PyResult<Materi
     })
 }
 
-/// Creates a model of meshes and materials.
+/// Creates a model from meshes and materials.
 #[pyfunction]
 fn scene_of(
     py: Python<'_>,

@@ -132,7 +132,7 @@ fn warped<'py>(
     Ok((channels(py, warped.framebuffer.color)?, plane(py, warped.source)?, warped.holes))
 }
 
-/// Creates a height map of rows of heights.
+/// Creates a height map from rows of heights.
 fn height_map(
     py: Python<'_>,
     heights: &PyReadonlyArray2<'_, f64>,
@@ -144,7 +144,7 @@ fn height_map(
     Ok(HeightMap { field, on_map: false, format: "array".to_owned(), warnings: Vec::new() })
 }
 
-/// Plots heights as the bytes of a file of vectors.
+/// Plots heights as the bytes of a vector file.
 #[pyfunction]
 fn plot<'py>(
     py: Python<'py>,

@@ -26,11 +26,11 @@ enum Mode {
     Centers,
     /// Pixels with any point in common.
     Touched,
-    /// All, by the share that is inside.
+    /// All, weighted by the share inside.
     Coverage,
 }
 
-/// A grid to which values are given.
+/// A grid whose pixels get values.
 struct Grid {
     pixels: Pixels<f64>,
     mode: Mode,

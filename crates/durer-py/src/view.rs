@@ -133,7 +133,7 @@ fn line_classes() -> Vec<&'static str> {
 /// Kind, item, instance, index in the mesh, window depth, and position in the world.
 type Picked = (&'static str, u32, usize, usize, f64, [f64; 3]);
 
-/// Returns what is behind a point of a picture, nearest first.
+/// Returns the hits behind a point of a picture, nearest first.
 #[pyfunction]
 fn picked(
     py: Python<'_>,

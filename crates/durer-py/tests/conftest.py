@@ -1,4 +1,4 @@
-"""What all tests share."""
+"""Fixtures of all tests."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def samples() -> Path:
 
 @pytest.fixture
 def cube() -> tuple[np.ndarray, np.ndarray]:
-    """The unit cube, twelve triangles turned outwards."""
+    """The unit cube, twelve triangles facing outwards."""
     vertices = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=np.float64)
     quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     faces = [[q[0], q[i], q[i + 1]] for q in quads for i in (1, 2)]
@@ -29,7 +29,7 @@ def cube() -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.fixture
 def command() -> list[str]:
-    """The command to compare with: that of DURER, or the one that came with the package."""
+    """The command to compare with: the one in DURER, or the one of the package."""
     import sys
 
     given = os.environ.get("DURER")

@@ -1,4 +1,4 @@
-"""Tables of work: errors are a column."""
+"""Batches: errors are in a column."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Clipping and overlays, beside shapely's results."""
+"""Clipping and overlays, compared with shapely's results."""
 
 from __future__ import annotations
 

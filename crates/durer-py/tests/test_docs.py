@@ -1,4 +1,4 @@
-"""The examples of the documentation run, and give what the other packages give."""
+"""The examples of the documentation run and give the same results as the other packages."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ PAGES = [ROOT / "docs" / "python.md", ROOT / "docs" / "coming-from.md", ROOT / "
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 PAIR = re.compile(r'^<div class="pair" markdown>\n(.*?)^</div>$', re.MULTILINE | re.DOTALL)
 
-#: Packages of others whose code runs without a display.
+#: Other packages whose code runs without a display.
 COMPARED = ("shapely", "geopandas", "rasterio")
 
 
 def owner(code: str) -> str:
-    """Returns the package that code of a pair is for."""
+    """Returns the package that a pair's code uses."""
     first = code.splitlines()[0]
     return first.removeprefix("# ") if first.startswith("# ") else "durer"
 

@@ -19,7 +19,7 @@ def test_hidden_lines_of_a_cube(cube):
     length = {True: 0.0, False: 0.0}
     for chain, hidden in zip(lines.chains(), lines.invisibility > 0, strict=True):
         length[bool(hidden)] += np.linalg.norm(np.diff(chain, axis=0), axis=1).sum()
-    # Nine edges of a cube are seen from a corner, three are hidden.
+    # From a corner nine edges of a cube are visible, three hidden.
     assert abs(length[False] / length[True] - 3.0) < 1e-6
     visible = durer.hidden_lines(cube, hidden=False)
     assert (visible.invisibility == 0).all() and 0 < len(visible) < len(lines)

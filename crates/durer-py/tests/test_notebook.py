@@ -1,4 +1,4 @@
-"""The notebook of the documentation runs, and gives what it shows."""
+"""The notebook of the documentation runs and gives the outputs that it shows."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ FOLDER = ROOT / "docs" / "notebooks"
 
 
 def shown(cell: Any) -> list[Any]:
-    """Returns the texts that a cell prints, and the kinds of what it shows."""
+    """Returns the texts that a cell prints, and the kinds of its outputs."""
     out = []
     for output in cell.outputs:
         out.append(output.text if output.output_type == "stream" else sorted(output.data))

@@ -177,7 +177,7 @@ def test_the_lock_is_released(samples):
     done.set()
     thread.join()
     inside = [t for t in ticks if start < t < end]
-    # A lock that is held would let the other thread run between the calls only.
+    # If the lock were held, the other thread could run only between the calls.
     assert len(inside) > 20
 
 

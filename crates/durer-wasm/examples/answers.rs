@@ -1,5 +1,5 @@
-//! Answers requests of standard input, one a line, and prints a checksum of each answer; `.ci/explorer` compares them with
-//! those of the module.
+//! Answers requests from standard input, one per line, and prints a checksum of each answer; `.ci/explorer` compares
+//! them with those of the module.
 
 use durer_wasm::{Answer, Engine};
 use std::io::BufRead;

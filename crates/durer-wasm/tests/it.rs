@@ -1,4 +1,4 @@
-//! Requests as a page makes them, answered by this machine's build.
+//! Requests as a page makes them, answered by the native build.
 
 use durer_wasm::{Answer, Engine};
 use serde_json::{Value, json};
@@ -149,7 +149,7 @@ fn many_steps_are_kept_and_found() {
     }
 }
 
-/// Seed fills keep all pixels that wait on the stack: the table of a large picture is cut in its middle.
+/// Seed fills show all waiting pixels of the stack: the table of a large picture is shortened in its middle.
 #[test]
 fn long_tables_are_cut_in_the_middle() {
     let mut engine = Engine::default();
@@ -168,7 +168,7 @@ fn long_tables_are_cut_in_the_middle() {
     let cut = long[100]["name"].as_str().expect("a name");
     let more: usize =
         cut.strip_suffix(" weitere Zeilen").expect("the rest").parse().expect("a number");
-    // The top of the stack and its bottom are there.
+    // The top and the bottom of the stack are shown.
     assert_eq!(long[0]["name"], (200 + more).to_string());
     assert_eq!(long[200]["name"], "1");
 }

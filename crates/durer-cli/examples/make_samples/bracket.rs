@@ -1,7 +1,7 @@
 //! A bent sheet-metal bracket with holes, rounded corners and a boss with a fillet; closed.
 //!
-//! The flat sheet is a grid of square cells whose sides all carry the same points, so that cells with
-//! and without holes fit together; then the sheet is bent. Millimetres, z up.
+//! The flat sheet is a grid of square cells that all have the same points on their sides, so that cells with and
+//! without holes fit together; then the sheet is bent. Millimetres, z up.
 
 use durer::math::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 const AROUND: usize = 48;
 /// Half of a cell's side.
 const HALF: f64 = 10.0;
-/// Thickness of the sheet.
+/// Half the side of a cell.
 const THICK: f64 = 4.0;
 /// Radius of the plate's corners.
 const CORNER: f64 = 8.0;
@@ -20,9 +20,9 @@ const ROWS: usize = 3;
 const LYING: usize = 3;
 /// Columns of cells in the standing leg.
 const STANDING: usize = 2;
-/// Strips that the bend is made of.
+/// Columns of cells in the horizontal leg.
 const STRIPS: usize = 12;
-/// Inner radius of the bend.
+/// Columns of cells in the vertical leg.
 const BEND: f64 = 6.0;
 /// Length of the bend in the flat sheet, at its middle.
 const BENT: f64 = (BEND + THICK * 0.5) * FRAC_PI_2;
@@ -87,7 +87,7 @@ fn direction(i: usize) -> DVec2 {
     DVec2::new(cos, sin)
 }
 
-/// Returns which sides of a cell are the sheet's border: left, right, lower, upper.
+/// Returns which sides of a cell lie on the sheet's border: left, right, lower, upper.
 fn borders(row: usize, column: usize) -> [bool; 4] {
     [column == 0, column == LYING + STANDING - 1, row == 0, row == ROWS - 1]
 }
@@ -108,7 +108,7 @@ fn border_point(row: usize, column: usize, i: usize) -> DVec2 {
     d * (along + (along * along - m.length_squared() + CORNER * CORNER).sqrt())
 }
 
-/// Both faces of a cell, its hole or boss, and its part of the sheet's rim.
+/// Adds both faces of a cell, its hole or boss, and its part of the sheet's rim.
 fn cell(row: usize, column: usize, out: &mut Vec<[DVec3; 3]>) {
     let c = center(row, column);
     let border = |i: usize| border_point(row, column, i % AROUND) + c;
@@ -151,7 +151,7 @@ fn profile_of(middle: Middle) -> Vec<(f64, f64)> {
     }
 }
 
-/// Returns a fillet of 2.5 at the foot, a round of 1 at the top, a bore of 3.
+/// Returns the rings of a boss: a fillet of 2.5 at the foot, a round of 1 at the top, a bore of 3.
 fn boss() -> Vec<(f64, f64)> {
     const STEPS: usize = 8;
     let (radius, foot, round, top, bore) = (6.0, 2.5, 1.0, 16.0, 3.0);

@@ -1,4 +1,4 @@
-//! Coloured panes and a glass ball among opaque balls: surfaces that have to be blended in order.
+//! Coloured panes and a glass ball among opaque balls: surfaces that must be blended in order.
 
 use crate::glb::Glb;
 use crate::solids;

@@ -69,7 +69,7 @@ impl Glb {
         Geometry { positions, normals, tex_coords, indices: self.accessors.len() - 1 }
     }
 
-    /// Returns a mesh of one part; gives its number.
+    /// Adds a mesh of one part and returns its number.
     pub fn mesh(&mut self, geometry: Geometry, material: usize) -> usize {
         let Geometry { positions, normals, tex_coords, indices } = geometry;
         self.meshes.push(json!({"primitives": [{
@@ -79,7 +79,7 @@ impl Glb {
         self.meshes.len() - 1
     }
 
-    /// Returns a PNG; gives the number of its texture.
+    /// Adds a PNG and returns the number of its texture.
     pub fn texture(&mut self, png: &[u8]) -> usize {
         let view = self.view(png);
         self.images.push(json!({"bufferView": view, "mimeType": "image/png"}));
@@ -91,7 +91,7 @@ impl Glb {
         self.materials.len() - 1
     }
 
-    /// A mesh in its place: scaled, turned around the y axis, moved.
+    /// Adds a mesh: scaled, turned around the y axis, moved.
     pub fn node(&mut self, name: &str, mesh: usize, place: DVec3, degrees: f64, scale: DVec3) {
         let (sin, cos) = libm::sincos(degrees.to_radians() * 0.5);
         self.nodes.push(json!({

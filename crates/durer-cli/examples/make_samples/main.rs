@@ -1,6 +1,6 @@
 //! Makes the models in `samples/`: `cargo run -p durer-cli --example make_samples [FOLDER]`.
 //!
-//! The same bytes at every run, on every machine.
+//! The bytes are the same on every run and every machine.
 
 mod bracket;
 mod glass;

@@ -8,7 +8,7 @@ use std::fmt::Write;
 /// Pieces along each side of a patch.
 const PIECES: usize = 10;
 
-/// A step off a point where the surface's sides have shrunk to nothing.
+/// Step away from a point where a side of the patch has shrunk to nothing.
 const ASIDE: f64 = 1e-4;
 
 /// Returns the text of an OBJ file.
@@ -95,7 +95,7 @@ impl Obj {
         [self.points.number("v", point), self.normals.number("vn", normal)]
     }
 
-    /// A triangle, unless two of its corners are one.
+    /// Adds a triangle, unless two of its corners coincide.
     fn triangle(&mut self, [a, b, c]: [[usize; 2]; 3]) {
         if a[0] != b[0] && b[0] != c[0] && c[0] != a[0] {
             // Writing to a string cannot fail.

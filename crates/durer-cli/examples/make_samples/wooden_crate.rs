@@ -44,7 +44,7 @@ fn texture() -> Pixels<[u8; 4]> {
     pixels
 }
 
-/// Planks that stand, a frame around them, and a board from corner to corner.
+/// Returns the colour of upright planks, a frame around them, and a diagonal board.
 fn brightness(u: f64, v: f64) -> f64 {
     let to_border = u.min(1.0 - u).min(v.min(1.0 - v));
     let to_diagonal = (u + v - 1.0).abs() * 0.707;
@@ -88,7 +88,7 @@ fn smooth(x: f64, y: f64, seed: u32) -> f64 {
     row(0) * (1.0 - t) + row(1) * t
 }
 
-/// Returns a number between 0 and 1 that looks like chance.
+/// Returns a pseudo-random number between 0 and 1.
 fn noise(x: i64, y: i64, seed: u32) -> f64 {
     let mut h = (x as u64)
         .wrapping_mul(0x9e37_79b9_7f4a_7c15)

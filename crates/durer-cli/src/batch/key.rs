@@ -103,7 +103,7 @@ mod tests {
         assert_ne!(key, other(|t| t.planes.push(("depth".to_owned(), "d.png".to_owned()))));
         assert_ne!(key, of_row(&task, &file("a.obj", "2"), &[]));
         assert_ne!(key, of_row(&task, &file("a.obj", "1"), &file("m.json", "1")));
-        // Of the input counts what is in it, not where it lies.
+        // The input counts by its content, not by its path.
         assert_eq!(key, other(|t| t.inputs = vec!["y/a.obj".to_owned()]));
         assert_eq!(key, other(|t| t.sha256 = Some("1".to_owned())));
     }

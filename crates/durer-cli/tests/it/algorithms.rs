@@ -115,13 +115,14 @@ fn a_warped_picture_is_nearly_the_rendered_one() {
     let pairs = warped.pixels().zip(right.pixels());
     let differing = pairs.filter(|(a, b)| a[..3] != b[..3]).count() as u64;
     let holes = report["holes"].as_u64().unwrap();
-    // What comes from behind the cube; the camera does not turn, so nothing endless comes in at the border.
+    // Holes are where surfaces come out from behind the cube. The camera does not turn, so no background enters at the
+    // border.
     assert!(holes > 0 && holes < 500, "{holes}");
     assert!(holes <= differing && differing < holes + 100, "{holes} {differing}");
-    // Warped from the very camera, the second picture leaves no hole.
+    // Warped from the target camera itself, the second picture leaves no hole.
     let report = warp("--fill b.png b_d.png --fill-eye 0.3,3.1,7 --fill-target 0.3,0.1,0");
     assert_eq!(report["holes"], 0);
-    // Its surfaces also come before what the first picture has nothing of: along outlines.
+    // It also fills pixels along outlines for which the first picture has no surface.
     let filled = report["filled"].as_u64().unwrap();
     assert!(filled >= holes && filled < holes + 20, "{filled} {holes}");
 }

@@ -1,4 +1,4 @@
-//! Annotations from the command line: names of objects, files of them, what is refused.
+//! Annotations on the command line: names of objects, annotation files, refused input.
 
 use crate::harness::Folder;
 use std::fs;
@@ -80,7 +80,7 @@ fn a_file_names_features_views_and_threads() {
     fs::write(folder.path("a.toml"), file).unwrap();
     let shared = "render parts.obj --sheet third-angle --page A3";
     let wrong = folder.run(&format!("{shared} -o n.svg --annotations a.toml"));
-    // The nut has two cylinders, of which only the hole can be M8.
+    // The nut has two cylinders; only the hole can be M8.
     assert!(wrong.err.contains("boss 1 of `nut` has a diameter of 13"), "{}", wrong.err);
     let found = labels(&folder.read("n.svg"));
     for text in ["25 h7", "polished", "M8"] {
@@ -120,7 +120,7 @@ fn what_is_wrong_is_told() {
         let ended = folder.run(&format!("render parts.obj {options}"));
         assert!(ended.code != 0 && ended.err.contains(part), "{options}: {}", ended.err);
     }
-    // What has no place is warned of, and the rest is drawn.
+    // An annotation without a place gives a warning, and the rest is drawn.
     let ended = folder.must("render parts.obj -o x.svg --fov 40 --dimension size");
     assert!(ended.err.contains("perspective"), "{}", ended.err);
     let ended = folder.must("render cube.obj -o x.svg --view front --dimension holes,size");
@@ -151,9 +151,9 @@ fn broken_views_keep_true_lengths() {
     assert!(svg.contains("inkscape:label=\"visible-break\""));
     folder.must(&format!("{shared} -o b.dxf --view front"));
     let dxf = String::from_utf8_lossy(&folder.read("b.dxf")).into_owned();
-    // Programs that measure anew find another length, so the text says it.
+    // Programs that measure again find another length, so the text states it.
     assert!(dxf.contains("\n  1\n300\n") || dxf.contains("\n1\n300\n"));
-    // The paper is as wide as what is left: two ends of 50 and a gap.
+    // The paper is as wide as the remaining parts: two ends of 50 and a gap.
     let json = folder.must("render bar.obj -o b.dxf --view front --break x:50,250 --json").json();
     let width = json["models"][0]["pictures"][0]["drawing"]["page"][0].as_f64().unwrap();
     assert!((width - 102.5 - 10.0 - 0.5).abs() < 1e-6, "{width}");
@@ -207,7 +207,7 @@ fn objects_of_obj_and_stl_files_are_parts() {
         found.iter().any(|l| l == "pin") && found.iter().filter(|l| *l == "2").count() >= 2,
         "{found:?}"
     );
-    // Groups are parts where there is but one object.
+    // With a single object, its groups are the parts.
     let grouped = parts().replace("o nut", "o all\ng nut").replace("\no ", "\ng ");
     folder.write("groups.obj", &grouped);
     assert_eq!(list("groups.obj").iter().filter(|l| *l == "bolt").count(), 1);

@@ -1,4 +1,4 @@
-//! `durer batch`: manifests, journals, failures, and going on where it stopped.
+//! `durer batch`: manifests, journals, failures, resumed runs.
 
 use crate::harness::{BROKEN, CUBE, Ended, Folder};
 use serde_json::Value;
@@ -168,7 +168,7 @@ fn rows_have_options_of_their_own() {
         12
     );
     for (command, name) in [
-        // Of options that exclude each other that of the row counts.
+        // Of two options that exclude each other, the row's option wins.
         ("render cube.obj --size 4 --aa 1 --azimuth 20", "a.png"),
         (
             "render cube.obj --size 8 --aa 1 --view front --edges --light ambient:white:0.2 --light directional:-1,-2,-1",
@@ -195,7 +195,7 @@ fn resuming_runs_what_changed_and_nothing_else() {
     batch(&folder, "--jobs 1").fails(2, "--resume continues, --restart runs all again");
     let rows = || journal(&folder).len();
     assert_eq!(rows(), 4);
-    // A row whose input was not there is tried again; one whose input is wrong is not.
+    // A row whose input was missing is tried again; a row whose input is wrong is not.
     batch(&folder, "--jobs 1 --resume").fails(3, "0 rows done, 2 done before, 2 failed");
     assert_eq!(rows(), 5);
     batch(&folder, "--jobs 1 --retry failed").fails(3, "0 rows done, 2 done before, 2 failed");
@@ -261,7 +261,7 @@ fn shards_divide_the_rows_and_are_locked() {
         counts += ended.err.split(' ').nth(1).unwrap().parse::<u32>().unwrap();
     }
     assert_eq!(counts, 9);
-    // What shards did, counts whatever their number is.
+    // Rows done by shards count as done, whatever the number of shards.
     assert!(batch(&folder, "--resume").err.contains("0 rows done, 9 done before"));
     let lock = fs::File::open(folder.path("out/.durer/shard-1-of-3.lock")).unwrap();
     lock.lock().unwrap();
@@ -320,7 +320,7 @@ fn a_failed_row_can_be_the_last() {
 #[test]
 fn a_row_that_takes_too_long_is_ended() {
     let folder = Folder::with_models();
-    // A pipe that nobody writes to.
+    // A pipe without a writer.
     let made = std::process::Command::new("mkfifo").arg(folder.path("pipe.obj")).status();
     assert!(made.unwrap().success());
     folder.write("rows.csv", "id,input\na,pipe.obj\nb,cube.obj\n");

@@ -5,10 +5,10 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Row, RowAccessor};
 use serde_json::Value;
 
-/// A manifest that `tables/make.py` made by pyarrow.
+/// A manifest written with pyarrow by `tables/make.py`.
 const ROWS: &[u8] = include_bytes!("../tables/rows.parquet");
 
-/// Options of all rows, which those of a row take the place of.
+/// Options of all rows; a row's own options replace them.
 const COMMON: &str = "--size 9 --aa 16";
 
 #[test]
@@ -46,7 +46,7 @@ fn rows_are_those_of_the_table() {
         assert!(found.get_double(5).unwrap() > 0.0);
         assert_eq!(*found.get_string(9).unwrap(), text(&wanted["error"]["message"]));
     }
-    // A report is no manifest: the error names its column.
+    // A report is not a manifest: the error names the missing column.
     folder.run("batch report.parquet -o other").fails(1, "report.parquet: row 1: column `");
 }
 

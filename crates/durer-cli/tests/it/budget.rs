@@ -1,5 +1,5 @@
-//! `--max-memory` and `--timeout`: what would cost more ends with an error that says what it is needed for, and leaves
-//! no file.
+//! `--max-memory` and `--timeout`: a command that would exceed them ends with an error that names the purpose of the
+//! memory, and leaves no file.
 
 use crate::harness::{CUBE, Folder};
 use std::fmt::Write as _;
@@ -7,7 +7,7 @@ use std::io::Write as _;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-/// Returns a binary STL file of triangles that stand side by side.
+/// Returns a binary STL file of triangles side by side.
 fn stl(count: u32) -> Vec<u8> {
     let mut file = vec![b' '; 80];
     file.extend(count.to_le_bytes());
@@ -23,14 +23,14 @@ fn stl(count: u32) -> Vec<u8> {
     file
 }
 
-/// Returns an OBJ file of as many triangles.
+/// Returns an OBJ file of the given number of triangles.
 fn obj(count: u32) -> String {
     let mut text = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
     (0..count).for_each(|_| text.push_str("f 1 2 3\n"));
     text
 }
 
-/// Returns a polygon that crosses itself all over.
+/// Returns a polygon with many self-intersections.
 fn ring(points: u64) -> String {
     let at = |i: u64| format!("[{},{}]", i * 7919 % 1009, i * 104_729 % 1013);
     let ring: Vec<String> = (0..points).chain([0]).map(at).collect();
@@ -139,7 +139,7 @@ fn map_data_that_are_held_are_charged() {
             .fails(1, "many.geojsonl");
         assert_eq!(folder.names(), ["many.geojsonl", "many.wkt"], "{command}");
     }
-    // Features that pass one by one are not held.
+    // Features that are processed one by one are not kept.
     folder.must(&format!("clip {rest} --window 0,0,9,9 -o o.geojsonl"));
 }
 
@@ -191,7 +191,7 @@ fn a_model_that_costs_too_much_is_skipped() {
     assert!(folder.path("out/cube.png").exists() && !folder.path("out/many.png").exists());
 }
 
-/// Checks that memory of one model is available again for the next.
+/// Checks that the memory of one model is available again for the next.
 #[test]
 fn models_one_after_another_share_a_budget() {
     let folder = Folder::new();
@@ -212,7 +212,7 @@ fn time_ends_what_looks_at_it() {
     folder.must("render cube.obj -o o.png --size 20x20 --timeout 600");
 }
 
-/// A source that gives nothing keeps the command from looking at anything.
+/// Checks that a timeout also ends a command that waits for its input.
 #[test]
 fn time_ends_what_waits() {
     let folder = Folder::new();

@@ -28,7 +28,7 @@ pub fn piped(folder: &Folder, arguments: &str, input: &[u8]) -> Ended {
     let mut child = command.spawn().unwrap();
     let mut stdin = child.stdin.take().unwrap();
     let input = input.to_owned();
-    // The command may stop before it has read all.
+    // The command may end before it has read everything.
     let feeder = std::thread::spawn(move || drop(stdin.write_all(&input)));
     let ended = Ended::of(child.wait_with_output().unwrap());
     feeder.join().unwrap();
@@ -206,7 +206,7 @@ fn lines_get_no_vertex_where_they_only_touch_the_mask() {
 
 #[test]
 fn outer_rings_run_counter_clockwise_and_holes_clockwise() {
-    // Clockwise, with a counter-clockwise hole that touches it; and a second polygon, the other way round.
+    // Clockwise, with a counter-clockwise hole that touches it; and a second polygon with opposite directions.
     let wkt =
         "MULTIPOLYGON(((0 0,0 9,9 9,9 0,0 0),(0 4,3 3,3 5,0 4)),((20 0,29 0,29 9,20 9,20 0)))";
     let expected = [
@@ -279,7 +279,7 @@ fn repeated_positions_and_touching_rings_are_no_fault() {
 fn textbook_algorithms_refuse_what_they_cannot_do() {
     let folder = Folder::new();
     folder.write("bow.wkt", "POLYGON((0 0,4 4,4 0,0 4,0 0))");
-    // The hole touches the outer ring in the window, and is cut open.
+    // In the window the hole touches the outer ring and is cut open.
     folder.write("touch.wkt", "POLYGON((0 0,9 0,9 9,0 9,0 0),(4 9,3 3,5 3,4 9))");
     for algorithm in ["weiler-atherton", "greiner-hormann", "rectangle"] {
         let run = |window| format!("--window {window} --algorithm {algorithm} -o o.wkt");
@@ -493,7 +493,7 @@ fn what_is_inside_and_what_is_outside_make_up_a_line_that_follows_the_border() {
     let vertices = |op: &str| {
         text(folder.must(&format!("clip l.wkt --by m.wkt {op} -o -"))).matches(" -8").count()
     };
-    // Three vertices, or four where the line is parted at one of them.
+    // Three vertices, or four if the line is split at one of them.
     let all = vertices("") + vertices("--op difference");
     assert!(all == 3 || all == 4, "{all}");
 }

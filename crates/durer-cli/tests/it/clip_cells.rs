@@ -61,12 +61,12 @@ fn pieces_know_their_cells_and_are_a_coverage() {
     expected.push(named("trees", "A", 1));
     assert_eq!(told, expected.iter().collect::<Vec<_>>());
     folder.must("check out.geojsonl --coverage");
-    // The one of many points is cut the other way round than the one of few.
+    // The square with many vertices is cut in the opposite direction from the one with few.
     let ring = |k: usize| found[k]["geometry"]["coordinates"][0].as_array().unwrap().clone();
     let shared: Vec<Value> =
         ring(1).into_iter().filter(|p| p[0] == 10.0 && ring(4).contains(p)).collect();
     assert_eq!(shared.len(), 2, "{:?} {:?}", ring(1), ring(4));
-    // As by the cell alone.
+    // The result is the same as with the cell alone.
     folder.write("a.geojsonl", CELLS.lines().next().unwrap());
     folder.must("clip in.geojsonl --by a.geojsonl -o a.out.geojsonl");
     let alone = features(&folder, "a.out.geojsonl");
@@ -82,7 +82,7 @@ fn pieces_know_their_cells_and_are_a_coverage() {
         ring
     };
     assert_eq!(sorted(&found[0]), sorted(&alone[0]));
-    // Cut once more nothing changes but the fields.
+    // A second cut changes only the fields.
     folder.must("clip out.geojsonl --cells cells.geojsonl --select name -o again.geojsonl");
     let again = features(&folder, "again.geojsonl");
     assert_eq!(again.len(), found.len());

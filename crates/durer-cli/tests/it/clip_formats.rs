@@ -38,7 +38,7 @@ fn files_are_converted_without_a_mask() {
     }
     assert_eq!(text(&folder, "o.cpg"), "UTF-8");
     assert!(text(&folder, "o.prj").starts_with("GEOGCS[\"GCS_WGS_1984\""));
-    // The same format without anything to do is a forgotten mask.
+    // An output of the same format without any operation means that the mask was forgotten.
     folder.run("clip areas.geojson -o a.geojson").fails(2, "nothing to clip with");
     folder.run("clip areas.geojson -o a.kml").fails(2, "kml is only read");
     folder.run("clip areas.geojson --to shapefile -o -").fails(2, "several files");
@@ -124,11 +124,11 @@ fn coordinates_are_brought_to_another_system() {
     folder.must("clip o.wkt --to-crs 4326 -o back.geojson");
     let back = text(&folder, "back.geojson");
     assert!(back.contains("[7.4") && back.contains(",46.9") && !back.contains("crs"), "{back}");
-    // GeoJSON in another system says so, and so do messages.
+    // GeoJSON in another coordinate system records it, and a message says so.
     let ended = folder.must("clip areas.geojson --to-crs EPSG:3035 -o o.geojson");
     assert!(ended.err.contains("are marked by the older member crs"), "{}", ended.err);
     assert!(text(&folder, "o.geojson").contains("urn:ogc:def:crs:EPSG::3035"));
-    // It is heard again.
+    // The reader honours it.
     folder.must("clip o.geojson --to-crs EPSG:4326 -o back.geojson");
     assert!(!text(&folder, "back.geojson").contains("crs"));
     folder.must("clip areas.geojson --to-crs EPSG:3857 -o o.fgb");
@@ -209,7 +209,7 @@ fn older_datums_are_shifted_with_a_word_or_refused() {
     folder.write("os.wkt", "POINT (366930.326448 400483.401903)");
     let ended = folder.must("clip os.wkt --from-crs EPSG:27700 --to-crs EPSG:4326 -o o.csv");
     assert!(ended.err.contains("with OSGB_1936 they may be off by 5 m"), "{}", ended.err);
-    // -2.5, 53.5, by the way back, which is right to a centimetre.
+    // −2.5, 53.5 after the way back, which is accurate to a centimetre.
     let told = text(&folder, "o.csv");
     assert!(told.contains("POINT (-2.49999998") && told.contains(" 53.49999999"), "{told}");
     folder

@@ -1,9 +1,9 @@
-//! `durer clip`: what neighbours share stays shared.
+//! `durer clip`: common borders of neighbours stay common.
 
 use crate::clip::text;
 use crate::harness::{Ended, Folder};
 
-/// Returns two files and the lines of what the first becomes by options, and what is told.
+/// Clips one layer by another with the given options; returns the lines of the result and the messages.
 fn clip(input: &str, mask: &str, options: &str) -> (Vec<String>, String) {
     let folder = Folder::new();
     folder.write("in.wkt", input);
@@ -31,7 +31,7 @@ fn the_node_of_two_neighbours_stays_on_the_edge_of_the_third() {
     assert_eq!(cut[0], whole[0]);
     assert_eq!(cut[1], "POLYGON ((10 0, 14.916666666666666 0, 14.5 5, 10 5, 10 0))");
     assert_eq!(cut[2], "POLYGON ((10 5, 14.5 5, 14.083333333333334 10, 10 10, 10 5))");
-    // All around by nothing but its own outline.
+    // A mask around all parcels adds only their own outline.
     let (cut, _) = clip(PARCELS, "POLYGON((0 0,20 0,20 10,0 10,0 0))", "--by m.wkt");
     assert_eq!(cut, whole);
 }
@@ -65,7 +65,7 @@ fn neighbours_of_any_size_get_the_same_points_on_their_common_edge() {
             assert!(cut.iter().all(|line| line.contains(point)), "{options}: {cut:?}");
         }
     }
-    // A line along the common edge ends there too.
+    // A line ends at the common edge too.
     let (cut, _) = clip("LINESTRING(1 2,2 5)", mask, "--by m.wkt");
     assert_eq!(
         cut,
@@ -95,7 +95,7 @@ fn collections_are_sets_of_points() {
     let (union, told) = clip(both, "", "--op union");
     assert_eq!(union, ["POLYGON ((0 0, 4 0, 6 0, 10 0, 10 6, 6 6, 4 6, 0 6, 0 0))"]);
     assert_eq!(told, "");
-    // As a mask likewise.
+    // The same holds for a mask.
     let (cut, _) = clip("POINT(5 3)", both, "--by m.wkt");
     assert_eq!(cut, ["POINT (5 3)"]);
 }

@@ -1,11 +1,11 @@
-//! Natural Earth's maps against areas, lengths and counts that GEOS gives.
+//! Natural Earth's maps, compared with areas, lengths and counts computed by GEOS.
 
 use crate::conformance_models::data;
 use crate::harness::{Ended, Folder};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Areas and lengths are given with nine digits after the point.
+/// Areas and lengths have nine decimals.
 fn close(found: &Value, expected: &Value) -> bool {
     let (a, b) = (found.as_f64().unwrap(), expected.as_f64().unwrap());
     (a - b).abs() <= 1e-9 * b.abs() + 1e-9

@@ -1,4 +1,4 @@
-//! All models of the shared test data go through the command.
+//! All models of the shared test data, rendered by the command.
 
 use crate::harness::{Ended, Folder, Picture};
 use durer::scene::{Mesh, Topology};
@@ -10,7 +10,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// A run that takes longer hangs.
+/// Longest time of a run; a longer one counts as hanging.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Number of simultaneous runs; each uses one thread.
@@ -64,7 +64,7 @@ fn render(folder: &Folder, model: &Path, out: &str) -> Option<Ended> {
     Some(Ended::of(child.wait_with_output().unwrap()))
 }
 
-/// Runs a check on each model, some at a time; gives all complaints.
+/// Runs a check on each model, several at a time; returns all complaints.
 fn for_all(
     models: &[PathBuf],
     check: impl Fn(&Path, Option<Ended>, &Folder, &str) -> Result<(), String> + Sync,
@@ -100,8 +100,7 @@ fn for_all(
     );
 }
 
-/// Returns whether a model has triangles, but none of them covers anything: its corners lie on a
-/// line.
+/// Returns whether a model has triangles, none of which covers anything because their corners are collinear.
 fn has_no_area(model: &Path) -> bool {
     let bytes = std::fs::read(model).unwrap();
     let name = model.to_string_lossy();

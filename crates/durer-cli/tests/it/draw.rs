@@ -7,7 +7,7 @@ use std::process::Stdio;
 const RED_SQUARE: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 10">
 <rect width="10" height="10" fill="#f00"/></svg>"##;
 
-/// A square with a hole, a line and a point, in a world of 0 … 100.
+/// A square with a hole, a line and a point, in the range 0 … 100.
 const MAP: &str = r#"{"type":"FeatureCollection","features":[
 {"type":"Feature","properties":{"name":"Ring","n":7},"geometry":{"type":"Polygon","coordinates":[
  [[10,10],[90,10],[90,90],[10,90],[10,10]],[[40,40],[60,40],[60,60],[40,60],[40,40]]]}},
@@ -43,7 +43,7 @@ fn sizes_may_leave_one_side_open() {
         folder.must(&format!("draw a.svg -o a.png --size {size} --background white"));
         assert_eq!(picture(&folder, "a.png").size(), expected);
     }
-    // In another shape it stands in the middle.
+    // A picture of another shape has the drawing in its middle.
     let found = picture(&folder, "a.png");
     assert_eq!((found.pixel(5, 15), found.pixel(5, 5)), (&[255, 0, 0][..], &[255, 255, 255][..]));
 }
@@ -105,8 +105,8 @@ fn edges_are_smoothed_or_not() {
 #[test]
 fn neighbours_of_one_colour_leave_no_seam() {
     let folder = folder();
-    // Two areas with a wild border between them that each runs along another way, one in a hole of the
-    // first, two that overlap, and one like an eight.
+    // Two areas that each follow their irregular common border differently; one in a hole of the first; two that
+    // overlap; and a self-intersecting one.
     let border: Vec<String> =
         (0..=300).map(|i| format!("{} {}", 50 + (i * 37) % 11, 5.0 + f64::from(i) * 0.3)).collect();
     let (up, down) = (border.join(","), border.iter().rev().cloned().collect::<Vec<_>>().join(","));
@@ -127,7 +127,7 @@ fn neighbours_of_one_colour_leave_no_seam() {
         assert_eq!(found.pixel(x, y), [0x20, 0x40, 0x60], "{x},{y}");
     }
     assert_eq!(found.pixel(325, 215), [0x20, 0x40, 0x60], "the lower half of the eight");
-    // Translucent areas stay one by one: where they overlap, they are darker.
+    // Translucent areas are painted one by one: overlaps are darker.
     folder.must(&format!("{} --stroke none -o b.png", draw.replace("#204060", "#20406080")));
     let found = picture(&folder, "b.png");
     assert!(found.pixel(245, 240)[0] < found.pixel(100, 300)[0]);
@@ -135,7 +135,7 @@ fn neighbours_of_one_colour_leave_no_seam() {
 
 #[test]
 fn fills_without_borders_are_as_exact_as_others() {
-    // Many corners off every grid, in few pixels.
+    // Many corners that lie on no grid, in few pixels.
     let ring: Vec<String> = (0..=60)
         .map(|i| {
             let angle = f64::from(i % 60) * std::f64::consts::TAU / 60.0;
@@ -217,7 +217,7 @@ fn an_area_whose_best_place_is_taken_has_others() {
             r#"{{"type":"Feature","properties":{{"name":"{name}"}},"geometry":{{"type":"Polygon","coordinates":[[[{x0},{y0}],[{x1},{y0}],[{x1},{y1}],[{x0},{y1}],[{x0},{y0}]]]}}}}"#
         )
     };
-    // Both have the same best place.
+    // Both names have the same best position.
     let both = ["one", "two"].map(|name| area(name, [0, 0, 100, 100]));
     folder.write("areas.geojsonl", both.join("\n"));
     let report = folder.must("draw areas.geojsonl --label name -o m.png --size 200x --json").json();
@@ -351,7 +351,7 @@ fn a_drawing_too_large_to_be_drawn_is_bad_data() {
         "wide.svg: line 2, column 1: the size 1000000000x2: 2000000000 pixels are above the limit";
     folder.run("draw wide.svg -o a.png").fails(1, told);
     folder.run("draw long.svg -o a.png").fails(1, "long.svg: line 2, column 1: the size 2x40000: ");
-    // The other side follows from the drawing's shape.
+    // The other dimension follows from the drawing's shape.
     folder.run("draw long.svg -o a.png --size 9x").fails(1, "long.svg: line 2, column 1: the size");
     folder.must("draw wide.svg -o a.png --size 9x9");
 }
@@ -364,7 +364,7 @@ fn an_island_is_not_hidden_by_its_name_and_a_large_country_has_one() {
             r#"{{"type":"Feature","properties":{{"name":"{name}"}},"geometry":{{"type":"Polygon","coordinates":[[[{x0},{y0}],[{x1},{y0}],[{x1},{y1}],[{x0},{y1}],[{x0},{y0}]]]}}}}"#
         )
     };
-    // In the middle one that just holds its name, between two whose names reach over the border.
+    // The middle area barely holds its name; the names of its two neighbours cross its border.
     let areas = [
         area("Isle", [30, 80, 38, 86]),
         area("Overlong Neighbour", [60, 20, 130, 60]),
@@ -414,7 +414,7 @@ fn wrong_use_and_bad_data_are_told() {
     assert!(!folder.path("a.png").exists());
 }
 
-/// Returns a feature that is a point.
+/// Returns a point feature.
 fn point([x, y]: [u32; 2], properties: &str) -> String {
     let geometry = format!(r#"{{"type":"Point","coordinates":[{x},{y}]}}"#);
     format!(r#"{{"type":"Feature","properties":{properties},"geometry":{geometry}}}"#)
@@ -481,7 +481,7 @@ fn shared_borders_are_dashed_once() {
     for x in [10, 210, 410] {
         assert!((0.4..=0.6).contains(&red(x)), "{x}: {}", red(x));
     }
-    // So are borders that let light through: they are as dark between two areas as around them.
+    // The same holds for translucent borders: they are as dark between two areas as around them.
     folder.must("draw two.geojsonl -o d.png --size 420x150 --window -0.5,-0.25,20.5,7.25 --fill white --stroke #f008 --stroke-width 4");
     let found = picture(&folder, "d.png");
     assert_eq!(found.pixel(210, 70), found.pixel(10, 70));
@@ -529,7 +529,7 @@ fn names_without_room_are_written_in_two_lines_or_short() {
             "{{\"type\":\"Feature\",\"properties\":{{{name}}},\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":[[[20,5],[80,5],[80,45],[20,45],[20,5]]]}}}}"
         )
     };
-    // The box of all letters in a picture of one unit a pixel.
+    // Bounding box of all letters in a picture of one pixel per unit.
     let ink = |name: &str| {
         folder.write("a.geojson", area(name));
         folder.must("draw a.geojson -o a.png --size 100x50 --window 0,0,100,50 --stroke none --fill white --label NAME --label-halo none");

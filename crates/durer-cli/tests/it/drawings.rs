@@ -1,4 +1,4 @@
-//! Drawings from the command line: golden files, layers, errors, reports.
+//! Drawings made by the command: golden files, layers, errors, reports.
 
 use crate::harness::{Folder, Picture};
 use std::fs;
@@ -37,7 +37,7 @@ fn folder() -> Folder {
     folder
 }
 
-/// `DURER_BLESS=1` rewrites the files.
+/// Compares with the golden files; `DURER_BLESS=1` rewrites them.
 #[test]
 fn drawings_are_the_golden_ones() {
     let (folder, golden) = (folder(), root().join("crates/durer-cli/tests/golden"));
@@ -64,7 +64,7 @@ fn a_cube_has_nine_visible_edges_and_three_hidden() {
         let lines = drawing["lines"].as_array().unwrap();
         lines.iter().map(|c| c[kind]["length"].as_f64().unwrap()).sum()
     };
-    // Edges of length 2, shortened alike.
+    // Edges of length 2, all foreshortened by the same factor.
     let edge = 2.0 * (2.0f64 / 3.0).sqrt();
     assert!((total("visible") / edge - 9.0).abs() < 1e-3, "{}", total("visible") / edge);
     assert!((total("hidden") / edge - 3.0).abs() < 1e-3, "{}", total("hidden") / edge);
@@ -191,14 +191,14 @@ fn sections_have_lines_of_their_own() {
     assert_eq!((lines.len(), &of("section")["visible"]["polylines"]), (2, &1.into()));
     let length = of("section")["visible"]["length"].as_f64().unwrap();
     assert!((length - 8.0).abs() < 1e-6, "{length}");
-    // What was cut is hatched; or filled, if requested.
+    // The cut face is hatched, or filled on request.
     assert!(of("hatch")["visible"]["length"].as_f64().unwrap() > 8.0);
     let ended =
         folder.must("render cube.obj -o cut.svg --section 0,-1,0,0 --view top --hatch none --json");
     let drawing = ended.json()["models"][0]["pictures"][0]["drawing"].clone();
     assert_eq!(drawing["regions"], 1);
     assert!(drawing["lines"].as_array().unwrap().iter().all(|l| l["class"] != "hatch"));
-    // Programs get what of the caps can be seen as areas.
+    // Formats for programs contain the visible caps as areas.
     folder.must("render cube.obj -o cut.geojson --section 0,-1,0,0 --view top");
     let drawing: serde_json::Value = serde_json::from_slice(&folder.read("cut.geojson")).unwrap();
     let features = drawing["features"].as_array().unwrap().iter();
@@ -234,7 +234,7 @@ fn hidden_line_drawings_are_hatched_where_that_is_asked_for() {
     }
     let both = drawn("-o a.svg --style regions+lines --hatch shade");
     assert_eq!(hatched["lines"], both["lines"]);
-    // Plotters hatch areas without being asked, but a line drawing stays one.
+    // Formats for plotters hatch areas by default, but a line drawing has no areas.
     assert_eq!(length(&drawn("-o a.hpgl"), "hatch"), 0.0);
 }
 
@@ -254,7 +254,8 @@ fn details_have_marks_at_the_distance_that_their_views_have() {
         model += &format!("f {} {} {} {}\n", 2 * i + 1, 2 * k + 1, 2 * k + 2, 2 * i + 2);
     }
     fs::write(folder.path("round.obj"), model).unwrap();
-    // On paper the lines are twice as long, and in the model's units; dots are four times as many.
+    // Twice as large on paper, the lines are twice as long, measured in the model's units, and there are four times as
+    // many dots.
     for (hatch, class, of, grows) in
         [("stipple", "stipple", "polylines", 4.0), ("contour", "hatch", "length", 2.0)]
     {
@@ -286,7 +287,7 @@ fn gcode_takes_its_commands_and_speeds_from_options() {
     let text = drawn("--pens 1 --hidden dashed");
     assert!(!text.contains("M0") && text.contains("\nM3 S1000\nG4 P0.2\nG1 X"), "{text}");
     assert_eq!(text.matches("; layer ").count(), 3, "{text}");
-    // Plots too.
+    // The same holds for plots.
     folder.must("plot --formula x*z -o plot.gcode --feed 10");
     assert!(String::from_utf8(folder.read("plot.gcode")).unwrap().contains(" F10\n"));
     folder.run("plot --formula x*z -o plot.svg --feed 10").fails(2, "it is for G-code");
@@ -298,7 +299,7 @@ fn a_pen_goes_short_ways_where_that_is_asked_for() {
     let travel = |options: &str| -> f64 {
         folder.must(&format!("render bracket.stl -o a.svg --hatch shade {options}"));
         let text = String::from_utf8(folder.read("a.svg")).unwrap();
-        // Hatching is of straight lines: M x y l dx dy, or h dx.
+        // Hatching consists of straight lines: M x y l dx dy, or h dx.
         let ends = text.lines().skip_while(|l| !l.contains("visible-hatch")).filter_map(ends);
         let ends: Vec<[f64; 4]> = ends.collect();
         assert!(ends.len() > 50, "{}", ends.len());
@@ -338,7 +339,7 @@ fn near_lines_have_wider_pens_where_that_is_asked_for() {
     let [.., far, _, _, near] = &cued[..] else { panic!("{cued:?}") };
     assert_eq!(far, &("visible-silhouette-near-4".to_owned(), 0.25));
     assert_eq!(near, &("visible-silhouette-near-1".to_owned(), 0.7));
-    // The nearest outline stands before the part itself.
+    // The nearest outline precedes the part itself.
     let contoured: Vec<String> = layers("--contour").into_iter().map(|l| l.0).collect();
     assert_eq!(contoured, ["visible-crease", "visible-silhouette", "visible-contour"]);
     let both = layers("--contour --depth-cue --pen contour=1");
@@ -420,7 +421,7 @@ fn areas_are_disjoint_or_trapped_as_asked() {
 #[test]
 fn outlines_are_smooth_and_bodies_searched_where_that_is_asked_for() {
     let folder = folder();
-    // One piece of surface that goes through itself.
+    // One surface that intersects itself.
     let crossing = "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 1 1 -2\nv 3 1 -2\nv 2 1 2\n\
                     f 1 2 3\nf 1 3 4\nf 3 5 4\nf 4 5 6\n";
     fs::write(folder.path("crossing.obj"), crossing).unwrap();
@@ -436,14 +437,13 @@ fn outlines_are_smooth_and_bodies_searched_where_that_is_asked_for() {
     let outlines = |options| length("teapot.obj", "silhouette", options);
     let (sharp, smooth) = (outlines("--smooth=off"), outlines("--smooth"));
     assert!(smooth > 0.5 * sharp && smooth != sharp, "{smooth} {sharp}");
-    // Round parts are found, and drawings with all lines of the mesh keep them.
+    // Round parts are detected; drawings that have all lines of the mesh keep them.
     assert_eq!(outlines(""), outlines("--smooth=auto"));
     assert_ne!(outlines(""), sharp);
     assert_eq!(outlines("--stubs 0"), outlines("--stubs 0 --smooth=off"));
 }
 
-/// Returns a box as text in STL; each corner of a facet is moved by what `moved` says of its
-/// number.
+/// Returns a box as STL text; `moved` gives the displacement of each facet corner from its number.
 fn box_of_facets(moved: impl Fn(usize) -> f64) -> String {
     let sides =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -504,7 +504,7 @@ fn hidden_lines_beside_visible_ones_are_left_out_on_paper() {
 #[test]
 fn polygons_that_are_not_flat_have_their_outline_between_their_triangles() {
     let folder = Folder::new();
-    // A sheet folded along its diagonal, of which one half faces the eye.
+    // A sheet folded along its diagonal; one half faces the eye.
     folder.write("tent.obj", "v 0 0.5 0\nv 1 1 -1\nv 0 1.5 0\nv -1 1 -1\nf 1 2 3 4\n");
     let silhouettes = |azimuth: u32| {
         folder.must(&format!("render tent.obj -o tent.geojson --azimuth {azimuth} --elevation 0"));
@@ -516,7 +516,7 @@ fn polygons_that_are_not_flat_have_their_outline_between_their_triangles() {
     assert_eq!((silhouettes(0), silhouettes(60)), (0, 1));
 }
 
-/// Returns a plate with a round hole, of this many sides each.
+/// Returns a plate with a round hole, each with this number of sides.
 fn plate(sides: u32) -> String {
     let ring = |radius: f64, z: f64| {
         let angle = move |i: u32| f64::from(i) * std::f64::consts::TAU / f64::from(sides);
@@ -569,7 +569,7 @@ fn holes_are_circles_as_large_as_they_are() {
     folder.must("render plate.obj -o a.dxf --view front --fit 0");
     let (kinds, places) = entities(&folder.read("a.dxf"), "10");
     assert_eq!((kinds, places.len()), (vec!["LWPOLYLINE".to_owned(); 2], 72));
-    // What has a unit is as large as it is in SVG, too.
+    // A drawing with a unit is as large as in SVG.
     let json = folder.must("render plate.obj -o a.svg --view front --unit mm --json").json();
     assert_eq!(json["models"][0]["pictures"][0]["drawing"]["scale_text"], "1:1");
 }
@@ -594,7 +594,7 @@ fn borders_of_areas_are_arcs() {
     let shared = "render plate.obj --view front --style regions";
     folder.must(&format!("{shared} -o a.svg --fill disjoint"));
     let area = read("a.svg");
-    // Each border in three arcs, as half circles are not exact enough.
+    // Three arcs per border, as half circles are not accurate enough.
     let path = area.lines().find(|l| l.contains(" d=")).unwrap();
     let data = path.split(" d=").nth(1).unwrap();
     assert!(data.matches('a').count() == 6 && data.len() < 400, "{path}");
@@ -610,7 +610,7 @@ fn borders_of_areas_are_arcs() {
         read("a.gcode").lines().filter(|l| l.starts_with("G2 ") || l.starts_with("G3 ")).count(),
         6
     );
-    // Areas that reach under others keep their corners.
+    // Areas that extend under others keep their corners.
     folder.must(&format!("{shared} -o b.svg"));
     assert!(read("b.svg").len() > 1500);
 }
@@ -622,7 +622,7 @@ fn g_code_tells_its_scale() {
     assert!(told.contains(":1; --scale 1:1 makes it as large as the model"), "{told}");
     let told = folder.must("render bracket.stl -o b.gcode --scale 1:1 --unit mm").err;
     assert!(!told.contains("the drawing is"), "{told}");
-    // What has a unit is as large as it is; what may be larger than the machine is told.
+    // A drawing with a unit keeps its size; a warning says that it may exceed the machine.
     let scale = |options: &str| {
         let ended = folder.must(&format!("render bracket.stl -o b.gcode --json {options}"));
         let drawing = &ended.json()["models"][0]["pictures"][0]["drawing"];

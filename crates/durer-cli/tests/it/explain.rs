@@ -71,7 +71,7 @@ fn a_sheet_a_step_data_and_a_page_are_written() {
     folder.must("explain liang-barsky -o a.html --lang de");
     let page = String::from_utf8(folder.read("a.html")).unwrap();
     assert!(page.contains("<html lang=\"de\">") && page.contains("Zustand"));
-    // Nothing is loaded: no address but the name of SVG's elements.
+    // The page loads nothing: its only address is the XML namespace of SVG.
     let rest = page.replace("http://www.w3.org/2000/svg", "");
     assert!(
         !rest.contains("http:")

@@ -1,11 +1,11 @@
-//! `durer explore`: pages on this machine.
+//! `durer explore`: pages served on this machine.
 
 use crate::harness::Folder;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::process::{Child, Stdio};
 
-/// A server that ends with the test.
+/// A server that is stopped at the end of the test.
 struct Served(Child);
 
 impl Drop for Served {
@@ -33,7 +33,7 @@ fn pages_of_a_folder_are_served() {
         reply
     };
     assert!(get("/").ends_with("<title>pages</title>"));
-    // A frame in another page asks for the same file.
+    // A frame in a page of another site requests the same file.
     assert!(get("/?embed").ends_with("<title>pages</title>"));
     let module = get("/durer.wasm");
     assert!(module.contains("application/wasm") && module.ends_with("\0asm"), "{module}");

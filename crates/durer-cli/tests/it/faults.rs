@@ -1,4 +1,4 @@
-//! Files left behind when the command is stopped from outside.
+//! Files that remain when the command is killed.
 
 use crate::harness::{Folder, Picture};
 use std::io::{Read, Write};
@@ -10,7 +10,7 @@ fn signal(child: &Child, name: &str) {
     assert!(kill.unwrap().success());
 }
 
-/// Ended at any moment of its work, the command leaves the old picture or the new one.
+/// Checks that the command, killed at any moment, leaves either the old picture or the new one.
 #[test]
 fn killed_half_way_leaves_the_old_picture_or_the_new_one() {
     let folder = Folder::with_models();
@@ -28,7 +28,7 @@ fn killed_half_way_leaves_the_old_picture_or_the_new_one() {
     }
 }
 
-/// A reader of lines that is interrupted while it waits for more has begun its file, and removes it.
+/// Checks that a reader of lines removes its unfinished file when it is interrupted while waiting for input.
 #[test]
 fn interrupted_leaves_nothing_behind() {
     for (name, code) in [("INT", 130), ("TERM", 143)] {
@@ -39,7 +39,7 @@ fn interrupted_leaves_nothing_behind() {
         let mut input = child.stdin.take().unwrap();
         let feature =
             r#"{"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[1,2]}}"#;
-        // More than the features that are read before the first is written.
+        // More features than are read before the first is written.
         input.write_all(format!("{feature}\n").repeat(10_000).as_bytes()).unwrap();
         let begun = || folder.names().iter().any(|n| n.ends_with(".tmp"));
         let waited = (0..500).any(|_| {
@@ -54,7 +54,7 @@ fn interrupted_leaves_nothing_behind() {
     }
 }
 
-/// Whoever reads the picture may stop in its middle.
+/// Checks that the reader of the picture may stop in its middle.
 #[test]
 fn a_reader_that_leaves_is_no_error() {
     let folder = Folder::with_models();

@@ -2,8 +2,8 @@
 
 use crate::harness::{Folder, Picture};
 
-/// Returns a white 8 × 8 picture with a black cross, white in its middle, one field of it with a
-/// pixel that is a little darker.
+/// Returns a white 8 × 8 picture with a black cross whose middle is white; one pixel of one quadrant is a little
+/// darker.
 fn folder() -> Folder {
     let folder = Folder::new();
     folder.write(
@@ -29,7 +29,7 @@ fn a_fill_stays_within_what_is_alike() {
     assert_eq!(pixels(&folder, "--at 0,0 --color #00f"), [16]);
     let found = Picture::decode(&folder.read("b.png"));
     assert_eq!((found.pixel(3, 3), found.pixel(4, 4)), (&[0, 0, 255][..], &[255, 255, 255][..]));
-    // Through the corners all four fields and the middle are one; one pixel is a little darker.
+    // Through diagonal neighbours all four quadrants and the middle are connected; one pixel is a little darker.
     assert_eq!(pixels(&folder, "--at 0,0 --color #00f --connectivity 8"), [16 + 12 + 12 + 8 + 1]);
 }
 
@@ -39,7 +39,7 @@ fn tolerance_boundary_and_several_seeds() {
     assert_eq!(pixels(&folder, "--at 7.9,7.9 --color lime"), [8]);
     assert_eq!(pixels(&folder, "--at 7.9,7.9 --color lime --tolerance 15"), [9]);
     assert_eq!(pixels(&folder, "--at 7,7 --color lime --boundary black"), [9]);
-    // Black is like the boundary that is requested only within the tolerance.
+    // Black equals the given boundary colour only within the tolerance.
     let nearly = "--at 7,7 --color lime --boundary #0f0f0f --tolerance";
     assert_eq!(pixels(&folder, &format!("{nearly} 15")), [9]);
     assert_eq!(pixels(&folder, &format!("{nearly} 14")), [64]);
@@ -100,7 +100,7 @@ fn pictures_stand_as_viewers_show_them() {
     }
 }
 
-/// Fills from the first pixel of a row of 16 bits per channel, given pixel by pixel.
+/// Fills from the first pixel of a row with 16 bits per channel, given pixel by pixel.
 fn deep<const N: usize>(
     folder: &Folder,
     color: png::ColorType,
@@ -124,13 +124,13 @@ fn deep<const N: usize>(
 fn sixteen_bits_stay_sixteen_bits() {
     use png::ColorType::{Grayscale, GrayscaleAlpha, Rgb, Rgba};
     let folder = Folder::new();
-    // In 8 bits the first three pixels are all the same.
+    // In 8 bits the first three pixels are equal.
     let grey = [[0x1000], [0x1001], [0x1002], [0xfffe]];
     let opaque = grey.map(|[g]| [g, 0xffff]);
     let pale = grey.map(|[g]| [g, 0x8001]);
     let rgb = grey.map(|[g]| [0x1234, g, 0xabcd]);
     let rgba = grey.map(|[g]| [0x1234, 0xabcd, 0x4321, g]);
-    /// Counts the pixels other than the first, which is filled.
+    /// Returns the pixels with another value for the first.
     fn with<const N: usize>(first: [u16; N], pixels: &[[u16; N]]) -> Vec<Vec<u16>> {
         std::iter::once(&first).chain(&pixels[1..]).map(|p| p.to_vec()).collect()
     }
@@ -143,7 +143,7 @@ fn sixteen_bits_stay_sixteen_bits() {
     assert_eq!(found, (Rgb, with([0x8080; 3], &rgb)));
     let found = deep(&folder, Rgba, &rgba, "--color #01020304");
     assert_eq!(found, (Rgba, with([0x0101, 0x0202, 0x0303, 0x0404], &rgba)));
-    // What the file has no channel for gets one.
+    // Channels that the file lacks are added.
     let found = deep(&folder, Grayscale, &grey, "--color #80808001");
     assert_eq!(found, (GrayscaleAlpha, with([0x8080, 0x0101], &opaque)));
     let found = deep(&folder, Grayscale, &grey, "--color #ff0001");

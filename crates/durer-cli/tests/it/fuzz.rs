@@ -1,4 +1,4 @@
-//! The bodies of the fuzz targets for options and annotations, on their seeds and on random bytes.
+//! The fuzz targets for options and annotations, run on their seeds and on random bytes.
 
 #[path = "../../../../fuzz/bodies/arguments.rs"]
 mod bodies;
@@ -7,7 +7,7 @@ mod words;
 
 use std::path::Path;
 
-/// Calls a body with the seeds of a target, and with their beginnings.
+/// Calls a target's function with its seeds and with prefixes of them.
 fn with_seeds(target: &str, body: fn(&[u8])) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds").join(target);
     let files = std::fs::read_dir(&folder).expect("seeds are part of the repository");
@@ -17,7 +17,7 @@ fn with_seeds(target: &str, body: fn(&[u8])) {
     }
 }
 
-/// Returns bytes that are the same on every run.
+/// Returns pseudo-random bytes, the same on every run.
 fn bytes(seed: u64, count: usize) -> Vec<u8> {
     let mut state = seed;
     let mut next = || {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A cube with faces of four vertices, 12 triangles, sides of 2 around the origin.
+/// A cube of side 2 around the origin, with four vertices per face: 12 triangles.
 pub const CUBE: &str = "\
 v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1
 f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
@@ -57,7 +57,7 @@ impl Folder {
         names
     }
 
-    /// Returns the command, to be run in this folder with these arguments, parted by spaces.
+    /// Returns the command, to be run in this folder with these arguments, separated by spaces.
     pub fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_durer"));
         command.current_dir(&self.path).args(arguments.split_whitespace()).stdin(Stdio::null());
@@ -69,7 +69,7 @@ impl Folder {
         Ended::of(self.command(arguments).output().unwrap())
     }
 
-    /// Runs the command and demands that all goes well.
+    /// Runs the command and requires success.
     pub fn must(&self, arguments: &str) -> Ended {
         let ended = self.run(arguments);
         assert_eq!(ended.code, 0, "{arguments}: {}", ended.err);
@@ -98,7 +98,7 @@ impl Ended {
         Self { code: output.status.code().unwrap_or(-1), out: output.stdout, err }
     }
 
-    /// Demands an exit code and a part of the message.
+    /// Requires an exit code and a part of the message.
     #[track_caller]
     pub fn fails(&self, code: i32, part: &str) -> &Self {
         assert!(self.code == code && self.err.contains(part), "not {code}, {part:?}: {self:?}");
@@ -142,7 +142,7 @@ impl Picture {
         self.data.chunks_exact(self.channels)
     }
 
-    /// Returns whether something else than the upper left corner's colour is there.
+    /// Returns whether any pixel differs from the upper left one.
     pub fn shows_something(&self) -> bool {
         self.pixels().any(|p| p != self.pixel(0, 0))
     }

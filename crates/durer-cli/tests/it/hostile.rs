@@ -1,15 +1,15 @@
-//! Harm that neither strangers' files nor a system with few resources may cause: forged messages, overwritten files, runs
-//! that end without a word.
+//! Attacks by files of strangers, and systems with few resources: forged messages, overwritten files, runs that end
+//! without a message.
 
 use crate::harness::{CUBE, Folder};
 use std::fs::{self, File};
 use std::time::{Duration, SystemTime};
 
-/// A name that would colour a terminal, end the line, and turn the direction of writing.
+/// A name that would colour a terminal, end the line, and reverse the writing direction.
 const FORGED: &str =
     r#"{"asset":{"version":"2.0"},"extensionsRequired":["\u001b[31mX\n\rdurer: fake \u202eline"]}"#;
 
-/// A triangle under a matrix by which all overflows.
+/// A triangle under a matrix that makes everything overflow.
 const ENDLESS: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
 "nodes":[{"mesh":0,"matrix":[1e308,1e308,1e308,1e308,1e308,1e308,1e308,1e308,1e308,1e308,1e308,1e308,1e308,1e308,1e308,1e308]}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
@@ -17,7 +17,7 @@ const ENDLESS: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes"
 "bufferViews":[{"buffer":0,"byteLength":36}],
 "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
 
-/// Returns whether a text acts on a terminal, but for line breaks.
+/// Returns whether a text controls a terminal other than by line breaks.
 fn steers(text: &str) -> bool {
     text.chars().any(|c| (c.is_control() && c != '\n') || ('\u{202a}'..='\u{202e}').contains(&c))
 }
@@ -81,7 +81,7 @@ fn an_input_may_be_replaced_by_its_result() {
     folder.must("fix a.geojson -o ./a.geojson");
     let fixed = String::from_utf8(folder.read("a.geojson")).unwrap();
     assert!(fixed.contains("MultiPolygon"), "{fixed}");
-    // What fails leaves it as it was.
+    // A failed run leaves the file as it was.
     folder.write("a.geojson", "{");
     assert_eq!(folder.run("fix a.geojson -o ./a.geojson").code, 1);
     assert_eq!(folder.read("a.geojson"), b"{");
@@ -117,7 +117,7 @@ fn a_report_tells_what_was_written_before_a_failure() {
     assert_eq!(report["models"][0]["pictures"][0]["files"][0], "out/cube.png");
     assert_eq!(report["failed"][0]["model"], "broken.obj");
     assert_eq!(report["failed"][0]["pictures"].as_array().unwrap().len(), 0);
-    // The third frame has no place.
+    // The third frame cannot be written.
     fs::create_dir_all(folder.path("t/cube_0002.png")).unwrap();
     let ended = folder.run("render cube.obj -o t --turntable 5 --size 16 --json");
     assert_eq!(ended.code, 1, "{}", ended.err);

@@ -1,10 +1,10 @@
-//! A small file of each kind that takes care to be shown rightly: its picture, and what is said of it.
+//! A small file of each kind that is easily shown wrong: its picture and its messages.
 
 use crate::harness::{Folder, Picture};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Side of each picture and pictures in a row of the sheet.
+/// Side of each picture, and pictures per row of the sheet.
 const SIDE: usize = 64;
 const COLUMNS: usize = 8;
 
@@ -28,7 +28,7 @@ fn models() -> Vec<String> {
     models
 }
 
-/// Returns a folder with the models and what they refer to.
+/// Returns a folder with the models and the files that they refer to.
 fn folder() -> Folder {
     let folder = Folder::new();
     for entry in fs::read_dir(tests().join("kinds")).unwrap() {
@@ -38,7 +38,7 @@ fn folder() -> Folder {
     folder
 }
 
-/// Pictures side by side in rows; places of those that are missing are grey.
+/// Arranges pictures in rows; missing ones are grey.
 fn sheet(pictures: &[Option<Picture>]) -> (usize, Vec<u8>) {
     let (width, height) = (COLUMNS * SIDE, pictures.len().div_ceil(COLUMNS) * SIDE);
     let mut rgb = vec![128; width * height * 3];
@@ -87,7 +87,7 @@ fn each_kind_keeps_its_picture_and_its_word() {
     let all = models.join(" ");
     let ended = folder.run(&format!("render {all} -o made/ --skip-failures -v {options}"));
     assert_eq!(ended.code, 3, "{}", ended.err);
-    // Not what was done, which has times.
+    // Leaves out the steps done, which contain times.
     let is_word =
         |line: &&str| !line.contains(" triangles, read in ") && !line.contains(" drawn; geometry ");
     let words: String = ended.err.lines().filter(is_word).map(|l| l.to_owned() + "\n").collect();

@@ -1,5 +1,5 @@
-//! Files that ask for too much: refused at once, with the file, the place and the limit, whatever
-//! they say of themselves.
+//! Files that demand too much are refused at once, with the file, the place and the limit, whatever their headers
+//! claim.
 
 use crate::harness::Folder;
 use std::io::Write;
@@ -16,7 +16,7 @@ fn gltf(replace: &[(&str, &str)]) -> String {
 
 const NODES: &str = r#""nodes":[{"mesh":0}]"#;
 
-/// Returns a node tree as deep as it is long.
+/// Returns a node tree as deep as it has nodes.
 fn chain(nodes: usize) -> String {
     let inner: String = (1..nodes).map(|i| format!("{{\"children\":[{i}]}},")).collect();
     gltf(&[(NODES, &format!(r#""nodes":[{inner}{{"mesh":0}}]"#))])
@@ -30,7 +30,7 @@ fn chunk(kind: &[u8; 4], data: &[u8]) -> Vec<u8> {
     [&length[..], kind, data, &sum.sum().to_be_bytes()].concat()
 }
 
-/// Returns an RGB picture that says it is of this size and holds this many zeros.
+/// Returns an RGB picture that claims this size and holds this number of zeros.
 fn png(width: u32, height: u32, zeros: usize) -> Vec<u8> {
     let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
     packed.write_all(&vec![0; zeros]).expect("memory");
@@ -68,7 +68,7 @@ fn counts_of_thousands_of_millions_are_refused() {
     folder.write("count.wkb", [1, 2, 0, 0, 0, 255, 255, 255, 255]);
     let clip = "clip count.wkb --window 0,0,1,1 -o a.geojson";
     folder.run(clip).fails(1, "byte 5: a count of 4294967295");
-    // What is there is read: the count in the header of an STL file is often wrong.
+    // The existing data are read: the count in the header of an STL file is often wrong.
     folder.write("count.stl", [&[b'x'; 80][..], &[255; 4], &[0; 50]].concat());
     assert!(folder.must("render count.stl -o a.png").err.contains("the file has room for 1"));
 }
@@ -134,7 +134,7 @@ fn pictures_that_are_more_than_they_hold_are_refused() {
     ]);
     folder.write("textured.gltf", textured);
     folder.run("render textured.gltf -o a.png").fails(1, "side of an image of 60000");
-    // A good megabyte of zeros for a picture of one pixel: what is too much is not taken.
+    // Slightly more than a megabyte of zeros for a picture of one pixel: the excess is not read.
     folder.write("bomb.png", png(1, 1, 1 << 28));
     folder.must("fill bomb.png --at 0,0 --color red -o b.png");
     folder.write("short.png", png(9000, 9000, 1000));

@@ -1,4 +1,4 @@
-//! Exposure, what surrounds the model, and tone maps.
+//! Exposure, environments and tone maps.
 
 use crate::harness::{Folder, Picture};
 
@@ -24,7 +24,7 @@ fn lit_square(lux: &str) -> String {
     )
 }
 
-/// Returns the middle pixel's green of a picture with these options.
+/// Returns the green channel of a picture's middle pixel, rendered with these options.
 fn middle(folder: &Folder, model: &str, options: &str) -> u8 {
     folder.must(&format!("render {model} -o o.png --size 33x33 --view front {options}"));
     let picture = Picture::decode(&folder.read("o.png"));
@@ -58,7 +58,7 @@ fn exposure_in_ev_shows_the_file_as_it_is() {
 #[test]
 fn a_panorama_lights_the_model() {
     let folder = Folder::with_models();
-    // Four by four pixels without runs: green all around.
+    // An environment of 4 × 4 pixels without run-length encoding: green all around.
     let header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 4\n";
     folder.write("green.hdr", [header.as_bytes(), &[10, 200, 10, 129].repeat(16)].concat());
     let options = "--size 33x33 --view front --environment green.hdr";

@@ -1,12 +1,12 @@
-//! The memory of whole runs as Linux reports it; elsewhere there is nothing to test.
+//! The memory of whole runs as Linux reports it; other systems have no such test.
 
 use crate::harness::Folder;
 use std::fmt::Write;
 
-/// Squares along a side of a sheet, each of two triangles.
+/// Squares along the side of a sheet; each consists of two triangles.
 const SIDE: u32 = 200;
 
-/// Memory that the command needs for itself, whatever the model.
+/// Memory that the command itself needs, whatever the model.
 const OWN: u64 = 16 << 20;
 
 fn height(x: u32, y: u32) -> f32 {
@@ -136,8 +136,7 @@ fn of_a_binary_gltf_file_only_what_is_made_of_it_is_held() {
     assert!(peak < most, "{} bytes: {peak}, not below {most}", file.len());
 }
 
-/// Memory that a batch may need for each of its small pictures: its line of the report, and what is known of it
-/// before.
+/// Memory that a batch may need for each of its small pictures: its line of the report, and its data before the run.
 const EACH: u64 = 16 << 10;
 
 #[test]
@@ -157,7 +156,7 @@ fn a_batch_takes_no_more_than_its_pictures() {
             println!("skipped: the system does not tell the peak of the memory");
             return;
         };
-        // It grew by 230 kB for a model and by 65 kB for a frame, when blocks that were freed could not be used again.
+        // Memory grew by 230 kB per model and by 65 kB per frame while freed blocks could not be reused.
         assert!(many < few + count * EACH + (1 << 20), "{few} became {many}");
     }
 }

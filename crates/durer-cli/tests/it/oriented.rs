@@ -1,12 +1,12 @@
-//! Faces that are turned inwards or against their neighbours: `info` reports them, `render --orient` turns them.
+//! Faces turned inwards or against their neighbours: `info` reports them, `render --orient` turns them.
 
 use crate::harness::Folder;
 
-/// A cube of edge 2 around the origin, each face outwards.
+/// A cube of edge 2 around the origin, all faces turned outwards.
 const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
                     f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
-/// The same with its first faces turned.
+/// The same cube with its first faces turned inwards.
 fn turned(count: usize) -> String {
     let mut left = count;
     let line = |line: &str| {

@@ -3,7 +3,7 @@
 use crate::harness::Folder;
 use durer_formats::{Limits, image};
 
-/// Returns the width, height, and the pixel in the middle, of a JPEG.
+/// Returns the width, the height and the middle pixel of a JPEG.
 fn jpeg(folder: &Folder, name: &str) -> (u32, u32, [u8; 4]) {
     let bytes = folder.read(name);
     assert!(bytes.starts_with(b"\xff\xd8\xff"), "{name} is a JPEG");
@@ -12,7 +12,7 @@ fn jpeg(folder: &Folder, name: &str) -> (u32, u32, [u8; 4]) {
     (image.width, image.height, middle)
 }
 
-/// Returns the width and height of a WebP without loss.
+/// Returns the width and height of a lossless WebP.
 fn webp(bytes: &[u8]) -> (u32, u32) {
     assert!(bytes.starts_with(b"RIFF") && &bytes[8..16] == b"WEBPVP8L");
     let sides = u32::from_le_bytes(bytes[21..25].try_into().unwrap());
@@ -113,7 +113,7 @@ fn an_option_makes_any_name_right_but_one_of_another_format() {
     folder.run("render cube.obj -o f/%02d.bmp --turntable 2").fails(2, "end the name in");
 }
 
-/// Numbers of frames, and their times in thousandths of a second.
+/// Returns the number of frames, and their times in milliseconds.
 fn png_frames(bytes: &[u8]) -> Vec<u32> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
     let count = reader.info().animation_control.unwrap().num_frames;

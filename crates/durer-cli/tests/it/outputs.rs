@@ -1,4 +1,4 @@
-//! Output of pictures: whole files or none, many files, further planes.
+//! Output files: complete or none, several files, additional planes.
 
 use crate::harness::{Folder, Picture};
 use std::fs;
@@ -160,7 +160,7 @@ fn reports_after_failures_say_which_files_are_written() {
     folder.write("points.geojson", POINTS);
     for name in ["tiles", "cut"] {
         std::fs::create_dir_all(folder.path(name).join("1")).unwrap();
-        // Where a folder is needed.
+        // A file at a path that must be a folder.
         folder.write(&format!("{name}/1/1"), "");
     }
     for (command, written) in [
@@ -175,7 +175,7 @@ fn reports_after_failures_say_which_files_are_written() {
         let error = report["error"].as_str().unwrap();
         assert!(ended.err.contains(error), "{command}: {error}");
     }
-    // One file is there as a whole, or not at all.
+    // Each file is either complete or absent.
     std::fs::create_dir(folder.path("a.pmtiles")).unwrap();
     assert_eq!(folder.run("tiles points.geojson --zoom 0-2 -o a.pmtiles --json").code, 1);
 }

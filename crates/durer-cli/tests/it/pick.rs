@@ -11,7 +11,7 @@ fn pick_tells_what_lies_behind_a_point_and_a_rectangle() {
     let folder = Folder::with_models();
     let picked = json(&folder, "--at 50.25,49.5");
     let triangles = picked["triangles"].as_array().expect("triangles");
-    // The front and the back; the other faces are seen edge on or not at all.
+    // The front and the back; the other faces are seen edge-on or not at all.
     assert_eq!(triangles.len(), 2);
     assert!(triangles[0]["depth"].as_f64() < triangles[1]["depth"].as_f64());
     assert_eq!(triangles[0]["position"][2].as_f64().map(f64::round), Some(1.0));

@@ -36,7 +36,7 @@ fn backgrounds_are_what_was_asked_for() {
 #[test]
 fn items_are_triangles_in_file_order() {
     let folder = Folder::with_models();
-    // Face 2 is seen from +z: triangles 2 and 3, parted by the diagonal from its first vertex.
+    // Face 2 is seen from +z: triangles 2 and 3, separated by the diagonal from its first vertex.
     render(&folder, "--size 64x64 --view front --item i.png");
     let items = Picture::decode(&folder.read("i.png"));
     assert_eq!(items.pixel(0, 0), [255; 3]);

@@ -1,4 +1,4 @@
-//! Models that are larger than the budget are read in pieces: pictures, reports and warnings are those of the whole.
+//! Models larger than the budget are read in pieces: pictures, reports and warnings are the same as for the whole.
 
 use crate::harness::{Folder, Picture};
 use serde_json::Value;
@@ -7,8 +7,7 @@ use std::f32::consts::{PI, TAU};
 /// Enough for a piece and a small picture, too little for the models.
 const BUDGET: &str = "--max-memory 1100k";
 
-/// Returns corners of triangles of a wavy ball, which lies far off the origin; each eighth is there
-/// twice.
+/// Returns corners of triangles of a wavy ball far from the origin; every eighth triangle occurs twice.
 fn triangles() -> Vec<[[f32; 3]; 3]> {
     let (rows, columns) = (60, 100);
     let at = |i: u32, j: u32| {
@@ -28,7 +27,7 @@ fn triangles() -> Vec<[[f32; 3]; 3]> {
     all
 }
 
-/// Returns a binary STL file; of facets by their numbers these have colours.
+/// Returns a binary STL file; some facets have colours that depend on their number.
 fn stl(is_colored: impl Fn(usize) -> bool) -> Vec<u8> {
     let all = triangles();
     let mut file = vec![b' '; 80];
@@ -62,7 +61,7 @@ impl Ply {
         bytes
     }
 
-    /// Binary, with a vertex that nothing uses, far off; faces are triangles, quads and some of a vertex that is not there.
+    /// Returns a binary file with an unused vertex far away; faces are triangles, quads and some with a missing vertex.
     fn file(self) -> Vec<u8> {
         let all = triangles();
         let points: Vec<[f32; 3]> = all.iter().flatten().copied().chain([[900.0; 3]]).collect();
@@ -242,7 +241,7 @@ fn what_is_not_seen_or_not_there_is_told_of_pieces_too() {
         let ended = folder.must(&command);
         assert!(ended.err.contains(why), "{options}: {}", ended.err);
     }
-    // A file that ends in the middle of a face, and one that says more triangles than are allowed.
+    // A file that ends within a face, and one with more triangles than allowed.
     let mut file = Ply { faces: true, ..Ply::default() }.file();
     file.truncate(file.len() - 7);
     folder.write("cut.ply", file);

@@ -24,7 +24,7 @@ fn formulas_become_files_of_every_format() {
     let picture = Picture::decode(&folder.read("a.png"));
     assert_eq!(picture.size(), (300, 200));
     assert!(picture.shows_something());
-    // The same plot, the same bytes.
+    // The same plot gives the same bytes.
     folder.must(&format!("{FORMULA} --threads 1 -o b.svg"));
     assert!(folder.read("a.svg") == folder.read("b.svg"));
 }
@@ -90,7 +90,7 @@ fn points_become_a_surface_and_poles_are_left_out() {
     let pole = "plot --formula 1/x --samples 9x5 -o a.svg --json --y-range -0.6,0.6";
     let heights = folder.must(pole).json()["heights"].clone();
     assert_eq!(heights, serde_json::json!([-0.6, 0.6]));
-    // Where the ground is long and narrow both sides are drawn alike, and the report says so.
+    // If the ground is long and narrow, both sides have the same scale, and the report says so.
     let long = "plot --formula x --x 0,60 --z 0,10 -o a.svg --json";
     assert_eq!(folder.must(long).json()["aspect"], 1.0);
     let equal = folder.must(&format!("{long} --aspect equal")).json();

@@ -1,4 +1,4 @@
-//! The documents tell the truth: their commands run, their links lead somewhere.
+//! The documents are correct: their commands run, and their links have targets.
 
 use crate::harness::{Ended, Folder, Picture};
 use std::fs;
@@ -30,7 +30,7 @@ fn shell_lines(document: &str) -> Vec<&str> {
 fn arguments(line: &str) -> Option<Vec<String>> {
     let rest = line.strip_prefix("durer ").or(line.strip_prefix("cargo run --release -- "))?;
     assert!(!rest.contains(['|', '*', '$', '\\', '"', '&']), "needs a shell: {line}");
-    // Words parted by blanks, as a shell parts them; single quotes take part in no word.
+    // Words separated by blanks, as in a shell; single quotes are not part of a word.
     Some(rest.split_whitespace().map(|w| w.trim_matches('\'').to_owned()).collect())
 }
 
@@ -140,7 +140,7 @@ fn ci_runs_the_command_of_the_readme() {
     assert_eq!(ci.lines().rfind(|l| !l.is_empty()), Some(test));
 }
 
-/// Targets of Markdown links, without anchors.
+/// Returns the targets of Markdown links, without anchors.
 fn links(document: &str) -> Vec<&str> {
     let targets = document.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     targets.map(|t| t.split('#').next().unwrap_or_default()).collect()
@@ -175,7 +175,7 @@ fn links_lead_to_files() {
     }
 }
 
-/// Paths of this repository that a document names in backquotes.
+/// Returns the paths in this repository that a document names in backquotes.
 fn named_paths(document: &str) -> impl Iterator<Item = &str> {
     let quoted = document.split('`').skip(1).step_by(2);
     let roots = ["crates/", "peers/", "samples/", "docs/", ".ci/", ".cargo/"];
@@ -188,7 +188,7 @@ fn paths_in_documents_exist() {
     for name in
         ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "DESIGN.md", "docs/performance.md"]
     {
-        // Fences would shift what is inside backquotes and what is not.
+        // Fences would swap text inside and outside backquotes.
         let text = document(name).replace("```", "");
         for path in named_paths(&text) {
             assert!(root().join(path).exists(), "{name}: {path}");

@@ -63,7 +63,7 @@ fn features_with_one_value_become_one() {
         features(&folder, "out.geojson")[0]["geometry"]["geometries"][0]["coordinates"][0][0][0][2],
         7
     );
-    // One feature of all: polygons and the line. What overlaps counts once.
+    // One feature of all polygons and the line; overlaps count once.
     assert_eq!(told.json()["out"]["area"], 8.0 + 34.0);
 }
 
@@ -107,7 +107,7 @@ fn faults_are_told_with_their_places() {
     let ended = folder.must("check good.geojson --coverage --gap-width 1");
     assert_eq!(ended.out, b"good.geojson: 1 features, nothing is wrong\n");
     assert_eq!(folder.run("check good.geojson --gap-width 1").code, 2);
-    // What was mended while reading is not as it should be.
+    // Repairs while reading are reported as faults.
     let open =
         r#"{"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4]],[[1,1],[2,1],[1,1],[1,1]]]}"#;
     folder.write("open.geojson", open);
@@ -130,7 +130,7 @@ fn neighbours_get_the_points_that_they_lack_and_stay_a_coverage_when_cut() {
     let told = folder.must("fix in.geojson --coverage -o out.geojson --json");
     assert!(told.err.contains("1 features got points that their neighbours have"), "{}", told.err);
     assert_eq!(told.json()["repaired"], 1);
-    // All three have the point now, the second one with a height of its own, between those of the ends.
+    // All three have the vertex now; the second has an interpolated height there.
     let out = String::from_utf8(folder.read("out.geojson")).unwrap();
     let parts: Vec<&str> = out.split("[33.963392794971185,9.464285229420625").collect();
     assert_eq!(parts.len(), 4, "{out}");
@@ -142,7 +142,7 @@ fn neighbours_get_the_points_that_they_lack_and_stay_a_coverage_when_cut() {
         folder.must(&format!("clip out.geojson --by mask.wkt{side} -o cut.geojson"));
         folder.must("check cut.geojson --coverage");
     }
-    // What matches stays as it is.
+    // Valid geometry stays unchanged.
     let again = folder.must("fix out.geojson --coverage -o again.geojson");
     assert!(!again.err.contains("points that"), "{}", again.err);
     assert_eq!(folder.read("out.geojson"), folder.read("again.geojson"));

@@ -1,10 +1,10 @@
-//! Files that a model refers to are read from its own folder only.
+//! Files that a model refers to are read only from its own folder.
 
 use crate::harness::{CUBE, Ended, Folder};
 use std::fs;
 use std::process::Stdio;
 
-/// Returns a triangle whose positions are in another file.
+/// Returns a triangle whose positions are in a separate file.
 fn gltf(uri: &str) -> String {
     format!(
         r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
@@ -70,7 +70,7 @@ fn links_do_not_lead_out_of_the_folder() {
     folder.must("info model/m.gltf");
 }
 
-/// Returns a triangle whose picture is elsewhere.
+/// Returns a triangle whose picture has the given address.
 fn pictured(uri: &str) -> String {
     gltf("ok.bin").replacen(
         '{',
@@ -129,7 +129,7 @@ fn the_root_widens_where_references_lead() {
     folder.run("info model/m.gltf --root .").fails(1, "hostname");
     folder.run("info model/m.gltf --root nowhere").fails(1, "--root nowhere: ");
     folder.run("info model/m.gltf --root secret.bin").fails(1, "it is not a folder");
-    // The model's own folder stays.
+    // The model's own folder remains allowed.
     folder.write("model/m.gltf", gltf("ok.bin"));
     fs::create_dir_all(folder.path("other")).unwrap();
     folder.must("info model/m.gltf --root other");
@@ -143,14 +143,14 @@ fn what_a_model_from_standard_input_refers_to_is_below_the_root() {
         let mut command = folder.command(&format!("info -{options}"));
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
-        // Where the root is not a folder nobody reads.
+        // Only on systems whose root is a folder.
         let _ = child.stdin.take().unwrap().write_all(gltf("sub/a%20b.bin").as_bytes());
         let ended = Ended::of(child.wait_with_output().unwrap());
         assert_eq!(ended.code, code, "{options}: {ended:?}");
     }
 }
 
-// Where names that differ in case are names of different files.
+// Only on systems with case-sensitive names.
 #[cfg(target_os = "linux")]
 #[test]
 fn names_in_another_case_are_found_and_told() {

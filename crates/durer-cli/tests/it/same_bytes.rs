@@ -1,5 +1,5 @@
-//! Same input, same bytes: every command that writes something, on one, two and four threads, and at each
-//! SIMD level; some of them on the processor that valgrind makes believe.
+//! Same input, same bytes: every command that writes a file, on one, two and four threads and at each SIMD level; some
+//! of them also on the processor that valgrind emulates.
 
 use crate::harness::{Ended, Folder};
 use std::path::Path;
@@ -61,11 +61,11 @@ const COMMANDS: &[(&str, &str)] = &[
     ),
 ];
 
-/// Commands that run under valgrind too, where they take some fifty times as long.
+/// Commands that also run under valgrind, which takes about fifty times as long.
 const UNDER_VALGRIND: &[&str] =
     &["textured.png", "a.jpg", "turn.gif", "lines.svg", "window.geojson", "drawn_svg.png"];
 
-/// Runs all commands; the bytes of everything in the folder, by name.
+/// Runs all commands; returns the bytes of all files in the folder, by name.
 fn written(how: &str) -> Vec<(String, Vec<u8>)> {
     let folder = samples();
     for (command, out) in COMMANDS {
@@ -118,8 +118,8 @@ fn all_commands_write_the_same_bytes_at_any_simd_level() {
     are_the_same_bytes(levels.iter().map(|&level| format!("--simd {}", durer::simd::name(level))));
 }
 
-/// valgrind has no AVX-512, counts cycles of its own and runs one thread at a time; it also tells what is read or written
-/// out of bounds.
+/// Runs commands under valgrind, which has no AVX-512, counts cycles itself, runs one thread at a time, and reports
+/// reads and writes out of bounds.
 #[test]
 fn commands_write_the_same_bytes_under_valgrind() {
     if Command::new("valgrind").arg("--version").output().is_err() {
@@ -135,7 +135,7 @@ fn commands_write_the_same_bytes_under_valgrind() {
         let expected = folder.read(out);
         std::fs::remove_file(folder.path(out)).expect("was there");
         let direct = folder.command(&format!("{arguments} --threads 2"));
-        // Values that are not initialized are told falsely where both ways of a branch are taken ahead of it.
+        // Reports of uninitialized values are false if both sides of a branch are evaluated in advance.
         let valgrind = ["-q", "--undef-value-errors=no", "--error-exitcode=99"];
         let ended = Command::new("valgrind")
             .args(valgrind)

@@ -1,9 +1,8 @@
-//! The contents of a picture in relation to its model: status and warnings, lines and points, faces
-//! that are culled.
+//! The contents of a picture in relation to its model: status and warnings, lines and points, culled faces.
 
 use crate::harness::Folder;
 
-/// Returns a triangle that is seen from its front along −z, in glTF.
+/// Returns a glTF triangle whose front is visible along −z.
 fn triangle(material: &str, mode: u32) -> String {
     format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
@@ -13,7 +12,7 @@ fn triangle(material: &str, mode: u32) -> String {
     )
 }
 
-/// Returns the status of the picture, and what was told.
+/// Returns the status of the picture, and the messages.
 fn status(folder: &Folder, arguments: &str) -> (String, String) {
     let run = folder.must(&format!("render {arguments} --json"));
     let report = run.json();

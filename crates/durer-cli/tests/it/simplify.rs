@@ -2,7 +2,7 @@
 
 use crate::harness::Folder;
 
-/// Two parcels whose border is not quite straight, and a hole with its filling.
+/// Two parcels with a slightly crooked border, and a hole with its filling.
 fn folder() -> Folder {
     let folder = Folder::new();
     folder.write(

@@ -1,8 +1,8 @@
-//! Sizes with one number, and with one side left open.
+//! Sizes with one number, and with one dimension left open.
 
 use crate::harness::{Folder, Picture};
 
-/// A plate of 4 × 1, as wide as x; 2 deep.
+/// A plate of 4 × 1, the longer side along x; 2 deep.
 const PLATE: &str = "\
 v -2 0 -1\nv 2 0 -1\nv 2 0 1\nv -2 0 1\nv -2 1 -1\nv 2 1 -1\nv 2 1 1\nv -2 1 1
 f 1 2 3 4\nf 8 7 6 5\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n";
@@ -93,7 +93,7 @@ fn picks_warps_and_plots_know_open_sides() {
     assert_eq!(Picture::decode(&folder.read("p.png")).size(), (90, 60));
 }
 
-/// Returns the bytes of a picture's rows joined of tiles, which are given by their places.
+/// Returns the rows of a picture assembled from tiles, which are given by their positions.
 fn joined(folder: &Folder, tiles: &[[u32; 4]], [width, height]: [u32; 2]) -> Vec<Vec<u8>> {
     let mut found = vec![Vec::new(); (width * height) as usize];
     for (number, &[x, y, w, h]) in tiles.iter().enumerate() {
@@ -136,7 +136,7 @@ fn a_tile_may_be_of_a_picture_that_is_too_large_itself() {
     folder.run(large).fails(2, "--max-pixels");
     folder.must(&format!("{large} --tile 50000,50000,20,10"));
     assert_eq!(Picture::decode(&folder.read("a.png")).size(), (20, 10));
-    // Paper only, and no warning that nothing is seen.
+    // A blank sheet, without a warning that nothing is visible.
     let ended = folder.must(&format!("{large} --tile 0,0,20,10"));
     assert_eq!(ended.err, "");
     for (options, error) in [

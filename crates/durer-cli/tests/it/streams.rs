@@ -12,7 +12,7 @@ fn piped(folder: &Folder, arguments: &str, input: &str) -> Ended {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // The command may stop before it has read all.
+    // The command may end before it has read everything.
     let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
     Ended::of(child.wait_with_output().unwrap())
 }
@@ -96,7 +96,7 @@ fn info_tells_the_same_in_words_and_in_json() {
 #[test]
 fn warnings_are_few_unless_all_are_wanted() {
     let folder = Folder::with_models();
-    // Each of these faces names a vertex that is not there, or is repaired; at least there are many.
+    // Each of these faces uses a missing material, so that there are many warnings.
     let many: String = (0..20).map(|i| format!("usemtl none{i}\nf 1 2 3\n")).collect();
     folder.write("many.obj", format!("mtllib none.mtl\n{CUBE}{many}"));
     let lines = |options: &str| {
@@ -110,7 +110,7 @@ fn warnings_are_few_unless_all_are_wanted() {
 #[test]
 fn bodies_with_divided_edges_are_closed() {
     let folder = Folder::with_models();
-    // The lower edge of the front is divided on one side only.
+    // Only one side of the front's lower edge is divided.
     let divided = CUBE.replace("f 4 3 2 1\n", "v 0 -1 -1\nf 4 3 2 9\nf 4 9 1\n");
     folder.write("divided.obj", &divided);
     folder.write("open.obj", divided.replace("f 4 9 1\n", ""));

@@ -1,4 +1,4 @@
-//! The entry for desktops says a command that works.
+//! The desktop entry contains a command that works.
 
 use crate::harness::{Folder, Picture};
 

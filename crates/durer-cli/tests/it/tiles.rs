@@ -1,10 +1,10 @@
-//! Vector tiles, decoded by a reader of the tests' own.
+//! Vector tiles, decoded by a separate reader within the tests.
 
 use crate::harness::Folder;
 use serde_json::Value;
 use std::io::Read;
 
-/// A field of a protocol buffer.
+/// A field of a Protocol Buffers message.
 enum Field<'a> {
     Number(u64),
     Double(f64),
@@ -94,7 +94,7 @@ fn packed(mut bytes: &[u8]) -> Vec<u64> {
     found
 }
 
-/// Draws what the commands of a geometry say, and checks that they follow the grammar.
+/// Draws the commands of a geometry, and checks that they follow the grammar.
 fn drawn(kind: u64, commands: &[u64]) -> Vec<Vec<(i64, i64)>> {
     let (mut runs, mut at, mut next): (Vec<Vec<_>>, _, _) = (Vec::new(), (0, 0), 0);
     let mut closed = true;
@@ -127,8 +127,8 @@ fn drawn(kind: u64, commands: &[u64]) -> Vec<Vec<(i64, i64)>> {
     runs
 }
 
-/// Returns the features of a tile, each checked: rings have areas, outer ones come first and run the
-/// right way.
+/// Returns the features of a tile and checks each: rings have areas, outer ones come first, and their directions are
+/// right.
 fn decode(bytes: &[u8], extent: u64) -> Vec<Feature> {
     let mut found = Vec::new();
     for (number, layer) in fields(bytes) {
@@ -269,7 +269,7 @@ fn tiles_have_what_their_features_have() {
         (world[1].get("size"), world[1].get("public")),
         (Some(&(-3).into()), Some(&true.into()))
     );
-    // Two trees in one cell are one, but on the last level.
+    // Two trees in one cell become one, except on the last level.
     assert_eq!(world[4].runs.len(), 1);
     let points = |tile: &(u64, Vec<Feature>)| {
         tile.1.iter().filter(|f| f.kind == 1).map(|f| f.runs.len()).max()
@@ -286,7 +286,7 @@ fn neighbours_keep_their_border_on_all_levels() {
         let found = decode(&tile, 4096);
         let [left, right] = [Some(7), Some(8)].map(|id| found.iter().find(|f| f.id == id));
         let (Some(left), Some(right)) = (left, right) else { continue };
-        // Where one has a point strictly between their outer sides, so has the other.
+        // A vertex of one polygon on the inner border is a vertex of the other.
         let shared = |f: &Feature, g: &Feature| {
             let points: Vec<_> = g.runs.concat();
             f.runs.concat().into_iter().filter(|p| points.contains(p)).count()
@@ -295,7 +295,7 @@ fn neighbours_keep_their_border_on_all_levels() {
         assert!(count >= 2, "{id}");
         kept.push((id, count, left.area() + right.area()));
     }
-    // Coarse levels have two points of it, fine ones more.
+    // Coarse levels keep two points of it, fine ones more.
     assert_eq!(kept[0].1, 2);
     assert!(kept.iter().any(|(_, count, _)| *count > 10), "{kept:?}");
 }
@@ -313,7 +313,7 @@ fn what_lies_beyond_the_date_line_comes_from_the_other_side() {
         .iter()
         .map(|(id, tile)| (*id, decode(tile, 4096).iter().map(Feature::area).sum()))
         .collect();
-    // The four tiles around the equator on both sides, with a quarter each.
+    // The four tiles around the equator, on both sides, with a quarter each.
     assert_eq!(found.len(), 4);
     assert!(found.iter().all(|(_, area)| *area == found[0].1 && *area > 0), "{found:?}");
     let point = |tile: &(u64, Vec<u8>)| decode(&tile.1, 4096).iter().any(|f| f.kind == 1);
@@ -430,7 +430,7 @@ fn features_and_fields_are_chosen_as_by_other_commands() {
     let document: Value = serde_json::from_slice(&folder.read("t/tiles.json")).unwrap();
     let fields = serde_json::json!({ "kind": "String", "size": "Number" });
     assert_eq!(document["vector_layers"][0]["fields"], fields);
-    // Places in the file are those of all features, also behind some that are left out.
+    // Positions in the file count all features, including those left out.
     let ended = folder.must("tiles parcels.geojsonl --zoom 0 --where id=nine --select roof -o u");
     assert!(ended.err.contains("1 features (the first is feature 3) have ids"), "{}", ended.err);
     assert!(ended.err.contains("no feature has the field roof; there are"), "{}", ended.err);
@@ -467,7 +467,7 @@ fn too_many_tiles_are_counted_and_not_made() {
     let report = folder.must("clip world.wkt --tiles 3 -o d --json");
     assert!(report.err.contains("1 features reach beyond the latitudes"), "{}", report.err);
     assert_eq!(report.json()["tiles"], 64);
-    // A slanted line meets few of the tiles around it.
+    // A slanted line meets few of the tiles in its bounding box.
     folder.write("line.wkt", "LINESTRING (-170 -80, 170 80)\n");
     let report =
         folder.must("tiles line.wkt --zoom 12 --max-tiles 12000 -o line.pmtiles --json").json();

@@ -1,11 +1,11 @@
-//! All six directions can be up.
+//! Each of the six directions can be up.
 
 use crate::harness::{Folder, Picture};
 use durer::math::DVec3;
 use durer::scene::UpAxis;
 use std::fmt::Write;
 
-/// Returns a cube with an arrow upwards, a small box on its right and a smaller one before it.
+/// Returns a cube with an arrow upwards, a small box on its right and a smaller one in front of it.
 fn model(axis: UpAxis) -> String {
     let mut text = String::new();
     let mut count = 0;
@@ -51,7 +51,7 @@ fn an_arrow_points_upwards_whichever_axis_is_up() {
             let picture = Picture::decode(&folder.read("a.png"));
             let seen: Vec<bool> = picture.pixels().map(|p| p != [255; 3]).collect();
             let wrong = |e: &Vec<bool>| e.iter().zip(&seen).filter(|(a, b)| a != b).count();
-            // Edges between pixel centres may fall to either side.
+            // Edges between pixel centres may be rounded to either side.
             let count = expected.as_ref().map_or(0, wrong);
             assert!(count <= 4, "{view} with {} up: {count} pixels differ", axis.name());
             expected.get_or_insert(seen);

@@ -246,7 +246,7 @@ impl<'d, 'a> Nodes<'d, 'a> {
             self.geometries.insert(geometry, read);
         }
         let symbol = |n: usize| document.attribute(n, "symbol").unwrap_or_default();
-        // Of those alike the first counts.
+        // Of equal ones the first counts.
         let symbols: HashMap<&str, usize> = bound.iter().rev().map(|&n| (symbol(n), n)).collect();
         let Geometry { pieces } = self.geometries.get(&geometry).cloned().unwrap_or_default();
         let mut made = Vec::new();

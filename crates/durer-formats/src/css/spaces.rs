@@ -101,7 +101,7 @@ const WHITE: Row = [0.9642956764295677, 1.0, 0.8251046025104602];
 const KAPPA: f64 = 24389.0 / 27.0;
 const EPSILON: f64 = 216.0 / 24389.0;
 
-/// Less chroma than this is none: the hue means nothing.
+/// Chroma below which a colour counts as grey: its hue is meaningless.
 const NO_CHROMA: f64 = 1e-3;
 
 fn times(matrix: &[Row; 3], v: Row) -> Row {

@@ -87,7 +87,7 @@ impl Value {
 }
 
 impl Units {
-    /// Returns the value of a number with a unit; `None` for a unit that is none.
+    /// Returns the value of a number with a unit; `None` for an unknown unit.
     pub fn dimension(&self, number: f64, unit: &str) -> Option<Value> {
         let [width, height] = self.viewport;
         let px = match unit.to_ascii_lowercase().as_str() {

@@ -54,7 +54,7 @@ impl<'a> Dimensions<'a> {
             let own = |d: &Listed| (d.dimension.units_per_millimetre, d.dimension.text.height);
             self.all.iter().filter(|d| own(d) == *style).count()
         };
-        // Of equals the first.
+        // Of equal ones the first.
         let Some((factor, height)) = self.styles.iter().rev().max_by_key(|s| count(s)) else {
             return;
         };

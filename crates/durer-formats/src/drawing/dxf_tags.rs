@@ -115,7 +115,7 @@ impl Tags {
     }
 }
 
-/// The names of line types: solid, dashed, and with dashes of two lengths in turn.
+/// The names of line types: solid, dashed, and with alternating long and short dashes.
 pub(super) const CONTINUOUS: &str = "CONTINUOUS";
 pub(super) const HIDDEN: &str = "HIDDEN";
 pub(super) const CENTER: &str = "CENTER";

@@ -118,7 +118,7 @@ fn step(from: DVec2, to: DVec2, bulge: f64) -> String {
     format!("{} {way} I{i} J{j}", if bulge > 0.0 { "G3" } else { "G2" })
 }
 
-/// Returns a place as it is written.
+/// Returns a position in the form in which it is written.
 fn rounded(p: DVec2) -> DVec2 {
     (p * 1000.0).round() / 1000.0
 }

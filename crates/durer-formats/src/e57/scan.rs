@@ -29,7 +29,7 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
     let mut model = Model { format: "E57".to_owned(), ..Model::default() };
     let mut scans = Scans { limits: options.limits.clone(), ..Scans::default() };
     scans.cloud.full = 1.0;
-    // Of broken data the crate may be of another opinion than its authors.
+    // On broken data the crate may panic.
     let all = catch_unwind(AssertUnwindSafe(|| scans.read(bytes, &mut model)));
     match all {
         Ok(Err(why)) => return Err(why),
@@ -200,7 +200,7 @@ mod tests {
     const DOUBLE: RecordDataType = RecordDataType::Double { min: None, max: None };
     const BYTE: RecordDataType = RecordDataType::Integer { min: 0, max: 255 };
 
-    /// Returns a file of one scan, a quarter turn about z and 100 along x from its place.
+    /// Returns a file with one scan, rotated by a quarter turn about z and moved by 100 along x.
     fn file(prototype: Vec<Record>, points: &[Vec<RecordValue>]) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());
         let mut writer = E57Writer::new(&mut bytes, "a").expect("new");

@@ -221,9 +221,9 @@ mod tests {
     fn turns_take_the_first_letter_first() {
         let near = |a: DVec3, b: DVec3| assert!((a - b).length() < 1e-12, "{a} {b}");
         let quarter = DVec3::new(90.0, 0.0, 90.0);
-        // About x, y becomes z, which stays about z.
+        // About x, y becomes z, which a turn about z leaves unchanged.
         near(turn(quarter, RotationOrder::Xyz) * DVec3::Y, DVec3::Z);
-        // About z first, y becomes −x, which stays about x.
+        // About z first, y becomes −x, which a turn about x leaves unchanged.
         near(turn(quarter, RotationOrder::Zyx) * DVec3::Y, DVec3::NEG_X);
         near(turn(DVec3::new(0.0, 90.0, 0.0), RotationOrder::Xyz) * DVec3::X, DVec3::NEG_Z);
         near(turn(DVec3::new(0.0, 0.0, 90.0), RotationOrder::Xyz) * DVec3::X, DVec3::Y);

@@ -1,4 +1,4 @@
-//! ASCII files written here.
+//! ASCII files written by the tests.
 
 use crate::{Limits, Model, NoResources, ReadOptions, Resources, Result, read_model};
 use durer::math::{DVec3, Vec2, Vec3, Vec4};
@@ -15,7 +15,7 @@ const SETTINGS: &str = r#"P: "UpAxis", "int", "Integer", "",1
     P: "CoordAxisSign", "int", "Integer", "",1
     P: "UnitScaleFactor", "double", "Number", "",100"#;
 
-/// An arrow of four corners, whose second is a notch, and a triangle beside it.
+/// An arrow of four corners, the second of which is a notch, and a triangle beside it.
 const SHAPE: &str = r#"Geometry: 1, "Geometry::shape", "Mesh" {
     Vertices: *21 { a: 0,0,0, 1,0.5,0, 2,0,0, 1,3,0, 3,0,0, 4,0,0, 3,2,0 }
     PolygonVertexIndex: *7 { a: 2,3,0,-2,4,5,-7 }
@@ -35,7 +35,7 @@ const SHAPE: &str = r#"Geometry: 1, "Geometry::shape", "Mesh" {
 }
 "#;
 
-/// Returns a file of objects besides the shape, and what is joined to what.
+/// Returns a file with the shape, further objects, and the connections given.
 fn file(settings: &str, objects: &str, joined: &[(u32, u32, &str)]) -> String {
     let join = |(from, to, property): &(u32, u32, &str)| match *property {
         "" => format!("C: \"OO\",{from},{to}\n"),
@@ -58,7 +58,7 @@ fn node(id: u32, kind: &str, properties: &str) -> String {
     )
 }
 
-/// Returns properties that are three numbers.
+/// Returns properties that consist of three numbers.
 fn vectors(all: &[(&str, [f64; 3])]) -> String {
     let one = |(name, [x, y, z]): &(&str, [f64; 3])| {
         format!("P: \"{name}\", \"Vector3D\", \"Vector\", \"\",{x},{y},{z}\n")
@@ -114,14 +114,14 @@ fn polygons_have_attributes_and_materials() {
     let model = read(&file(SETTINGS, &objects, &[(2, 0, ""), (1, 2, ""), (8, 2, ""), (9, 2, "")]));
     assert_eq!((model.format.as_str(), warnings(&model)), ("FBX 7.4 ASCII", vec![]));
     let [mesh] = &model.scene.meshes[..] else { panic!("one mesh") };
-    // Of the arrow: a triangle of 3 without one of a half; and the other triangle.
+    // The arrow has an area of 3 minus a notch of one half; then the other triangle.
     assert!((area(mesh) - 3.5).abs() < 1e-6, "{}", area(mesh));
     assert_eq!((mesh.name.as_str(), mesh.triangle_count(), mesh.faces.len()), ("shape", 3, 2));
     assert!(mesh.normals.iter().all(|n| *n == Vec3::Z));
     assert_eq!(mesh.tex_coords.len(), 2);
     assert_eq!(mesh.tex_coords[0][1], Vec2::new(0.25, 0.25));
     assert!(mesh.tex_coords[1].iter().all(|t| *t == Vec2::new(0.5, 1.0)));
-    // By material: the triangle is of the first one.
+    // Sorted by material: the triangle has the first one.
     let parts: Vec<_> = mesh.parts.iter().map(|p| (p.range.clone(), p.material)).collect();
     let color = |i: usize| model.scene.materials[parts[i].1.expect("a material")].base_color;
     assert_eq!((parts[0].0.clone(), parts[1].0.clone()), (0..1, 1..3));
@@ -195,7 +195,7 @@ fn nodes_have_all_their_transforms() {
 
 #[test]
 fn children_inherit_by_three_modes() {
-    // Of a parent that scales and moves, and a child that moves.
+    // For a parent that scales and moves, and a child that moves.
     let at = |mode: u32| {
         let parent = vectors(&[
             ("Lcl Translation", [10.0, 0.0, 0.0]),
@@ -344,7 +344,7 @@ fn cameras_and_lights_stand_at_their_nodes() {
     let found = &model.scene.cameras[0];
     let camera = found.camera;
     assert_eq!((found.name.as_str(), found.aspect), ("node3", Some(2.0)));
-    // It looks along x, which is turned to y.
+    // It faces along x, which is rotated to y.
     near(camera.eye, DVec3::new(0.0, 1.0, 7.0));
     near(camera.target - camera.eye, DVec3::Y);
     near(camera.up, DVec3::NEG_X);
@@ -354,7 +354,7 @@ fn cameras_and_lights_stand_at_their_nodes() {
     let kind = |n: u32| format!("P: \"LightType\", \"enum\", \"\", \"\",{n}\n");
     let light = |properties: &str| held("Light", properties).scene.lights[0];
     let sun = light(&(kind(1) + &number("Intensity", 200.0)));
-    // It shines along −y, which is turned to x.
+    // It shines along −y, which is rotated to x.
     let LightKind::Directional { direction } = sun.kind else { panic!("{sun:?}") };
     near(direction, DVec3::X);
     assert_eq!(sun.color, Vec3::splat(2.0));

@@ -105,7 +105,7 @@ impl<'a> Reader<'a> {
         self.at
     }
 
-    /// Goes on from a byte.
+    /// Continues from a byte.
     pub fn resume(&mut self, at: usize) {
         self.at = at;
     }

@@ -142,13 +142,13 @@ impl Layout {
         Ok(layout)
     }
 
-    /// Takes the view's stride and checks that all elements are within it.
+    /// Applies the view's stride and checks that all elements are inside the view.
     fn fit(&mut self, root: &Root, view: Whole, at: &str) -> Result<()> {
         let view = root
             .buffer_views
             .get(view.index())
             .ok_or_else(|| missing("buffer view", view, root.buffer_views.len(), at))?;
-        // A stride of zero is not allowed but written by some for "tightly packed".
+        // A stride of zero is not allowed, but some programs write it for "tightly packed".
         if let Some(stride) = view.byte_stride.filter(|s| s.0 != 0) {
             if stride.index() < self.stride {
                 let message = format!("a stride of {} for elements of {}", stride.0, self.stride);
@@ -164,7 +164,7 @@ impl Layout {
         Ok(())
     }
 
-    /// Returns the byte after the last element, from the view's begin.
+    /// Returns the byte after the last element, counted from the start of the view.
     fn end(&self) -> u128 {
         match self.count as u128 {
             0 => 0,
@@ -208,7 +208,7 @@ fn check_sparse(root: &Root, accessor: &Accessor, whole: &Layout, at: &str) -> R
     sparse_layouts(root, accessor, whole, at).map(|_| ())
 }
 
-/// Number of elements without data that are accepted without a reason.
+/// Number of elements without data that are always accepted.
 const MOST_BARE: usize = 1 << 20;
 
 impl Source<'_> {
@@ -242,8 +242,8 @@ impl Source<'_> {
         }
     }
 
-    /// Refuses more elements without data than any accessor with data has: sparse deformations give data only for the
-    /// vertices that move, but nothing else needs zeros.
+    /// Refuses more elements without data than the largest accessor with data has: sparse deformations give data only
+    /// for the vertices that move, but nothing else needs zeros.
     fn check_bare(&self, count: usize, at: &str) -> Result<()> {
         let with_data = self.root.accessors.iter().filter(|a| a.buffer_view.is_some());
         let has_reason = count <= MOST_BARE
@@ -292,10 +292,10 @@ impl Source<'_> {
         Ok(bytes)
     }
 
-    /// Returns elements of N floats; integers are converted, normalized where the accessor says so.
+    /// Returns elements of N floats; integers are converted, and normalized if the accessor requires it.
     ///
     /// # Errors
-    /// If the accessor has another shape, or its data are not there.
+    /// If the accessor has another shape, or its data are missing.
     pub fn floats<const N: usize>(&self, index: Whole, at: &str) -> Result<Vec<[f32; N]>> {
         self.vectors(index, at)
     }
@@ -356,7 +356,7 @@ impl Source<'_> {
     }
 }
 
-/// Adds elements of N numbers of SIZE bytes each, between which there may be others.
+/// Adds elements of N numbers of SIZE bytes each; there may be other bytes between them.
 fn decode<const SIZE: usize, const N: usize, V, T: From<[V; N]>>(
     bytes: &[u8],
     stride: usize,

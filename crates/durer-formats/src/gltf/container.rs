@@ -121,7 +121,7 @@ fn chunk<'a>(file: &Bytes<'a>, end: u64, at: u64) -> Result<(u32, Bytes<'a>, u64
 mod tests {
     use super::*;
 
-    /// The parts of a file at hand, as slices of it.
+    /// Serves the parts of a file in memory as slices of it.
     struct Slices<'a> {
         json: &'a [u8],
         bin: Option<&'a [u8]>,
@@ -137,7 +137,7 @@ mod tests {
         Ok(Slices { json: slice(json), bin })
     }
 
-    /// Returns a binary file of chunks, with a right header.
+    /// Returns a binary file of chunks, with a valid header.
     fn file(chunks: &[(u32, &[u8])]) -> Vec<u8> {
         let mut body = Vec::new();
         for (kind, data) in chunks {
@@ -166,7 +166,7 @@ mod tests {
         };
         let good = file(&[(JSON, b"{}  "), (BIN, b"data")]);
         assert_eq!(place(&good), None);
-        // Every cut is noticed: in the header at the end, later by the length that the header tells.
+        // Every truncation is detected: in the header at its end, later by the length in the header.
         for cut in 4..good.len() {
             assert_eq!(place(&good[..cut]), Some(if cut < 12 { cut as u64 } else { 8 }), "{cut}");
         }

@@ -176,7 +176,7 @@ mod tests {
         assert_eq!([a, b, c], [Vec3::ZERO, Vec3::new(3.0, -1.0, 0.0), Vec3::Z * -2.0]);
         let normal = g.mesh.normals[0];
         assert!(normal.dot(b).abs() < 1e-6 && normal.dot(c).abs() < 1e-6, "{normal}");
-        // On the same side as before: where x and y grow.
+        // On the same side as before: towards growing x and y.
         assert!((normal.length() - 1.0).abs() < 1e-6 && normal.x > 0.0 && normal.y > 0.0);
         assert_eq!(g.mesh.tangents[0], Vec4::new(0.0, 0.0, -1.0, -1.0));
     }

@@ -4,7 +4,7 @@ use super::buffer::Source;
 use super::json::{Draco, Whole};
 use crate::Result;
 
-/// Empty type: without the feature there is never a decoded mesh: the fallback accessors are read.
+/// Empty type: without the feature no mesh is ever decoded, and the fallback accessors are read.
 #[derive(Debug)]
 pub enum Packed {}
 
@@ -12,7 +12,7 @@ pub enum Packed {}
 pub type Attribute<'a> = &'a Packed;
 
 impl Packed {
-    /// Returns nothing: the accessors of the file are read in its place, if they have data.
+    /// Returns nothing: the accessors of the file are read instead, if they have data.
     pub fn read(_: &Source<'_>, _: &Draco, _: &str) -> Result<Option<Self>> {
         Ok(None)
     }

@@ -43,7 +43,7 @@ struct Asset {
     version: Loose,
 }
 
-/// A value of any kind, of which only texts and numbers are kept.
+/// A value of any kind; only texts and numbers are kept.
 #[derive(Debug, Default, PartialEq)]
 enum Loose {
     Text(String),

@@ -121,7 +121,7 @@ mod tests {
         assert!(plastic.metallic < 1e-6, "{plastic:?}");
         assert!((plastic.base_color - Vec4::new(0.96, 0.48, 0.0, 0.5)).length() < 1e-5);
         assert_eq!(metallic([1.0; 3], [0.0; 3]).metallic, 0.0);
-        // A metal of reflectance 0.5 with no diffuse part, as the published conversion gives it.
+        // A metal of reflectance 0.5 without a diffuse part, as the published conversion gives it.
         let dark = metallic([0.0; 3], [0.5; 3]);
         assert!(dark.metallic > 0.99 && (dark.base_color.x - 0.5).abs() < 1e-3, "{dark:?}");
     }
@@ -132,7 +132,7 @@ mod tests {
         let [base, rough] = glossy.texels([Some([0, 0, 0, 9]), Some([255, 226, 155, 191])]);
         assert_eq!((base, rough), ([255, 226, 155, 9], [255, 64, 255, 255]));
         let [base, rough] = glossy.texels([Some([200, 100, 50, 255]), Some([0, 0, 0, 0])]);
-        // Nothing reflected: the scattered light is that of a dielectric, a little brighter.
+        // Nothing is reflected: the scattered light is that of a dielectric, a little brighter.
         assert_eq!((rough[1], rough[2], base[3]), (255, 0, 255));
         assert!(base[0] > 200 && base[0] < 206, "{base:?}");
     }

@@ -258,7 +258,7 @@ mod tests {
 
     #[test]
     fn runs_are_unpacked() {
-        // Two of the second, a step to the right, the end; then as they are, three of them.
+        // Two pixels of the second colour, a step to the right, the end of the line; then three literal pixels.
         let eight = [2, 1, 0, 2, 1, 0, 1, 1, 0, 0, 0, 3, 1, 0, 1, 0, 0, 1];
         let colors = decoded(&file([4, -2], 8, 1, &PALETTE, &eight));
         assert_eq!(colors[..4], [SECOND, SECOND, FIRST, SECOND]);

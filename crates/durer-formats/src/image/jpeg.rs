@@ -64,13 +64,13 @@ mod tests {
     use super::*;
     use crate::image::decode;
 
-    /// Returns a baseline JPEG of one 8 × 8 block per component, all samples of a component alike:
-    /// its two Huffman tables know differences of 0, 7 and 8 bits, and the end of a block.
+    /// Returns a baseline JPEG of one 8 × 8 block per component with equal samples: its two Huffman tables have codes
+    /// for differences of 0, 7 and 8 bits, and for the end of a block.
     fn jpeg_block(samples: &[u8]) -> Vec<u8> {
         let count = samples.len() as u8;
         let mut bytes = vec![0xff, 0xd8];
         bytes.extend(b"\xff\xee\0\x0eAdobe\0\x64\0\0\0\0\0");
-        // Quantization: the constant by 8, so that a step of it is a step of the samples.
+        // Quantization: the constant term by 8, so that a step of it is a step of the samples.
         bytes.extend([0xff, 0xdb, 0, 67, 0, 8]);
         bytes.extend([1; 63]);
         bytes.extend([0xff, 0xc0, 0, 8 + 3 * count, 8, 0, 8, 0, 8, count]);

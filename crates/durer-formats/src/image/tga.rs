@@ -36,7 +36,7 @@ struct Header {
 }
 
 impl Header {
-    /// Reads a header; `None` if it is none.
+    /// Reads a header; `None` if it is invalid.
     fn of(bytes: &[u8]) -> Option<Self> {
         let short = |at: usize| {
             Some(usize::from(u16::from_le_bytes([*bytes.get(at)?, *bytes.get(at + 1)?])))
@@ -157,7 +157,7 @@ mod tests {
         assert_eq!(decoded(&file(3, 8, 0x20, &[], &[1, 2, 3, 4])), GREYS);
         assert_eq!(decoded(&file(3, 8, 0x00, &[], &[3, 4, 1, 2])), GREYS);
         assert_eq!(decoded(&file(3, 8, 0x30, &[], &[2, 1, 4, 3])), GREYS);
-        // A run of two, and two as they are; across the end of a row too.
+        // A run of two, and two literal pixels; also across the end of a row.
         assert_eq!(decoded(&file(11, 8, 0x20, &[], &[0, 1, 0x81, 2, 0, 4]))[1..3], [GREYS[1]; 2]);
     }
 

@@ -30,7 +30,7 @@ pub(super) fn points(bytes: &[u8], header: &Header, mut each: impl FnMut(&[u8]))
         return Err(Error::whole("is compressed, but has no record `laszip encoded`"));
     };
     let mut read = 0;
-    // Of broken data the crate may be of another opinion than its authors.
+    // On broken data the crate may panic.
     let all = catch_unwind(AssertUnwindSafe(|| {
         let vlr = LazVlr::from_buffer(record).map_err(|e| broken(foreign::laz(&e)))?;
         check(bytes, header, &vlr)?;
@@ -151,7 +151,7 @@ enum Next {
     Point(usize),
     /// The number of points.
     Count,
-    /// Sizes of this many layers; bytes of those before.
+    /// Sizes of this many layers, and bytes of the layers before them.
     Sizes(usize, usize),
     /// Number of bytes of layers.
     Layers(usize),

@@ -90,7 +90,7 @@ fn all_formats_of_points() {
         assert!(p.distance(DVec3::new(4.5e6 + 0.007, 5.1e6 + 0.014, 300.021)) < 1e-6, "{p}");
         let colors = &mesh(&model).colors;
         if FORMATS[usize::from(format)].1.is_some() {
-            // All points have one colour: intensities tell more.
+            // All points have one colour; intensities distinguish them.
             assert!(colors[0].x < colors[500].x && colors[500].x < 1.0, "{format}");
         }
         assert_eq!(colors[999], Vec4::ONE, "{format}");
@@ -177,7 +177,7 @@ mod compressed {
             let count = mesh(&cut).positions.len();
             assert!((100..900).contains(&count), "{count}");
             assert!(cut.warnings[0].to_string().contains("ends too early"));
-            // Without the table of chunks, or with the beginning of one, all points are still there.
+            // Without the table of chunks, or with a part of it, all points are still read.
             let table = i64::from_le_bytes(take(&bytes, data).expect("there")) as usize;
             for length in [table, table + 10] {
                 assert_eq!(mesh(&read_ok(&bytes[..length])).positions.len(), 1000);
@@ -198,7 +198,7 @@ mod compressed {
     fn layers_longer_than_the_file_are_refused() {
         let bytes = laz(7);
         let data = u32::from_le_bytes(take(&bytes, 96).expect("there")) as usize;
-        // Behind the table's offset, a point of 36 bytes and the count.
+        // After the table's offset: a point of 36 bytes and the count.
         let mut long = bytes.clone();
         long[data + 8 + 36 + 4..][..4].copy_from_slice(&[0xff; 4]);
         let e = read(&long, &NoResources, &ReadOptions::default()).expect_err("broken");

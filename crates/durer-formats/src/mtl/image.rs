@@ -64,7 +64,7 @@ impl<'a> Images<'a> {
         self.decode(model, path).map(is_normal_map)
     }
 
-    /// Returns the scene's number of a picture as it is.
+    /// Returns the scene's number of an unchanged picture.
     pub fn whole(&mut self, model: &mut Model, path: &str) -> Option<usize> {
         let key = vec![Some(path.to_owned())];
         if let Some(&number) = self.numbers.get(&key) {

@@ -1,4 +1,4 @@
-//! Small files, each of a kind that is often written.
+//! Small files, each of a common kind.
 
 use crate::{Model, NoResources, ReadOptions, Result};
 use durer::math::{DVec3, Vec3};
@@ -35,7 +35,7 @@ fn polygons_are_filled_to_their_outline() {
         "v 0 0 0\nv 3 0 0\nv 3 3 0\nv 2 3 0\nv 2 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nf 1 2 3 4 5 6 7 8";
     let keyhole = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 0 0 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\n\
                    v 3 1 0\nv 1 1 0\nf 1 2 3 4 5 6 7 8 9 10";
-    // The bridge's ends are often one vertex each.
+    // Both ends of the bridge are often one vertex.
     let shared = keyhole.replace("f 1 2 3 4 5 6 7 8 9 10", "f 1 2 3 4 1 6 7 8 9 6");
     for (text, expected) in [(dart, 1.0), (u, 7.0), (keyhole, 12.0), (&shared, 12.0)] {
         let model = read(text).unwrap();
@@ -61,7 +61,7 @@ fn one_smoothing_group_rounds_a_cube_off() {
 
 #[test]
 fn normals_are_averaged_within_their_group_only_and_over_seams_of_textures() {
-    // Two squares at a right angle along x = 1, then one that goes on flat.
+    // Two squares at a right angle along x = 1, then one that continues flat.
     let squares = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 1 1 1\nvt 0 0\nvt 1 1\n";
     let normals = |faces: &str| mesh(&read(format!("{squares}{faces}")).unwrap()).clone();
     let at = |mesh: &Mesh, p: Vec3| {
@@ -77,7 +77,7 @@ fn normals_are_averaged_within_their_group_only_and_over_seams_of_textures() {
     assert_eq!(at(&one, Vec3::X).len(), 2, "a seam of the texture");
     let two = normals("s 1\nf 1 2 3 4\ns 2\nf 2 5 6 3\n");
     assert_eq!(at(&two, Vec3::X), [Vec3::Z, Vec3::NEG_X]);
-    // Off: no normal, which stands for the face's own; before any statement it is off.
+    // Off: no normal, so the face's own is used; before any statement it is off.
     let flat = normals("f 1 2 3 4\ns 7\nf 2 5 6 3\ns off\nf 1 2 3\n");
     assert_eq!(at(&flat, Vec3::X), [Vec3::ZERO, Vec3::NEG_X]);
     let own = normals("vn 1 0 0\ns 7\nf 1//1 2//1 3//1\nf 2 5 6 3\n");
@@ -135,7 +135,7 @@ fn names_may_be_latin_1_and_hold_blanks() {
     let model =
         read(b"v 0 0 0\nv 1 0 0\nv 0 1 0\no K\xf6rper\ng \xc4 b\nusemtl Dunkles Gr\xfcn\nf 1 2 3")
             .unwrap();
-    // With one object, groups are the parts.
+    // With a single object, its groups are the parts.
     assert_eq!(mesh(&model).parts[0].name, "Ä b");
     assert_eq!(model.scene.materials[0].name, "Dunkles Grün");
 }

@@ -263,7 +263,7 @@ mod tests {
 
     const SIZE: (u32, u32) = (20, 12);
 
-    /// Returns three pictures: the second has less, the third is transparent in part.
+    /// Returns three pictures: the second has smaller content, the third is partly transparent.
     fn pictures() -> Vec<Pixels<[u8; 4]>> {
         let mut first = shades(SIZE.0, SIZE.1);
         first.data_mut().iter_mut().for_each(|p| p[3] = 255);

@@ -63,7 +63,7 @@ impl Bounds {
 /// Reads the length of a list.
 ///
 /// # Errors
-/// A number that is none.
+/// If a value is not a number.
 pub(super) fn list_length(
     kind: Type,
     values: &mut impl Values,

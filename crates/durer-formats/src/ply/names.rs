@@ -44,7 +44,7 @@ pub(super) enum Use {
     Nothing,
 }
 
-/// A property as it is read.
+/// A property of an element, as the reader uses it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step {
     pub usage: Use,

@@ -148,7 +148,7 @@ mod tests {
     #[test]
     fn a_disc_lies_in_the_plane_of_the_larger_radii() {
         let (quarter, turned) = (0.5_f32.sqrt(), 3.0);
-        // Thin along its x axis, which a quarter turn about z takes to y.
+        // Thin along its x axis, which a quarter turn about z rotates to y.
         let shape = Shape {
             scale: Vec3::new(-9.0, 0.0, 1.0),
             rotation: [quarter * turned, 0.0, 0.0, quarter * turned],

@@ -29,7 +29,7 @@ fn triangle_normals(mesh: &Mesh) -> Vec<DVec3> {
     (0..mesh.triangle_count()).map(normal).collect()
 }
 
-/// Returns the sum of the triangles' areas; all must run along `up`.
+/// Returns the sum of the triangles' areas; all must face along `up`.
 fn area(mesh: &Mesh, up: DVec3) -> f64 {
     let normals = triangle_normals(mesh);
     assert!(normals.iter().all(|n| n.dot(up) > 0.0), "{normals:?}");
@@ -72,7 +72,7 @@ fn convex_polygons_stay_fans() {
         .map(|i| f64::from(i) * std::f64::consts::TAU / 40.0)
         .map(|a| [libm::cos(a), libm::sin(a)])
         .collect();
-    // Corners on a straight border, a double corner, and a polygon that is seen whole from its first.
+    // Corners on a straight border, a double corner, and a polygon entirely visible from its first corner.
     let straight = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 1.0]];
     let star = [[0.0, 0.0], [2.0, 0.0], [1.0, 1.0], [0.0, 2.0]];
     for outline in [&ring[..], &straight, &star] {
@@ -173,13 +173,13 @@ fn crossing_outlines_are_filled_by_the_non_zero_rule_with_interpolated_attribute
         model.warnings[0].to_string(),
         "face 1: 1 polygons cross themselves; filled by the non-zero rule"
     );
-    // A star of five corners: what is wound around twice is inside too.
+    // A star of five corners: parts wound around twice are inside too.
     let star: Vec<[f64; 2]> = (0..5)
         .map(|i| f64::from(2 * i) * std::f64::consts::TAU / 5.0)
         .map(|a| [libm::cos(a), libm::sin(a)])
         .collect();
     let (mesh, model) = cut(fan(&star, flat));
-    // Crossings are rounded to single precision, by which slivers may turn.
+    // Crossings are rounded to single precision, which may reverse slivers.
     let heights = triangle_normals(&mesh).into_iter().map(|n| n.z);
     assert!(heights.clone().all(|z| z > -1e-7));
     assert!((heights.sum::<f64>() - 1.122_569_941_4).abs() < 1e-6);
@@ -224,7 +224,7 @@ fn what_has_no_area_or_no_place_is_left_alone() {
     assert_eq!(mesh.indices, lost.indices);
 }
 
-/// A spiral corridor of ten thousand corners, and a random outline, which crosses itself everywhere.
+/// Checks a spiral corridor of ten thousand corners, and a random outline with crossings everywhere.
 #[test]
 fn large_outlines_take_no_time() {
     let turn = |i: u32, width: f64| {

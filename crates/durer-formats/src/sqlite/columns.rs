@@ -191,7 +191,7 @@ impl<'a> Quoted<'a> {
     }
 }
 
-/// Reads a text up to its end; two of the sign that ends it stand for one.
+/// Reads a text up to its end; a doubled ending character stands for one.
 fn quoted(text: &str, end: char) -> Quoted<'_> {
     let (mut own, mut rest) = (String::new(), text.get(1..).unwrap_or_default());
     while let Some(at) = rest.find(end) {

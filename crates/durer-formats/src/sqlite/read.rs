@@ -38,7 +38,7 @@ pub struct Table {
     pub sql: String,
 }
 
-/// A row as it is stored.
+/// A row in its stored form.
 pub struct Row<'a> {
     /// Its number.
     pub number: i64,

@@ -296,7 +296,7 @@ pub fn index(to: &mut Database, records: &[Vec<u8>]) -> Result<u32> {
     Ok(level.first().map_or(0, |(page, _)| *page))
 }
 
-/// Returns a row as it is stored: the kinds of its values, then the values.
+/// Returns a row in its stored form: the kinds of its values, then the values.
 pub fn record(values: &[Value<'_>]) -> Vec<u8> {
     let (mut kinds, mut bodies) = (Vec::new(), Vec::new());
     for value in values {

@@ -224,7 +224,7 @@ mod tests {
         assert_eq!(material.specular, Vec3::Y);
         let mesh = &model.scene.meshes[0];
         assert!(mesh.colors.is_empty() && mesh.parts[0].material == Some(0));
-        // One facet with a color of its own: those with 0 are black.
+        // One facet has its own colour: facets with 0 are black.
         let model = read_ok(&binary(header, 2, &[(ONE, 0), (ONE, 31 << 10)]));
         let colors = &model.scene.meshes[0].colors;
         assert_eq!((colors[0], colors[3]), (Vec4::W, Vec4::new(0.0, 0.0, 1.0, 1.0)));

@@ -42,7 +42,7 @@ impl Palette {
         Vec4::new(linear(r), linear(g), linear(b), f32::from(a) / 255.0)
     }
 
-    /// Returns the bits of a facet's attributes of which at least one marks facets with their own colours.
+    /// Returns the attribute bits that mark facets with their own colours; one of them suffices.
     pub fn telling(&self) -> u16 {
         if self.body.is_some() { u16::MAX } else { PAINTED }
     }

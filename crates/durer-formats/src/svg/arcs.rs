@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn small_radii_grow_and_turned_ellipses_are_turned() {
-        // From −10 to 10 over the side that the sweep says; the first axis is five times the second one.
+        // From −10 to 10 across the side given by the sweep; the first axis is five times the second.
         for (sweep, side) in [(0, 1.0), (1, -1.0)] {
             let data = as_curves(&format!("M-10 0A1 5 90 1 {sweep} 10 0")).unwrap();
             let found = points(&data);

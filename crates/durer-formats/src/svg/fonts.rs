@@ -170,7 +170,7 @@ fn replaced(font: &usvg::Font, face: &fontdb::FaceInfo) -> Option<String> {
     Some(format!("font {wanted} is missing; {found} is used in its place"))
 }
 
-/// Returns a family with its style, as far as it is not normal.
+/// Returns a family with the parts of its style that are not normal.
 fn described(family: &str, weight: u16, slanted: bool, stretch: fontdb::Stretch) -> String {
     let weight = match weight {
         300..500 => String::new(),

@@ -9,7 +9,7 @@ pub(super) enum Case {
     AsWritten,
     Upper,
     Lower,
-    /// The first letter of each word is large.
+    /// The first letter of each word in upper case.
     Capitalized,
 }
 
@@ -30,7 +30,7 @@ impl Case {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Letters {
     pub case: Case,
-    /// They are not joined to ligatures, as there is space between them.
+    /// No ligatures are formed, because there is space between the letters.
     pub are_apart: bool,
 }
 
@@ -40,7 +40,7 @@ impl Letters {
         !self.are_apart && self.case == Case::AsWritten
     }
 
-    /// Returns a text as it is typeset; `beside` is true for texts before it and after it.
+    /// Returns a text as it is typeset; `beside` tells whether there are texts before it and after it.
     pub fn set(self, text: &str, beside: [bool; 2]) -> Cow<'_, str> {
         let cased = match self.case {
             Case::AsWritten => Cow::Borrowed(text),
@@ -65,10 +65,10 @@ fn capitalized(text: &str) -> String {
     out
 }
 
-/// Character that keeps two letters from being joined. It gets space of its own.
+/// Character that keeps two letters from being joined. It has space of its own.
 const NON_JOINER: char = '\u{200c}';
 
-/// Share of the space between letters for each of a letter and its successor.
+/// Share of the letter spacing that a letter gets, and that the non-joiner after it gets.
 pub(super) const SHARE: f64 = 0.5;
 
 /// Returns a text with a non-joiner after each letter that is followed by another one, so that all gaps are equal.
@@ -86,12 +86,12 @@ fn kept_apart(text: &str, [has_before, has_after]: [bool; 2]) -> String {
             None => has_after,
         };
         let is_last = left == 0 && !has_after && !c.is_whitespace();
-        // Cursive scripts stay joined: Arabic and others get no space anyway.
+        // Cursive scripts stay joined: Arabic and others get no letter spacing anyway.
         if is_joined(c) {
             continue;
         }
         if is_last {
-            // Browsers put space after the last letter too; the very last sign gets none.
+            // Browsers put space after the last letter too; the very last character gets none.
             out.extend([NON_JOINER; 2]);
         } else if has_begun && is_between {
             out.push(NON_JOINER);
@@ -100,7 +100,7 @@ fn kept_apart(text: &str, [has_before, has_after]: [bool; 2]) -> String {
     out
 }
 
-/// Returns whether a letter may be joined with the next one by nature.
+/// Returns whether a letter by nature joins with the next one.
 fn is_joined(c: char) -> bool {
     matches!(c, '\u{600}'..='\u{8ff}' | '\u{900}'..='\u{9ff}' | '\u{a00}'..='\u{a7f}' | '\u{1680}'..='\u{169f}' | '\u{1800}'..='\u{18af}' | '\u{a840}'..='\u{a87f}' | '\u{300}'..='\u{36f}')
 }

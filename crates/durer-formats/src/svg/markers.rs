@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn directions_are_half_way_between_segments() {
         assert_eq!(of("M0 0H10V10"), [(0.0, 0.0, 0), (10.0, 0.0, 45), (10.0, 10.0, 90)]);
-        // Closed: the first and the last vertex look alike.
+        // Closed: the first and the last vertex have the same direction.
         assert_eq!(
             of("M0 0H10V10H0Z"),
             [
@@ -222,9 +222,9 @@ mod tests {
                 (0.0, 0.0, -45)
             ]
         );
-        // An arc has no vertices but its ends.
+        // An arc has no vertices except its ends.
         assert_eq!(of("M0 0A5 5 0 0 1 10 0"), [(0.0, 0.0, -90), (10.0, 0.0, 90)]);
-        // Control points that are at the ends say nothing.
+        // Control points at the ends give no direction.
         assert_eq!(of("M0 0C0 0 10 10 10 10"), [(0.0, 0.0, 45), (10.0, 10.0, 45)]);
         assert_eq!(
             of("M0 0H5H5H10"),

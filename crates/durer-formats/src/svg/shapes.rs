@@ -326,7 +326,7 @@ mod tests {
         assert!(area("xywh(1px 2px 3px 4px)").unwrap().data.starts_with("M11 22 L14 22 "));
         assert_eq!(area("path('M0 0h5v5z')").unwrap().data, "M10 20 L15 20 L15 25 Z");
         assert_eq!(area("fill-box").unwrap().data, area("inset(0)").unwrap().data);
-        // Of circles the first point is their highest one.
+        // The first point of a circle is its highest one.
         for (text, top) in [
             ("circle()", "M60 20 "),
             ("circle(10px at 0 0)", "M10 10 "),

@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(is_read(&text(&spans("x='0'"))), Ok(()));
         let places = "1 2,3 ".repeat(long.len() / 3);
         assert_eq!(is_read(&text(&format!("<tspan x='{places}'>{long}</tspan>{long}"))), Ok(()));
-        // What is not text has letters too.
+        // Other elements than text contain letters too.
         assert_eq!(is_read(&format!("<desc>{}</desc>{}", long.repeat(9), text("a"))), Ok(()));
     }
 }

@@ -174,7 +174,7 @@ fn close(node: Node<'_, '_>, changes: &Changes<'_>, out: &mut Written) {
     out.text.push('>');
 }
 
-/// Writes a text so that XML reads it as it is.
+/// Writes a text so that XML readers get it unchanged.
 pub(super) fn escape(text: &str, is_attribute: bool, out: &mut String) {
     let special = |c: char| {
         matches!(c, '<' | '>' | '&' | '\r') || is_attribute && matches!(c, '"' | '\n' | '\t')

@@ -1,9 +1,9 @@
-//! Beam lattices as triangles: beams as prisms of many sides, round ends and joints as balls.
+//! Beam lattices as triangles: beams as prisms with many sides, round ends and joints as balls.
 //!
 //! Source: 3MF Consortium, *Beam Lattice Extension* 1.2.0, 2021.
 //!
-//! A round end is the whole ball that the beam ends in, once for all beams of its radius there.
-//! The corners and normals are those of the true surface. The more beams, the fewer sides.
+//! A round end is a whole ball at the end of the beam, shared by all beams of its radius there. The corners and normals
+//! are those of the true surface. The number of sides decreases with the number of beams.
 
 use super::property::Properties;
 use crate::{Error, Result};
@@ -17,12 +17,12 @@ pub(super) struct Lattice {
     pub radius: f64,
     /// Length below which beams are ignored.
     pub shortest: f64,
-    /// True if ends are flat where a beam does not say.
+    /// True if ends are flat unless a beam specifies otherwise.
     pub butt: bool,
     pub ball_radius: f64,
     /// True if all ends have a ball.
     pub all_balls: bool,
-    /// The id of an object that is to be shown instead.
+    /// The id of an object to be shown instead.
     pub shown_by: Option<u64>,
     pub property: Option<(u64, u64)>,
     pub beams: Vec<Beam>,
@@ -98,8 +98,8 @@ pub(super) fn mesh(
     Ok(builder.mesh)
 }
 
-/// Returns the balls to draw, by their vertex and the bits of their radius, with a property. Of
-/// those around a vertex all but the largest would be hidden.
+/// Returns the balls to draw, by their vertex and the bits of their radius, with a property. Only the largest ball
+/// around a vertex is returned, because it hides the others.
 fn balls(
     lattice: &Lattice,
     seen: impl Fn(&&Beam) -> bool,
@@ -196,13 +196,13 @@ impl Builder {
         }
     }
 
-    /// Adds a ball of rows between two poles.
+    /// Adds a ball as rows between two poles.
     fn ball(&mut self, center: DVec3, radius: f64, color: Vec4) {
         let sides = self.circle.len();
         let rows = sides / 2;
         let south = self.vertex(center - DVec3::Z * radius, -DVec3::Z, color);
         for row in 1..rows {
-            // Half a turn has half as many steps: rows are taken from the same circle.
+            // Half a turn has half as many steps, so the rows are at steps of the same circle.
             let (cos, sin) = self.circle[row];
             for i in 0..sides {
                 let (x, y) = self.circle[i];

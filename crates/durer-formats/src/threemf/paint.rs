@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn divided_triangles() {
-        // Three sides: the root comes last, its last child, the middle one, before it.
+        // Three sides: the root comes last, before it its last child, the middle one.
         let (four, whole) = pieces("48403");
         assert!(whole);
         assert_eq!(four.iter().map(|p| p.1).collect::<Vec<_>>(), [0, 1, 2, 1]);
@@ -136,7 +136,7 @@ mod tests {
         // One side, opposite to corner 1.
         let (two, _) = pieces("485");
         assert_eq!(two, [([half(c, a), a, b], 2), ([b, c, half(c, a)], 1)]);
-        // Two sides, those at corner 2; a child of it is divided again.
+        // Two sides, those at corner 2; one child is subdivided again.
         let (five, whole) = pieces("4480348A");
         assert!(whole && five.len() == 6, "{five:?}");
         for pieces in [four, two, five] {

@@ -207,7 +207,7 @@ impl ObjectParser<'_> {
             }
             return;
         }
-        // Filament 0 stands for the whole object's.
+        // Filament 0 means that of the whole object.
         let filament = value.parse().ok().filter(|f| *f > 0);
         match (key, &mut self.volume, &mut self.object) {
             ("extruder", Some(volume), _) => volume.2.filament = filament,

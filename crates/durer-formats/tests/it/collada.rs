@@ -1,10 +1,10 @@
-//! COLLADA documents written here.
+//! COLLADA documents written by the tests.
 
 use durer::math::{DVec3, Vec2, Vec3, Vec4};
 use durer::scene::{AlphaMode, Mesh, ShadingModel, Topology, UpAxis, Wrap};
 use durer_formats::{Limits, Model, NoResources, ReadOptions, Resources, Result, read_model};
 
-/// Sources of a square with a smaller one in it, and of what else its corners may have.
+/// Data of a square with a smaller one inside it, and further attributes of their corners.
 const SOURCES: &str = r##"<source id="p"><float_array id="pa" count="24">0 0 0 3 0 0 3 3 0 0 3 0 1 1 0 2 1 0 2 2 0 1 2 0</float_array>
     <technique_common><accessor source="#pa" count="8" stride="3"><param name="X"/><param name="Y"/><param name="Z"/></accessor></technique_common></source>
     <source id="n"><float_array id="na" count="3">0 0 2</float_array>
@@ -16,7 +16,7 @@ const SOURCES: &str = r##"<source id="p"><float_array id="pa" count="24">0 0 0 3
     <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>"##;
 const VERTEX: &str = r##"<input semantic="VERTEX" source="#v" offset="0"/>"##;
 
-/// Returns a document of one geometry of these primitives, shown by a node of this content.
+/// Returns a document with one geometry of these primitives, shown by a node with this content.
 fn document(primitives: &str, libraries: &str, node: &str) -> String {
     format!(
         r##"<?xml version="1.0"?><COLLADA version="1.4.1"><asset><up_axis>Z_UP</up_axis></asset>{libraries}
@@ -64,7 +64,7 @@ fn all_primitives_have_their_area() {
         assert_eq!(warnings(&model), [""; 0], "{primitives}");
         let mesh = &model.scene.meshes[0];
         assert_eq!((mesh.triangle_count(), area(mesh)), (triangles, expected), "{primitives}");
-        // All are turned towards +z.
+        // All face +z.
         for i in 0..mesh.triangle_count() {
             let [a, b, c] = mesh.triangle(i).map(|v| mesh.positions[v as usize]);
             assert!((b - a).cross(c - a).z > 0.0, "{primitives}, {i}");
@@ -115,7 +115,7 @@ fn corners_have_attributes_by_offset_and_stride() {
     let mesh = &model.scene.meshes[0];
     assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::new(3.0, 0.0, 0.0), Vec3::new(3.0, 3.0, 0.0)]);
     assert_eq!(mesh.normals, [Vec3::Z; 3]);
-    // v runs upwards; of a number with a comma in it the comma is a point.
+    // v runs upwards; a comma within a number is read as a decimal point.
     assert_eq!(mesh.tex_coords, [[Vec2::new(0.0, 1.0), Vec2::new(1.0, 0.75), Vec2::new(0.0, 1.0)]]);
     assert_eq!(mesh.colors[1], Vec4::new(0.0, 1.0, 0.0, 0.5));
     let material = &model.scene.materials[mesh.parts[0].material.expect("of colours")];
@@ -157,7 +157,7 @@ fn units_and_axes() {
     );
 }
 
-/// Returns a material `m` of this shader, in a document that shows it.
+/// Returns a material `m` with this shader, in a document that uses it.
 fn shaded(shader: &str, parameters: &str) -> String {
     let libraries = format!(
         r##"<library_images><image id="i"><init_from>./a%20b.png</init_from></image></library_images>
@@ -236,12 +236,12 @@ fn transparency_by_all_modes() {
     let (w, _) = alpha(&color(" opaque=\"RGB_ZERO\"", "1 1 1 1"), "0.75");
     assert!((w - 0.25).abs() < 1e-5, "{w}");
     assert_eq!(alpha(&color(" opaque=\"A_ZERO\"", "1 1 1 0.25"), "1"), (0.75, 0));
-    // Nobody writes what cannot be seen: 0 is meant as opaque.
+    // Nobody writes an invisible material: 0 is taken as opaque.
     assert_eq!(alpha(&color("", "1 1 1 1"), "0.0"), (1.0, 1));
     assert_eq!(alpha("", "0,000000"), (1.0, 1));
 }
 
-/// Finds one picture.
+/// Finds a single picture.
 struct Picture;
 
 impl Resources for Picture {

@@ -1,11 +1,11 @@
-//! Cameras and lights of COLLADA documents written here.
+//! Cameras and lights of COLLADA documents written by the tests.
 
 use durer::math::{DVec3, Vec3};
 use durer::scene::{LightKind, Projection};
 use durer_formats::{Model, NoResources, ReadOptions, read_model};
 
-/// Returns a document in centimetres of a triangle and a node that holds a camera or a light, of the
-/// element `held` with this content.
+/// Returns a document in centimetres of a triangle and a node that holds a camera or a light: the element `held` with
+/// this content.
 fn read(held: &str, content: &str, tool: &str) -> Model {
     let text = format!(
         r##"<?xml version="1.0"?><COLLADA version="1.4.1">
@@ -69,7 +69,7 @@ fn angles_and_sizes_of_view() {
         near(fov_y.to_degrees(), fov);
         assert_eq!(found.aspect.is_some(), aspect.is_some(), "{content}");
         near(found.aspect.unwrap_or(0.0), aspect.unwrap_or(0.0));
-        // Without planes nothing is cut off.
+        // Without clipping planes nothing is cut off.
         assert!(found.camera.near < 0.01 && found.camera.far > 5.0);
     }
     for (content, size, aspect) in [
@@ -116,16 +116,16 @@ fn lights_shine_from_their_nodes() {
     let LightKind::Directional { direction } = sun.kind else { panic!("{sun:?}") };
     assert!((direction - DVec3::NEG_Y).length() < 1e-12);
     assert!((sun.color - Vec3::new(1.0, 0.214_041, 0.0)).length() < 1e-5, "{}", sun.color);
-    // Two at the middle of the scene, which is half a metre above the origin, and everywhere.
+    // Intensity 2 at the middle of the scene, which is half a metre above the origin, and everywhere else.
     let middle = DVec3::new(0.0, 0.5, 0.0);
     let point = light("point", "<color>2 2 2</color>");
     let LightKind::Directional { direction } = point.kind else { panic!("{point:?}") };
     assert!((direction - (middle - position).normalize()).length() < 1e-12);
     near(f64::from(point.color.x), 2.0);
-    // Spots fall off by the square all the same.
+    // Spot lights fall off with the square all the same.
     let spot = light("spot", "<color>2 2 2</color>");
     near(f64::from(spot.color.x), f64::from(2.0 * middle.distance_squared(position) as f32));
-    // Where they do so in the file, wherever the scene is; its units are centimetres.
+    // Distances are those in the file, wherever the scene is; its units are centimetres.
     let square = "<constant_attenuation>0</constant_attenuation><quadratic_attenuation>0.25</quadratic_attenuation>";
     let point = light("point", &format!("<color>1 1 1</color>{square}"));
     assert_eq!(point.kind, LightKind::Point { position, range: None });
@@ -147,7 +147,7 @@ fn colors_of_lights_are_as_those_of_materials() {
     let color =
         |tool: &str| lamp("directional", "<color>500 1000 0</color>", tool).scene.lights[0].color;
     assert!((color("Blender 2.93.1") - Vec3::new(500.0, 1000.0, 0.0)).length() < 1e-3);
-    // The intensity is not a part of the curve.
+    // The intensity is no part of the falloff curve.
     assert!((color("other") - Vec3::new(214.041, 1000.0, 0.0)).length() < 1e-2);
 }
 

@@ -12,7 +12,7 @@ fn malformed_geojson_is_refused_or_repaired_and_told() {
         ("geo_wrong_nesting", "error: line 1, column 41: a position"),
         ("geo_two_point_ring", "warning: line 1, column 37: a ring needs four positions"),
         ("geo_unclosed_ring", "warning: line 1, column 37: the ring is not closed; closed"),
-        // Their rings are closed and long enough; what they enclose is for the clippers to say.
+        // Rings are closed and long enough; their validity is left to clipping.
         ("geo_bowtie", "read"),
         ("geo_hole_outside", "read"),
         ("geo_spike_dup", "read"),

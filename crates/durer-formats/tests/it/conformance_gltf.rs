@@ -1,4 +1,4 @@
-//! glTF: real models, and files that are broken on purpose.
+//! glTF: real models, and deliberately broken files.
 
 use durer::math::DVec3;
 use durer::scene::Scene;
@@ -6,7 +6,7 @@ use durer_formats::{Error, Model, ReadOptions, Resources, Result, gltf};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Returns the folder of test data; `None`, said on stderr, if there is none.
+/// Returns the folder of test data; `None`, with a note on stderr, if there is none.
 fn data() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("DURER_DATA").map_or_else(beside, PathBuf::from);
@@ -49,7 +49,7 @@ fn models(folder: &Path) -> Vec<PathBuf> {
             }
         }
     }
-    // Without the feature, files that need Draco are refused; `gltf.rs` tests that.
+    // Without the feature, files that need Draco are refused; `gltf.rs` tests this.
     if !cfg!(feature = "draco") {
         found.retain(|p| !DRACO.iter().any(|name| p.ends_with(name)));
     }
@@ -57,8 +57,8 @@ fn models(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Models whose box in the index is another one: its tool passes over sparse values, skins and what
-/// takes quantized positions back.
+/// Models whose box in the index differs: the tool that made the index ignores sparse values, skins and the transform
+/// that undoes quantization.
 const OTHER_BOX: [&str; 3] =
     ["SimpleSparseAccessor.gltf", "simple_skin.gltf", "Duck_quantized.glb"];
 
@@ -94,8 +94,8 @@ fn every_model_has_the_triangles_and_box_of_the_index() {
     assert!(checked >= 30, "{checked}");
 }
 
-/// Returns the quantities that stay the same when a model is packed another way: area, and by area
-/// the mean corner of the triangles, their mean texture coordinates and normals.
+/// Returns the quantities that do not depend on how a model is packed: the area and, weighted by area, the mean corner
+/// of the triangles, their mean texture coordinates and normals.
 fn invariants(scene: &Scene) -> [f64; 9] {
     let mut sums = [0.0; 9];
     for instance in &scene.instances {
@@ -142,7 +142,7 @@ fn packed_ducks_are_the_duck() {
         assert!((a.min - b.min).abs().max_element() <= 2.0 * step, "{name}: {a:?} {b:?}");
         assert!((a.max - b.max).abs().max_element() <= 2.0 * step, "{name}: {a:?} {b:?}");
     }
-    // Both were quantized alike, so meshopt must give back the same numbers, in another order.
+    // Both were quantized alike, so meshopt must restore the same numbers in another order.
     let positions = |name: &str| {
         let mut all = duck(name).meshes[0].positions.clone();
         all.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).unwrap());
@@ -172,10 +172,10 @@ fn draco_normals_stand_on_their_triangles() {
     }
 }
 
-/// File, animation, seconds, and where some vertices are then, in the world.
+/// File, animation, seconds, and the positions of some vertices in the world.
 type Pose = (&'static str, Option<&'static str>, f64, &'static [(usize, [f64; 3])]);
 
-/// Computed with numpy from the files by a program of its own: skins, morph targets, channels.
+/// Computed from the files by an independent program with numpy: skins, morph targets, channels.
 const POSES: &[Pose] = &[
     ("simple_skin.gltf", None, 0.0, &[(0, [-0.5, 0.0, 0.0]), (9, [0.5, 2.0, 0.0])]),
     (
@@ -269,7 +269,7 @@ fn poses_are_those_computed_elsewhere() {
     }
 }
 
-/// Codes of the validator that must be errors here too, wherever they stand in a file.
+/// Codes of the validator that must be errors here too, wherever they occur in a file.
 const STRUCTURAL: [&str; 18] = [
     "ACCESSOR_SPARSE_COUNT_OUT_OF_RANGE",
     "ACCESSOR_TOO_LONG",
@@ -291,7 +291,7 @@ const STRUCTURAL: [&str; 18] = [
     "ACCESSOR_JOINTS_INDEX_OOB",
 ];
 
-/// Codes of files that are read without a warning, and why no picture suffers.
+/// Codes of files that are read without a warning, and the reason why pictures do not suffer.
 const HARMLESS: &[(&str, &str)] = &[
     ("ACCESSOR_ANIMATION_SAMPLER_OUTPUT_NON_NORMALIZED_QUATERNION", "brought to unit length"),
     ("ACCESSOR_ELEMENT_OUT_OF_MAX_BOUND", "stated bounds are not used"),
@@ -377,7 +377,7 @@ fn files_of_the_validator_are_refused_or_harmless() {
 fn valid_files_of_the_validator_are_read() {
     let Some(data) = data() else { return };
     for path in models(&data.join("malformed/gltf-validator")) {
-        // These three need what nobody here has: a network, glTF 2.1, a buffer that is nowhere.
+        // Three files that need unavailable things: a network, glTF 2.1, a missing buffer.
         let foreign = ["non_relative_uri.gltf", "min_version_valid.gltf", "named_objects.gltf"];
         if codes(&path).is_empty() && !foreign.iter().any(|f| path.ends_with(f)) {
             let result = read(&path, &ReadOptions::default());
@@ -386,7 +386,7 @@ fn valid_files_of_the_validator_are_read() {
     }
 }
 
-/// Broken files and the begin of their error; empty if they can be read.
+/// Broken files and the beginning of their error message; empty if they can be read.
 const BROKEN: &[(&str, &str)] = &[
     ("assimp_gltf/BoxBadNormals-glTF-Binary/BoxBadNormals.glb", ""),
     ("assimp_gltf/IndexOutOfRange/AllIndicesOutOfRange.gltf", "meshes[0].primitives[0].indices: "),

@@ -32,7 +32,7 @@ fn one_terrain_in_two_formats_is_one() {
             assert_eq!(text.field.height(column, row), array.field.height(column, row));
         }
     }
-    // The text places cells, the array their outermost borders.
+    // The text format gives the positions of cells, the array format their outermost borders.
     for (a, b) in text.field.x_range().into_iter().zip(array.field.x_range()) {
         assert!((a - b).abs() < 0.001, "{a} {b}");
     }

@@ -12,7 +12,7 @@ fn read(path: &Path) -> durer_formats::Result<Model> {
     read_model(&bytes, &path.to_string_lossy(), &folder, &ReadOptions::default())
 }
 
-/// Returns triangles (or for files without any: points) per file as the index states them.
+/// Returns the triangles per file as the index states them, or the points of files without triangles.
 fn expected(data: &Path) -> BTreeMap<String, (u64, bool)> {
     let index = std::fs::read_to_string(data.join("INDEX.md")).expect("index");
     let row = |line: &str| {
@@ -56,8 +56,8 @@ fn broken_files_give_an_error_or_a_warning() {
     let suffixes = ["obj", "mtl", "stl", "ply", "off", "txt"];
     let broken = files(&data.join("malformed"), &suffixes);
     assert!(broken.len() >= 40, "{}", broken.len());
-    // These are unusual but sound: a non-planar face, a triangle of no area, an empty object name, no
-    // line end after the last face.
+    // These are unusual but valid: a non-planar face, a triangle without area, an empty object name, no newline after
+    // the last face.
     let sound = [
         "obj_longline_1MB.obj",
         "obj_nonplanar_ngon.obj",

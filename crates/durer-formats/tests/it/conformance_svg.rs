@@ -1,7 +1,7 @@
-//! resvg's suite, and heavy art: pictures against those that resvg makes.
+//! resvg's test suite and complex drawings, compared with pictures made by resvg.
 //!
-//! `resvg.txt` and `resvg_suite.txt` list the drawings that do not match, with reasons; a drawing that is not listed must
-//! match, and a listed one must not.
+//! `resvg.txt` and `resvg_suite.txt` list the drawings that do not match, with reasons; a drawing that is not listed
+//! must match, and a listed one must not.
 
 use crate::shared::{Folder, data, files};
 use durer::math::{DAffine2, DVec2};
@@ -40,8 +40,8 @@ fn render(path: &Path, fonts: &Fonts, size: (u32, u32), background: [u8; 4]) -> 
     picture
 }
 
-/// Difference of two pictures: the mean over all channels, premultiplied, and the share of pixels of
-/// which a channel is off by more than 8.
+/// Returns the difference of two pictures: the mean over all channels, premultiplied, and the share of pixels with a
+/// channel off by more than 8.
 #[derive(Debug, Clone, Copy, Default)]
 struct Difference {
     mean: f64,
@@ -81,7 +81,7 @@ fn keep(name: &str, found: &Picture, reference: &Picture) {
     }
 }
 
-/// Describes how a result departs from the list; empty if it does not.
+/// Describes how a result departs from the list; empty if it agrees.
 fn complaint(listed: &str, name: &str, difference: Difference) -> String {
     let lines = listed.lines().filter(|l| !l.starts_with('#') && !l.is_empty());
     let mut names = lines.map(|l| l.split_once(": ").expect("a name, a colon, a reason").0);
@@ -92,7 +92,7 @@ fn complaint(listed: &str, name: &str, difference: Difference) -> String {
     }
 }
 
-/// Draws all files of some chapters below a folder; what is not as listed, and how many files there are.
+/// Draws all files of some chapters below a folder; returns the departures from the list, and the number of files.
 fn compare(root: &Path, chapters: &[&str], fonts: &Fonts, listed: &str) -> (String, u32) {
     let mut folders: BTreeMap<String, (u32, u32)> = BTreeMap::new();
     let mut complaints = String::new();

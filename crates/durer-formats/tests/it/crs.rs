@@ -1,4 +1,4 @@
-//! Coordinate systems beside the figures of PROJ 9.5.1 (pyproj, `always_xy=True`).
+//! Coordinate systems, compared with figures of PROJ 9.5.1 (pyproj, `always_xy=True`).
 
 use durer::math::DVec2;
 use durer_formats::geo::crs::{Crs, Transform, code_of_wkt, wkt_of_code};
@@ -131,7 +131,8 @@ fn systems_are_known_by_many_names() {
     }
 }
 
-/// Places on older frames: as in `FIGURES`, by the parameters that PROJ takes too. Longitudes and latitudes have eleven decimals.
+/// Positions on older datums: as in `FIGURES`, with parameters in PROJ's syntax. Longitudes and latitudes have eleven
+/// decimals.
 const SHIFTED: &[(i32, f64, f64, f64, f64)] = &[
     (27700, -2.5, 53.5, 366930.326448, 400483.401903),
     (4277, 0.1, 51.5, 0.10163207919, 51.49948507059),
@@ -151,7 +152,7 @@ fn older_frames_are_shifted_as_proj_does() {
         let most =
             if Crs::of_code(code).is_some_and(|crs| crs.is_geographic()) { 2e-11 } else { 2e-6 };
         assert!((there - expected).length() < most, "{code}: {there}");
-        // The way back leaves out products of angles: less than a centimetre.
+        // The way back neglects products of angles: less than a centimetre.
         let back = transform(code, 4326).apply(expected).expect("a place");
         assert!((back - given).length() < 1e-7, "{code}: {back}");
     }
@@ -196,7 +197,7 @@ fn frames_that_need_grids_are_refused_by_name() {
 
 #[test]
 fn definitions_of_other_software_are_understood() {
-    // As GDAL writes them: for web maps, and with its own names of methods.
+    // As GDAL writes them: for web maps, and with its own method names.
     let web = "PROJCS[\"WGS 84 / Pseudo-Mercator\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,\
         298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Mercator_1SP\"],\
         PARAMETER[\"central_meridian\",0],PARAMETER[\"scale_factor\",1],PARAMETER[\"false_easting\",0],\
@@ -226,7 +227,7 @@ proptest! {
         let given = DVec2::new(lon, lat);
         if let Some(there) = transform(4326, code).apply(given) {
             let back = transform(code, 4326).apply(there);
-            // A quarter of the earth from their middle, transverse cylinders lose digits.
+            // A quarter of the Earth from their central meridian, transverse cylindrical projections lose digits.
             let least = if there.x.abs() > 1e7 { 1e-4 } else { 1e-7 };
             let close = |back: DVec2| {
                 let turn = (back.x - lon).abs();

@@ -205,7 +205,7 @@ fn dots_are_circles_in_dxf() {
     let all: Vec<&str> = text.lines().collect();
     let count = |name: &str| all.windows(2).filter(|w| w == &["  0", name]).count();
     assert_eq!((count("CIRCLE"), count("LINE")), (2, 1));
-    // As wide as the pen for dots: the radius follows the centre.
+    // Dots are as wide as the pen: the radius follows the centre.
     let radii: Vec<&str> =
         all.windows(2).filter(|w| w[0] == " 40" && w[1] == "0.25").map(|w| w[1]).collect();
     assert_eq!(radii.len(), 2);
@@ -307,8 +307,7 @@ fn texts(laid: &LaidOut, layer: &str) -> Vec<(String, DVec2)> {
     texts.collect()
 }
 
-/// Checks that views lie beside each other, within the frame and above the title block of an A4
-/// sheet.
+/// Checks that views are beside each other, within the frame and above the title block of an A4 sheet.
 fn assert_apart(views: &[Rect]) {
     for (i, a) in views.iter().enumerate() {
         assert!(a.min().min_element() > 10.0 && a.max().x < 287.0 && a.max().y < 184.0, "{a:?}");
@@ -342,7 +341,7 @@ fn first_angle_views_stand_on_the_other_sides() {
     assert!(top.min().y > front.max().y && front.min().x > right.max().x);
     assert!(iso.max().x < top.min().x && iso.min().y > right.max().y);
     assert_apart(&[front, top, right, iso]);
-    // The circles of the symbol are right of the cone; the cone narrows to the left either way.
+    // The circles of the symbol are right of the cone; in both symbols the cone narrows to the left.
     for (angle, side) in [(Angle::First, 1.0), (Angle::Third, -1.0)] {
         let laid = on_sheet(angle, &principal(&block), "auto", "fit").unwrap();
         let block = boxes(&laid, "title-block");
@@ -409,7 +408,7 @@ fn section(letter: &str, normal: DVec3, drawing: &Drawing) -> (ViewKind, Camera,
 fn sections_get_views_with_titles_and_lines_where_they_cut() {
     let block = block();
     let mut views = principal(&block);
-    // What stays is on the right of x = −10, and above y = −10 in a view from above.
+    // The remaining part is right of x = −10, and above y = −10 in the view from above.
     let (a, b) = (section("A", DVec3::X, &block[2].1), section("B", DVec3::Y, &block[0].1));
     let askew = section("C", DVec3::new(1.0, 1.0, 1.0), &block[2].1);
     for (kind, camera, drawing) in [&a, &b, &askew] {
@@ -432,7 +431,7 @@ fn sections_get_views_with_titles_and_lines_where_they_cut() {
         assert!(laid.views[..i].iter().all(|b| !a.bounds.overlaps(&b.bounds)));
         assert!(a.bounds.max().y < laid.sheet.size.y - 26.0);
     }
-    // A stands upright in the front view, at x = −10, with its arrows and letters left of it.
+    // Section A is vertical in the front view, at x = −10, with its arrows and letters left of it.
     let (front, top) = (&laid.views[0], &laid.views[1]);
     let lines = boxes(&laid, "cutting-planes");
     let x = front.sheet_from_model(DVec3::new(-10.0, 0.0, 0.0)).unwrap().x;
@@ -442,10 +441,10 @@ fn sections_get_views_with_titles_and_lines_where_they_cut() {
     let said: Vec<&str> = letters.iter().map(|l| l.0.as_str()).collect();
     assert_eq!(said, ["A", "A", "B", "B"]);
     assert!(letters[..2].iter().all(|l| l.1.x < x - 9.0));
-    // B lies in the view from above and is examined from below: from the front.
+    // Section B is drawn in the view from above and viewed from below, that is, from the front.
     let y = top.sheet_from_model(DVec3::new(0.0, -10.0, 0.0)).unwrap().y;
     assert!(letters[2..].iter().all(|l| l.1.y > y + 9.0 && l.1.x < top.bounds.max().x + 20.0));
-    // C is seen edge on by none.
+    // No view shows C edge-on.
     assert_eq!(laid.notes.len(), 1);
     assert!(laid.notes[0].contains("section C"), "{:?}", laid.notes);
 }
@@ -556,12 +555,12 @@ fn callouts_stand_around_their_view_and_the_list_on_the_title_block() {
     let rows: Vec<String> = texts(&laid, "parts-list").into_iter().map(|t| t.0).collect();
     let expected = ["ITEM", "NAME", "QTY", "1", "base", "1", "2", "screw", "4", "3", "lid", "1"];
     assert_eq!(rows, expected);
-    // Its heading stands on the title block, at the right; no view lies under it.
+    // Its heading is above the title block, at the right; no view overlaps it.
     let list = Rect::around(boxes(&laid, "parts-list").iter().flat_map(|b| [b.min(), b.max()]));
     let list = list.unwrap();
     assert_eq!(list.max(), laid.sheet.size - DVec2::new(10.0, 26.0));
     assert!(laid.views.iter().all(|v| !v.bounds.overlaps(&list)));
-    // Without a title block it takes its place.
+    // Without a title block it takes that place.
     let free = SheetView { kind: ViewKind::Free, ..views[3].clone() };
     let callouts = callouts.clone().map(|c| Callout { view: 0, ..c });
     let views = [free];

@@ -15,8 +15,7 @@ fn stroke(list: &[(f64, f64)], closed: bool, pen: usize) -> Mark {
     Mark::Stroke { points: points(list), closed, pen }
 }
 
-/// Returns a sheet of 100 × 80 with three pens, of which the dashed one is as wide and dark as the
-/// first.
+/// Returns a sheet of 100 × 80 with three pens; the dashed one is as wide and dark as the first.
 fn sheet() -> Sheet {
     let pen = |width, color, dashes| Pen { width, color, dashes };
     let layer = |name: &str, marks| SheetLayer { name: name.to_owned(), marks };
@@ -52,7 +51,7 @@ fn gcode(sheet: &Sheet, machine: &MachineOptions) -> String {
     String::from_utf8(bytes).expect("text")
 }
 
-/// Returns what a machine with a servo on its spindle draws: chains by pen, split by `M0`. Panics at unknown words.
+/// Returns the drawing of a machine with a servo on its spindle: chains by pen, split by `M0`. Panics at unknown words.
 fn replay(text: &str) -> Vec<Vec<Vec<DVec2>>> {
     let (mut at, mut down, mut ended) = (DVec2::ZERO, false, false);
     let mut pens: Vec<Vec<Vec<DVec2>>> = vec![Vec::new()];
@@ -113,8 +112,8 @@ fn replay(text: &str) -> Vec<Vec<Vec<DVec2>>> {
     pens
 }
 
-/// Returns points a degree apart at most on an arc, its end last. Machines refuse arcs whose ends are not as
-/// far from the middle.
+/// Returns points on an arc, at most a degree apart, its end last. Machines refuse arcs whose ends differ in distance
+/// from the centre.
 fn arc(from: DVec2, to: DVec2, middle: DVec2, is_left: bool) -> Vec<DVec2> {
     let (a, b) = (from - middle, to - middle);
     assert!((a.length() - b.length()).abs() < 0.002, "{from} {to} around {middle}");
@@ -126,7 +125,7 @@ fn arc(from: DVec2, to: DVec2, middle: DVec2, is_left: bool) -> Vec<DVec2> {
     (1..count as u32).map(at).chain([to]).collect()
 }
 
-/// Returns straight pieces, whichever way they run, in thousandths of a millimetre, sorted.
+/// Returns straight segments regardless of direction, in micrometres, sorted.
 fn pieces(chains: &[Vec<DVec2>]) -> Vec<[[i64; 2]; 2]> {
     let place = |p: DVec2| [p.x, p.y].map(|v| (v * 1000.0).round() as i64);
     let piece = |w: &[DVec2]| {
@@ -213,8 +212,7 @@ fn hpgl_has_a_pen_for_each_width_and_colour_and_takes_it_once() {
     assert_eq!(pens, ["SP1;PW.5,1;", "SP2;PW.25,2;", "SP0;"]);
 }
 
-/// Returns a circle, an arc that turns by nearly all of one, an ellipse, and a line that goes on in a cubic
-/// curve; y down.
+/// Returns a circle, an arc of nearly a full turn, an ellipse, and a line that continues in a cubic curve; y down.
 fn curves() -> Vec<Curve> {
     let p = DVec2::new;
     let arc = |center, axis, ratio, start, turn| Arc { center, axis, ratio, start, turn };
@@ -267,7 +265,7 @@ fn gcode_draws_curves_with_arcs() {
             })
             .collect();
         for chain in drawn {
-            // Each is one of the curves, from end to end.
+            // Each chain is one of the curves, from end to end.
             let far = |exact: &Vec<DVec2>| {
                 let there = chain.iter().map(|p| distance(*p, exact)).fold(0.0, f64::max);
                 let back = exact.iter().map(|p| distance(*p, chain)).fold(0.0, f64::max);

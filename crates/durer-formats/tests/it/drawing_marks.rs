@@ -1,4 +1,4 @@
-//! Every kind of mark in every writer: what stands in the file for each, to the byte where it is short.
+//! Every kind of mark in every writer: its text in the file, to the byte if it is short.
 
 use durer::math::DVec2;
 use durer::target::dimension::{DimensionText, Measure};
@@ -76,7 +76,7 @@ fn svg_paths_are_relative_and_dots_are_dots() {
 fn hpgl_is_as_the_pen_moves() {
     let marks = vec![
         stroke(&[(1.0, 79.0), (2.0, 79.0), (2.0, 78.0)], true, 0),
-        // From where the pen is then, its end is nearer.
+        // Its end is nearer to the pen's position at that time.
         stroke(&[(90.0, 79.0), (5.0, 79.0)], false, 0),
         stroke(&[(95.0, 70.0), (95.0, 70.0)], false, 0),
     ];
@@ -138,13 +138,13 @@ fn words_of_a_pdf_stand_beneath_their_strokes() {
         write_pdf(out, &sheet(vec![text("A (b)", Anchor::End), text("Ωßш", Anchor::Start)]))
     });
     let content = content(&pdf);
-    // Invisible, once; letters of Latin-1 by their own codes, others by the first free ones.
+    // Invisible, once; Latin-1 letters by their own codes, others by the first free ones.
     assert_eq!(content.matches("3 Tr\n").count(), 1, "{content}");
     assert!(content.contains("<4120286229> Tj ET"), "{content}");
     assert!(content.contains(" 50 40 Tm <80DF81> Tj ET"), "{content}");
-    // Capitals of the font are 0.562 of its size high.
+    // The font's capitals are 0.562 of its size high.
     assert!(content.contains("BT /F 8.897 Tf"), "{content}");
-    // It ends where the strokes do: five letters of 0.6 of the size, stretched.
+    // It ends with the strokes: five letters of 0.6 of the size, stretched.
     let line = content.lines().find(|line| line.contains("<4120")).expect("the words");
     let numbers: Vec<f64> = line.split(' ').filter_map(|w| w.parse().ok()).collect();
     let [size, stretch, _, _, _, _, x, y] = numbers[..] else { panic!("{line}") };
@@ -166,7 +166,7 @@ fn pdf_changes_its_state_only_where_it_must() {
     let pdf = written(|out| write_pdf(out, &sheet(marks.clone())));
     let content = content(&pdf);
     let count = |part: &str| content.matches(part).count();
-    // Dashes end where the next pen has none; the opacity is set once.
+    // Dashes are reset before a pen without them; the opacity is set once.
     assert_eq!((count("[] 0 d"), count(" gs\n"), count(" RG\n")), (1, 1, 2), "{content}");
     assert!(content.contains("2 3 l\nh\nS\n"), "{content}");
     assert!(!String::from_utf8_lossy(&pdf).contains("/UserUnit"));
@@ -185,7 +185,7 @@ fn pdf_changes_its_state_only_where_it_must() {
         order.iter().collect::<Vec<_>>()
     );
     assert_eq!(order.len(), 2);
-    // Pages longer than the format knows have a larger unit.
+    // Pages larger than the format allows have a larger unit.
     let long = Sheet { size: DVec2::new(6000.0, 80.0), ..sheet(Vec::new()) };
     let pdf = written(|out| write_pdf(out, &long));
     assert!(String::from_utf8_lossy(&pdf).contains("/UserUnit 2"));
@@ -260,7 +260,7 @@ fn dxf_has_entities_for_curves_or_polylines_with_bulges() {
     for part in [
         "0=CIRCLE 10=20.0 20=30.0 30=0.0 40=8.0",
         "0=LINE 10=10.0 20=70.0 30=0.0 11=30.0 21=70.0 31=0.0",
-        // A quarter, counter-clockwise where y looks up.
+        // A quarter turn, counter-clockwise with y up.
         "0=ARC 10=30.0 20=60.0 30=0.0 40=10.0 50=0.0 51=90.0",
         "0=SPLINE 210=0.0 220=0.0 230=1.0 70=8 71=3 72=8 73=4 74=0 40=0.0 40=0.0 40=0.0 40=0.0 40=1.0",
         "10=40.0 20=60.0 30=0.0 10=40.0 20=55.0 30=0.0 10=45.0 20=50.0 30=0.0 10=50.0 20=50.0 30=0.0",
@@ -270,7 +270,7 @@ fn dxf_has_entities_for_curves_or_polylines_with_bulges() {
     }
     let polylines = found(DxfStrokes::Polylines);
     assert_eq!(polylines.matches("0=LWPOLYLINE").count(), 3);
-    // The tangent of a quarter of the turn, clockwise.
+    // The tangent of a quarter of the angle; clockwise.
     assert!(polylines.contains("10=30.0 20=70.0 42=-0.4142135624 10=40.0 20=60.0"), "{polylines}");
 }
 
@@ -286,7 +286,7 @@ fn hpgl_draws_curves_as_chords() {
     }
 }
 
-/// Returns a dimension of 30 mm, upright, with an arrow.
+/// Returns a vertical dimension of 30 mm with an arrow.
 fn dimension() -> Mark {
     let (a, b) = (DVec2::new(20.0, 60.0), DVec2::new(20.0, 30.0));
     let along = DVec2::new(0.0, -1.0);
@@ -333,7 +333,7 @@ fn dimensions_are_drawn_where_nothing_knows_them() {
     let svg = utf8(written(|out| write_svg(out, &sheet)));
     assert!(svg.contains("aria-label=\"2× 15\"") && svg.contains("d=\"M10 60v-30\""), "{svg}");
     let hpgl = utf8(written(|out| write_hpgl(out, &sheet)));
-    // Letters run upwards, left of x = 9 mm.
+    // Text runs upwards, left of x = 9 mm.
     assert!(
         hpgl.contains("PU400,800;PD400,2000") || hpgl.contains("PU400,2000;PD400,800"),
         "{hpgl}"

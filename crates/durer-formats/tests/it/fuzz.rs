@@ -1,5 +1,5 @@
-//! The bodies of the fuzz targets for map data, drawings, models, height maps, panoramas and formulas, on their seeds, on seeds with changes, and on
-//! random bytes.
+//! The fuzz targets for map data, drawings, models, height maps, panoramas and formulas, run on their seeds, on changed
+//! seeds, and on random bytes.
 
 use proptest::prelude::*;
 use std::path::Path;
@@ -24,7 +24,7 @@ mod surfaces;
 #[path = "../../../../fuzz/bodies/words.rs"]
 mod words;
 
-/// Body of a target, called with bytes.
+/// Function of a target, called with bytes.
 type Body = fn(&[u8]);
 
 const TARGETS: [(&str, Body); 31] = [
@@ -61,7 +61,7 @@ const TARGETS: [(&str, Body); 31] = [
     ("formula", plot::formula),
 ];
 
-/// Targets that draw what they make, and so take longer.
+/// Targets that also draw their result, and so take longer.
 const DRAWN: [(&str, Body); 5] = [
     ("gltf_made", gltf_made::gltf_made),
     ("sheet", sheets::sheet),

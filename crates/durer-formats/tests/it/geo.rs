@@ -1,4 +1,4 @@
-//! Geodata: all formats give back what they were given, and errors say where.
+//! Geodata: every format reads what it wrote, and errors give the place.
 
 use durer::clip::polygon::WindingRule;
 use durer::math::{DVec2, Rect};
@@ -23,7 +23,7 @@ fn written(format: GeoFormat, features: &[Feature]) -> Vec<u8> {
     writer.finish(&[]).expect("memory")
 }
 
-/// Returns the message of the error of reading a text.
+/// Returns the error message of reading a text.
 fn error(format: GeoFormat, bytes: &[u8]) -> String {
     let mut reader = Reader::new(format, bytes).expect("a reader");
     loop {
@@ -43,7 +43,7 @@ fn a_line_that_is_cut_off_is_not_read_on() {
         let told = error(GeoFormat::GeoJson, text.as_bytes());
         assert!(told.starts_with("line 4, ") || told.starts_with("line 5, column 1:"), "{told}");
     }
-    // Documents of several lines may come before others.
+    // Documents of several lines may precede others.
     let spread = line.replace(':', ":\n ");
     let texts = [[line, &spread, line, line], [&spread, &spread, line, &spread]];
     for text in texts.map(|parts| parts.concat()) {
@@ -351,7 +351,7 @@ fn uses_of_svg_show_shapes_elsewhere() {
             format!("<defs>{shape}</defs><use href='#r' x='3' y='4'/>"),
             vec![("\"r\"", rect(3.0, 4.0))],
         ),
-        // Before the shape, by XLink, in another place, with a name of its own.
+        // Before the shape, by XLink, at another position, with its own name.
         (
             format!("<use id='u' xlink:href='#r' transform='translate(5)' x='1'/>{shape}"),
             vec![("\"u\"", rect(6.0, 0.0)), ("\"r\"", rect(0.0, 0.0))],
@@ -452,7 +452,7 @@ fn declarations_of_svg_follow_css() {
         ("style='Fill-Rule:EvenOdd'", (odd, 0)),
         ("style='fill-rule:evenodd /* without end'", (odd, 0)),
         ("style='/*fill-rule:evenodd'", (not, 0)),
-        // After declarations that mean nothing here.
+        // After declarations without a meaning here.
         ("style='font:12px/1.5 serif;fill-rule:evenodd'", (odd, 0)),
         ("style='--own:1;fill:;:;nothing;fill-rule:evenodd'", (odd, 0)),
         ("style='width:calc((1px + 1px)/2);fill-rule:evenodd ! IMPORTANT'", (odd, 0)),
@@ -488,18 +488,18 @@ fn bad_svg_is_told() {
         assert_eq!((shapes.len(), warnings.len()), (count, 1), "{shape}: {warnings:?}");
         assert!(warnings[0].contains(told), "{shape}: {warnings:?}");
     }
-    // A million curves are 16 positions each, and no more are held.
+    // A million curves have 16 positions each, and no more are kept.
     let long = format!("<path d='M0 0{}'/>", "q1 0 1 1".repeat((1 << 20) + 1));
     let (shapes, warnings) = svg_shapes(&long);
     assert!(shapes.is_empty() && warnings[0].contains("more than 16777216 positions"));
-    // Shapes before the fault are had.
+    // Shapes before the fault are read.
     let mut reader =
         Reader::new(GeoFormat::Svg, &b"<svg><path d='M0 0h1'/><g>"[..]).expect("a reader");
     assert!(reader.next_feature().expect("a shape").is_some());
     assert!(reader.next_feature().is_err());
 }
 
-/// The place of each thing is counted on from the one before: it was counted from the start, once for each.
+/// Checks that the position of each item is counted from the one before, not each time from the start.
 #[test]
 fn many_small_things_take_no_longer_than_few_large_ones() {
     let points: String = (0..200_000).map(|i| format!("POINT ({i} 1)\n")).collect();
@@ -546,7 +546,7 @@ fn lines_of_svg_are_a_pixel_wide_for_any_viewer() {
     let line = r#"{"type":"LineString","coordinates":[[0,0],[9.8,4.9]]}"#;
     let all = read_all(line.as_bytes(), "").expect("read").0;
     let text = String::from_utf8(written(GeoFormat::Svg, &all)).expect("text");
-    // 1000 pixels for 9.8 units and a margin of a hundredth on each side.
+    // 1000 pixels for 9.8 units and a margin of 1 % on each side.
     let width = text.split("path{stroke-width:").nth(1).and_then(|rest| rest.split('}').next());
     let width: f64 = width.and_then(|w| w.parse().ok()).expect("a width");
     assert!((width - 9.8 * 1.02 / 1000.0).abs() < 1e-12, "{width}");
@@ -566,7 +566,7 @@ fn svg_points(shape: &str) -> Vec<DVec2> {
 
 #[test]
 fn arcs_of_svg_lie_on_their_ellipses() {
-    // Radii (3, 2) around (5, 1), turned by 90°: y is turned over after that.
+    // Radii (3, 2) around (5, 1), turned by 90°; y is flipped afterwards.
     for flags in ["0 0", "0 1", "1 0", "1 1", "01", "11"] {
         let points = svg_points(&format!("<path d='M5 4A3 2 90 {flags}3 1'/>"));
         let (large, sweep) = (flags.starts_with('1'), flags.ends_with('1'));
@@ -575,14 +575,14 @@ fn arcs_of_svg_lie_on_their_ellipses() {
             (points[0], points[points.len() - 1]),
             (DVec2::new(5.0, -4.0), DVec2::new(3.0, -1.0))
         );
-        // Both ends are a quarter apart on two ellipses; the flags choose one and a way around it.
+        // Both ends are a quarter turn apart on two ellipses; the flags choose the ellipse and the direction.
         let center = if large == sweep { DVec2::new(3.0, -4.0) } else { DVec2::new(5.0, -1.0) };
         for p in &points {
             let q = (*p - center) / DVec2::new(2.0, 3.0);
             assert!((q.length() - 1.0).abs() < 1e-12, "{flags}: {p}");
         }
     }
-    // Radii that do not reach grow; without radii the arc is a line.
+    // Radii that are too small are enlarged; without radii the arc is a line.
     let half = svg_points("<path d='M0 0a1 1 0 0 1 8 0'/>");
     assert!(
         half.iter().all(|p| (p.distance(DVec2::new(4.0, 0.0)) - 4.0).abs() < 1e-12 && p.y > -1e-12)
@@ -619,7 +619,7 @@ fn points(dimensions: Dimensions, least: usize) -> impl Strategy<Value = Points>
             let z = if dimensions.has_z() { z } else { 0.0 };
             points.push(DVec2::new(x, y), [z, if dimensions.has_m() { m } else { 0.0 }]);
         }
-        // A ring that ends as it begins would be taken for a closed one.
+        // An open ring whose end equals its beginning would be taken for a closed one.
         if points.xy.first() == points.xy.last() && points.len() > 1 {
             points.xy[0].x += 1.0;
         }
@@ -665,11 +665,11 @@ proptest! {
         srid in prop::option::of(1..99999i32),
     ) {
         let all: Vec<Feature> = geometries.into_iter().map(Feature::of_geometry).collect();
-        // The others have tests of their own: they keep fields, and not all dimensions of nothing.
+        // The others have their own tests: they keep fields, and not all dimensions of empty geometries.
         for format in GeoFormat::ALL.into_iter().filter(|f| f.streams()) {
             let mut all = all.clone();
             if format.is_geojson() {
-                // GeoJSON knows no measure without a height.
+                // GeoJSON has no measures without heights.
                 all.retain(|f| f.geometry.as_ref().is_some_and(|g| g.dimensions() != Dimensions::Xym));
             } else {
                 all.iter_mut().for_each(|f| f.srid = srid);
@@ -690,7 +690,7 @@ proptest! {
     ) {
         for format in GeoFormat::ALL {
             let mut writer = Writer::new(format, Vec::new());
-            // A Shapefile refuses geometries of several kinds.
+            // A Shapefile refuses geometries of different kinds.
             let whole = writer.write(&Feature::of_geometry(given.clone())).and_then(|()| writer.finish(&[]));
             let mut bytes = whole.unwrap_or_default();
             if let Some(place) = bytes.get_mut(at) {

@@ -49,7 +49,7 @@ TIN EMPTY";
     assert_eq!(warnings, Vec::<String>::new());
 }
 
-/// Well-known binary: a type, then what follows.
+/// Returns well-known binary: a type, then the content.
 fn wkb(kind: u32, rest: &[&[u8]]) -> Vec<u8> {
     [&[1], &kind.to_le_bytes()[..], &rest.concat()].concat()
 }

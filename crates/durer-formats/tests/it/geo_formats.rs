@@ -1,4 +1,4 @@
-//! CSV, TopoJSON, FlatGeobuf, KML and GPX: read, and written where they are written.
+//! CSV, TopoJSON, FlatGeobuf, KML and GPX: reading, and writing where it is supported.
 
 use durer::math::{DVec2, Rect};
 use durer_formats::NoResources;
@@ -7,7 +7,7 @@ use durer_formats::geo::{
     Writer, read_all,
 };
 
-/// Features, and warnings as they are told.
+/// Features, and warnings as texts.
 fn read(bytes: &[u8], name: &str) -> (Vec<Feature>, Vec<String>) {
     let (features, warnings) = read_all(bytes, name).unwrap_or_else(|e| panic!("{name}: {e}"));
     (features, warnings.iter().map(ToString::to_string).collect())
@@ -48,7 +48,7 @@ fn features_of_every_kind_go_through_formats_with_fields() {
         assert_eq!(GeoFormat::of_content(&bytes), Some(format));
         let (mut again, warnings) = read(&bytes, "");
         if format == GeoFormat::FlatGeobuf {
-            // Its index has an order of its own.
+            // Its index has its own order.
             again.sort_by_key(|f| features.iter().position(|g| g.geometry == f.geometry));
         }
         assert_eq!((wkt(&again), warnings), (wkt(&features), Vec::new()), "{format}");
@@ -190,7 +190,7 @@ fn flatgeobuf_keeps_dimensions_and_the_coordinate_system() {
     assert_eq!(dimensions, Some(Dimensions::Xyzm));
     let second = reader.next_feature().expect("read").expect("a feature");
     assert_eq!(second.geometry, features[1].geometry);
-    // Cut short, the features before are there, and a word.
+    // If the file is cut short, the features before the end are read, with a warning.
     let (features, warnings) = read(&bytes[..bytes.len() - 9], "");
     assert_eq!((features.len(), warnings.len()), (2, 1), "{warnings:?}");
     assert!(warnings[0].contains("ends within a feature"));
@@ -220,7 +220,7 @@ fn flatgeobuf_is_indexed_and_read_by_it() {
         lines,
         ["POINT (3 3)", "POINT (3 4)", "POINT (4 3)", "POINT (4 4)", "POINT (5 3)", "POINT (5 4)"]
     );
-    // None without features, and a root above one.
+    // No index without features; otherwise one with a root.
     assert_eq!(read(&write(GeoFormat::FlatGeobuf, &[]), "").0, []);
     let (one, _) = read(&write(GeoFormat::FlatGeobuf, &features[..1]), "");
     assert_eq!(one.len(), 1);
@@ -338,7 +338,7 @@ fn foreign_formats_are_named() {
         let message = error(bytes, "a.bin");
         assert!(message.contains(told) && message.contains("GeoPackage, Shapefile"), "{message}");
     }
-    // A name does not make it what it is not.
+    // A file's name does not decide its format.
     assert!(error(b"PK\x03\x04", "").contains("ZIP"));
 }
 

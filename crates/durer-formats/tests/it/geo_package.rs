@@ -1,4 +1,4 @@
-//! GeoPackages: those of other programs, damaged ones, and written ones.
+//! GeoPackages: from other programs, damaged, and written here.
 
 use durer_formats::geo::{
     Beside, Feature, GeoFormat, Geometry, Member, Points, Reader, System, Writer, read_all,
@@ -6,8 +6,8 @@ use durer_formats::geo::{
 use durer_formats::{NoResources, Resources};
 use std::io::{Cursor, Seek};
 
-/// Texts in UTF-16, pages of 512 bytes, rows on several pages, a column that was added later, two layers of points and
-/// lines, a table without geometries, a view and tiles.
+/// UTF-16 text, pages of 512 bytes, rows on several pages, a column added later, two layers of points and lines, a
+/// table without geometries, a view and tiles.
 const WIDE: &[u8] = include_bytes!("../../../../fuzz/seeds/geopackage/wide.gpkg");
 
 /// The same in UTF-8, with lines in another coordinate system.
@@ -85,7 +85,7 @@ fn geometries_of_all_kinds_are_read_and_bad_ones_told() {
             "POINT (3 4)"
         ]
     );
-    // Rows that are older than the last column have its default.
+    // Rows older than the last column have its default.
     let last: Vec<String> = features.iter().map(|f| f.fields()[1].value.clone()).collect();
     assert_eq!(last, ["7", "7", "7", "7", "7", "7", "8"]);
     assert_eq!(
@@ -136,7 +136,7 @@ fn damaged_files_are_refused_with_a_place() {
     assert!(error(&with(16, &[3, 0]), None).starts_with("byte 16: pages of 768 bytes"));
     assert!(error(&with(20, &[99]), None).starts_with("byte 20: pages keep more"));
     assert_eq!(error(&with(100, &[10]), None), "byte 0: a page of a table is expected");
-    // The last child of the first page is that page.
+    // The last child of the first page is the page itself.
     let told = error(&with(108, &[0, 0, 0, 1]), None);
     let ways = ["nested too deep", "lead to each other without end", "lie over each other"];
     assert!(ways.iter().any(|way| told.contains(way)), "{told}");
@@ -144,7 +144,7 @@ fn damaged_files_are_refused_with_a_place() {
     assert!(error(b"SQLite", None).contains("the header of an SQLite database is expected"));
 }
 
-/// Files that another program has left beside a database.
+/// Files that another program may leave beside a database.
 struct Left(&'static str);
 
 impl Resources for Left {
@@ -242,7 +242,7 @@ fn more_fields_than_a_table_has_are_refused() {
 
 #[test]
 fn other_databases_say_what_they_are() {
-    // A database with a table that is not a list of contents.
+    // A database whose list of contents is another kind of table.
     let mut file = PLAIN.to_vec();
     for at in 0..file.len() - 13 {
         if file[at..].starts_with(b"gpkg_contents") {

@@ -1,8 +1,8 @@
-//! GeoParquet: files of other programs, and written ones, by the feature `geoparquet`; without it, a word.
+//! GeoParquet: files of other programs, and files written here, with the feature `geoparquet`; without it, an error.
 
 use durer_formats::geo::{GeoFormat, read_all};
 
-/// A file as geopandas writes it, with a column of boxes.
+/// A file written by geopandas, with a column of boxes.
 const SEED: &[u8] = include_bytes!("../../../../fuzz/seeds/geoparquet/seed.parquet");
 
 #[cfg(not(feature = "geoparquet"))]
@@ -109,7 +109,7 @@ mod read_and_written {
             told(&with(b"\"primary_column\": \"g", b"\"primary_column\": \"h"))
                 .contains("there is no column heometry")
         );
-        // Groups in groups without end: a list of columns, each with one child.
+        // Endlessly nested groups: a list of columns, each with one child.
         let mut footer = vec![0x15, 2, 0x19, 0xfc, 0xd0, 0x0f];
         (0..2000).for_each(|_| footer.extend([0x48, 1, b'a', 0x15, 2, 0]));
         footer.push(0);

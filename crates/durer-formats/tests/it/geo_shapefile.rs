@@ -1,4 +1,4 @@
-//! Shapefiles: the files that make one up, read and written.
+//! Shapefiles: reading and writing of their files.
 
 use durer_formats::geo::{Beside, Feature, GeoFormat, Reader, System, Writer, read_all};
 use durer_formats::{Resources, Result};
@@ -14,7 +14,7 @@ impl Resources for Files {
     }
 }
 
-/// Returns the files of a Shapefile named `a`, and what was told.
+/// Returns the files of a Shapefile named `a`, and the messages.
 fn written(features: &[Feature], system: System) -> Result<(Files, Vec<String>)> {
     let mut writer = Writer::new(GeoFormat::Shapefile, Vec::new());
     writer.set_system(system);
@@ -161,7 +161,7 @@ fn what_is_missing_or_broken_is_told() {
         (features.len(), &warnings[..]),
         (2, &["there is no .dbf beside it; features have no fields".to_owned()][..])
     );
-    // A row that is deleted takes its record along.
+    // A deleted row removes its record.
     let mut deleted = dbf.clone();
     deleted[65] = b'*';
     files.0.insert("a.dbf".to_owned(), deleted);
@@ -194,7 +194,7 @@ fn what_is_missing_or_broken_is_told() {
 fn rings_that_run_the_wrong_way_are_understood() {
     let hole = "POLYGON ((0 0, 0 4, 4 4, 4 0, 0 0), (1 1, 3 1, 3 3, 1 3, 1 1))";
     let (mut files, _) = written(&parsed(hole), System::default()).expect("written");
-    // Swap x and y of all positions, which turns all rings.
+    // x and y of all positions are swapped, which reverses all rings.
     let shp = files.0.get_mut("a.shp").expect("a file");
     let positions = shp.len() - 10 * 16;
     shp[positions..].as_chunks_mut::<16>().0.iter_mut().for_each(|p| p.rotate_left(8));

@@ -1,4 +1,4 @@
-//! glTF: small files written here, each for one thing.
+//! glTF: small files written by the tests, each for one thing.
 
 use durer::math::{DVec2, DVec3, Vec2, Vec3, Vec4};
 use durer::scene::{
@@ -156,9 +156,9 @@ fn trees_may_be_deep() {
     let text = triangle(&format!(r#""nodes": [{}, {{"mesh": 0}}]"#, chain.join(",")));
     let scene = scene(&text);
     let place = scene.instances[0].world_from_mesh;
-    // 99,999 half turns are one.
+    // 99,999 half turns equal one.
     assert_eq!(place.transform_point3(DVec3::ONE), DVec3::new(100_000.0, -1.0, -1.0));
-    // All of them in the scene, from the last on: each has its parent there too.
+    // All nodes are in the scene, the last first: each also has its parent there.
     let all: Vec<String> = (0..100_000).rev().map(|i| i.to_string()).collect();
     let text = text.replace(
         r#""nodes": ["#,
@@ -188,7 +188,7 @@ fn accessors_without_data_are_no_larger_than_those_with_data() {
 
 #[test]
 fn accessors_may_be_interleaved_sparse_and_normalized() {
-    // Three vertices of 16 bytes: a float x, padding, RGB in bytes, padding; then sparse parts.
+    // Three vertices of 16 bytes: a float x, padding, RGB in bytes, padding; then the sparse data.
     let mut data = Vec::new();
     for (i, rgb) in [[255u8, 0, 0], [0, 255, 0], [51, 0, 102]].iter().enumerate() {
         data.extend(bytes![f32: [i as f32, 0.0, 0.0]]);
@@ -227,7 +227,7 @@ fn accessors_may_be_interleaved_sparse_and_normalized() {
     );
     assert_eq!(all.meshes[1].positions[1], Vec3::new(7.0, 8.0, 9.0));
     assert_eq!(all.meshes[1].positions[2], Vec3::ZERO);
-    // The sparse index 2 as 3: one too far.
+    // The sparse index 2 becomes 3, which is out of range.
     let wrong = text.replace("%01%00%02%00", "%01%00%03%00");
     let model = read(&wrong).unwrap();
     let told = model.warnings[1].to_string();
@@ -301,7 +301,7 @@ fn broken_primitives_tell_their_path() {
     let huge = r#"{"bufferView": 0, "componentType": 5126, "count": 1000000000, "type": "VEC3"}"#;
     let message = primitive(huge, r#"{"attributes": {"POSITION": 1}}"#);
     assert!(message.starts_with("accessors[1]: ends at byte 12000000000"), "{message}");
-    // Without a view the count is backed by nothing, so only the limit can refuse it.
+    // Without a view no data limit the count, so only the limit can refuse it.
     let zeros = r#"{"componentType": 5126, "count": 1000000000, "type": "VEC3"}"#;
     let message = primitive(zeros, r#"{"attributes": {"POSITION": 1}}"#);
     assert!(message.contains("decoded size of 12000000"), "{message}");
@@ -402,7 +402,7 @@ fn materials_are_read_whole() {
     assert_eq!((base.texture, base.tex_coord), (0, 2));
     assert_eq!(base.transform.transform_point2(DVec2::ONE), DVec2::new(2.5, 3.25));
     assert_eq!((unlit.model, unlit.alpha_mode), (ShadingModel::Unlit, AlphaMode::Blend));
-    // Its specular factor is left to be 1: all is reflected, nothing scattered.
+    // Its specular factor keeps the default 1: everything is reflected, nothing scattered.
     assert!(glossy.metallic > 1.0 - 1e-6 && glossy.roughness == 0.25);
     assert!((glossy.base_color - Vec4::ONE).length() < 1e-6);
     let sampler = model.scene.textures[0].sampler;
@@ -411,14 +411,14 @@ fn materials_are_read_whole() {
         (Filter::Nearest, Filter::Linear, MipFilter::Nearest)
     );
     assert_eq!((sampler.wrap_u, sampler.wrap_v), (Wrap::ClampToEdge, Wrap::MirroredRepeat));
-    // The image is rubbish and texture 1 has none: both are white, and both are told.
+    // The image is invalid and texture 1 has none: both are white, each with a warning.
     assert!(model.scene.images.iter().all(|i| i.data.is_empty()));
     let places: Vec<&Place> = model.warnings.iter().map(|w| &w.place).collect();
     let expected = ["scenes", "textures[1]", "images[0]"].map(|at| Place::Path(at.into()));
     assert_eq!(places, expected.iter().collect::<Vec<_>>());
 }
 
-/// Answers every request with nothing, and remembers it.
+/// Answers every request with nothing, and records it.
 #[derive(Default)]
 struct Asked(RefCell<Vec<String>>);
 
@@ -493,13 +493,13 @@ fn cameras_and_lights_stand_in_the_world() {
     assert_eq!((position, direction), (DVec3::new(1.0, 2.0, 3.0), -DVec3::Z));
     assert_eq!((range, inner, outer), (Some(9.0), 0.0, 0.5));
     assert_eq!(sun.kind, LightKind::Directional { direction: -DVec3::Z });
-    // The same unit for weak and strong lights, however strong others are.
+    // All lights have the same unit, however strong the others are.
     assert_eq!(sun.color, (DVec3::ONE * 1e5 / pi).as_vec3());
     assert_eq!(model.warnings.len(), 3, "{:?}", model.warnings);
 }
 
-/// Returns a triangle with a morph target that lifts it by one, a skin of two joints, and an
-/// animation that turns the weight up and moves joint 1.
+/// Returns a triangle with a morph target that lifts it by one, a skin of two joints, and an animation that increases
+/// the weight and moves joint 1.
 fn posed(pose: Option<Pose>, members: &str) -> Result<Model> {
     let data = bytes![
         f32: [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
@@ -627,8 +627,7 @@ fn several_sets_of_texture_coordinates_are_kept() {
     assert_eq!(sets[1], [Vec2::new(1.0, 2.0), Vec2::new(3.0, 4.0), Vec2::new(5.0, 6.0)]);
 }
 
-/// A triangle with RGBA colours in bytes, packed by a Draco encoder: by edgebreaker, and one vertex
-/// after the other.
+/// A triangle with RGBA colours in bytes, compressed by a Draco encoder: with edgebreaker, and sequentially.
 #[cfg(feature = "draco")]
 const DRACO: [&str; 2] = [
     "445241434f020201010000000301010100000107ff011101010002ff0000000000010009030000000102020401010100\

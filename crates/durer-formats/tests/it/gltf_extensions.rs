@@ -1,4 +1,4 @@
-//! glTF: what extensions change, each in a small file.
+//! glTF: the effects of extensions, each in a small file.
 
 use crate::gltf::{ACCESSOR, file, read, scene, triangle, triangle_bytes};
 use durer::math::{DVec3, Vec3, Vec4};
@@ -6,8 +6,7 @@ use durer::scene::{AlphaMode, Image, Material, Scene, ShadingModel};
 use durer::target::Pixels;
 use durer_formats::{Error, Limits, Model, NoResources, ReadOptions, gltf, png};
 
-/// Returns a triangle and a node that has it at three places: by floats, by normalized bytes and
-/// floats.
+/// Returns a triangle and a node with three instances of it, given by floats, by normalized bytes and floats.
 fn instanced(attributes: &str, node: &str) -> String {
     let mut data = triangle_bytes();
     let places: [f32; 9] = [0.0, 0.0, 0.0, 10.0, 0.0, 0.0, 0.0, 20.0, 0.0];
@@ -53,7 +52,7 @@ fn instances_stand_where_their_attributes_say() {
     near(corner(1, DVec3::new(1.0, 1.0, 1.0)), DVec3::new(8.0, -2.0, 7.0));
     near(corner(2, DVec3::new(1.0, 1.0, 1.0)), DVec3::new(1.0, 17.0, 4.0));
     assert!(read(&text).unwrap().warnings.is_empty());
-    // Nothing but what an application made for itself: one instance, as without.
+    // Only attributes private to an application: one instance, as without the extension.
     assert_eq!(self::scene(&instanced(r#""_ID": 1"#, r#""scale": [1, 1, 1]"#)).instances.len(), 1);
 }
 
@@ -256,11 +255,11 @@ fn specular_glossiness_textures_become_those_of_metal() {
     assert_eq!((rough.data[1][1], rough.data[1][2]), (255, 0));
     assert_eq!(base.data[3][3], 128);
     assert_eq!((a.metallic, a.roughness, a.base_color), (1.0, 1.0, Vec4::ONE));
-    // Two textures that lie differently cannot be joined texel by texel.
+    // Two textures with different placements cannot be combined texel by texel.
     assert!(other.base_color_texture.unwrap().texture != a.base_color_texture.unwrap().texture);
     assert_eq!(model.warnings.len(), 1, "{:?}", model.warnings);
     assert!(model.warnings[0].message.contains("has other coordinates"), "{:?}", model.warnings);
-    // A picture that cannot be read makes no mirror.
+    // An unreadable picture makes no mirror.
     let text = triangle(
         r#""nodes": [{"mesh": 0}], "images": [{"uri": "none.png"}], "textures": [{"source": 0}],
         "materials": [{"extensions": {"KHR_materials_pbrSpecularGlossiness":
@@ -307,7 +306,8 @@ fn what_transmits_light_is_blended() {
     near(metal.base_color.w, 1.0);
     near(white.transmission, 1.0);
     near(textured.transmission, 0.5);
-    // Where the mask is red, white glass is clear and black keeps all; elsewhere it is what it was, opaque.
+    // Where the mask is red, white glass is clear and black glass absorbs everything; elsewhere the material stays
+    // opaque.
     let texels = &image(&model.scene, textured.base_color_texture).data;
     assert_eq!(texels.iter().map(|t| t[3]).collect::<Vec<_>>(), [38, 38, 255, 255]);
     assert!(model.warnings.is_empty(), "{:?}", model.warnings);

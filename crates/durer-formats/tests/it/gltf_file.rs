@@ -1,11 +1,11 @@
-//! glTF from open files: the same models as from their bytes, without holding these.
+//! glTF from open files: the same models as from bytes, without the whole file in memory.
 
 use crate::shared;
 use durer::math::Vec3;
 use durer_formats::{Error, Limits, Model, NoResources, ReadOptions, Resources, Result, gltf};
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
 
-/// Vertices of 20 bytes each: a position, two bytes of nothing, a normalized colour, and an index.
+/// Vertices of 20 bytes each: a position, two unused bytes, a normalized colour, and an index.
 const VERTICES: u32 = 30_000;
 const STRIDE: u32 = 20;
 
@@ -58,7 +58,7 @@ fn points(index_bytes: u32) -> Vec<u8> {
     glb(&json, &buffer())
 }
 
-/// A file that remembers the largest piece that was requested.
+/// A file that remembers the largest piece requested.
 struct Watched<'a> {
     file: Cursor<&'a [u8]>,
     largest: &'a mut usize,
@@ -97,7 +97,7 @@ fn accessors_are_read_in_pieces() {
     }
 }
 
-/// Reads the same bytes from memory and from an open file; both have to give the same result.
+/// Reads the same bytes from memory and from an open file; both must give the same result.
 fn both(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let model = gltf::read(bytes, resources, options);
     let opened = gltf::read_file(Cursor::new(bytes), resources, options);
@@ -137,7 +137,7 @@ fn real_files_give_the_same_models() {
     let files = shared::files(&data.join("gltf"), &["glb", "gltf"]);
     for path in &files {
         let folder = shared::Folder(path.parent().unwrap().to_owned());
-        // Without the feature, what needs Draco is refused alike.
+        // Without the feature, files that need Draco are refused in both cases.
         let _ = both(&std::fs::read(path).unwrap(), &folder, &ReadOptions::default());
     }
     assert!(files.len() > 30);
@@ -151,7 +151,7 @@ fn files_are_limited_and_may_end_too_early() {
     let refused = gltf::read_file(Cursor::new(&file), &NoResources, &options);
     assert!(matches!(refused, Err(Error::Limit { value, .. }) if value == file.len() as u64));
 
-    /// Says that it is longer than it is.
+    /// A file that claims to be longer than it is.
     struct Longer(Cursor<Vec<u8>>);
     impl Read for Longer {
         fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {

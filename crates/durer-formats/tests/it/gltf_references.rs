@@ -1,4 +1,4 @@
-//! glTF: what is left of a file where something that it refers to is missing, or a part of it is broken.
+//! glTF: the remaining model if a referenced file is missing or a part of the file is broken.
 
 use crate::gltf::{ACCESSOR, read, triangle_bytes, uri};
 use durer_formats::{Found, Model, ReadOptions, Resources, gltf};
@@ -71,7 +71,7 @@ fn a_broken_primitive_leaves_the_others() {
     assert!(both.starts_with("buffers[1].uri: "), "the first error: {both}");
 }
 
-/// Finds everything under another name.
+/// Finds every file under another name.
 struct Elsewhere;
 
 impl Resources for Elsewhere {

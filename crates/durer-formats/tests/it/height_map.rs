@@ -1,4 +1,4 @@
-//! Height maps: what real and made files mean, and what broken ones are told.
+//! Height maps: the meaning of real and generated files, and the errors for broken ones.
 
 use durer_formats::height_map::{HeightMap, HeightMapOptions, read};
 use proptest::prelude::*;
@@ -17,7 +17,7 @@ fn rows(map: &HeightMap) -> Vec<Vec<Option<f64>>> {
     (0..f.rows()).map(|r| (0..f.columns()).map(|c| f.height(c, r)).collect()).collect()
 }
 
-/// Returns an NPY array with numbers as they are.
+/// Returns an NPY array with the numbers unchanged.
 fn npy(kind: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {
     let order = if fortran { "True" } else { "False" };
     let header = format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': {shape}, }}\n");
@@ -62,7 +62,7 @@ fn the_same_heights_in_every_format() {
 
 #[test]
 fn points_x_y_z_are_put_on_a_grid() {
-    // A lattice, in any order: y runs to the north, so the highest is the first row.
+    // A grid in any order: y runs north, so the highest is the first row.
     for (name, text) in [
         ("a heading", "x,y,z\n0,10,1\n2,10,2\n4,10,3\n4,8,6\n0,8,4\n2,8,nan\n"),
         ("no heading", "0 8 4\n0 10 1\n2 8 nan\n2 10 2\n4 8 6\n4 10 3\n"),
@@ -74,7 +74,7 @@ fn points_x_y_z_are_put_on_a_grid() {
         assert_eq!((field.x_range(), field.z_range()), ([0.0, 4.0], [-10.0, -8.0]), "{name}");
         assert!(found.on_map && found.warnings.is_empty(), "{name}: {:?}", found.warnings);
     }
-    // Anywhere: a plane stays one, and what is outside of the points is missing.
+    // Scattered points: a plane stays a plane, and cells outside the points are missing.
     let mut text = "x,y,z\n".to_owned();
     for i in 0..200 {
         let (x, y) = (f64::from(i % 20) + f64::from(i * 7 % 13) * 0.05, f64::from(i / 20));
@@ -107,7 +107,7 @@ fn coordinates_stand_in_the_first_row_and_column() {
         assert_eq!(found.field.x_range(), [0.0, 4.0]);
         assert_eq!(found.field.z_range(), [-10.0, -8.0]);
     }
-    // Uneven ones are made even.
+    // Uneven spacings become even.
     let found = map(b",0,1,4\n0,0,10,40\n1,0,10,40\n2,0,10,40\n", "a.csv");
     assert!(found.warnings[0].message.contains("not evenly spaced"), "{:?}", found.warnings);
     assert_eq!(rows(&found)[0], [Some(0.0), Some(20.0), Some(40.0)]);

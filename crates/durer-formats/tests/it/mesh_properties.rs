@@ -1,4 +1,4 @@
-//! Random meshes through every encoding, and files that random changes have broken.
+//! Random meshes through every encoding, and files damaged by random changes.
 
 use durer::math::Vec3;
 use durer::scene::Mesh;
@@ -152,7 +152,7 @@ proptest! {
     }
 }
 
-/// A cheap generator of changes: xorshift, Marsaglia 2003.
+/// A simple generator of changes: xorshift, Marsaglia 2003.
 struct Random(u64);
 
 impl Random {

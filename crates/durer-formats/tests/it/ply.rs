@@ -1,4 +1,4 @@
-//! PLY files as their many writers write them.
+//! PLY files as various programs write them.
 
 use durer::math::{Vec2, Vec3, Vec4};
 use durer::scene::{Mesh, ShadingModel, Topology};
@@ -8,7 +8,7 @@ use durer_formats::{Limits, Model, NoResources, ReadOptions, Resources, Result, 
 const CUBE: &str = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n";
 const XYZ: &str = "property float x\nproperty float y\nproperty float z\n";
 
-/// Returns an ascii file with the corners of a cube, more of a header, and more data.
+/// Returns an ASCII file with the corners of a cube, further header lines, and further data.
 fn cube(head: &str, data: &str) -> String {
     format!("ply\nformat ascii 1.0\nelement vertex 8\n{XYZ}{head}end_header\n{CUBE}{data}")
 }
@@ -170,7 +170,7 @@ fn edges_keep_their_colours() {
     assert_eq!(mesh.colors, [RED, RED, RED, BLUE, BLUE]);
 }
 
-/// One picture of four texels, by any of two names.
+/// Finds one picture of four texels, by either of two names.
 struct Pictures;
 
 impl Resources for Pictures {
@@ -298,7 +298,7 @@ fn splats_are_discs_of_their_first_colour() {
     assert!((area - 1.5 * 1.5 * 2.598_076).abs() < 1e-4, "{area}");
     assert_eq!(model.scene.materials[0].model, ShadingModel::Unlit);
 
-    // The same from all sides, where the radii are alike.
+    // The same from all sides if the radii are equal.
     let round = splats(&["5 0 0 0 0 0 1 1 1 0 5 0 0 -0.5 1 0 0 0"]);
     let solid = read_with(&round, &NoResources).expect("readable");
     assert_eq!((solid.scene.triangle_count(), solid.scene.meshes[0].positions.len()), (8, 6));

@@ -1,10 +1,9 @@
-//! The shared test data, where they are, and files below a folder.
+//! The folder of shared test data, and the files below a folder.
 
 use durer_formats::Resources;
 use std::path::{Path, PathBuf};
 
-/// Returns the folder of shared data: `DURER_DATA`, or beside the workspace. Says so if there is
-/// none.
+/// Returns the folder of shared data: `DURER_DATA`, or the one beside the workspace. Prints a note if there is none.
 pub fn data() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("DURER_DATA").map_or(beside, PathBuf::from);

@@ -1,4 +1,4 @@
-//! Drawings in SVG: what is painted, what is told, what is refused.
+//! Drawings in SVG: painted parts, warnings, errors.
 
 use durer::math::DAffine2;
 use durer::raster::paint::{Canvas, Options};
@@ -57,7 +57,7 @@ fn masks_take_brightness_or_opacity() {
 
 #[test]
 fn a_mask_is_not_clipped_by_what_it_is_used_in() {
-    // The border of the clip path lies within a pixel; taken twice it would be too thin.
+    // The border of the clip path is within a pixel; applied twice, it would be too thin.
     let picture = painted(
         r#"<clipPath id="c"><rect width="10.5" height="20"/></clipPath>
         <mask id="m" maskUnits="userSpaceOnUse" width="20" height="20">
@@ -152,7 +152,7 @@ fn arcs_from_far_away_are_refused_at_once() {
         let error = document(path).unwrap_err().to_string();
         assert!(error.starts_with("line 2") && error.contains("arcs"), "{error}");
     }
-    // Without arcs the length is of no matter, and arcs of any size that has a use are drawn.
+    // Without arcs the length does not matter, and arcs of any useful size are drawn.
     document("M1 1L3.4e38 70L5 5Z").expect("a drawing");
     document("M1 1L1e15 70A10 20 30 0 1 5 5Z").expect("a drawing");
 }
@@ -201,7 +201,7 @@ fn values_that_cannot_be_used_are_told_with_their_place() {
         assert!(found[0].contains(name) && found[0].contains(part), "{body}: {found:?}");
         assert!(found[0].starts_with("line "), "{found:?}");
     }
-    // The same value is told once.
+    // A repeated value gives one warning.
     assert_eq!(told("<g fill='x'/><g fill='x'/><g stroke='x'/>").len(), 2);
 }
 
@@ -242,7 +242,7 @@ fn rebeccapurple_is_a_color() {
     }
 }
 
-/// Checks references in circles: those that are not cut would be followed until the stack is full.
+/// Checks circular references: if they were not cut, following them would overflow the stack.
 #[test]
 fn references_in_a_circle_are_refused() {
     let pattern = |id: &str, more: &str, inside: &str| {
@@ -308,7 +308,7 @@ fn references_in_a_circle_are_refused() {
         ring(&["a", "b", "c"], "clipPath", "clip-path"),
         pattern("a", "href='#b'", "") + &pattern("b", "", &filled("a")) + &filled("a"),
         format!("<g fill='url(#a)'>{}{}</g>", pattern("a", "", &shape("")), shape("")),
-        // Of several with one id usvg takes the last.
+        // Of several elements with one id usvg takes the last.
         format!("<g id='a'/><g fill='url(#a)'>{}</g>", pattern("a", "", &shape("")) + &shape("")),
         pattern("a", "", "<use href='#r' fill='url(#b)'/>")
             + &pattern("b", "", "<use href='#r' fill='url(#c)'/>")
@@ -332,7 +332,7 @@ fn references_in_a_circle_are_refused() {
         pattern("a", "", &shape("style='fill: url( \"#b\" )'"))
             + &pattern("b", "", &shape("stroke='url(#a)'"))
             + &filled("b"),
-        // Whatever is painted.
+        // The painted shape does not matter.
         pattern("a", "", "<use href='#r' fill='url(#b)'/>")
             + &pattern("b", "", "<use href='#r' fill='url(#c)'/>")
             + &pattern("c", "", "<use href='#r' fill='url(#a)'/>")
@@ -341,11 +341,11 @@ fn references_in_a_circle_are_refused() {
         texts("textPath href='#r'") + &shape("id='r'"),
         texts("a"),
         texts("tref href='#r'") + "<text id='r'>x</text>",
-        // From one pattern to the other once by fill and once by stroke, which is found last.
+        // Each pattern refers to the other once by fill and once by stroke, which is found last.
         pattern("a", "", &filled("b"))
             + &pattern("b", "", &(shape("stroke='url(#a)'") + &filled("a")))
             + &filled("b"),
-        // A paint from around is not seen where circles are cut, the first of two neither.
+        // An inherited paint is not seen where circles are cut, nor is the first of two.
         format!(
             "{}<g fill='url(#a)'>{}</g>{}",
             pattern("a", "", &filled("b")),
@@ -357,14 +357,14 @@ fn references_in_a_circle_are_refused() {
         linked("xlink:href='#r' href"),
         linked("other:href='#r' href"),
         ring(&["a", "b", "c"], "pattern", "fill").replace(" id=", " other:id='z' id="),
-        // Taken from around.
+        // Inherited.
         format!(
             "<g mask='url(#b)'>{}</g><g mask='url(#c)'>{}</g><g mask='url(#a)'>{}</g>",
             mask("a", "mask='inherit'", &shape("")),
             mask("b", "mask='inherit'", &shape("")),
             mask("c", "mask='inherit'", &shape(""))
         ),
-        // Filters, by the images in them.
+        // Filters, through their images.
         filter("f", "g") + &format!("<g id='g'>{}</g>", shape("filter='url(#f)'")),
         filter("f", "s")
             + &filter("g", "r")
@@ -388,9 +388,9 @@ fn references_in_a_circle_are_refused() {
         pattern("a", "", &format!("<a href='#r'>{}</a>", shape("")))
             + &format!("<g id='r'>{}</g>", filled("a")),
         ring(&["a", "b", "c"], "pattern", "other:fill"),
-        // What is important around is not important within.
+        // `!important` on an ancestor has no effect here.
         ["ab", "bc", "ca"].map(important).concat(),
-        // Of what is important that of the element's own style counts.
+        // Among important declarations the element's own style wins.
         format!(
             "<style>.a{{fill:url(#a)!important}} .b{{fill:url(#b)!important}} .c{{fill:url(#c)!important}}</style>{}",
             ["ab", "bc", "ca"]
@@ -461,7 +461,7 @@ fn references_that_multiply_are_refused() {
     }
 }
 
-/// usvg panics there.
+/// A drawing that makes usvg panic.
 #[test]
 fn coordinates_that_overflow_are_refused() {
     let strokes = "<g transform='scale(-2 1)'><g transform='scale(1e20)'><g transform='rotate(30)'>
@@ -475,7 +475,7 @@ fn coordinates_that_overflow_are_refused() {
     assert!(read(&strokes.replace("1e20", "1e10")).is_ok());
 }
 
-/// Drawings in images of a drawing are examined like the drawing itself.
+/// Checks that drawings embedded as images are examined like the drawing itself.
 #[test]
 fn images_that_are_drawings_cannot_fill_the_stack() {
     let image = |body: &str| {
@@ -503,7 +503,7 @@ fn images_that_are_drawings_cannot_fill_the_stack() {
         let told = told.iter().find(|told| told.contains(expected)).expect("a warning");
         assert!(told.contains("is left out: it is a drawing: line 1, column"), "{told}");
     }
-    // Each is not too deep for itself.
+    // None is too deep by itself.
     let deep = told(&groups(700, &image(&groups(700, rect))));
     assert!(deep[0].contains("more than 1024 levels deep"), "{deep:?}");
     let many = image(&image(rect));

@@ -1,11 +1,11 @@
-//! Drawings in SVG whose style is said in style sheets, and in values newer than SVG 1.1: painted as browsers do it.
+//! Drawings in SVG with style sheets, or with values newer than SVG 1.1: painted as browsers do.
 
 use durer::math::DAffine2;
 use durer::raster::paint::{Canvas, Options};
 use durer::target::Pixels;
 use durer_formats::svg::{Drawing, Fonts, ReadOptions};
 
-/// Returns a drawing of 40 × 40 with its warnings, those while reading and those while drawing.
+/// Returns a drawing of 40 × 40 with its warnings, from reading and from drawing.
 fn draw_with(bytes: &[u8], fonts: &Fonts) -> (Pixels<[u8; 4]>, Vec<String>) {
     let options = ReadOptions { fonts, ..ReadOptions::default() };
     let drawing = Drawing::read(bytes, &options).unwrap();
@@ -26,7 +26,7 @@ fn draw(body: &str) -> (Pixels<[u8; 4]>, Vec<String>) {
     draw_with(document(body).as_bytes(), &Fonts::new())
 }
 
-/// Returns a picture that is drawn without a word.
+/// Returns a picture that is drawn without a warning.
 fn painted(body: &str) -> Pixels<[u8; 4]> {
     let (picture, told) = draw(body);
     assert_eq!(told, Vec::<String>::new(), "{body}");
@@ -50,7 +50,7 @@ const RECT: &str = "width='40' height='40'";
 #[test]
 fn rules_count_as_in_browsers() {
     for body in [
-        // Custom properties do not harm the rule that they stand in.
+        // Custom properties do not invalidate their rule.
         format!("<style>.x{{--c:red;fill:lime}}</style><rect class='x' {RECT}/>"),
         format!("<style>rect{{fill:red}} .a{{fill:lime}}</style><rect class='a' {RECT}/>"),
         format!("<style>.a{{fill:lime}} rect{{fill:red}}</style><rect class='a' {RECT}/>"),
@@ -95,7 +95,7 @@ fn variables_stand_for_their_values() {
             "<g style='--r:0;--g:255'><rect style='fill:rgb(var(--r) var(--g) 0)' {RECT}/></g>"
         ),
         "<rect fill='lime' style='--w:20px;width:calc(var(--w) * 2);height:40px'/>".to_owned(),
-        // What `use` shows takes the values around the `use`.
+        // The content of `use` inherits from the `use`.
         format!(
             "<defs><rect id='r' style='fill:var(--c, red)' {RECT}/></defs><g style='--c:lime'><use href='#r'/></g>"
         ),
@@ -212,7 +212,7 @@ fn shapes_clip() {
     ] {
         assert_eq!(extent(&painted(&rect(clip, ""))), Some(expected), "{clip}");
     }
-    // Without a box, what the stroke adds counts.
+    // Without a box, the width that the stroke adds counts.
     let stroked = rect("inset(4px)", "stroke='red' stroke-width='8'");
     assert_eq!(extent(&painted(&stroked)), Some([10, 10, 30, 30]));
     let of_attribute =
@@ -401,7 +401,7 @@ fn base64(bytes: &[u8]) -> String {
 
 #[test]
 fn pictures_of_many_kinds_are_painted() {
-    // A pixel of lime each.
+    // One lime pixel each.
     let bmp = "Qk06AAAAAAAAADYAAAAoAAAAAQAAAAEAAAABABgAAAAAAAQAAAAAAAAAAAAAAAAAAAAAAAAAAP8AAA==";
     let gif =
         base64(b"GIF89a\x01\0\x01\0\x80\0\0\0\xff\0\0\0\0,\0\0\0\0\x01\0\x01\0\0\x02\x02D\x01\0;");
@@ -421,7 +421,7 @@ fn pictures_of_many_kinds_are_painted() {
     assert!(told.len() == 1 && told[0].contains("is neither PNG nor JPEG"), "{told:?}");
 }
 
-/// Markers that show, as a square of 4 × 4 before a vertex, which way it looks.
+/// Markers that show their direction by a square of 4 × 4 in front of a vertex.
 const MARKER: &str = "<marker id='m' orient='auto' markerWidth='9' markerHeight='9' refX='0' refY='2' markerUnits='userSpaceOnUse'>
     <rect width='4' height='4' fill='lime'/></marker>";
 
@@ -431,13 +431,13 @@ fn markers_stand_at_vertices_alone() {
         let picture = painted(&format!("{MARKER}{body}"));
         picture.data().iter().map(|p| u32::from(p[3])).sum::<u32>() / 255 / 15
     };
-    // An arc is one segment, of however many curves it is made.
+    // An arc is one segment, however many curves it becomes.
     assert_eq!(count("<path fill='none' marker-mid='url(#m)' d='M5 20A15 15 0 0 1 35 20'/>"), 0);
     assert_eq!(
         count("<g style='marker:url(#m)'><path fill='none' d='M10 20A10 10 0 0 1 30 20'/></g>"),
         2
     );
-    // What has no path has no markers.
+    // Elements without a path have no markers.
     assert_eq!(count("<circle cx='20' cy='20' r='12' fill='none' style='marker:url(#m)'/>"), 0);
     let used = "<defs><path id='p' fill='none' d='M10 20q9 0 10 10' marker-end='url(#m)'/></defs><use href='#p'/>";
     assert_eq!(count(used), 1);
@@ -450,18 +450,18 @@ fn markers_of_closed_paths_look_half_way() {
         [("marker-start", [[12, 8], [8, 12]]), ("marker-end", [[12, 8], [8, 12]])]
     {
         let picture = painted(&format!("{MARKER}<path {square} {marker}='url(#m)'/>"));
-        // From the first corner, between up from the last side and right along the first one: to the upper right.
+        // At the first corner, halfway between up (the last side) and right (the first side): to the upper right.
         let seen = expected.map(|[x, y]| picture.get(x, y).unwrap()[3] > 200);
         assert_eq!(seen, [true, false], "{marker}");
     }
-    // Control points that lie where the curve ends leave the direction to the others.
+    // If control points coincide with an end, the others give the direction.
     let curve = "<path d='M5 20C5 20 20 20 20 20' fill='none' marker-end='url(#m)'/>";
     assert_eq!(extent(&painted(&format!("{MARKER}{curve}"))), Some([20, 18, 24, 22]));
 }
 
 #[test]
 fn pictures_stand_upright() {
-    // 16 × 8 pixels, of which the right half is white, to be turned by a quarter to the right.
+    // 16 × 8 pixels, the right half white, with the orientation "turn by 90° clockwise".
     let jpeg = "/9j/4AAQSkZJRgABAQAAAQABAAD/4QAiRXhpZgAATU0AKgAAAAgAAQESAAMAAAABAAYAAAAAAAD/2wBDAAgGBgcGBQgHBwcJCQgKDBQNDAsL\
                 DBkSEw8UHRofHh0aHBwgJC4nICIsIxwcKDcpLDAxNDQ0Hyc5PTgyPC4zNDL/wAALCAAIABABAREA/8QAFAABAAAAAAAAAAAAAAAAAAAACP/E\
                 ABQQAQAAAAAAAAAAAAAAAAAAAAD/2gAIAQEAAD8AP5/v/9k=";
@@ -478,7 +478,7 @@ fn pictures_stand_upright() {
 fn spaced_words_and_spans_keep_their_gaps() {
     let fonts = fonts();
     let draw = |body: &str| draw_with(document(body).as_bytes(), &fonts).0;
-    // Without letters that are joined, what is spaced stands where each letter would be put by itself.
+    // Without ligatures, spaced text has every letter where it would be by itself.
     let spaced = draw(
         "<text y='30' font-size='10' letter-spacing='3'> o<tspan letter-spacing='5'>x </tspan>o </text>",
     );
@@ -486,7 +486,7 @@ fn spaced_words_and_spans_keep_their_gaps() {
         "<text y='30' font-size='10'>o<tspan dx='3'>x</tspan><tspan dx='5'> </tspan><tspan dx='5'>o</tspan></text>",
     );
     assert_eq!(extent(&spaced), extent(&placed));
-    // As in browsers there is space after the last letter too, which counts where text is centred.
+    // As in browsers, the last letter is followed by space too, which matters for centred text.
     let middle = |x: u32| {
         draw(&format!(
             "<text x='{x}' y='30' font-size='10' text-anchor='middle' letter-spacing='4'>oo</text>"
@@ -498,12 +498,12 @@ fn spaced_words_and_spans_keep_their_gaps() {
 
 #[test]
 fn pictures_are_no_paint() {
-    // Browsers paint nothing, or what stands in their place.
+    // Browsers paint nothing, or the fallback.
     let (picture, _) = draw("<rect width='9' height='9' fill='url(a.png)'/>");
     assert_eq!(extent(&picture), None);
     let (picture, _) = draw("<rect width='9' height='9' fill='url(a.svg#b) red'/>");
     assert_eq!(extent(&picture), Some([0, 0, 9, 9]));
-    // Plain lines under words are nothing to be told.
+    // Ordinary underlines give no warning.
     let (_, told) = draw("<g text-decoration='underline' vector-effect='none'/>");
     assert!(told.is_empty(), "{told:?}");
 }

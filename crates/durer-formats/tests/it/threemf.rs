@@ -1,4 +1,4 @@
-//! 3MF archives written here.
+//! 3MF archives written by the tests.
 
 use durer::math::{DVec3, Vec2, Vec3, Vec4};
 use durer::scene::{AlphaMode, Wrap};
@@ -60,7 +60,7 @@ fn components_units_and_transforms() {
     assert_eq!(scene.instances[0].name, "a & b");
     let at = |i: usize, p| scene.instances[i].world_from_mesh.transform_point3(p);
     assert!((at(0, DVec3::X) - DVec3::new(50.8, 0.0, 0.0)).length() < 1e-9);
-    // The component turns x to y, then moves; the item moves by 1 more; all in inches.
+    // The component turns x into y, then moves; the item moves by 1 more; all in inches.
     let expected = DVec3::new(11.0, 21.0, 30.0) * 25.4;
     assert!((at(1, DVec3::X) - expected).length() < 1e-9, "{}", at(1, DVec3::X));
     assert_eq!(scene.up_axis, durer::scene::UpAxis::Z);
@@ -85,13 +85,13 @@ fn colors_of_objects_and_triangles() {
     assert_eq!(second.colors[0].to_array(), [1.0, 0.0, 0.0, 1.0]);
     assert_eq!(second.colors[3].to_array(), [0.0, 1.0, 0.0, 128.0 / 255.0]);
     assert_eq!(second.colors[4].to_array(), [0.0, 0.0, 1.0, 1.0]);
-    // Only the triangle that shines through somewhere is blended.
+    // Only the triangle with a translucent corner is blended.
     let modes =
         second.parts.iter().map(|p| model.scene.materials[p.material.expect("one")].alpha_mode);
     assert_eq!(modes.collect::<Vec<_>>(), [AlphaMode::Opaque, AlphaMode::Blend]);
 }
 
-/// The case of a cube with colours by triangle.
+/// Checks the case of a cube with a colour per triangle.
 #[test]
 fn half_transparent_triangles_are_blended() {
     let resources = format!(
@@ -161,7 +161,7 @@ fn textures_of_the_package() {
         [Vec2::new(0.0, 1.0), Vec2::new(1.0, 0.75), Vec2::new(0.0, 1.0)]
     );
     assert_eq!(mesh.colors[0], Vec4::ONE);
-    // Green times the picture; and what has no picture is grey.
+    // Green times the picture; surfaces without a picture are grey.
     assert_eq!(
         (mesh.colors[6], mesh.tex_coords[0][6]),
         (Vec4::new(0.0, 1.0, 0.0, 1.0), Vec2::new(1.0, 0.75))
@@ -229,7 +229,7 @@ fn triangles_of_missing_vertices_are_left_out() {
     assert!(text.starts_with("3D/part.model, object 1: 1 triangles refer to vertices"), "{text}");
 }
 
-/// A project whose second part is a hole, on plates.
+/// Checks a project on plates whose second part is a hole.
 #[test]
 fn paint_filaments_and_plates() {
     let root = format!(
@@ -305,7 +305,7 @@ fn volumes_of_prusaslicer() {
         "{:?}",
         model.warnings
     );
-    // Without colours of filaments they are made up, and all the rest stays grey.
+    // Without filament colours, default ones are used, and everything else stays grey.
     let model = read(&archive(&parts)).expect("readable");
     let [painted, first, second] = colors(&model)[..] else { panic!("three triangles") };
     let grey = durer::scene::Material::default().base_color;
@@ -402,7 +402,7 @@ fn cycles_gaps_and_nonsense_are_errors() {
 #[test]
 fn bombs_are_refused() {
     let options = |limits| ReadOptions { limits, ..ReadOptions::default() };
-    // Each object names the one before it ten times: 10^9 placements in a few lines.
+    // Each object refers to the one before it ten times: 10^9 placements in a few lines.
     let mut resources = String::from(r#"<object id="0"></object>"#);
     for i in 1..10 {
         let inner = format!(r#"<component objectid="{}"/>"#, i - 1).repeat(10);

@@ -4,16 +4,16 @@ use durer_formats::geo::{GeoFormat, Reader};
 use durer_formats::height_map::{self, HeightMapOptions};
 use durer_formats::{ModelFormat, NoResources, ReadOptions, read_model, svg};
 
-/// Colours a terminal, and turns the direction of writing.
+/// Colours a terminal, and reverses the writing direction.
 const FORGED: &str = "\u{1b}[31mX\u{202e}\u{7}\u{85}";
 
-/// Returns whether a message is on one line, acts on nothing and is not too long.
+/// Returns whether a message is one line, has no control characters and is not too long.
 fn is_plain(message: &str) -> bool {
     !message.chars().any(|c| c.is_control() || ('\u{2028}'..='\u{202e}').contains(&c))
         && message.chars().count() <= 1000
 }
 
-/// Everything that is said when a model is read.
+/// Returns all messages from reading a model.
 fn said_of_model(name: &str, bytes: &[u8]) -> Vec<String> {
     match read_model(bytes, name, &NoResources, &ReadOptions::default()) {
         Ok(model) => model.warnings.iter().map(ToString::to_string).collect(),
@@ -61,7 +61,7 @@ fn readers_of_models_quote_plainly() {
     }
 }
 
-/// Everything that is said when map data are read.
+/// Returns all messages from reading map data.
 fn said_of_map(format: GeoFormat, bytes: &[u8]) -> Vec<String> {
     let mut reader = match Reader::new(format, bytes) {
         Ok(reader) => reader,
@@ -96,7 +96,7 @@ fn readers_of_map_data_quote_plainly() {
     }
 }
 
-/// Faults of XML, each within an element `R`, and what drawings are told of them.
+/// Faults of XML, each within an element `R`, and the resulting messages for drawings.
 const FAULTS: [(&str, &str); 17] = [
     ("<R><a></b></R>", "`</b>` is found where `</a>` is expected"),
     ("<R><a", "the text ends before all elements do"),
@@ -120,7 +120,8 @@ const FAULTS: [(&str, &str); 17] = [
     ),
 ];
 
-/// Words of the libraries that read for us. They speak of types of Rust and of the text's bytes, and some say the place again.
+/// Words from messages of the libraries used for reading. They name Rust types and byte offsets, and some repeat the
+/// position.
 const FOREIGN: [&str; 24] = [
     "not '",
     "expected '",
@@ -211,7 +212,7 @@ fn drawings_of_too_many_elements_are_not_called_ill_formed() {
     assert!(told.contains("1,000,000 elements") && !told.contains("well-formed"), "{told}");
 }
 
-/// Returns beginnings of a file, and the file with some of its bytes changed.
+/// Returns prefixes of a file, and the file with some of its bytes changed.
 fn broken(file: &[u8]) -> Vec<Vec<u8>> {
     let cut = (1..16).map(|i| file[..file.len() * i / 16].to_vec());
     let changed = (1..64).map(|i| {
@@ -230,7 +231,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
     files.map(|file| std::fs::read(file.expect("a file").path()).expect("a seed")).collect()
 }
 
-/// Returns the file with escapes of the same length in place of one of its words, for some of its words.
+/// Returns copies of the file, each with escapes of the same length in place of one word.
 fn with_escapes(file: &[u8]) -> Vec<Vec<u8>> {
     let mut words = Vec::new();
     let mut at = 0;

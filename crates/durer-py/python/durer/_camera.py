@@ -1,4 +1,4 @@
-"""The eye of a picture."""
+"""Cameras."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def _lens(fov: float | None, ortho: float | None) -> tuple[float | None, float |
 
 
 def _of_intrinsics(matrix: ArrayLike, size: tuple[int, int] | None) -> float:
-    """Returns the vertical angle of view, in degrees, of a matrix of a pinhole camera."""
+    """Returns the vertical angle of view, in degrees, of a pinhole camera's matrix."""
     k = np.asarray(matrix, dtype=np.float64)
     if k.shape != (3, 3):
         raise TypeError(f"K must be (3, 3), got {k.shape}")
@@ -68,7 +68,7 @@ class Camera:
 
     ``pose`` takes the camera's coordinates to the world's; with ``convention="opencv"`` it looks along +z, y down.
     ``fov`` is the vertical angle of view in degrees, ``ortho`` the height of a parallel view in world units, ``K`` the
-    matrix of a pinhole camera for pictures of ``size`` pixels. ``near`` and ``far`` come from the scene if they are not given.
+    matrix of a pinhole camera for pictures of ``size`` pixels. ``near`` and ``far`` default to planes around the scene.
 
     >>> import numpy as np
     >>> pose = np.eye(4)
@@ -138,7 +138,7 @@ class Camera:
         far: float | None = None,
         size: tuple[int, int] | None = None,
     ) -> Camera:
-        """Creates a camera at ``eye`` that looks at ``target``; ``up`` is the up axis of the scene if it is not given.
+        """Creates a camera at ``eye`` that looks at ``target``; ``up`` defaults to the up axis of the scene.
 
         >>> Camera.look_at((3, 0, 0), (0, 0, 0), (0, 0, 1), ortho=2.0).pose.round(6)[:3, 2]
         array([1., 0., 0.])
@@ -185,7 +185,7 @@ class Camera:
 
     @property
     def up(self) -> Vector | None:
-        """A direction that is up in the picture; ``None`` is the up axis of the scene."""
+        """Direction that points up in the picture; ``None`` for the up axis of the scene."""
         return self._n.up
 
     @property
@@ -210,7 +210,7 @@ class Camera:
 
     @property
     def size(self) -> tuple[int, int] | None:
-        """Width and height of the picture that it is for, in pixels."""
+        """Width and height, in pixels, of the pictures taken with it."""
         return self._n.size
 
     def with_planes(self, near: float, far: float) -> Camera:
@@ -297,7 +297,7 @@ def view_words(
     elevation: float | None,
     ortho: bool | float | None,
 ) -> list[str]:
-    """Returns the words of a camera: one that is given, one of the file by its name, or one that is fitted to the scene."""
+    """Returns the words of a camera: a ``Camera``, the name of one in the file, or a view fitted to the scene."""
     if isinstance(camera, Camera):
         return camera._words()
     if camera is not None:

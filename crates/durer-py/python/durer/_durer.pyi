@@ -1,4 +1,4 @@
-"""The compiled part of the package; what it has is no interface."""
+"""The compiled part of the package; it is not a public interface."""
 
 import os
 from collections.abc import Sequence

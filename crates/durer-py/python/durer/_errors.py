@@ -4,9 +4,9 @@ from __future__ import annotations
 
 
 class ReadError(ValueError):
-    """Bytes that are not what their format demands.
+    """Bytes that violate their format.
 
-    ``place`` says where: a line, a byte, or a path inside the file; ``None`` is the file as a whole.
+    ``place`` is a line, a byte, or a path inside the file; ``None`` for the file as a whole.
     """
 
     place: str | None
@@ -24,11 +24,11 @@ class LimitError(ValueError):
 
 
 class ReadWarning(UserWarning):
-    """Something in a file that was repaired or left out."""
+    """A part of a file that was repaired or left out."""
 
 
 class OptionError(ValueError):
-    """Options that are wrong; calls turn it into what their callers know."""
+    """Wrong options; calls convert it to ``ValueError`` or ``TypeError``."""
 
     def __init__(self, message: str, place: str | None = None) -> None:
         super().__init__(message)

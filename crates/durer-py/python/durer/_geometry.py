@@ -1,4 +1,4 @@
-"""Clipping and overlays of geometries: of shapely, geopandas and pyarrow by duck typing, of ragged arrays, and of WKB."""
+"""Clipping and overlays of geometries: shapely, geopandas and pyarrow by duck typing, ragged arrays, and WKB."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ FEW = 16
 
 
 def _over_array(array: NDArray[Any], many: Many) -> NDArray[Any]:
-    """Does something with arrays of geometries or of well-known binary; the result holds the same."""
+    """Applies ``many`` to an array of geometries or of well-known binary; the result has the same kind of elements."""
     flat = array.reshape(-1)
     has_bytes = any(isinstance(value, bytes) for value in flat)
     rows, errors = many(array_to_wkb(flat))
@@ -80,7 +80,7 @@ def _over_array(array: NDArray[Any], many: Many) -> NDArray[Any]:
 
 
 def _kinds(flat: NDArray[Any]) -> NDArray[np.int8] | None:
-    """Returns which geometries can be arrays of coordinates, as ``_runs.kinds``; ``None`` if there is no use in it."""
+    """Returns which geometries can be arrays of coordinates, as ``_runs.kinds``; ``None`` if that is not worthwhile."""
     if flat.size < FEW or shapely_if_imported() is None:
         return None
     try:
@@ -91,7 +91,7 @@ def _kinds(flat: NDArray[Any]) -> NDArray[np.int8] | None:
 
 
 def _in_parts(parts: list[tuple[NDArray[np.intp], Callable[[], NDArray[Any]]]], size: int) -> NDArray[Any]:
-    """Returns an array whose parts are made one by one; errors have the index in the whole array."""
+    """Returns an array built from separate parts; errors give the index in the whole array."""
     out = np.empty(size, dtype=object)
     for rows, make in parts:
         try:
@@ -105,7 +105,7 @@ def _in_parts(parts: list[tuple[NDArray[np.intp], Callable[[], NDArray[Any]]]], 
 
 
 def _clip_array(array: NDArray[Any], region: Region, grid: float | None, threads: int) -> NDArray[Any]:
-    """Clips an array of geometries or of well-known binary; the result holds the same."""
+    """Clips an array of geometries or of well-known binary; the result has the same kind of elements."""
     flat, shapely = array.reshape(-1), shapely_if_imported()
 
     def many(rows: Wkb) -> tuple[Wkb, list[tuple[int, str]]]:
@@ -115,11 +115,11 @@ def _clip_array(array: NDArray[Any], region: Region, grid: float | None, threads
         return _durer.clip_ragged(given, region, grid, threads)
 
     kinds = _kinds(flat)
-    # Each call makes the mask anew, which may cost more than it saves.
+    # Each call builds the mask again, which may cost more than it saves.
     if kinds is None or (isinstance(region, list) and sum(map(len, region)) > 64 * np.count_nonzero(kinds)):
         return _over_array(array, many)
     if isinstance(region, list):
-        # What is broken is an error below.
+        # Invalid masks raise an error below.
         mask = shapely.from_wkb(np.array(region, dtype=object), on_invalid="ignore")
         bounds = tuple(shapely.total_bounds(mask).tolist())
     else:
@@ -134,7 +134,7 @@ def _clip_array(array: NDArray[Any], region: Region, grid: float | None, threads
         if rows.size:
             parts.append((rows, partial(_runs.replaced, shapely, flat[rows], kind, native)))
     rows = np.flatnonzero(kinds == 0)
-    # A region that is wrong is an error, whatever is clipped to it.
+    # A wrong region is an error even if nothing has to be clipped to it.
     if rows.size or not parts:
         parts.append((rows, lambda: _over_array(flat[rows], many)))
     made = _in_parts(parts, flat.size)
@@ -142,7 +142,7 @@ def _clip_array(array: NDArray[Any], region: Region, grid: float | None, threads
 
 
 def _over_column(column: Any, region: Region, grid: float | None, threads: int) -> Any:
-    """Clips an Arrow array of well-known binary without objects of Python for its rows."""
+    """Clips an Arrow array of well-known binary without creating Python objects for its rows."""
     import pyarrow
 
     storage = getattr(column, "storage", column)
@@ -195,11 +195,11 @@ def clip_by_rect(
     grid_size: float | None = None,
     threads: int | None = None,
 ) -> Any:
-    """Returns the part of each geometry in a rectangle, as the same kind of thing as was given.
+    """Returns the part of each geometry inside a rectangle, in the form of the input.
 
-    ``geometry`` is one of shapely, an array or list of them, a GeoSeries or GeoDataFrame, ragged arrays as
-    ``shapely.to_ragged_array`` gives them, WKB, or an Arrow array of WKB. Polygons come out valid; of geometries outside
-    empty ones are left. ``grid_size`` puts vertices of polygons on a grid.
+    ``geometry`` is a shapely geometry, an array or list of them, a GeoSeries or GeoDataFrame, ragged arrays as
+    ``shapely.to_ragged_array`` returns them, WKB, or an Arrow array of WKB. Resulting polygons are valid; geometries
+    outside become empty. ``grid_size`` puts vertices of polygons on a grid.
 
     >>> import numpy as np
     >>> square = np.array([[0.0, 0], [4, 0], [4, 4], [0, 4], [0, 0]])
@@ -235,11 +235,11 @@ def clip(
     grid_size: float | None = None,
     threads: int | None = None,
 ) -> Any:
-    """Returns the part of each geometry in a mask: polygons of any kind, or (xmin, ymin, xmax, ymax).
+    """Returns the part of each geometry inside a mask: polygons of any kind, or (xmin, ymin, xmax, ymax).
 
-    As ``clip_by_rect``; of a GeoDataFrame or GeoSeries rows outside are left out, as by ``geopandas.clip``, index and
-    columns stay, and a warning reports a mask in another coordinate system. Results never change from areas to lines or
-    points, so ``keep_geom_type`` makes no difference but for collections, which it leaves out.
+    Accepts the same as ``clip_by_rect``. Rows of a GeoDataFrame or GeoSeries outside the mask are dropped, as by
+    ``geopandas.clip``; index and columns are kept, and a warning reports a mask in another coordinate system. Areas never
+    become lines or points, so ``keep_geom_type`` only drops collections.
 
     >>> import numpy as np
     >>> square = np.array([[0.0, 0], [4, 0], [4, 4], [0, 4], [0, 0]])
@@ -279,7 +279,7 @@ def _overlay(operation: str, a: Any, b: Any, grid: float | None, threads: int | 
 def _overlay_arrays(
     operation: str, a: NDArray[Any], b: NDArray[Any], grid: float | None, threads: int
 ) -> NDArray[Any]:
-    """Overlays each geometry of an array with that beside it."""
+    """Overlays each geometry of an array with the one at the same index of the other."""
     left, right, shapely = a.reshape(-1), b.reshape(-1), shapely_if_imported()
 
     def bytes_of(rows: Any) -> NDArray[Any]:
@@ -318,7 +318,7 @@ def _operand(value: Any) -> NDArray[Any]:
 
 
 def intersection(a: Any, b: Any, *, grid_size: float | None = None, threads: int | None = None) -> Any:
-    """Returns what is in both geometries, pair by pair; arrays are broadcast as by shapely, and results are valid.
+    """Returns the intersection of two geometries, pair by pair; arrays are broadcast as in shapely; results are valid.
 
     One of a pair is a polygon; the other may be points, lines or a polygon.
     """
@@ -326,25 +326,25 @@ def intersection(a: Any, b: Any, *, grid_size: float | None = None, threads: int
 
 
 def union(a: Any, b: Any, *, grid_size: float | None = None, threads: int | None = None) -> Any:
-    """Returns what is in one of two polygons or in both, pair by pair, as ``intersection``."""
+    """Returns the union of two polygons, pair by pair; see ``intersection`` for arrays."""
     return _overlay("union", a, b, grid_size, threads)
 
 
 def difference(a: Any, b: Any, *, grid_size: float | None = None, threads: int | None = None) -> Any:
-    """Returns what is in the first geometry and not in the second, pair by pair, as ``intersection``."""
+    """Returns the part of the first geometry outside the second, pair by pair; see ``intersection`` for arrays."""
     return _overlay("difference", a, b, grid_size, threads)
 
 
 def symmetric_difference(a: Any, b: Any, *, grid_size: float | None = None, threads: int | None = None) -> Any:
-    """Returns what is in one of two polygons only, pair by pair, as ``intersection``."""
+    """Returns the area in exactly one of two polygons, pair by pair; see ``intersection`` for arrays."""
     return _overlay("symmetric_difference", a, b, grid_size, threads)
 
 
 def clip_lines(segments: Any, rect: Any, *, threads: int | None = None) -> tuple[Any, NDArray[np.bool_]]:
     """Clips segments to a rectangle (xmin, ymin, xmax, ymax), or to a convex ring of points (n, 2).
 
-    ``segments`` is an array (n, 2, 2), or a tuple of four arrays x0, y0, x1, y1, which are not copied. Returns clipped
-    segments in the same form, with flags of those of which something is left; the others are as they were.
+    ``segments`` is an array (n, 2, 2), or a tuple of four arrays x0, y0, x1, y1, which are not copied. Returns
+    segments in the same form, with flags that mark the visible ones; the others are unchanged.
 
     Raises ``ValueError`` with the index of a segment that is not finite.
 

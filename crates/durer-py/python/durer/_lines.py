@@ -24,7 +24,7 @@ PICTURES = ("png", "jpg", "jpeg", "webp")
 
 
 class Drawing:
-    """A drawing of a scene, laid out for the format that it is written in."""
+    """A drawing of a scene, laid out for the output format when it is written."""
 
     __slots__ = ("_arguments", "_scene", "_size", "_svg", "_threads")
 
@@ -33,7 +33,7 @@ class Drawing:
         self._svg: bytes | None = None
 
     def encode(self, format: str = "svg") -> bytes:
-        """Returns the bytes of an svg, pdf, dxf, hpgl, gcode or geojson file; those of ``durer render -o``."""
+        """Returns the bytes of an svg, pdf, dxf, hpgl, gcode or geojson file, the same as from ``durer render -o``."""
         if format == "svg" and self._svg is not None:
             return self._svg
         data = call("drawing", _durer.draw, self._scene._model, self._arguments, format, self._threads)
@@ -46,7 +46,7 @@ class Drawing:
         return self.encode("svg").decode()
 
     def image(self) -> Image:
-        """Returns the drawing painted as pixels, of the size that was given."""
+        """Returns the drawing as pixels, of the given size."""
         given = [f"--size={size_text(self._size)}", *self._arguments]
         if not any(word.startswith(("--style", "--sheet")) for word in given):
             given = [*given, "--style=hidden-line"]
@@ -72,8 +72,8 @@ class Drawing:
 class Lines:
     """Lines in the plane of the picture, x to the right and y upwards, in world units where the view is parallel.
 
-    Line i has the points ``coords[offsets[i]:offsets[i + 1]]``, the class ``LINE_CLASSES[cls[i]]``, and as many surfaces in
-    front as ``invisibility[i]`` says; the last point of a closed line is joined to its first.
+    Line i has the points ``coords[offsets[i]:offsets[i + 1]]``, the class ``LINE_CLASSES[cls[i]]`` and
+    ``invisibility[i]`` surfaces in front of it; the last point of a closed line is joined to its first.
     """
 
     __slots__ = ("closed", "cls", "coords", "drawing", "invisibility", "offsets")
@@ -100,12 +100,12 @@ class Lines:
         return len(self.cls)
 
     def chains(self) -> list[NDArray[np.float64]]:
-        """Returns the points of each line, (n, 2); those of closed ones end with the first again."""
+        """Returns the points of each line, (n, 2); closed lines repeat the first point at the end."""
         parts = np.split(self.coords, self.offsets[1:-1]) if len(self) else []
         return [np.vstack([p, p[:1]]) if c else p for p, c in zip(parts, self.closed, strict=True)]
 
     def to_shapely(self) -> NDArray[Any]:
-        """Returns an array of shapely's LineStrings."""
+        """Returns an array of shapely LineStrings."""
         import shapely
 
         chains = self.chains()
@@ -114,7 +114,7 @@ class Lines:
         return np.asarray(out, dtype=object)
 
     def to_vpype(self, millimetres: float = 1.0) -> Any:
-        """Returns a line collection of vpype, in its pixels with y downwards; a unit of the plane is some millimetres."""
+        """Returns a vpype line collection, in pixels with y down; a unit of the plane is ``millimetres`` long."""
         import vpype
 
         scale = millimetres * 96.0 / 25.4
@@ -150,10 +150,10 @@ def hidden_lines(
     threads: int | None = None,
     **options: Any,
 ) -> Lines:
-    """Finds the edges of a scene that can be seen, and the hidden ones, exactly.
+    """Finds the visible and hidden edges of a scene exactly.
 
     Edges are drawn where faces meet at more than ``crease`` degrees, and silhouettes; ``classes`` chooses among
-    ``LINE_CLASSES``. The view is parallel, unless a camera says otherwise or ``ortho`` is false.
+    ``LINE_CLASSES``. The view is parallel unless ``camera`` is in perspective or ``ortho`` is false.
 
     >>> cube = ([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)],
     ...         [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],

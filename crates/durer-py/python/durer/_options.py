@@ -15,7 +15,7 @@ T = TypeVar("T")
 
 
 def text(value: object) -> str:
-    """Returns a value as the command takes it."""
+    """Returns a value in the syntax of the command."""
     if isinstance(value, str | os.PathLike):
         return os.fspath(value) if not isinstance(value, str) else value
     if isinstance(value, Integral):
@@ -28,7 +28,7 @@ def text(value: object) -> str:
 
 
 def words(options: Mapping[str, object]) -> list[str]:
-    """Returns options as words: ``True`` as a flag, lists of texts as several options; ``None`` and ``False`` are left out.
+    """Returns options as words: ``True`` as a flag, lists of strings as repeated options; skips ``None`` and ``False``.
 
     >>> words({"up_axis": "z", "size": "8x8", "grid": True, "ortho": None, "eye": (0, 0.5, 1)})
     ['--up-axis=z', '--size=8x8', '--grid', '--eye=0,0.5,1']
@@ -64,9 +64,9 @@ def call(function: str, native: Callable[..., T], *args: object) -> T:
 
 
 def threads(wanted: int | None) -> int:
-    """Returns the number of threads of a call; 0 is one for each processor.
+    """Returns the number of threads of a call; 0 means one per processor.
 
-    Where none is given, it is that of ``DURER_THREADS``, or 1 in a worker process.
+    The default is the value of ``DURER_THREADS``, or 1 in a worker process.
     """
     given: object = wanted
     if wanted is None:
@@ -85,7 +85,7 @@ def threads(wanted: int | None) -> int:
 
 
 def size_text(size: object) -> str:
-    """Returns a size as the command takes it.
+    """Returns a size in the syntax of the command.
 
     >>> size_text((640, 480)), size_text(64), size_text((800, None))
     ('640x480', '64x64', '800x')

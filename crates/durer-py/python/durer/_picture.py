@@ -1,4 +1,4 @@
-"""Pictures of scenes, maps and heights, and what is done with pictures."""
+"""Pictures of scenes, maps and heights, and operations on pictures."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ U8 = NDArray[np.uint8]
 class Image:
     """A picture: 8-bit sRGB with straight alpha, row 0 at the top.
 
-    It is an array for numpy, without a copy, and shows itself in notebooks.
+    numpy uses its pixels without a copy, and notebooks display it.
 
     >>> picture = render(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), size=(64, 48))
     >>> picture.pixels.shape, picture.png()[:4]
@@ -39,9 +39,9 @@ class Image:
         array = rgba(pixels, "pixels")
         array.flags.writeable = False
         self.pixels = array
-        #: The camera that it was seen from.
+        #: The camera of the picture.
         self.camera = camera
-        #: Why nothing of the model is visible, if that is so.
+        #: The reason if nothing of the model is visible.
         self.unseen = unseen
 
     @property
@@ -82,7 +82,7 @@ class Image:
         _durer.deliver(os.fspath(path), self.encode(suffix, quality=quality, compression=compression))
 
     def to_pil(self) -> Any:
-        """Returns the picture as one of Pillow."""
+        """Returns the picture as a Pillow image."""
         from PIL import Image as Pillow
 
         return Pillow.fromarray(self.pixels)
@@ -107,7 +107,7 @@ def _image(pixels: U8, camera: Camera | None, unseen: str | None) -> Image:
 
 
 def rgba(image: Any, name: str) -> U8:
-    """Returns the pixels of a picture, of Pillow, or of an array of bytes with 1, 3 or 4 channels."""
+    """Returns the pixels of an ``Image``, a Pillow image, or an array of bytes with 1, 3 or 4 channels."""
     if isinstance(image, Image):
         return image.pixels
     if hasattr(image, "convert"):
@@ -129,11 +129,11 @@ class Planes(NamedTuple):
 
     #: (h, w, 4) bytes; ``None`` if not wanted.
     color: U8 | None
-    #: (h, w) float32: distance along the camera's axis, 0 where nothing is.
+    #: (h, w) float32: distance along the camera's axis, 0 at the background.
     depth: NDArray[np.float32] | None
-    #: (h, w) uint32: number of the triangle, 4294967295 where nothing is.
+    #: (h, w) uint32: number of the triangle, 4294967295 at the background.
     item: NDArray[np.uint32] | None
-    #: (h, w, 3) float32: unit normal in the world, zeros where nothing is.
+    #: (h, w, 3) float32: unit normal in the world, zeros at the background.
     normal: NDArray[np.float32] | None
     #: The camera.
     camera: Camera | None
@@ -149,7 +149,7 @@ def scene_words(
     ortho: bool | float | None,
     options: Mapping[str, object],
 ) -> list[str]:
-    """Returns the words of a picture of a scene."""
+    """Returns the option words for a picture of a scene."""
     own = camera is None and azimuth is None and elevation is None and view == "iso"
     eye = scene._camera if own and scene._camera is not None else camera
     sized = words({"size": None if size is None else size_text(size)})
@@ -175,10 +175,10 @@ def render(
     threads: int | None = None,
     **options: Any,
 ) -> Image:
-    """Renders a picture of anything that ``durer.scene`` takes; the same pixels as those of ``durer render``.
+    """Renders a picture of anything that ``durer.scene`` accepts; the pixels are the same as those of ``durer render``.
 
-    ``camera`` is a ``Camera`` or the name of one of the file; without one the scene is fitted into the picture, seen from
-    ``view`` or by ``azimuth`` and ``elevation``. Further keyword arguments are the options of the command, with ``_`` for
+    ``camera`` is a ``Camera`` or the name of one in the file; without one the scene is fitted into the picture, seen from
+    ``view`` or from ``azimuth`` and ``elevation``. Further keyword arguments are the options of the command, with ``_`` for
     ``-``: ``look="studio"``, ``edges=1.5``, ``section=["0,0,1,-5"]``, ``tone_map``, ``style="hidden-line"`` …
 
     >>> render(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), (8, 8), view="top", background="black").pixels[0, 7]
@@ -188,7 +188,7 @@ def render(
     named = {
         "light": [lights] if isinstance(lights, str) else lights,
         "shading": shading,
-        # Drawings refuse samples, and what is given by hand.
+        # Drawings refuse sample counts, so the default is not passed on.
         "aa": None if samples == 4 else samples,
         "background": None if background == "white" else background,
         "cull": cull,
@@ -222,10 +222,10 @@ def render_planes(
     threads: int | None = None,
     **options: Any,
 ) -> Planes:
-    """Renders colours with the depth, triangle and normal at the centre of each pixel.
+    """Renders colours, and the depth, triangle and normal at the centre of each pixel.
 
-    Depths are distances along the camera's axis, 0 where nothing is, as in pyrender; without ``linear_depth`` those of the
-    window, 0 at the near plane and 1 at the far one.
+    Depths are distances along the camera's axis, 0 at the background, as in pyrender; without ``linear_depth`` they are
+    window depths, 0 at the near plane and 1 at the far plane.
 
     >>> triangle = ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     >>> camera = Camera.look_at((0.3, 0.3, 2), (0.3, 0.3, 0), (0, 1, 0))
@@ -242,7 +242,7 @@ def render_planes(
 
 
 def _layer_bytes(layer: Any, labelled: bool) -> bytes:
-    """Returns the bytes of a layer: of a file, as they are, or of geometries."""
+    """Returns the bytes of a layer: those of a file unchanged, or of geometries."""
     if isinstance(layer, bytes | bytearray | memoryview):
         return bytes(layer)
     if isinstance(layer, str) and layer.lstrip()[:1] in ("<", "{", "["):
@@ -266,12 +266,12 @@ def _styled(layer: Any) -> tuple[Any, dict[str, Any]]:
 
 
 def draw(layers: Any, size: Any = None, *, threads: int | None = None, **options: Any) -> Image:
-    """Draws an SVG, or a map of layers, as pixels; the same as those of ``durer draw``.
+    """Draws an SVG, or a map of layers; the pixels are the same as those of ``durer draw``.
 
     ``layers`` is one layer or a list of them, from the bottom to the top: a path, the text or bytes of an SVG or of map
-    data, a GeoJSON mapping, an array of geometries or a GeoDataFrame; or a tuple of one and its style, e.g.
-    ``(land, {"fill": "tan", "stroke": "none"})``. Further keyword arguments are the options of the command; those of styles
-    apply to all layers.
+    data, a GeoJSON mapping, an array of geometries or a GeoDataFrame; or a tuple of one of these and its style, e.g.
+    ``(land, {"fill": "tan", "stroke": "none"})``. Further keyword arguments are the options of the command; style
+    options apply to all layers.
 
     >>> draw('<svg xmlns="http://www.w3.org/2000/svg" width="4" height="4"><rect width="4" height="4"/></svg>').pixels[0, 0]
     array([  0,   0,   0, 255], dtype=uint8)
@@ -289,7 +289,7 @@ def draw(layers: Any, size: Any = None, *, threads: int | None = None, **options
 
 
 class Plot:
-    """A plot of heights, drawn when it is written."""
+    """A plot of heights, drawn for the output format when it is written."""
 
     __slots__ = ("_heights", "_options", "_ranges", "_svg")
 
@@ -329,9 +329,9 @@ def plot(
     z: tuple[float, float] | None = None,
     **options: Any,
 ) -> Plot:
-    """Plots a surface of heights (rows, columns) with its hidden lines left out; the same as ``durer plot``.
+    """Plots a surface of heights (rows, columns) without hidden lines, as ``durer plot`` does.
 
-    Rows run along x, the first has the smallest z and is the farthest; what is not a number is missing. ``x`` and ``z``
+    Rows run along x; the first has the smallest z and is the farthest; NaN is a missing height. ``x`` and ``z``
     are the ranges, by default the numbers of columns and rows. Further keyword arguments are the options of the command:
     ``azimuth``, ``elevation``, ``fill=True``, ``color_map="viridis"``, ``title``, ``labels=("x", "y", "z")`` …
 
@@ -349,7 +349,7 @@ def plot(
 
 
 def color_bytes(color: Any) -> tuple[int, int, int, int]:
-    """Returns a colour, of CSS or three or four bytes, as bytes with alpha.
+    """Returns a colour, given in CSS or as three or four bytes, as bytes with alpha.
 
     >>> color_bytes("red"), color_bytes((1, 2, 3))
     ((255, 0, 0, 255), (1, 2, 3, 255))
@@ -373,7 +373,7 @@ def fill(
     connectivity: int = 4,
     boundary: Any = None,
 ) -> Image:
-    """Fills the connected area around one or several pixels (x, y); with ``boundary`` up to that colour.
+    """Fills the connected area around one or several pixels (x, y), or with ``boundary`` the area up to that colour.
 
     >>> import numpy as np
     >>> fill(np.zeros((2, 2, 4), np.uint8), (0, 0), "red").pixels[1, 1]
@@ -395,7 +395,7 @@ def fill(
 
 
 def window_depth(depth: ArrayLike, camera: Camera) -> NDArray[np.float32]:
-    """Returns depths of the window, 0 to 1, from distances along the camera's axis, where 0 is nothing."""
+    """Returns window depths, 0 to 1, from distances along the camera's axis, where 0 is the background."""
     if camera.near is None or camera.far is None:
         raise ValueError("near and far: the camera has none; that of a picture does")
     z = np.asarray(depth, dtype=np.float64)
@@ -450,13 +450,13 @@ def tiles(
     threads: int | None = None,
     **options: Any,
 ) -> None:
-    """Cuts layers of map data into tiles for the web, as ``durer tiles``: into .pmtiles, .mbtiles, or a folder.
+    """Cuts layers of map data into web tiles, as ``durer tiles`` does: into .pmtiles, .mbtiles, or a folder.
 
-    Layers are as in ``draw``; fields come along from files, GeoJSON, and GeoDataFrames.
+    Layers are as in ``draw``; fields of files, GeoJSON and GeoDataFrames are kept.
     """
     given = layers if isinstance(layers, list) else [layers]
     zooms = zoom if isinstance(zoom, str) else str(zoom) if isinstance(zoom, int) else f"{zoom[0]}-{zoom[1]}"
-    # Here, as it takes longer to import than all of this package.
+    # Imported here, as this takes longer than importing the whole package.
     import tempfile
 
     with tempfile.TemporaryDirectory() as folder:

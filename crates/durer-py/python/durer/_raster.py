@@ -1,4 +1,4 @@
-"""Geometries as values of a grid."""
+"""Geometries rasterized to a grid of values."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def rasterize(
     mode: str = "centers",
     dtype: Any = None,
 ) -> NDArray[Any]:
-    """Gives the pixels of geometries their values, as ``rasterio.features.rasterize``; later shapes are over earlier ones.
+    """Writes values of geometries to a grid, as ``rasterio.features.rasterize``; later shapes overwrite earlier ones.
 
-    ``shapes`` are geometries of shapely or GeoJSON, or tuples of one and its value. ``transform`` takes columns and rows to
-    coordinates: an ``affine.Affine``, or its six coefficients. Pixels belong to a polygon if their centre does, with
-    ``all_touched`` if any point does; ``mode="coverage"`` weights values by the share of the pixel that is covered.
+    ``shapes`` are geometries of shapely or GeoJSON, or tuples of one and its value. ``transform`` maps columns and rows to
+    coordinates: an ``affine.Affine``, or its six coefficients. A pixel belongs to a polygon if its centre is inside, or
+    with ``all_touched`` if any point of it is; ``mode="coverage"`` weights values by the covered share of the pixel.
 
     >>> square = {"type": "Polygon", "coordinates": [[[1, 1], [3, 1], [3, 3], [1, 3], [1, 1]]]}
     >>> rasterize([(square, 7)], (4, 4))[2].tolist()

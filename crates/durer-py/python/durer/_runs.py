@@ -1,7 +1,7 @@
-"""Lines and polygons of shapely as arrays of coordinates, and back: many times as fast as by well-known binary.
+"""Lines and polygons of shapely as arrays of coordinates, and back: many times faster than well-known binary.
 
 The arrays are those of GeoArrow: a kind by shapely's number, coordinates, and offsets from the innermost level to the outermost.
-shapely is an argument, since this package does not import it first.
+shapely is an argument, because this package never imports it itself.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SINGLE = {4: 0, 5: LINE, 6: POLYGON}
 
 
 def kinds(shapely: Any, flat: NDArray[Any]) -> NDArray[np.int8]:
-    """Returns 1 for lines and 3 for polygons without holes, of coordinates x and y only; 0 for all other geometries."""
+    """Returns 1 for lines and 3 for polygons without holes, both with x and y only; 0 for all other geometries."""
     types = shapely.get_type_id(flat)
     plain = (shapely.get_coordinate_dimension(flat) == 2) & (shapely.get_num_coordinates(flat) > 0)
     plain &= shapely.get_srid(flat) == 0
@@ -35,11 +35,11 @@ def kinds(shapely: Any, flat: NDArray[Any]) -> NDArray[np.int8]:
 
 
 def outside(shapely: Any, flat: NDArray[Any], bounds: Bounds) -> NDArray[np.bool_]:
-    """Returns which lines and polygons are outside of a box and have finite coordinates only."""
+    """Returns which lines and polygons are outside a box and have only finite coordinates."""
     xmin, ymin, xmax, ymax = bounds
     low_x, low_y, high_x, high_y = shapely.bounds(flat).T
     apart = (high_x < xmin) | (low_x > xmax) | (high_y < ymin) | (low_y > ymax)
-    # A length, of borders of polygons, has all coordinates in it, unlike bounds.
+    # The length of a border depends on all coordinates, unlike the bounds.
     apart[apart] = np.isfinite(shapely.length(flat[apart]))
     return apart  # type: ignore[no-any-return]
 
@@ -52,8 +52,8 @@ def ragged(shapely: Any, flat: NDArray[Any], kind: int) -> Ragged:
 
 
 def replaced(shapely: Any, flat: NDArray[Any], kind: int, native: Callable[[Ragged], Ragged]) -> NDArray[Any]:
-    """Returns what a native function makes of lines or polygons; those that it leaves as they are, but for the direction of their
-    rings, are the same objects."""
+    """Returns the results of a native function for lines or polygons; those that it leaves unchanged, except for the
+    direction of their rings, are the same objects."""
     given = ragged(shapely, flat, kind)
     made = native(given)
     same = _same(given, made)
@@ -64,7 +64,7 @@ def replaced(shapely: Any, flat: NDArray[Any], kind: int, native: Callable[[Ragg
 
 
 def results(shapely: Any, kind: int, made: Ragged, rows: I64) -> NDArray[Any]:
-    """Returns the geometries of some rows of arrays; those of which nothing is left are empty ones of a kind."""
+    """Returns the geometries of some rows of arrays; rows without coordinates become empty geometries of the kind."""
     out = np.empty(rows.shape, dtype=object)
     left = np.diff(_runs(made)[1])[rows] > 0
     out[~left] = empty(shapely, kind)
@@ -78,14 +78,14 @@ def empty(shapely: Any, kind: int) -> Any:
 
 
 def _ends(counts: Any) -> I64:
-    """Returns offsets of parts that have these lengths."""
+    """Returns the offsets of parts with these lengths."""
     ends = np.zeros(len(counts) + 1, np.int64)
     np.cumsum(counts, out=ends[1:])
     return ends
 
 
 def _spans(first: I64, counts: I64) -> I64:
-    """Returns the numbers from each of some first ones on, one run after the other."""
+    """Returns consecutive numbers from each first one on, ``counts`` of each, one run after the other."""
     ends = _ends(counts)
     return np.repeat(first - ends[:-1], counts) + np.arange(ends[-1])
 
@@ -103,7 +103,7 @@ def _runs(arrays: Ragged) -> tuple[I64, I64]:
 
 
 def _same(given: Ragged, made: Ragged) -> NDArray[np.bool_]:
-    """Returns which rows are one run with the coordinates that they had, in either direction."""
+    """Returns which rows are a single run with their original coordinates, in either direction."""
     (_, before), (runs, after) = _runs(given), _runs(made)
     counts = np.diff(before)
     rows = np.flatnonzero((np.diff(runs) == 1) & (np.diff(after) == counts))
@@ -122,7 +122,7 @@ def _same(given: Ragged, made: Ragged) -> NDArray[np.bool_]:
 
 
 def _built(shapely: Any, made: Ragged, rows: I64) -> NDArray[Any]:
-    """Returns the geometries of some rows of arrays; where there is one part, it is not a collection."""
+    """Returns the geometries of some rows of arrays; a single part is not wrapped in a collection."""
     kind, coords, levels = made
     if kind not in SINGLE:
         parts, ends = _taken(coords, levels, rows)

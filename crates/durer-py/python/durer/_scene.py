@@ -1,4 +1,4 @@
-"""Scenes: models from files, from arrays, and from what other libraries hold."""
+"""Scenes: models from files, from arrays, and from objects of other libraries."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Scene:
 
     @property
     def bounds(self) -> F64 | None:
-        """Lower and upper corner of the box around it, (2, 3); ``None`` if it is empty."""
+        """Lower and upper corner of the bounding box, (2, 3); ``None`` if the scene is empty."""
         bounds = self._model.bounds()
         return None if bounds is None else np.array(bounds, dtype=np.float64)
 
@@ -49,7 +49,7 @@ class Scene:
 
     @property
     def warnings(self) -> list[str]:
-        """What was repaired or left out when the file was read."""
+        """Messages about repaired or omitted parts of the file."""
         return self._model.warnings
 
     def info(self) -> dict[str, Any]:
@@ -59,7 +59,7 @@ class Scene:
     def pick(
         self, x: float, y: float, camera: Camera, size: tuple[int, int] | None = None
     ) -> list[dict[str, Any]]:
-        """Returns what is behind a point of a picture, in pixels from its upper left corner, nearest first.
+        """Returns the hits behind a point of a picture, in pixels from its upper left corner, nearest first.
 
         Each is a dict of ``kind``, ``item`` (as in the item plane), ``instance``, ``index`` in its mesh, ``depth`` in the
         window and ``position`` in the world.
@@ -98,8 +98,8 @@ def read(
 ) -> Scene:
     """Reads a model: glTF, OBJ, STL, PLY, 3MF, COLLADA, OFF, and points in LAS, LAZ, E57, XYZ.
 
-    ``src`` is a path, bytes, or an open binary file; files that the model refers to are found beside a path only. ``name``
-    names the format where the content does not. ``pose`` is a time of the first animation, or (name, time).
+    ``src`` is a path, bytes, or an open binary file; files that the model refers to are found only beside a path. ``name``,
+    a file name, gives the format if the content does not. ``pose`` is a time of the first animation, or (name, time).
     ``limits`` may set ``triangles`` and ``bytes``. Repairs are reported as ``ReadWarning`` and kept in ``Scene.warnings``.
 
     Raises ``ReadError`` with the place of the fault, ``LimitError``, and ``OSError`` for files.
@@ -143,11 +143,11 @@ def read(
 
 
 def scene(obj: Any, *, up_axis: str | None = None) -> Scene:
-    """Returns a scene of almost anything that holds triangles.
+    """Returns a scene from almost any object that holds triangles.
 
     ``obj`` is a ``Scene``, a path or bytes, ``(vertices, faces)``, a ``trimesh.Trimesh`` or ``trimesh.Scene``, a
-    ``pyvista.PolyData``, or a ``pyrender.Scene`` or ``Mesh``. Colours, textures, names and poses are taken; ``up_axis`` is
-    z, and y for pyrender.
+    ``pyvista.PolyData``, or a ``pyrender.Scene`` or ``Mesh``. Colours, textures, names and poses are kept;
+    ``up_axis`` defaults to z, or y for pyrender.
 
     Raises ``ValueError`` for a face with a vertex that does not exist, and for vertices that are not finite;
     ``TypeError`` for arrays of other shapes.
@@ -211,7 +211,7 @@ class _Material(NamedTuple):
 
 
 def _array(value: Any, dtype: Any, name: str) -> Any:
-    """Returns an array of rows, one after the other in memory."""
+    """Returns a two-dimensional array, contiguous in memory."""
     try:
         array = np.ascontiguousarray(value, dtype=dtype)
     except (TypeError, ValueError) as error:
@@ -224,7 +224,7 @@ def _array(value: Any, dtype: Any, name: str) -> Any:
 
 
 class _Parts:
-    """Meshes and materials as the native module takes them."""
+    """Meshes and materials in the form of the native module."""
 
     def __init__(self) -> None:
         self.meshes: list[_Mesh] = []
@@ -289,7 +289,7 @@ def _indices(faces: Any) -> NDArray[np.int64]:
 
 
 def _bytes(colors: Any) -> NDArray[np.uint8]:
-    """Returns sRGB colours with alpha as bytes, from bytes or from numbers 0 to 1."""
+    """Returns sRGB colours with alpha as bytes, from bytes or from numbers from 0 to 1."""
     array = np.asarray(colors)
     if array.dtype.kind == "f":
         array = np.clip(np.rint(array * 255.0), 0, 255)
@@ -306,7 +306,7 @@ def _linear(colors: Any) -> NDArray[np.float32]:
 
 
 def _rgba(image: Any) -> NDArray[np.uint8]:
-    """Returns the pixels of a picture of Pillow, or of an array."""
+    """Returns the pixels of a Pillow image or an array."""
     if hasattr(image, "convert"):
         image = image.convert("RGBA")
     array = np.asarray(image)
@@ -386,7 +386,7 @@ def _trimesh_material(parts: _Parts, material: Any, has_uv: bool) -> int | None:
 
 
 def _polygons(faces: Any) -> NDArray[np.int64]:
-    """Returns triangles of faces as VTK lists them: each its number of vertices, then these."""
+    """Returns the triangles of faces in VTK's layout: for each face its number of vertices, then the vertices."""
     flat = np.asarray(faces, dtype=np.int64).reshape(-1)
     if flat.size == 0:
         return np.zeros((0, 3), np.int64)

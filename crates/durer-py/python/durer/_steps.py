@@ -32,7 +32,7 @@ def algorithms() -> list[Algorithm]:
 
 
 def lessons() -> dict[str, list[str]]:
-    """Returns the names of the algorithms that ``trace`` takes, each with its examples.
+    """Returns the names of the algorithms that ``trace`` can run, each with its examples.
 
     >>> "cohen-sutherland" in lessons()
     True
@@ -41,13 +41,13 @@ def lessons() -> dict[str, list[str]]:
 
 
 class Page:
-    """A page with buttons, shown in an iframe by notebooks."""
+    """A page with buttons, which notebooks show in an iframe."""
 
     def __init__(self, text: str) -> None:
         self.html = text
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the page as a file that needs nothing else."""
+        """Writes the page as a self-contained file."""
         _durer.deliver(os.fspath(path), self.html.encode())
 
     def _repr_html_(self) -> str:
@@ -69,7 +69,7 @@ class Trace(list[dict[str, Any]]):
         self._again = again
 
     def explore(self) -> Page:
-        """Returns the page with buttons that goes through the steps."""
+        """Returns a page with buttons for going through the steps."""
         return Page(_durer.trace_page(*self._again))
 
 
@@ -84,11 +84,11 @@ def trace(
     cap: int = 100_000,
     language: str = "en",
 ) -> Trace:
-    """Runs an algorithm step by step on an example or on input of one's own.
+    """Runs an algorithm step by step on an example or on your own input.
 
-    ``input`` is one picture of bytes (rows, columns) for fills from a ``seed``, arrays (n, 3) for faces, or arrays (n, 2):
-    those that end where they begin are rings of the subject, others lines. ``clip`` is a ring or a list of them,
-    ``window`` a rectangle. At most ``cap`` steps are made; where there are more, a last one of kind ``more`` counts them.
+    ``input`` is one picture of bytes (rows, columns) for fills from a ``seed``, arrays (n, 3) for faces, or arrays (n, 2),
+    which are rings of the subject if closed, otherwise lines. ``clip`` is a ring or a list of them, ``window`` a
+    rectangle. At most ``cap`` steps are recorded; if there are more, a last one of kind ``more`` counts them.
 
     >>> steps = trace("cohen-sutherland", [[-1, 1], [5, 3]], window=(0, 0, 4, 4))
     >>> steps[0]["line"], steps.facts["year"]

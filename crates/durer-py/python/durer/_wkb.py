@@ -1,4 +1,4 @@
-"""Geometries as well-known binary: of shapely, geopandas and pyarrow by duck typing, and of GeoJSON."""
+"""Geometries as well-known binary: shapely, geopandas and pyarrow by duck typing, and GeoJSON."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 Wkb = list[bytes | None]
 
-#: Numbers of the kinds of geometries in well-known binary, by their names in GeoJSON.
+#: Type codes of well-known binary, by their GeoJSON names.
 _CODES = {
     "Point": 1,
     "LineString": 2,
@@ -26,7 +26,7 @@ _PARTS = {"MultiPoint": "Point", "MultiLineString": "LineString", "MultiPolygon"
 
 
 def wkb_of_mapping(mapping: Mapping[str, Any]) -> bytes:
-    """Returns well-known binary of a geometry of GeoJSON.
+    """Returns a GeoJSON geometry as well-known binary.
 
     >>> len(wkb_of_mapping({"type": "Point", "coordinates": [1, 2]}))
     21
@@ -66,7 +66,7 @@ def shapely_if_imported() -> Any:
 
 
 def is_geometry(value: Any) -> bool:
-    # Of the type: that of a geometry would be made anew for the question whether it has one.
+    # Asks the type: on an instance, hasattr would compute the attribute's value.
     kind = type(value)
     return hasattr(kind, "geom_type") and hasattr(kind, "wkb") and not hasattr(kind, "to_wkb")
 
@@ -88,7 +88,7 @@ def one_to_wkb(value: Any, index: int) -> bytes | None:
 
 
 def objects(values: Any) -> NDArray[Any]:
-    """Returns a flat array of objects, which numpy must not look into."""
+    """Returns a flat array of objects, whose contents numpy must not convert."""
     if isinstance(values, np.ndarray) and values.dtype == object:
         return values
     items = list(values)
@@ -111,7 +111,7 @@ def array_to_wkb(array: NDArray[Any]) -> Wkb:
 
 
 def column_of(obj: Any) -> Any:
-    """Returns a pyarrow array of an Arrow array; ``None`` for anything else."""
+    """Returns an Arrow array as a pyarrow array; ``None`` for anything else."""
     if hasattr(obj, "buffers") and hasattr(obj, "type"):
         return obj
     if hasattr(obj, "chunks") and hasattr(obj, "combine_chunks"):
@@ -133,7 +133,7 @@ def is_series(obj: Any) -> bool:
 
 
 def to_wkb_list(obj: Any) -> Wkb:
-    """Returns geometries, one or many of any kind, as a list of well-known binary."""
+    """Returns one or many geometries of any kind as a list of well-known binary."""
     if is_frame(obj):
         obj = obj.geometry
     if is_series(obj):

@@ -1,4 +1,4 @@
-"""Tables of work: one row in, one row out; a row that fails has its error in a column, and ends nothing."""
+"""Batches: one row in, one row out; a failed row has its error in a column, and the batch continues."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from ._picture import render
 from ._scene import read
 from ._wkb import to_wkb_list
 
-#: Columns of a batch that say what a row is; all others are options of ``render``.
+#: Columns of a batch that identify a row and its input; all others are options of ``render``.
 GIVEN = ("id", "input", "bytes", "name")
 
 
 def render_batch(batch: Any, **options: Any) -> Any:
     """Renders each row of a ``pyarrow.RecordBatch`` or ``Table`` to a PNG; never raises for a row.
 
-    A row has ``input``, a path, or ``bytes`` with a ``name`` that names the format where they do not; ``id``, by default its
-    number; and may have any option of ``durer.render`` as a column, which counts more than the keyword argument.
+    A row has ``input``, a path, or ``bytes`` with a ``name``, a file name that gives the format if the bytes do not;
+    ``id``, by default its number; and any options of ``durer.render`` as columns, which override the keyword arguments.
 
     Returns a table with ``id``, ``png``, ``width``, ``height``, ``sha256`` (of the PNG), ``seconds``, ``warnings``, ``error``.
     """
@@ -45,7 +45,7 @@ def render_batch(batch: Any, **options: Any) -> Any:
 
 
 def _like(batch: Any, columns: dict[str, list[Any]], schema: Any) -> Any:
-    """Returns columns as the kind of table that was given."""
+    """Returns columns as the same kind of table as the input."""
     import pyarrow as pa
 
     kind = pa.Table if isinstance(batch, pa.Table) else pa.RecordBatch

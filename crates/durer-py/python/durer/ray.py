@@ -6,12 +6,12 @@ from typing import Any
 
 from .batch import clip_batch, render_batch
 
-#: Number of actors, or the least and the most; ``None`` is one for each CPU of the cluster.
+#: Number of actors, or the smallest and the largest number; ``None`` for one per CPU of the cluster.
 Actors = int | tuple[int, int] | None
 
 
 class _Renderer:
-    """An actor that stays, so that the module is loaded and its threads are started once."""
+    """A long-lived actor: the module is loaded and its threads are started only once."""
 
     def __init__(self, options: dict[str, Any]) -> None:
         self.options = options

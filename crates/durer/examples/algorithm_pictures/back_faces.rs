@@ -1,4 +1,4 @@
-//! Faces of a ring of quadrangles that back-face removal keeps, and those that it removes.
+//! Faces of a torus of quadrangles: those that back-face removal keeps, and those that it removes.
 
 use crate::overlay;
 use durer::math::{DVec2, DVec3};
@@ -25,7 +25,7 @@ fn faces() -> Vec<Vec<DVec3>> {
     faces.map(face).collect()
 }
 
-/// Returns all edges on the left, those of the faces that are kept on the right.
+/// Returns all edges on the left, and the edges of the kept faces on the right.
 pub fn picture(camera: &Camera, [width, height]: [u32; 2]) -> durer::Result<Framebuffer> {
     let camera = Camera { eye: DVec3::new(0.0, 3.9, 5.4), ..*camera };
     let view = View::new(camera, width / 2, height)?;

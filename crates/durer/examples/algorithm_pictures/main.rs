@@ -1,4 +1,4 @@
-//! The pictures of docs/algorithms: what a visible-surface method is doing on the way.
+//! The pictures of docs/algorithms: visible-surface methods at work.
 //!
 //! `cargo run --example algorithm_pictures -- docs/algorithms`
 

@@ -9,7 +9,7 @@ use durer::visibility::surface::{scan_line_z as scan, spanning_scan_line as span
 
 const INK: [u8; 4] = [20, 20, 30, 255];
 
-/// Lets a step be seen over the picture: windows, spans, polygons' outlines, the row of depths.
+/// Draws a step over the picture: windows, spans, outlines of polygons, the row of depths.
 pub fn draw(step: &Step, row: &mut u32, p: &mut Pixels<[u8; 4]>) {
     let tint =
         |item: u32| [0, 8, 16].map(|s| 120 + (item.wrapping_mul(0x9e37_79b9) >> s & 0x7f) as u8);

@@ -3,8 +3,7 @@
 use durer::math::{DMat4, DVec3, Vec3};
 use durer::scene::{Camera, Instance, Mesh, Projection, Scene};
 
-/// Returns three beams, each over the next and under the one before, and a triangle through all of
-/// them.
+/// Returns three cyclically overlapping beams, and a triangle through all of them.
 pub fn scene() -> Scene {
     let corner = |i: usize, x: f64, y: f64, z: f64| {
         DMat4::from_rotation_z(i as f64 * std::f64::consts::TAU / 3.0)

@@ -8,7 +8,7 @@ use durer::target::Pixels;
 
 const SIZE: [u32; 2] = [580, 340];
 
-/// Position of the upward axis.
+/// Position of the vertical axis.
 const LEFT: f64 = 72.0;
 
 const BLACK: Color = [20, 20, 30, 255];
@@ -33,7 +33,7 @@ pub struct Axis {
 }
 
 impl Chart {
-    /// Creates two axes, and a line of text below. Upwards go the powers of ten.
+    /// Creates two axes with a line of text below. The vertical axis shows powers of ten.
     pub fn new(title: &str, axis: Axis) -> Result<Self> {
         let canvas = Canvas::new(SIZE[0], SIZE[1], Default::default())?;
         let [least, most] = axis.range.map(|value| libm::log10(value.max(1e-9)));
@@ -63,7 +63,7 @@ impl Chart {
         290.0 - self.decade * (libm::log10(value) - self.floor)
     }
 
-    /// A curve at equal distances in x; upwards the logarithm of the values.
+    /// Draws a curve at equal distances in x, with the logarithms of the values in y.
     pub fn curve(&mut self, name: &str, values: &[f64]) -> Result<()> {
         let k = self.curves;
         self.curves += 1;

@@ -1,4 +1,4 @@
-//! The growth of work of visible-surface methods with triangles and with pixels, counted in steps.
+//! The growth of the work of visible-surface methods with triangles and pixels, counted in steps.
 //!
 //! `cargo run --release --example growth -- docs/algorithms`
 
@@ -12,7 +12,7 @@ use terrain::{steps, terrain};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| ".".into());
-    // Cells along the sides of the surface, pixels along those of the picture.
+    // Cells along each side of the surface, pixels along each side of the picture.
     for (name, sizes) in [
         ("triangles", [8, 16, 32, 64].map(|n| (n, 128))),
         ("pixels", [32, 64, 128, 256].map(|side| (16, side))),

@@ -1,4 +1,4 @@
-//! The scenes that are rendered, and the steps that they take.
+//! The scenes rendered, and the number of steps that they take.
 
 use durer::math::{DMat4, DVec3, Vec3};
 use durer::scene::{Camera, Instance, Mesh, Projection, Scene};
@@ -27,7 +27,7 @@ pub fn terrain(n: u32) -> Scene {
     }
 }
 
-/// Steps of a method for a picture of this many pixels along its sides.
+/// Counts the steps of a method for a square picture of this many pixels per side.
 pub fn steps(method: SurfaceMethod, scene: &Scene, side: u32) -> durer::Result<f64> {
     let projection = Projection::Perspective { fov_y: 0.7 };
     let (eye, target, up) = (DVec3::new(0.9, -1.6, 2.0), DVec3::ZERO, DVec3::Y);

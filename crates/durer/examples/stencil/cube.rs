@@ -1,4 +1,4 @@
-//! The body that is drawn, and the commands that all three pictures use.
+//! The body drawn, and the commands that all three pictures use.
 
 use durer::commands::{Command, Primitive, Vertex};
 use durer::fragment::{Compare, FragmentState, Stencil, StencilFace, StencilOp};
@@ -28,7 +28,7 @@ pub fn stencil(compare: Compare, pass: StencilOp, state: FragmentState) -> Comma
     Command::Fragments(FragmentState { stencil: Some(Stencil::both(face)), ..state })
 }
 
-/// No depth test: drawn over what is there.
+/// No depth test: drawn over the picture so far.
 pub fn above() -> FragmentState {
     FragmentState { depth: None, ..FragmentState::default() }
 }

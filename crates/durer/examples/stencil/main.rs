@@ -1,4 +1,4 @@
-//! Uses of a stencil: an outline, a reflection in a plane, and a section with its cut closed.
+//! Uses of a stencil: an outline, a reflection in a plane, and a section with a closed cut.
 //!
 //! `cargo run --example stencil -- stencil.png`
 

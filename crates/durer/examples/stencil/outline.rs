@@ -1,4 +1,4 @@
-//! The outline: where a larger body is beyond the body itself.
+//! The outline: the rim of a larger body around the body itself.
 
 use crate::cube::{above, scale, stencil};
 use durer::commands::{Command, ListId};

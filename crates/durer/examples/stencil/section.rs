@@ -1,4 +1,4 @@
-//! The section: the near plane cuts the body; where its inside is seen, the cut is closed.
+//! The section: the near plane cuts the body; a cap closes the cut where the inside is visible.
 
 use crate::cube::{above, flat, quad, stencil};
 use durer::commands::{Command, CullFace, ListId};

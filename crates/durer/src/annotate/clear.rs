@@ -195,7 +195,7 @@ mod tests {
         assert_eq!(outside(&ring, false, &[quad]), None);
         let line = [p(2.0, 5.0), p(20.0, 5.0)];
         assert_eq!(outside(&line, false, &[quad]), Some(vec![vec![p(3.0, 5.0), p(20.0, 5.0)]]));
-        // Nothing is left of what ends just beyond.
+        // A line that ends just beyond is removed entirely.
         assert_eq!(outside(&[p(-1.1, 5.0), p(3.1, 5.0)], false, &[quad]), Some(Vec::new()));
     }
 }

@@ -163,7 +163,7 @@ mod tests {
             .iter()
             .map(|m| if let Mark::Text { at, .. } = m { at.x } else { f64::NAN })
             .collect();
-        // To the right, off the view; to the left, off the line at 84; and one that may stay.
+        // To the right, off the view; to the left, off the line at 84; and one that stays.
         assert!(x[0] > 23.0 && x[1] < 78.0 && x[2] == 50.0, "{x:?}");
         assert_eq!(places.len(), 3);
         assert!(places[0].inside(DVec2::new(21.0, 0.0), DVec2::new(21.0, 90.0)).is_none());

@@ -296,8 +296,8 @@ mod tests {
         assert_eq!(side(p(-f64::MAX, 0.0), p(f64::MAX, 0.0), p(0.0, -tiny)), Ordering::Less);
     }
 
-    /// Returns points on a coarse grid, times powers of two, beside ones next to them: many on one line, and
-    /// many that nearly are.
+    /// Returns points on a coarse grid, times powers of two, and points next to them: many are collinear, and many
+    /// nearly so.
     fn points() -> impl Strategy<Value = [DVec2; 4]> {
         let coordinate = (-40i32..40, prop::sample::select(vec![0.1, 1.0, 3e-7, 1e9]), -2i32..3);
         let number = coordinate.prop_map(|(v, unit, steps)| {
@@ -341,7 +341,7 @@ mod tests {
                 let exact = |k| crossing_in_whole_numbers(k, [a, b], [c, d]);
                 prop_assert_eq!(point, p(exact(0), exact(1)));
                 prop_assert_eq!(crossing([d, c], [b, a]), Some(point));
-                // Rounded like the ends, it lies between them.
+                // Rounded like the ends, it is between them.
                 let within = |p: DVec2, q: DVec2| point.cmpge(p.min(q)).all() && point.cmple(p.max(q)).all();
                 prop_assert!(within(a, b) && within(c, d));
             }

@@ -35,7 +35,7 @@ pub const WORLD: Info = Info {
         "    for each vertex P, Q the next:",
         "        n·P + c ≥ 0: keep P",
         "        sides differ: emit the point of PQ in the plane",
-        "transform what is left by the matrix",
+        "transform the remaining ring by the matrix",
         "divide by w",
     ],
 };
@@ -80,7 +80,7 @@ pub const AFTER_DIVISION: Info = Info {
     pseudocode: &[
         "transform the vertices by the matrix",
         "a vertex is not finite: reject, stop",
-        "borders: first w ≥ a little, as nothing else can be divided; divide by w",
+        "borders: first w ≥ a small number, for the division; divide by w",
         "then for each border −1 ≤ x, y, z ≤ 1:",
         "    for each vertex P, Q the next:",
         "        P inside: keep P",
@@ -128,8 +128,8 @@ pub const PER_PIXEL: Info = Info {
     pseudocode: &[
         "transform the vertices by the matrix",
         "a vertex is not finite: reject, stop",
-        "nothing is cut but at the eye plane",
-        "for the border w ≥ a little:",
+        "clip at the eye plane only",
+        "for the border w ≥ a small number:",
         "    for each vertex P, Q the next:",
         "        P inside: keep P",
         "        sides differ: emit the point of PQ on the border",

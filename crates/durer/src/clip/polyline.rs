@@ -436,7 +436,7 @@ mod tests {
 
     #[test]
     fn what_only_touches_the_border_is_not_cut() {
-        // Past a corner of the frame; within it, past corners of its hole and along an edge of it.
+        // Past a corner of the frame; inside it, past corners of its hole and along an edge of the hole.
         for (line, part) in [
             ([p(-1, 1), p(1, -1)], Part::Outside),
             ([p(1, 3), p(3, 1)], Part::Inside),

@@ -21,7 +21,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(p² + log n) per point for degree p and n knots",
-    limits: "knots do not fall; parameters in the domain",
+    limits: "knots in ascending order; parameters in the domain",
     pseudocode: &[
         "find the knot span k with u_k ≤ u < u_(k+1)",
         "d_i^0 ← control point i, for i = k − p … k",
@@ -277,7 +277,7 @@ mod tests {
         }
     }
 
-    /// Mixes the points again as the steps say; the last one.
+    /// Mixes the points again by the steps; returns the last one.
     fn replayed<P: Point + PartialEq + std::fmt::Debug>(control: &[P], steps: &[Step<P>]) -> P {
         let (mut below, mut level, mut level_number) = (control.to_vec(), control.to_vec(), 1);
         for step in steps {

@@ -25,7 +25,7 @@ pub const INFO: Info = Info {
         "    for i = 0 … n − r:",
         "        // the point at t between two neighbours of the level below",
         "        P_i^r ← (1 − t) · P_i^(r−1) + t · P_(i+1)^(r−1)",
-        "// what is left is one point",
+        "// one point remains",
         "return P_0^n",
         "// P_0^r and P_(n−r)^r are the control points of both parts",
     ],

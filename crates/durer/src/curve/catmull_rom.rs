@@ -24,7 +24,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(n) for n points",
-    limits: "uniform parameters: unequal distances of the points make it swing out",
+    limits: "uniform parameters: with unequal distances between the points the curve overshoots",
     pseudocode: &[
         "for each point P_i, with the first and last one taken twice:",
         "    // the tangent is parallel to the chord of the neighbours",

@@ -264,7 +264,7 @@ impl Placed {
 mod tests {
     use super::*;
 
-    /// Circles around a centre, as far apart as `separation` says.
+    /// Returns circles around a centre, `separation` apart.
     struct Circles {
         center: DVec2,
         separation: f64,
@@ -295,7 +295,7 @@ mod tests {
     fn lines_keep_their_distance_and_close() {
         let field = Circles { center: DVec2::splat(50.0), separation: 5.0 };
         let lines = streamlines(&field, DVec2::splat(100.0), seeds(), &OPTIONS);
-        // Circles of the radii 10 to 40, five apart, or somewhat less where a gap is left.
+        // Circles of the radii 10 to 40, five apart, or slightly less to fill a gap.
         assert!((6..=8).contains(&lines.len()), "{}", lines.len());
         assert!(lines.iter().all(|l| l.closed));
         let radius = |l: &Streamline| l.points[0].distance(field.center);

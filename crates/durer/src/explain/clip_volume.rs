@@ -131,7 +131,7 @@ static CODE: Template = Template::new(
 );
 static BORDER: Template = Template::new(
     "border",
-    "The {border} border takes its turn: {count} vertices go in.",
+    "Next is the {border} border: {count} vertices go in.",
     "Nun der Rand {border}: {count} Ecken gehen hinein.",
 );
 static KEEP: Template = Template::new(
@@ -146,12 +146,12 @@ static CUT: Template = Template::new(
 );
 static ACCEPTED: Template = Template::new(
     "accepted",
-    "No outcode has a bit: all lies inside, nothing is cut.",
+    "No outcode has a bit: everything is inside, nothing is cut.",
     "Kein Outcode hat ein Bit: Alles liegt innen, nichts wird geschnitten.",
 );
 static REJECTED: Template = Template::new(
     "rejected",
-    "All that is left lies beyond one border, or is not an area: rejected.",
+    "The rest is beyond one border or has no area: rejected.",
     "Was übrig ist, liegt ganz jenseits eines Rands oder ist keine Fläche: abgelehnt.",
 );
 static DROPPED: Template = Template::new(

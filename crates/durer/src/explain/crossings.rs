@@ -33,7 +33,7 @@ pub(super) const LESSON: Lesson = Lesson {
         Example {
             name: "one-point",
             title: Word::new(
-                "three in one point, one of them upright",
+                "three in one point, one of them vertical",
                 "drei in einem Punkt, eine davon senkrecht",
             ),
             input: || segments(&[[0.0, 0.0, 8.0, 8.0], [0.0, 8.0, 8.0, 0.0], [4.0, 1.0, 4.0, 9.0]]),

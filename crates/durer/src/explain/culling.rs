@@ -38,7 +38,7 @@ pub(super) const LESSON: Lesson = Lesson {
         Example {
             name: "false-crossing",
             title: Word::new(
-                "outside near a corner, and said to cross",
+                "outside near a corner, but reported as crossing",
                 "außen an einer Ecke und doch „kreuzt“",
             ),
             input: || {

@@ -38,7 +38,7 @@ const EXAMPLES: &[Example] = &[
     Example {
         name: "all-tests",
         title: Word::new(
-            "five faces, of which every test drops something",
+            "five faces: every test drops something",
             "fünf Flächen, von denen jeder Test etwas verwirft",
         ),
         input: || {

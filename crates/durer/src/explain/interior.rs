@@ -45,7 +45,7 @@ const EXAMPLES: &[Example] = &[
     Example {
         name: "strip",
         title: Word::new(
-            "a strip: many points are as far, the middle is taken",
+            "a strip: many points are equally far, the middle is taken",
             "ein Streifen: viele Punkte gleich weit, die Mitte gilt",
         ),
         input: || area(vec![vec![(0.0, 0.0), (9.0, 0.0), (9.0, 3.0), (0.0, 3.0)]]),
@@ -88,7 +88,7 @@ static TRIED: Template = Template::new(
 );
 static BALANCED: Template = Template::new(
     "center",
-    "In the middle of those as far: {center}, {distance} from the border.",
+    "In the middle of the equally far ones: {center}, {distance} from the border.",
     "In der Mitte der gleich weiten: {center}, {distance} vom Rand.",
 );
 

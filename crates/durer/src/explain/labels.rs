@@ -19,7 +19,7 @@ pub(super) const LESSON: Lesson = Lesson {
         Example {
             name: "cities",
             title: Word::new(
-                "six places, of which one gets no label",
+                "six places, one of them without a label",
                 "sechs Orte, von denen einer leer ausgeht",
             ),
             input: || {

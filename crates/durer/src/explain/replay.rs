@@ -260,7 +260,7 @@ mod tests {
     use super::super::{Input, lessons};
     use super::*;
 
-    /// A frame by itself is the one that all frames in their order have in its place: on both sides of kept states,
+    /// Checks that a frame built alone equals the one in the sequence of all frames: on both sides of stored states,
     /// and where a run was cut off.
     #[test]
     fn any_frame_can_be_made() {
@@ -286,7 +286,7 @@ mod tests {
         }
     }
 
-    /// A long run has more steps between kept states than a short one; its frames are the same.
+    /// Checks that a long run has more steps between stored states than a short one, and the same frames.
     #[test]
     fn frames_of_long_runs_are_those_of_short_ones() {
         let grid = super::super::Grid { columns: 24, cells: vec![0; 24 * 24], seed: [3, 4] };
@@ -302,7 +302,7 @@ mod tests {
         }
     }
 
-    /// Frames are made from the state of their own step, though others were made before.
+    /// Checks that frames are built from the state of their own step, even after others were built.
     #[test]
     fn cells_that_changed_are_those_of_the_step() {
         let input = Input::Example(String::new());

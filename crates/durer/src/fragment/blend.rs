@@ -242,7 +242,7 @@ mod tests {
                 })
             })
         };
-        // Colour and alpha apart: each function for colour with some other one for alpha.
+        // Colour and alpha separately: each function for colour with another one for alpha.
         for (color, alpha) in functions().zip(functions().skip(7).cycle()) {
             let blend = Blend::Functions { color, alpha, constant: CONSTANT.into() };
             let found = blend.apply(s, d).to_array();

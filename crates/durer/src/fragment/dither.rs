@@ -114,7 +114,7 @@ mod tests {
                 let (low, high) = (used.first().copied(), used.last().copied());
                 let gap = |c: Option<u8>| LINEAR_FROM_SRGB[usize::from(c.unwrap_or(0))];
                 assert!(used.len() <= 2, "{levels} {v}: {used:?}");
-                // The next level above bounds the gap where only one is used.
+                // If only one level is used, the next level above bounds the gap.
                 let step = (gap(high) - gap(low)).max(2.5 / f32::from(levels - 1));
                 assert!((sum / 64.0 - v).abs() <= step / 64.0 + 1e-5, "{levels} {v}");
             }

@@ -19,7 +19,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(1) per fragment",
-    limits: "the air is the same everywhere",
+    limits: "the same air everywhere",
     pseudocode: &[
         "z ← distance of the fragment from the eye",
         "depth cueing and linear fog:",

@@ -321,7 +321,7 @@ mod tests {
 
     #[test]
     fn tests_come_in_their_order() {
-        // Every test would drop the fragment: the first one in the order is the one that does.
+        // Every test would drop the fragment: the first one in the order does.
         let never = Compare::Never;
         let face = StencilFace { compare: never, fail: StencilOp::Invert, ..Default::default() };
         let mut state = FragmentState {
@@ -344,7 +344,7 @@ mod tests {
         assert_eq!(t.color, Framebuffer::new(3, 3).color);
         state.depth = None;
         assert_eq!(apply(&state, fragment(0.25), &mut t), Outcome::Drawn);
-        // Without a depth test no depth is written, whatever the mask says.
+        // Without a depth test no depth is written, whatever the mask.
         assert_eq!(t.depth.as_ref().and_then(|p| p.get(1, 1)), Some(1.0));
         let outside = Fragment { x: 3, ..fragment(0.0) };
         assert_eq!(apply(&state, outside, &mut t), Outcome::Scissor);

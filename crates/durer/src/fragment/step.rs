@@ -29,7 +29,7 @@ pub const INFO: Info = Info {
         "    blend with the stored colour, or",
         "        combine with it by a logic operation",
         "    dither, round to 8 bits",
-        "    write the channels that the masks let through",
+        "    write the channels that the masks enable",
     ],
 };
 

@@ -121,7 +121,7 @@ mod tests {
         let halves = ["United Arab", "Emirates"].map(|half| font.line(half, 12.0).advance);
         assert_eq!(stacked.extent().x, halves[0].max(halves[1]));
         assert!(stacked.extent().y > 2.0 * whole.extent().y);
-        // Both lines are centred about the middle of the block.
+        // Both lines are centred on the middle of the block.
         let middle = DVec2::new(50.0, 40.0);
         let boxes = stacked.taken(stacked.corner(middle));
         for own in &boxes {

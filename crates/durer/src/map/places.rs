@@ -230,7 +230,7 @@ mod tests {
         assert_eq!((medium.fit, medium.middles[0]), (Fit::Over, DVec2::splat(100.0)));
         let hidden = places(90.0, 110.0, &land(90.0, 110.0));
         assert_eq!((hidden.fit, hidden.middles[0]), (Fit::Hiding, DVec2::new(132.0, 100.0)));
-        // With land all around there is nothing to gain.
+        // With land all around, moving gains nothing.
         let enclosed = places(90.0, 110.0, &land(0.0, 200.0));
         assert_eq!((enclosed.fit, enclosed.middles[0]), (Fit::Over, DVec2::splat(100.0)));
         assert!(island.alone && !enclosed.alone);

@@ -139,7 +139,7 @@ mod tests {
         };
         let painted = |marks: Vec<Mark>| paint(sheet(marks), 60, 60, [250, 240, 230, 255]);
         let parts = painted(marks.clone()).expect("painted");
-        // The last 200 over the picture of those before.
+        // The last 200 over the picture of the earlier ones.
         let last = marks.split_off(AT_ONCE);
         let mut whole = painted(marks).expect("painted");
         assert_ne!(parts, whole);

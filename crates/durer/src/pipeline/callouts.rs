@@ -109,7 +109,7 @@ mod tests {
     fn the_innermost_pixel_of_each_kind_is_found() {
         let rows = ["1111111", "1000001", "1000001", "1000001", "1111112"];
         let kinds: Vec<u32> = rows.concat().bytes().map(|b| u32::from(b - b'0')).collect();
-        // The middle of kind 0; kind 1 is one pixel wide; kind 2 is one pixel; there is no kind 3.
+        // The centre of kind 0; kind 1 is one pixel wide; kind 2 is one pixel; kind 3 is missing.
         assert_eq!(innermost(&kinds, 7, 4), [Some(2 * 7 + 2), Some(0), Some(34), None]);
     }
 }

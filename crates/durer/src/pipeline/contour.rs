@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn outlines_before_other_things_are_not_of_the_contour() {
-        // A square before the upper right part of itself.
+        // A square in front of its own upper right part.
         let positions = [square(0.0, 2.0, 1.0), square(1.0, 4.0, 0.0)].concat();
         let instance = Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() };
         let mesh = Mesh { positions, ..Mesh::default() };

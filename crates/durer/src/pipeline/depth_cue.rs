@@ -200,7 +200,7 @@ mod tests {
         let parts: Vec<(f64, Option<u8>)> =
             found.iter().map(|(l, s)| (l.points[0].x, *s)).collect();
         assert_eq!(parts, [(0.0, Some(2)), (10.0, Some(1)), (30.0, Some(0))]);
-        // A square that leans back: its near side is one part, though it begins in the middle of it.
+        // A square that leans back: its near side is one part, although the line starts in its middle.
         let square = line(&[(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)], true);
         let found = steps.divide(&square, &[0.0, 0.0, 2.0, 2.0]);
         assert_eq!(found.iter().map(|f| f.1).collect::<Vec<_>>(), [1, 2, 1, 0].map(Some));

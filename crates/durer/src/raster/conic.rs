@@ -28,7 +28,7 @@ pub const CIRCLE: Info = Info {
     occluder: Occluder::None,
     coherence: &[Coherence::Edge],
     cost: "O(radius), two integer additions per step and eight pixels",
-    limits: "a pixel as centre, a whole radius up to 2^20",
+    limits: "a pixel as centre, an integer radius up to 2^20",
     pseudocode: &[
         "x ← 0, y ← r, d ← 1 − r",
         "while x ≤ y:",
@@ -53,7 +53,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[Coherence::Edge],
     cost: "O(radii), three integer additions per step and four pixels",
-    limits: "a pixel as centre, axes along rows and columns, whole radii up to 2^20",
+    limits: "a pixel as centre, axes along rows and columns, integer radii up to 2^20",
     pseudocode: &[
         "x ← 0, y ← b, d ← b² − a²b + a²/4",
         "while b²(x + 1) < a²(y − ½):",

@@ -45,7 +45,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[Coherence::Face],
     cost: "O(1), one division",
-    limits: "vertices before the eye",
+    limits: "vertices in front of the eye",
     pseudocode: &[
         "for each corner: keep 1/w and value/w",
         "// both are linear on the screen, the value itself is not",

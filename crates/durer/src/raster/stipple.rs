@@ -208,7 +208,7 @@ mod tests {
     fn dots_are_as_many_as_the_density_says_and_apart() {
         let dots = stipple(&even(100, 70, 0.02));
         assert_eq!(dots.len(), 140);
-        // The closest packing of that density has gaps of 7.6 pixels; a random one half of them below 3.5.
+        // The densest packing has gaps of 7.6 pixels; a random arrangement has half of them below 3.5.
         let gaps = gaps(&dots);
         assert!(
             gaps.iter().all(|g| *g > 4.5),

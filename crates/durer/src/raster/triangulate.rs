@@ -25,11 +25,11 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(n log n) time on usual input, O(n²) at worst; O(n) memory",
-    limits: "contours that cross need a winding rule; without one triangles need not cover the even-odd area",
+    limits: "contours that cross need a winding rule; without one the triangles may differ from the even-odd area",
     pseudocode: &[
         "corners ← the points of all rings",
         "for each hole, from left to right:",
-        "    join it to the ring by a bridge to a corner that it sees",
+        "    join it to the ring by a bridge to a visible corner",
         "while the ring has more than three corners:",
         "    for each corner B between its neighbours A and C:",
         "        if B is reflex, that is (B − A) × (C − B) ≤ 0: next corner",

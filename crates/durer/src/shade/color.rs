@@ -315,7 +315,7 @@ mod tests {
             assert!(code >= last, "{x}");
             last = code;
             let off = (exact_srgb(f64::from(x)) * 255.0 - f64::from(code)).abs();
-            // The standard's two pieces miss each other by 1e-8 at their joint.
+            // The standard's two parts differ by 1e-8 at their joint.
             assert!(off <= 0.5 + 1e-4, "{x}: {off}");
         }
         assert_eq!(last, 255);

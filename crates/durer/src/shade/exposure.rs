@@ -281,7 +281,7 @@ mod tests {
     #[test]
     fn all_instances_are_measured_however_many_triangles_there_are() {
         let mut scene = floor(1.0, 260);
-        // A second floor that stands upright.
+        // A second floor, placed upright.
         let turned = DMat4::from_rotation_z(std::f64::consts::FRAC_PI_2);
         scene.instances.push(Instance { world_from_mesh: turned, ..scene.instances[0].clone() });
         let count = scene.triangle_count();

@@ -255,7 +255,7 @@ mod tests {
         assert_eq!(strength(short, Vec3::ZERO), 0.25 * (1.0 - 1.0 / 16.0));
         assert_eq!(strength(short, Vec3::new(0.0, -2.0, 0.0)), 0.0);
         assert_eq!(strength(short, Vec3::new(0.0, -9.0, 0.0)), 0.0);
-        // At the light itself the strength is finite, and there is no direction to be lit from.
+        // At the light itself the strength is finite, and light has no direction.
         assert!(strength(endless, Vec3::new(0.0, 2.0, 0.0)).is_finite());
     }
 

@@ -128,10 +128,12 @@ impl PreparedTexture<'_> {
         [u, v]: &[f32x16<S>; 2],
         level: Level<'_>,
     ) -> Rows<S> {
+        // The four texels around each point, with their weights.
         let (width, height) = (level.width as i32, level.height as i32);
         let (x0, x1, tx) = linear_x16(simd, *u, width, this.sampler.wrap_u);
         let (y0, y1, ty) = linear_x16(simd, *v, height, this.sampler.wrap_v);
         let weights = [spread(simd, tx), spread(simd, ty)];
+        // The bounding rectangle of all texels needed.
         let ([left, right], [top, low]) = (ends(simd, x0), ends(simd, y0));
         let (columns, rows) = (right - left + 2, low - top + 2);
         let beside = (x1 - x0).simd_eq(1) & (y1 - y0).simd_eq(1);
@@ -151,6 +153,7 @@ impl PreparedTexture<'_> {
             }
             return means;
         }
+        // Otherwise each point decodes its own four texels.
         let (top, low) = (y0 * width, y1 * width);
         let indices: [[i32; 16]; 4] =
             [(top + x0).into(), (top + x1).into(), (low + x0).into(), (low + x1).into()];

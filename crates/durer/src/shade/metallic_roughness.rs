@@ -26,7 +26,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(l) per pixel, l lights",
-    limits: "surroundings are a closed form, not an image; no shadows",
+    limits: "the environment is a closed form, not an image; no shadows",
     pseudocode: &[],
 };
 
@@ -321,7 +321,7 @@ mod tests {
 
     #[test]
     fn direct_and_ambient_reflection_agree() {
-        // The closed form against the formula it stands for, summed over the hemisphere.
+        // The closed form, compared with the formula that it approximates, summed over the hemisphere.
         let (sum, closed) = (hemisphere(), lights(Environment::uniform(Vec3::ONE), Vec::new()));
         for roughness in [0.4, 0.6, 0.8, 1.0] {
             for (base, metallic) in [(0.5, 1.0), (0.9, 1.0), (0.0, 0.0), (0.5, 0.0)] {

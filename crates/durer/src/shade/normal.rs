@@ -104,7 +104,7 @@ mod tests {
         for (face, normal) in [(Vec3::Z, tilted), (-Vec3::Z, -tilted), (Vec3::Z, -tilted)] {
             assert_eq!(framed(Vec3::Z * 5.0, face, normal), (Vec3::Z, tilted));
         }
-        // A normal that looks away at a silhouette is kept.
+        // A normal that points away at a silhouette is kept.
         let away = Vec3::new(0.995, 0.0, -0.0998).normalize();
         let face = Vec3::new(0.995, 0.0, 0.0998).normalize();
         assert!((framed(Vec3::Z, face, away).1 - away).length() < 1e-6);
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn derivatives_give_the_frame_that_tangents_give() {
-        // A picture hung on the plane z = 0, u to the right, v downwards, seen turned by 30°.
+        // A picture on the plane z = 0, u to the right, v downwards, rotated by 30°.
         let (c, s) = (0.866_025_4_f32, 0.5);
         let map = Vec3::new(0.3, -0.2, 0.93).normalize();
         for mirrored in [1.0_f32, -1.0] {

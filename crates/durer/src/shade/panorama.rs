@@ -236,7 +236,7 @@ fn harmonics(source: &Texels) -> [Vec3; 9] {
 mod tests {
     use super::*;
 
-    /// Returns a panorama of a function of the direction.
+    /// Returns a panorama that shows a function of the direction.
     fn panorama(light: impl Fn(Vec3) -> Vec3) -> Panorama {
         let size = Texels { width: 64, height: 32, colors: Vec::new() };
         let places = (0..32).flat_map(|y| (0..64).map(move |x| (x, y)));
@@ -266,14 +266,14 @@ mod tests {
 
     #[test]
     fn matte_surfaces_show_the_cosine_of_a_slope() {
-        // Of light 1 + c·d a matte surface shows 1 + 2/3 c·n.
+        // Under light 1 + c·d a matte surface shows 1 + 2/3 c·n.
         let c = Vec3::new(0.3, 0.5, -0.4);
         let p = panorama(|d| Vec3::splat(1.0 + c.dot(d)));
         for n in [Vec3::X, -Vec3::Y, Vec3::Z, Vec3::new(0.3, -0.8, 0.5)] {
             let expected = 1.0 + c.dot(n.normalize()) * 2.0 / 3.0;
             assert!((matte(&p, n).x - expected).abs() < 5e-3, "{n}");
         }
-        // Of the square of a cosine 1/3 + 1/4 · (n·d)² − 1/12.
+        // The square of a cosine gives 1/3 + 1/4 · (n·d)² − 1/12.
         let p = panorama(|d| Vec3::splat(d.y * d.y));
         assert!((matte(&p, Vec3::Y).x - 0.5).abs() < 5e-3, "{}", matte(&p, Vec3::Y));
         assert!((matte(&p, Vec3::X).x - 0.25).abs() < 5e-3, "{}", matte(&p, Vec3::X));
@@ -286,7 +286,7 @@ mod tests {
         let at_lamp = [0.0, 0.04, 0.3, 1.0].map(|alpha| seen(&p, lamp, alpha).x);
         assert!(at_lamp[0] > 9.9 && at_lamp.is_sorted_by(|a, b| a > b), "{at_lamp:?}");
         assert_eq!(seen(&p, -lamp, 0.0), Vec3::ZERO);
-        // The middle of the picture is what lies ahead, its right half to the right.
+        // The middle of the picture is straight ahead, its right half to the right.
         let quarters = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]];
         let p = Panorama::new(4, 1, &quarters).expect("panorama");
         assert!(seen(&p, Vec3::new(1.0, 0.0, -1.0), 0.0).z > 0.99);

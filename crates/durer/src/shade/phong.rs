@@ -27,7 +27,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[Coherence::Face],
     cost: "O(l) per pixel, l lights",
-    limits: "empirical: reflects more light than it gets at grazing angles",
+    limits: "empirical: reflects more light than it receives at grazing angles",
     pseudocode: &[
         "for each corner: N ← mean of the normals of its faces",
         "// normals are interpolated, not intensities",

@@ -162,7 +162,7 @@ mod tests {
                             let bits = |v: Vec3| v.to_array().map(f32::to_bits);
                             let sixteen = lane(&colors, i);
                             assert_eq!(bits(one.truncate()), bits(sixteen), "{shading} {level:?}");
-                            // No NaN, whatever goes in.
+                            // No NaN, whatever the input.
                             assert!(one.min_element() >= 0.0 && one.max_element() <= 1.0);
                         }
                     }

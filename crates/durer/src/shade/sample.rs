@@ -142,7 +142,7 @@ mod tests {
         }
     }
 
-    /// Returns one of each kind of lobe, and all together.
+    /// Returns a material with each kind of lobe, and one with all.
     fn materials() -> Vec<Material> {
         let plain = Material {
             model: ShadingModel::MetallicRoughness,

@@ -27,10 +27,10 @@ pub const INFO: Info = Info {
     class: Class::ImageSpace,
     occluder: Occluder::Point,
     coherence: &[],
-    cost: "one depth picture per map, then O(1) per point and light; 4 bytes a texel",
-    limits: "as sharp as the map is fine; blended surfaces, lines and points throw no shadow",
+    cost: "one depth picture per map, then O(1) per point and light; 4 bytes per texel",
+    limits: "as sharp as the map's resolution; blended surfaces, lines and points cast no shadow",
     pseudocode: &[
-        "for each light: map ← depths of what it meets first, texel by texel",
+        "for each light: map ← depth of the surface that it meets first, texel by texel",
         "for each point P of a surface with the normal N, turned to the light:",
         "    P ← P + N · texel · (1.6 · sin of N and the axis + 0.1)",
         "    (x, y, d) ← P in the space of the map",
@@ -313,7 +313,7 @@ mod tests {
         let map = map([row.clone(), row].concat());
         let normal = Vec3::new(-1.0, 0.0, 1.0).normalize();
         for i in 0..30 {
-            // Moved off along the normal, all of these are still in the map.
+            // Moved along the normal, all of these are still in the map.
             let x = 0.95 + i as f32 * 0.1;
             assert_eq!(map.reach(Vec3::new(x, 1.0, x), normal), Some(1.0), "{x}");
         }

@@ -133,7 +133,7 @@ fn band<L: Lane>(x: L, half: f32, sharpness: L) -> L {
 mod tests {
     use super::*;
 
-    /// Returns directions that are spread evenly over the sphere.
+    /// Returns directions spread evenly over the sphere.
     fn directions() -> impl Iterator<Item = Vec3> {
         let count = 20_000;
         (0..count).map(move |i| {

@@ -256,7 +256,7 @@ mod tests {
                 PreparedTexture::new(&image, sampler(filter, MipFilter::None, wrap), Usage::Data)
             };
             let [repeat, mirror, clamp] = WRAPS.map(of);
-            // Off the texels' borders, where a sample's side would hang on the last bit.
+            // Off the texels' borders, where the last bit would decide the side of a sample.
             for i in 0..100 {
                 let (u, v) = ((i as f32 + 0.3) / 100.0, (i * 37 % 100) as f32 / 100.0 + 0.003);
                 let here = at(&repeat, u, v);

@@ -15,7 +15,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(1) per pixel",
-    limits: "shows no form but what the texture shows",
+    limits: "shows no shape except in the texture",
     pseudocode: &[
         "u/w, v/w, 1/w ← texture coordinates of the corners, divided by w",
         "for each row that the face covers:",
@@ -23,7 +23,7 @@ pub const INFO: Info = Info {
         "    u/w, v/w, 1/w ← values there, between those of the corners",
         "    for each pixel between the edges:",
         "        u, v ← u/w, v/w over 1/w; colour ← base colour · texel(u, v) · colour of the vertices",
-        "// no normal and no light: what was painted or photographed with its light",
+        "// no normal and no light: a surface painted or photographed with its light",
         "// looks the same from every side",
     ],
 };

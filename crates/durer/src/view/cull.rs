@@ -31,7 +31,7 @@ pub const INFO: Info = Info {
         "    r ← |n_x| h_x + |n_y| h_y + |n_z| h_z, the reach of the box along n",
         "    s < −r: return outside; nothing of the box is drawn",
         "    s < r: result ← crossing",
-        "return result: what is inside is drawn without clipping",
+        "return result: a box inside is drawn without clipping",
     ],
 };
 

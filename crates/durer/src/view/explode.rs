@@ -199,8 +199,7 @@ fn add_traces(scene: &mut Scene, traces: &[[DVec3; 2]]) {
 mod tests {
     use super::*;
 
-    /// Returns a scene of boxes, each as the corners of its diagonal, as two triangles between
-    /// them.
+    /// Returns a scene of boxes; each is given by the ends of its diagonal and has two triangles between them.
     fn boxes(corners: &[[[f32; 3]; 2]]) -> Scene {
         let mesh = |[a, b]: &[[f32; 3]; 2]| Mesh {
             positions: vec![Vec3::from(*a), Vec3::from(*b), Vec3::new(a[0], b[1], a[2])],
@@ -237,7 +236,7 @@ mod tests {
         assert_eq!(z[2], z[3]);
         assert!((plate.0 - low.1 - 5.0).abs() < 1e-9, "{plate:?} {low:?}");
         assert!((lid.0 - plate.1 - 5.0).abs() < 1e-9 && (bolt.0 - lid.1 - 5.0).abs() < 1e-9);
-        // The middle stays, and lines fill the gaps.
+        // The middle part stays, and lines fill the gaps.
         assert!((low.0 + bolt.1 - (-4.0 + 24.0)).abs() < 1e-9);
         let traces = found.meshes.last().unwrap();
         assert_eq!((traces.topology, traces.positions.len()), (Topology::Lines, 8));

@@ -185,7 +185,7 @@ mod tests {
         Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
     }
 
-    /// Returns the smallest and largest clip coordinate over w, over all points and both axes; all
+    /// Returns the smallest and the largest clip coordinate over w, over all points and both axes; all points are
     /// inside.
     fn seen_by(camera: &Camera, scene: &Scene, aspect: f64) -> f64 {
         camera.check().unwrap();
@@ -235,7 +235,7 @@ mod tests {
             for degrees in 0..360 {
                 let from = direction(f64::from(degrees), elevation);
                 let camera = fit_turning(&scene, &from, &options(lens, 1.5)).unwrap();
-                // What sets the scale of the picture; a parallel view's eye may be anywhere.
+                // The scale of the picture; the eye of a parallel view may be anywhere.
                 distances.push(match camera.projection {
                     Projection::Perspective { .. } => {
                         (camera.eye - center(&scene).unwrap()).length()

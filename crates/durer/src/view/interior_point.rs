@@ -29,7 +29,7 @@ impl Default for Options {
     }
 }
 
-/// One step: a square has been examined, or, with a half side of 0, a place in the middle of those as far.
+/// One step: a square has been examined, or, with a half side of 0, a point in the middle of the equally far ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
     /// Its centre.
@@ -57,7 +57,7 @@ pub const INFO: Info = Info {
     class: Class::ObjectSpace,
     occluder: Occluder::None,
     coherence: &[],
-    cost: "O(s n): s squares looked at, some tens to hundreds, n vertices",
+    cost: "O(s n): s squares examined, some tens to hundreds, n vertices",
     limits: "distances in f64",
     pseudocode: &[
         "cover the bounding box with squares",
@@ -66,8 +66,8 @@ pub const INFO: Info = Info {
         "    best ← the centre with the largest d",
         "while the largest bound is more than best + precision:",
         "    divide its square in four, with d and bound of each",
-        "if the centre of the largest ring is as far: take it",
-        "else: move the best point to the middle of those as far",
+        "if the centroid of the largest ring is equally far: take it",
+        "else: move the best point to the middle of the equally far ones",
     ],
 };
 

@@ -20,7 +20,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(1) per candidate for labels of similar size",
-    limits: "what has been placed stays: not the most labels that there is room for",
+    limits: "placed labels stay: there may be room for more labels in other places",
     pseudocode: &[
         "taken ← ∅",
         "for each label, the most important first:",

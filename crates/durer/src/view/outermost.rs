@@ -264,8 +264,7 @@ fn extent(positions: &[Vec3]) -> [Vec3; 2] {
 mod tests {
     use super::*;
 
-    /// Returns points in an order that runs from one end of a skew body to the other; some are not
-    /// finite.
+    /// Returns points in order from one end of a skew body to the other; some are not finite.
     fn points(count: usize) -> Vec<Vec3> {
         let point = |i: usize| {
             let (t, turn) = (i as f32 / count as f32, i as f32 * 0.37);
@@ -288,7 +287,7 @@ mod tests {
             [0.0, 0.4, 1.5, 0.0].into(),
             [10.0, 20.0, -5.0, 1.0].into(),
         );
-        // Wherever the one vertex is that lies far off, to whichever side.
+        // Wherever the one distant vertex is, to either side.
         for (count, far) in [
             (0, 0),
             (1, 0),

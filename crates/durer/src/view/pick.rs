@@ -25,8 +25,8 @@ pub const INFO: Info = Info {
     class: Class::ObjectSpace,
     occluder: Occluder::None,
     coherence: &[Coherence::Object],
-    cost: "O(t): t triangles of the instances whose boxes are met",
-    limits: "what is transparent is met like all else",
+    cost: "O(t): t triangles of the instances whose boxes are hit",
+    limits: "transparent surfaces are hit like opaque ones",
     pseudocode: &[
         "hits ← ∅",
         "for each object:",

@@ -34,7 +34,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::Point,
     coherence: &[Coherence::Frame],
     cost: "O(pixels of the pictures + pixels lit) time, O(pixels of the new picture) memory",
-    limits: "what no picture shows is a hole; pixels that become very large are left out",
+    limits: "areas that no picture shows are holes; pixels that become very large are left out",
     pseudocode: &[
         "for each picture, for each of its pixels (x, y) with the depth z:",
         "    slope ← change of depth to the neighbours whose depth is nearest",

@@ -1,4 +1,4 @@
-//! Back-face removal: faces that turn their back to the eye are left out before anything else is done.
+//! Back-face removal: faces that turn their back to the eye are removed first.
 //!
 //! L. G. Roberts, *Machine Perception of Three-Dimensional Solids*, MIT Lincoln Laboratory TR 315, 1963: the eye is put
 //! into the equation of each face's plane. Normals are M. Newell's, from all corners of a polygon (in I. Sutherland, R.
@@ -44,7 +44,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[Coherence::Face],
     cost: "O(corners)",
-    limits: "closed bodies; finds all that is visible of one convex body only",
+    limits: "closed bodies; complete only for a single convex body",
     pseudocode: &[
         "for each face with corners P_1 … P_n, counter-clockwise from outside:",
         "    N ← (0, 0, 0)",

@@ -28,7 +28,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(edges · log edges + pixels lit) time, O(edges) memory",
-    limits: "ambiguous: what is in front cannot be told",
+    limits: "ambiguous: lines in front and behind look alike",
     pseudocode: &[],
 };
 

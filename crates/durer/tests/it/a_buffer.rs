@@ -1,4 +1,4 @@
-//! The A-buffer: closer to the truth than samples, blending without order, bounded memory.
+//! The A-buffer: more accurate than samples, order-independent blending, bounded memory.
 
 use crate::{data, scenes};
 use durer::math::{DMat4, DVec3, Vec3, Vec4};
@@ -85,7 +85,7 @@ fn assert_better(errors: [f64; 4], what: &str) {
     assert!(mask_64 < samples_64, "{what}: {errors:?}");
 }
 
-/// Returns all of a scene in one black material.
+/// Returns the scene with one black material on everything.
 fn black(mut scene: Scene) -> Scene {
     scene.materials = vec![flat(Vec3::ZERO.extend(1.0))];
     for mesh in &mut scene.meshes {
@@ -96,7 +96,7 @@ fn black(mut scene: Scene) -> Scene {
     scene
 }
 
-/// Spheres, black and white by turns, that penetrate each other.
+/// Returns intersecting spheres, alternately black and white.
 fn spheres() -> Scene {
     let materials = [0.0, 1.0].map(|v| flat(Vec3::splat(v).extend(1.0))).to_vec();
     let mut scene = Scene { materials, ..Scene::default() };
@@ -140,7 +140,7 @@ fn conformance_edges_of_models_are_closer_to_the_truth_than_by_as_many_samples()
     }
 }
 
-/// Panes one behind the other that fill the picture, in a muddled order; and from far to near.
+/// Returns panes one behind the other that fill the picture, in random order, and from far to near.
 fn panes() -> (Scene, Vec<Vec4>) {
     let depths = [0.3, -1.0, 0.9, 0.0, -0.4];
     let colors: Vec<Vec4> = (0..5)
@@ -179,7 +179,7 @@ fn blended_surfaces_are_composed_as_if_sorted() {
     }
 }
 
-/// Returns a scene with opaque and blended faces in each other.
+/// Returns a scene of opaque and blended faces that intersect.
 fn glass() -> Scene {
     let mut scene = spheres();
     scene.materials[1] = flat(Vec4::new(0.9, 0.4, 0.2, 0.4));
@@ -231,7 +231,7 @@ fn the_picture_is_rebuilt_from_its_steps() {
     }
 }
 
-/// Closed bodies leave no gap between their faces, nor do faces shine through each other.
+/// Checks that closed bodies have no gaps between their faces, and that no face shines through another.
 #[test]
 fn faces_that_meet_leave_no_gap() {
     let scene = black(Scene {
@@ -251,8 +251,8 @@ fn faces_that_meet_leave_no_gap() {
     assert_eq!(black, 256);
 }
 
-/// Returns a view of the plane z = 0, a pixel for each unit, x to the right from the left border
-/// and y down from the upper one; z = 0 lies in the far plane.
+/// Returns a view of the plane z = 0, one pixel per unit, x to the right from the left border and y down from the upper
+/// one; z = 0 is the far plane.
 fn upright() -> View {
     let camera = Camera {
         eye: DVec3::new(4.0, -4.0, 10.0),
@@ -289,7 +289,7 @@ fn grey(scene: &Scene) -> [f64; 2] {
     })
 }
 
-/// Left of x = `border`, at a height.
+/// Returns a triangle left of x = `border`, at a height.
 fn left_of(border: f32, z: f32) -> Corners {
     [(border, -20.0, z), (border, 28.0, z), (border - 90.0, 4.0, z)]
 }
@@ -308,7 +308,7 @@ fn what_is_half_hidden_fills_what_the_front_leaves() {
 
 #[test]
 fn a_sliver_between_sub_pixels_is_hidden_by_what_is_in_front() {
-    // Between the centres of both masks, of which 3/16 and 5/16 are the nearest.
+    // Between the sample positions of both masks; 3/16 and 5/16 are the nearest ones.
     let sliver = [(2.2, 3.2, 2.0), (2.3, 3.2, 2.0), (2.25, 3.3, 2.0)];
     let by = |front: Option<f32>, color: Vec3| {
         let sliver = (sliver, Vec3::ZERO);
@@ -324,7 +324,7 @@ fn a_sliver_between_sub_pixels_is_hidden_by_what_is_in_front() {
 #[test]
 fn a_face_ends_at_the_far_plane_within_a_pixel() {
     for border in [2.2, 2.45, 2.8] {
-        // Nearer than the far plane left of the border only.
+        // Nearer than the far plane only left of the border.
         let steep =
             [(border - 8.0, -60.0, 8.0), (border + 8.0, 4.0, -8.0), (border - 8.0, 68.0, 8.0)];
         for (found, step) in grey(&faces(&[(steep, Vec3::ZERO)])).into_iter().zip([4.0, 8.0]) {

@@ -1,4 +1,4 @@
-//! Annotations: what they say, that they measure the model, and that they keep clear of each other.
+//! Annotations: their texts, measurements of the model, and clear distances.
 
 use crate::line_scenes::{Random, Triangle, cuboid, cylinder, soup, view};
 use durer::annotate::{
@@ -106,7 +106,7 @@ fn sizes_and_diameters_are_those_of_the_model() {
 
 #[test]
 fn the_size_of_a_round_thing_is_its_diameter() {
-    // A polygon of 15 sides is smaller than its circle in every direction but those of its corners.
+    // A regular polygon of 15 sides is smaller than its circle except in the directions of its corners.
     let scene = soup(&cylinder([40.0, 20.0], 25.0, [0.0, 7.0], 15));
     let wanted = Annotations { sizes: true, ..Annotations::default() };
     assert_eq!(texts(&annotated(&scene, TOP, &wanted).0), ["50", "50"]);
@@ -203,13 +203,13 @@ fn a_thread_is_three_quarters_of_a_circle_or_two_lines() {
     let [Mark::Curve { curve, .. }] = marks(&laid, "thread") else { panic!("one arc") };
     let [Piece::Arc(arc, _)] = curve.pieces[..] else { panic!("{curve:?}") };
     let center = laid.views[0].sheet_from_model(DVec3::new(40.0, 20.0, 0.0)).expect("seen");
-    // The core of M8: 8 − 1.0825 · 1.25.
+    // The core diameter of M8: 8 − 1.0825 · 1.25.
     assert!((arc.radii().x - 6.6468 / 2.0).abs() < 1e-3 && arc.center.distance(center) < 1e-3);
     assert!((arc.turn.abs().to_degrees() - 270.0).abs() < 1e-9 && !curve.closed);
     assert_eq!(marks(&annotated(&scene, FRONT, &wanted).0, "thread").len(), 2);
 }
 
-/// Returns the extent of a text, along its way and across.
+/// Returns the extent of a text along its direction and across.
 fn boxes(laid: &LaidOut) -> Vec<Rect> {
     let rect = |d: &&Dimension| Rect::around(dimension_strokes(&d.text).into_iter().flatten());
     dimensions(laid).iter().filter_map(rect).collect()
@@ -251,7 +251,7 @@ fn texts_keep_clear_of_each_other_and_of_lines() {
     }
 }
 
-/// Texts that run obliquely are taken a little smaller, as their boxes are larger than they.
+/// Oblique texts are made a little smaller, as their boxes are larger than the texts.
 fn is_upright_overlap(a: &Rect, b: &Rect) -> bool {
     let small = |r: &Rect| r.size().min_element() < 3.6;
     let apart = a.max().cmple(b.min()).any() || b.max().cmple(a.min()).any();
@@ -260,7 +260,7 @@ fn is_upright_overlap(a: &Rect, b: &Rect) -> bool {
 
 #[test]
 fn lines_end_before_text() {
-    // A dimension of the middle peg, whose text stands on the plate's centre line.
+    // A dimension of the middle peg; its text is on the plate's centre line.
     let note = Request {
         what: What::Angle {
             vertex: Place::Point(DVec3::new(20.0, 20.0, 6.0)),

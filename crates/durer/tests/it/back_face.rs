@@ -1,4 +1,4 @@
-//! Back-face removal: right for polygons, and the same as the production path's culling.
+//! Back-face removal: right for polygons, and equal to the culling of the production path.
 
 use crate::data;
 use crate::scenes::{Numbers, instance, options, sphere};
@@ -21,9 +21,8 @@ fn input<'a>(scene: &'a Scene, view: &'a View, cull: Cull) -> SurfaceInput<'a> {
     SurfaceInput::new(scene, view, Filter::new(cull, 128)).expect("input")
 }
 
-/// Returns whether rounding its corners to the grid can have turned a triangle over: each corner moves
-/// by half a step at most, so twice the area changes by half the way around (|dx| + |dy|), and 3/2
-/// more.
+/// Returns whether rounding its corners to the grid can have reversed a triangle: each corner moves by half a step at
+/// most, so twice the area changes by at most half the perimeter (|dx| + |dy|), and 3/2 more.
 fn may_be_turned(t: &ScreenTriangle) -> bool {
     let side = |v: &[i32; 3], i: usize| i64::from(v[i]) - i64::from(v[(i + 1) % 3]);
     let around: i64 = (0..3).map(|i| side(&t.x, i).abs() + side(&t.y, i).abs()).sum();
@@ -31,7 +30,7 @@ fn may_be_turned(t: &ScreenTriangle) -> bool {
     2 * area.abs() <= around + 3
 }
 
-/// Returns the step removes exactly what the production path culls, but for slivers.
+/// Checks that the step removes exactly the faces that the production path culls, except slivers.
 fn check_against_culling(name: &str, scene: &Scene, view: &View) -> [usize; 2] {
     let options = Options { whole_polygons: false, keep_edge_on: false };
     let kept = remove_of_scene(scene, Eye::of(view.camera()), &options, &mut NoTrace);
@@ -96,7 +95,7 @@ fn fitted(scene: &Scene, projection: Projection, side: u32) -> View {
     View::new(camera, side, side).expect("view")
 }
 
-/// Any of the image-space algorithms may leave the test to this step.
+/// Any of the image-space algorithms may leave culling to this step.
 #[test]
 fn a_closed_body_looks_the_same_without_its_back() {
     let mut scene = Scene {
@@ -126,8 +125,8 @@ fn a_closed_body_looks_the_same_without_its_back() {
     }
 }
 
-/// Returns a sphere whose first and last column and whose poles are the same points to the last bit:
-/// nothing shows through the seam.
+/// Returns a sphere whose first and last columns and whose poles coincide to the last bit: nothing shows through the
+/// seam.
 fn closed_sphere(rings: u32) -> Mesh {
     let mut mesh = sphere(rings, None);
     let columns = 2 * rings as usize + 1;
@@ -140,8 +139,8 @@ fn closed_sphere(rings: u32) -> Mesh {
     mesh
 }
 
-/// Checks that of one convex body everything is visible that is kept and covers a pixel's centre, and
-/// nothing else except single pixels at the silhouette.
+/// Checks that, of a convex body, everything kept that covers a pixel's centre is visible, and nothing else except
+/// single pixels at the silhouette.
 #[test]
 fn one_convex_body_needs_nothing_else() {
     let scene =
@@ -167,8 +166,7 @@ fn one_convex_body_needs_nothing_else() {
     settings.item = true;
     let planes = durer::pipeline::render(&scene, &settings).expect("picture").0;
     let items = planes.item.expect("items").into_data();
-    // Where front and back meet at the silhouette their depths are one number but for rounding, and
-    // a pixel there may show the back.
+    // At the silhouette the depths of front and back are equal up to rounding, and a pixel there may show the back.
     let (mut seen, strays): (Vec<u32>, Vec<u32>) = items
         .into_iter()
         .filter(|&item| item != NO_ITEM)
@@ -179,8 +177,7 @@ fn one_convex_body_needs_nothing_else() {
     assert_eq!(seen, expected);
 }
 
-/// A concave polygon fanned from its first corner has triangles that run the wrong way round; the
-/// polygon as a whole does not.
+/// Triangles of a concave polygon fanned from its first corner may face the wrong way; the polygon as a whole does not.
 #[test]
 fn concave_polygons_have_one_side() {
     let arrow = [(0.0, 0.0), (1.0, -1.0), (0.3, 0.0), (1.0, 1.0)];
@@ -198,7 +195,7 @@ fn concave_polygons_have_one_side() {
     };
     assert_eq!((sides(true, 5.0), sides(true, -5.0)), (vec![0, 1], vec![]));
     assert_ne!((sides(false, 5.0).len(), sides(false, -5.0).len()), (2, 0));
-    // The same polygon by the triangles that readers give it, which are not fan.
+    // The same polygon in the triangles of a reader, which are not a fan.
     let mut scene = scene;
     scene.meshes[0].indices = Some(vec![3, 0, 1, 1, 2, 3]);
     for z in [5.0, -5.0] {
@@ -228,7 +225,7 @@ fn what_is_edge_on_or_no_face_has_no_front() {
 }
 
 proptest! {
-    /// The two laws of tracing, and that a polygon seen from its other side is the reversed one.
+    /// Checks the two laws of tracing, and that a polygon seen from its other side is the reversed one.
     #[test]
     fn steps_rebuild_the_result(seed in 0u64..1 << 40, count in 0usize..30) {
         let mut numbers = Numbers(seed);

@@ -1,4 +1,4 @@
-//! Blended surfaces by several methods: what is behind shows through, in the order of the depths.
+//! Blended surfaces by several methods: surfaces behind show through in depth order.
 
 use crate::scenes::{self, Numbers};
 use crate::surface_scenes::{Prepared, of_triangles};
@@ -51,7 +51,7 @@ fn all_methods_compose_what_the_z_buffer_sorts() {
         .chain([("materials".to_owned(), scenes::materials())])
     {
         let expected = picture(&scene, SurfaceMethod::ZBuffer, Samples::One);
-        // The A-buffer smooths edges, and has a test of its own.
+        // The A-buffer also anti-aliases edges, and has its own test.
         for &method in SurfaceMethod::ALL.iter().filter(|m| **m != SurfaceMethod::ABuffer) {
             let found = picture(&scene, method, Samples::One);
             let pairs = found.color.data().iter().zip(expected.color.data());
@@ -61,8 +61,7 @@ fn all_methods_compose_what_the_z_buffer_sorts() {
     }
 }
 
-/// Draws this many panes through each other that they are lit in several turns, and of which the last are
-/// not visible.
+/// Draws so many intersecting panes that they are lit in several batches; the last ones are not visible.
 #[test]
 fn all_methods_agree_where_next_to_nothing_comes_through_many_panes() {
     let mut numbers = Numbers(5);
@@ -86,12 +85,12 @@ fn all_methods_agree_where_next_to_nothing_comes_through_many_panes() {
     assert_eq!(pairs.filter(|(a, b)| a != b).count(), 0);
 }
 
-/// Quads that face the eye, whose edges are those of pixels, at random depths: the picture is known by
-/// sorting and compositing.
+/// Checks quads that face the eye, with pixel-aligned edges and random depths: sorting and compositing give the
+/// expected picture.
 #[test]
 fn the_a_buffer_is_sorted_compositing() {
     const SIDE: u32 = 24;
-    // Behind the first two or three dozen of sixty panes nothing is seen any more.
+    // Behind the first two or three dozen of sixty panes nothing is visible.
     for (seed, count) in (0..20).map(|seed| (seed, 9)).chain([(20, 60), (21, 60)]) {
         let mut numbers = Numbers(seed + 77);
         let mut scene = Scene::default();
@@ -158,8 +157,8 @@ fn the_a_buffer_is_sorted_compositing() {
     }
 }
 
-/// With several samples subdivision and rays compose at each of them; more samples come nearer to a
-/// great many.
+/// Checks that with several samples subdivision and rays compose at each sample, and that more samples approach the
+/// picture of very many.
 #[test]
 fn samples_are_composed_one_by_one() {
     for seed in 0..3 {

@@ -1,4 +1,4 @@
-//! Work within a budget: what does not fit is an error, what is stopped ends, and all memory is given back.
+//! Work within a budget: work that does not fit is an error, stopped work ends, and all memory is given back.
 
 use crate::scenes::{options, soup};
 use durer::Error;
@@ -135,7 +135,7 @@ fn many_dashes_are_the_same_in_parts_and_end_where_they_do_not_fit() {
         let mut target = Pixels::new(100, 80, [0; 4]);
         canvas.render(&mut target).map(|()| target)
     };
-    // Some 8,000 dashes that cover each other.
+    // About 8,000 dashes that overlap.
     let many = picture(&Work::default(), &[0.01, 0.001]).unwrap();
     let work = Work::with_budget(64 << 20, "the budget");
     assert_eq!(picture(&work, &[0.01, 0.001]).unwrap(), many);
@@ -175,7 +175,7 @@ fn closed_paths_with_parts_far_away_keep_their_corners() {
     let stroke = Stroke { width, ..Stroke::default() };
     let picture = |far: f64| {
         let mut path = Path::new();
-        // It begins and ends in the picture.
+        // The stroke begins and ends in the picture.
         path.push(PathElement::MoveTo(p(40.0, 40.0)));
         path.push(PathElement::LineTo(p(90.0, 40.0)));
         path.push(PathElement::LineTo(p(far, 50.0)));

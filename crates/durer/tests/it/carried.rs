@@ -1,5 +1,5 @@
-//! Hidden lines whose visibility is carried along edges, by Appel, and by Galimberti and Montanari: the numbers by hand, by rays,
-//! and the same drawing as of the production's hidden lines.
+//! Hidden lines whose visibility is carried along edges, by Appel and by Galimberti and Montanari: hand-computed
+//! numbers, comparison with rays, and the same drawing as by the production's hidden lines.
 
 use crate::line_scenes::{
     Random, Triangle, city, cuboid, cylinder, soup, torus, turned_boxes, view,
@@ -34,7 +34,7 @@ fn by_sets(net: &FaceNet) -> Vec<natures::Line> {
     lines
 }
 
-/// Returns an L-shaped prism, a body that hides parts of itself.
+/// Returns an L-shaped prism, which hides parts of itself.
 fn step() -> Vec<Triangle> {
     let profile = [(0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (2.0, 1.0), (2.0, 3.0), (0.0, 3.0)];
     let at = |i: usize, y: f64| {
@@ -70,8 +70,8 @@ fn solids() -> Vec<(&'static str, Vec<Triangle>)> {
     ]
 }
 
-/// Returns the faces that hide a point of an edge, found by a ray to the eye; nothing if one passes too close to a border, or
-/// if a face is too close to the point. Faces of the edge itself are left out.
+/// Returns the faces, except those at the edge, that hide a point of an edge, found by a ray to the eye; `None` if the
+/// ray passes too close to a border or a face is too close to the point.
 fn hiding(net: &FaceNet, edge: usize, point: DVec3, eye: Eye) -> Option<Vec<usize>> {
     let to_eye = match eye {
         Eye::At(at) => (at - point).normalize(),
@@ -130,7 +130,7 @@ fn numbers_and_natures_are_those_of_rays() {
     assert!(checked > 5_000, "{checked}");
 }
 
-/// Surfaces with holes, whose backs hide as their fronts do.
+/// Returns surfaces with holes, whose backs hide as their fronts do.
 #[test]
 fn natures_of_open_surfaces_are_those_of_rays() {
     let mut checked = 0;
@@ -165,7 +165,7 @@ fn drawings_are_those_of_production() {
         let length = |[p, q]: [DVec3; 2]| flat(p).distance(flat(q));
         let numbers: f64 = by_numbers(&net).iter().flat_map(|l| l.parts()).map(length).sum();
         let sets: f64 = by_sets(&net).iter().flat_map(|l| l.visible()).map(length).sum();
-        // All edges, however short and blunt, but none that are not there.
+        // All edges, however short and obtuse, and no others.
         let options = hidden_line::Options {
             classes: ClassSet::default().without(LineClass::Intersection),
             crease: 1e-3,
@@ -179,7 +179,8 @@ fn drawings_are_those_of_production() {
     }
 }
 
-/// A plate before the middle of a bar: its edges are hidden once between its borders, by the plate's front.
+/// Checks a plate in front of the middle of a bar: the bar's edges are hidden once between the plate's borders, by its
+/// front.
 #[test]
 fn a_plate_hides_the_middle_of_a_bar() {
     let mut triangles = cuboid([0.0, 1.0, 0.0], [10.0, 2.0, 1.0]);
@@ -187,7 +188,7 @@ fn a_plate_hides_the_middle_of_a_bar() {
     let net = net(&triangles, Eye::Along(DVec3::NEG_Z));
     let mut steps = Recorder::default();
     let lines = appel::draw(&net, &appel::Options::default(), &mut steps).unwrap();
-    // One ray for each body; everything else follows.
+    // One ray for each body; everything else is carried along edges.
     let rays = steps.steps().iter().filter(|step| matches!(step, appel::Step::Ray { .. }));
     assert_eq!(rays.count(), 2);
     let front = |line: &&appel::Line| {
@@ -203,7 +204,7 @@ fn a_plate_hides_the_middle_of_a_bar() {
         cuts.sort_by(f64::total_cmp);
         assert!((cuts[0] - 2.0).abs().max((cuts[1] - 4.0).abs()) < 1e-4, "{cuts:?}");
     }
-    // Behind the plate and their own front: twice.
+    // Twice behind the plate: by the plate and by their own front.
     assert!(lines.iter().flat_map(|line| &line.spans).any(|span| span.invisibility == 2));
 }
 
@@ -212,7 +213,7 @@ fn open_surfaces_have_natures_but_no_numbers() {
     let square = |x: f64, z: f64| {
         [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(|(u, v)| DVec3::new(x + u, v + x, z))
     };
-    // The middle one is wound the other way.
+    // The middle one has the opposite winding.
     let mut faces = [square(0.0, 0.0), square(1.0, 1.0), square(2.0, 2.0)].map(Vec::from);
     faces[1].reverse();
     let net = FaceNet::new(&faces, Eye::Along(DVec3::NEG_Z)).unwrap();
@@ -220,7 +221,7 @@ fn open_surfaces_have_natures_but_no_numbers() {
     assert!(refused.to_string().contains("closed"), "{refused}");
     let lines = by_sets(&net);
     let seen: f64 = lines.iter().flat_map(|line| line.visible()).map(|[p, q]| p.distance(q)).sum();
-    // Of the lower two, the next one covers a square of three by three.
+    // The lower of the two is covered by the next one in a square of three by three.
     assert!((seen - (16.0 + 10.0 + 10.0)).abs() < 1e-4, "{seen}");
     let both = |line: &&natures::Line| line.parts.iter().any(|part| part.nature == [1, 2]);
     assert_eq!(lines.iter().filter(both).count(), 2);
@@ -239,7 +240,7 @@ fn what_pierces_enters_at_the_face() {
     };
     // Each of the four long edges, at the plate's top; its bottom is a back.
     assert_eq!(steps.steps().iter().filter(pierced).count(), 4);
-    // Without the test for piercing, ways around the plate and through it contradict each other, or agree by chance.
+    // Without the test for piercing, paths around the plate and through it contradict each other, or agree by chance.
     let options = appel::Options { piercing: false };
     let other = appel::draw(&net, &options, &mut NoTrace);
     assert!(other.is_err() || other.unwrap() != by_numbers(&net));

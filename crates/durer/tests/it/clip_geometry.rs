@@ -1,4 +1,4 @@
-//! Whole geometries: cut by cells and tiles, made valid, joined, simplified, placed on tiles.
+//! Whole geometries: cut by cells and tiles, repaired, joined, simplified, placed on tiles.
 
 use durer::clip::cells::Cells;
 use durer::clip::mask::{Rules, Union, is_valid, match_points};
@@ -35,7 +35,7 @@ fn area(geometry: &Geometry) -> f64 {
     durer::clip::mask::Area::of_geometry(geometry).shapes.area()
 }
 
-/// Returns three cells in a row from 0 to 3, one apart, and one that encloses nothing.
+/// Returns three cells in a row from 0 to 3, a separate one, and one without an area.
 fn cells() -> Cells {
     let shapes = |at: At, side: f64| Shapes::from_rings([square(at, side).map(DVec2::from)]);
     let mut all: Vec<Shapes> = (0..3).map(|i| shapes((f64::from(i), 0.0), 1.0)).collect();
@@ -57,7 +57,7 @@ fn cells_near_a_box_include_those_that_it_touches() {
 
 #[test]
 fn a_large_polygon_is_cut_into_the_same_pieces_as_a_small_one() {
-    // The same square with few and with many points.
+    // The same square with few and with many vertices.
     let few = square((0.5, -1.0), 10.0);
     let mut many = Vec::new();
     for (i, &(x, y)) in few.iter().enumerate() {
@@ -89,7 +89,7 @@ fn polygons_are_made_valid_once() {
     );
     let again = Rules::default().fix(fixed.geometry.as_ref().unwrap()).expect("finite");
     assert!(!again.changed && again.geometry == fixed.geometry);
-    // By another rule the rings of what is valid may mean something else.
+    // By another rule, the rings of a valid polygon may mean something else.
     let clockwise = polygon(&[(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)]);
     let positive = Rules { fill: WindingRule::Positive, ..Rules::default() };
     let gone = positive.fix(&clockwise).expect("finite");
@@ -144,7 +144,7 @@ fn geometries_are_simplified_together_and_small_rings_dropped() {
     assert_eq!(dropped.left(lake, 0.26), None);
     assert_eq!(dropped.left(line(&[(0.0, 0.0)]), 0.0), None);
     assert_eq!(dropped, Dropped { small_rings: 1, degenerate: 1 });
-    // A hole goes by itself, and a polygon with its outer ring.
+    // A hole is removed alone, and a polygon together with its outer ring.
     let rings = [square((0.0, 0.0), 4.0), square((1.0, 1.0), 0.5)].map(|ring| points(&ring));
     let left = dropped.left(Geometry::Polygon(rings.to_vec()), 1.0);
     assert_eq!(left, Some(Geometry::Polygon(vec![points(&square((0.0, 0.0), 4.0))])));

@@ -1,4 +1,4 @@
-//! Line clipping where rounding, the number range and the ends of arrays would show.
+//! Line clipping where errors of rounding, of the number range and of array ends would show.
 
 use durer::clip::attribute::Source;
 use durer::clip::line::batch::{self, Clipped, Segments};
@@ -28,7 +28,7 @@ fn sources_name_the_ends_that_are_kept() {
     assert_eq!(cut.points, [p(0.0, 0.5), p(0.5, 0.5), p(1.0, 1.0)]);
     let entry = Source::Cut { from: 0, to: 1, t: 2.0 / 3.0 };
     assert_eq!(cut.sources, [entry, Source::Vertex(1), Source::Vertex(2)]);
-    // Of a segment that comes from outside and ends on the border, the end is a vertex too.
+    // If a segment comes from outside and ends on the border, its end is a vertex too.
     for line in [[p(-1.0, 0.5), p(1.0, 0.5)], [p(1.0, 0.5), p(-1.0, 0.5)]] {
         let cut = clip_lines(&unit(), &line, &[2], true).expect("clipped");
         let vertices = cut.sources.iter().filter(|s| matches!(s, Source::Vertex(_))).count();
@@ -120,7 +120,7 @@ fn batches_decide_like_one_by_one_where_a_corner_is_an_ulp_away() {
         let b = p(random(), random());
         let corner = a + (b - a) * random();
         let window = Rect::new(corner - p(0.0, 2.0), corner + p(2.0, 0.0)).expect("window");
-        // As many as go through the lanes together.
+        // As many as fill the lanes.
         let [x0, y0, x1, y1] = [a.x, a.y, b.x, b.y].map(|v| [v; 8]);
         let eight = Segments { x0: &x0, y0: &y0, x1: &x1, y1: &y1 };
         batch::clip(&window, eight, &batch::Options::default(), &mut clipped).expect("lengths");
@@ -133,7 +133,7 @@ fn batches_decide_like_one_by_one_where_a_corner_is_an_ulp_away() {
     assert!((4000..16_000).contains(&accepted), "{accepted}");
 }
 
-/// Clipping what was clipped changes nothing: it lies in the closed window, exactly.
+/// Checks that a second clip changes nothing: the result is in the closed window, exactly.
 fn clipped_to(window: &ConvexPolygon, a: DVec2, b: DVec2) -> Segment<DVec2> {
     let clip = |s| cyrus_beck::clip_polygon(window, s, &mut NoTrace).expect("finite");
     let found = clip(Segment::new(a, b)).expect("they meet");
@@ -147,7 +147,7 @@ fn windows_thinner_than_an_ulp_of_the_segment_are_hit() {
     let found = clipped_to(&needle, p(0.5, -1.0), p(0.5, 1.0));
     assert!((found.start.y - 0.5e-20).abs() < 1e-32, "{found:?}");
     assert!((found.end.y - 1e-20).abs() < 1e-32, "{found:?}");
-    // In the tip of this one, a cut's only neighbours inside are few, or the tip itself.
+    // In this tip, a cut has few neighbours inside, or only the tip itself.
     let tip = p(1.0, 1.0);
     for slope in [0.7, 0.35, 0.9, 0.111] {
         let end = 1.0 + 2.0 * slope;
@@ -219,7 +219,7 @@ fn cuts_of_a_line_code_are_those_of_its_case() {
         steps.steps().to_vec()
     };
     let cut = |end, border, point, code| by_code::Step::Cut { end, border, point, code };
-    // From corner to corner: the first cut of the end is above the window, the second one is right.
+    // From corner to corner: the first cut of the end is above the window, the second one is on its right side.
     let (start, end) = (Outcode::LEFT | Outcode::BOTTOM, Outcode::RIGHT | Outcode::TOP);
     let expected = [
         by_code::Step::Code { start, end },
@@ -229,7 +229,7 @@ fn cuts_of_a_line_code_are_those_of_its_case() {
         by_code::Step::Accepted { at_once: false },
     ];
     assert_eq!(steps(p(-4.0, -0.5), p(12.0, 7.5)), expected);
-    // From the left side past a corner: one cut, beyond the border that only the end is beyond.
+    // From the left side past a corner: one cut, at the border that only the end is beyond.
     let missed = steps(p(-4.0, 3.0), p(3.0, 10.0));
     let code = by_code::Step::Code { start: Outcode::LEFT, end: Outcode::TOP };
     let rejected = by_code::Step::Rejected { at_once: false };
@@ -238,13 +238,13 @@ fn cuts_of_a_line_code_are_those_of_its_case() {
     let missed = steps(p(-4.0, -8.0), p(12.0, 1.0));
     assert_eq!(missed.len(), 4, "{missed:?}");
     assert_eq!(missed.last(), Some(&rejected));
-    // From inside no cut is tested.
+    // At an end inside, no cut is tested.
     let inside = steps(p(9.0, 5.0), p(12.0, 20.0));
     assert_eq!(inside.len(), 4, "{inside:?}");
 }
 
-/// Signs of corners are those of the shown values, in the caller's direction, and cuts are at borders whose corners
-/// are on different sides.
+/// Checks that signs of corners are those of the shown values, in the caller's direction, and that cuts are at borders
+/// whose corners are on different sides.
 #[test]
 fn signs_of_corners_belong_to_the_callers_line() {
     let window = Rect::new(DVec2::ZERO, p(10.0, 6.0)).expect("window");

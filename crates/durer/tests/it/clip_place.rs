@@ -1,4 +1,4 @@
-//! Five places to clip, one picture.
+//! Five places in the pipeline to clip, one picture.
 
 use durer::clip::outcode::{DepthRange, Outcode};
 use durer::clip::place::{ClipPlace, EYE, NdcVertex, clip};
@@ -35,7 +35,7 @@ fn on_screen<A>(v: &NdcVertex<A>) -> DVec2 {
     (DVec2::new(v.position.x, -v.position.y) + DVec2::ONE) * f64::from(SIDE) * 0.5
 }
 
-/// Returns the pixels of a convex polygon, as a fan.
+/// Returns the pixels of a convex polygon, drawn as a fan.
 fn pixels(polygon: &[DVec2]) -> BTreeSet<(i32, i32)> {
     let options = Options { clip: PixelRect::new(0, 0, SIDE, SIDE).unwrap() };
     let mut lit = BTreeSet::new();
@@ -49,8 +49,8 @@ fn pixels(polygon: &[DVec2]) -> BTreeSet<(i32, i32)> {
     lit
 }
 
-/// Returns the pixels of a convex polygon whose depth there lies in the volume; the rasterizer's
-/// window is the scissor rectangle.
+/// Returns the pixels of a convex polygon whose depth is in the volume; the rasterizer's window is the scissor
+/// rectangle.
 fn pixels_by_depth(ring: &[NdcVertex<DVec3>]) -> BTreeSet<(i32, i32)> {
     let corners: Vec<DVec2> = ring.iter().map(on_screen).collect();
     let mut lit = pixels(&corners);
@@ -89,8 +89,8 @@ fn point() -> impl Strategy<Value = DVec3> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(10_000))]
 
-    /// Snapping may move a vertex by one step of the grid, 1/256 pixel on each axis, and its two
-    /// edges with it; no other pixel may differ.
+    /// Checks the effect of snapping: a vertex moves by at most one step of the grid, 1/256 pixel on each axis, and its
+    /// two edges with it; no other pixel may differ.
     #[test]
     fn all_places_light_the_same_pixels(t in [point(), point(), point()], perspective: bool) {
         let matrix = camera(perspective);
@@ -104,7 +104,7 @@ proptest! {
             for v in ring {
                 let inside = v.position.abs().max_element() <= 1.0 + 1e-9;
                 prop_assert!(inside || *place == ClipPlace::PerPixel, "{:?}", v);
-                // Attributes are linear in space: the vertex knows the world point it shows.
+                // Attributes are linear in space: the vertex carries its world point.
                 let seen = matrix * v.attributes.extend(1.0);
                 prop_assert!((seen.truncate() / seen.w - v.position).length() < 1e-6, "{:?}", v);
                 prop_assert!((1.0 / seen.w - v.inv_w).abs() < 1e-6 * v.inv_w);
@@ -115,7 +115,7 @@ proptest! {
         let mut pictures: Vec<_> = outlines.iter().map(|o| pixels(o)).collect();
         if let Some(k) = ClipPlace::ALL.iter().position(|p| *p == ClipPlace::PerPixel) {
             pictures[k] = pixels_by_depth(&clipped[k]);
-            // What is seen of it has the outline of what the others cut.
+            // Its visible part has the same outline as the clipped ones.
             if !outlines[0].is_empty() {
                 outlines[k] = outlines[0].clone();
             }
@@ -195,7 +195,7 @@ proptest! {
     }
 }
 
-/// Counts how rarely the places differ: the law above allows pixels near an outline.
+/// Counts how rarely the five places differ: the law above allows differences near an outline.
 #[test]
 fn differing_pixels_are_rare() {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;

@@ -10,7 +10,7 @@ fn p(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
 }
 
-/// Algorithms for all operations.
+/// Algorithms that support all operations.
 fn general() -> impl Iterator<Item = PolygonClipper> {
     PolygonClipper::ALL.iter().copied().filter(|c| !c.keeps_inside_only())
 }
@@ -23,7 +23,7 @@ fn a_region_and_itself() {
     donut.push_ring(ring);
     donut.push_ring(hole);
     donut.end_polygon();
-    // The same rings from other starting points and in the other direction.
+    // The same rings with other starting points and directions.
     let mut turned = Shapes::new();
     turned.push_ring([ring[3], ring[2], ring[1], ring[0], ring[4]]);
     turned.push_ring([hole[1], hole[2], hole[0]]);
@@ -70,7 +70,7 @@ fn a_region_and_the_one_in_its_hole() {
 
 #[test]
 fn a_hole_that_touches_the_border_goes_to_its_own_part() {
-    // Two arms that reach out of the window, a hole in one of them that touches its border.
+    // Two arms that reach out of the window; a hole in one of them touches its border.
     let bridge = [
         p(1.0, 2.0),
         p(4.0, 2.0),
@@ -84,7 +84,7 @@ fn a_hole_that_touches_the_border_goes_to_its_own_part() {
     let window = Rect::new(DVec2::ZERO, DVec2::splat(10.0)).expect("window");
     for x in [2.5, 7.5] {
         let hole = [p(x, 10.0), p(x + 0.5, 8.0), p(x, 6.0), p(x - 0.5, 8.0)];
-        // Turned, so that each border is touched, and begun at each point of the hole.
+        // Rotated, so that each border is touched, and begun at each point of the hole.
         for turn in 0..4 {
             for start in 0..4 {
                 let about = |q: DVec2| {
@@ -136,7 +136,7 @@ fn a_vertex_that_another_ring_touches_stays() {
     assert_eq!(union.shapes.points().iter().filter(|q| **q == p(4.0, 2.0)).count(), 2);
 }
 
-/// Rounded, the crossing nearest to a vertex may have its coordinates.
+/// Checks crossings whose coordinates, rounded, are those of a vertex.
 #[test]
 fn crossings_rounded_to_a_vertex_do_not_turn_a_walk_round() {
     let shape = |points: [(f64, f64); 3]| Shapes::from_rings([points.map(|(x, y)| p(x, y))]);
@@ -179,8 +179,8 @@ fn a_vertex_on_the_border_comes_out_once() {
     assert_eq!(out, [ring[0], ring[2], ring[3], ring[4], ring[5]]);
 }
 
-/// Returns a row of columns of whole heights, seen from one of four sides: simple, with many edges
-/// in common with others of its kind.
+/// Returns a histogram with whole heights, seen from one of four sides: simple, with many edges in common with others
+/// of its kind.
 fn skyline(heights: &[u32], side: usize) -> Shapes {
     let mut ring = vec![p(0.0, 0.0)];
     for (i, &height) in heights.iter().enumerate() {

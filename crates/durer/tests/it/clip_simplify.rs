@@ -81,7 +81,7 @@ fn edges(areas: &[Shapes]) -> Vec<(DVec2, DVec2)> {
     areas.iter().flat_map(|area| area.rings().flat_map(of).collect::<Vec<_>>()).collect()
 }
 
-/// Returns whether two edges have more in common than ends of both, or all.
+/// Returns whether two edges have more in common than end points, without being equal.
 fn conflict((a, b): (DVec2, DVec2), (c, d): (DVec2, DVec2)) -> bool {
     if (a, b) == (c, d) || (a, b) == (d, c) {
         return false;
@@ -115,10 +115,11 @@ fn check(areas: &[Shapes], left: &[Shapes]) -> Result<(), TestCaseError> {
             prop_assert!(signed_area(ring) * signed_area(now) > 0.0);
         }
     }
-    // No overlaps and no gaps: all together they are one polygon as large as the sum of all.
+    // Without overlaps and gaps, their union is one polygon whose area is the sum of all.
     let mut all = Shapes::new();
     left.iter().for_each(|area| all.append(area));
-    // So fine that no edge passes a point of the others within half a cell, at which the overlay would lead it through that.
+    // Cells so small that no edge passes within half a cell of another's vertex, through which the overlay would lead
+    // it.
     let options = overlay::Options {
         grid: Some(1.0 / f64::from(512 << 16)),
         ..overlay::Options::with_rule(WindingRule::Positive)
@@ -150,7 +151,7 @@ proptest! {
         let tolerance = f64::from(tolerance) * 0.2;
         check(&areas, &kept(&areas, &weights, tolerance))?;
         check(&areas, &kept(&areas, &weights, tolerance_for_share(&weights, 0.3)))?;
-        // A limit changes nothing below it, and the steps tell the same.
+        // A limit changes nothing below it, and the steps agree.
         let limited = coverage.weights(&Options { method, limit: tolerance }, &mut steps).unwrap();
         for (all, some) in weights.iter().zip(&limited) {
             prop_assert_eq!(if *all <= tolerance { *all } else { f64::INFINITY }, *some);
@@ -197,7 +198,7 @@ fn rings_keep_three_points_and_lenses_two_borders() {
         };
         assert_eq!((kept(0..40), kept(40..80)), (3, 3), "{method}");
         assert_eq!(weights[..40], weights[40..]);
-        // Two areas between the same two nodes, of which one is a lens.
+        // Two areas between the same two nodes; one is a lens.
         let lens: &[(f64, f64)] = &[(0., 0.), (5., -1.), (10., 0.), (5., 1.)];
         let around: &[(f64, f64)] = &[(0., 0.), (5., 1.), (10., 0.), (10., 9.), (0., 9.)];
         let weights = weights_of(&[], &[lens, around], method);
@@ -219,7 +220,7 @@ fn odd_input_gives_some_weights() {
                 .len(),
             4
         );
-        // Spikes, bow ties, repeated points, rings that are named twice with other points.
+        // Spikes, bow ties, repeated points, rings repeated with other vertices.
         let bow: &[(f64, f64)] = &[(0., 0.), (2., 2.), (2., 0.), (0., 2.), (0., 0.)];
         let spike: &[(f64, f64)] = &[(0., 0.), (5., 0.), (5., 0.), (9., 0.), (5., 0.)];
         let far: &[(f64, f64)] =

@@ -21,7 +21,7 @@ fn tiles(features: Vec<Feature>, options: &Options) -> Result<Vec<(Tile, Vec<Pie
         )?;
     }
     assert!(pyramid.count(u64::MAX)? >= found.len() as u64);
-    // Counted by what is there.
+    // A limit stops the count early only if there are at least as many tiles.
     assert!(found.is_empty() || pyramid.count(found.len() as u64 - 1)? >= found.len() as u64);
     Ok(found)
 }
@@ -31,7 +31,7 @@ fn on_threads<R: Send>(count: usize, work: impl FnOnce() -> R + Send) -> R {
 }
 
 fn places() -> impl Strategy<Value = Vec<DVec2>> {
-    // Some of them beyond the world, many on the borders of tiles.
+    // Some are outside the world, many on the borders of tiles.
     let place = (-10i32..26, -2i32..18).prop_map(|(x, y)| DVec2::new(x.into(), y.into()) / 16.0);
     prop::collection::vec(place, 1..12)
 }

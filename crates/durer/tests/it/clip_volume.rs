@@ -8,13 +8,13 @@ use proptest::prelude::*;
 
 type Vertex = ClipVertex<DVec4>;
 
-/// The attribute is the place itself, so that it shows whether both are interpolated alike.
+/// A vertex whose attribute is its position, which shows whether both are interpolated alike.
 fn vertex(position: DVec4) -> Vertex {
     ClipVertex { position, attributes: position }
 }
 
 fn point() -> impl Strategy<Value = DVec4> {
-    // Often on borders, in the eye plane, behind it, and the eye itself.
+    // Often on borders, in the eye plane, behind it, or at the eye itself.
     let c = prop_oneof![4 => -4.0..4.0f64, 1 => (-3..4i32).prop_map(f64::from)];
     [c.clone(), c.clone(), c.clone(), c].prop_map(DVec4::from)
 }
@@ -29,7 +29,7 @@ fn options() -> impl Strategy<Value = Options> {
     (depth, borders).prop_map(|(depth, borders)| Options { depth, borders })
 }
 
-/// The definition, without outcodes: the smallest of all distances along a dense row of samples.
+/// Clips by the definition, without outcodes: the smallest of all distances along a dense row of samples.
 fn lies_inside(p: DVec4, options: &Options) -> bool {
     let (g, far) = match options.borders {
         Borders::All => (1.0, true),
@@ -94,21 +94,21 @@ proptest! {
         let back = clip_segment([vertex(b), vertex(a)], &options, &mut NoTrace);
         let flat = |s: Option<[Vertex; 2]>| s.map(|s| s.map(|v| bits(v.position)));
         prop_assert_eq!(flat(there), flat(back).map(|[p, q]| [q, p]));
-        // Ends that lie inside come back bit for bit.
+        // Ends inside come back bit for bit.
         if let Some([p, q]) = there {
             prop_assert!(!lies_inside(a, &options) || a.w <= 0.0 || bits(p.position) == bits(a));
             prop_assert!(!lies_inside(b, &options) || b.w <= 0.0 || bits(q.position) == bits(b));
         }
     }
 
-    /// Against the definition: dense samples of the segment, inside or not.
+    /// Compares with the definition: dense samples of the segment, inside or not.
     #[test]
     fn a_segment_keeps_what_lies_inside(a in point(), b in point(), options in options()) {
         let cut = clip_segment([vertex(a), vertex(b)], &options, &mut NoTrace);
         let length2 = (b - a).length_squared();
         prop_assume!(length2 > 1e-6 && a != DVec4::ZERO && b != DVec4::ZERO);
         let along = |p: DVec4| (p - a).dot(b - a) / length2;
-        // In the guard band a piece may be kept that lies beyond a border, or rejected as a whole.
+        // With a guard band, a part beyond a border may be kept, or rejected as a whole.
         let in_volume = |p: DVec4| boundary(p, &Options { borders: Borders::All, ..options });
         let band = cut.is_some() && a.w > 0.0 && b.w > 0.0; // else the far plane may cut, too
         for i in 0..=400 {
@@ -140,7 +140,7 @@ proptest! {
         let unscaled: Vec<_> = found.iter().map(|v| v.position / factor).collect();
         prop_assert_eq!(unscaled, expected.iter().map(|v| v.position).collect::<Vec<_>>());
 
-        // Any factor leaves a point's outcode and its place after the division.
+        // Any factor preserves a point's outcode and its position after the division.
         for (p, _, s) in ring {
             for depth in [DepthRange::NegativeOneToOne, DepthRange::ZeroToOne] {
                 let clear = boundary_coordinates(p, depth).iter().all(|d| d.abs() > 1e-12);
@@ -150,7 +150,7 @@ proptest! {
         }
     }
 
-    /// A factor of its own for each end: the same places after the division.
+    /// Checks a separate factor for each end: the positions after the division are the same.
     #[test]
     fn each_end_may_have_its_own_factor(a in point(), b in point(), s in 0.01..100.0f64, r in 0.01..100.0f64) {
         let options = Options::default();
@@ -250,7 +250,7 @@ fn points_in_before_and_behind_the_eye_plane() {
         assert_eq!(a, before);
         assert!(b.position.w > 0.0 && b.position != before.position);
     }
-    // Both ends behind the eye never show the mirror image between them.
+    // A segment whose ends are both behind the eye never shows the mirror image between them.
     let [l, r] = [-9.0, 9.0].map(|x| vertex(DVec4::new(x, 0.0, 0.0, -1.0)));
     assert_eq!(clip(l, r), None);
 }
@@ -264,11 +264,11 @@ fn a_guard_band_leaves_the_sides_alone() {
     let wide = [ring[0], ring[1], vertex(DVec4::new(-40.0, 0.0, 0.0, 1.0))];
     let cut = clip_polygon(&wide, &options, &mut NoTrace);
     assert!(cut.len() == 4 && cut.iter().all(|v| v.position.x >= -4.0));
-    // A corner at infinity straight ahead has no place on the screen; the rest has.
+    // A corner at infinity straight ahead has no position on the screen, but the other corners have.
     let endless = [ring[0], ring[1], vertex(DVec4::new(0.0, 0.0, 5.0, 0.0))];
     let cut = clip_polygon(&endless, &options, &mut NoTrace);
     assert!(cut.len() == 4 && cut.iter().all(|v| v.position.z <= v.position.w));
-    // What lies beyond one side altogether is rejected by its code.
+    // A segment entirely beyond one side is rejected by its outcodes.
     let beside = corners.map(|(x, y, z, w)| vertex(DVec4::new(x + 5.0, y, z, w)));
     assert!(clip_polygon(&beside, &options, &mut NoTrace).is_empty());
 }

@@ -1,5 +1,5 @@
-//! Frame-to-frame coherence in turntables: what of depth sort's order and of spans stays in the next frame,
-//! and what beginning with the order of the frame before saves.
+//! Frame-to-frame coherence in turntables: how much of the order of depth sort and of the spans remains in the next
+//! frame, and how much starting with the previous frame's order saves.
 
 use crate::scenes::{instance, options, sphere};
 use durer::math::{DMat4, DVec3};
@@ -30,7 +30,7 @@ fn input<'a>(scene: &'a Scene, view: &'a View) -> SurfaceInput<'a> {
     SurfaceInput::new(scene, view, filter).expect("input")
 }
 
-/// Returns the places of items in the order, seen after turning by some degrees.
+/// Returns the ranks of items in the order after turning by some degrees.
 fn places(scene: &Scene, degrees: f64) -> Vec<usize> {
     let view = turned(scene, degrees);
     let input = input(scene, &view);
@@ -41,7 +41,7 @@ fn places(scene: &Scene, degrees: f64) -> Vec<usize> {
     places
 }
 
-/// Returns the share of neighbours in one order that stand the same way round in another.
+/// Returns the share of neighbours in one order that have the same relative order in another.
 fn kept(a: &[usize], b: &[usize]) -> f64 {
     let mut items: Vec<usize> = (0..a.len()).filter(|&i| a[i].max(b[i]) != usize::MAX).collect();
     items.sort_by_key(|&i| a[i]);
@@ -59,7 +59,7 @@ fn the_order_hardly_changes_from_frame_to_frame() {
     assert!(after[0] > after[2] && after[0] > 0.7, "{after:?}");
 }
 
-/// Returns the items that an order paints, each over those before it.
+/// Returns the items in the order in which they are painted.
 fn painted(input: &SurfaceInput<'_>, polygons: &[ScreenPolygon]) -> Vec<u32> {
     let mut items = vec![NO_ITEM; (SIDE * SIDE) as usize];
     for polygon in polygons {
@@ -70,7 +70,7 @@ fn painted(input: &SurfaceInput<'_>, polygons: &[ScreenPolygon]) -> Vec<u32> {
     items
 }
 
-/// Polygons looked at, tests and moves on the way to an order.
+/// Polygons compared, tests and moves needed for an order.
 fn work(steps: &Recorder<Step>) -> [usize; 3] {
     let count = |is: fn(&Step) -> bool| steps.steps().iter().filter(|s| is(s)).count();
     [
@@ -111,14 +111,14 @@ fn the_order_of_the_frame_before_saves_moves() {
         println!(
             "{degrees} degrees a frame: looks, tests, moves of five frames, anew and reused: {sums:?}"
         );
-        // The order by depth is nearly right already, so that little can be saved: moves, from one
-        // small step to the next. After larger ones the old order is no better than that by depth.
+        // The depth order is nearly right already, so little can be saved: some moves, between frames a small step
+        // apart. After larger steps the old order is no better than the depth order.
         let saved = sums[1][2] < sums[0][2] && sums[1][1] * 100 < sums[0][1] * 105;
         assert!(degrees > 1.0 || saved, "{degrees}: {sums:?}");
     }
 }
 
-/// Any list will do: the order of a frame that has nothing to do with this one, or nonsense.
+/// Checks that any list will do: the order of an unrelated frame, or nonsense.
 #[test]
 fn orders_that_are_wrong_are_put_right() {
     for seed in 0..60 {
@@ -136,8 +136,7 @@ fn orders_that_are_wrong_are_put_right() {
     }
 }
 
-/// Returns the item that a span shows at each pixel; nothing for pixels that were compared one by
-/// one.
+/// Returns the item that a span shows at each pixel; `None` for pixels compared one by one.
 fn spans(scene: &Scene, degrees: f64) -> Vec<u32> {
     let view = turned(scene, degrees);
     let lights = PreparedLights::of(scene, view.camera());

@@ -1,4 +1,4 @@
-//! Commands: state, display lists, evaluators, and what stencils are good for.
+//! Commands: state, display lists, evaluators, and uses of stencils.
 
 use durer::commands::{
     Command, CullFace, Curve, DisplayLists, MAX_NESTING, Patch, Pipeline, Primitive, Vertex,
@@ -50,7 +50,7 @@ fn the_initial_state_is_opengls() {
         (DMat4::IDENTITY, DMat4::IDENTITY, Vec4::ONE)
     );
     assert_eq!((p.cull, p.viewport, p.fragments.depth), (CullFace::None, None, None));
-    // Without a depth test what comes last is seen, however far.
+    // Without a depth test the last one drawn is visible, however far away.
     let far_last = [color(0., 1., 0.), square(1.0, -0.5), color(1., 0., 0.), square(1.0, 0.5)];
     assert_eq!(count(&run(&far_last, &DisplayLists::default()).0, RED), 1600);
 }
@@ -102,7 +102,7 @@ fn replaying_a_list_is_giving_its_commands() {
     assert!(by_list == run(&direct, &DisplayLists::default()));
     assert_eq!((count(&by_list.0, GREEN), count(&by_list.0, RED)), (100, 300));
     assert_eq!(by_list.1.color, Vec4::new(0.0, 1.0, 0.0, 1.0), "state that a list sets stays");
-    // A list that is replaced changes those that call it.
+    // Replacing a list changes the lists that call it.
     lists.replace(inner, vec![square(1.0, 0.0)]).expect("list");
     assert_eq!(count(&run(&[Command::Call(outer)], &lists).0, GREEN), 1600);
 }
@@ -117,7 +117,7 @@ fn lists_without_end_are_errors() {
     };
     assert!(fails(&lists, itself));
     assert!(fails(&DisplayLists::default(), itself));
-    // Each list calls the one before twice: few lists, more commands than anybody can wait for.
+    // Each list calls the one before it twice: few lists, but more commands than can ever be run.
     let mut latest = lists.record(vec![Command::PushModelView, Command::PopModelView]);
     for _ in 0..MAX_NESTING - 2 {
         latest = lists.record(vec![Command::Call(latest); 2]);
@@ -216,8 +216,8 @@ fn a_stencil_leaves_the_outline() {
     assert_eq!((count(&target, GREEN), count(&target, RED)), (400, 24 * 24 - 400));
 }
 
-/// A body's faces behind the section plane, counted in the stencil: where more turn their back to the eye
-/// than their front, the plane is inside the body and gets its cap.
+/// Checks the stencil count of a body's faces behind the section plane: where more back faces than front faces are
+/// counted, the plane is inside the body and gets its cap.
 #[test]
 fn a_stencil_caps_a_section() {
     let count_faces = Stencil {
@@ -225,7 +225,7 @@ fn a_stencil_caps_a_section() {
         back: StencilFace { pass: StencilOp::IncrementWrap, ..Default::default() },
     };
     let counting = FragmentState { stencil: Some(count_faces), depth: None, ..Default::default() };
-    // The section has taken the near face away; the far one is seen from within the body.
+    // The section has removed the near face; the far one is seen from inside the body.
     let mut turned = square(0.5, 0.6);
     if let Command::Draw(_, ring) = &mut turned {
         ring.reverse();
@@ -282,8 +282,8 @@ fn count_index(target: &Framebuffer, index: u8) -> usize {
     target.index.iter().flat_map(|p| p.data()).filter(|i| **i == index).count()
 }
 
-/// The highest bit of the indices is a layer of its own: what is drawn in it is taken away again without
-/// the picture below being drawn anew.
+/// Checks that the highest bit of the indices serves as a layer: its drawing is erased without redrawing the picture
+/// below.
 #[test]
 fn an_index_mask_keeps_an_overlay_apart() {
     let masked = |index| {
@@ -299,7 +299,7 @@ fn an_index_mask_keeps_an_overlay_apart() {
     assert_eq!(erased, indexed(&picture));
 }
 
-/// A frame that is drawn twice by exclusive or is gone.
+/// Checks that a frame drawn twice with exclusive or disappears.
 #[test]
 fn a_logic_operation_on_indices_undoes_itself() {
     let xor = FragmentState { logic_op: Some(LogicOp::Xor), depth: None, ..Default::default() };
@@ -310,8 +310,8 @@ fn a_logic_operation_on_indices_undoes_itself() {
     assert_eq!(indexed(&[&picture[..], &rubber, &rubber[1..]].concat()), indexed(&picture));
 }
 
-/// Indices are interpolated in space, not on the screen: a floor that recedes shows each of the
-/// ramp's entries as deep as it is.
+/// Checks that indices are interpolated in space, not on the screen: on a receding floor each of the ramp's entries
+/// extends over its own depth.
 #[test]
 fn indices_are_interpolated_in_perspective() {
     let corner = |x: f64, z: f64, index| Vertex {
@@ -364,7 +364,7 @@ fn indices_of_lines_and_points_are_theirs() {
     let plane = target.index.as_ref().expect("indices");
     assert_eq!([0, 20, 39].map(|x| plane.get(x, 20)), [Some(100), Some(120), Some(139)]);
     assert_eq!(count_index(&target, 9), 1);
-    // Without a palette nothing is seen; a palette shows all of them.
+    // Without a palette nothing is visible; a palette shows all of them.
     assert_eq!(target.color, self::target().color);
     let mut shown = target.clone();
     Palette::default().resolve(&mut shown);

@@ -1,4 +1,4 @@
-//! Commands beyond geometry: lighting, textures, the pixel path, clipped lines, the lowest row first.
+//! Commands beyond geometry: lighting, textures, the pixel path, clipped lines, rows counted from below.
 
 use durer::commands::{
     Bitmap, ColorMaterial, Command, CullFace, DisplayLists, Light, LightModel, LightStep, Lighting,
@@ -86,7 +86,7 @@ fn every_term_of_the_light_is_shown() {
     assert!((color.x - channel(0.8)).abs() < 1e-7, "{color}");
     close(lit, [0.1 + channel(0.8), 0.1 + channel(0.4), 0.1 + channel(0.2), 0.75]);
     assert_eq!(lit, lighting.lit(true, vertex, DVec3::Z, Vec4::ONE, &mut NoTrace));
-    // Beyond the cutoff nothing of the light is left.
+    // Beyond the cutoff the light has no effect.
     if let Some(light) = &mut lighting.lights[3] {
         light.spot_direction = DVec3::NEG_Z;
     }
@@ -99,7 +99,7 @@ fn a_light_that_a_face_turns_away_from_leaves_its_ambient_share() {
     lighting.model.ambient = grey(0.0);
     lighting.front.specular = grey(1.0);
     lighting.lights[0] = Some(Light { ambient: grey(1.0), ..Light::default() });
-    // Shininess 0 would add all of the highlight, were it not for f = 0.
+    // Shininess 0 would add the whole highlight if f were not 0.
     let lit = lighting.lit(true, DVec4::W, DVec3::NEG_Z, Vec4::ONE, &mut NoTrace);
     close(lit, [0.2, 0.2, 0.2, 1.0]);
     let back = lighting.lit(false, DVec4::W, DVec3::NEG_Z, Vec4::ONE, &mut NoTrace);
@@ -118,7 +118,7 @@ fn lamp(commands: &mut Vec<Command>) {
     commands.push(Command::Material(MaterialFace::FrontAndBack, material));
 }
 
-/// The channel of a linear value as it is stored.
+/// Returns the stored channel of a linear value.
 fn code(linear: f32) -> u8 {
     durer::shade::color::encode_rgba8(grey(linear))[0]
 }
@@ -127,7 +127,7 @@ fn code(linear: f32) -> u8 {
 fn lights_move_with_the_matrix_and_normals_with_its_inverse() {
     let mut commands = Vec::new();
     lamp(&mut commands);
-    // A light set under a rotation comes from +x; then the normal (1, 0, 1) is stretched along z to (1, 0, ½)/|…|.
+    // A light under a rotation comes from +x; then the normal (1, 0, 1) is stretched along z to (1, 0, ½)/|…|.
     let turn = DMat4::from_rotation_y(std::f64::consts::FRAC_PI_2);
     commands.extend([
         Command::LoadModelView(turn),
@@ -160,7 +160,7 @@ fn flat_shading_takes_the_last_vertex_and_two_sides_their_materials() {
     commands.push(Command::ShadeModel(ShadeModel::Flat));
     commands.push(Command::Draw(Primitive::Triangles, ring.clone()));
     assert!(on(target(), &commands).color.data().iter().all(|c| *c == [255; 4]));
-    // Seen from behind: the other order of corners, red behind.
+    // Seen from behind: corners in the other order, and a red back.
     let red = Material {
         ambient: grey(0.0),
         diffuse: Vec4::new(1.0, 0.0, 0.0, 1.0),
@@ -234,9 +234,9 @@ fn each_texture_function_is_opengls() {
     for (function, left, right) in [
         (TextureFunction::Replace, [255, 0, 0, 128], [0, 255, 0, 255]),
         (TextureFunction::Modulate, [255, 0, 0, 64], [0, 255, 0, 128]),
-        // White through half of red: linear one half.
+        // White through half of red: linear ½.
         (TextureFunction::Decal, [255, code(0.498), code(0.498), 128], [0, 255, 0, 128]),
-        // Red takes the red away and gives that of the environment, which is none.
+        // Red removes the red and adds that of the environment, which is none.
         (TextureFunction::Blend, [0, 255, 255, 64], [255, 0, 255, 128]),
         (TextureFunction::Add, [255, 255, 255, 64], [255, 255, 255, 128]),
     ] {
@@ -326,7 +326,7 @@ fn copying_is_reading_and_drawing_and_a_clipped_position_draws_nothing() {
     assert_eq!(on(target(), &beyond), before);
 }
 
-/// A line that leaves the viewport lights the whole line's pixels in it, with the whole line's depths.
+/// Checks that a line that leaves the viewport lights in it the pixels of the whole line, with its depths.
 #[test]
 fn lines_light_the_pixels_of_the_whole_line() {
     let viewport = [3_u32, 2, 10, 9];
@@ -359,7 +359,7 @@ fn lines_light_the_pixels_of_the_whole_line() {
     }
 }
 
-/// The lowest row first: as OpenGL has it, rows of viewport, scissor and pixels count from below.
+/// Checks rows counted from below: as in OpenGL, rows of viewport, scissor and pixels start at the lowest.
 #[test]
 fn pictures_may_begin_with_the_lowest_row() {
     let below = || Framebuffer { origin: Origin::BottomLeft, ..target() };
@@ -373,7 +373,7 @@ fn pictures_may_begin_with_the_lowest_row() {
     let picture = on(below(), &commands);
     assert_eq!(picture.color.get(0, 0), Some([255; 4]), "the corner is in the first row");
     assert_eq!(picture.color.get(15, 0), Some([255; 4]), "the point, too");
-    // The same picture as with the top row first, but for which border of a face belongs to it.
+    // The same picture as with rows counted from above, except for which border of a face belongs to it.
     let turned = picture.clone().with_origin(Origin::TopLeft);
     let other = on(target(), &commands);
     let apart = turned.color.data().iter().zip(other.color.data()).filter(|(a, b)| a != b).count();
@@ -393,7 +393,7 @@ fn pictures_may_begin_with_the_lowest_row() {
     assert_eq!(reds(&lower, 0..1, 0..7), [255, 255, 255, 255, 10, 20, 0]);
 }
 
-/// A letter L of 9 × 3 bits: its upright in the first column, its foot the whole last row.
+/// A letter L of 9 × 3 bits: its stem in the first column, its foot the whole last row.
 fn letter() -> Bitmap {
     let rows = vec![0b1000_0000, 0, 0b1000_0000, 0, 0b1111_1111, 0b1000_0000];
     Bitmap::new(9, 3, rows).expect("rows")
@@ -413,7 +413,7 @@ fn bitmaps_are_drawn_beside_the_raster_position_which_moves_on() {
     let mut found = target();
     let green = Command::Color(Vec4::new(0.0, 1.0, 0.0, 1.0));
     let red = Command::Color(Vec4::new(1.0, 0.0, 0.0, 1.0));
-    // The colour is that of the raster position, and the zoom is for other pixels.
+    // The colour is that of the raster position, and the zoom does not affect bitmaps.
     let zoom = Command::PixelZoom(DVec2::splat(4.0));
     let commands = [green, place, red, zoom, Command::Bitmap(bits.clone())];
     execute(&commands, &DisplayLists::default(), &mut pipeline, &mut found).expect("drawn");
@@ -443,7 +443,7 @@ fn bitmaps_are_clipped_tested_and_left_out() {
     let start = Command::RasterPosition(at(-1.0, 1.0));
     let found = on(target(), &[start.clone(), Command::Fragments(fragments), bits(4.0, 1.0)]);
     assert_eq!(drawn(&found), [[0, 1], [1, 1], [2, 1]]);
-    // Far away nothing is drawn; a position that was clipped away stays so, and does not move.
+    // Far away nothing is drawn; a position that was clipped stays invalid and does not move.
     let found = on(target(), &[start, bits(0.0, -2.0), bits(0.0, 0.0)]);
     assert_eq!(drawn(&found).first(), Some(&[0, 2]));
     assert_eq!(drawn(&found).len(), 11);

@@ -56,7 +56,7 @@ fn lengths_of_visible_and_hidden_lines() {
     }
 }
 
-/// Returns the lines of Open CASCADE of one visibility.
+/// Returns Open CASCADE's lines of one visibility.
 fn exact(view: &Value, visibility: &str) -> Vec<[DVec2; 2]> {
     let point = |p: &Value| DVec2::new(p[0].as_f64().expect("x"), p[1].as_f64().expect("y"));
     let lines = |kind: &str| view[format!("{visibility}_{kind}")].as_array();
@@ -88,7 +88,7 @@ fn places_of_visible_and_hidden_lines_of_polyhedra() {
                 let ours: Vec<[DVec2; 2]> = lines.flat_map(segments).collect();
                 let exact = exact(v, visibility);
                 let size = exact.iter().flatten().map(|p| p.length()).fold(0.0, f64::max);
-                // Ends of theirs on ours, and of ours on theirs.
+                // Ends of theirs on ours, and ends of ours on theirs.
                 let off = farthest(&exact, &ours).max(farthest(&ours, &exact));
                 assert!(off <= 1e-6 * size, "{name} {i} {visibility}: {off} of {size}");
             }
@@ -101,7 +101,7 @@ fn lines_go_through_all_corners() {
     let Some(folder) = data::folder() else { return };
     let scene = data::read_model(&folder.join("cases/drawing/pillars_dropped_vertex.obj")).scene;
     let named = [(1.0, -1.7, 0.9), (0.3, -1.0, 0.5), (2.0, 1.0, 1.5), (1.0, 0.2, -0.8)];
-    // And a spiral around the model, from above to below.
+    // Further views along a spiral around the model, from above to below.
     let all_around = (0..120).map(|i| {
         let (s, c) = (2.4 * f64::from(i)).sin_cos();
         let z = 0.98 - 1.96 * f64::from(i) / 119.0;
@@ -128,7 +128,7 @@ fn lines_go_through_all_corners() {
             [[at[0], at[1]], [at[1], at[2]], [at[2], at[0]]]
         });
         let sides: Vec<[DVec2; 2]> = sides.collect();
-        // A line that leaves out a corner lies beside all edges of the mesh.
+        // A line that skips a corner is away from all edges of the mesh.
         let middles = |s: [DVec2; 2]| [s[0], (s[0] + s[1]) / 2.0];
         let ours: Vec<[DVec2; 2]> = drawing.lines.iter().flat_map(segments).map(middles).collect();
         let off = farthest(&ours, &sides);

@@ -1,4 +1,4 @@
-//! `overlay()` on the published suites.
+//! `overlay()` on published test suites.
 
 use durer::clip::polygon::overlay::{Options, Output, overlay};
 use durer::clip::polygon::{BooleanOp, Shapes, WindingRule};
@@ -55,8 +55,8 @@ fn clipper2_polygons_are_valid_and_exact() {
     }
 }
 
-/// No point of the border lies further from the exact border than snapping moves an edge: half a
-/// cell's diagonal; nor the other way round.
+/// Checks that no point of the border is further from the exact border than snapping moves an edge, half a cell's
+/// diagonal, and vice versa.
 #[test]
 fn clipper2_polygons_are_near_the_exact_regions() {
     let Some(text) = shared("geo2d/clipper2/Polygons.txt") else { return };
@@ -72,8 +72,8 @@ fn clipper2_polygons_are_near_the_exact_regions() {
     }
 }
 
-/// The tolerances of Clipper2's own test for these cases (TestPolygons.cpp): counts and areas that
-/// it stored from other versions or other roundings.
+/// The tolerances of Clipper2's own test for these cases (TestPolygons.cpp): its stored counts and areas come from
+/// other versions or other roundings.
 #[test]
 fn clipper2_polygons_within_its_own_tolerances() {
     let Some(text) = shared("geo2d/clipper2/Polygons.txt") else { return };
@@ -120,14 +120,14 @@ fn clipper2_polygons_within_its_own_tolerances() {
             assert!(off(area) <= area_within, "{name}: {area} {}", case.area);
         }
     }
-    // The stored areas of these are further from the exact areas than the tolerance allows.
+    // The stored areas of these differ from the exact areas by more than the tolerance.
     assert_eq!(odd_areas, [44]);
     // 24, 35, 37: slivers of a few square units that rounding swallows; 62: one square, stored as
     // two rings.
     assert_eq!(odd_counts, [24, 35, 37, 62]);
 }
 
-/// Returns the number of rings if those that share a vertex count as one.
+/// Returns the number of rings, counting those that share a vertex as one.
 fn joined_rings(shapes: &Shapes) -> usize {
     let mut owner: Vec<usize> = (0..shapes.ring_count()).collect();
     let mut seen = std::collections::BTreeMap::new();
@@ -153,13 +153,13 @@ fn clipper2_polytree_hole_owner() {
     }
 }
 
-/// The same in whole numbers: holes in their owners, as Clipper2's test asks (every child within its
-/// parent), and each ring's parent the smallest ring around it.
+/// Checks the same in integers: holes in their owners, as Clipper2's test requires (every child within its parent), and
+/// each ring's parent the smallest ring around it.
 #[test]
 fn clipper2_polytree_hole_owner_as_a_tree() {
     let Some(text) = shared("geo2d/clipper2/PolytreeHoleOwner.txt") else { return };
     for case in ClipperCase::all(&text) {
-        // Doubled, so that the middles of edges are whole numbers too.
+        // Doubled, so that the midpoints of edges are integers too.
         let whole = |shapes: &Shapes| {
             let double = |p: &DVec2| (*p * 2.0).as_i64vec2();
             Shapes::from_rings(shapes.rings().map(|r| r.iter().map(double).collect::<Vec<_>>()))
@@ -246,7 +246,7 @@ fn martinez_fixtures() {
             };
             let out = checked(&path, &a, &b, op, &options);
             let within = 2.0 * bound(&a, &b, out.cell);
-            // The files themselves say of some results that they are wrong; GEOS agrees with ours.
+            // The files themselves mark some results as wrong; GEOS agrees with ours.
             let comment = feature["properties"]["comment"].as_str().unwrap_or_default();
             let wrong = ["wrong", "broken", "for diff as well"].iter().any(|w| comment.contains(w));
             if wrong {
@@ -329,8 +329,8 @@ fn i_overlay_ogc_holes_lie_in_their_shells() {
     }
 }
 
-/// Returns the length of polylines within the polygons, border and all: between crossings with the borders a
-/// segment is inside as its middle is.
+/// Returns the length of polylines within the closed polygons: between crossings with the borders, a segment is inside
+/// if its midpoint is.
 fn length_inside(lines: &[Vec<DVec2>], clip: &Shapes) -> f64 {
     let edges: Vec<[DVec2; 2]> = clip
         .rings()
@@ -352,7 +352,7 @@ fn length_inside(lines: &[Vec<DVec2>], clip: &Shapes) -> f64 {
         let mut cuts = vec![0.0, 1.0];
         for [a, b] in &edges {
             let divisor = along.perp_dot(*b - *a);
-            // Along an edge the segment can come in and go out at its ends.
+            // Along an edge the segment can enter and leave at the edge's ends.
             cuts.extend([*a, *b].map(|p| (p - from).dot(along) / along.length_squared()));
             cuts.extend((divisor != 0.0).then(|| (*a - from).perp_dot(*b - *a) / divisor));
         }
@@ -460,8 +460,8 @@ fn geos_operation(path: &str, node: roxmltree::Node, a: &Shapes, b: &Shapes) -> 
     let out = checked(path, a, b, op, &Options { grid, ..Options::default() });
     let within = if snapped { 1e-9 } else { 2.0 * bound(a, b, out.cell) };
     let (area, expected) = (out.shapes.area(), even_odd_area(&expected));
-    // Here all edges between two rows collapse onto each other; GEOS then guesses which side is
-    // inside, while winding numbers know.
+    // Here all edges between two rows collapse onto each other; GEOS then guesses the inner side, while winding numbers
+    // determine it.
     let description = node.ancestors().find_map(|n| n.children().find(|c| c.has_tag_name("desc")));
     if description.and_then(|d| d.text()) == Some("AA - many collapsed crossing edges") {
         return false;
@@ -470,7 +470,8 @@ fn geos_operation(path: &str, node: roxmltree::Node, a: &Shapes, b: &Shapes) -> 
     true
 }
 
-/// Expected rings come without their grouping: holes are where an even number of rings lie.
+/// Returns the area by the even-odd rule: expected rings are not grouped, and rings inside an odd number of others are
+/// holes.
 fn even_odd_area(shapes: &Shapes) -> f64 {
     run(shapes, &Shapes::new(), BooleanOp::Union, &Options::default()).shapes.area()
 }

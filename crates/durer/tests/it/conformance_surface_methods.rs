@@ -1,4 +1,4 @@
-//! Every way to find visible surfaces on every model of the shared data, and at every size.
+//! Every visible-surface method on every model of the shared data, and at every size.
 
 use crate::data;
 use crate::surface_scenes::{Prepared, assert_same_planes, crossing_quads, duplicates};
@@ -35,7 +35,7 @@ fn camera(scene: &Scene, number: usize) -> Option<Camera> {
         0 => Projection::Perspective { fov_y: 0.6 },
         _ => Projection::Orthographic { height: extent },
     };
-    // From all sides, now and then from within.
+    // From all sides, occasionally from inside.
     let (turn, away) = (number as f64 * 2.4, [1.8, 1.7, 0.3][number % 3]);
     let direction = DVec3::new(libm::sin(turn), 0.4, libm::cos(turn));
     Some(Camera {
@@ -55,7 +55,7 @@ fn planes(scene: &Scene, camera: Camera, size: [u32; 2], algorithm: SurfaceMetho
     render(scene, &options).expect("picture").0
 }
 
-/// Gives the number of covered pixels; `None` for what cannot be read or has nothing to see.
+/// Returns the number of covered pixels; `None` if the file cannot be read or shows nothing.
 fn check(path: &Path, number: usize) -> Option<usize> {
     let model = data::try_read_model(path)?;
     let camera = camera(&model.scene, number)?;
@@ -115,7 +115,7 @@ fn all_methods_agree_at_all_sizes() {
             compare(&p, |_| true);
         }
     }
-    // Subdivision and rays take seconds for four million pixels at the development profile's level.
+    // Subdivision and rays take seconds for four million pixels at the development profile's optimization level.
     let fast = |m| !matches!(m, SurfaceMethod::Warnock | SurfaceMethod::Ray);
     compare(&Prepared::new(&crossing_quads(), 2048, 2048), fast);
 }

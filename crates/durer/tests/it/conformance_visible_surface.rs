@@ -43,19 +43,19 @@ fn read_png(path: &Path) -> Vec<u32> {
         .collect()
 }
 
-/// Difference between a picture of ours and the reference.
+/// Differences between our picture and the reference.
 #[derive(Debug, Default)]
 struct Difference {
     covered: usize,
     items: usize,
     coverage: usize,
     worst_depth: u32,
-    /// Pixels where the reference, not we, is off the triangle's plane by more than is allowed.
+    /// Pixels where the reference, not our picture, is off the triangle's plane by more than the tolerance.
     reference_off: usize,
 }
 
-/// For each item of a quad that is not convex the first item of the quad. The reference cut it from its first
-/// corner, whether or not that lies within it, so there only the quad can be compared.
+/// For each item of a non-convex quad, the quad's first item. The reference split it at its first corner even where
+/// that diagonal is outside, so only the quad as a whole can be compared.
 fn concave_quads(scene: &Scene) -> Vec<Option<u32>> {
     let mut quads = Vec::new();
     for mesh in scene.instances.iter().map(|i| &scene.meshes[i.mesh]) {
@@ -72,7 +72,7 @@ fn concave_quads(scene: &Scene) -> Vec<Option<u32>> {
     quads
 }
 
-/// Returns whether the quad of two triangles may be cut by its other diagonal as well.
+/// Returns whether the quad of two triangles may also be split along its other diagonal.
 fn is_convex(mesh: &Mesh, first: usize) -> bool {
     let [one, two] = [mesh.triangle(first), mesh.triangle(first + 1)];
     let apex = |of: [u32; 3], other: [u32; 3]| of.iter().position(|v| !other.contains(v));

@@ -1,4 +1,4 @@
-//! Coverages stay coverages: what neighbours share is cut alike.
+//! Coverages remain coverages: common borders are cut alike.
 
 use durer::clip::polygon::rectangle::Prepared;
 use durer::clip::polygon::validity::{Touching, is_valid};
@@ -9,7 +9,7 @@ use durer::trace::NoTrace;
 use proptest::prelude::*;
 use std::collections::HashMap;
 
-/// Numbers that look random.
+/// Pseudo-random numbers.
 struct Random(u64);
 
 impl Random {
@@ -31,8 +31,8 @@ struct Layer {
 }
 
 impl Layer {
-    /// Creates a square that is parted again and again by chords from edge to edge; what is beyond an
-    /// edge gets the vertex where a chord ends.
+    /// Creates a square that is divided repeatedly by chords from edge to edge; the cell beyond an edge gets the vertex
+    /// at which a chord ends.
     fn new(random: &mut Random, parts: usize) -> Self {
         let points = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(DVec2::from).to_vec();
         let mut layer = Self { points, cells: vec![vec![0, 1, 2, 3]] };
@@ -91,7 +91,7 @@ impl Layer {
         self.cells.push(other);
     }
 
-    /// Returns the same at another place and of another size.
+    /// Returns the layer moved and scaled.
     fn moved(mut self, size: f64, origin: DVec2) -> Self {
         self.points.iter_mut().for_each(|p| *p = origin + *p * size);
         self
@@ -103,7 +103,7 @@ impl Layer {
     }
 }
 
-/// Returns a star around a place in the layer; some of its corners are vertices of that.
+/// Returns a star around a position in the layer; some of its corners are vertices of the layer.
 fn star(random: &mut Random, layer: &Layer, size: f64, corners: usize) -> Shapes {
     let low = layer.points[0];
     let center = low + DVec2::new(random.unit(), random.unit()) * size;
@@ -116,7 +116,7 @@ fn star(random: &mut Random, layer: &Layer, size: f64, corners: usize) -> Shapes
         })
         .collect();
     if random.below(3) == 0 {
-        // Towards a vertex, and on to it.
+        // Towards a vertex, and exactly to it.
         let k = random.below(corners);
         ring[k] = layer.points[random.below(layer.points.len())];
     }
@@ -136,11 +136,11 @@ struct Case {
     layer: Layer,
     mask: Shapes,
     size: f64,
-    /// Distance that rounding moves a point.
+    /// Distance by which rounding may move a point.
     ulp: f64,
 }
 
-/// Returns the first case from a seed on whose polygons are valid.
+/// Returns the first case, from a seed on, whose polygons are valid.
 fn case(seed: u64, corners: usize) -> Case {
     let found = (0..64).find_map(|step| valid_case(seed.wrapping_add(step), corners));
     found.expect("six of seven are valid")
@@ -167,7 +167,7 @@ fn cut(shapes: &Shapes, mask: &Prepared, op: BooleanOp) -> coverage::Cut {
 
 type Edge = [DVec2; 2];
 
-/// Returns the edges that no other polygon has in the other direction.
+/// Returns the edges that occur in no other polygon in the opposite direction.
 fn unmatched(all: &[Shapes]) -> Vec<Edge> {
     let key = |p: DVec2| [p.x.to_bits(), p.y.to_bits()];
     let mut open: HashMap<[[u64; 2]; 2], Edge> = HashMap::new();
@@ -193,8 +193,8 @@ fn lies_on(p: DVec2, [a, b]: Edge, ulp: f64) -> bool {
     beside && orient2d_value(a, b, p).abs() <= 4.0 * ulp * a.distance(b)
 }
 
-/// Returns whether an edge without a neighbour lies if there is none: on one edge of the mask or of the
-/// layer's border, or between two corners of the mask so near that they are one.
+/// Returns whether an edge without a neighbour is where it may have none: on an edge of the mask or of the layer's
+/// border, or between two corners of the mask so close that they count as one.
 fn is_outer(edge: Edge, borders: &[Edge], ulp: f64) -> bool {
     borders.iter().any(|&border| edge.iter().all(|&p| lies_on(p, border, ulp)))
         || edge[0].distance(edge[1]) <= 8.0 * ulp
@@ -236,7 +236,7 @@ fn check(case: &Case) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Returns the number of cases; more by the variable PROPTEST_CASES.
+/// Returns the number of cases; the variable PROPTEST_CASES can raise it.
 pub fn cases(usual: u32) -> u32 {
     let asked = std::env::var("PROPTEST_CASES").ok();
     asked.and_then(|count| count.parse().ok()).unwrap_or(usual)
@@ -271,7 +271,7 @@ proptest! {
             for (_, piece) in lines.pieces() {
                 let again = part(polyline::Part::Inside, piece);
                 prop_assert_eq!(&again.points[..], piece, "{:?} {:?}", line, case.mask);
-                // What is left of it on the other side lies on the border.
+                // The remainder on the other side is on the border.
                 for point in part(polyline::Part::Outside, piece).points {
                     prop_assert!(borders.iter().any(|&border| lies_on(point, border, case.ulp)));
                 }
@@ -310,7 +310,7 @@ fn masks_of_many_corners_leave_a_coverage() {
     assert_eq!(inner.collect::<Vec<_>>(), Vec::<Edge>::new());
 }
 
-/// A feature of 1e-8 degrees below a mask around the world keeps its area.
+/// Checks that a feature of 1e-8 degrees below a mask around the world keeps its area.
 #[test]
 fn tiny_features_keep_their_area_under_a_large_mask() {
     let p = DVec2::new;
@@ -330,7 +330,7 @@ fn tiny_features_keep_their_area_under_a_large_mask() {
     assert!(inside.shapes.area() > 0.3 * total && outside.shapes.area() > 0.3 * total);
 }
 
-/// A spike along an edge, its foot a rounding beside that.
+/// Checks a spike along an edge, whose foot is a rounding error away from the edge.
 #[test]
 fn spikes_that_end_a_rounding_beside_an_edge_leave_nothing() {
     let p = DVec2::new;
@@ -342,8 +342,8 @@ fn spikes_that_end_a_rounding_beside_an_edge_leave_nothing() {
     assert_eq!(whole.shapes, left);
 }
 
-/// The borders of the Sudan in Natural Earth's map 1:110 million, near its neighbour in the south: a spike along the
-/// border with Ethiopia ends some ulp beside that, so that the ring crosses itself.
+/// Checks the border of Sudan in Natural Earth's map 1:110 million: a spike along the border with Ethiopia ends some
+/// ulps beside that border, so that the ring crosses itself.
 #[test]
 fn spikes_that_end_some_ulp_beside_an_edge_leave_no_sliver() {
     let p = DVec2::new;

@@ -1,4 +1,4 @@
-//! Creases that are known from what is beside them.
+//! Creases recognized by their neighbouring faces.
 
 use crate::data;
 use crate::line_scenes::{Triangle, cylinder, quad, soup, view};
@@ -8,7 +8,7 @@ use durer::trace::NoTrace;
 use durer::visibility::line::Smooth;
 use durer::visibility::line::hidden_line::{Options, draw};
 
-/// Returns the length of all creases that are not outlines, from above.
+/// Returns the length of all creases that are not outlines, seen from above.
 fn creases(triangles: &[Triangle], crease: f64, neighbours: bool) -> f64 {
     let view = view(DVec3::ZERO, DVec3::new(0.0, -0.3, 1.0), 12.0, false);
     let options = Options { crease: crease.to_radians(), neighbours, ..Options::default() };
@@ -16,7 +16,7 @@ fn creases(triangles: &[Triangle], crease: f64, neighbours: bool) -> f64 {
     drawing.length(|line| line.class == LineClass::Crease)
 }
 
-/// Returns a body along x whose section at each place is a polygon; ends are closed by fans.
+/// Returns a body along x whose cross-section at each position is a polygon; fans close its ends.
 fn along(rings: &[Vec<DVec3>]) -> Vec<Triangle> {
     let count = rings[0].len();
     let mut triangles = Vec::new();
@@ -44,11 +44,11 @@ fn roof(rise: f64) -> Vec<Triangle> {
 
 #[test]
 fn a_blunt_edge_between_flat_faces_is_a_crease() {
-    // Of 11.4°, and 6 long; outlines and sharp edges are the same with it.
+    // The angle is 11.4°, the length 6; outlines and sharp edges are the same with it.
     let by_angle = creases(&roof(0.2), 40.0, false);
     let by_neighbours = creases(&roof(0.2), 40.0, true);
     assert!((by_neighbours - by_angle - 6.0).abs() < 0.05, "{by_angle} {by_neighbours}");
-    // Flat within what rounding may be.
+    // Flat within the bound on rounding.
     let flat = [false, true].map(|neighbours| creases(&roof(0.04), 40.0, neighbours));
     assert_eq!(flat[0], flat[1]);
 }
@@ -75,15 +75,15 @@ fn barrel(sides: usize) -> Vec<Triangle> {
 #[test]
 fn ticks_within_a_round_part_are_no_creases() {
     let [by_angle, by_neighbours] = [false, true].map(|n| creases(&barrel(9), 38.0, n));
-    // Nine edges of 2, of which some are outlines.
+    // Nine edges of 2, some of them outlines.
     assert!(by_angle - by_neighbours > 8.0, "{by_angle} {by_neighbours}");
-    // Those of a bar of six sides reach from end to end.
+    // Those of a bar of six sides extend from end to end.
     let [by_angle, by_neighbours] = [false, true].map(|n| creases(&barrel(6), 38.0, n));
     assert_eq!(by_angle, by_neighbours);
 }
 
-/// Returns a bar from x = −4 to 4 with a vaulted roof in which a valley at y = 0 has sides of a slope for each of
-/// 16 steps.
+/// Returns a bar from x = −4 to 4 with a vaulted roof; a valley in it at y = 0 has sides with the given slope at each
+/// of 16 steps.
 fn valley(slope: impl Fn(usize) -> f64) -> Vec<Triangle> {
     let ring = |i: usize| {
         let x = i as f64 / 2.0 - 4.0;
@@ -102,11 +102,11 @@ fn creases_between_round_parts_go_on_where_they_fade() {
     let mut faded = valley(fading);
     for _ in 0..2 {
         let [by_angle, by_neighbours] = [false, true].map(|n| creases(&faded, 40.0, n));
-        // From 36° to less than the facets' own 3.6°.
+        // From 36° down to less than the facets' own 3.6°.
         assert!((by_neighbours - by_angle - 8.0).abs() < 0.01, "{by_angle} {by_neighbours}");
         faded.reverse();
     }
-    // A vault alone, and one whose valley ends in it before a third of the way to the other side.
+    // A vault alone, and one whose valley ends less than a third of the way across.
     let ends_early = |i: usize| 0.33 * (1.0 - i as f64 / 5.0).max(0.0);
     for body in [valley(|_| 0.0), valley(ends_early)] {
         let [by_angle, by_neighbours] = [false, true].map(|n| creases(&body, 40.0, n));
@@ -129,7 +129,7 @@ fn slivers_of_fillets_leave_no_ticks() {
     let drawing = draw(&scene, &view, &options, &mut NoTrace).expect("drawing");
     let length = |points: &[DVec2]| points.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
     let outlines = drawing.lines.iter().filter(|l| l.class == LineClass::Silhouette && !l.closed);
-    // Of 80; the edges of its slivers are 1.3 long.
+    // Out of 80; the edges of its slivers are 1.3 long.
     let short: Vec<_> = outlines.filter(|l| length(&l.points) < 4.0).collect();
     assert!(short.is_empty(), "{short:?}");
 }

@@ -1,4 +1,4 @@
-//! Crossings of segments: the sweep finds what comparing all pairs finds, in every special case.
+//! Crossings of segments: the sweep finds the same as comparing all pairs, in every special case.
 
 use crate::raster_coverage::Random;
 use durer::Error;
@@ -24,7 +24,7 @@ fn compared(segments: &[Segment<DVec2>]) -> Vec<Crossing> {
     all_pairs(segments, &Options::default()).unwrap()
 }
 
-/// Returns segments whose ends are on a small grid: many of them touch, overlap, are upright or points.
+/// Returns segments with ends on a small grid: many of them touch, overlap, are vertical or are points.
 fn on_grid(random: &mut Random, count: usize, reach: f64, unit: f64) -> Vec<Segment<DVec2>> {
     let mut point = || (random.point(0.0, reach)).floor() * unit;
     (0..count).map(|_| Segment::new(point(), point())).collect()
@@ -35,7 +35,7 @@ fn the_sweep_finds_what_all_pairs_have() {
     let mut random = Random(21);
     for round in 0..150 {
         let (count, reach) = (3 + round % 9, 3.0 + (round % 5) as f64);
-        // Tenths are no binary fractions, so that points on a line are only nearly so.
+        // Tenths are not binary fractions, so points on a line are on it only approximately.
         let unit = [1.0, 0.1, 1e-3][round % 3];
         let segments = on_grid(&mut random, count, reach, unit);
         assert_eq!(swept(&segments), compared(&segments), "round {round}: {segments:?}");
@@ -50,7 +50,7 @@ fn the_sweep_finds_what_all_pairs_have() {
     }
 }
 
-/// The pairs that meet, by whole numbers and nothing of the library.
+/// Returns the pairs that meet, in integers and without the library.
 #[test]
 fn pairs_meet_as_whole_numbers_say() {
     let mut random = Random(22);
@@ -69,7 +69,7 @@ fn pairs_meet_as_whole_numbers_say() {
     }
 }
 
-/// Returns whether two segments of whole numbers have a point in common: none of the axes and of their normals parts them.
+/// Returns whether two integer segments have a point in common: neither an axis nor a normal of theirs separates them.
 fn meet(s: &Segment<DVec2>, t: &Segment<DVec2>) -> bool {
     let points = |s: &Segment<DVec2>| [s.start, s.end].map(|p| [p.x as i64, p.y as i64]);
     let (s, t) = (points(s), points(t));
@@ -86,7 +86,7 @@ fn meet(s: &Segment<DVec2>, t: &Segment<DVec2>) -> bool {
     })
 }
 
-/// Segments, and where they meet.
+/// Pairs of segments, and their common points.
 type Case<'a> = (&'a [[f64; 4]], &'a [([f64; 2], &'a [u32])]);
 
 #[test]
@@ -95,15 +95,15 @@ fn special_cases_are_defined() {
         found.iter().map(|c| (c.at.to_array(), c.segments.clone())).collect()
     };
     let cases: [Case; 6] = [
-        // A common end; one that ends on another.
+        // A common end; an end on the other segment.
         (&[[0.0, 0.0, 4.0, 0.0], [4.0, 0.0, 5.0, 3.0]], &[([4.0, 0.0], &[0, 1])]),
         (&[[0.0, 0.0, 4.0, 4.0], [2.0, 2.0, 2.0, 9.0]], &[([2.0, 2.0], &[0, 1])]),
-        // An overlap of one line, in opposite directions: both ends of the common piece.
+        // A collinear overlap, in opposite directions: both ends of the common part.
         (
             &[[0.0, 0.0, 6.0, 3.0], [8.0, 4.0, 2.0, 1.0]],
             &[([2.0, 1.0], &[0, 1]), ([6.0, 3.0], &[0, 1])],
         ),
-        // The same segment twice, and an upright one.
+        // The same segment twice, and a vertical one.
         (
             &[[1.0, 0.0, 1.0, 4.0], [1.0, 4.0, 1.0, 0.0], [0.0, 2.0, 3.0, 2.0]],
             &[([1.0, 0.0], &[0, 1]), ([1.0, 2.0], &[0, 1, 2]), ([1.0, 4.0], &[0, 1])],
@@ -147,7 +147,7 @@ fn huge_and_tiny_coordinates_are_exact() {
 
 #[test]
 fn neighbours_are_tested_and_the_status_changes_its_order() {
-    // Two that cross, and a third far above, which is the neighbour of one and then of the other.
+    // Two that cross, and a third far above, which is first the neighbour of one and then of the other.
     let segments = [[0.0, 0.0, 4.0, 4.0], [0.0, 4.0, 4.0, 0.0], [0.0, 9.0, 4.0, 9.0]].map(segment);
     let mut steps = Recorder::default();
     crossings(&segments, &Options::default(), &mut steps).unwrap();

@@ -29,7 +29,8 @@ fn faces(corners: &[DVec3; 4]) -> Vec<Face> {
     SIDES.map(|side| Face::new(&side.map(|k| corners[k])).expect("a triangle")).to_vec()
 }
 
-/// Returns the depths at which the ray of a pixel enters a tetrahedron and leaves it: within all half-spaces of its sides.
+/// Returns the depths at which the ray of a pixel enters and leaves a tetrahedron, the intersection of the half-spaces
+/// of its sides.
 fn interval(corners: &[DVec3; 4], at: DVec2) -> Option<[f64; 2]> {
     let [mut enter, mut leave] = [f64::NEG_INFINITY, f64::INFINITY];
     for (side, opposite) in SIDES.iter().zip([3, 2, 1, 0]) {
@@ -50,7 +51,8 @@ fn interval(corners: &[DVec3; 4], at: DVec2) -> Option<[f64; 2]> {
     (enter < leave).then_some([enter, leave])
 }
 
-/// Returns the nearest depth at which the expression holds along a ray, and whether nothing there is thinner than the rounding.
+/// Returns the nearest depth at which the expression holds along a ray, and whether no layer there is too thin
+/// for rounding.
 fn classified(bodies: &[[DVec3; 4]], expression: &Expression, at: DVec2) -> (Option<f64>, bool) {
     let spans: Vec<_> = bodies.iter().map(|body| interval(body, at)).collect();
     let mut depths: Vec<f64> = spans.iter().flatten().flatten().copied().collect();
@@ -106,7 +108,7 @@ fn spans_agree_with_rays() {
     assert!(seen > 10_000 && divided > 100, "{seen} {divided}");
 }
 
-/// Two blocks with one face in the same plane: what is subtracted up to it leaves nothing there.
+/// Checks two blocks with a common face plane: a subtraction up to the plane leaves nothing there.
 #[test]
 fn faces_at_one_depth_are_passed_together() {
     let block = |near: f64, far: f64| -> Vec<Face> {
@@ -141,7 +143,7 @@ fn expressions_are_checked() {
         assert!(Expression::new(wrong).is_err(), "{wrong:?}");
     }
     assert!(Expression::fold(BooleanOp::Union, 0).is_err());
-    // A solid that is not there is empty.
+    // An absent solid is empty.
     let missing = Expression::new(&[Term::Solid(0), Term::Solid(9), op]).unwrap();
     assert!(missing.holds(&[true]) && !missing.holds(&[false]));
 }

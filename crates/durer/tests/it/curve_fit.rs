@@ -1,4 +1,4 @@
-//! Curves fitted to polylines: what they are, how near they stay, and where they end.
+//! Curves fitted to polylines: their kinds, their distance from the points, and their ends.
 
 use durer::curve::fit::{Fitted, Options, Polyline, fit};
 use durer::curve::pieces;
@@ -60,7 +60,7 @@ fn round_polygons_are_circles_and_others_stay() {
     for sides in [3, 4, 6, 8, 10] {
         assert_eq!(letters(&round(&polygon(sides, 10.0), true)), "L".repeat(sides as usize));
     }
-    // Where facets do not stand for anything round, they stay as far as the tolerance asks for.
+    // Where facets do not approximate anything round, curves stay as close as the tolerance requires.
     let strict = fitted(&polygon(24, 20.0), true, &[], false).curve;
     assert_eq!(letters(&strict), "L".repeat(24));
 }
@@ -98,7 +98,7 @@ fn slots_and_rounded_corners_are_lines_and_arcs() {
     for chords in [6, 9, 40] {
         let curve = round(&slot(chords), true);
         let mut found = letters(&curve);
-        // It begins somewhere.
+        // It begins at an arbitrary point.
         found.sort_desc();
         assert_eq!(found, "LLAA", "{chords}");
         for piece in &curve.pieces {
@@ -134,7 +134,7 @@ fn corners_and_kept_points_are_ends_of_pieces() {
     assert_eq!(found.curve.start, points[7]);
     assert_eq!(found.curve.pieces[0].end(), points[19]);
     assert_eq!(found.curve.pieces[1].end(), points[7]);
-    // A circle that one line ends on begins there.
+    // A circle begins at the end of the one line that ends on it.
     kept[7] = false;
     let found = fitted(&points, true, &kept, true);
     assert!(found.curve.whole().is_some());
@@ -153,20 +153,20 @@ fn chords_that_something_ends_on_stay() {
     assert_eq!(curve.pieces.len(), 2);
 }
 
-/// Two rims of a coarse cylinder, one behind the other, out of step: what is seen is the union of two polygons.
+/// Checks two rims of a coarse cylinder, one behind the other, out of step: their outline is the union of two polygons.
 #[test]
 fn outlines_of_two_rims_are_one_circle() {
     let count = 45;
     let step = TAU / f64::from(count);
     let (near, far) = (0.0, step * 0.3);
-    // In turn a point of one polygon, and the crossing of its chord with the other's.
+    // Alternately a vertex of one polygon, and the crossing of its chord with one of the other.
     let mut points = Vec::new();
     for i in 0..count {
         for offset in [near, far] {
             points.push(unit(f64::from(i) * step + offset) * 90.0);
         }
     }
-    // The second polygon is a little smaller, so that its points lie within the chords' reach.
+    // The second polygon is a little smaller, so that its vertices are within reach of the chords.
     for p in points.iter_mut().skip(1).step_by(2) {
         *p *= 0.9989;
     }
@@ -177,7 +177,7 @@ fn outlines_of_two_rims_are_one_circle() {
 
 #[test]
 fn ends_between_two_points_of_a_circle_stay() {
-    // A circle that goes behind something in the middle of a chord.
+    // A circle that disappears behind something in the middle of a chord.
     let mut points = polygon(160, 12.0)[..60].to_vec();
     let last = points.len() - 1;
     points[last] = points[last - 1].lerp(points[last], 0.5);
@@ -188,7 +188,7 @@ fn ends_between_two_points_of_a_circle_stay() {
     assert!((arc.axis.length() - 12.0).abs() < TOLERANCE);
 }
 
-/// Numbers that look random.
+/// Pseudo-random numbers.
 struct Numbers(u64);
 
 impl Numbers {
@@ -199,7 +199,7 @@ impl Numbers {
     }
 }
 
-/// Returns lines, arcs and waves in a row, with corners and noise.
+/// Returns a chain of lines, arcs and waves, with corners and noise.
 fn any_chain(numbers: &mut Numbers) -> Vec<DVec2> {
     let mut points = vec![DVec2::new(numbers.next(), numbers.next()) * 50.0];
     let mut way = numbers.next() * TAU;
@@ -234,7 +234,7 @@ fn fitted_curves_stay_near_to_any_polyline() {
         } else if points.len() > 2 {
             assert_eq!(curve.pieces.last().map(Piece::end), Some(curve.start), "{case}");
         }
-        // Pieces begin in points, in order.
+        // Curves begin at points, in order.
         for (start, from) in curve.iter().map(|p| p.0).zip(&strict.from) {
             assert_eq!(start, points[*from], "{case}");
         }
@@ -246,7 +246,7 @@ fn fitted_curves_stay_near_to_any_polyline() {
         for p in chain.iter().step_by(3) {
             assert!(distance(*p, &points, closed) <= TOLERANCE + 2e-4, "{case}: {p}");
         }
-        // With facets for round things, points stay near too.
+        // With facets of round surfaces, points stay near too.
         let chain = pieces::points(&round(&points, closed), 1e-4);
         let far = points.iter().filter(|p| distance(**p, &chain, closed) > TOLERANCE + 2e-4);
         assert_eq!(far.count(), 0, "{case}");
@@ -261,7 +261,7 @@ fn smooth_chains_become_few_cubic_curves() {
     let points: Vec<DVec2> = (0..400).map(wave).collect();
     let curve = round(&points, false);
     assert!(curve.pieces.len() <= 24, "{}", letters(&curve));
-    // One piece goes over into the next without a corner that is seen.
+    // Curves join without a visible corner.
     let ways: Vec<[DVec2; 2]> = curve.iter().map(|(start, p)| p.ways(start)).collect();
     for pair in ways.windows(2) {
         assert!(pair[0][1].angle_to(pair[1][0]).abs() < 0.08);
@@ -279,7 +279,7 @@ fn points_in_a_row_are_one_line() {
     assert_eq!(letters(&fitted(&points, false, &kept, true).curve), "LLL");
 }
 
-/// A curve that bends ever more, of many points: any way of it is nearly a circle.
+/// Checks a curve of increasing curvature with many points: any short part is nearly a circle.
 #[test]
 fn long_polylines_take_no_longer_for_being_nearly_round() {
     let (mut p, mut way) = (DVec2::ZERO, 0.0);

@@ -8,7 +8,7 @@ fn strokes_of(c: char) -> Vec<Vec<DVec2>> {
     line(&c.to_string(), 12.0).strokes
 }
 
-/// Returns every letter that the font is said to have, but for the space.
+/// Returns every letter that the font claims to have, except the space.
 fn all() -> Vec<char> {
     let ascii = ('!'..='~').collect::<String>();
     (ascii + "°µ×±–—…Ø²³äöüÄÖÜßéèêñåçøřš−·÷").chars().collect()

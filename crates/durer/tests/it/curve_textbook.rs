@@ -1,4 +1,4 @@
-//! Curves as textbooks have them: knot insertion, Catmull–Rom splines, forward differences.
+//! Curves as in textbooks: knot insertion, Catmull–Rom splines, forward differences.
 
 mod knots {
     use durer::curve::b_spline::BSpline;
@@ -23,7 +23,7 @@ mod knots {
         for degree in 1..=5 {
             let whole = curve(degree);
             let inner = 1.0 / (8 - degree) as f64;
-            // New knots, an old one once more, and one of them several times.
+            // New knots, a repeated one, and one inserted several times.
             let mut new = vec![0.31, 0.8, 0.07];
             if degree > 1 {
                 new.extend([inner, 0.31]);
@@ -49,7 +49,8 @@ mod knots {
         }
     }
 
-    /// As often as the degree: the curve's point is a control point, which divides the curve.
+    /// Checks a knot with the multiplicity of the degree: the curve's point is a control point, which divides the
+    /// curve.
     #[test]
     fn a_knot_of_full_multiplicity_is_a_point_of_the_curve() {
         let whole = curve(3);
@@ -75,7 +76,7 @@ mod through_points {
     use durer::math::DVec2;
     use durer::trace::{NoTrace, Recorder};
 
-    /// The basis matrix of the paper at the parameter t.
+    /// The paper's basis matrix at the parameter t.
     fn published(p: [DVec2; 4], t: f64) -> DVec2 {
         let sum = p[1] * 2.0
             + (p[2] - p[0]) * t
@@ -112,7 +113,7 @@ mod through_points {
         let closed = Options { closed: true, ..Options::default() };
         let ring = pieces(&points(), &closed, &mut NoTrace);
         assert_eq!(ring.len(), 5);
-        // Each piece leaves a point as the one before has reached it.
+        // Each segment leaves a point in the direction in which the previous one arrives.
         for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
             assert_eq!(a[3], b[0]);
             assert!((a[3] - a[2]).distance(b[1] - b[0]) < 1e-12);

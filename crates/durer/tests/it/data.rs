@@ -1,10 +1,10 @@
-//! Real models: where they are, and how tests read them.
+//! Real models: their folder, and how tests read them.
 
 use durer_formats::{Model, Pose, ReadOptions, Resources};
 use std::path::{Path, PathBuf};
 
-/// Returns the folder of shared data: `DURER_DATA`, else `../shared/data` beside the workspace.
-/// Says that a test is skipped if there is none.
+/// Returns the folder of shared data: `DURER_DATA`, else `../shared/data` beside the workspace. Prints that a test is
+/// skipped if there is none.
 pub fn folder() -> Option<PathBuf> {
     let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("DURER_DATA").map_or(default, PathBuf::from);
@@ -15,7 +15,7 @@ pub fn folder() -> Option<PathBuf> {
     None
 }
 
-/// Finds what a model refers to in the model's folder.
+/// Finds referenced files in the model's folder.
 struct Folder(PathBuf);
 
 impl Resources for Folder {
@@ -24,12 +24,12 @@ impl Resources for Folder {
     }
 }
 
-/// Reads a model that is known to be good, at rest.
+/// Reads a valid model in its rest pose.
 pub fn read_model(path: &Path) -> Model {
     read_posed(path, None)
 }
 
-/// Reads a model at rest; `None` for one that is refused.
+/// Reads a model in its rest pose; `None` if it is refused.
 pub fn try_read_model(path: &Path) -> Option<Model> {
     let bytes = std::fs::read(path).expect("model");
     let resources = Folder(path.parent().expect("folder").to_owned());
@@ -37,7 +37,7 @@ pub fn try_read_model(path: &Path) -> Option<Model> {
     durer_formats::read_model(&bytes, &name, &resources, &ReadOptions::default()).ok()
 }
 
-/// Reads a model that is known to be good, posed this many seconds into its first animation.
+/// Reads a valid model, posed this many seconds into its first animation.
 pub fn read_posed(path: &Path, time: Option<f64>) -> Model {
     let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let resources = Folder(path.parent().expect("folder").to_owned());

@@ -1,4 +1,4 @@
-//! Errors as programs hand them on.
+//! Errors as programs pass them on.
 
 use durer::Error;
 use durer::clip::line::LineClipper;
@@ -14,7 +14,7 @@ fn refused() -> Result<Rect, Boxed> {
 fn errors_go_where_any_error_goes() {
     let error = refused().expect_err("corners in the wrong order");
     assert!(matches!(error.downcast_ref(), Some(Error::Parameter { .. })));
-    // The message says all; nothing stands behind it that would be told once more.
+    // The message is complete; no source error repeats a part of it.
     assert!(error.source().is_none());
     let other = std::thread::spawn(move || error.to_string()).join().expect("no panic");
     assert_eq!(other, refused().expect_err("as before").to_string());

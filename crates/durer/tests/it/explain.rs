@@ -1,4 +1,4 @@
-//! Lessons: every algorithm that has one, on every example, in every language.
+//! Lessons: every algorithm with a lesson, on every example, in every language.
 
 use durer::Error;
 use durer::clip::polygon::BooleanOp;
@@ -128,7 +128,7 @@ fn wrong_names_and_inputs_are_told_what_is_right() {
     }
 }
 
-/// Drawings are XML whose numbers are finite, in every language.
+/// Checks that drawings are XML with finite numbers, in every language.
 #[test]
 fn drawings_are_well_formed() {
     for lesson in explain::lessons() {
@@ -146,7 +146,7 @@ fn drawings_are_well_formed() {
     }
 }
 
-/// Inputs as files may have them: nothing panics, and what is drawn has numbers.
+/// Checks inputs as files may contain them: nothing panics, and all numbers drawn are finite.
 #[test]
 fn odd_inputs_give_frames_or_errors() {
     let p = DVec2::new;
@@ -176,7 +176,7 @@ fn odd_inputs_give_frames_or_errors() {
     }
 }
 
-/// Runs all lessons on an input, by all operations, and draws what they tell.
+/// Runs all lessons on an input, with all operations, and draws their frames.
 fn draw_all(input: &Input) {
     for lesson in explain::lessons() {
         // Only overlays have operations.

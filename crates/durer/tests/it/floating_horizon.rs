@@ -20,7 +20,7 @@ fn ripples(columns: usize, rows: usize) -> HeightField {
     .expect("field")
 }
 
-/// Returns a camera that sees a field of this extent from an azimuth and an elevation in degrees.
+/// Returns a camera that sees a field of this extent, at an azimuth and an elevation in degrees.
 fn camera(azimuth: f64, elevation: f64, perspective: bool) -> Camera {
     let (sa, ca) = libm::sincos(azimuth.to_radians());
     let (se, ce) = libm::sincos(elevation.to_radians());
@@ -51,9 +51,9 @@ fn triangles(field: &HeightField) -> Vec<[DVec3; 3]> {
     all
 }
 
-/// Returns how deep the ray from `p` towards the eye passes into a triangle: the least distance of its point
-/// of passage from the triangle's sides in barycentric terms, about 0 on a side, and the parameter of that
-/// point on the ray; `None` if it does not pass.
+/// Returns how deep inside a triangle the ray from `p` towards the eye crosses it: the least barycentric distance of
+/// the crossing from the triangle's sides, about 0 on a side, and the ray parameter of the crossing; `None` if the ray
+/// misses.
 fn passes(p: DVec3, to_eye: DVec3, length: f64, [a, b, c]: &[DVec3; 3]) -> Option<(f64, f64)> {
     let (e1, e2) = (*b - *a, *c - *a);
     let h = to_eye.cross(e2);
@@ -70,8 +70,8 @@ fn passes(p: DVec3, to_eye: DVec3, length: f64, [a, b, c]: &[DVec3; 3]) -> Optio
     (t > 1e-7 && t < length && inside > -1e-9).then_some((inside, t))
 }
 
-/// Returns how far inside of a triangle, or of the part that the levels leave of it, the point lies behind
-/// something; nothing if it is visible.
+/// Returns how deep inside a triangle, or inside the part of it between the levels, the point is hidden; `None` if it
+/// is visible.
 fn hidden_by(
     p: DVec3,
     camera: &Camera,
@@ -93,7 +93,7 @@ fn hidden_by(
     triangles.iter().filter_map(hides).max_by(f64::total_cmp)
 }
 
-/// Compares all lines with rays; gives the samples and those that disagree.
+/// Compares all lines with rays; returns the numbers of samples and of disagreements.
 fn disagreements(field: &HeightField, camera: &Camera) -> (usize, Vec<(Curve, DVec3)>) {
     let triangles = triangles(field);
     let (mut samples, mut wrong) = (0, Vec::new());
@@ -103,7 +103,7 @@ fn disagreements(field: &HeightField, camera: &Camera) -> (usize, Vec<(Curve, DV
                 let p = pair[0].lerp(pair[1], part);
                 let found = hidden_by(p, camera, &triangles, field.levels());
                 samples += 1;
-                // A ray through a side of a triangle may go either way.
+                // A ray through a side of a triangle may hit or miss.
                 let agrees = match found {
                     None => curve.visible,
                     Some(depth) => !curve.visible || depth < 1e-6,
@@ -135,7 +135,7 @@ fn every_piece_is_seen_or_hidden_as_rays_say() {
             let camera = camera(azimuth, elevation, perspective);
             let (samples, wrong) = disagreements(&field, &camera);
             let what = format!("{azimuth} {elevation} {perspective}");
-            // Exactly level, lines lie on lines; symmetric pieces may be told either way by rays.
+            // At exactly level views, lines coincide; rays may decide symmetric pieces either way.
             let allowed = if elevation == 0.0 { samples / 50 } else { 0 };
             assert!(samples > 1000, "{what}: {samples}");
             assert!(
@@ -165,7 +165,7 @@ fn eyes_above_below_and_within_the_surface_see_what_rays_see() {
         let (samples, wrong) = disagreements(&field, &camera);
         assert!(samples > 1000);
         assert!(wrong.is_empty(), "{eye}: {} of {samples}: {:?}", wrong.len(), wrong[0]);
-        // Nothing is lost on the way: pieces make up all lines.
+        // Nothing is lost: the pieces make up all lines.
         let length = |c: &Curve| c.points.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
         let found: f64 =
             curves(&field, &camera, &ALL, &mut NoTrace).expect("curves").iter().map(length).sum();
@@ -218,7 +218,7 @@ fn visible_lines_are_visible_in_the_z_buffer_and_hidden_ones_hidden() {
                 for part in [0.2, 0.5, 0.8] {
                     let p = view.screen_from_world() * pair[0].lerp(pair[1], part).extend(1.0);
                     let (x, y, z) = (p.x / p.w, p.y / p.w, p.z / p.w);
-                    // The depths around the point: a line lies between pixels, and on slopes.
+                    // Depths around the point: a line is between pixels, and on slopes.
                     let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
                     let depths = around.filter_map(|(dx, dy)| {
                         depth.get((x + f64::from(dx)) as u32, (y + f64::from(dy)) as u32)
@@ -390,7 +390,7 @@ fn levels_cut_the_surface_between_its_points() {
         }
     }
     assert_eq!(found.len(), 4 + 2);
-    // A cell that jumps over all between the levels is none of the surface, nor are the sides that jump.
+    // A cell that jumps across all values between the levels is not part of the surface, nor are the sides that jump.
     let pole = HeightField::from_fn([8, 2], [-3.5, 3.5], [0.0, 1.0], |x, _| 1.0 / x);
     let pole = pole.and_then(|f| f.within([-1.5, 1.5])).expect("field");
     assert_eq!(pole.cell(3, 0), None);
@@ -407,7 +407,7 @@ fn levels_cut_the_surface_between_its_points() {
 
 #[test]
 fn nothing_hangs_from_the_borders_of_holes() {
-    // A row of three points beside a surface, the first of them its corner, and two that are alone.
+    // A row of three points beside a surface, the first at its corner, and two isolated points.
     let f = |x: f64, z: f64| match (x as i32, z as i32) {
         (0..=1, 0..=1) | (2..=3, 1) | (1..=2, 3) => 0.0,
         _ => f64::NAN,

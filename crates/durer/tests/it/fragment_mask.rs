@@ -1,4 +1,4 @@
-//! Clipping per pixel: masks with holes give what polygon clipping gives.
+//! Clipping per pixel: masks with holes give the same as polygon clipping.
 
 use durer::curve::{Path, flatten};
 use durer::fragment::{Fragment, FragmentState, Outcome, PixelMask, Scissor, apply, apply_within};
@@ -27,7 +27,7 @@ fn state() -> FragmentState {
     FragmentState { depth: None, ..FragmentState::default() }
 }
 
-/// Draws a triangle that is larger than the picture, as far as each pixel may be drawn to.
+/// Draws a triangle larger than the picture, limited to the pixels that the mask allows.
 fn draw(mut put: impl FnMut(Fragment, &mut Framebuffer)) -> Framebuffer {
     let mut target = Framebuffer::new(SIDE, SIDE);
     let corners = [DVec2::new(-90.0, 200.0), DVec2::new(31.0, -80.0), DVec2::new(160.0, 130.0)];

@@ -1,4 +1,4 @@
-//! The bodies of the fuzz targets for clipping and rasterizing, on their seeds and on random bytes.
+//! The fuzz targets for clipping and rasterizing, run on their seeds and on random bytes.
 
 use crate::overlay::validity;
 use proptest::prelude::*;
@@ -9,7 +9,7 @@ mod clip;
 #[path = "../../../../fuzz/bodies/raster.rs"]
 mod raster;
 
-/// Runs a body on the files of its folder of seeds; there must be some.
+/// Runs a target on the files of its folder of seeds; there must be some.
 fn seeds(target: &str, body: impl Fn(&[u8])) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds").join(target);
     let files = std::fs::read_dir(&folder).expect("seeds are part of the repository");

@@ -1,9 +1,8 @@
-//! Golden pictures: what a picture was, it stays, to the byte.
+//! Golden pictures: a picture stays the same to the byte.
 //!
-//! Scenes made by code are kept as PNG files in `tests/golden/`, real models as checksums, for their
-//! pictures do not belong to this repository. `DURER_BLESS=1` rewrites both; a picture that differs
-//! is written beside its golden one into `target/golden/`, with the difference as third panel. What code makes is compared at
-//! every SIMD level.
+//! Generated scenes are kept as PNG files in `tests/golden/`, real models as checksums, because their pictures do not
+//! belong to this repository. `DURER_BLESS=1` rewrites both; a picture that differs is written beside its golden one
+//! into `target/golden/`, with the difference as third panel. Generated scenes are compared at every SIMD level.
 
 use crate::{data, scenes};
 use durer::math::{DVec3, Vec3};
@@ -42,7 +41,7 @@ fn read_png(path: &Path) -> Option<Pixels<[u8; 4]>> {
     Pixels::from_data(info.width, info.height, data).ok()
 }
 
-/// Found, golden and their difference side by side.
+/// Returns the picture, the golden one and their difference side by side.
 fn three_panels(found: &Pixels<[u8; 4]>, golden: &Pixels<[u8; 4]>) -> Pixels<[u8; 4]> {
     let (w, h) = (found.width(), found.height());
     let mut panels = Pixels::new(3 * w, h, [255; 4]);
@@ -122,13 +121,13 @@ fn camera(scene: &Scene, view: NamedView) -> Camera {
 }
 
 fn checksum(picture: &Pixels<[u8; 4]>) -> u64 {
-    // FNV-1a: short, and the same everywhere.
+    // FNV-1a: short, and the same on every machine.
     picture.data().as_flattened().iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
     })
 }
 
-/// Cards and models that show one thing each, with the moment they are posed at.
+/// Cards and models that each show one feature, with the time of their pose.
 const CARDS: [(&str, NamedView, Option<f64>); 12] = [
     ("AlphaBlendModeTest.glb", NamedView::Front, None),
     ("VertexColorTest/VertexColorTest.gltf", NamedView::Front, None),

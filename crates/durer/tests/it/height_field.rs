@@ -1,4 +1,4 @@
-//! Height fields: what they refuse, and the mesh that they are.
+//! Height fields: the inputs that they refuse, and their mesh.
 
 use durer::Error;
 use durer::math::DVec3;

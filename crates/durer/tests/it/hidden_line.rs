@@ -1,4 +1,4 @@
-//! Hidden lines: the scenes at which solvers fail, laws, and an oracle of other code.
+//! Hidden lines: scenes at which solvers fail, laws, and an independent oracle.
 
 use crate::line_oracle::{Oracle, drawn_twice, segments};
 use crate::line_scenes::{
@@ -189,8 +189,7 @@ fn visible_lines_are_the_same_without_the_hidden_ones() {
     assert_eq!(visible, without.lines);
 }
 
-/// Returns the drawing of faces that penetrate each other, and how many faces were found in front of its
-/// lines, per line.
+/// Returns the drawing of faces that penetrate each other, and the number of faces found in front of each line.
 fn penetrating(count: usize, hidden: bool) -> (Drawing, f64) {
     let mut random = Random(5);
     let mut point = || DVec3::from(std::array::from_fn(|_| random.next()));
@@ -237,7 +236,7 @@ fn lines_end_at_the_window_and_at_the_near_plane() {
             p.x.abs() <= window.max().x + slack && p.y.abs() <= window.max().y + slack
         })
     );
-    // From within the boxes.
+    // From inside the boxes.
     let mut camera = *v.camera();
     camera.eye = DVec3::new(4.0, 4.0, 4.0);
     camera.projection = durer::scene::Projection::Perspective { fov_y: 1.2 };
@@ -266,7 +265,7 @@ fn open_sheets_hide_from_both_sides_and_have_borders() {
 
 #[test]
 fn no_triangle_at_an_edge_of_three_hides_it() {
-    // Borders of all three lie on each other and are divided there; all reach out of the window, and are cut.
+    // Borders of all three coincide and are divided there; all extend beyond the window and are cut.
     let triangles: [Triangle; 3] = [
         [
             [3.457_031_3, 3.472_656_3, 3.472_656_3],
@@ -327,7 +326,7 @@ fn nothing_and_nonsense_are_no_drawing() {
 #[test]
 fn edges_that_meet_in_a_corner_end_in_one_point() {
     let exact = Options { tolerance: 1e-3, ..Options::default() };
-    // Of three edges two go on in each other, but for a part of the tolerance.
+    // Of three edges, two continue each other up to a part of the tolerance.
     for to_eye in [DVec3::new(1.0, 1.0, 1e-3), DVec3::new(-1.0, 1.0, -1e-3), ISO] {
         let seen = view(DVec3::splat(1.0), to_eye, 4.0, false);
         let cube = soup(&cuboid([0.0; 3], [2.0; 3]));

@@ -1,4 +1,4 @@
-//! Interpolation at corners, along edges and in rows, against barycentric coordinates.
+//! Interpolation at corners, along edges and along rows, compared with barycentric coordinates.
 
 use durer::math::{DVec2, DVec3};
 use durer::raster::interpolate::rows::{Corner, interpolate, replay};

@@ -1,5 +1,5 @@
-//! The worked examples of the classical lectures: not only the results, but the numbers on the way to them, as the
-//! steps tell them.
+//! The worked examples of the classical lectures: not only the results but also the intermediate numbers, as the steps
+//! record them.
 
 mod hidden;
 mod lines;
@@ -26,7 +26,7 @@ fn a_window_maps_to_a_viewport_by_two_products_and_two_sums() {
     let map = WindowToViewport::new(&window, &viewport, Aspect::Stretch, YAxis::Up);
     assert_eq!(map.coefficients(), [50.0, 100.0, 100.0, 50.0]);
     assert_eq!(map.to_screen(p(1.0, 1.0)), p(150.0, 150.0));
-    // From the top of the screen the same point has its row counted down from the viewport's last.
+    // From the top of the screen, the same point has its row counted down from the viewport's last.
     let map = WindowToViewport::new(&window, &viewport, Aspect::Stretch, YAxis::Down);
     assert_eq!(map.to_screen(p(1.0, 1.0)), p(150.0, 150.0));
     assert_eq!(map.to_screen(p(1.0, 0.0)), p(150.0, 250.0));

@@ -1,4 +1,4 @@
-//! Numbers that lessons show: those of the lectures.
+//! Numbers shown by lessons, compared with those of the lectures.
 
 use durer::explain::{self, Frame, Input, Language, Options, Value};
 use durer::math::DVec2;
@@ -7,7 +7,7 @@ fn frames(name: &str, example: &str) -> Vec<Frame> {
     explain::run(name, &Input::Example(example.to_owned()), &Options::default(), 5_000).unwrap()
 }
 
-/// Returns a value of every caption that has it.
+/// Returns one value from every caption that has it.
 fn values(frames: &[Frame], name: &str) -> Vec<Value> {
     let all = frames.iter().flat_map(|frame| &frame.caption.values);
     all.filter(|(own, _)| *own == name).map(|(_, value)| value.clone()).collect()
@@ -95,7 +95,7 @@ fn every_algorithm_has_a_lesson_or_a_reason() {
     }
     let known = |info: &durer::info::Info| explain::ALGORITHMS.contains(&info);
     assert!(explain::WITHOUT_LESSON.iter().all(|(info, why)| known(info) && !why.is_empty()));
-    // The list only shrinks.
+    // The list never grows.
     assert!(explain::WITHOUT_LESSON.len() <= 18);
 }
 
@@ -132,7 +132,7 @@ fn ears_of_the_page_are_cut_off_in_its_order() {
     let frames = frames("triangulate", "arrow");
     assert_eq!(rows(frames.last().unwrap()), ["1: B C D 4", "2: D E A 4", "3: D A B 2"]);
     assert_eq!(numbers(&frames, "sum"), [10.0]);
-    // A and B hold D in their triangles; D is reflex once C is cut off.
+    // A and B have D in their triangles; D is reflex once C is cut off.
     let kinds: Vec<&str> = frames.iter().skip(5).map(|frame| frame.kind).collect();
     assert_eq!(kinds, ["blocked", "blocked", "triangle", "reflex", "triangle", "triangle"]);
     assert_eq!(numbers(&frames, "cross"), [8.0, -4.0, 8.0]);
@@ -142,7 +142,7 @@ fn ears_of_the_page_are_cut_off_in_its_order() {
 fn patterns_go_on_round_corners() {
     let frames = frames("line-pattern", "corner");
     let bits = numbers(&frames, "bit");
-    // Eleven steps to the corner, which is the last pixel of the one line and the first of the other.
+    // Eleven steps to the corner, the last pixel of one line and the first of the other.
     let expected: Vec<f64> = (0..=11).chain(11..=17).map(|step| f64::from(step % 16)).collect();
     assert_eq!(bits, expected);
 }
@@ -170,7 +170,7 @@ fn rows_of_depths_hold_the_nearest_triangle() {
 #[test]
 fn rays_show_origin_direction_and_t() {
     let frames = frames("ray", "shadow");
-    // The middle pixel looks straight ahead, at the plate at depth 3.
+    // The middle pixel looks straight ahead at the plate, at depth 3.
     let middle = frames.iter().find(|frame| numbers(&[(*frame).clone()], "x") == [3.0]).unwrap();
     let text = middle.text(Language::English);
     assert!(text.starts_with("Pixel 3: D = (0, 0, −1). The nearest face along O + t · D is B"));
@@ -197,7 +197,7 @@ fn fragments_are_dropped_by_every_test() {
         of_kind.filter(|frame| frame.text(Language::English).ends_with("dropped.")).count()
     };
     assert_eq!(["scissor", "alpha", "stencil", "depth"].map(dropped), [1, 3, 2, 2]);
-    // Half of what is there, half of the plate, in linear light.
+    // Half of the destination, half of the plate, in linear light.
     assert!(frames.iter().any(|frame| frame.kind == "blend"));
 }
 
@@ -218,7 +218,7 @@ fn simplification_shows_distances_and_triangles() {
 fn squares_without_room_are_dropped() {
     let found = frames("interior-point", "hook");
     let last = numbers(&found, "distance").last().copied().unwrap();
-    // The corner at (0, 0) has most room: r + r√2/… of the notch's corner, and no less than 1.75.
+    // The corner at (0, 0) has the most room: r + r√2/… to the notch's corner, and no less than 1.75.
     assert!((1.75..2.5).contains(&last), "{last}");
     assert!(found.iter().any(|f| f.text(Language::English).contains("can hold no more than")));
 }
@@ -233,7 +233,7 @@ fn points_behind_what_the_light_sees_are_dark() {
     let count = |start: &str| shares.iter().filter(|text| text.starts_with(start)).count();
     let kinds = [count("All the light"), count("No light"), count("At the edge")];
     assert!(kinds.iter().all(|count| *count > 0), "{kinds:?}");
-    // A slope is as deep as its own texels: only the bias keeps it lit.
+    // The depth of a slope within a texel is its own: only the bias keeps it lit.
     let slope = self::frames("shadow-map", "slope");
     let dark = |frame: &&Frame| frame.text(Language::English).starts_with("No light");
     assert!(

@@ -1,4 +1,4 @@
-//! The exposure of light, and the surroundings of a scene, by whole pictures.
+//! The exposure, and the environment of a scene, tested on whole pictures.
 
 use crate::scenes;
 use durer::math::{DVec3, Vec3, Vec4};
@@ -67,7 +67,7 @@ fn lights_that_are_given_are_shown_as_they_are() {
     options.exposure = Some(Exposure::Auto);
     let exposed = picture(&scene, &options);
     assert!(brightest(&exposed) > 200);
-    // As a file's own.
+    // As with a file's own environment.
     let own = Scene { lights: lamps(7.0), ..scene };
     assert!(difference(&picture(&own, &self::options(&own)), &exposed) <= 1);
 }

@@ -1,4 +1,4 @@
-//! The edges that are lines in delicate cases: thin triangles, materials, faces that share a vertex.
+//! The classes of edges in delicate cases: thin triangles, materials, faces that share a vertex.
 
 use crate::line_scenes::{Triangle, cuboid, quad, soup, view};
 use durer::math::DVec3;
@@ -37,7 +37,7 @@ fn where_materials_meet_there_is_a_line() {
     assert!((length(&found, LineClass::Border) - 12.0).abs() < 1e-5, "{:?}", found.lines);
 }
 
-/// Returns a roof along x whose ridge turns by these angles, in degrees, one after the other.
+/// Returns a roof along x whose ridge turns by these angles, in degrees, in order.
 fn ridge(angles: &[f64]) -> Vec<Triangle> {
     let eaves = |i: usize, y: f64| {
         let slope = (angles[i.min(angles.len() - 1)] / 2.0).to_radians().tan();
@@ -75,16 +75,16 @@ fn creases_that_get_blunter_go_on_where_that_is_asked_for() {
         near(crease_length(&roof, 10.0), 5.0);
         roof.reverse();
     }
-    // Where nothing begins, nothing goes on.
+    // No crease begins, so none continues.
     near(crease_length(&ridge(&[35.0, 30.0, 35.0]), 25.0), 0.0);
 }
 
 #[test]
 fn triangles_without_a_height_make_no_creases() {
-    // A sheet whose diagonal passes through a vertex of one side only; what closes the gap is a line.
+    // A sheet whose diagonal passes through a vertex of one side only; the edges that close the gap are lines.
     let [a, b, c, d] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
         .map(|[x, y]: [f64; 2]| DVec3::new(x, y, 0.0));
-    // On it, or as far from it as numbers with 24 bits may put it: upright, and turned over.
+    // On it, or as far from it as 24-bit numbers may put it: upright, and turned over.
     for m in [DVec3::ZERO, DVec3::new(0.0, 0.0, 4e-7), DVec3::new(-2e-7, 2e-7, -4e-7)] {
         let sheet: Vec<Triangle> = vec![[a, b, m], [b, c, m], [a, c, d], [a, m, c]];
         let found = drawn(&soup(&sheet), &above());
@@ -107,10 +107,10 @@ fn slivers_that_rounding_turns_out_of_a_surface_make_no_lines() {
     for m in [DVec3::new(0.0, 0.0, 5e-5), down, DVec3::new(3e-5, -3e-5, 5e-5)] {
         let sheet: Vec<Triangle> = vec![[a, b, m], [b, c, m], [a, c, d], [a, m, c]];
         assert_eq!(shown(&sheet, 5e-5), 0.0, "{m}");
-        // Below that tolerance they are as high as others.
+        // Below that tolerance they are classified as higher ones are.
         assert!(shown(&sheet, 1e-6) > 2.7, "{m}");
     }
-    // A step as low as that has a riser of two, and a ridge has faces that go on in nothing.
+    // A step of that height has a riser of two triangles; the faces of a ridge have no continuation.
     let [near, far] = [-1.0, 1.0].map(|y| {
         [[-1.0, 0.0], [0.0, 0.0], [0.0, 5e-5], [1.0, 5e-5]]
             .map(|[x, z]: [f64; 2]| DVec3::new(x, y, z))
@@ -129,7 +129,7 @@ fn slivers_that_rounding_turns_out_of_a_surface_make_no_lines() {
 fn faces_that_share_or_touch_with_a_vertex_meet_beyond_it_too() {
     let plane =
         [DVec3::new(-2.0, -2.0, 0.0), DVec3::new(2.0, -2.0, 0.0), DVec3::new(0.0, 2.0, 0.0)];
-    // A vertex of the plane's own, and one that lies on it.
+    // A vertex of the plane itself, and one that lies on the plane.
     for start in [plane[0], DVec3::new(-0.5, -1.0, 0.0)] {
         let end = DVec3::new(0.5, -0.5, 0.0);
         let through = [start, end + DVec3::Z, end - DVec3::Z];
@@ -143,7 +143,7 @@ fn faces_that_share_or_touch_with_a_vertex_meet_beyond_it_too() {
 
 #[test]
 fn walls_hide_from_an_eye_inside_too() {
-    // In a closed room; what is before the wall is seen, what is behind it is not.
+    // In a closed room: edges in front of the wall are visible, edges behind it are not.
     let v = view(DVec3::ZERO, DVec3::NEG_Y, 0.5, true);
     let visible = |y: [f64; 2]| {
         let mut triangles = cuboid([-2.0; 3], [2.0; 3]);
@@ -154,8 +154,7 @@ fn walls_hide_from_an_eye_inside_too() {
     assert_eq!(visible([2.2, 2.4]), 0.0);
 }
 
-/// Returns the lines of a drawing of these triangles in any order, begun anywhere and turned any
-/// way.
+/// Returns the lines of a drawing of these triangles in any order, with any first corner and any rotation.
 fn drawn_in_any_order(triangles: &[Triangle], view: &View) -> Drawing {
     let drawing = drawn(&soup(triangles), view);
     let count = triangles.len();
@@ -177,7 +176,7 @@ fn drawn_in_any_order(triangles: &[Triangle], view: &View) -> Drawing {
 fn a_band_with_one_side_has_no_tear() {
     let band = |i: usize, side: f64| {
         let u = i as f64 / 48.0 * std::f64::consts::TAU;
-        // At the end of the round the two sides change their places.
+        // At the end of the rounding the two sides swap.
         let (side, u) = if i == 48 { (-side, 0.0) } else { (side, u) };
         let across = side * 0.6;
         let r = 2.0 + across * (u / 2.0).cos();

@@ -1,6 +1,6 @@
-//! The completeness of drawings for plotters: over scenes at which solvers fail, each class of lines is
-//! complete and nothing is there that should not be; no specks, nothing twice; counts of polylines. By
-//! other means than the solver's: every feature edge is sampled, and rays decide what hides it.
+//! The completeness of drawings for plotters: over scenes at which solvers fail, each class of lines is complete and
+//! has nothing extra; no specks, nothing twice; counts of polylines. Independently of the solver: every feature edge is
+//! sampled, and rays decide whether it is hidden.
 
 use crate::line_oracle::{Edge, Oracle, Score, distance, drawn_twice, segments};
 use crate::line_scenes::{
@@ -14,7 +14,7 @@ use durer::view::View;
 use durer::visibility::line::hidden_line::{Options, draw};
 use std::collections::BTreeMap;
 
-/// The picture is this many pixels wide.
+/// Width of the picture in pixels.
 const PIXELS: f64 = 1000.0;
 
 /// A feature of the scene.
@@ -23,8 +23,7 @@ struct Feature {
     edge: Edge,
 }
 
-/// Returns the features, found from the triangles alone; those whose class hangs on rounding have
-/// none.
+/// Returns the features, found from the triangles alone, except those whose class depends on rounding.
 fn features(oracle: &Oracle, triangles: &[Triangle]) -> Vec<Feature> {
     let normal = |i: u32| {
         let [a, b, c] = oracle.triangles()[i as usize];
@@ -34,7 +33,7 @@ fn features(oracle: &Oracle, triangles: &[Triangle]) -> Vec<Feature> {
         [_] => Some(LineClass::Border),
         [a, b] => {
             let (_, sight) = oracle.sight(oracle.project(edge.ends[0]).0);
-            // What is seen edge-on shows no front.
+            // A face seen edge-on shows no front.
             let front = |i: u32| normal(i).dot(sight.normalize()) < -1e-9;
             let sharp = normal(a).dot(normal(b)) < 40.0_f64.to_radians().cos();
             if front(a) != front(b) {
@@ -85,14 +84,14 @@ fn meeting(a: &Triangle, b: &Triangle, least: f64) -> Option<[DVec3; 2]> {
     ((to - from).dot(along) > 10.0 * least).then_some([from, to])
 }
 
-/// Observations about a drawing.
+/// Results of checking a drawing.
 #[derive(Debug, Default)]
 struct Marks {
     precision: BTreeMap<LineClass, Score>,
     recall: BTreeMap<LineClass, Score>,
 }
 
-/// Samples both ways, a tenth of a pixel of slack.
+/// Samples in both directions, with a tolerance of a tenth of a pixel.
 fn marks(oracle: &Oracle, features: &[Feature], drawing: &Drawing) -> Marks {
     let pixel = oracle.extent() / PIXELS;
     let (slack, mut marks) = (0.1 * pixel, Marks::default());
@@ -134,7 +133,7 @@ fn marks(oracle: &Oracle, features: &[Feature], drawing: &Drawing) -> Marks {
             let t = (k as f64 + 0.37) / count as f64;
             if surely_visible(oracle, &feature.edge, t, slack / length) {
                 let p = oracle.project(feature.edge.ends[0].lerp(feature.edge.ends[1], t)).0;
-                // Where lines lie on each other the class that is listed first is drawn.
+                // Where lines coincide, the class listed first is drawn.
                 let drawn =
                     near.iter().any(|(c, s)| *c <= feature.class && distance(p, *s) <= slack);
                 marks.recall.entry(feature.class).or_default().add(drawn);
@@ -212,7 +211,7 @@ fn drawn(scene: &Scene, view: &View) -> Drawing {
         .expect("drawing")
 }
 
-/// Returns moved and scaled: by 32-bit numbers what was exact stays so.
+/// Returns the scene moved and scaled: 32-bit numbers keep exact coordinates exact.
 fn placings() -> [(f64, DVec3); 5] {
     [
         (1.0, DVec3::ZERO),

@@ -1,5 +1,5 @@
-//! The expected lines, by other means than the solver's: edges found by a map of positions,
-//! visibility by casting rays at points of them.
+//! The expected lines, found independently of the solver: edges by a map of positions, visibility by rays through
+//! points of them.
 
 use crate::line_scenes::Triangle;
 use durer::math::{DVec2, DVec3};
@@ -20,7 +20,7 @@ pub struct Oracle {
 
 const SIDE: usize = 128;
 
-/// An edge with the triangles at it.
+/// An edge with its triangles.
 pub struct Edge {
     pub ends: [DVec3; 2],
     pub triangles: Vec<u32>,
@@ -48,7 +48,7 @@ impl Oracle {
     pub fn new(triangles: &[Triangle], view: &View) -> Self {
         let mut distinct: Vec<Triangle> = Vec::new();
         for t in triangles {
-            // Small scenes only: those that repeat a triangle.
+            // For small scenes only, which repeat triangles.
             if triangles.len() > 1000 || !distinct.contains(t) {
                 distinct.push(*t);
             }
@@ -81,7 +81,7 @@ impl Oracle {
         oracle
     }
 
-    /// Returns each once.
+    /// Returns each edge once.
     pub fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }
@@ -96,7 +96,7 @@ impl Oracle {
         [c.x, c.y].map(|v| (v.max(0.0) as usize).min(SIDE - 1))
     }
 
-    /// Plane point and distance along the sight.
+    /// Returns the point in the plane and the distance along the line of sight.
     pub fn project(&self, p: DVec3) -> (DVec2, f64) {
         let camera = self.view.camera();
         let [right, up, back] = camera.axes();
@@ -110,7 +110,7 @@ impl Oracle {
         }
     }
 
-    /// Returns the origin and direction of the sight through a point of the plane.
+    /// Returns the origin and direction of the line of sight through a point of the plane.
     pub fn sight(&self, at: DVec2) -> (DVec3, DVec3) {
         let camera = self.view.camera();
         let [right, up, back] = camera.axes();
@@ -122,8 +122,7 @@ impl Oracle {
         }
     }
 
-    /// Returns whether a surface lies before a distance along the sight through a point of the
-    /// plane.
+    /// Returns whether a surface precedes a distance along the line of sight through a point of the plane.
     fn blocked(&self, at: DVec2, z: f64) -> bool {
         let (origin, direction) = self.sight(at);
         let [x, y] = self.cell(at);
@@ -171,7 +170,7 @@ impl Oracle {
         edges.into_values().filter(|e| e.ends[0] != e.ends[1]).collect()
     }
 
-    /// Returns whether an edge has to be drawn whatever rounding does.
+    /// Returns whether an edge must be drawn whatever the rounding.
     pub fn surely_drawn(&self, edge: &Edge) -> bool {
         let [a, b] = edge.triangles[..] else { return true };
         let normal = |i: u32| {
@@ -187,8 +186,7 @@ impl Oracle {
         fa * fb < 0.0 && fa.abs() > 1e-3 && fb.abs() > 1e-3
     }
 
-    /// Samples of all lines of a drawing: whether visible ones show something that can be seen, and
-    /// hidden ones something that cannot.
+    /// Samples all lines of a drawing: visible ones must show something visible, and hidden ones something hidden.
     pub fn precision(&self, drawing: &Drawing, per_line: usize) -> [Score; 2] {
         let edges = self.edges();
         let mut near: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
@@ -226,20 +224,19 @@ impl Oracle {
         scores
     }
 
-    /// Returns the parameter of the point of an edge that is nearest in the picture, and its
-    /// distance there.
+    /// Returns the parameter of the point of an edge that is nearest in the picture, and its distance in the picture.
     pub fn nearest(&self, edge: &Edge, p: DVec2) -> (f64, f64) {
         let ((a, za), (b, zb)) = (self.project(edge.ends[0]), self.project(edge.ends[1]));
         let s = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-300)).clamp(0.0, 1.0);
         let d = a.lerp(b, s).distance(p);
         let perspective =
             matches!(self.view.camera().projection, durer::scene::Projection::Perspective { .. });
-        // From the picture's parameter to that of space.
+        // From the parameter in the picture to the one in space.
         let t = if perspective { s * za / (zb + s * (za - zb)) } else { s };
         (t, d)
     }
 
-    /// Samples of edges that must be drawn: whether those that can be seen are drawn as visible.
+    /// Samples edges that must be drawn: their visible parts must be drawn as visible.
     pub fn recall(&self, drawing: &Drawing, per_edge: usize) -> Score {
         let mut cells: BTreeMap<[usize; 2], Vec<[DVec2; 2]>> = BTreeMap::new();
         for line in drawing.lines.iter().filter(|l| l.is_visible()) {
@@ -294,7 +291,7 @@ pub fn distance(p: DVec2, [a, b]: [DVec2; 2]) -> f64 {
     a.lerp(b, s).distance(p)
 }
 
-/// Returns the length of pieces that have a parallel piece within `close` over their middle.
+/// Returns the length of pieces with a parallel piece within `close` of their middle.
 pub fn drawn_twice(drawing: &Drawing, close: f64) -> f64 {
     let all: Vec<[DVec2; 2]> = drawing.lines.iter().flat_map(segments).collect();
     let twice = |i: usize, [a, b]: [DVec2; 2]| {

@@ -1,4 +1,4 @@
-//! Scenes and views for drawings: bodies put together from boxes and triangles.
+//! Scenes and views for drawings: bodies composed of boxes and triangles.
 
 use durer::math::{DMat3, DMat4, DVec3, Vec3};
 use durer::scene::{Camera, Instance, Mesh, Projection, Scene};
@@ -6,7 +6,7 @@ use durer::view::View;
 
 pub type Triangle = [DVec3; 3];
 
-/// Returns the twelve triangles of a box, turned outwards.
+/// Returns the twelve triangles of a box, facing outwards.
 pub fn cuboid(min: [f64; 3], max: [f64; 3]) -> Vec<Triangle> {
     let p = |i: usize| {
         DVec3::from(std::array::from_fn(|k| if i >> k & 1 == 1 { max[k] } else { min[k] }))
@@ -55,7 +55,7 @@ pub fn placed(triangles: &[Triangle], world_from_mesh: DMat4) -> Scene {
     Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
 }
 
-/// Returns a view of `height` world units from a direction, z up.
+/// Returns a view from a direction, `height` world units high, z up.
 pub fn view(target: DVec3, to_eye: DVec3, height: f64, perspective: bool) -> View {
     let to_eye = to_eye.normalize();
     let up = if to_eye.z.abs() > 0.999 { DVec3::Y } else { DVec3::Z };
@@ -70,7 +70,7 @@ pub fn view(target: DVec3, to_eye: DVec3, height: f64, perspective: bool) -> Vie
     View::new(camera, 1000, 1000).expect("view")
 }
 
-/// Numbers that look random, 0 … 1.
+/// Pseudo-random numbers in 0 … 1.
 pub struct Random(pub u64);
 
 impl Random {
@@ -81,7 +81,7 @@ impl Random {
     }
 }
 
-/// Boxes of random place and size that may penetrate each other.
+/// Returns boxes of random position and size that may intersect.
 pub fn random_boxes(count: usize, seed: u64) -> Vec<Triangle> {
     let mut random = Random(seed);
     let mut triangles = Vec::new();
@@ -93,7 +93,7 @@ pub fn random_boxes(count: usize, seed: u64) -> Vec<Triangle> {
     triangles
 }
 
-/// Towers on a square grid, whose edges are aligned in many views.
+/// Returns towers on a square grid, whose edges are aligned in many views.
 pub fn city(side: usize) -> Vec<Triangle> {
     let mut triangles = Vec::new();
     for i in 0..side {

@@ -1,4 +1,4 @@
-//! The one test binary of the library.
+//! The single test binary of the library.
 
 mod a_buffer;
 mod annotate;

@@ -1,4 +1,4 @@
-//! Lines and points of models: seen in pictures and drawings, hidden where something is in front, picked.
+//! Lines and points of models: visible in pictures and drawings, hidden behind surfaces, picked.
 
 use crate::scenes::instance;
 use durer::math::{DVec2, DVec3, Rect, Vec3, Vec4};
@@ -31,8 +31,7 @@ fn scene(meshes: Vec<Mesh>) -> Scene {
     Scene { meshes, instances, ..Scene::default() }
 }
 
-/// Returns a square from −0.5 to 0.5 in front of a line from −1 to 1 and of two points, one beside
-/// it.
+/// Returns a square from −0.5 to 0.5 in front of a line from −1 to 1 and of two points, one of them beside it.
 fn hidden_in_part() -> Scene {
     let square = [[-0.5, -0.5, 1.0], [0.5, -0.5, 1.0], [0.5, 0.5, 1.0], [-0.5, 0.5, 1.0]];
     let [a, b, c, d] = square;
@@ -88,7 +87,7 @@ fn drawings_have_the_lines_and_points_of_a_model() {
     let drawing = draw(&hidden_in_part(), &DrawOptions::new(camera())).expect("drawing");
     let length =
         |visible: bool| drawing.length(|l| l.class == LineClass::Mark && l.is_visible() == visible);
-    // The arms of a cross are 0.0025 of 4 units on either side; the hidden point has one too.
+    // The arms of a cross are 0.0025 of 4 units long on each side; the hidden point has a cross too.
     let cross = 4.0 * 0.0025 * 4.0;
     assert!((length(true) - (1.0 + cross)).abs() < 1e-5, "{}", length(true));
     assert!((length(false) - (1.0 + cross)).abs() < 1e-5, "{}", length(false));

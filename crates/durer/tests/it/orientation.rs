@@ -1,4 +1,4 @@
-//! Orientation of faces: pieces, neighbours, the way out, cavities, scenes.
+//! Orientation of faces: components, neighbours, the outside, cavities, scenes.
 
 use durer::math::{DMat4, DVec3, Vec3};
 use durer::scene::{Instance, Mesh, Scene};
@@ -60,7 +60,7 @@ fn the_volume_and_each_product_are_shown() {
     assert_eq!(found.pieces[0].volume, 6.0);
     let mut steps = Recorder::default();
     orient(&points, &faces, &centroid(), &mut steps).expect("a box");
-    // The top has area 2 and is 1.5 from the middle.
+    // The top has area 2 and a distance of 1.5 from the middle.
     assert!(steps.steps().contains(&Step::Compared { face: 0, product: -3.0 }));
 }
 
@@ -75,13 +75,13 @@ fn surfaces_with_a_border_stay_as_most_of_them_are() {
     open.iter_mut().for_each(|ring| ring.reverse());
     let found = orient(&points, &open, &Options::default(), &mut NoTrace).expect("a box");
     assert_eq!(found.turned, [false, true, false, false, false], "nobody knows which way is out");
-    // The test for convex bodies does.
+    // The test for convex bodies does so.
     let found = orient(&points, &open, &centroid(), &mut NoTrace).expect("a box");
     assert_eq!(found.turned, [true, false, true, true, true]);
     assert!(found.pieces[0].inside_out);
 }
 
-/// A strip with a half twist.
+/// Returns a strip with a half twist.
 #[test]
 fn what_cannot_be_oriented_stays_as_it_is() {
     let count = 7;
@@ -96,7 +96,7 @@ fn what_cannot_be_oriented_stays_as_it_is() {
     let n = count as usize;
     let quad = |k: usize| {
         let (a, b) = (2 * k, 2 * k + 1);
-        // After one way around the sides have changed places.
+        // After one turn around the strip the sides have swapped.
         if k + 1 < n { vec![a, b, b + 2, a + 2] } else { vec![a, b, 0, 1] }
     };
     let faces: Vec<Vec<usize>> = (0..n).map(quad).collect();
@@ -118,7 +118,7 @@ fn corners_that_do_not_exist_are_refused() {
     );
 }
 
-/// A mesh of triangles from faces.
+/// Returns a mesh of triangles from faces.
 fn mesh(parts: &[(Vec<DVec3>, Vec<Vec<usize>>)]) -> Mesh {
     let (mut positions, mut indices, mut faces) = (Vec::new(), Vec::new(), Vec::new());
     for (points, rings) in parts {
@@ -178,11 +178,11 @@ fn turned_scenes_are_right_and_agree_with_the_published_method() {
         found.apply(&mut scene);
         scene.check().expect("a scene");
         assert_eq!(counts(&scene), (1, 0, 0), "{turned:06b}");
-        // As Bodies, which drawings are made of, have it.
+        // As in the Bodies from which drawings are made.
         let faces = Faces::new(&scene).expect("a scene");
         let (bodies, _) = Bodies::find(&faces);
         assert!((0..12).all(|item| !bodies.turned(item)));
-        // No corner of a turned triangle has a normal that looks away.
+        // No corner of a turned triangle has a normal that points away.
         for (k, turned) in (0..12).map(|k| (k, turned >> (k / 2) & 1 == 1)) {
             let corners = scene.meshes[0].triangle(k);
             let [a, b, c] = corners.map(|v| scene.meshes[0].positions[v as usize]);
@@ -199,10 +199,10 @@ fn instances_that_mirror_or_differ_get_what_they_need() {
     let mut scene = Scene::from(mesh(&[unit()]));
     let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
     scene.instances.push(Instance { world_from_mesh: mirror, ..scene.instances[0].clone() });
-    // The second touches the first in a face; apart they are two bodies.
+    // The second touches the first in a face; separately they are two bodies.
     scene.instances[1].world_from_mesh = DMat4::from_translation(DVec3::X * -9.0) * mirror;
     assert_eq!(counts(&scene), (2, 0, 0), "a matrix that mirrors turns no front into a back");
-    // A single triangle that belongs to a body in one instance and to nothing in the other.
+    // A single triangle that belongs to a body in one instance and to none in the other.
     let (points, rings) = unit();
     let whole = mesh(&[(points.clone(), rings[1..].to_vec())]);
     let lid = reversed((points, vec![rings[0].clone()]));

@@ -1,5 +1,5 @@
 //! The pages of `docs/algorithms`: their pseudocode is that of the algorithms' facts, their pictures are those of the
-//! lessons, and their links lead somewhere.
+//! lessons, and their links have targets.
 
 use durer::explain::{self, ALGORITHMS, Frame, Input, Language};
 use std::fmt::Write as _;
@@ -13,7 +13,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/algorithms")
 }
 
-/// Returns the pages; none if the crate is tested outside of the repository.
+/// Returns the pages; none if the crate is tested outside the repository.
 fn pages() -> Vec<PathBuf> {
     let Ok(files) = std::fs::read_dir(folder()) else {
         println!("skipped: {} is missing", folder().display());
@@ -70,7 +70,7 @@ fn links_of_pages_lead_to_files() {
     }
 }
 
-/// Pictures of pages: the lesson, by which the file is named, its example, and the most steps to show.
+/// Pictures of pages: the lesson, which names the file, its example, and the largest number of steps shown.
 const SHEETS: &[(&str, &str, usize)] = &[
     ("cohen-sutherland", "all-borders", 100),
     ("midpoint", "both-ends", 100),
@@ -126,7 +126,7 @@ const SHEETS: &[(&str, &str, usize)] = &[
     ("forward-warp", "hole", 12),
 ];
 
-/// Returns at most this many frames: the first, the last, and those between at equal distances.
+/// Returns at most this many frames: the first, the last, and others at equal distances.
 fn chosen(frames: Vec<Frame>, most: usize) -> Vec<Frame> {
     let last = frames.len().saturating_sub(1);
     let count = most.min(frames.len());

@@ -1,4 +1,4 @@
-//! Broken views: what is left out, what is moved, what still tells its true length.
+//! Broken views: parts left out, parts moved, and dimensions that still state the true length.
 
 use durer::math::{DVec2, DVec3};
 use durer::paper::{Break, Breaks, ViewBreaks};
@@ -23,8 +23,7 @@ fn breaks(texts: &[&str], camera: &Camera) -> durer::Result<ViewBreaks> {
     Ok(Breaks::new(&all, BOUNDS, &[*camera])?.seen_by(camera))
 }
 
-/// Returns the outline, closed, a line along the axis and a region, with a label at each end and in the
-/// middle.
+/// Returns the closed outline, a line along the axis and a region, with a label at each end and in the middle.
 fn bar() -> Drawing {
     let p = DVec2::new;
     let ring = vec![p(0.0, -10.0), p(300.0, -10.0), p(300.0, 10.0), p(0.0, 10.0)];
@@ -56,7 +55,7 @@ fn what_lies_between_is_left_out_and_the_rest_moved() {
     let cut = breaks(&["x:50,250"], &front()).unwrap().cut(bar()).unwrap();
     let bounds = cut.bounds().unwrap();
     assert!(bounds.min().x == 0.0 && (bounds.max().x - 102.5).abs() < 1e-12, "{bounds:?}");
-    // 50 at each end, for the zigzags swing alike to both sides: the line at 5, beside them, is as long as before.
+    // 50 at each end, as the zigzags swing equally to both sides: the line at 5, beside them, keeps its length.
     let area: f64 = cut.regions.iter().map(Region::area).sum();
     assert!((area - 2000.0).abs() < 1e-9, "{area}");
     assert_eq!(cut.regions.len(), 2);
@@ -67,7 +66,7 @@ fn what_lies_between_is_left_out_and_the_rest_moved() {
         let ends = ends.map(|x| DVec2::new(x, 5.0));
         assert!(line.points.iter().zip(ends).all(|(p, q)| p.distance(q) < 1e-12), "{line:?}");
     }
-    // The outline is open where it is broken, and begins and ends there.
+    // The outline is open at the break, and begins and ends there.
     let outline: Vec<_> = of(LineClass::Crease).filter(|l| l.points.len() == 4).collect();
     assert_eq!(outline.len(), 2);
     assert!(outline.iter().all(|l| !l.closed));
@@ -77,7 +76,7 @@ fn what_lies_between_is_left_out_and_the_rest_moved() {
     let labels: Vec<&str> = cut.labels.iter().map(|l| &l.text[..]).collect();
     assert_eq!(labels, ["5", "295"]);
     assert!((cut.labels[1].at.x - 97.5).abs() < 1e-12);
-    // Break lines go on beyond what they cut.
+    // Break lines extend beyond the lines that they cut.
     let reach = of(LineClass::Break).map(|l| l.points.iter().map(|p| p.y).fold(0.0, f64::max));
     let reach: Vec<f64> = reach.collect();
     assert!(reach.iter().all(|y| (y - 11.5).abs() < 1e-12), "{reach:?}");
@@ -129,7 +128,7 @@ fn views_from_elsewhere_show_all() {
     for view in [along, oblique, perspective] {
         assert!(breaks(&["x:50,250"], &view).unwrap().is_empty());
     }
-    // From behind, the axis runs the other way.
+    // Seen from behind, the axis has the opposite direction.
     let back = camera(DVec3::Y, DVec3::Z);
     let breaks = breaks(&["x:50,250"], &back).unwrap();
     assert_eq!(breaks.drawn_at(DVec2::new(-20.0, 1.0)), DVec2::new(-20.0, 1.0));

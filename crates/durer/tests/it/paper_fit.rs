@@ -1,4 +1,4 @@
-//! Curves on paper: lines that were joined stay joined, and parts of one circle are.
+//! Curves on paper: joined lines stay joined, and parts of one circle stay on one circle.
 
 use durer::math::DVec2;
 use durer::paper::{Hidden, Options, lay_out};
@@ -53,7 +53,7 @@ fn paper_has_polylines_where_nothing_is_fitted() {
     assert!(curves(&fitted)[0].whole().is_some_and(Arc::is_circular));
     let straight = vec![line(&circle(4, 20.0), true, 0, LineClass::Crease)];
     assert_eq!(sheet(straight.clone(), 0.02), sheet(straight, 0.0));
-    // The mesh's own lines have facets.
+    // The mesh's own lines are faceted.
     let wire = vec![line(&circle(48, 20.0), true, 0, LineClass::Wire)];
     assert!(curves(&sheet(wire, 0.02)).is_empty());
 }
@@ -61,7 +61,7 @@ fn paper_has_polylines_where_nothing_is_fitted() {
 #[test]
 fn parts_of_a_circle_have_one_centre_and_meet() {
     let points = circle(64, 30.0);
-    // Coordinates as rounded as those of a file.
+    // Coordinates rounded like those of a file.
     let points: Vec<DVec2> =
         points.iter().map(|p| DVec2::new(f64::from(p.x as f32), f64::from(p.y as f32))).collect();
     let seen = line(&points[..25], false, 0, LineClass::Silhouette);
@@ -141,7 +141,7 @@ fn areas_share_the_curves_between_them() {
     assert_eq!(rings.len(), 4);
     assert!(rings.iter().all(|r| r.closed && r.start == r.end()));
     assert_eq!(rings[0].pieces.len(), 4);
-    // Two halves, each of which stands in two rings, once backwards.
+    // Two halves, each in two rings, once reversed.
     let arcs_of = |ring: &Curve| -> Vec<(DVec2, Arc, DVec2)> {
         let arc = |(start, piece): (DVec2, &Piece)| match piece {
             Piece::Arc(arc, end) => Some((start, *arc, *end)),
@@ -179,7 +179,7 @@ fn a_hole_and_what_fills_it_are_one_circle() {
 fn areas_that_reach_under_others_stay_as_they_are() {
     let disc = || vec![region(vec![circle(48, 20.0)])];
     assert!(matches!(areas(disc(), false)[..], [Mark::Fill { .. }]));
-    // And those without anything round.
+    // The same for lines without anything round.
     let square = vec![region(vec![circle(4, 20.0)])];
     assert!(matches!(areas(square, true)[..], [Mark::Fill { .. }]));
 }
@@ -204,7 +204,7 @@ fn a_rim_is_round_whatever_lies_beyond() {
     let circles = arcs(&rings[..1]);
     assert_eq!(circles.len(), 48);
     assert!(circles.iter().all(|a| (a.axis.length() - 20.0).abs() < 1e-9), "{circles:?}");
-    // Each part has an arc of each rim, in the other direction where the disc has it.
+    // Each part has an arc of each rim, opposite in direction to the disc's.
     for ring in &rings[1..] {
         let [first, second] = arcs(&[ring])[..] else { panic!("{ring:?}") };
         let (low, high) = match first.axis.length() < second.axis.length() {

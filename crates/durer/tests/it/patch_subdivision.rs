@@ -1,4 +1,4 @@
-//! Catmull's subdivision of patches beside fine meshes of the same patches.
+//! Catmull's subdivision of patches, compared with fine meshes of the same patches.
 
 use crate::line_scenes::Random;
 use durer::math::DVec3;
@@ -27,7 +27,7 @@ fn patch(mut point: impl FnMut(usize, usize) -> DVec3) -> Patch {
     Patch::new(rows).unwrap()
 }
 
-/// Returns a patch in any position, of which parts hide others and parts are beyond the screen.
+/// Returns a patch in any position; parts of it hide others, and parts are outside the screen.
 fn wild(random: &mut Random) -> Patch {
     let mut number = |low: f64, high: f64| low + random.next() * (high - low);
     let (dx, dy) = (number(2.0, 7.0), number(2.0, 6.0));
@@ -46,7 +46,7 @@ fn rendered(patches: &[Patch], options: &Options) -> Picture {
     found
 }
 
-/// Returns the nearest patch and depth at points of each pixel at an offset from its centre, of a fine mesh.
+/// Returns the nearest patch and depth at each pixel, at an offset from its centre, of a fine mesh.
 fn of_mesh(patches: &[Patch], steps: usize, offset: [f64; 2]) -> Vec<(u32, f64)> {
     let mut found = vec![(NO_ITEM, f64::INFINITY); (WIDTH * HEIGHT) as usize];
     for (number, patch) in (0..).zip(patches) {
@@ -99,7 +99,7 @@ fn pictures_are_those_of_fine_meshes() {
         let patches: Vec<Patch> = (0..1 + round / 2).map(|_| wild(&mut random)).collect();
         let found = rendered(&patches, &Options::default());
         let mesh = of_mesh(&patches, 60, [0.0; 2]);
-        // Where all around is alike, no outline passes, and the surface is not too steep to be compared.
+        // Where all neighbours agree, no outline passes, and the surface is not too steep to compare.
         let around: Vec<_> = [[0.06, 0.0], [-0.06, 0.0], [0.0, 0.06], [0.0, -0.06]]
             .map(|offset| of_mesh(&patches, 60, offset))
             .into();
@@ -124,7 +124,7 @@ fn pictures_are_those_of_fine_meshes() {
     assert!(checked > 1_500, "{checked}");
 }
 
-/// A flat square is seen exactly where its borders are, however it is divided.
+/// Checks that a flat square has exact borders, however it is divided.
 #[test]
 fn a_square_covers_its_pixels() {
     let square = |x: f64, side: f64, z: f64| {
@@ -135,7 +135,7 @@ fn a_square_covers_its_pixels() {
     for y in 0..HEIGHT {
         for x in 0..WIDTH {
             let expected = match (x, y) {
-                // Of equally near ones the first.
+                // Of equally near ones the first wins.
                 (7..13, 2..8) => (1, 3.0),
                 (3..11, 2..10) => (0, 4.0),
                 _ => (NO_ITEM, f64::INFINITY),
@@ -190,7 +190,7 @@ fn limits_and_budgets_are_kept() {
     assert!(Patch::new(rows).is_err());
     rows[1][2].z = 1e200;
     assert!(Patch::new(rows).is_err());
-    // As large as can be: an answer or a limit, and soon.
+    // At the largest sizes: a result or a limit, and quickly.
     let huge = patch(|i, j| DVec3::new(i as f64 - 1.5, j as f64 - 1.5, 1.0) * 6e99);
     assert!(render(&[huge], &screen(), &Options::default(), &mut NoTrace).is_err());
 }

@@ -1,4 +1,4 @@
-//! Pictures of scenes that come in pieces are those of the whole, bit for bit.
+//! Pictures of scenes processed in pieces equal those of the whole, bit for bit.
 
 use crate::scenes::{self, Numbers};
 use durer::math::{DVec3, Vec3, Vec4};
@@ -15,8 +15,8 @@ use durer::view::projection::{
 };
 use durer::work::Work;
 
-/// Returns triangles at random, each in a colour of its own, some twice in another colour, one after the
-/// other and far apart.
+/// Returns random triangles, each in its own colour, some of them repeated in another colour, either consecutively or
+/// far apart.
 fn soup(triangles: usize) -> Scene {
     let mut scene = scenes::soup(triangles, 7);
     let mesh = &mut scene.meshes[0];
@@ -30,7 +30,7 @@ fn soup(triangles: usize) -> Scene {
     scene
 }
 
-/// Returns the same with points in place of triangles.
+/// Returns the same with points instead of triangles.
 fn cloud(triangles: usize) -> Scene {
     let mut scene = soup(triangles);
     scene.meshes[0].topology = Topology::Points;
@@ -41,7 +41,7 @@ fn corners(scene: &Scene) -> usize {
     if scene.meshes[0].topology == Topology::Points { 1 } else { 3 }
 }
 
-/// Returns a scene of some primitives of one without indices.
+/// Returns a scene with some primitives of one without indices.
 fn only(scene: &Scene, numbers: impl Iterator<Item = usize>) -> Scene {
     let (mesh, corners) = (&scene.meshes[0], corners(scene));
     let vertices: Vec<usize> = numbers.flat_map(|i| corners * i..corners * (i + 1)).collect();
@@ -98,7 +98,7 @@ fn pictures_in_pieces_are_those_of_the_whole() {
             options.samples = samples;
             (options.depth, options.item, options.normal) = (planes, planes, planes);
             compare(&scene, &options);
-            // Near enough for some triangles to be cut.
+            // Near enough to cut some triangles.
             options.camera.eye = options.camera.eye.lerp(options.camera.target, 0.8);
             options.cull = Cull::Back;
             compare(&scene, &options);
@@ -114,12 +114,12 @@ fn pictures_in_pieces_are_those_of_the_whole() {
     compare(&scene, &options);
 }
 
-/// Checks that cameras of pieces are those of the whole. Of points that are equally far out a
-/// camera may rest on either; the last bits of its place depend on it.
+/// Checks that cameras of pieces are those of the whole. A camera may be determined by any of several points equally
+/// far out; the last bits of its position depend on the choice.
 #[test]
 fn cameras_of_pieces_are_those_of_the_whole() {
     let mut numbers = Numbers(3);
-    // On a grid many are equally far out along any of the views.
+    // On a grid many points are equally far out in each of the views.
     let mut scene = soup(3000);
     for position in &mut scene.meshes[0].positions {
         *position = ((numbers.point(7.0) * 0.5).round() * 0.3).with_y(numbers.next());
@@ -195,7 +195,7 @@ fn it_is_told_why_nothing_is_seen() {
         assert!(matches!(whole, Status::Invisible(_)), "{by}");
         assert_eq!(told(&plain, &pieces), whole, "{by}");
     }
-    // One face that looks away.
+    // One face turned away.
     let back = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p.as_vec3());
     let mesh = Mesh { positions: back.to_vec(), colors: vec![Vec4::ONE; 3], ..Mesh::default() };
     let scene = Scene { meshes: vec![mesh], ..scene };

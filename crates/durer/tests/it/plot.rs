@@ -1,4 +1,4 @@
-//! Plots on paper: numbers, titles and the bar of colours have room.
+//! Plots on paper: numbers, titles and the colour bar have room.
 
 use durer::math::{DVec2, Rect};
 use durer::plot::{ColorMap, Options, Plot, surface};
@@ -12,7 +12,7 @@ fn plot(x: [f64; 2], z: [f64; 2], f: impl Fn(f64, f64) -> f64, options: &Options
     surface(&field, options).expect("plot")
 }
 
-/// Returns all texts with their boxes on the page, of letters 0.6 as wide as high.
+/// Returns all texts with their boxes on the page, assuming letters 0.6 as wide as high.
 fn texts(plot: &Plot) -> Vec<(String, Rect)> {
     let marks = plot.clone().into_sheet().layers.into_iter().flat_map(|layer| layer.marks);
     let boxed = |mark: Mark| {

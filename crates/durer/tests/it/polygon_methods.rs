@@ -1,4 +1,4 @@
-//! Visible polygons as they are taught: all methods agree, steps rebuild what they found, and the numbers are there.
+//! Visible-polygon methods of textbooks: all methods agree, steps rebuild their results, and their numbers are right.
 
 use crate::raster_coverage::Random;
 use durer::math::{DVec2, DVec3};
@@ -46,7 +46,7 @@ fn beam(p: (f64, f64), q: (f64, f64), [first, last]: [f64; 2]) -> Face {
     Face::new(&corners.map(|(p, z)| p.extend(z))).unwrap()
 }
 
-/// Returns three beams of which each lies over the next.
+/// Returns three cyclically overlapping beams.
 fn beams() -> [Face; 3] {
     [
         beam((4.0, 8.0), (28.0, 8.0), [1.0, 5.0]),
@@ -55,8 +55,7 @@ fn beams() -> [Face; 3] {
     ]
 }
 
-/// Returns whether both pictures show the same, except for faces that are equally near to within
-/// rounding.
+/// Returns whether both pictures are equal, except for faces equally near up to rounding.
 fn same(faces: &[Face], a: &Pixels<u32>, b: &Pixels<u32>) -> bool {
     let all = (0..a.height()).flat_map(|y| (0..a.width()).map(move |x| (x, y)));
     all.into_iter().all(|(x, y)| {
@@ -200,11 +199,11 @@ fn painting_in_order_of_depth_fails_where_beams_overlap_in_a_ring() {
         let painted = painter::items(&faces, &screen, &options, &mut NoTrace).unwrap();
         assert!(!same(&faces, &painted, &right), "{key:?}");
     }
-    // A tree splits a beam, and then there is an order.
+    // A tree splits a beam, and then an order exists.
     let mut steps = Recorder::default();
     bsp::items(&faces, &screen, &bsp::Options::default(), &mut steps).unwrap();
     assert!(steps.steps().iter().any(|step| matches!(step, bsp::Step::Split { .. })));
-    // Where depths do not overlap, the order alone is right.
+    // If depths do not overlap, the order alone is right.
     let apart: Vec<Face> = (0..3)
         .map(|k| beam((4.0, 8.0 + f64::from(k)), (28.0, 9.0), [f64::from(k), f64::from(k) + 0.5]))
         .collect();
@@ -212,7 +211,7 @@ fn painting_in_order_of_depth_fails_where_beams_overlap_in_a_ring() {
     assert_eq!(painted, z_buffer::items(&apart, &screen, &mut NoTrace).unwrap());
 }
 
-/// The key decides on the order, and of equal keys the first face is painted last.
+/// Checks that the key decides the order, and that of equal keys the first face is painted last.
 #[test]
 fn the_painter_sorts_by_the_key_that_is_chosen() {
     let strip = |z0: f64, z1: f64| {
@@ -242,7 +241,7 @@ fn trees_order_pieces_for_every_eye() {
         let tree = Tree::new(&faces, &how, &Work::default(), &mut NoTrace).unwrap();
         for eye in [DVec3::new(16.0, 16.0, -50.0), DVec3::new(-40.0, 3.0, 25.0), DVec3::ZERO] {
             let order = tree.back_to_front(Eye::At(eye), &mut NoTrace);
-            // No piece lies, on a ray from the eye, before one that is painted later.
+            // No piece is, on a ray from the eye, in front of one painted later.
             for (k, &far) in order.iter().enumerate() {
                 for &near in &order[k + 1..] {
                     assert!(!hides(&tree, &faces, eye, far, near), "{far} {near} from {eye}");
@@ -252,7 +251,7 @@ fn trees_order_pieces_for_every_eye() {
     }
 }
 
-/// Returns whether the first piece lies before the second on a ray to the middle of one of them.
+/// Returns whether the first piece is in front of the second on a ray to the middle of one of them.
 fn hides(tree: &Tree, faces: &[Face], eye: DVec3, first: u32, second: u32) -> bool {
     let face = |piece: u32| &faces[tree.face(piece) as usize];
     let corners = tree.corners(second);
@@ -288,13 +287,14 @@ fn too_many_pieces_are_refused() {
     assert!(regions(&crossing, &how, &Work::default(), &mut NoTrace).is_err());
 }
 
-/// Lists and tables that grow with the polygons are charged, not the planes of the picture alone, and all of it is given back.
+/// Checks that lists and tables that grow with the polygons are charged, not only the planes of the picture, and that
+/// all of it is given back.
 #[test]
 fn lists_of_polygons_are_charged_to_the_budget() {
     let faces = scene(&mut Random(15), 48);
     for method in PolygonMethod::ALL {
         let expected = method.items(&faces, &screen()).unwrap();
-        // The smallest power of two that suffices.
+        // The smallest sufficient power of two.
         let needed = |faces: &[Face]| {
             let suffices = |bytes: &u64| {
                 let work = Work::with_budget(*bytes, "the budget");
@@ -308,7 +308,7 @@ fn lists_of_polygons_are_charged_to_the_budget() {
             (8..30).map(|bits| 1 << bits).find(suffices).unwrap()
         };
         let [few, many] = [&faces[..6], &faces].map(needed);
-        // The plain loop has nothing but planes.
+        // The simple loop has nothing but planes.
         assert_eq!(many > few, *method != PolygonMethod::ZBuffer, "{method}: {few} {many}");
         let work = Work::with_budget(many, "the budget");
         let found = method.items(&faces, &Screen { work, ..screen() }).unwrap();
@@ -316,7 +316,7 @@ fn lists_of_polygons_are_charged_to_the_budget() {
     }
 }
 
-/// Each of these is large where the others are small.
+/// Checks scenes that are each large in one respect and small in the others.
 #[test]
 fn pixels_cells_and_regions_that_wait_are_charged() {
     let square = |side: f64, z: f64| {
@@ -337,7 +337,7 @@ fn pixels_cells_and_regions_that_wait_are_charged() {
     let divided = |bytes: u64| octree::items(&steep, &within(bytes), &how, &mut NoTrace);
     assert!(divided(1 << 16).is_err_and(|e| e.to_string().contains("octree")));
     assert!(divided(1 << 20).is_ok());
-    // A wall before many things: all of them wait to be cut, and nothing of them is seen.
+    // A wall in front of many things: all of them wait to be cut, and none is visible.
     let mut hidden = vec![square(32.0, 1.0)];
     hidden.extend((0..200).map(|k| square(4.0, f64::from(k + 2))));
     let found = |bytes: u64| {
@@ -428,7 +428,7 @@ fn regions_show_the_nearest_face_everywhere() {
     }
 }
 
-/// Behind a wall whole cells are left out, and the numbers of the pyramid are those of the depths.
+/// Checks that whole cells behind a wall are skipped, and that the numbers of the pyramid are the depths.
 #[test]
 fn a_pyramid_of_depths_hides_cells() {
     use hierarchical_z::{Options, Step, Test};
@@ -449,7 +449,7 @@ fn a_pyramid_of_depths_hides_cells() {
     let compared = |s: &&Step| matches!(s, Step::Face { face, .. } if *face != 64);
     assert!(left_out >= 48, "{left_out}");
     assert!(steps.steps().iter().filter(compared).count() <= 16);
-    // Four pixels, three of them near: the farthest of four stays until the last is near, too.
+    // Four pixels, three of them near: the farthest depth of the four stays until the last is near too.
     let small = Screen { width: 2, height: 2, ..Screen::default() };
     let flat = Options { capacity: 9, depth: 0 };
     let faces =
@@ -473,14 +473,14 @@ fn a_pyramid_of_depths_hides_cells() {
         face(2, 8.0, 1, 7.0),
     ];
     assert_eq!(steps.steps()[2..], expected);
-    // A face of a child comes after those of the root; as near as they are, the first of all is seen.
+    // A face of a child follows those of the root; at equal depths the first of all is visible.
     let tied = [square(0.0, 0.0, 1.0, 5.0), square(0.0, 0.0, 2.0, 5.0)];
     let divided = Options { capacity: 0, depth: 1 };
     let found = hierarchical_z::items(&tied, &small, &divided, &mut NoTrace).unwrap();
     assert_eq!(found.data(), [0, 1, 1, 1]);
 }
 
-/// Cells come from near to far, pixels are filled once, and cells behind filled pixels are left out.
+/// Checks that cells come from near to far, pixels are filled once, and cells behind filled pixels are skipped.
 #[test]
 fn an_octree_is_filled_from_front_to_back() {
     use octree::{Options, Step};
@@ -503,7 +503,7 @@ fn an_octree_is_filled_from_front_to_back() {
             Step::Cell { corners, .. } => cells.push(*corners),
             Step::Leaf { cell, faces } => {
                 compared += faces.iter().filter(|face| **face != 64).count();
-                // Of two cells over the same pixels the near one comes first; here that is all near ones.
+                // Of two cells over the same pixels the near one comes first; here all near ones come first.
                 assert!(cells[*cell][0].z >= depth);
                 depth = cells[*cell][0].z;
             }
@@ -514,7 +514,7 @@ fn an_octree_is_filled_from_front_to_back() {
     }
     assert_eq!((compared, pixels.len()), (0, 32 * 32));
     assert!(left_out > 20, "{left_out}");
-    // Parts of faces are limited: a steep face is in many cells.
+    // The number of parts of a face is limited: a steep face is in many cells.
     let steep = [(0.0, 0.0, 0.0), (32.0, 0.0, 30.0), (0.0, 32.0, 30.0)].map(DVec3::from);
     let steep = [Face::new(&steep).unwrap()];
     let few = Options { capacity: 0, depth: 5, max_parts: 500 };
@@ -530,7 +530,7 @@ fn faces_must_be_plane_and_have_an_area() {
     assert!(Face::new(&corners(f64::NAN).map(DVec3::from)).is_err());
     assert!(Face::new(&[DVec3::ZERO, DVec3::X, DVec3::X * 2.0]).is_err());
     assert!(Face::new(&[]).is_err());
-    // Seen edge-on it covers nothing, but divides a tree.
+    // Seen edge-on it covers nothing, but it divides a tree.
     let edge = Face::new(&[DVec3::ZERO, DVec3::Y * 9.0, DVec3::Z * 9.0]).unwrap();
     for method in PolygonMethod::ALL {
         let items = method.items(std::slice::from_ref(&edge), &screen()).unwrap();

@@ -1,4 +1,4 @@
-//! Cells and portals: the same picture as drawing every wall, and nothing visited that is not seen.
+//! Cells and portals: the same picture as drawing every wall, without visiting invisible rooms.
 
 use crate::raster_coverage::Random;
 use durer::math::{DVec2, DVec3};
@@ -34,7 +34,7 @@ fn rooms(random: &mut Random, angle: f64) -> (Vec<Vec<DVec2>>, Vec<[DVec2; 2]>) 
         if row + 1 < SIDE {
             doors.push([at(x + up.0, y + 1.0), at(x + up.1, y + 1.0)]);
         }
-        // Every other room has none to the right.
+        // Every other room has no door to the right.
         if column + 1 < SIDE && (row + column) % 2 == 0 {
             doors.push([at(x + 1.0, y + right.0), at(x + 1.0, y + right.1)]);
         }
@@ -74,11 +74,11 @@ fn rooms_through_doors_look_as_when_every_wall_is_drawn() {
         visited += cells.len();
         all += rooms.len();
     }
-    // Most rooms are not seen, and are not looked at.
+    // Most rooms are invisible and are not visited.
     assert!(visited * 3 < all, "{visited} of {all}");
 }
 
-/// A row of rooms: each window lies within the one before, and a door beside it ends the row.
+/// Checks a row of rooms: each window is inside the one before, and a door beside it ends the row.
 #[test]
 fn windows_shrink_from_door_to_door() {
     let room =
@@ -89,7 +89,7 @@ fn windows_shrink_from_door_to_door() {
     let eye = Eye { at: DVec3::new(3.0, 0.0, 2.0), cell: 0, focal: 24.0 };
     let mut steps = Recorder::default();
     let seen = visits(&plan, &eye, &screen(), &Options::default(), &mut steps).unwrap();
-    // x / z · 24 + 24: from −½ to ½, then from −1/12 to ½, then from 3/10, all cut off by ½.
+    // x / z · 24 + 24: from −½ to ½, then from −1/12 to ½, then from 3/10, all cut at ½.
     let columns: Vec<_> =
         seen.iter().map(|v| (v.cell, v.window.low[0], v.window.high[0])).collect();
     assert_eq!(columns, [(0, 0, 48), (1, 12, 36), (2, 22, 36), (3, 31, 34)]);
@@ -101,7 +101,7 @@ fn windows_shrink_from_door_to_door() {
     let aside = Eye { at: DVec3::new(3.9, 0.0, 2.0), ..eye };
     let seen = visits(&plan, &aside, &screen(), &Options::default(), &mut NoTrace).unwrap();
     assert_eq!(seen.last().map(|visit| visit.cell), Some(2));
-    // Looking away from it, an eye in the second room sees no other room.
+    // An eye in the second room that looks away from the first does not see it.
     let second = Eye { at: DVec3::new(6.0, 0.0, 7.0), cell: 1, focal: 24.0 };
     let cells = visits(&plan, &second, &screen(), &Options::default(), &mut NoTrace).unwrap();
     assert_eq!(cells.iter().map(|visit| visit.cell).collect::<Vec<_>>(), [1, 2]);

@@ -1,4 +1,4 @@
-//! Exact area coverage against an independent computation of the areas, and its invariants.
+//! Exact area coverage, compared with an independent computation of the areas, and its invariants.
 
 use durer::curve::Contours;
 use durer::math::DVec2;
@@ -8,7 +8,7 @@ use durer::raster::coverage::{
 use durer::target::Pixels;
 use durer::trace::{NoTrace, Recorder};
 
-/// A small generator: the same numbers on every run.
+/// A small generator with the same numbers on every run.
 pub struct Random(pub u64);
 
 impl Random {
@@ -43,8 +43,8 @@ fn edges(contours: &Contours) -> Vec<(DVec2, DVec2)> {
     edges
 }
 
-/// Returns the area of each pixel of one row inside the outline: the row is cut at every vertex, at
-/// every crossing of two edges and at every crossing of an edge with a border of pixels.
+/// Returns the area inside the outline for each pixel of one row: the row is cut at every vertex, at every crossing of
+/// two edges and at every crossing of an edge with a pixel border.
 fn row_areas(edges: &[(DVec2, DVec2)], y: u32, width: u32, rule: FillRule) -> Vec<f64> {
     let (top, bottom) = (f64::from(y), f64::from(y) + 1.0);
     let x_at = |e: &(DVec2, DVec2), y: f64| e.0.x + (e.1.x - e.0.x) * (y - e.0.y) / (e.1.y - e.0.y);
@@ -96,7 +96,7 @@ fn worst_error(contours: &Contours, width: u32, height: u32, rule: FillRule) -> 
     error_of(&mask(contours, width, height, rule), contours, rule)
 }
 
-/// Returns the same for coverage that has been found.
+/// Returns the same for a given coverage.
 fn error_of(found: &Pixels<u8>, contours: &Contours, rule: FillRule) -> f64 {
     let edges = edges(contours);
     let (width, height) = (found.width(), found.height());
@@ -163,7 +163,7 @@ fn small_crowded_drawings_are_exact() {
     }
 }
 
-/// Makes many triangles of about six pixels, strewn over a drawing.
+/// Makes many triangles of about six pixels, scattered over a drawing.
 fn crowd(count: usize, size: DVec2, random: &mut Random) -> Contours {
     let mut contours = Contours::new();
     for _ in 0..count {
@@ -183,7 +183,7 @@ fn noise_is_exact_where_that_is_asked_for() {
         };
         let (exact, adaptive) = (of(Overlap::Exact), of(Overlap::Adaptive));
         assert!(exact <= 1.0, "{rule:?}: {exact}");
-        // Otherwise the drawing would not be one that tells the two apart.
+        // Otherwise the drawing would not distinguish the two.
         assert!(adaptive > 16.0, "{rule:?}: {adaptive}");
     }
 }
@@ -206,13 +206,13 @@ fn pixels_of_many_edges_are_measured() {
 
 #[test]
 fn opposite_windings_do_not_cancel() {
-    // The two halves of a bow-tie meet in the diagonal of every pixel.
+    // The two halves of a bow-tie meet on the diagonal of every pixel.
     let points = [(0.0, 0.0), (8.0, 8.0), (8.0, 0.0), (0.0, 8.0)].map(|(x, y)| DVec2::new(x, y));
     let bow = Contours::polygon(points);
     for rule in RULES {
         assert!(worst_error(&bow, 8, 8, rule) <= 0.52);
     }
-    // A pixel covered by a square one way and by another the other way round.
+    // A pixel covered by one square and by another of opposite direction.
     let mut both = Contours::new();
     let square = |x: f64| {
         [(x, 0.0), (x + 0.5, 0.0), (x + 0.5, 1.0), (x, 1.0)].map(|(x, y)| DVec2::new(x, y))
@@ -273,7 +273,7 @@ fn steps_smaller_than_pixels_may_be_taken_either_way_from_anywhere() {
             let (mut at, mut heading) = (random.point(4.0, f64::from(side) - 4.0), 0.0);
             let mut points = Vec::new();
             for _ in 0..count {
-                // Smoothly bent courses and ones that jump about, by steps of all sizes.
+                // Smoothly bent curves and random walks, with steps of all sizes.
                 heading += (random.next() - 0.5) * if round % 2 == 0 { 1.5 } else { 6.0 };
                 let step = longest * random.next() * random.next() * random.next();
                 at += DVec2::new(libm::cos(heading), libm::sin(heading)) * step;
@@ -292,7 +292,7 @@ fn steps_smaller_than_pixels_may_be_taken_either_way_from_anywhere() {
     }
 }
 
-/// Returns a star with its spikes in a circle, from one of its points on.
+/// Returns a star with its spikes on a circle, starting at one of its points.
 fn star(center: DVec2, radius: f64, start: usize) -> Vec<DVec2> {
     let point = |i: usize| {
         let angle = 0.3 + (i + start) as f64 * 2.0 / 5.0 * std::f64::consts::TAU;
@@ -326,7 +326,7 @@ fn tiny_stars_are_exact_wherever_they_begin() {
 fn a_closing_edge_that_crosses_near_the_start_is_exact() {
     let mut random = Random(23);
     for _ in 0..400 {
-        // The first edge lies within a pixel, and the last may cross the second there.
+        // The first edge is inside a pixel, where the last may cross the second.
         let mut points = vec![random.point(2.0, 3.0), random.point(2.0, 3.0)];
         points.extend((0..2).map(|_| random.point(0.0, 5.0)));
         for rule in RULES {
@@ -338,7 +338,7 @@ fn a_closing_edge_that_crosses_near_the_start_is_exact() {
 
 #[test]
 fn columns_are_alike_wherever_the_shape_stands() {
-    // Words of 64 columns, bands of 32 rows: shapes that cross within pixels at all their borders.
+    // Words of 64 columns, bands of 32 rows: shapes that cross inside pixels at all their borders.
     let mut random = Random(22);
     for _ in 0..12 {
         // On a grid of 1/256, so that moving changes no bit of the shape.
@@ -437,7 +437,7 @@ fn a_million_vertices_that_cross_themselves_are_filled() {
     assert!(mask.data().iter().filter(|c| **c > 0).count() > 4000);
 }
 
-/// Returns triangles of a jittered grid over the whole target, each with random colour.
+/// Returns triangles of a jittered grid over the whole target, each in a random colour.
 fn mesh(random: &mut Random, cells: usize, side: f64) -> Vec<Face> {
     let step = side / cells as f64;
     let points: Vec<DVec2> = (0..(cells + 1) * (cells + 1))
@@ -505,7 +505,7 @@ fn a_partition_is_exactly_full_in_any_order() {
         let mut again = Pixels::new(side, side, [0, 255, 0, 255]);
         fill_partition(&faces, &mut again, &mut NoTrace).unwrap();
         assert_eq!(again, reference);
-        // White faces over black: no pixel may be less than white.
+        // White faces over black: no pixel may be darker than white.
         faces.iter_mut().for_each(|f| f.color = [255; 4]);
         let mut white = Pixels::new(side, side, [0, 0, 0, 255]);
         fill_partition(&faces, &mut white, &mut NoTrace).unwrap();

@@ -40,8 +40,8 @@ proptest! {
         }
     }
 
-    /// Checks that the point seen through a pixel is the intersection of the ray through it with
-    /// the plane of the triangle.
+    /// Checks that the point seen through a pixel is the intersection of the pixel's ray with the plane of the
+    /// triangle.
     #[test]
     fn perspective_correct_equals_ray_and_plane(t in [point3(), point3(), point3()], screen in weights()) {
         let t = t.map(|p| p - DVec3::Z * 6.0); // in front of an eye that looks down −z
@@ -57,7 +57,7 @@ proptest! {
         let weights = perspective_correct(screen, inv_w);
         prop_assert!((blend(weights, t) - hit).length() < 1e-8);
 
-        // Planes over the screen say the same, for an attribute and for depth (linear after division).
+        // Plane equations over the screen give the same, for an attribute and for depth (linear after division).
         let x = PerspectivePlane::through(points, inv_w, t.map(|p| p.x)).unwrap();
         prop_assert!((x.at(pixel) - hit.x).abs() < 1e-7, "{} {}", x.at(pixel), hit.x);
         let depth = ScreenPlane::through(points, inv_w).unwrap();

@@ -1,4 +1,4 @@
-//! Lines: all ways light the same pixels, from both ends, within half a pixel, clipped or not.
+//! Lines: all algorithms light the same pixels, from both ends, within half a pixel, clipped or not.
 
 use crate::raster_coverage::Random;
 use durer::math::IVec2;
@@ -155,7 +155,7 @@ fn two_steps_have_one_of_four_patterns() {
         double_step::Step::Start { pixel: at(0, 0), d: -3 },
         pair(Pattern::First, -3, [at(1, 1), at(2, 1)]),
         pair(Pattern::First, -1, [at(3, 2), at(4, 2)]),
-        // The last E of the lecture.
+        // The last E in the lecture.
         double_step::Step::Last { e: 5, pixel: at(5, 3) },
     ];
     assert_eq!(steps.steps(), expected);
@@ -175,7 +175,7 @@ fn two_steps_have_one_of_four_patterns() {
         }
         assert!(decisions as i32 <= d.max_element());
     }
-    // A slope of 1 / 8: one decision for two pixels but once in eight.
+    // Slope 1 / 8: one decision for two pixels, except once in eight.
     let mut steps = Recorder::default();
     double_step::draw(at(0, 0), at(80, 10), &Options::default(), |_| {}, &mut steps);
     let simple = |step: &&double_step::Step| {
@@ -252,7 +252,7 @@ fn tiled_lines_are_bresenhams_in_their_order() {
     for round in 0..40 {
         let (width, height) = [(300, 200), (128, 128), (1, 400), (700, 3)][round % 4];
         let (low, high) = [(-50.0, 350.0), (0.0, 127.0), (-1e5, 1e5), (-2e9, 2e9)][round / 4 % 4];
-        // Few lines and many in one tile, short ones, points, and ties at 45 degrees and half way.
+        // Few lines and many in one tile, short ones, points, and ties at 45 degrees and halfway.
         let count = [5, 60, 900][round % 3];
         let mut lines: Vec<Line<u16>> = Vec::new();
         for value in 1..=count {
@@ -301,7 +301,7 @@ fn every_short_slope_is_bresenhams_in_a_tile() {
             ];
             for [ax, ay, bx, by] in if (steps + rise) % 3 == 0 { &ends[..] } else { &ends[..2] } {
                 let (from, to) = (IVec2::new(*ax, *ay), IVec2::new(*bx, *by));
-                // So many that the tile is drawn by itself.
+                // Enough to draw the tile separately.
                 let lines = [Line { from, to, value: 1_u8 }; 24];
                 let (width, height) = (ax.max(bx) + 1, ay.max(by) + 1);
                 let mut found = Pixels::new(width as u32, height as u32, 0);

@@ -34,7 +34,7 @@ fn gradient(shape: Shape, spread: Spread) -> Paint {
     Paint::Gradient(Arc::new(Gradient { shape, stops, spread, transform: DAffine2::IDENTITY }))
 }
 
-/// Returns a bit of everything.
+/// Returns a drawing with some of everything.
 fn card(options: Options) -> Canvas {
     let mut c = Canvas::new(300, 200, options).unwrap();
     let shape = Shape::Linear { start: DVec2::ZERO, end: DVec2::new(100.0, 50.0) };
@@ -55,7 +55,7 @@ fn card(options: Options) -> Canvas {
     c
 }
 
-/// Returns a ring of this many vertices, some of them beyond the picture.
+/// Returns a ring of this many vertices, some of them outside the picture.
 fn jagged(count: u32) -> Contours {
     Contours::polygon((0..count).map(|i| {
         let angle = f64::from(i) / f64::from(count) * std::f64::consts::TAU;
@@ -123,7 +123,7 @@ fn order_is_kept_and_opacity_mixes() {
     let target = rendered(&c, 40, WHITE);
     let p = target.get(20, 20).unwrap();
     assert!([100, 50, 25].iter().zip(p).all(|(a, b)| b.abs_diff(*a) <= 1), "{p:?}");
-    // Onto nothing, the colour stays and only alpha is half.
+    // Over nothing, the colour stays and only alpha is halved.
     let mut c = canvas(40);
     c.fill(
         &Path::rectangle(0.0, 0.0, 40.0, 40.0),
@@ -175,7 +175,7 @@ fn a_group_is_one_layer() {
     c.pop(0.5);
     let p = rendered(&c, 20, WHITE).get(9, 9).unwrap();
     assert!(p[0].abs_diff(127) <= 1 && p[0] == p[1], "{p:?}");
-    // Popping what is not there does nothing, and what is left open is closed.
+    // A pop without a push does nothing, and groups left open are closed.
     let mut c = canvas(20);
     c.pop(1.0);
     c.push_group();
@@ -183,7 +183,7 @@ fn a_group_is_one_layer() {
     assert_eq!(rendered(&c, 20, WHITE).get(1, 1), Some([1, 2, 3, 255]));
 }
 
-/// Returns a square of one colour on another one, blended as a group.
+/// Returns a square of one colour over another, blended as a group.
 fn blended(blend: Blend, layer: Paint, below: [u8; 4], options: Options) -> [u8; 4] {
     let mut canvas = Canvas::new(4, 4, options).unwrap();
     canvas.push_group();
@@ -213,7 +213,7 @@ fn where_nothing_is_below_layers_keep_their_colour() {
         let found = blended(blend, color(200, 40, 0, 255), [0; 4], Options::default());
         assert_eq!(found, [199, 40, 0, 128], "{blend:?}");
     }
-    // A backdrop that covers half of it takes half of the colour.
+    // A backdrop that covers half of it contributes half of its colour.
     let found =
         blended(Blend::Multiply, color(0, 255, 0, 255), [255, 0, 0, 128], Options::default());
     assert_eq!(found[3], 192);
@@ -250,7 +250,7 @@ fn gradients_pad_repeat_and_reflect() {
     assert!(target.get(29, 20).unwrap()[0].abs_diff(134) < 6);
 }
 
-/// Two stops at one place make a border between two colours, which is where it should be to a fraction of a pixel however
+/// Checks that two stops at one position make a border between two colours, accurate to a fraction of a pixel however
 /// long the gradient is.
 #[test]
 fn hard_stops_are_sharp_and_in_place() {
@@ -269,7 +269,7 @@ fn hard_stops_are_sharp_and_in_place() {
     let found = row(&long, (-2000.0, 2000.0), Spread::Pad);
     let expected: Vec<_> = (0..40).map(|x| if x < 4 { red } else { blue }).collect();
     assert_eq!(found, expected);
-    // Where a gradient turns round or begins again, near a pixel's centre, what would come after its end is not seen.
+    // Where a gradient reflects or repeats near a pixel's centre, colours beyond its end are not visible.
     let turned = [(0.0, red), (1.0, red), (1.0, blue)];
     for spread in [Spread::Reflect, Spread::Repeat] {
         assert_eq!(row(&turned, (-2.6, 4.503), spread), vec![red; 40], "{spread:?}");
@@ -351,12 +351,12 @@ fn strokes_have_their_width_caps_and_dashes() {
     }
 }
 
-/// The outline of a stroke overlaps itself wherever it bends, which is not noise.
+/// Checks that the overlaps of a stroke's outline at its bends do not count as noise.
 #[test]
 fn strokes_of_many_short_edges_are_measured() {
     let mut random = Random(12);
     let mut at = DVec2::splat(32.0);
-    // Not so many that more than 32 edges cross a pixel.
+    // Few enough that no more than 32 edges cross a pixel.
     let scribble = Path::polyline((0..600).map(|_| {
         at = (at + random.point(-3.0, 3.0)).clamp(DVec2::ZERO, DVec2::splat(64.0));
         at
@@ -481,7 +481,7 @@ fn contours_and_dashes_without_length_are_dots() {
     let mut point = Path::new();
     point.move_to(20.0, 20.0).line_to(20.0, 20.0);
     let (disk, square) = (std::f64::consts::PI * 25.0, 100.0);
-    // Chords lie within the tolerance of the circle.
+    // Chords are within the tolerance of the circle.
     let slack = Options::default().tolerance * std::f64::consts::PI * 10.0;
     assert!((stroked(&point, &at(Cap::Round, &[])) - disk).abs() < slack);
     assert!((stroked(&point, &at(Cap::Square, &[])) - square).abs() < 0.5);
@@ -502,7 +502,7 @@ fn a_mask_restricts_what_follows_until_it_is_popped() {
         let mut c = canvas(20);
         c.push_clip(&Path::rectangle(0.0, 0.0, 20.0, 10.0), FillRule::NonZero);
         c.begin_mask();
-        // Not clipped by what is around the mask, and closed by its end.
+        // Not clipped by clips around the mask, and closed by its end.
         c.push_group();
         for (x, color) in [(0.0, [255, 255, 255, 255]), (5.0, [255, 0, 0, 255])] {
             let path = Path::rectangle(x, 0.0, 5.0, 20.0);
@@ -544,7 +544,7 @@ fn a_clip_around_the_whole_picture_changes_nothing_and_ends() {
     let beyond = Path::rectangle(-5.0, -1.0, 99.0, 99.0);
     assert_eq!(painted(&[&around]), free);
     assert_eq!(painted(&[&beyond, &around]), free);
-    // By the even-odd rule two times around is outside; and a little less than all cuts.
+    // By the even-odd rule a winding number of two is outside; slightly fewer than all cuts.
     let mut twice = around.clone();
     twice.extend(&beyond);
     let less = Path::rectangle(0.0, 0.5, 20.0, 20.0);
@@ -639,7 +639,7 @@ mod conformance_text {
             let finite = line.path.bounds().is_none_or(|b| (b.max() - b.min()).is_finite());
             assert!(finite && line.advance.is_finite() && line.ascent.is_finite(), "{size}");
         }
-        // A file cut short has no outlines where they are missing, and nothing breaks.
+        // A truncated file has no outlines for the missing glyphs, and nothing fails.
         let cut = Font::new(&bytes[..bytes.len() / 2], 0).map(|f| f.line("Hxg", 100.0).advance);
         assert!(cut.is_ok_and(|advance| advance.is_finite()));
     }

@@ -36,8 +36,7 @@ fn covered(contours: &Contours, side: u32, rule: FillRule) -> Vec<u32> {
     counts
 }
 
-/// Returns the winding number of a pixel's centre, in integers: twice the coordinates, the centre at
-/// odd ones.
+/// Returns the winding number of a pixel's centre, in integers: coordinates are doubled, so that centres are odd.
 fn winding(points: &[(i128, i128)], x: i128, y: i128) -> i32 {
     let (cx, cy) = (4 * x + 2, 4 * y + 2);
     let mut winding = 0;
@@ -59,7 +58,7 @@ fn winding(points: &[(i128, i128)], x: i128, y: i128) -> i32 {
 fn aliased_polygons_are_exact_on_ties() {
     let mut random = Random(1);
     for round in 0..600 {
-        // Vertices on quarters of pixels: centres and corners among them.
+        // Vertices on quarters of pixels, including centres and corners.
         let mut corner = || {
             let p = random.point(-12.0, 44.0);
             (p.x.round() as i128, p.y.round() as i128)
@@ -132,7 +131,7 @@ fn the_steps_of_a_polygon_rebuild_it() {
         ordered_edge_list::Step::Crossing { .. } => None,
     });
     assert!(replayed.eq(found.iter().copied()));
-    // Of crossings alone: each winds around what is right of it.
+    // From crossings alone: each edge winds around everything to its right.
     let mut winding = [[0; 32]; 32];
     for step in list.steps() {
         if let ordered_edge_list::Step::Crossing { y, x, winding: change } = step {
@@ -142,7 +141,7 @@ fn the_steps_of_a_polygon_rebuild_it() {
     let inside = winding.iter().flatten().map(|w| u32::from(*w != 0));
     assert!(inside.eq(covered(&circle, 32, FillRule::NonZero)));
     let area: i32 = found.iter().map(|s| s.x1 - s.x0).sum();
-    // Pixel centres within the circle, counted one by one; none is nearer to it than the chords.
+    // Pixel centres in the circle, counted one by one; none is nearer to the circle than the chords.
     let across = |i: i32| f64::from(i % 32 - 16) + 0.5;
     let inside = (0..1024).filter(|i| across(*i).hypot(f64::from(i / 32 - 16) + 0.5) <= 11.3);
     assert_eq!(area as usize, inside.count());
@@ -171,7 +170,8 @@ fn both_ways_fill_the_same_pixels() {
     }
 }
 
-/// Complements and flags find the pixels of the even-odd rule, wherever the fence is; steps rebuild them.
+/// Checks that complements and flags find the pixels of the even-odd rule, wherever the fence is, and that steps
+/// rebuild them.
 #[test]
 fn complements_and_flags_fill_the_same_pixels() {
     let mut random = Random(9);
@@ -196,7 +196,7 @@ fn complements_and_flags_fill_the_same_pixels() {
             assert!(found == expected, "round {round} {fence:?}");
             assert!(edge_fill::replay((45, 30), steps.steps()) == expected);
             touched.push(steps.steps().iter().map(|step| step.columns().len()).sum::<usize>());
-            // Twice is none.
+            // Twice cancels out.
             edge_fill::fill(&contours, &mut found, &options, &mut NoTrace);
             assert!(!found.data().contains(&true));
         }
@@ -208,7 +208,8 @@ fn complements_and_flags_fill_the_same_pixels() {
     }
 }
 
-/// A square from column 2 to 6: edge fill touches all to the right of both sides, a fence in its middle only itself.
+/// Checks a square from column 2 to 6: edge fill touches everything to the right of both sides, a fence in its middle
+/// only the square itself.
 #[test]
 fn a_fence_saves_pixels() {
     let square = [(2.0, 0.0), (6.0, 0.0), (6.0, 1.0), (2.0, 1.0)];
@@ -235,7 +236,7 @@ fn a_fence_saves_pixels() {
 
 #[test]
 fn high_edges_are_exact_in_every_row() {
-    // Nearly vertical edges through pixel centres, as high as edges can be.
+    // Nearly vertical edges through pixel centres, with the largest possible height.
     let mut random = Random(8);
     for round in 0..40 {
         let height = [32_767, 9000, 300][round % 3];
@@ -251,7 +252,7 @@ fn high_edges_are_exact_in_every_row() {
 
 #[test]
 fn far_vertices_leave_edges_where_they_are() {
-    // A half-plane whose border has slope 1/2 and passes through (10, 10), from ever farther away.
+    // A half-plane whose border has slope 1/2 and passes through (10, 10), from increasing distances.
     for far in [1e3, 1e5, 1e6, 1e9] {
         let at = |t: f64| DVec2::new(10.1 + 2.0 * t, 10.1 + t);
         let corners = [at(-far), at(far), DVec2::new(-far, 3.0 * far)];
@@ -278,8 +279,7 @@ fn strange_polygons_give_defined_spans() {
 
 #[test]
 fn an_edge_just_right_of_a_centre_leaves_that_pixel_out() {
-    // In 1/256 of a pixel: at the second row's centre the left edge is at 128 + 1/257, a pixel's
-    // centre is at 128.
+    // In units of 1/256 pixel: at the second row's centre the left edge is at 128 + 1/257; a pixel's centre is at 128.
     let corners = [(129.0, 128.0), (128.0, 385.0), (2000.0, 385.0), (2000.0, 128.0)];
     let at = |(x, y): (f64, f64)| DVec2::new(x / 256.0, y / 256.0);
     let contours = Contours::polygon(corners.map(at));

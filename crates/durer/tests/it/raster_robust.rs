@@ -1,5 +1,4 @@
-//! Strange input for all of rasterizing: numbers that are none, far coordinates, empty targets, a million
-//! vertices.
+//! Strange input to the whole rasterizer: NaN, far coordinates, empty targets, a million vertices.
 
 use crate::raster_coverage::Random;
 use durer::curve::{Contours, Path, flatten, stroke_font};

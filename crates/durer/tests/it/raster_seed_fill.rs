@@ -1,4 +1,4 @@
-//! Seed fills against labelling of connected regions by union-find.
+//! Seed fills, compared with connected regions labelled by union-find.
 
 use crate::raster_coverage::Random;
 use durer::raster::seed_fill::{Connectivity, Options, SeedFill, Step, boundary_fill, flood_fill};
@@ -13,7 +13,7 @@ fn root(parents: &mut [usize], mut i: usize) -> usize {
     i
 }
 
-/// For every pixel the label of its region of equal values.
+/// Returns for every pixel the label of its region of equal values.
 fn labels(image: &Pixels<u8>, eight: bool) -> Vec<usize> {
     let (w, h) = (image.width() as usize, image.height() as usize);
     let mut parents: Vec<usize> = (0..w * h).collect();
@@ -42,7 +42,7 @@ fn labels(image: &Pixels<u8>, eight: bool) -> Vec<usize> {
     (0..w * h).map(|i| root(&mut parents, i)).collect()
 }
 
-/// Checks that pixels come off the stack in the reverse order of being put there, the seed's before all others.
+/// Checks that pixels are popped in the reverse order of being pushed, and the seed before all others.
 fn check_stack(steps: &[Step]) {
     let mut stack = Vec::new();
     for (i, step) in steps.iter().enumerate() {
@@ -63,7 +63,7 @@ fn fills_take_exactly_the_connected_region() {
     let mut random = Random(1);
     for round in 0..120 {
         let (w, h) = (1 + (random.next() * 150.0) as u32, 1 + (random.next() * 20.0) as u32);
-        // With few closed pixels runs are long and taken one by one, with many words are.
+        // With few closed pixels, runs are long and processed one by one; with many, words are used.
         let density = [0.3, 0.45, 0.6, 0.004][round % 4];
         let data = (0..w * h).map(|_| u8::from(random.next() < density)).collect();
         let image = Pixels::from_data(w, h, data).unwrap();
@@ -87,7 +87,7 @@ fn fills_take_exactly_the_connected_region() {
                     .collect();
                 assert_eq!(filled.data(), expected, "{method} {connectivity:?}");
                 assert_eq!(n as usize, labels.iter().filter(|l| **l == own).count());
-                // With the colour that is there already nothing changes, but it counts.
+                // If the colour is there already, nothing changes, but the pixels count.
                 let (mut same, t) = (image.clone(), &mut NoTrace);
                 let own = image.get(seed.0, seed.1).unwrap();
                 assert_eq!(flood_fill(&mut same, seed, own, 0, *method, &options, t), n);
@@ -154,7 +154,7 @@ fn bits_differ_wholly_and_boundaries_have_their_tolerance() {
             let n = flood_fill(&mut bits, (0, 0), true, tolerance, *method, &options, &mut NoTrace);
             assert_eq!((n, bits.data()), (2, &[true, true, true, false][..]), "{method}");
         }
-        // The border is what differs by the tolerance and less.
+        // The border is the set of values that differ by the tolerance or less.
         for (tolerance, expected) in [(9, 5), (10, 3), (20, 2), (29, 2)] {
             let mut grey = Pixels::from_data(5, 1, vec![90_u8, 80, 70, 60, 50]).unwrap();
             let options = Options::default();
@@ -176,7 +176,7 @@ fn bits_differ_wholly_and_boundaries_have_their_tolerance() {
 
 #[test]
 fn long_runs_that_meet_at_corners_are_one_region_of_eight() {
-    // Stairs down to the right and to the left, of steps longer than a word.
+    // Stairs down to the right and to the left, with steps longer than a word.
     for mirrored in [false, true] {
         let (width, height) = (400, 4);
         let mut image = Pixels::new(width, height, 0_u8);

@@ -1,4 +1,4 @@
-//! Sources of colour: gradients of all shapes, images between their pixels, mixing in linear light.
+//! Paint sources: gradients of all shapes, images between their pixels, mixing in linear light.
 
 use durer::curve::Path;
 use durer::math::{DAffine2, DVec2};
@@ -10,7 +10,7 @@ use durer::target::Pixels;
 use durer::trace::NoTrace;
 use std::sync::Arc;
 
-/// Returns a square of 40×40 pixels in one paint, on nothing.
+/// Returns a square of 40×40 pixels in one paint, over nothing.
 fn square(paint: &Paint, options: Options) -> Pixels<[u8; 4]> {
     let mut canvas = Canvas::new(40, 40, options).expect("canvas");
     canvas.fill(&Path::rectangle(0.0, 0.0, 40.0, 40.0), FillRule::NonZero, paint, 1.0);
@@ -19,7 +19,7 @@ fn square(paint: &Paint, options: Options) -> Pixels<[u8; 4]> {
     picture
 }
 
-/// From black at 0 to white at 1; how white it is around the middle of a pixel, or nothing.
+/// Returns the whiteness around the middle of a pixel of a gradient from black at 0 to white at 1; `None` outside.
 fn parameter(shape: Shape, x: u32, y: u32) -> Option<f64> {
     let stops = vec![(0.0, [0, 0, 0, 255]), (1.0, [255; 4])];
     let transform = DAffine2::IDENTITY;
@@ -31,7 +31,7 @@ fn parameter(shape: Shape, x: u32, y: u32) -> Option<f64> {
 
 #[test]
 fn circles_that_touch_from_within_cover_their_side_only() {
-    // The focus lies on the outer circle: t = |p − f|² / (2 (p − f) · (c − f)).
+    // The focus is on the outer circle: t = |p − f|² / (2 (p − f) · (c − f)).
     let (center, focus) = (DVec2::new(20.5, 20.5), DVec2::new(10.5, 20.5));
     let shape = Shape::Radial { center, radius: 10.0, focus, focus_radius: 0.0 };
     for (x, y) in [(20, 20), (12, 20), (25, 20), (20, 14), (12, 24)] {
@@ -51,7 +51,7 @@ fn circles_that_shrink_outwards_run_inwards() {
         let found = parameter(shape, x, 20).expect("covered");
         assert!((found - expected).abs() < 0.006, "{x}: {found}");
     }
-    // A cone that comes to its apex: beyond it there is nothing.
+    // A cone that ends in its apex: beyond it there is nothing.
     let (center, focus) = (DVec2::new(25.5, 20.5), DVec2::new(5.5, 20.5));
     let cone = Shape::Radial { center, radius: 2.0, focus, focus_radius: 10.0 };
     assert_eq!(parameter(cone, 39, 20), None);
@@ -93,8 +93,7 @@ fn clear_pixels_of_an_image_lend_no_colour() {
     assert!(alphas.windows(2).all(|w| w[0] >= w[1]) && alphas[20].abs_diff(124) < 4, "{alphas:?}");
 }
 
-/// Returns a picture of 40 × 40 with an image of one row, of this many pixels per pixel of the
-/// image.
+/// Returns a picture of 40 × 40 with a one-row image, enlarged to this many pixels per image pixel.
 fn enlarged(row: &[u8], by: f64, filter: Filter) -> Vec<u8> {
     let data = row.iter().map(|v| [*v, *v, *v, 255]).collect();
     let image = Arc::new(Pixels::from_data(row.len() as u32, 1, data).expect("size"));
@@ -113,7 +112,7 @@ fn mitchell_s_filter_keeps_ramps_and_overshoots_at_steps() {
     }
     let step = enlarged(&[100, 100, 100, 100, 100, 200, 200, 200, 200, 200], 4.0, Filter::Bicubic);
     assert!(step[13..19].iter().any(|v| *v < 100) && step[21..27].iter().any(|v| *v > 200));
-    // At a pixel's centre its neighbours have 1/18 each, on both sides the same.
+    // At a pixel's centre its neighbours have a weight of 1/18 each, equally on both sides.
     let weights = [1.0 / 18.0, 16.0 / 18.0, 1.0 / 18.0];
     let image = [0, 0, 0, 0, 180, 0, 0, 0];
     let odd = enlarged(&image, 5.0, Filter::Bicubic);
@@ -173,7 +172,7 @@ fn faces_mix_with_what_is_below_and_with_each_other() {
     near(drawn(&half, [255; 4]), [127, 127, 127, 255]);
     near(drawn(&half, [0; 4]), [0, 0, 0, 128]);
     near(drawn(&half, [255, 255, 255, 128]), [84, 84, 84, 192]);
-    // Faces that overlap, against what was requested, share the pixel.
+    // Overlapping faces, although none were requested, share the pixel.
     near(drawn(&[face([0, 0, 0, 100]), face([0, 0, 0, 100])], [0; 4]), [0, 0, 0, 100]);
     near(drawn(&[face([255, 0, 0, 255]), face([0, 0, 255, 255])], [255; 4]), [128, 0, 128, 255]);
 }

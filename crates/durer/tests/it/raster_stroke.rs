@@ -1,4 +1,4 @@
-//! Strokes: where dashes begin, how joins end, and how finely outlines are cut.
+//! Strokes: the starts of dashes, the ends of joins, and the fineness of outlines.
 
 use durer::curve::Path;
 use durer::math::{DAffine2, DVec2};
@@ -8,7 +8,7 @@ use durer::target::Pixels;
 
 const BLACK: Paint = Paint::Color([0, 0, 0, 255]);
 
-/// Returns the alphas of a stroke on a ground of 60×60 pixels.
+/// Returns the alpha values of a stroke on a ground of 60×60 pixels.
 fn alphas(path: &Path, stroke: &Stroke, transform: DAffine2) -> Pixels<u8> {
     let mut canvas = Canvas::new(60, 60, Options::default()).expect("canvas");
     canvas.set_transform(transform);
@@ -33,7 +33,7 @@ fn dashes_begin_where_the_offset_says() {
     for offset in [-7.0, 13.0, -107.0, 1e6 + 3.0] {
         assert_eq!(dashes(&[4.0, 6.0], offset), dashes(&[4.0, 6.0], 3.0), "{offset}");
     }
-    // An odd list is repeated, so that dashes and gaps change places.
+    // An odd list is repeated, so that dashes and gaps alternate.
     assert_eq!(dashes(&[5.0, 3.0, 2.0], 0.0), "#####...##.....###..".repeat(2));
     assert_eq!(dashes(&[5.0], 5.0), ".....#####".repeat(4));
     assert_eq!(dashes(&[5.0, 3.0, 2.0], 10.0), ".....###..#####...##".repeat(2));
@@ -42,7 +42,7 @@ fn dashes_begin_where_the_offset_says() {
 #[test]
 fn dots_at_corners_are_round() {
     let corner = [(10.0, 30.0), (30.0, 30.0), (30.0, 10.0)].map(|(x, y)| DVec2::new(x, y));
-    // The dot lies half before, half behind the corner.
+    // Half of the dot is before the corner and half behind it.
     let dot = 1e-4 * 16.0;
     let stroke = Stroke {
         width: 16.0,

@@ -1,5 +1,4 @@
-//! The points that a stroke covers: against the distance from its path, and against the union of its
-//! pieces.
+//! The points that a stroke covers: compared with the distance from its path, and with the union of its pieces.
 
 use std::f64::consts::SQRT_2;
 
@@ -44,7 +43,7 @@ fn distance(chain: &Contours, p: DVec2) -> f64 {
     edges.map(to).fold(f64::INFINITY, f64::min)
 }
 
-/// Chains of lines and curves of all sizes, open and closed, with spikes, repeated points and cusps.
+/// Returns chains of lines and curves of all sizes, open and closed, with spikes, repeated points and cusps.
 fn any_path(random: &mut Random, curved: bool) -> Path {
     let mut path = Path::new();
     for _ in 0..1 + (random.next() * 2.0) as u32 {
@@ -126,7 +125,7 @@ fn strokes_are_the_union_of_their_pieces() {
     }
 }
 
-/// Rectangles of the pieces, wedges of the corners and caps, all turning the same way.
+/// Returns rectangles of the pieces, wedges of the corners and caps, all with the same direction.
 fn pieces(path: &Path, stroke: &Stroke) -> Vec<Vec<DVec2>> {
     let (half, mut out) = (stroke.width / 2.0, Vec::new());
     for (points, closed) in flatten(path, 1.0).iter() {
@@ -192,7 +191,7 @@ fn a_small_square_with_a_wide_stroke_has_no_hole() {
     }
 }
 
-/// The pen sweeps what is beyond the centre of a bend, however few ends are near that.
+/// Checks that the pen sweeps the area beyond the centre of a bend, however few ends are near it.
 #[test]
 fn tight_bends_are_swept_on_both_sides() {
     let (centre, r) = (DVec2::new(100.0, 110.0), 10.0);
@@ -210,7 +209,7 @@ fn tight_bends_are_swept_on_both_sides() {
             let p = random.point(-60.0, 60.0);
             let (away, winding) = (p.length(), winding(&outline, centre + p));
             assert!(winding <= 0, "{cap:?} {p}");
-            // Above, half a ring's outer half; below, what the other end of the pen sweeps.
+            // Above: the outer half of half a ring; below: the area swept by the other end of the pen.
             let reach = if p.y < 0.0 { 50.0 } else { 30.0 };
             if away < reach - 0.1 {
                 assert!(winding < 0, "{cap:?} {p}");
@@ -221,8 +220,7 @@ fn tight_bends_are_swept_on_both_sides() {
     }
 }
 
-/// Checks that the area swept beyond the centre of a bend ends in a circle, however few chords the bend itself
-/// needs.
+/// Checks that the area swept beyond the centre of a bend ends in a circle, however few chords the bend itself needs.
 #[test]
 fn the_far_side_of_a_tight_bend_is_round() {
     let (centre, r) = (DVec2::new(100.0, 100.0), 0.2);
@@ -255,7 +253,7 @@ fn curves_without_length_do_not_end_dashes() {
     }
 }
 
-/// A contour that only closes has no dashes; a stroke ran to it from the origin.
+/// Checks that a contour that consists only of a close has no dashes; formerly a stroke ran to it from the origin.
 #[test]
 fn dashes_begin_where_an_empty_contour_was() {
     let [at, to] = [DVec2::new(20.0, 10.0), DVec2::new(60.0, 10.0)];
@@ -305,7 +303,7 @@ fn outlines_have_few_points() {
     };
     assert_eq!(count(&corner, Join::Miter), 8);
     assert_eq!(count(&corner, Join::Bevel), 12);
-    // A wide bend: as many points on either side as the flattened path has.
+    // A wide bend: as many points on each side as the flattened path has.
     let circle = Path::circle(DVec2::ZERO, 100.0);
     let pieces = flatten(&circle, 0.025).points().len() - 1;
     assert_eq!(count(&circle, Join::Miter), 2 * pieces);

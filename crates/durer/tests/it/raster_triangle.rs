@@ -19,8 +19,8 @@ fn spans(method: TriangleRasterizer, corners: Corners, clip: PixelRect) -> Vec<S
     spans
 }
 
-/// Spans by definition: a sample moved infinitesimally to the right, and by far less downwards, lies
-/// strictly inside. That is the top-left rule without the words top and left.
+/// Finds spans by the definition: a sample moved infinitesimally to the right, and by far less downwards, is strictly
+/// inside. That is the top-left rule without the words top and left.
 fn oracle(corners: Corners, clip: PixelRect) -> Vec<Span> {
     let p = corners.map(|v| v.map(i128::from));
     let cross = |u: [i128; 2], v: [i128; 2]| u[0] * v[1] - u[1] * v[0];
@@ -57,8 +57,7 @@ fn rect(x0: i32, y0: i32, x1: i32, y1: i32) -> PixelRect {
     PixelRect::new(x0, y0, x1, y1).expect("not reversed")
 }
 
-/// Returns corners within 40 pixels, often on pixel centres and corners, often in line with each
-/// other.
+/// Returns corners within 40 pixels, often on pixel centres and corners, often collinear.
 fn small() -> impl Strategy<Value = Corners> {
     let coordinate = prop_oneof![
         -2000..9000i32,
@@ -130,7 +129,7 @@ proptest! {
     }
 }
 
-/// Joins pixels, given in any order, to spans.
+/// Joins pixels, in any order, into spans.
 fn joined(mut pixels: Vec<(i32, i32)>) -> Vec<Span> {
     pixels.sort_unstable();
     let mut spans: Vec<Span> = Vec::new();
@@ -172,7 +171,7 @@ fn replay_tiles(steps: &[tiles::Step], clip: &PixelRect) -> Vec<Span> {
     joined(pixels)
 }
 
-/// Returns how often each pixel of a square picture is lit.
+/// Returns the number of times that each pixel of a square picture is lit.
 fn lit(method: TriangleRasterizer, triangles: &[Corners], side: i32) -> Vec<u8> {
     let mut counts = vec![0u8; (side * side) as usize];
     for &corners in triangles {
@@ -185,8 +184,7 @@ fn lit(method: TriangleRasterizer, triangles: &[Corners], side: i32) -> Vec<u8> 
     counts
 }
 
-/// Returns a grid of cells whose inner corners are moved by up to a quarter cell, each cell cut in
-/// two.
+/// Returns a grid of cells whose inner corners are moved by up to a quarter cell, each cell split in two.
 fn jittered_grid(cells: usize, side: i32, random: &[(i32, i32, bool)]) -> Vec<Corners> {
     let n = cells + 1;
     let cell = side * 256 / cells as i32;
@@ -197,7 +195,7 @@ fn jittered_grid(cells: usize, side: i32, random: &[(i32, i32, bool)]) -> Vec<Co
         };
         let (dx, dy, on_center) = random[(j * n + i) % random.len()];
         let p = [moved(i, dx), moved(j, dy)];
-        // On a pixel centre, where that is near enough not to fold the grid.
+        // On a pixel centre, if it is near enough not to fold the grid.
         let inner = i > 0 && i < cells && j > 0 && j < cells && cell >= 2048;
         if on_center && inner { p.map(|c| (c & !255) + 128) } else { p }
     };
@@ -216,7 +214,7 @@ fn jittered_grid(cells: usize, side: i32, random: &[(i32, i32, bool)]) -> Vec<Co
     triangles
 }
 
-/// Returns points inserted one after another, each splitting the triangle that holds it in three.
+/// Returns points inserted one after another, each splitting its triangle into three.
 fn split_by_points(side: i32, points: &[[i32; 2]]) -> Vec<Corners> {
     let s = side * 256;
     let mut triangles = vec![[[0, 0], [s, 0], [s, s]], [[0, 0], [s, s], [0, s]]];
@@ -277,11 +275,11 @@ fn nothing_is_emitted_for_no_area_or_no_pixels() {
     }
 }
 
-/// The triangles and pixels drawn in the figure of Direct3D 11.3, Functional Specification, 3.4.2.
+/// Checks the triangles and pixels in the figure of Direct3D 11.3, Functional Specification, 3.4.2.
 mod conformance_d3d11 {
     use super::*;
 
-    /// Corners in pixels as drawn, and the shaded pixels as (row, columns from, to exclusive).
+    /// Corners in pixels as in the figure, and the shaded pixels as (row, columns from, to exclusive).
     type Case = ([(f64, f64); 3], &'static [(i32, i32, i32)]);
 
     const FIGURE: [Case; 14] = [
@@ -326,7 +324,7 @@ mod conformance_d3d11 {
         }
     }
 
-    /// The example of the figure on conversion to fixed point.
+    /// Checks the example of the figure on conversion to fixed point.
     #[test]
     fn snapping_rounds_as_the_figure_says() {
         let n = f32::from_bits(0xc5ff_fd0c);
@@ -335,8 +333,8 @@ mod conformance_d3d11 {
         assert_eq!(snap(f64::NAN), 0);
     }
 
-    /// A point is a square of width 1 around its place, as two triangles in a Z pattern (3.4.6):
-    /// wherever it lies, it lights exactly one pixel.
+    /// Checks that a point, a square of width 1 around its position as two triangles in a Z pattern (3.4.6), lights
+    /// exactly one pixel wherever it is.
     #[test]
     fn a_point_as_two_triangles_lights_one_pixel() {
         for i in 0..1024 {

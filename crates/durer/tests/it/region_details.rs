@@ -1,5 +1,5 @@
-//! Regions where it is delicate: the far side of light, shades that are one, sharp corners of trapped
-//! shapes, faces that reach behind the eye.
+//! Regions in delicate cases: unlit sides, equal shades, sharp corners of trapped shapes, faces that extend behind the
+//! eye.
 
 use crate::line_scenes::{Triangle, cuboid, quad, soup, view};
 use durer::math::{DVec2, DVec3, Vec3};
@@ -19,7 +19,7 @@ fn floor(z: f64, side: f64) -> Vec<Triangle> {
 fn shadowed(triangles: &[Triangle], to_eye: DVec3, direction: DVec3) -> Drawing {
     let view = view(DVec3::ZERO, to_eye, 8.0, false);
     let kind = LightKind::Directional { direction: direction.normalize() };
-    // What no light reaches is black.
+    // Unlit surfaces are black.
     let ambient = Light { kind: LightKind::Ambient, color: Vec3::ZERO };
     let lights = PreparedLights::new(&[Light { kind, color: Vec3::ONE }, ambient], view.camera());
     let options = Options { shadows: true, ..Options::default() };
@@ -36,8 +36,8 @@ fn told(drawing: &Drawing) -> Vec<(RegionKind, [u8; 4], f64)> {
 
 #[test]
 fn shadows_fall_on_the_side_that_the_light_is_on_alone() {
-    // A plate below the floor, in light from below: from above its shadow is not to be seen, were it
-    // as large as the floor.
+    // A plate below the floor, lit from below: from above its shadow is invisible, even if it were as large as the
+    // floor.
     let up = DVec3::new(0.1, 0.05, 1.0);
     let unlit = |r: &Region| r.kind == RegionKind::Surface && is_black(r);
     for size in [4.0, 1.0] {
@@ -49,7 +49,7 @@ fn shadows_fall_on_the_side_that_the_light_is_on_alone() {
         assert_eq!(above.length(|l| l.class == LineClass::Shadow), 0.0);
     }
     let triangles = [floor(0.0, 3.0), floor(-1.0, 1.0)].concat();
-    // From below it is; and what light reaches is not black.
+    // From below it is visible; and lit surfaces are not black.
     let below = shadowed(&triangles, DVec3::new(2.0, 0.1, -1.0), up);
     let (dark, lit): (Vec<&Region>, Vec<_>) =
         below.regions.iter().partition(|r| r.kind == RegionKind::Shadow);
@@ -60,7 +60,7 @@ fn shadows_fall_on_the_side_that_the_light_is_on_alone() {
 
 #[test]
 fn what_is_as_dark_as_a_shadow_is_one_region_with_it() {
-    // Both sides of the box that are seen are turned away from the light, and its shadow begins at one.
+    // Both visible sides of the box are turned away from the light, and its shadow begins at one.
     let mut triangles = floor(0.0, 3.0);
     triangles.extend(cuboid([0.0; 3], [1.0; 3]));
     let drawing = shadowed(&triangles, DVec3::new(1.0, -1.0, 1.0), DVec3::new(1.0, -0.2, -1.0));
@@ -71,13 +71,13 @@ fn what_is_as_dark_as_a_shadow_is_one_region_with_it() {
         "{:?}",
         told(&drawing)
     );
-    // Two sides of the box, seen from an angle, alone.
+    // Only two sides of the box, seen from an angle.
     assert!(dark[0].area() > 2.0 / 3.0_f64.sqrt() + 0.5, "{}", dark[0].area());
 }
 
 #[test]
 fn trapped_shapes_do_not_shoot_out_of_sharp_corners() {
-    // A wedge of 4.6° lies before a square, which reaches under it.
+    // A wedge of 4.6° in front of a square that extends beneath it.
     let tip = DVec2::new(-3.0, 0.0);
     let wedge = [[-3.0, 0.0, 1.0], [2.0, -0.2, 1.0], [2.0, 0.2, 1.0]].map(DVec3::from);
     let scene = soup(&[floor(0.0, 3.5), vec![wedge]].concat());
@@ -87,15 +87,15 @@ fn trapped_shapes_do_not_shoot_out_of_sharp_corners() {
     let options =
         Options { merge: Merge::Face, fill: Fill::Trapped { reach }, ..Options::default() };
     let drawing = draw(&scene, &view, &lights, &options).expect("drawn");
-    // The points of what lies beneath that are neither of the wedge nor the square.
+    // Points of the underlying shape that belong neither to the wedge nor to the square.
     let points = drawing.regions.iter().flat_map(|r| r.rings.iter().flatten());
     let beneath: Vec<DVec2> = points.filter(|p| p.distance(tip) < 1.5).copied().collect();
     let farthest = beneath.iter().map(|p| p.distance(tip)).fold(0.0, f64::max);
     assert!(farthest > 2.0 * reach && farthest < 4.0 * reach + 1e-6, "{farthest}: {beneath:?}");
 }
 
-/// Returns a box, and above it a sheet from behind the eye to a little beyond the near plane: what of the
-/// sheet lies between the eye and that plane would cover the box.
+/// Returns a box, and above it a sheet from behind the eye to a little beyond the near plane: the part of the sheet
+/// between the eye and that plane would cover the box.
 fn under_a_sheet(sheet: bool) -> (Scene, View) {
     let mut triangles = cuboid([5.0, -0.5, -2.5], [6.0, 0.5, -1.25]);
     if sheet {

@@ -1,4 +1,4 @@
-//! Roberts' hidden lines of convex bodies: the numbers by hand, and the same drawing as by quantitative invisibility.
+//! Roberts' hidden lines of convex bodies: hand-computed numbers, and the same drawing as by quantitative invisibility.
 
 use crate::line_scenes::{Random, Triangle, cuboid, soup, turned_boxes, view};
 use durer::math::DVec3;
@@ -22,7 +22,7 @@ fn lines(bodies: &[Body], eye: Eye) -> Vec<Line> {
     lines
 }
 
-/// Returns the length of what is seen, on a plane: across the direction, or at distance 1 from the eye.
+/// Returns the visible length in a plane: across the direction, or at distance 1 from the eye.
 fn length(lines: &[Line], eye: Eye, to_eye: DVec3) -> f64 {
     let n = to_eye.normalize();
     let place = |p: DVec3| match eye {
@@ -46,13 +46,13 @@ fn pictures_are_those_of_quantitative_invisibility() {
             let lines = lines(&bodies, eye);
             check_by_rays(&bodies, &lines, eye);
             let found = length(&lines, eye, ISO);
-            // All that there is, however short.
+            // All lines, however short.
             let options = hidden_line::Options { tolerance: 0.0, stubs: 0.0, ..Default::default() };
             let drawing = hidden_line::draw(&soup(&triangles), &view, &options, &mut NoTrace);
             let drawing = drawing.unwrap();
             let expected = drawing.length(|line| line.is_visible());
             if perspective {
-                // The plane of the drawing is at another distance, always the same one.
+                // The drawing plane is at another, constant distance.
                 scales.push(expected / found);
             } else {
                 let off = (found - expected).abs() / expected;
@@ -64,7 +64,7 @@ fn pictures_are_those_of_quantitative_invisibility() {
     assert!(off < 1e-5, "{scales:?}");
 }
 
-/// Compares points of lines with rays to the eye, wherever those are not close to an edge of a body.
+/// Compares points of lines with rays to the eye, except close to an edge of a body.
 fn check_by_rays(bodies: &[Body], lines: &[Line], eye: Eye) {
     for line in lines {
         for k in 0..40 {
@@ -74,7 +74,7 @@ fn check_by_rays(bodies: &[Body], lines: &[Line], eye: Eye) {
                 Eye::At(at) => at - p,
                 Eye::Along(direction) => -direction,
             };
-            // Length of the ray's part inside a body; less than a thousandth is too close to tell.
+            // Length of the ray inside a body; less than a thousandth is too close to decide.
             let inside = |body: &Body| {
                 let (mut from, mut to) =
                     (0.0_f64, if matches!(eye, Eye::At(_)) { 1.0 } else { 1e3_f64 });
@@ -111,7 +111,7 @@ fn a_box_hides_the_middle_of_an_edge() {
     let mut steps = Recorder::default();
     let eye = Eye::Along(DVec3::NEG_Z);
     let found = draw(&bodies, eye, &Options::default(), &mut steps);
-    // Each front face has four edges; the others look away or are seen edge-on.
+    // Each front face has four edges; the others face away or are seen edge-on.
     assert_eq!(found.len(), 8);
     let long: Vec<_> = found.iter().filter(|line| line.visible.len() == 2).collect();
     assert_eq!(long.len(), 2);
@@ -150,7 +150,7 @@ fn what_touches_is_seen() {
     let foot = |line: &&Line| line.ends.iter().all(|p| p.z == 2.0) && line.bodies == [1, 1];
     let seen = found.iter().filter(foot).filter(|line| line.visible == [[0.0, 1.0]]);
     assert_eq!(seen.count(), 2);
-    // It hides what is behind it of the edge at the back.
+    // It hides the part of the rear edge behind it.
     let back = |line: &&Line| line.ends.iter().all(|p| p.y == 4.0 && p.z == 2.0);
     let back = found.iter().find(back).unwrap();
     assert_ne!(back.visible, [[0.0, 1.0]]);
@@ -167,7 +167,7 @@ fn a_bar_through_a_box_has_two_rings_of_junctions() {
         lines.into_iter().filter(|line| line.bodies[0] != line.bodies[1]).collect::<Vec<_>>()
     };
     assert_eq!(junctions(false), []);
-    // The bar comes out towards the eye through one face, of which two of its seen faces meet two edges.
+    // The bar emerges towards the eye through one face; two of the bar's visible faces meet two edges of it.
     let found = junctions(true);
     assert!(found.iter().all(|line| line.ends.iter().all(|p| p.y == -1.0)), "{found:?}");
     assert_eq!(found.len(), 2);
@@ -191,13 +191,13 @@ fn bodies_must_be_closed_and_convex() {
     let mut wrong = cube;
     wrong[0][0].x = f64::NAN;
     assert!(Body::several(&wrong).is_err());
-    // Inside out, or with faces in any direction, is the same body.
+    // Inside out, or with faces in any direction, the body is the same.
     let turned: Vec<Vec<DVec3>> = faces(&cuboid([0.0; 3], [1.0; 3]))
         .into_iter()
         .map(|f| f.into_iter().rev().collect())
         .collect();
     let body = Body::new(&turned).unwrap();
-    // The two triangles of a side have one plane, and their common edge is none of the body's.
+    // The two triangles of a side have one plane, and their common edge is not an edge of the body.
     assert_eq!((body.planes().len(), body.edges().len(), body.corners().len()), (6, 12, 8));
     assert_eq!(Body::several(&[]).unwrap(), []);
 }

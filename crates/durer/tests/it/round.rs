@@ -1,4 +1,4 @@
-//! Cylinders among faces: holes, pins and rounded edges, and what is none.
+//! Cylinders among faces: holes, pins, rounded edges, and shapes that are no cylinders.
 
 use crate::data;
 use crate::line_scenes::{Triangle, cuboid, cylinder, placed, soup, torus};
@@ -12,7 +12,7 @@ fn of_scene(scene: &Scene) -> Vec<Cylinder> {
     cylinders(&Faces::new(scene).expect("faces"))
 }
 
-/// Returns a tube between two radii, upright, its sides from one angle to another.
+/// Returns an upright tube between two radii, its sides from one angle to another.
 fn tube(center: [f64; 2], radii: [f64; 2], heights: [f64; 2], n: usize) -> Vec<Triangle> {
     let at = |i: usize, r: f64, z: f64| {
         let (sin, cos) = ((i % n) as f64 / n as f64 * TAU).sin_cos();
@@ -100,7 +100,7 @@ fn rims_divided_differently_and_rows_are_one_cylinder() {
 
 #[test]
 fn a_fillet_is_a_quarter() {
-    // A bar with one rounded edge: a square of 10 whose corner has the radius 3.
+    // A bar with one rounded edge: a square of 10 with a corner radius of 3.
     let arc = (0..=9).map(|i| {
         let (s, c) = (f64::from(i) * 10f64.to_radians()).sin_cos();
         [7.0 + 3.0 * c, 7.0 + 3.0 * s]
@@ -127,7 +127,7 @@ fn a_fillet_is_a_quarter() {
 
 #[test]
 fn a_cylinder_with_a_slot_is_one() {
-    // Two halves that stand a little apart, as a clamp does.
+    // Two halves a little apart, as in a clamp.
     let keep = |t: &Triangle| {
         let middle = (t[0] + t[1] + t[2]) / 3.0;
         middle.y.abs() > 0.6
@@ -156,11 +156,11 @@ fn prisms_balls_and_rings_are_no_cylinders() {
     assert!(of_scene(&Scene::default()).is_empty());
 }
 
-/// Radius and whether it is a hole, sorted; full cylinders only.
+/// Returns the radius of each full cylinder and whether it is a hole, sorted.
 fn full(found: &[Cylinder]) -> Vec<(f64, bool)> {
     let mut list: Vec<(f64, bool)> =
         found.iter().filter(|c| c.is_full()).map(|c| (c.radius, c.hollow)).collect();
-    // To a thousandth, so that noise does not order them.
+    // To a thousandth, so that noise does not affect the order.
     list.sort_by_key(|c| ((c.0 * 1e3).round() as i64, !c.1));
     list
 }
@@ -190,6 +190,6 @@ fn holes_of_parts_are_found() {
     let found = of_scene(&scene);
     let bolts = [(3.5, true); 8].into_iter().chain([(14.0, true), (20.0, false), (40.0, false)]);
     assert_radii("flange", &found, &bolts.collect::<Vec<_>>());
-    // Its fillets are parts of rings, of which hardly any passes for a cylinder.
+    // Its fillets are parts of rings; hardly any is taken for a cylinder.
     assert!(found.len() < 20, "{}", found.len());
 }

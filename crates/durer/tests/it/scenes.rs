@@ -1,4 +1,4 @@
-//! Scenes made by code, small enough to render many times.
+//! Generated scenes, small enough to render many times.
 
 use durer::math::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
 use durer::pipeline::{RenderOptions, Samples};
@@ -27,8 +27,7 @@ pub fn instance(mesh: usize) -> Instance {
     Instance { mesh, world_from_mesh: DMat4::IDENTITY, name: String::new() }
 }
 
-/// Returns triangles that penetrate each other, some behind the eye, some without area, some not
-/// finite.
+/// Returns intersecting triangles, some behind the eye, some without area, some not finite.
 pub fn soup(triangles: usize, seed: u64) -> Scene {
     let mut numbers = Numbers(seed);
     let mut positions = Vec::new();
@@ -83,7 +82,7 @@ fn checkers() -> Image {
     Image { name: "checkers".into(), width: 16, height: 16, data: (0..256).map(texel).collect() }
 }
 
-/// Textured, masked, blended, metallic and mirrored spheres; lines and points.
+/// Returns textured, masked, blended, metallic and mirrored spheres; lines and points.
 pub fn materials() -> Scene {
     let texture = TextureRef { texture: 0, tex_coord: 0, transform: DMat3::IDENTITY };
     let plain = Material {
@@ -185,7 +184,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
     vec![("soup", soup(400, 1)), ("materials", materials())]
 }
 
-/// Returns a camera that sees a scene of about two units' extent, and some of it behind the eye.
+/// Returns a camera that sees a scene with an extent of about two units, and has some of it behind the eye.
 pub fn options(_scene: &Scene, width: u32, height: u32) -> RenderOptions {
     let camera = Camera {
         eye: DVec3::new(1.2, 1.0, 4.0),

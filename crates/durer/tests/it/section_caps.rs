@@ -1,4 +1,4 @@
-//! The visible parts of a section's caps, found without the rest, are those of the whole picture.
+//! The visible parts of a section's caps, computed alone, are those of the whole picture.
 
 use crate::line_scenes::{Random, cuboid, random_boxes, soup, torus, view};
 use durer::math::{DVec2, DVec3, Plane};
@@ -27,7 +27,7 @@ fn area(regions: &[&Region]) -> f64 {
     rings.map(|ring| durer::clip::polygon::signed_area(ring)).sum()
 }
 
-/// Returns both ways to the caps; how much of them can be seen, and how much there is.
+/// Compares the caps computed alone with those of the whole picture; returns their visible area.
 fn assert_same(name: &str, scene: &Scene, planes: &[Plane], view: &View) -> f64 {
     let section = cut(scene, planes, &SectionOptions::default()).expect("a section");
     let options = Options {
@@ -67,7 +67,7 @@ fn section_caps_alone_are_those_of_the_picture() {
         vec![plane(0.3, -1.0, 0.2, 0.05)],
         vec![plane(-1.0, 0.0, 0.0, 0.2), plane(0.0, -1.0, 0.0, 0.1)],
     ];
-    // A box without a lid, and one before the opening: the inside of a cap can be seen in part.
+    // A box without a lid, and one in front of the opening: the inside of a cap is partly visible.
     let mut open = cuboid([0.0; 3], [4.0, 4.0, 2.0]);
     open.retain(|t| t.iter().any(|p| p.z < 2.0));
     open.extend(cuboid([1.0, 1.0, 2.5], [2.5, 3.5, 3.0]));
@@ -76,7 +76,7 @@ fn section_caps_alone_are_those_of_the_picture() {
     let above = view(DVec3::new(2.0, 2.0, 1.0), DVec3::new(0.1, -0.3, 1.0), 8.0, true);
     let inside = assert_same("open box", &open, &up, &above);
     assert!(inside > 2.0 && inside < 15.0, "{inside}");
-    // Two bodies whose caps lie in one plane, on each other in part: neither hides the other.
+    // Two bodies whose caps are in one plane and partly overlap: neither hides the other.
     let box_of = |x: f64| {
         let mut open = cuboid([x, 0.0, 0.0], [x + 4.0, 4.0, 2.0]);
         open.retain(|t| t.iter().any(|p| p.z < 2.0));
@@ -91,7 +91,7 @@ fn section_caps_alone_are_those_of_the_picture() {
     for (name, scene) in [("boxes", &boxes), ("torus", &ring)] {
         let center = scene.bounding_sphere().expect("a sphere");
         for (i, planes) in sections.iter().enumerate() {
-            // From before the caps, from aside, and from behind, where the model hides most of them.
+            // From in front of the caps, from the side, and from behind, where the model hides most of them.
             for (k, eye) in
                 [[0.2, 0.4, 1.0], [1.0, 0.5, 0.1], [-0.3, -0.6, -1.0]].iter().enumerate()
             {

@@ -104,7 +104,7 @@ fn texture_transforms_and_sets_are_applied() {
     let surface = Surface { tex_coords: &sets, ..Surface::default() };
     let green = shade(&surface, material, &ambient(1.0), material.shading());
     assert_eq!(green, Vec4::new(0.0, 1.0, 0.0, 1.0));
-    // A set that the mesh lacks counts as (0, 0), which the transform takes to the second texel.
+    // A set that the mesh lacks counts as (0, 0), which the transform maps to the second texel.
     let lacking = Surface { tex_coords: &sets[..1], ..Surface::default() };
     assert_eq!(shade(&lacking, material, &ambient(1.0), Shading::Unlit), green);
 }
@@ -179,7 +179,7 @@ fn interpolated_and_face_light_take_the_place_of_the_points_own() {
 
 #[test]
 fn normal_maps_bend_the_light_and_turn_with_the_face() {
-    // Tangent-space normal (0.6, 0, 0.8) and a light from there: n·l = 1 instead of 0.8.
+    // Tangent-space normal (0.6, 0, 0.8) and a light from that direction: n·l = 1 instead of 0.8.
     let mut material = matte(Vec4::splat(0.5));
     material.normal_texture = texture(0);
     let scene = scene(material, &[[[204, 128, 230, 255]; 2]]);
@@ -200,9 +200,9 @@ fn normal_maps_bend_the_light_and_turn_with_the_face() {
         shade(&surface, prepared.get(Some(0)), &lights, Shading::Phong).x
     };
     assert!((light(Vec3::X, 1.0) - 0.5).abs() < 0.005);
-    // cos of twice the angle between: 0.8² − 0.6².
+    // cos of twice the angle between them: 0.8² − 0.6².
     assert!((light(-Vec3::X, 1.0) - 0.14).abs() < 0.01);
-    // From behind, a bump is a dent: bent to the other side.
+    // From behind, a bump is a dent: it bends the normal to the other side.
     assert!((light(-Vec3::X, -1.0) - 0.5).abs() < 0.005);
 }
 

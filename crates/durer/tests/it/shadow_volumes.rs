@@ -1,4 +1,4 @@
-//! Shadow volumes: counts by hand, and the same by rays to the light, from either end and for every kind of light.
+//! Shadow volumes: hand-computed counts, and the same by rays to the light, from both ends and for every kind of light.
 
 use crate::line_scenes::Random;
 use durer::math::{DMat3, DVec2, DVec3};
@@ -36,8 +36,8 @@ fn sheet(random: &mut Random) -> Face {
     Face::new(&[corner(), corner(), corner()]).unwrap()
 }
 
-/// Returns how often the way from a point to the light passes through faces that `casts` accepts; nothing if that is too close to a
-/// border to tell. The face of the point itself counts if the eye sees its dark side.
+/// Returns the number of crossings of the way from a point to the light with faces that `casts` accepts; `None` if it
+/// is too close to a border to decide. The face of the point itself counts if the eye sees its dark side.
 fn passed(faces: &[Face], own: u32, point: DVec3, light: Eye, closed: bool) -> Option<i32> {
     let to_light = match light {
         Eye::At(at) => at - point,
@@ -142,7 +142,7 @@ fn counts_are_those_of_rays_to_the_light() {
     assert!(checked > 10_000 && dark > 2_000, "{checked} {dark}");
 }
 
-/// Shadows fall on a floor and on what is above it; the common edge of two faces has no side.
+/// Checks that shadows fall on a floor and on bodies above it, and that the common edge of two faces casts no side.
 #[test]
 fn volumes_overlap_and_neighbours_share_theirs() {
     let slab = |x: [f64; 2], y: [f64; 2], z: f64| {
@@ -162,7 +162,7 @@ fn volumes_overlap_and_neighbours_share_theirs() {
     expected[13] = 1;
     expected[14] = 1;
     assert_eq!(row[..], expected);
-    // The same plate in two halves: the common edge is none of the outline.
+    // The same plate in two halves: their common edge is not part of the outline.
     let halves = [slab([3.0, 5.0], [0.0, 18.0], 3.0), slab([5.0, 7.0], [0.0, 18.0], 3.0)];
     let sides = |faces: &[Face]| {
         let mut steps = Recorder::default();

@@ -74,7 +74,7 @@ fn picture(
     render(&scene(), &options).expect("picture").0
 }
 
-/// Returns whether rays say the same, lit or in shadow, of all pixels around one.
+/// Returns whether rays give the same result, lit or in shadow, for all pixels around one.
 fn is_inner(none: &Framebuffer, rays: &Framebuffer, x: u32, y: u32) -> bool {
     let dark = |x: u32, y: u32| none.color.get(x, y) != rays.color.get(x, y);
     let mut around = (y.saturating_sub(2)..=y + 2)
@@ -164,7 +164,7 @@ fn what_is_blended_throws_no_shadow_by_maps_either() {
     for (name, kind) in lights() {
         let differing = |alpha_mode| {
             let mut scene = scene();
-            // Blended it is clear: nothing of it is seen but a shadow.
+            // Blended, it is clear: only its shadow is visible.
             let base_color = Vec4::new(1.0, 1.0, 1.0, 0.0);
             scene.materials.push(Material { alpha_mode, base_color, ..Material::default() });
             for mesh in &mut scene.meshes[1..] {

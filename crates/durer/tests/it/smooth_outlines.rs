@@ -1,4 +1,4 @@
-//! Outlines of the smooth surfaces that meshes stand for: round, and met by all that ends on them.
+//! Outlines of the smooth surfaces that meshes approximate: round, and met by all lines that end on them.
 
 use crate::line_oracle::{distance, segments};
 use crate::line_scenes::{Triangle, quad, soup, torus, view};
@@ -33,12 +33,12 @@ fn outline_of_a_coarse_ball_is_round() {
     for perspective in [false, true] {
         let v = view(DVec3::ZERO, DVec3::new(1.0, -1.7, 0.9), 4.0, perspective);
         let drawing = smooth(&ball(12), &v);
-        // From 12 away a ball looks a little larger than it is.
+        // From a distance of 12 a ball looks a little larger than it is.
         let radius = if perspective { 12.0 / 143.0_f64.sqrt() } else { 1.0 };
         let outline = drawing.lines.iter().filter(|l| l.class == LineClass::Silhouette);
         let radii: Vec<f64> =
             outline.flat_map(|l| &l.points).map(|p| p.length() / radius).collect();
-        // Half of what the mesh's own outline has is further in, up to 0.86 %.
+        // Half of the mesh's own outline is further in, by up to 0.86 %.
         let round = radii.iter().filter(|r| (**r - 1.0).abs() < 2e-3).count();
         assert!(4 * round > 3 * radii.len(), "{perspective}: {round} of {radii:?}");
         assert!(radii.iter().all(|r| (0.99..1.002).contains(r)), "{perspective}: {radii:?}");
@@ -129,7 +129,7 @@ fn lengths(triangles: &[Triangle], view: &View) -> [f64; 2] {
 
 #[test]
 fn outlines_of_a_torus_are_as_long_as_they_are_exactly() {
-    // By Open CASCADE 7.8, HLRBRep_Algo, of the surface itself; on the inner one are cusps.
+    // From Open CASCADE 7.8, HLRBRep_Algo, of the surface itself; the inner outline has cusps.
     let (elevation_sin, elevation_cos) = 12.0_f64.to_radians().sin_cos();
     let cases = [
         (DVec3::new(1.0, -1.0, 1.0), [20.2383, 0.2499]),
@@ -147,7 +147,7 @@ fn outlines_of_a_torus_are_as_long_as_they_are_exactly() {
     }
 }
 
-/// Returns a ball with slivers: over some edges stand triangles on a third point of the sphere.
+/// Returns a ball with slivers: some edges have thin triangles to a third point of the sphere.
 fn ball_with_slivers(n: usize) -> Vec<Triangle> {
     let halves = |(i, [a, b, c]): (usize, Triangle)| {
         let over = ((a + b) / 2.0).normalize();
@@ -166,7 +166,7 @@ fn slivers_of_a_ball_make_no_lines() {
     for (x, y, z) in [(1.0, -1.7, 0.9), (0.3, -2.0, 0.2), (-2.0, 0.7, -1.1)] {
         let v = view(DVec3::ZERO, DVec3::new(x, y, z), 4.0, false);
         let [visible, hidden] = lengths(&ball_with_slivers(12), &v);
-        // Where slivers bend it the outline goes a little to and fro.
+        // Where slivers bend it, the outline wavers a little.
         let exact = std::f64::consts::TAU;
         assert!((visible / exact - 1.0).abs() < 0.04 && hidden < 0.01, "{visible}, {hidden}");
         let drawing = smooth(&ball_with_slivers(12), &v);
@@ -226,7 +226,7 @@ fn outlines_of_cylinders_and_cones_are_straight() {
             let v = view(DVec3::ZERO, DVec3::new(0.2, -1.0, 0.3), 8.0, false);
             let options = Options { smooth: Smooth::On, stubs: 0.01, ..Options::default() };
             let drawing = draw(&soup(&triangles), &v, &options, &mut NoTrace).expect("drawing");
-            // The rim at the bottom is half an outline and half hidden; seen from above.
+            // Half of the bottom rim is an outline and half is hidden; seen from above.
             let ellipse = {
                 let sin = v.camera().eye.normalize().z;
                 let part = |i: usize| {
@@ -245,8 +245,8 @@ fn outlines_of_cylinders_and_cones_are_straight() {
     }
 }
 
-/// Returns the length of an outline of a cone of radius 1 and height 3 in a picture in which its height is 3
-/// `cos`: that of the tangent from the tip to the ellipse of the rim.
+/// Returns the length of an outline of a cone of radius 1 and height 3 in a picture in which its height is 3 `cos`: the
+/// tangent from the tip to the ellipse of the rim.
 fn cone_side(cos: f64) -> f64 {
     let (height, sin2) = (3.0 * cos, 1.0 - cos * cos);
     let y = sin2 / height;
@@ -254,8 +254,8 @@ fn cone_side(cos: f64) -> f64 {
     (x2 + (height - y).powi(2)).sqrt()
 }
 
-/// Returns a body of revolution of `n` facets around z with this profile of radii and heights, from the
-/// bottom up, without lids.
+/// Returns a body of revolution of `n` facets around z with this profile of radii and heights, from the bottom up,
+/// without lids.
 fn turned(profile: &[[f64; 2]], n: usize) -> Vec<Triangle> {
     let at = |k: usize, [r, z]: [f64; 2]| {
         let (s, c) = (k as f64 / n as f64 * std::f64::consts::TAU).sin_cos();
@@ -268,7 +268,7 @@ fn turned(profile: &[[f64; 2]], n: usize) -> Vec<Triangle> {
 
 #[test]
 fn a_cylinder_that_ends_in_a_cone_is_straight() {
-    // Its rim turns by 35°: that is not a crease, but nothing is round along the axis.
+    // Its rim turns by 35°: no crease, but nothing is round along the axis either.
     let aside = 4.0 - 1.5 * 35.0_f64.to_radians().tan();
     let barrel = turned(&[[4.0, -6.0], [4.0, 6.0], [aside, 7.5]], 60);
     for to_eye in [DVec3::new(0.0, -1.0, 0.1), DVec3::new(0.3, -1.0, -0.2)] {
@@ -302,7 +302,7 @@ fn what_is_modelled_in_few_facets_keeps_them() {
         assert_eq!(drawn(&ring, Smooth::Auto) == drawn(&ring, Smooth::On), round, "{wire}");
         assert_eq!(drawn(&ring, Smooth::Auto) == drawn(&ring, Smooth::Off), !round, "{wire}");
     }
-    // Nothing of a box bends.
+    // No part of a box bends.
     let cube = bar(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]);
     assert_eq!(drawn(&cube, Smooth::Auto), drawn(&cube, Smooth::Off));
 }
@@ -337,7 +337,7 @@ fn each_object_is_round_or_not() {
 
 #[test]
 fn outlines_of_open_shells_are_whole() {
-    // Bowls, seen from above and below, whose insides bend towards the eye.
+    // Bowls, seen from above and below, whose insides curve towards the eye.
     let profile: Vec<[f64; 2]> = (0..=12)
         .map(|k| (k as f64 / 12.0 * 1.3 + 0.25).sin_cos())
         .map(|(s, c)| [2.0 * s, -2.0 * c])
@@ -360,7 +360,7 @@ fn outlines_of_open_shells_are_whole() {
 
 #[test]
 fn turned_parts_have_the_lines_of_open_cascade() {
-    // By Open CASCADE 7.8, HLRBRep_Algo, of the parts themselves: profiles, and visible and hidden lengths by view.
+    // From Open CASCADE 7.8, HLRBRep_Algo, of the parts themselves: profiles, and visible and hidden lengths by view.
     let views =
         [DVec3::new(1.0, -1.0, 1.0), DVec3::new(0.3, -0.8, 1.6), DVec3::new(1.0, -2.2, 0.45)];
     let shaft: &[[f64; 2]] =

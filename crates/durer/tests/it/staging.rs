@@ -1,4 +1,4 @@
-//! The surroundings of a model and their darkening: occlusion, ground, grid, axes, edges.
+//! The surroundings of a model and their shading: occlusion, ground, grid, axes, edges.
 
 use crate::scenes::{instance, sphere};
 use durer::math::{DMat4, DVec2, DVec3, Rect, Vec3, Vec4};
@@ -34,7 +34,7 @@ fn options(camera: Camera, side: u32) -> RenderOptions {
     RenderOptions { width: side, height: side, samples, ..RenderOptions::new(camera) }
 }
 
-/// Returns the light at a place of the corner.
+/// Returns the light at a position in the corner.
 fn light(camera: Camera, radius: f64, at: DVec3) -> f32 {
     let options = RenderOptions { depth: true, normal: true, ..options(camera, 240) };
     let (picture, _) = render(&corner(), &options).expect("picture");
@@ -52,7 +52,7 @@ fn half_of_the_light_gets_into_a_corner_and_all_onto_a_wall() {
     let parallel = parallel(eye, 8.0);
     let perspective = Camera { projection, ..parallel };
     for camera in [parallel, perspective] {
-        // At the edge of an endless corner half of the hemisphere is seen, by its cosine.
+        // At the edge of an infinite corner half of the hemisphere is visible, weighted by the cosine.
         let near = light(camera, 3.0, DVec3::new(0.06, 0.0, 0.0));
         assert!((0.45..0.62).contains(&near), "{near}");
         let between = light(camera, 1.0, DVec3::new(0.4, 0.0, 0.0));
@@ -78,7 +78,7 @@ fn occlusion_darkens_and_leaves_no_planes_that_are_not_asked_for() {
     assert!(render(&corner(), &none).expect("none").0.color == before.color);
 }
 
-/// Returns a sphere of radius 1 whose lowest point is at the height −1.
+/// Returns a sphere of radius 1 whose lowest point is at height −1.
 fn ball(up_axis: UpAxis) -> Scene {
     Scene {
         meshes: vec![sphere(12, Some(0))],
@@ -93,7 +93,7 @@ fn ball(up_axis: UpAxis) -> Scene {
 fn the_ground_is_dark_below_the_model_and_clear_far_away() {
     for (up_axis, up) in [(UpAxis::Y, DVec3::Y), (UpAxis::Z, DVec3::Z)] {
         let mut scene = ball(up_axis);
-        // A second ball, high up and aside, throws no shadow where it would touch.
+        // A second ball, high up and to the side, casts no contact shadow.
         scene.instances.push(instance(0));
         let aside = if up_axis == UpAxis::Y { DVec3::Z } else { DVec3::Y };
         scene.instances[1].world_from_mesh = DMat4::from_translation(up * 1.5 + aside * 2.5);
@@ -156,7 +156,7 @@ fn edges_are_where_outlines_are() {
         Material { model: ShadingModel::Unlit, base_color: Vec4::ONE, ..Material::default() };
     scene.materials = vec![white];
     scene.meshes = vec![sphere(60, Some(0))];
-    // Its seam is open by a rounding error: to the back.
+    // Its seam is open by a rounding error, at the back.
     scene.instances[0].world_from_mesh = DMat4::from_rotation_y(std::f64::consts::PI);
     let options = RenderOptions { height: 100, ..options(camera, 200) };
     let (mut picture, _) = render(&scene, &options).expect("picture");

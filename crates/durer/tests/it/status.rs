@@ -51,7 +51,7 @@ fn a_scene_that_is_seen_is_ok_wherever_it_is() {
     assert_eq!(of(&white, &RenderOptions { background: gradient, ..options() }), Status::Ok);
     let clear = Background::Color(Vec4::ZERO);
     assert_eq!(of(&white, &RenderOptions { background: clear, ..options() }), Status::Ok);
-    // From within it fills the whole picture.
+    // From inside, it fills the whole picture.
     let inside = Camera { eye: DVec3::ZERO, target: DVec3::Z, near: 0.1, ..camera() };
     let black = with_material(unlit(Vec4::new(0.0, 0.0, 0.0, 1.0)));
     assert_eq!(of(&black, &RenderOptions { camera: inside, ..options() }), Status::Ok);
@@ -100,7 +100,7 @@ fn what_hides_a_scene_is_told() {
     assert_eq!(of(&tiny, &options()), invisible(Unseen::Missed));
 }
 
-/// Returns the faces of a mesh of which all corners have z above 0.
+/// Returns the faces of a mesh with all corners above z = 0.
 fn half(mesh: &Mesh) -> Mesh {
     let indices = mesh.indices.clone().unwrap_or_default();
     let front = |t: &&[u32; 3]| t.iter().all(|&v| mesh.positions[v as usize].z > 0.1);

@@ -57,7 +57,7 @@ fn every_test_gets_its_turn() {
     assert_eq!(passed.into_iter().collect::<Vec<_>>(), all);
 }
 
-/// The pixels of each polygon number, by the steps.
+/// Returns the pixels of each polygon number, from the steps.
 struct Replay<'a> {
     input: &'a SurfaceInput<'a>,
     triangle: Vec<usize>,

@@ -1,5 +1,4 @@
-//! A thousand random scenes through all methods, and drawn as lines and regions: the bodies of the
-//! fuzz targets, without the fuzzer.
+//! A thousand random scenes through all methods, and drawn as lines and regions: the fuzz targets without the fuzzer.
 
 #[path = "../../../../fuzz/bodies/drawn.rs"]
 mod drawn;
@@ -15,7 +14,7 @@ fn bytes(seed: u64) -> Vec<u8> {
     (0..length).map(|_| (numbers.next() * 256.0) as u8).collect()
 }
 
-/// A quarter of the thousand, so that they run side by side.
+/// A quarter of the thousand, so that the parts run in parallel.
 fn quarter(k: u64) {
     (250 * k..250 * (k + 1)).for_each(|seed| surfaces::body(&bytes(seed)));
 }

@@ -1,4 +1,4 @@
-//! All methods by their one door: the same items, depths and normals.
+//! All methods through their common entry: the same items, depths and normals.
 
 use crate::surface_scenes::{
     Prepared, assert_same_planes, crossing_quads, duplicates, needles, of_triangles, random,
@@ -58,7 +58,7 @@ fn assert_all_agree(p: &Prepared<'_>, what: &str) -> Framebuffer {
     expected
 }
 
-/// Returns a view of 64 columns and some rows of a scene in pixels and depths.
+/// Returns a view of 64 columns and some rows of a scene given in pixels and depths.
 fn upright(scene: &Scene, rows: std::ops::Range<u32>) -> Prepared<'_> {
     let mut p = Prepared::new(scene, 64, rows.len() as u32);
     let middle = f64::from(rows.start + rows.end) / 2.0;
@@ -81,8 +81,8 @@ fn at(corners: [(f32, f32, f32); 3]) -> [Vec3; 3] {
 
 #[test]
 fn planes_that_leave_the_depths_of_their_vertices_change_nothing() {
-    // Less than two sub-pixels high: snapping moves its long edge up to the centres of a row, where its
-    // plane is beyond all of its vertices. Depths are kept to theirs and so bend along the row.
+    // Less than two sub-pixels high: snapping moves its long edge to the centres of a row, where its plane is beyond
+    // all of its vertices. Depths are clamped to those of the vertices and so bend along the row.
     let row = |ends: [f32; 2], apex: f32| {
         let (upper, lower) = (20.5 + 0.4 / 256.0, 20.5 + 1.8 / 256.0);
         at([(2.0, upper, ends[0]), (60.0, upper, ends[1]), (31.0, lower, apex)])
@@ -101,7 +101,7 @@ fn planes_that_leave_the_depths_of_their_vertices_change_nothing() {
             let mut seen = [0; 2];
             for triangles in [[bent, plane(other)], [plane(other), bent]] {
                 let scene = of_triangles(&triangles);
-                // Of one row there are windows that it fills.
+                // One row has windows that it fills.
                 assert_all_agree(&upright(&scene, 20..21), &format!("{other:?}, one row"));
                 let expected = assert_all_agree(&upright(&scene, 0..64), &format!("{other:?}"));
                 let items = expected.item.iter().flat_map(|i| i.data());

@@ -1,4 +1,4 @@
-//! Ray casting against the z-buffer; shadows, mirrors and glass against what must be there.
+//! Ray casting, compared with the z-buffer; shadows, mirrors and glass, compared with computed results.
 
 use crate::scenes::instance;
 use crate::surface_scenes::{Prepared, assert_same_planes, each, random};
@@ -115,7 +115,7 @@ fn a_square_throws_its_shadow_where_it_must() {
     let matte = Material { specular: Vec3::ZERO, ..Material::default() };
     square(&mut scene, 0.0, 3.0, matte.clone());
     square(&mut scene, 1.0, 0.25, matte);
-    // Straight from a lamp at x = 2 above the small square: its middle's shadow falls at x = −2/3.
+    // Straight from a lamp at x = 2 above the small square: the shadow of its middle is at x = −2/3.
     let position = DVec3::new(2.0, 0.0, 4.0);
     let kind = LightKind::Point { position, range: None };
     let dark = Light { kind: LightKind::Ambient, color: Vec3::ZERO };
@@ -175,7 +175,7 @@ fn glass_bends_rays_and_clear_film_does_not() {
     let edge = p.view.screen_from_world() * DVec3::new(0.5, 0.0, 0.0).extend(1.0);
     let width = 2.0 * (edge.x / edge.w - 32.0);
     assert!((f64::from(film) - width).abs() <= 1.0, "{film} {width}");
-    // Behind glass the angle of a ray to the axis is 2/3 of what it was: 3 + 1 becomes 3 + 2/3.
+    // Behind glass the angle of a ray to the axis is 2/3 of its angle before: 3 + 1 becomes 3 + 2/3.
     let wider = width * 4.0 / (3.0 + 2.0 / 3.0);
     assert!((f64::from(glass) - wider).abs() <= 1.0, "{glass} {wider}");
 }
@@ -190,7 +190,7 @@ fn what_lies_behind_more_glass_than_rays_bounce_is_seen() {
     }
     square(&mut scene, 0.0, 2.0, unlit(0.0, 0.0, 1.0));
     let p = in_front(&scene, &[]);
-    // Straight through, so that the order of bounces has no say.
+    // Straight through, so that the order of bounces does not matter.
     let seen = |depth| {
         let options = Options { reflections: true, depth, ..Options::default() };
         color_at(&picture(&p, &options), 32, 32)
@@ -227,7 +227,7 @@ fn mirrors_show_the_studio_where_they_show_nothing_else() {
     assert!(r > 100 && r == b && a == 255, "{r} {b} {a}");
 }
 
-/// Returns the rays of a kind that a picture takes.
+/// Returns the number of rays of a kind that a picture takes.
 fn rays(p: &Prepared<'_>, options: &Options, wanted: RayKind) -> usize {
     let mut recorder = Recorder::default();
     render(&p.fine_input(), &p.lights, options, &mut p.framebuffer(), &mut recorder);
@@ -251,7 +251,7 @@ fn what_lies_behind_a_lamp_or_around_it_throws_no_shadow() {
     let light = Light { kind, color: Vec3::splat(20.0) };
     let seen = |z| picture(&in_front(&with_square(z), &[light]), &options).color;
     let expected = seen(None);
-    // Behind the eye, so that only their shadows could be seen.
+    // Behind the eye, so that only their shadows could be visible.
     for z in [5.0, 6.0, 50.0] {
         assert!(seen(Some(z)) == expected, "{z}");
     }
@@ -323,7 +323,7 @@ fn at_grazing_angles_everything_smooth_is_a_mirror() {
             let found = picture(&p, &Options { reflections, ..Options::default() });
             f64::from(durer::shade::color::decode_srgb8(color_at(&found, 32, 32)[0]))
         };
-        // The sky is white, so the picture shows how much is reflected: Schlick's formula.
+        // The sky is white, so the picture shows the reflectance: Schlick's formula.
         let share = 0.04 + 0.96 * libm::pow(1.0 - cos, 5.0);
         let (own, seen) = (linear(false), linear(true));
         let expected = own * (1.0 - share) + share;

@@ -27,7 +27,7 @@ fn beam(a: Vec3, b: Vec3, width: f32) -> [[Vec3; 3]; 2] {
     quad([a - side, b - side, b + side, a + side])
 }
 
-/// Returns three beams, each of which lies over one and under the other.
+/// Returns three cyclically overlapping beams.
 pub fn three_beams() -> Scene {
     let corner = |i: usize| {
         let angle = i as f32 * std::f32::consts::TAU / 3.0;
@@ -55,8 +55,7 @@ pub fn crossing_quads() -> Scene {
     of_triangles([square(1.0), square(-1.0)].as_flattened())
 }
 
-/// Returns the same faces twice, each time with other vertices first, and coplanar ones that
-/// overlap.
+/// Returns the same faces twice, each time with another first vertex, and overlapping coplanar ones.
 pub fn duplicates() -> Scene {
     let mut triangles = Vec::new();
     let mut numbers = Numbers(11);
@@ -87,8 +86,7 @@ pub fn random(seed: u64) -> Scene {
     of_triangles(&triangles)
 }
 
-/// Returns flat needles across the view, a pixel high or less and steep in depth, close behind one
-/// another.
+/// Returns flat needles across the view, at most a pixel high and steep in depth, close behind one another.
 pub fn needles(seed: u64) -> Scene {
     let mut numbers = Numbers(seed.wrapping_mul(7919).wrapping_add(3));
     let camera = options(&Scene::default(), 1, 1).camera;
@@ -109,7 +107,7 @@ pub fn needles(seed: u64) -> Scene {
     of_triangles(&triangles)
 }
 
-/// View of a scene that an algorithm works on.
+/// View of a scene to which an algorithm is applied.
 pub struct Prepared<'a> {
     pub scene: &'a Scene,
     pub options: RenderOptions,
@@ -122,7 +120,7 @@ impl<'a> Prepared<'a> {
         let mut options = options(scene, width, height);
         (options.item, options.depth, options.normal) = (true, true, true);
         options.samples = durer::pipeline::Samples::One;
-        // The lights here know of no studio.
+        // These lights have no studio.
         options.surroundings = durer::pipeline::Surroundings::None;
         let view = View::new(options.camera, width, height).expect("view");
         let lights = PreparedLights::of(scene, &options.camera);
@@ -134,7 +132,7 @@ impl<'a> Prepared<'a> {
         SurfaceInput::new(self.scene, &self.view, filter).expect("input")
     }
 
-    /// For anti-aliasing: also triangles that miss all centres.
+    /// Returns the input for anti-aliasing, which includes triangles that miss all centres.
     pub fn fine_input(&self) -> SurfaceInput<'_> {
         let filter = Filter::new(Cull::None, 128);
         SurfaceInput::new(self.scene, &self.view, filter).expect("input")
@@ -152,7 +150,7 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// Returns the sizes at which scenes are examined; the large ones seldom.
+/// Returns the sizes at which scenes are tested; large ones are rare.
 pub fn size(seed: u64) -> (u32, u32) {
     match seed % 16 {
         0 => (256, 256),
@@ -182,7 +180,7 @@ pub fn each(count: u64, mut f: impl FnMut(&str, &Prepared<'_>)) {
     }
 }
 
-/// Fails unless two pictures have the same planes but colour.
+/// Fails unless two pictures have the same planes except colour.
 pub fn assert_same_planes(name: &str, found: &Framebuffer, expected: &Framebuffer) {
     let items = |f: &Framebuffer| f.item.as_ref().expect("items").data().to_vec();
     let (found_items, expected_items) = (items(found), items(expected));

@@ -1,4 +1,4 @@
-//! Windows of pictures: rendered one by one and joined they are the whole, byte for byte.
+//! Windows of pictures: rendered one by one and joined, they are the whole picture, byte for byte.
 
 use crate::scenes;
 use durer::Error;
@@ -14,7 +14,7 @@ use durer::work::Work;
 
 const SIZE: [u32; 2] = [134, 70];
 
-/// Borders of windows, most of which are not those of the tiles of a method.
+/// Borders of windows, most of which differ from those of a method's tiles.
 const COLUMNS: [i32; 4] = [0, 37, 128, 134];
 const ROWS: [i32; 3] = [0, 63, 70];
 

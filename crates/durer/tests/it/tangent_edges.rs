@@ -1,4 +1,4 @@
-//! Edges where curved faces meet others smoothly.
+//! Edges where curved faces join others smoothly.
 
 use crate::line_scenes::{Triangle, soup, view};
 use durer::math::DVec3;
@@ -44,7 +44,7 @@ fn a_slot_has_four_where_its_sides_begin() {
         let tangent = |visible| {
             drawing.length(|l| l.class == LineClass::Tangent && l.is_visible() == visible) / height
         };
-        // Two in front, and two behind, of which none is an outline.
+        // Two in front, and two behind, none of which is an outline.
         let (seen, hidden) = (tangent(true), tangent(false));
         assert!((seen - 2.0).abs() < 1e-3, "{n} {smooth:?}: {seen}");
         assert!((hidden - 2.0).abs() < 1e-3, "{n} {smooth:?}: {hidden}");

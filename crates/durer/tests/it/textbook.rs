@@ -1,4 +1,5 @@
-//! The textbook neighbours: circles, ellipses, pens, halftones, fog, points in polygons, polygons at windows, winding rules.
+//! Textbook algorithms around the main ones: circles, ellipses, pens, halftones, fog, points in polygons, polygons at
+//! windows, winding rules.
 
 use crate::raster_coverage::Random;
 use durer::clip::polygon::point::{self, Place, locate, winding_number};
@@ -84,7 +85,7 @@ fn ellipses_are_closed_and_near_and_have_their_tips() {
         if a + b == 0 {
             continue;
         }
-        // The curve runs within a pixel of each.
+        // The curve passes within a pixel of each.
         let outside = |x: f64, y: f64| {
             let (a, b) = (f64::from(a), f64::from(b));
             x * x * b * b + y * y * a * a > a * a * b * b
@@ -126,7 +127,7 @@ fn pens_and_patterns_follow_the_thin_line() {
         let mut found = Vec::new();
         pattern::draw(from, to, &options, |p| found.push(p), &mut steps);
         assert_eq!(pattern::replay(from, to, &options, steps.steps()), found);
-        // From the caller's first end on: three steps into a pattern of eight on, eight off.
+        // From the caller's first end: three pixels into a pattern of eight on, eight off.
         let down = |step: u64| (step + 3) % 16 < 8;
         assert!(steps.steps().iter().all(|s| s.down == down(s.step)));
         let at = |end| steps.steps().iter().find(|s| s.pixel == end).map(|s| s.step);
@@ -175,7 +176,7 @@ fn errors_go_to_the_four_neighbours_and_are_not_lost() {
         assert_eq!(error_diffusion::dither(&ramp(), &options, &mut NoTrace), dots);
         let sum = |image: &Pixels<f32>| image.data().iter().map(|v| f64::from(*v)).sum::<f64>();
         let light = as_light(&dots, options.levels);
-        // Only what falls over the borders is lost: at most half a level along them.
+        // Only errors passed over the borders are lost: at most half a level along them.
         assert!((sum(&light) - sum(&ramp())).abs() < 80.0, "{options:?}");
         assert!(dots.data().iter().all(|level| *level < options.levels));
     }
@@ -203,7 +204,7 @@ fn clustered_dots_have_the_tone_and_hold_together() {
         let dots = clustered_dot::dither(&image, &mut steps);
         assert_eq!(clustered_dot::replay(8, 8, steps.steps()), dots);
         assert_eq!(dots.data().iter().map(|v| i32::from(*v)).sum::<i32>(), 2 * tone);
-        // Around the screen, which repeats, changes are few: two dots of each kind at most.
+        // Around the screen, which repeats, there are few changes: at most two dots of each kind.
         let changes = (0..64).filter(|i| {
             let (x, y) = (i % 8, i / 8);
             dots.get(x, y) != dots.get((x + 1) % 8, y)
@@ -235,7 +236,7 @@ fn fog_has_three_laws() {
 
 #[test]
 fn a_point_is_located_by_every_rule() {
-    // A pentagram: its middle is wound around twice, its tips once.
+    // A pentagram, whose middle is wound around twice, its tips once.
     let tip = |k: i32| DVec2::from_angle(f64::from(k) * 2.0 * std::f64::consts::TAU / 5.0) * 8.0;
     let star: Vec<DVec2> = (0..5).map(tip).collect();
     let mut steps = Recorder::default();
@@ -278,7 +279,7 @@ fn liang_and_barsky_leave_the_area_that_sutherland_and_hodgman_leave() {
     let mut random = Random(21);
     let window = Rect::new(DVec2::ZERO, DVec2::splat(10.0)).unwrap();
     for round in 0..3000 {
-        // Every other ring on whole numbers: along borders, through corners, around the window.
+        // Every other ring has integer coordinates: along borders, through corners, around the window.
         let point = |random: &mut Random| {
             let p = random.point(-8.0, 18.0);
             if round % 2 == 0 { p.round() } else { p }
@@ -298,7 +299,8 @@ fn liang_and_barsky_leave_the_area_that_sutherland_and_hodgman_leave() {
     }
 }
 
-/// Checks Maillot's ring: its area, its steps, and that it winds around each point of the window as often as the whole.
+/// Checks Maillot's ring: its area, its steps, and that its winding number around each point of the window is that of
+/// the whole.
 fn agrees_with_maillot(window: &Rect, ring: &[DVec2], area: f64, random: &mut Random) {
     let mut steps = Recorder::default();
     let found = maillot::clip(window, ring, &mut steps).unwrap();
@@ -356,7 +358,7 @@ fn corners_between_the_regions_of_two_ends_are_turned_around() {
     assert_eq!(turns([-9.0, 11.0], [11.0, -19.0]), [(a, CornerToCorner), (b, Basic)]);
     assert_eq!(turns([11.0, -19.0], [-9.0, 11.0]), [(a, CornerToCorner), (d, Basic)]);
     assert_eq!(turns([-1.0, 23.0], [23.0, -1.0]), [(c, CornerToCorner), (b, Basic)]);
-    // Beyond a common border nothing lies between.
+    // Beyond a common border there are no turning points.
     assert_eq!(turns([-4.0, -4.0], [5.0, -4.0]), []);
 }
 
@@ -385,7 +387,7 @@ fn carpenters_masks_and_shares() {
     let edge = [DVec2::new(1.0, 2.0), DVec2::new(4.0, 6.0)];
     assert_eq!(edge_distance(edge, DVec2::new(6.0, 2.0)), Some(4.0));
     assert_eq!(edge_distance([DVec2::ONE; 2], DVec2::ZERO), None);
-    // n = round(16 · area), and what lies deepest in the half-plane first: rows above y = ½ here.
+    // n = round(16 · area), and the samples deepest in the half-plane first: here the rows above y = ½.
     let level = [DVec2::new(1.0, 0.5), DVec2::new(0.0, 0.5)];
     assert_eq!(ordered_mask(level, 0.5).count_ones(), 8);
     assert_eq!([0.0, 1.0, 0.03, 0.04].map(|a| ordered_mask(level, a).count_ones()), [0, 16, 0, 1]);
@@ -395,7 +397,7 @@ fn carpenters_masks_and_shares() {
     assert_eq!(visible_share([3.0, 4.0], [1.0, 2.0]), 0.0);
     assert_eq!(visible_share([1.0, 3.0], [2.0, 4.0]), 0.75);
     assert_eq!(visible_share([2.0, 2.0], [2.0, 2.0]), 0.5);
-    // Two faces that cut each other: P has where A is in front.
+    // Two faces that intersect: P has the pixels where A is in front.
     let (a, b, front) = (0x0fff, 0xfff0, 0x00f0);
     assert_eq!(seen_masks(a, b, front), [0x00ff, 0xff00]);
     let [of_a, of_b] = seen_masks(a, b, front);
@@ -424,7 +426,7 @@ fn scan_beams_find_the_areas_that_the_overlay_finds() {
         let mut ring = |n: usize| -> Vec<DVec2> {
             let point = |random: &mut Random| {
                 let p = random.point(-9.0, 9.0);
-                // Whole numbers: level edges, common vertices, edges that run together.
+                // Integers: horizontal edges, common vertices, collinear edges.
                 if round % 3 == 0 { p.round() } else { p }
             };
             (0..n).map(|_| point(&mut random)).collect()
@@ -495,7 +497,8 @@ fn area_of(ring: &[DVec2]) -> f64 {
     signed_area(ring).abs()
 }
 
-/// Ears cover the polygon, as many as the formula says, whatever the direction of the rings; rejected corners are named.
+/// Checks that ears cover the polygon, in the number given by the formula, whatever the direction of the rings, and
+/// that rejected corners are named.
 #[test]
 fn ears_cover_polygons_with_holes() {
     let mut random = Random(31);
@@ -544,10 +547,10 @@ fn ears_cover_polygons_with_holes() {
             }
         }
         assert_eq!(triangles, found.triangles);
-        // No triangle is turned over or covers another one.
+        // No triangle is reversed or overlaps another.
         assert!(triangles.iter().all(|corners| signed_area(&at(*corners)) > 0.0), "round {round}");
     }
-    // Rings that cross come to an end, too.
+    // Rings that cross terminate too.
     let bow = [(0.0, 0.0), (4.0, 4.0), (4.0, 0.0), (0.0, 4.0)].map(DVec2::from);
     assert_eq!(ears(&Contours::polygon(bow), &mut NoTrace).triangles.len(), 2);
     let line = [(0.0, 0.0), (1.0, 1.0), (2.0, 2.0), (3.0, 3.0)].map(DVec2::from);

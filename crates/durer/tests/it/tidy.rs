@@ -98,7 +98,7 @@ fn every_algorithm_has_its_facts() {
     assert!(found > 25, "only {found} algorithms found");
 }
 
-/// Whoever lists algorithms finds all of them in one place, each with its facts.
+/// Checks that all algorithms can be listed from one place, each with its facts.
 #[test]
 fn every_algorithm_is_in_the_catalogue() {
     let (_, files) = library();
@@ -121,8 +121,7 @@ fn every_algorithm_is_in_the_catalogue() {
     }
 }
 
-/// Checks that comments say what a thing is or does, in that order: a noun for types, values and modules, a verb for
-/// functions.
+/// Checks that comments begin with a noun for types, values and modules, and with a verb for functions.
 #[test]
 fn doc_comments_begin_with_nouns_and_verbs() {
     const CLAUSES: [&str; 8] =
@@ -267,7 +266,7 @@ fn heads(group: &str) -> Vec<&str> {
     heads
 }
 
-/// Returns which neighbours in the same folder use which, folder by folder: below `a`, `b::c` uses `d` where `a::b::c`
+/// Returns the uses between neighbours in the same folder, folder by folder: below `a`, `b::c` uses `d` where `a::b::c`
 /// uses `a::d`.
 fn neighbours(modules: &Modules) -> BTreeMap<Vec<String>, BTreeSet<[String; 2]>> {
     let mut folders = BTreeMap::<_, BTreeSet<[String; 2]>>::new();
@@ -294,7 +293,7 @@ fn no_circles_between_neighbours() {
         let folders = neighbours(&modules(&crates.join(name).join("src")));
         assert!(folders.values().map(BTreeSet::len).sum::<usize>() > 50, "{name}: none found");
         for (folder, mut arrows) in folders {
-            // What uses nothing that uses something else is in no circle.
+            // A module that uses only modules without uses is in no circle.
             loop {
                 let before = arrows.len();
                 let users: BTreeSet<String> = arrows.iter().map(|[from, _]| from.clone()).collect();

@@ -1,4 +1,4 @@
-//! Marks for tones follow the surfaces, and are the denser the darker it is.
+//! Marks for tones follow the surfaces and are denser where it is darker.
 
 use crate::line_scenes::{Triangle, soup};
 use durer::math::{DVec2, DVec3, Vec3};
@@ -49,7 +49,7 @@ fn marks(scene: &Scene, marks: ToneMarks) -> Vec<Line> {
 fn lines_go_around_a_tube_and_are_closer_in_the_dark() {
     let lines = marks(&tube(48), ToneMarks::Contours { spacing: 0.04 });
     assert!(lines.iter().all(|l| l.class == LineClass::Hatch && l.is_visible()));
-    // How much of the lines that go around, and of all, lies between two places.
+    // Lengths between two places: of the lines that go around, and of all.
     let length = |low: f64, high: f64, around: bool| -> f64 {
         let sides = lines.iter().flat_map(|l| l.points.windows(2)).map(|w| (w[0], w[1]));
         let kept = sides.filter(|(a, b)| !around || (b.y - a.y).abs() <= 0.2 * (b.x - a.x).abs());

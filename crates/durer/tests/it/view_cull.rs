@@ -30,7 +30,7 @@ fn inside(planes: &[Plane], p: DVec3) -> bool {
     planes.iter().all(|plane| plane.evaluate(p) >= 0.0)
 }
 
-/// Checks the laws of any verdict about a thing with these points.
+/// Checks the laws of any verdict on a body with these points.
 fn check(verdict: Containment, mut points: impl Iterator<Item = bool>) -> bool {
     match verdict {
         Containment::Outside => !points.any(|p| p),
@@ -89,7 +89,7 @@ proptest! {
     ) {
         let expected = triangle_area(t);
         prop_assert!((newell_area(&t) - expected).length() < 1e-12);
-        // A dent in the first side takes its part of the area away, wherever the polygon lies.
+        // A dent in the first side reduces the area, wherever the polygon is.
         let middle = t[0].lerp(t[1], cut);
         let ring = [t[0], middle.lerp(t[2], dent), t[1], t[2]].map(|p| p + far);
         prop_assert!((newell_area(&ring) - expected * (1.0 - dent)).length() < 1e-7);
@@ -120,7 +120,7 @@ fn verdicts_are_not_always_crossing() {
         [disk(0.5, 0.4), disk(1.5, 0.4), disk(1.5, 0.6), disk(1.5, 0.5)],
         [Containment::Inside, Containment::Outside, Containment::Crossing, Containment::Crossing],
     );
-    // Outside only at the corner: its box would overlap.
+    // Outside only at the corner: its bounding box would overlap.
     assert_eq!(disk_in_window(&window, DVec2::splat(2.0), 1.4), Containment::Outside);
 }
 
@@ -202,20 +202,20 @@ fn odd_meshes_do_no_harm() {
     odd.positions.extend([Vec3::NAN, Vec3::ONE, Vec3::X]);
     let found = mesh_topology(&odd);
     assert!(found.closed && found.oriented && found.collapsed == 1);
-    // −0 and 0 are one place.
+    // −0 and 0 are equal coordinates.
     let mut zeros = cube(Vec3::ONE);
     for p in zeros.positions.iter_mut().step_by(2) {
         *p = Vec3::from(p.to_array().map(|c| if c == 0.0 { -0.0 } else { c }));
     }
     assert!(mesh_topology(&zeros).closed);
 
-    // What exporters write for zero.
+    // Exporters write it for zero.
     let mut noisy = cube(Vec3::ONE);
     for p in noisy.positions.iter_mut().step_by(2) {
         *p = Vec3::from(p.to_array().map(|c| if c == 0.0 { 3e-17 } else { c }));
     }
     assert!(mesh_topology(&noisy).closed);
-    // What rounding may have moved, and a gap that it has not made.
+    // A displacement within rounding, and a gap beyond it.
     let gap = |amount: f32| {
         let mut gap = cube(Vec3::ONE);
         gap.positions[0] += amount;
@@ -232,7 +232,7 @@ fn odd_meshes_do_no_harm() {
     assert!(!mesh_topology(&lines).closed && !mesh_topology(&Mesh::default()).closed);
 }
 
-/// Real models, judged closed or not by another program's index of them.
+/// Checks real models, whose closedness was determined by the program that made their index.
 mod conformance_topology {
     use super::*;
     use std::path::{Path, PathBuf};

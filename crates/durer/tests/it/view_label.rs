@@ -23,7 +23,7 @@ fn the_pole_of_a_square_is_its_middle_and_of_a_ring_it_is_not() {
     assert!((p - DVec2::splat(5.0)).length() < 0.02 && (d - 5.0).abs() < 0.02);
     let hole = ring(&[(2.0, 2.0), (9.0, 2.0), (9.0, 9.0), (2.0, 9.0)]);
     let (p, d) = find(&[square, hole], 0.01).unwrap();
-    // In the corner between both rings: the circle that touches two sides and the hole's corner.
+    // In the corner between both rings: the circle that touches two sides and the corner of the hole.
     let radius = 2.0 * 2.0_f64.sqrt() / (1.0 + 2.0_f64.sqrt());
     assert!((d - radius).abs() < 0.02 && p.max_element() < 2.0, "{p} {d}");
 }
@@ -104,7 +104,7 @@ fn listening_changes_nothing_and_the_steps_hold_the_result() {
     let steps = recorder.steps();
     let best = steps.iter().map(|s| s.distance).fold(f64::MIN, f64::max);
     assert!(best - heard.distance <= Options::default().precision, "{best}, {heard:?}");
-    // The last place without a size that is as far is the result.
+    // The result is the last point-sized cell at that distance.
     let far = |s: &&Step| s.half == 0.0 && s.distance >= best - Options::default().precision;
     let last = steps.iter().rfind(far).unwrap();
     assert_eq!((last.center, last.distance), (heard.point, heard.distance));

@@ -1,4 +1,4 @@
-//! Picking against the item plane and against brute force.
+//! Picking, compared with the item plane and with brute force.
 
 use crate::scenes::Numbers;
 use crate::surface_scenes::{Prepared, of_triangles, random, three_beams};
@@ -42,7 +42,7 @@ fn the_first_triangle_under_a_pixel_is_the_visible_one() {
     assert!(differing * 500 < pixels, "{differing} of {pixels}");
 }
 
-/// Returns whether some of a fine raster of points in the rectangle lies on the triangle.
+/// Returns whether any point of a fine grid in the rectangle is on the triangle.
 fn some_point_hits(scene: &Scene, p: &Prepared<'_>, rect: &Rect, item: u32) -> bool {
     let steps = 40;
     (0..=steps).flat_map(|j| (0..=steps).map(move |i| (i, j))).any(|(i, j)| {

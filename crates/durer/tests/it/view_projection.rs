@@ -13,7 +13,7 @@ fn ndc(camera: &Camera, aspect: f64, p: DVec3) -> DVec3 {
     clip.truncate() / clip.w
 }
 
-/// Checks that the eye is as near to the points as it may come.
+/// Checks that the eye is as near to the points as possible.
 fn at_closest(
     camera: &Camera,
     points: impl IntoIterator<Item = DVec3> + Clone,
@@ -68,8 +68,8 @@ proptest! {
         prop_assert!(sides.iter().flatten().all(|s| *s <= frame + slack), "{:?} {}", sides, frame);
         prop_assert!(seen.iter().all(|p| p.z.abs() < 1.0), "{:?}", seen);
         prop_assert!((camera.target - camera.eye).dot(d.to_eye()) < 0.0);
-        // Two opposite sides are touched, unless the eye is as near as it may come. A line may have
-        // no extent in the picture.
+        // Two opposite sides are touched, unless the eye is as near as possible. A line may have no extent in the
+        // picture.
         let line = b.size().to_array().iter().filter(|s| **s > 0.0).count() < 2;
         let touched = |s: &[f64; 2]| s.iter().all(|s| (s - frame).abs() <= slack);
         prop_assert!(
@@ -85,7 +85,7 @@ proptest! {
         let sphere = BoundingSphere { center: c.into(), radius };
         let camera = fit_sphere(Some(&sphere), &d, &o).unwrap();
         let frame = 1.0 - 2.0 * o.margin;
-        // Outermost points seen from the eye: where its rays touch the sphere.
+        // The outermost points seen from the eye: its rays touch the sphere there.
         let (mut largest, distance) = (0.0_f64, (camera.eye - sphere.center).length());
         for k in 0..720 {
             let (sin, cos) = f64::from(k).to_radians().sin_cos();
@@ -121,7 +121,7 @@ proptest! {
         let closest = at_closest(&camera, points.iter().copied(), &d);
         prop_assert!(closest || outermost(&camera) >= frame - 1e-9);
         prop_assert!(outermost(&box_camera) <= frame + 1e-9);
-        // The order of the points is of no matter.
+        // The order of the points does not matter.
         points.reverse();
         prop_assert_eq!(fit_points(points, &d, &o).unwrap(), camera);
     }

@@ -1,4 +1,4 @@
-//! Sections: what is cut stays closed, and caps have the area that they must have.
+//! Sections: cut bodies remain closed, and caps have the right area.
 
 use crate::data;
 use crate::line_scenes::{self, Random, soup};
@@ -20,7 +20,7 @@ fn sectioned(mesh: Mesh, planes: &[Plane]) -> Section {
     cut(&scene(mesh), planes, &Options::default()).expect("cut")
 }
 
-/// Returns a box with corners at ± size; its faces look out, or in.
+/// Returns a box with corners at ± size; its faces point out or in.
 fn cuboid(size: f32, inwards: bool) -> Mesh {
     let positions = (0..8).map(|i| {
         let sign = |bit: u32| if i >> bit & 1 == 1 { size } else { -size };
@@ -87,7 +87,7 @@ fn section_of_a_box() {
         (vec![plane([1.0, 1.0, 1.0], 0.0)], 27f64.sqrt(), 4.0),
         // In a face: the face is replaced by a cap.
         (vec![plane([0.0, 0.0, 1.0], 1.0)], 4.0, 8.0),
-        // Two planes, the second of which cuts the cap of the first.
+        // Two planes; the second cuts the cap of the first.
         (vec![plane([0.0, 0.0, 1.0], 0.0), plane([1.0, 0.0, 0.0], 0.0)], 4.0 + 2.0, 2.0),
     ] {
         let section = sectioned(cuboid(1.0, false), &planes);

@@ -1,4 +1,4 @@
-//! Steps of culling, labels, sections and fog: they change nothing and rebuild the results.
+//! Steps of culling, labels, sections and fog: recording them changes nothing, and they rebuild the results.
 
 use crate::raster_coverage::Random;
 use crate::scenes::{instance, sphere};
@@ -34,7 +34,7 @@ fn planes_of_a_box_lead_to_its_relation() {
             Containment::Crossing => assert!(!outside && !inside),
         }
         found[relation as usize] += 1;
-        // A body outside is known from the first plane that it is beyond.
+        // A body outside is rejected at the first plane that it is beyond.
         if relation != Containment::Outside {
             assert_eq!(steps.steps().len(), 7);
         }
@@ -109,7 +109,7 @@ fn edges_and_caps_lead_to_the_outline_of_a_section() {
     assert_eq!(outline, found.outline);
     assert_eq!(area, found.cap_area);
     assert!(!outline.is_empty() && area > 0.1, "{area}");
-    // One step for each triangle of the first plane, which divides as many as there are edges.
+    // One step for each triangle of the first plane, as many are divided as the cut has edges.
     let first: Vec<_> = steps
         .steps()
         .iter()

@@ -1,4 +1,4 @@
-//! Pictures from pictures: the warped view beside the one that is rendered.
+//! Pictures warped from others, compared with rendered ones.
 
 use crate::scenes::sphere;
 use durer::math::{DMat4, DVec3, Vec3, Vec4};
@@ -10,7 +10,7 @@ use durer::view::warp::{HOLE, Options, Source, Step, Warped, warp};
 
 const SIDE: u32 = 120;
 
-/// Returns a sphere before a wall, each in one colour.
+/// Returns a sphere in front of a wall, each in one colour.
 fn scene() -> Scene {
     let color = |r, g, b| Material {
         model: ShadingModel::Unlit,
@@ -58,7 +58,7 @@ fn warped(pictures: &[(Framebuffer, Camera)], to: &Camera) -> Warped {
     warp(&sources, to, [SIDE; 2], &Options::default(), &mut NoTrace).expect("warped")
 }
 
-/// Pixels that are not holes and have another colour than they should.
+/// Returns the pixels that are not holes but have the wrong colour.
 fn wrong(found: &Warped, expected: &Framebuffer) -> usize {
     let pairs = found.framebuffer.color.data().iter().zip(expected.color.data());
     let shown = found.source.data().iter().map(|&s| s != HOLE);
@@ -75,7 +75,7 @@ fn a_near_camera_sees_what_it_would_see() {
         {
             let to = camera(eye, parallel);
             let (found, expected) = (warped(&pictures, &to), picture(to));
-            // Only the outline of the sphere may be a pixel off: it has some 220 pixels.
+            // Only the outline of the sphere, of about 220 pixels, may be off by a pixel.
             let wrong = wrong(&found, &expected);
             assert!(wrong < 110, "{eye} {parallel}: {wrong} wrong");
             assert!(found.holes > 20 && found.holes < 3000, "{eye}: {} holes", found.holes);
@@ -113,7 +113,7 @@ fn a_second_picture_fills_holes() {
     assert_eq!(magenta as u64, both.holes);
 }
 
-/// Returns a red square in front of nothing, in a picture whose pixels at its outline are `mixed`.
+/// Returns a red square on an empty background; the pixels at its outline are `mixed`.
 fn square(mixed: [u8; 4]) -> (Pixels<[u8; 4]>, Pixels<f32>) {
     let (mut color, mut depth) = (Pixels::new(SIDE, SIDE, [255; 4]), Pixels::new(SIDE, SIDE, 1.0));
     for (x, y) in (40..80).flat_map(|y| (40..80).map(move |x| (x, y))) {
@@ -121,7 +121,7 @@ fn square(mixed: [u8; 4]) -> (Pixels<[u8; 4]>, Pixels<f32>) {
         depth.set(x, y, 0.6);
     }
     for i in 39..=80 {
-        // Half of the mixed pixels have the depth of the square, half that of nothing.
+        // Half of the mixed pixels have the depth of the square, half that of the background.
         for (x, y) in [(39, i), (79, i), (i, 39), (i, 79)] {
             color.set(x, y, mixed);
         }
@@ -137,14 +137,14 @@ fn nothing_is_no_wall() {
     let to = DVec3::new(0.8, 0.0, 0.0);
     let to = Camera { target: to, ..camera(to + DVec3::new(0.0, 0.0, 5.0), false) };
     let found = warp(&[source], &to, [SIDE; 2], &Options::default(), &mut NoTrace).expect("view");
-    // A camera that is moved, not turned, sees the endless where it was: only what the square hid is
-    // a hole, and no border of the picture.
+    // A camera that is moved, not turned, keeps the background in place: only the area that the square hid is a hole,
+    // and no border of the picture.
     let border = (0..SIDE).flat_map(|i| [(0, i), (SIDE - 1, i), (i, 0), (i, SIDE - 1)]);
     for (x, y) in border {
         assert_eq!(found.framebuffer.color.get(x, y), Some([255; 4]), "{x} {y}");
     }
     assert!(found.holes > 0 && found.holes < 42 * 42, "{}", found.holes);
-    // What one picture has nothing of, another may show a surface in.
+    // Pixels without a surface in one picture may have one in another.
     let far = Pixels::new(SIDE, SIDE, 0.9);
     let green = Pixels::new(SIDE, SIDE, [0, 200, 0, 255]);
     let second = Source { color: &green, depth: &far, camera: to };
@@ -164,7 +164,7 @@ fn smoothed_outlines_leave_no_ghosts() {
         let found =
             warp(&[source], &to, [SIDE; 2], &Options::default(), &mut NoTrace).expect("view");
         let mixed = found.framebuffer.color.data().iter().filter(|c| c[1] == 128).count();
-        // The corners have neighbours that are mixed too.
+        // The corners have mixed neighbours too.
         assert!(mixed <= 8, "{x}: {mixed}");
     }
 }

@@ -45,7 +45,7 @@ proptest! {
         prop_assert_eq!(map.to_world(DVec2::new(p.x1().into(), top.into())), r.max());
     }
 
-    /// One ulp of the extent, or of the coordinates where the screen's are too coarse for that.
+    /// One ulp of the extent, or of the coordinates if the screen's are too coarse.
     #[test]
     fn there_and_back_is_the_identity(
         window in windows(), viewport in viewports(), (aspect, y_axis) in aspects(),

@@ -1,4 +1,4 @@
-//! Visible regions against rays, areas, and themselves.
+//! Visible regions, compared with rays and areas, and with each other.
 
 use crate::scenes::{Numbers, instance, soup};
 use crate::surface_scenes::{Prepared, each, of_triangles};
@@ -28,7 +28,7 @@ fn from_above(height: f64) -> Camera {
     }
 }
 
-/// Returns how often rings wind around a point.
+/// Returns the winding number of rings around a point.
 fn winding(rings: &[Vec<DVec2>], p: DVec2) -> i32 {
     let mut sum = 0;
     for ring in rings {
@@ -53,8 +53,8 @@ fn distance(rings: &[Vec<DVec2>], p: DVec2) -> f64 {
     sides.map(to).fold(f64::INFINITY, f64::min)
 }
 
-/// Returns the item of the nearest triangle on the line of sight through a point of the plane;
-/// `None` if another is as near but for rounding.
+/// Returns the item of the nearest triangle on the line of sight through a point of the plane; `None` if another is
+/// equally near up to rounding.
 fn by_ray(scene: &Scene, camera: &Camera, p: DVec2) -> Option<Option<u32>> {
     let [right, up, back] = camera.axes();
     let at = camera.target + right * p.x + up * p.y;
@@ -189,7 +189,7 @@ fn visible_regions_fill_the_silhouette() {
     }
 }
 
-/// Areas by item.
+/// Returns areas by item.
 fn areas(scene: &Scene, view: &View, items: u32) -> Vec<f64> {
     let mut areas = vec![0.0; items as usize];
     for region in solved(scene, view).regions(u64::from) {
@@ -282,8 +282,7 @@ fn visible_regions_trapped_look_like_disjoint_ones() {
     assert!(compared > 20, "{compared} points compared");
 }
 
-/// Checks that nothing with a colour loses it: an area that a shape gives up at its corners would
-/// be a hole.
+/// Checks that no coloured area is lost: an area that a shape gives up at its corners would be a hole.
 #[test]
 fn visible_regions_trapped_cover_what_disjoint_ones_do() {
     for seed in 0..6 {
@@ -303,7 +302,7 @@ fn visible_regions_trapped_cover_what_disjoint_ones_do() {
     }
 }
 
-/// Between narrow strips the background must not shine through: some shape lies beneath them all.
+/// Checks that the background does not show between narrow strips: some shape extends beneath them all.
 #[test]
 fn visible_regions_trapped_back_narrow_strips() {
     let strip = |from: f32, to: f32, tilt: f32| {
@@ -323,7 +322,7 @@ fn visible_regions_trapped_back_narrow_strips() {
     let regions = region::draw(&scene, &view, &lights, &options).expect("drawing").regions;
     for k in -10..=50 {
         let p = DVec2::new(0.001 * f64::from(k), 0.123);
-        // A dot that is as wide as the reach.
+        // A dot as wide as `reach`.
         let dot = [-0.5, -0.25, 0.0, 0.25, 0.5].map(|d| p + DVec2::X * (d * reach));
         let backed = regions.iter().any(|r| dot.iter().all(|&q| winding(&r.rings, q) != 0));
         assert!(backed, "{p}");
@@ -348,7 +347,7 @@ fn in_light(kind: LightKind) -> durer::target::drawing::Drawing {
 #[test]
 fn visible_regions_in_the_shadow_of_a_plate() {
     let direction = DVec3::new(2.0, 0.0, -1.0).normalize();
-    // A light at height 3 throws the plate's shadow at 3/2 of its size.
+    // A light at height 3 makes the plate's shadow 3/2 of its size.
     let position = DVec3::new(-3.0, 0.5, 3.0);
     for (kind, area, x) in [
         (LightKind::Directional { direction }, 1.0, [-0.5, 0.5]),
@@ -382,7 +381,7 @@ fn visible_regions_hatched_by_tone() {
         assert!(lines.iter().all(|l| l.class == LineClass::Hatch && l.points.len() == 2));
         lines.iter().map(|l| l.length()).sum::<f64>()
     };
-    // The area over the distance of the lines.
+    // The area divided by the spacing of the lines.
     assert!((length(RegionKind::Surface, 0) - 1000.0).abs() < 5.0);
     assert!((length(RegionKind::Cap, 255) - 250.0).abs() < 5.0);
     assert_eq!(length(RegionKind::Surface, 255), 0.0);
@@ -408,7 +407,7 @@ fn caps_of_each_part_are_hatched_in_a_direction_of_their_own() {
         let second = line.points[0].x > 9.5 && line.points[0].x < 19.5;
         assert_eq!(angle(line), if second { 135 } else { 45 }, "{line:?}");
     }
-    // 9 × 9 at a distance of four spacings.
+    // 9 × 9 dots at a distance of four spacings.
     let length: f64 = lines.iter().map(|l| l.length()).sum();
     assert!((length / (4.0 * 81.0 / 0.8) - 1.0).abs() < 0.02, "{length}");
 }
@@ -429,14 +428,14 @@ fn visible_regions_hatched_alike_share_their_lines() {
     // Through both; across, twenty columns.
     assert!(first.iter().all(|l| (l.length() - 2.0).abs() < 1e-9), "{first:?}");
     assert_eq!((first.len(), second.len()), (10, 20));
-    // A little lighter, and every second line is left of those across.
+    // A little lighter: every second of the lines across remains.
     let lines = hatch::hatch(&[region(0.05, 41)], &options);
     assert_eq!(lines.iter().filter(across).count(), 5, "{lines:?}");
 }
 
 #[test]
 fn visible_regions_are_painted_from_far_to_near() {
-    // The nearer one is met first from the left, and by number.
+    // The nearer one comes first from the left, and by number.
     let near = square(-1.0, -1.0, 1.0, 1.5);
     let far = square(0.0, -0.5, 0.0, 1.0);
     let scene = of_triangles([near, far].as_flattened());

@@ -1,4 +1,4 @@
-//! All visible-surface methods: the same scene in, the same picture out.
+//! All visible-surface methods: the same scene gives the same picture.
 
 use crate::scenes;
 use durer::math::{DMat4, DVec3, Vec3};
@@ -17,7 +17,7 @@ fn mesh_scene(positions: Vec<Vec3>) -> Scene {
     Scene { meshes: vec![mesh], instances: vec![scenes::instance(0)], ..Scene::default() }
 }
 
-/// Returns three beams, each over the next.
+/// Returns three cyclically overlapping beams.
 fn cyclic() -> Scene {
     let mut positions = Vec::new();
     for i in 0..3 {
@@ -45,7 +45,7 @@ fn ties() -> Scene {
     mesh_scene(positions)
 }
 
-/// Returns a scene of the random kind that this number stands for.
+/// Returns the random scene with this number.
 fn random_scene(seed: u64) -> Scene {
     match seed % 10 {
         8 => cyclic(),
@@ -54,7 +54,7 @@ fn random_scene(seed: u64) -> Scene {
     }
 }
 
-/// Returns a camera somewhere around the scene, sometimes amid it, and a size from 1 × 1 to 256².
+/// Returns a camera around or sometimes inside the scene, and a size from 1 × 1 to 256².
 fn random_view(seed: u64) -> View {
     let mut numbers = scenes::Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
     for _ in 0..3 {
@@ -99,7 +99,7 @@ fn picture(method: SurfaceMethod, scene: &Scene, view: &View) -> Framebuffer {
     framebuffer
 }
 
-/// Returns whether a method shows one surface per pixel, so that colours are the z-buffer's too.
+/// Returns whether a method shows one surface per pixel, so that colours equal the z-buffer's too.
 fn one_surface_per_pixel(method: SurfaceMethod) -> bool {
     use SurfaceMethod::{ScanLineZ, SpanningScanLine, ZBuffer};
     matches!(method, ZBuffer | ScanLineZ | SpanningScanLine)
@@ -127,8 +127,8 @@ fn all_methods_agree_with_the_z_buffer_on_random_scenes() {
     }
 }
 
-/// The z-buffer lights triangles that are seen from their fronts in a shorter way, sixteen pixels at a time:
-/// spheres whose normals agree with their faces, look away, are missing, or are mixed, from all sides.
+/// Checks the z-buffer's faster lighting of front faces, sixteen pixels at a time: spheres whose normals agree with
+/// their faces, point away, are missing, or are mixed, from all sides.
 #[test]
 fn colours_of_curved_surfaces_are_those_of_other_methods() {
     for seed in 0..48_u64 {
@@ -154,8 +154,8 @@ fn colours_of_curved_surfaces_are_those_of_other_methods() {
     }
 }
 
-/// Faces in one plane that the eye looks at straight: all depths are equal, and where they overlap the
-/// lowest item must win, whatever its size and whenever it is come upon.
+/// Checks faces in one plane perpendicular to the view: all depths are equal, and where they overlap the lowest item
+/// must win, whatever its size and position in the order.
 #[test]
 fn of_equally_deep_faces_the_lowest_item_is_seen() {
     let eye = DVec3::Z * 2.0;
@@ -184,7 +184,7 @@ fn of_equally_deep_faces_the_lowest_item_is_seen() {
             let triangles = scene.meshes[0].positions.chunks(3);
             let lowest = triangles.enumerate().find(|(_, t)| inside(t));
             if let (Some((lowest, _)), Some(seen)) = (lowest, items.get(x, y)) {
-                // Nearer to an edge than told apart here, a lower one may be seen.
+                // Nearer to an edge than can be distinguished here, a lower one may be visible.
                 assert!(seen as usize <= lowest, "seed {seed} at {x},{y}: {seen} {lowest}");
             }
         }
@@ -210,7 +210,7 @@ fn masked_and_textured_surfaces_lines_and_points_agree_too() {
     }
 }
 
-/// Returns the same triangles in another order, and where each came from.
+/// Returns the same triangles in another order, and the original number of each.
 fn shuffled(scene: &Scene, seed: u64) -> (Scene, Vec<u32>) {
     let mut numbers = scenes::Numbers(seed);
     let triangles: Vec<[Vec3; 3]> = scene.meshes[0].positions.as_chunks().0.to_vec();
@@ -239,7 +239,7 @@ fn the_order_of_triangles_changes_nothing() {
     }
 }
 
-/// Returns a scene with something in two instances, so that runs change within rows.
+/// Returns a scene with two instances of one mesh, so that runs change within rows.
 fn two_instances() -> Scene {
     let mut scene = scenes::soup(170, 4);
     let world_from_mesh = DMat4::from_rotation_y(0.7);
@@ -263,7 +263,7 @@ fn tracing_changes_no_picture() {
     }
 }
 
-/// Depths and items as they come from writes to a row.
+/// Depths and items from writes to a row.
 #[test]
 fn scan_line_z_is_rebuilt_from_its_steps() {
     let scene = two_instances();
@@ -289,7 +289,7 @@ fn scan_line_z_is_rebuilt_from_its_steps() {
     assert_eq!(steps.dropped(), 0);
 }
 
-/// Items as they come from spans and from writes to a row.
+/// Items from spans and from writes to a row.
 #[test]
 fn spanning_scan_line_is_rebuilt_from_its_steps() {
     use spanning_scan_line::Step;

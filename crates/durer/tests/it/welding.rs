@@ -19,7 +19,7 @@ fn lengths(drawing: &Drawing) -> [f64; 2] {
     [drawing.length(|l| l.is_visible()), drawing.length(|l| !l.is_visible())]
 }
 
-/// Holds lines against those of the same body without faults.
+/// Compares lines with those of the same body without faults.
 fn assert_like(name: &str, found: &Drawing, expected: &Drawing) {
     let borders = found.length(|l| matches!(l.class, LineClass::Border | LineClass::NonManifold));
     assert_eq!((found.edges.borders, borders), (0, 0.0), "{name}");
@@ -44,7 +44,7 @@ fn corners_that_rounding_has_moved_are_one() {
         let found = drawn(&soup(&noisy(amount)), Weld::Auto);
         assert_like(&format!("{amount}"), &found, &exact);
     }
-    // More is not rounding, but may be requested.
+    // Larger displacements are not rounding, but welding them may be requested.
     let apart = soup(&noisy(1e-3));
     assert!(drawn(&apart, Weld::Auto).edges.borders > 18);
     assert_eq!(drawn(&apart, Weld::Within(4e-3)).edges.borders, 0);
@@ -60,13 +60,12 @@ fn what_few_digits_have_moved_is_one() {
     assert!(drawn(&scene, Weld::Auto).edges.borders > 0);
     scene.last_digit = 1e-4;
     assert_like("four decimals", &drawn(&scene, Weld::Auto), &exact);
-    // Who writes so few means what he says.
+    // Coordinates with so few digits are taken as exact.
     scene.last_digit = 0.01;
     assert!(drawn(&scene, Weld::Auto).edges.borders > 0);
 }
 
-/// Returns each second triangle in parts, as fans from one corner: its sides are divided and those
-/// of its neighbours are not.
+/// Splits each second triangle into a fan from one corner: its sides are divided but those of its neighbours are not.
 fn with_junctions(triangles: &[Triangle], parts: usize) -> Vec<Triangle> {
     let mut made = Vec::new();
     for (i, &[a, b, c]) in triangles.iter().enumerate() {
@@ -97,7 +96,7 @@ fn edges_along_several_others_have_two_sides() {
 fn triangles_without_height_make_no_lines() {
     let body = cuboid([0.0; 3], [2.0; 3]);
     let whole = drawn(&soup(&body), Weld::Auto);
-    // Between two triangles, one of them divided; and laid along an edge that has two sides already.
+    // Between two triangles, one of them divided; and along an edge that has two sides already.
     let [a, b, c] = body[3];
     let middle = (b + c) * 0.5;
     let mut between = body.clone();
@@ -140,7 +139,7 @@ fn faces_of_one_tree_meet_and_those_of_others_do_not() {
 
 #[test]
 fn what_is_apart_stays_apart() {
-    // Walls are closed, however thin; sheets a hair apart; a hole no larger than a border reaches.
+    // Walls are closed, however thin; sheets a hair apart; a hole no larger than the reach of a border.
     let wall = cuboid([0.0; 3], [2.0, 2.0, 1e-6]);
     assert_eq!(drawn(&soup(&wall), Weld::Auto).edges.edges, 18);
     let sheet = |z: f64| quad([[0.0, 0.0, z], [2.0, 0.0, z], [2.0, 2.0, z], [0.0, 2.0, z]]);
@@ -155,7 +154,7 @@ fn what_is_apart_stays_apart() {
 
 #[test]
 fn many_borders_on_each_other_are_given_up_soon() {
-    // Each lies on all others, and ends within them.
+    // Each overlaps all others and ends within them.
     let fan = |i: u32| {
         let x = f64::from(i) * 1e-3;
         [DVec3::new(x, 0.0, 0.0), DVec3::new(x + 3.0, 0.0, 0.0), DVec3::new(x, 1.0, x)]

@@ -1,4 +1,4 @@
-//! Wireframes: each edge once, in the picture only, whatever lies behind the eye.
+//! Wireframes: each edge once, in the picture only, whatever is behind the eye.
 
 use crate::scenes;
 use crate::surface_scenes::{Prepared, of_triangles};
@@ -50,7 +50,7 @@ fn the_picture_is_rebuilt_from_its_steps() {
     assert!(found.data().iter().filter(|c| c[0] == 0).count() > 800);
 }
 
-/// Hidden edges are there too: that is what makes a wireframe ambiguous.
+/// Checks that hidden edges are drawn too, which makes a wireframe ambiguous.
 #[test]
 fn what_is_hidden_is_drawn() {
     let near = [Vec3::new(-2., -2., 0.5), Vec3::new(2., -2., 0.5), Vec3::new(0., 2.5, 0.5)];
@@ -73,7 +73,7 @@ fn soups_around_the_eye_do_no_harm() {
     }
 }
 
-/// An edge that leaves the picture lights exactly the pixels of the whole edge that are in it.
+/// Checks that an edge that leaves the picture lights exactly those pixels of the whole edge that are in it.
 #[test]
 fn edges_across_the_border_keep_their_pixels() {
     let mut seen = 0;
@@ -89,7 +89,7 @@ fn edges_across_the_border_keep_their_pixels() {
         render(&scene, &view, &Options::default(), &mut target, &mut steps);
         let mut whole = Pixels::new(40, 30, [255; 4]);
         for Step::Edge { from, to, .. } in steps.steps() {
-            // Without a window, but for lines that nobody can wait for.
+            // Without a window, except lines that would take too long.
             if (*to - *from).abs().max_element() > 1 << 20 {
                 continue;
             }

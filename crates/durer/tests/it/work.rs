@@ -1,4 +1,4 @@
-//! Budgets and stops by themselves.
+//! Budgets and stops, tested alone.
 
 use crate::scenes;
 use durer::Error;
@@ -110,7 +110,7 @@ fn pictures_and_drawings_count_all_of_their_steps() {
         (options.algorithm, options.work) = (algorithm, work.clone());
         render(&scene, &options).expect("picture");
         let Progress { stage, done, of } = work.progress();
-        // A painter does not know how many rows it has done.
+        // A painter does not know the number of rows done.
         let counts = algorithm != SurfaceMethod::DepthSort;
         assert!(
             stage.starts_with("rows") && of > 0 && (done == of || !counts),
@@ -135,7 +135,7 @@ fn every_method_charges_its_lists_and_gives_them_back() {
         let (expected, _) = render(&scene, &options).expect("room for all");
         drop(expected);
         assert_eq!(options.work.used(), 0, "{method}");
-        // With less and less room some stage is the first that has none: that of the method among them.
+        // With each budget some stage is the first to exceed it; the method is among these stages.
         let mut stages = std::collections::BTreeSet::new();
         for budget in (0..60).map(|i| i * 2000) {
             options.work = Work::with_budget(budget, "--max-memory");
@@ -145,7 +145,7 @@ fn every_method_charges_its_lists_and_gives_them_back() {
             }
             assert_eq!(options.work.used(), 0, "{method} at {budget}");
         }
-        // The production path has no lists beside what it charges by itself.
+        // The production path has no lists other than those that it charges itself.
         let own = method != SurfaceMethod::ZBuffer;
         assert_eq!(stages.contains("lists of the method"), own, "{method}: {stages:?}");
     }

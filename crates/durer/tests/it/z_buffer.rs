@@ -1,4 +1,4 @@
-//! The production path against a z-buffer of a dozen lines over the classical rasterizer.
+//! The production path, compared with a z-buffer of a dozen lines over the textbook rasterizer.
 
 use crate::scenes::{self, Numbers};
 use durer::math::{DMat4, DVec3, Vec3};
@@ -11,7 +11,7 @@ use durer::view::window::PixelRect;
 use durer::visibility::surface::input::SurfaceInput;
 use durer::visibility::surface::setup::Filter;
 
-/// Returns nearest item and its depth at each pixel's centre.
+/// Returns the nearest item and its depth at each pixel's centre.
 fn by_the_book(scene: &Scene, view: &View) -> (Vec<u32>, Vec<f32>) {
     let filter = Filter::new(Cull::None, 0);
     let input = SurfaceInput::new(scene, view, filter).expect("triangles");
@@ -59,8 +59,8 @@ fn agrees_with_the_book(scene: &Scene, options: &RenderOptions, what: &str) {
     assert_eq!(found.depth.expect("depths").data(), depths, "{what}");
 }
 
-/// Triangles of a few pixels and less, among larger ones and on the picture's border, in two instances of which one is
-/// mirrored.
+/// Checks triangles of a few pixels or less, among larger ones and on the picture's border, in two instances, one of
+/// them mirrored.
 #[test]
 fn items_and_depths_of_small_triangles_are_those_of_the_definition() {
     for seed in 0..40 {
@@ -80,8 +80,8 @@ fn items_and_depths_of_small_triangles_are_those_of_the_definition() {
     }
 }
 
-/// Returns triangles whose corners lie on pixel centres and corners, seen so that a unit is a pixel; they
-/// reach over as many pixels as `reach`.
+/// Returns triangles with corners on pixel centres and pixel corners, in a view with one pixel per unit; they extend
+/// over `reach` pixels.
 fn on_the_grid(seed: u64, size: f64, reach: f64) -> (Scene, Camera) {
     let mut numbers = Numbers(seed);
     let mut at = |extent: f64| (numbers.next() * 2.0 * extent as f32).floor() * 0.5;

@@ -113,7 +113,7 @@ fn pictures_are_found_beside_the_file() {
     let model = shaded("", &[("b.bmp", "DiffuseColor", &repeated)], "");
     let placed = model.scene.materials[0].base_color_texture.expect("a texture");
     assert_eq!(placed.tex_coord, 1);
-    // The picture fills half the width, and a quarter of the height from a quarter on.
+    // The picture fills half the width, and in height the range from 1/4 to 1/2.
     let at = |u: f64, v: f64| placed.transform * DVec3::new(u, 1.0 - v, 1.0);
     near(at(0.0, 0.25), DVec3::new(0.0, 1.0, 1.0));
     near(at(0.5, 0.5), DVec3::new(1.0, 0.0, 1.0));

@@ -87,7 +87,7 @@ mod tests {
         for (lon, lat) in [(0.0, 0.0), (3.5, 1.5), (-9.0, -1.0), (1.0, 0.8)] {
             let there = apply((lon, lat), (bodies[0], shift), (bodies[1], Shift::NONE));
             assert!((there.1 - lat).abs() > 1e-6);
-            // Heights of up to 600 m are left out between: a tenth of a metre.
+            // Heights of up to 600 m are neglected in between: a tenth of a metre.
             let back = apply(there, (bodies[1], Shift::NONE), (bodies[0], shift));
             assert!(((back.0 - lon) * lat.cos()).abs() < 2e-8 && (back.1 - lat).abs() < 2e-8);
             let same = apply((lon, lat), (bodies[0], shift), (bodies[0], shift));

@@ -19,7 +19,7 @@ pub struct Node {
 }
 
 impl Node {
-    /// Reads a definition; `None` if it is none.
+    /// Reads a definition; `None` if it is invalid.
     pub fn parse(text: &str) -> Option<Self> {
         let mut rest = text.trim();
         let node = Self::read(&mut rest, 0)?;

@@ -195,7 +195,7 @@ mod tests {
             }
         }
         assert_eq!((size(0, 16), size(5, 0), size(1, 16), size(17, 16)), (0, 0, 80, 800));
-        // An index that leads to itself is none.
+        // An index that refers to itself is invalid.
         let mut index =
             build([(Rect::around([DVec2::ZERO]), 0), (Rect::around([DVec2::ONE]), 9)].into_iter());
         let window = Rect::around([DVec2::ZERO, DVec2::ONE]).expect("a window");

@@ -30,7 +30,7 @@ pub fn to_text(days: i64) -> String {
     format!("{year:04}-{month:02}-{day:02}")
 }
 
-/// Returns a time as text, of this many parts in a second; with the day, in UTC, or without.
+/// Returns a time as text, given in this many parts of a second; with the day, in UTC, or without.
 pub fn time(count: i64, parts: i64, has_day: bool, is_utc: bool) -> String {
     let (seconds, rest) = (count.div_euclid(parts), count.rem_euclid(parts));
     let (days, second) = (seconds.div_euclid(86_400), seconds.rem_euclid(86_400));

@@ -38,7 +38,7 @@ impl Reader {
     /// An error for files that are not Parquet, or have no geometries as well-known binary.
     pub fn new(bytes: Vec<u8>, _: &Beside<'_>, warnings: &mut Warnings) -> Result<Self> {
         super::footer::check(&bytes)?;
-        // Of broken files the crate may be of another opinion than its authors.
+        // On broken files the crate may panic.
         let open = || SerializedFileReader::new(::bytes::Bytes::from(bytes));
         let file = caught(open)?.map_err(|_| broken("its directory is missing or damaged"))?;
         let about = file.metadata().file_metadata();

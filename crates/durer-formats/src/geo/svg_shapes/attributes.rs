@@ -80,7 +80,7 @@ pub fn property<T: Copy>(
     let word = given.trim();
     let found = words.iter().find(|(known, _)| word.eq_ignore_ascii_case(known));
     let inherits = ["inherit", "unset", "initial"].iter().any(|w| word.eq_ignore_ascii_case(w));
-    // `display` has many keywords, of which only one hides.
+    // `display` has many keywords; only `none` hides.
     if found.is_none() && !inherits && words.len() > 1 {
         let known: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
         let word = crate::text::quote(word.as_bytes());

@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 /// Edges that a curve, or a quarter of an ellipse, becomes.
 pub const STEPS: u32 = 16;
 
-/// Largest number of positions of a path, including its flattened curves, of which a short text makes many.
+/// Largest number of positions of a path, including those of flattened curves, which a short text can make numerous.
 const MAX_POSITIONS: usize = 1 << 24;
 
 /// Sub-paths in the element's coordinates, each open or closed.

@@ -158,11 +158,11 @@ mod tests {
 
     #[test]
     fn two_triangles_on_an_edge() {
-        // 0 1 2 all fresh by the table's first entry; then the edge (0, 2) of it with a fresh vertex.
+        // 0 1 2, all new, from the table's first entry; then its edge (0, 2) with a new vertex.
         let mut data = vec![0xe1, 0xf0, 0x00];
         data.extend([0; QUEUE]);
         assert_eq!(decode_triangles(&data, 6).unwrap(), [0, 1, 2, 0, 2, 3]);
-        // The edge with the vertex after the last written one, 0 + 1; then a written one, +3.
+        // The edge with the vertex after the last explicit one, 0 + 1; then an explicit one, +3.
         let mut data = vec![0xe1, 0xf0, 0x0e, 0x0f, 6];
         data.extend([0; QUEUE]);
         assert_eq!(decode_triangles(&data, 9).unwrap(), [0, 1, 2, 0, 2, 1, 0, 1, 4]);

@@ -46,7 +46,7 @@ impl<'a, 'i> Walk<'a, 'i> {
         Ok(())
     }
 
-    /// Adds a copy of an element, as it is within a scope, to the definitions; returns its id.
+    /// Adds a copy of an element, with the effects of a scope, to the definitions; returns its id.
     fn copy(&mut self, shown: Node<'a, 'i>, scope: Scope) -> Result<String> {
         let number = self.changes.definitions.len();
         let id = (number..)

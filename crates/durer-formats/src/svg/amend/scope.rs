@@ -17,7 +17,7 @@ pub(super) struct Scope {
     pub(super) letters: Letters,
     /// Space between letters, in pixels.
     pub(super) spacing: f64,
-    /// True within a text that places no letters by themselves.
+    /// True within a text that does not position single letters.
     pub(super) is_free: bool,
 }
 

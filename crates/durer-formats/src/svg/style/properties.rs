@@ -90,7 +90,7 @@ const OTHERS: [&str; 45] = [
     "width",
     "x",
     "y",
-    // Parts of shorthands that are requested by themselves.
+    // Parts of shorthands that are requested separately.
     "font",
     "marker",
     "background",

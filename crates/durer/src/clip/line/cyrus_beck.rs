@@ -40,7 +40,7 @@ pub const INFO: Info = Info {
         "if t_E > t_L, or all is outside a border: reject, stop",
         "if t_E > 0: the start is A + t_E·v",
         "if t_L < 1: the end is A + t_L·v",
-        "accept what is between",
+        "accept the part between",
     ],
 };
 

@@ -44,7 +44,7 @@ pub const INFO: Info = Info {
         "if α1 > α2, or all is outside a border: reject, stop",
         "if α1 > 0: the start is A + α1·(B − A), in x, y and w",
         "if α2 < 1: the end is A + α2·(B − A)",
-        "accept what is between; now divide by w",
+        "accept the part between; now divide by w",
     ],
 };
 

@@ -41,7 +41,7 @@ pub const INFO: Info = Info {
         "if u1 > u2, or all is outside a border: reject, stop",
         "if u1 > 0: the start is A + u1·(B − A)",
         "if u2 < 1: the end is A + u2·(B − A)",
-        "accept what is between",
+        "accept the part between",
     ],
 };
 

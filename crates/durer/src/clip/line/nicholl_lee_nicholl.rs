@@ -32,11 +32,11 @@ pub const INFO: Info = Info {
     pseudocode: &[
         "c := region of A: inside, beside a border, or at a corner",
         "both ends inside: accept; both beyond one border: reject",
-        "for the corners of the window that the region asks for:",
-        "    compare the side of the ray from A through the corner on which B lies",
-        "if B is beside the rays that see the window: reject, stop",
-        "if A is outside: A := crossing with the border that the rays tell",
-        "if B is outside: B := crossing with the border that the rays tell",
+        "for the corners of the window that the region needs:",
+        "    on which side of the ray from A through the corner is B?",
+        "if B is outside the rays that enclose the window: reject, stop",
+        "if A is outside: A := crossing with the border between the rays around B",
+        "if B is outside: B := crossing with the border between the rays around B",
         "accept AB",
     ],
 };

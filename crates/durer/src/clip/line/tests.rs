@@ -1,4 +1,4 @@
-//! Laws that hold for all line clippers, on coordinates that touch and on coordinates of all sizes.
+//! Laws of all line clippers, on coordinates where segments touch and on coordinates of all sizes.
 
 use super::*;
 use crate::clip::exact;
@@ -55,8 +55,7 @@ fn case() -> impl Strategy<Value = (Rect, Segment<DVec2>)> {
     })
 }
 
-/// Returns whether closed segment and rectangle meet: no axis and not the segment's normal
-/// separates them.
+/// Returns whether a closed segment and a rectangle meet: neither an axis nor the segment's normal separates them.
 fn meets(w: &Rect, s: &Segment<DVec2>) -> bool {
     let Some(around) = Rect::around([s.start, s.end]) else { return false };
     let (min, max) = (w.min(), w.max());
@@ -152,7 +151,7 @@ proptest! {
         prop_assert_eq!(bits(places), bits(got));
     }
 
-    /// Points of any positive weight represent the same places; exact where weights are powers of two.
+    /// Checks that points of any positive weight represent the same positions; exact if weights are powers of two.
     #[test]
     fn weights_do_not_move_places((w, s) in case(), k in prop::array::uniform2(-3i32..=3)) {
         let weights = k.map(|k| libm::scalbn(1.0, k));
@@ -169,24 +168,24 @@ proptest! {
         for (p, q) in [(got.start, expected.start), (got.end, expected.end)] {
             prop_assert!(p.z > 0.0);
             let place = p.truncate() * (0.25 / p.z);
-            // Weights from 1/8 to 8 make an ulp of a coordinate 64 ulps of the place.
+            // Weights from 1/8 to 8 make an ulp of a coordinate 64 ulps of the position.
             prop_assert!((place - q * 0.25).abs().max_element() <= 64.0 * tolerance(&w, &s), "{} {}", p, q);
         }
     }
 
-    /// Checks that the visible part of a segment that ends behind the eye leads to the infinite.
+    /// Checks that the visible part of a segment that ends behind the eye goes to infinity.
     #[test]
     fn what_runs_behind_the_eye_is_a_ray((w, s) in case()) {
         let direction = s.end;
         let sizes = [w.min(), w.max(), s.start, s.end].map(|p| p.abs().max_element());
-        // Where start and direction nearly cancel, the segment leads through the null vector, or so near
-        // that w rounds to 0 at the cut.
+        // Where start and direction nearly cancel, the segment passes through the null vector, or so near to it that w
+        // rounds to 0 at the cut.
         if sizes.iter().any(|&size| size > 1e6) || (s.start + direction).abs().max_element() < 1e-9 {
             return Ok(());
         }
         let lifted = Segment::new(s.start.extend(1.0), direction.extend(-1.0));
         let got = homogeneous::clip_homogeneous(&w, lifted, &mut NoTrace).unwrap();
-        // The place at t is (start + t (direction − start)) / (1 − 2t), before t = ½.
+        // The position at t is (start + t (direction − start)) / (1 − 2t), before t = ½.
         let ray = HalfPlane::of_rect(&w);
         let far = s.start + (s.start + direction) * 1e9;
         let expected = liang_barsky::clip_half_planes(&ray, Segment::new(s.start, far), &mut NoTrace).unwrap();
@@ -347,7 +346,7 @@ fn midpoint_laws(min: IVec2, max: IVec2, s: Segment<IVec2>) -> Result<(), TestCa
     let log = u64::from(n).next_power_of_two().trailing_zeros() as usize;
     prop_assert!(halvings <= 2 * log, "{} halvings, n = {}", halvings, n);
 
-    // Cutting exactly gives points within a pixel, but for segments that pass a corner that near.
+    // Exact cuts give points within a pixel, except for segments that pass a corner so closely.
     let wide = |v: IVec2| v.as_dvec2();
     let rect = |grow: f64| Rect::new(wide(min) - grow, wide(max) + grow);
     let exact = |w: Rect| {
@@ -412,7 +411,7 @@ fn in_the_tip_of_a_needle_the_smaller_coordinate_has_numbers_inside() {
         assert!(inside(got.start) && inside(got.end), "{got:?}");
         let twice = cyrus_beck::clip_polygon(&window, got, &mut NoTrace).unwrap();
         assert_eq!(bits(twice), bits(Some(got)));
-        // The exact crossing, to some ulps of the larger coordinate.
+        // The exact crossing, up to some ulps of the larger coordinate.
         let expected = turn(p(-187_399_625_496.537, 1.681e-8));
         assert!((got.start - expected).abs().max_element() < 1e-3, "{got:?}");
     }

@@ -343,14 +343,14 @@ mod tests {
                 .flat_map(|p| p.holes().collect::<Vec<_>>())
                 .map(|r| crate::clip::polygon::signed_area(r).abs())
                 .sum();
-            // Where the hole is cut open it is part of the outer ring, or a hole on the border.
+            // A hole that is cut open is part of the outer ring, or a hole on the border.
             assert!((size - 2.0 * holes - 28.0).abs() < 1e-9, "{algorithm:?}: {size} {holes}");
         }
     }
 
     #[test]
     fn vertices_nearer_than_a_grid_cell_stay_valid() {
-        // A long border, and teeth that reach down to it but for less than a cell of the grid.
+        // A long border, and teeth that reach down to within a cell of the grid.
         let (length, mut state) = (1_048_576.0, 3_u64);
         let cell = length / 2f64.powi(40);
         let mut random = || {

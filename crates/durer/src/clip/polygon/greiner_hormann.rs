@@ -31,9 +31,9 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "O(n log n + p) time for n edges of both and p pairs that are near each other, \
            O(n² + r²) at worst for r rings; O(n + k) memory for k crossings",
-    limits: "polygons whose rings cross or overlap are taken by the even-odd rule where no vertex or edge \
-             touches the other polygon, and give rings that may cross; other polygons may touch in any way. \
-             Crossings are rounded to f64: rings nearer than that may come out crossing",
+    limits: "rings of a polygon that cross or overlap are filled by the even-odd rule, must not touch the other \
+             polygon with a vertex or edge, and give rings that may cross; other polygons may touch in any way. \
+             Crossings are rounded to f64, so rings nearer than that may cross in the result",
     pseudocode: &[
         "insert the crossings into the lists of both polygons, by their alpha, linked in pairs",
         "mark each crossing of each list as entry or exit",

@@ -31,7 +31,7 @@ pub const INFO: Info = Info {
     class: Class::ObjectSpace,
     occluder: Occluder::None,
     coherence: &[],
-    cost: "O(n √n) for n edges of usual data, and a union where gaps are asked for",
+    cost: "O(n √n) for n edges of usual data, and a union if gaps are requested",
     limits: "features must be valid",
     pseudocode: &[],
 };
@@ -382,7 +382,7 @@ mod tests {
         assert_eq!(found(&[feature(&[LEFT]), right]), []);
         let corner = feature(&[&[(4.0, 4.0), (9.0, 4.0), (9.0, 9.0)]]);
         assert_eq!(found(&[feature(&[LEFT]), corner]), []);
-        // Whichever way rings run; and a feature that fills the hole of another.
+        // Whatever the direction of the rings; and a feature that fills the hole of another.
         let hole: &[(f64, f64)] = &[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0)];
         let filled = feature(&[&[(2.0, 2.0), (2.0, 1.0), (1.0, 1.0)]]);
         assert_eq!(found(&[feature(&[LEFT, hole]), filled]), []);
@@ -395,7 +395,7 @@ mod tests {
         let shifted = feature(&[&[(3.0, 1.0), (8.0, 1.0), (8.0, 2.0), (3.0, 2.0)]]);
         let crossings = [(4.0, 1.0), (4.0, 2.0)].map(|at| (Mismatch::Overlap, at, [0, 1]));
         assert_eq!(found(&[feature(&[LEFT]), shifted]), crossings);
-        // At the lower end of each edge; two of them have the same.
+        // At the lower end of each edge; two of them coincide.
         let doubled = found(&[feature(&[LEFT]), feature(&[LEFT])]);
         let ends = [(0.0, 0.0), (0.0, 4.0), (4.0, 0.0)].map(|at| (Mismatch::Overlap, at, [0, 1]));
         assert_eq!(doubled, ends);
@@ -405,8 +405,8 @@ mod tests {
         assert_eq!(found(&[inside, feature(&[LEFT])]), within);
     }
 
-    /// Lesotho and the hole of South Africa around it, in Natural Earth's map 1:110 million: the middles of their
-    /// common edges are rounded to one side or the other.
+    /// Checks Lesotho and the hole of South Africa around it, in Natural Earth's map 1:110 million: the midpoints of
+    /// their common edges are rounded to one side or the other.
     #[test]
     fn what_fills_a_hole_does_not_overlap_with_what_is_around() {
         let lesotho: &[(f64, f64)] = &[
@@ -425,7 +425,7 @@ mod tests {
         let around: &[(f64, f64)] = &[(16.0, -35.0), (33.0, -35.0), (33.0, -22.0), (16.0, -22.0)];
         let features = [feature(&[around, lesotho]), feature(&[lesotho])];
         assert_eq!(found(&features), []);
-        // In the middle of the country around it is another matter.
+        // In the middle of the surrounding country it is different.
         let moved: Vec<(f64, f64)> = lesotho.iter().map(|(x, y)| (x - 5.0, *y)).collect();
         assert_eq!(found(&[features[0].clone(), feature(&[&moved])]).len(), 1);
     }
@@ -442,7 +442,7 @@ mod tests {
         let mut two = feature(&[&[(4.0, 0.0), (9.0, 2.0), (4.0, 4.0)]]);
         two.append(&feature(&[&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0)]]));
         assert_eq!(found(&[feature(&[LEFT]), two]), [(Mismatch::Overlap, (1.0, 1.0), [0, 1])]);
-        // Around a corner that three share, and with a corner in a corner: nothing.
+        // Around a corner common to three, and with a corner in a corner: no mismatch.
         let rest = [
             feature(&[&[(4.0, 0.0), (8.0, 0.0), (8.0, 4.0), (4.0, 4.0)]]),
             feature(&[&[(0.0, 4.0), (4.0, 4.0), (8.0, 4.0), (8.0, 8.0), (0.0, 8.0)]]),

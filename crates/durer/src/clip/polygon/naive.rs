@@ -114,7 +114,7 @@ mod tests {
             clip(&window, &ring, &mut steps).unwrap();
             replay(steps.steps())
         };
-        // The ring is closed once all edges are in.
+        // The ring is closed once all edges are added.
         if rebuilt.first() == rebuilt.last() {
             rebuilt.pop();
         }

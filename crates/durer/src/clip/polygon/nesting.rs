@@ -310,7 +310,7 @@ mod tests {
     #[test]
     fn rings_that_start_at_one_point_find_each_other_in_any_order() {
         let point = |x, y| I64Vec2::new(x, y);
-        // Three thin triangles fan out from one point within a hole, given from above to below.
+        // Three thin triangles fan out from one point within a hole, listed from top to bottom.
         let fan = |y: i64| [point(2, 2), point(9, y), point(9, y + 1), point(9, y + 1)];
         let nested =
             shapes(&[&[fan(6)], &[fan(4)], &[fan(2)], &[square(0, 0, 12), square(1, 1, 10)]]);

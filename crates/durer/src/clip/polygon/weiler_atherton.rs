@@ -28,7 +28,7 @@ pub const INFO: Info = Info {
     cost: "O(n log n + p) time for n edges of both and p pairs that are near each other, \
            O(n² + r²) at worst for r rings; O(n + k) memory for k crossings",
     limits: "polygons whose rings neither cross nor overlap, refused otherwise; they may touch in points. \
-             Crossings are rounded to f64: rings nearer than that may come out crossing",
+             Crossings are rounded to f64, so rings nearer than that may cross in the result",
     pseudocode: &[
         "insert the crossings into the cyclic lists of both polygons, linked in pairs",
         "mark each crossing: does the subject enter the clip or leave it?",
@@ -38,7 +38,7 @@ pub const INFO: Info = Info {
         "    emit vertices of the subject up to the next crossing",
         "    turn onto the clip's list at the linked crossing",
         "    emit vertices of the clip up to the next crossing",
-        "    back where the ring began, it is complete; else go to 5",
+        "    back at the ring's first point: it is complete; else go to 5",
         "rings without crossings are inside or outside as a whole",
     ],
 };

@@ -34,7 +34,7 @@ pub const INFO: Info = Info {
     cost: "O(n log n) for n points on usual data",
     limits: "borders are shared where neighbours have the same points; nodes stay",
     pseudocode: &[
-        "make points at the same place one",
+        "merge points at the same place",
         "nodes ← places where lines end or meet with other neighbours; they stay",
         "for each other place: weight ← √area of the triangle with its neighbours",
         "while there are such places:",
@@ -43,7 +43,7 @@ pub const INFO: Info = Info {
         "    if a place lies in its triangle, or its neighbours are joined already:",
         "        P waits until one of them changes",
         "    else: remove P from all lines and rings that pass it",
-        "        weights of its two neighbours anew",
+        "        compute the weights of its two neighbours anew",
     ],
 };
 

@@ -30,7 +30,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(n log n) for n points on usual lines, O(n²) at worst",
-    limits: "one line by itself may come to cross itself; a coverage keeps it from that",
+    limits: "a line simplified alone may cross itself; in a coverage it does not",
     pseudocode: &[
         "keep the first and the last point",
         "parts ← {the whole line}",
@@ -233,7 +233,7 @@ mod tests {
                 .filter(|(_, w)| **w > tolerance).map(|(i, _)| i).collect();
             prop_assert_eq!(&kept, &heavy);
             prop_assert_eq!(&kept, &replay(steps.steps()));
-            // No point is farther from what stays than the tolerance.
+            // No point is farther from the simplified line than the tolerance.
             for pair in kept.windows(2) {
                 let far = farthest(&points, pair[0], pair[1]);
                 prop_assert!(far.is_none_or(|(_, squared)| squared.sqrt() <= tolerance));

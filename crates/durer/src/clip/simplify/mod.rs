@@ -111,7 +111,7 @@ mod tests {
             assert!(matches!(simplifier.simplify(&[], -1.0), Err(Error::Parameter { .. })));
             assert_eq!(simplifier.simplify(&[], 1.0), Ok(vec![]));
             assert_eq!(simplifier.simplify(&[DVec2::X], 1.0), Ok(vec![0]));
-            // Differences that overflow keep their points.
+            // If differences overflow, points are kept.
             let far = [-f64::MAX, f64::MAX, -f64::MAX].map(DVec2::splat);
             assert!(simplifier.simplify(&far, 1.0).is_ok());
         }
@@ -124,7 +124,7 @@ mod tests {
             let tolerance = tolerance_for_share(&weights, share);
             weights.iter().filter(|w| **w > tolerance).count()
         };
-        // Points of the same weight go together.
+        // Points of equal weight are removed together.
         assert_eq!([0.0, 0.25, 0.5, 0.75, 1.0, 7.0].map(kept), [1, 2, 2, 4, 5, 5]);
         assert_eq!(tolerance_for_share(&[], 0.5), -1.0);
     }

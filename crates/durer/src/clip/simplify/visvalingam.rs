@@ -28,7 +28,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(n log n) for n points",
-    limits: "one line by itself may come to cross itself; a coverage keeps it from that",
+    limits: "a line simplified alone may cross itself; in a coverage it does not",
     pseudocode: &[
         "for each inner point: area of the triangle with its two neighbours",
         "while there are inner points:",
@@ -125,7 +125,7 @@ mod tests {
     use crate::trace::Recorder;
     use proptest::prelude::*;
 
-    /// Simplifies by examining all triangles again and again.
+    /// Simplifies by examining all triangles in every round.
     fn slow(points: &[DVec2], tolerance: f64) -> Vec<usize> {
         let mut kept: Vec<usize> = (0..points.len()).collect();
         loop {

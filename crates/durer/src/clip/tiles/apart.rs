@@ -341,7 +341,7 @@ mod tests {
         assert_eq!(cleaned(ring(&[(0, 0), (5, 5), (2, 2), (9, 9)])), []);
         assert_eq!(cleaned(ring(&[(0, 0), (5, 5)])), []);
         assert_eq!(cleaned([]), []);
-        // The start lies on a straight line, which ends in a spike.
+        // The start is on a straight line, which ends in a spike.
         assert_eq!(
             cleaned(ring(&[(2, 0), (4, 0), (4, 4), (0, 4), (0, 0), (-3, 0), (0, 0)])),
             ring(&[(4, 0), (4, 4), (0, 4), (0, 0)])
@@ -377,7 +377,7 @@ mod tests {
         assert_eq!(polygons(&Shapes::new(), WindingRule::EvenOdd), Some(Shapes::new()));
     }
 
-    /// Returns a set of rings in an order that does not depend on where they begin.
+    /// Returns a set of rings, normalized so that their starting points do not matter.
     fn sorted(shapes: &Shapes<I64Vec2>) -> Vec<Vec<Vec<I64Vec2>>> {
         let of_ring = |ring: &[I64Vec2]| {
             let first = (0..ring.len()).min_by_key(|&i| (ring[i].x, ring[i].y)).unwrap_or(0);
@@ -414,8 +414,7 @@ mod tests {
             };
             let rings = shapes(&bases.iter().enumerate().map(ring).collect::<Vec<_>>());
             let fill = WindingRule::ALL[rule];
-            // The overlay lets edges go through vertices that they pass within half a cell; of larger rings, they do
-            // not come so near.
+            // The overlay leads edges through vertices within half a cell; edges of larger rings do not come so near.
             let large = |shapes: &Shapes<I64Vec2>| {
                 let mut shapes = shapes.clone();
                 shapes.points_mut().iter_mut().for_each(|p| *p *= 1024);
@@ -426,7 +425,7 @@ mod tests {
             if let Some(found) = polygons(&rings, fill) {
                 prop_assert_eq!(sorted(&large(&found)), sorted(&whole.shapes));
             }
-            // One ring alone is apart from itself mostly.
+            // A single ring is nearly always apart from itself.
             if bases.len() == 1 && rings.ring_count() == 1 && bases[0].2 > 4 {
                 prop_assert!(polygons(&rings, fill).is_some());
             }

@@ -50,7 +50,7 @@ const EXAMPLES: &[Example] = &[
     },
     Example {
         name: "corner",
-        title: Word::new("through a corner: a point is left", "durch eine Ecke: ein Punkt bleibt"),
+        title: Word::new("through a corner: a point remains", "durch eine Ecke: ein Punkt bleibt"),
         input: || figure((10.0, 6.0), (8.0, 8.0), (12.0, 4.0)),
     },
     Example {
@@ -72,12 +72,12 @@ static CUT: Template = Template::new(
 );
 static ACCEPTED: Template = Template::new(
     "accepted",
-    "OR of the codes is 0000: what is left lies inside, accepted.",
+    "OR of the codes is 0000: the rest is inside, accepted.",
     "ODER der Codes gibt 0000: Was übrig ist, liegt innen und wird angenommen.",
 );
 static REJECTED: Template = Template::new(
     "rejected",
-    "AND of the codes is {and}, not 0000: all lies beyond one border, rejected.",
+    "AND of the codes is {and}, not 0000: everything is beyond one border, rejected.",
     "UND der Codes gibt {and}, nicht 0000: Alles liegt jenseits eines Rands und wird abgelehnt.",
 );
 

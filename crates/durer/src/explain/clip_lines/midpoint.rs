@@ -78,7 +78,7 @@ static ACCEPTED: Template = Template::new(
 );
 static REJECTED: Template = Template::new(
     "rejected",
-    "What is left lies beyond one border or between two pixels: rejected.",
+    "The rest is beyond one border or between two pixels: rejected.",
     "Was übrig ist, liegt jenseits eines Rands oder zwischen zwei Pixeln: abgelehnt.",
 );
 

@@ -61,12 +61,12 @@ static CUT: Template = Template::new(
 );
 static ACCEPTED: Template = Template::new(
     "accepted",
-    "Accepted: {corners} rays were asked for, {cuts} cuts were computed, none of them in vain.",
+    "Accepted: {corners} rays were tested, {cuts} cuts were computed, none of them in vain.",
     "Angenommen: {corners} Strahlen wurden befragt, {cuts} Schnitte berechnet, keiner umsonst.",
 );
 static REJECTED: Template = Template::new(
     "rejected",
-    "Rejected: the line passes the window; no cut was computed.",
+    "Rejected: the line misses the window; no cut was computed.",
     "Abgelehnt: Die Gerade geht am Fenster vorbei; kein Schnitt wurde berechnet.",
 );
 

@@ -133,7 +133,7 @@ static ACCEPTED: Template = Template::new(
 );
 static REJECTED: Template = Template::new(
     "rejected",
-    "Nothing is between the bounds {lower} and {upper}, or beyond a border is all: rejected.",
+    "Nothing is between the bounds {lower} and {upper}, or everything is beyond one border: rejected.",
     "Zwischen den Schranken {lower} und {upper} liegt nichts, oder alles jenseits eines Rands: abgelehnt.",
 );
 

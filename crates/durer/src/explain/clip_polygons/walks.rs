@@ -83,7 +83,7 @@ const CROSSING_EXAMPLES: &[Example] = &[
     Example {
         name: "pentagram",
         title: Word::new(
-            "a star that crosses itself and a square: inside is what an odd number of windings encloses",
+            "a star that crosses itself and a square: points with an odd winding number are inside",
             "ein Stern, der sich selbst kreuzt, und ein Quadrat: Innen ist, was ungerade oft umlaufen wird",
         ),
         input: pentagram,
@@ -92,7 +92,7 @@ const CROSSING_EXAMPLES: &[Example] = &[
 
 static CROSSING_RINGS: Template = Template::new(
     "crossing-rings",
-    "A ring crosses itself: entries and exits take turns along it, and the result is meant by the even-odd rule.",
+    "A ring crosses itself: entries and exits alternate along it, and the result follows the even-odd rule.",
     "Ein Ring kreuzt sich selbst: Eintritte und Austritte wechseln sich auf ihm ab, und das Ergebnis gilt nach der \
      Gerade-Ungerade-Regel.",
 );
@@ -120,7 +120,7 @@ static START: Template =
     Template::new("start", "A ring begins at {name}.", "Bei {name} beginnt ein Ring.");
 static ONTO_SUBJECT: Template = Template::new(
     "turn",
-    "At {name} the walk goes on along the subject.",
+    "At {name} the walk continues along the subject.",
     "Bei {name} geht der Gang auf dem Subjekt weiter.",
 );
 static ONTO_CLIP: Template = Template::new(

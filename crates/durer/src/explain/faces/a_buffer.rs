@@ -68,7 +68,7 @@ static WEIGHT: Template = Template::new(
 );
 static BACKGROUND: Template = Template::new(
     "weight",
-    "The background gets what is left: {weight}.",
+    "The background gets the rest: {weight}.",
     "Der Hintergrund bekommt den Rest: {weight}.",
 );
 

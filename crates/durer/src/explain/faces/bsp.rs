@@ -48,7 +48,7 @@ static VISIT: Template = Template::new(
 );
 static PAINT: Template = Template::new(
     "paint",
-    "{piece} is painted over what is there.",
+    "{piece} is painted over the picture so far.",
     "{piece} wird über alles gemalt, was da ist.",
 );
 static PIXEL: Template = Template::new(

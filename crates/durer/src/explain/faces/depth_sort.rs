@@ -44,7 +44,7 @@ const EXAMPLES: &[Example] = &[
 
 static LOOK: Template = Template::new(
     "look",
-    "{p} is the farthest that is left: may it be painted next?",
+    "{p} is the farthest one remaining: may it be painted next?",
     "{p} ist das fernste, das übrig ist: Darf es als Nächstes gemalt werden?",
 );
 static PASSED: Template = Template::new(
@@ -59,7 +59,7 @@ static FAILED: Template = Template::new(
 );
 static MOVE: Template = Template::new(
     "move",
-    "{p} is marked and moved before the other: it is looked at first.",
+    "{p} is marked and moved before the other: its turn comes first.",
     "{p} wird markiert und rückt vor das andere: Es kommt zuerst an die Reihe.",
 );
 static SPLIT: Template = Template::new(
@@ -69,7 +69,7 @@ static SPLIT: Template = Template::new(
 );
 static PAINT: Template = Template::new(
     "paint",
-    "{p} is painted next, over what is there.",
+    "{p} is painted next, over the picture so far.",
     "{p} wird als Nächstes gemalt, über alles, was da ist.",
 );
 static PIXEL: Template =

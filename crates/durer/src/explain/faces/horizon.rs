@@ -41,7 +41,7 @@ const EXAMPLES: &[Example] = &[
     Example {
         name: "hill",
         title: Word::new(
-            "a hill, and what is seen below it",
+            "a hill, and curves seen below it",
             "ein Hügel, und was unter ihm zu sehen ist",
         ),
         input: || {

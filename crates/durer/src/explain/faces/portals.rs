@@ -23,7 +23,7 @@ pub(super) const LESSON: Lesson = Lesson {
         Example {
             name: "rooms",
             title: Word::new(
-                "six rooms, of which five are seen",
+                "six rooms, five of them visible",
                 "sechs Räume, von denen man fünf sieht",
             ),
             input: || {

@@ -34,7 +34,7 @@ static CUT: Template = Template::new(
 );
 static HIDDEN: Template = Template::new(
     "hidden",
-    "What of {face} is inside lies behind {by}: it is hidden.",
+    "The part of {face} inside is behind {by}: it is hidden.",
     "Was von {face} innen ist, liegt hinter {by}: Es ist verdeckt.",
 );
 static IN_FRONT: Template = Template::new(

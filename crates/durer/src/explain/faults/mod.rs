@@ -91,7 +91,7 @@ mod tests {
     use super::super::{Frame, Language, lesson, picture};
     use super::*;
 
-    /// Returns all that is seen of a frame, numbers as they are printed.
+    /// Returns everything visible in a frame, with numbers as printed.
     fn seen(frame: &Frame) -> (usize, String, String, String) {
         let table = frame.table.rows.iter().map(|row| {
             let cells = row.cells.iter().map(|cell| cell.value.text(Language::English));

@@ -37,7 +37,10 @@ pub(super) const PARTITION: Lesson = Lesson {
 
 const STRIP: Example = Example {
     name: "strip",
-    title: Word::new("upright edges at x = 2.25 and 5.5", "senkrechte Kanten bei x = 2,25 und 5,5"),
+    title: Word::new(
+        "vertical edges at x = 2.25 and 5.5",
+        "senkrechte Kanten bei x = 2,25 und 5,5",
+    ),
     input: || ring(&[(2.25, 0.0), (2.25, 2.0), (5.5, 2.0), (5.5, 0.0)]),
 };
 

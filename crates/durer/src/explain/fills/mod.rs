@@ -64,7 +64,7 @@ const EXAMPLES: &[Example] = &[
     Example {
         name: "triangle",
         title: Word::new(
-            "a triangle whose left edge goes on at a corner",
+            "a triangle whose left edge continues at a corner",
             "ein Dreieck, dessen linke Kante an einer Ecke weitergeht",
         ),
         input: || ring(&[(2.0, 1.0), (10.0, 3.0), (5.0, 9.0)]),

@@ -50,7 +50,7 @@ static POINT: Template =
     Template::new("point", "Corner {name} is at {point}.", "Ecke {name} liegt bei {point}.");
 static BRIDGE: Template = Template::new(
     "bridge",
-    "{a} of the hole is joined to {b}, the nearest corner that it sees.",
+    "{a} of the hole is joined to {b}, the nearest visible corner.",
     "{a} vom Loch wird mit {b} verbunden, der nächsten Ecke, die es sieht.",
 );
 static REFLEX: Template = Template::new(

@@ -67,27 +67,27 @@ const ELLIPSES: &[Example] = &[
 
 static STRAIGHT: Template = Template::new(
     "octant",
-    "({x}, {y}) eight times. d = {d} < 0: the midpoint is inside, so the next pixel lies beside; d ← d + 2 · {x} + 3.",
+    "({x}, {y}) eight times. d = {d} < 0: the midpoint is inside, so the next pixel is beside it; d ← d + 2 · {x} + 3.",
     "({x}; {y}) achtmal. d = {d} < 0: Die Mitte liegt innen, das nächste Pixel daneben; d ← d + 2 · {x} + 3.",
 );
 static ASLANT: Template = Template::new(
     "octant",
-    "({x}, {y}) eight times. d = {d} ≥ 0: the midpoint is not inside, so it goes aslant; d ← d + 2 · ({x} − {y}) + 5.",
+    "({x}, {y}) eight times. d = {d} ≥ 0: the midpoint is not inside, so the step is diagonal; d ← d + 2 · ({x} − {y}) + 5.",
     "({x}; {y}) achtmal. d = {d} ≥ 0: Die Mitte liegt nicht innen, also schräg; d ← d + 2 · ({x} − {y}) + 5.",
 );
 static FLAT_STRAIGHT: Template = Template::new(
     "flat",
-    "({x}, {y}) four times. d = {d} < 0: the midpoint is inside, so the next pixel lies beside.",
+    "({x}, {y}) four times. d = {d} < 0: the midpoint is inside, so the next pixel is beside it.",
     "({x}; {y}) viermal. d = {d} < 0: Die Mitte liegt innen, das nächste Pixel daneben.",
 );
 static FLAT_ASLANT: Template = Template::new(
     "flat",
-    "({x}, {y}) four times. d = {d} ≥ 0: the midpoint is not inside, so the next pixel lies aslant.",
+    "({x}, {y}) four times. d = {d} ≥ 0: the midpoint is not inside, so the step is diagonal.",
     "({x}; {y}) viermal. d = {d} ≥ 0: Die Mitte liegt nicht innen, das nächste Pixel schräg darunter.",
 );
 static STEEP_ASLANT: Template = Template::new(
     "steep",
-    "({x}, {y}) four times, steep part. d = {d} < 0: the midpoint is inside, so the next pixel lies aslant.",
+    "({x}, {y}) four times, steep part. d = {d} < 0: the midpoint is inside, so the step is diagonal.",
     "({x}; {y}) viermal, steiler Teil. d = {d} < 0: Die Mitte liegt innen, das nächste Pixel schräg darunter.",
 );
 static STEEP_STRAIGHT: Template = Template::new(

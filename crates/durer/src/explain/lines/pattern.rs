@@ -30,7 +30,7 @@ const EXAMPLES: &[Example] = &[
     Example {
         name: "corner",
         title: Word::new(
-            "the pattern goes on round a corner",
+            "the pattern continues around a corner",
             "das Muster läuft um eine Ecke weiter",
         ),
         input: || lines(&[&[(0.0, 1.0), (11.0, 1.0), (11.0, 7.0)]]),

@@ -82,12 +82,12 @@ static SIMPLE: Template = Template::new(
 );
 static BEFORE: Template = Template::new(
     "pair",
-    "D = {d} leaves patterns 2 and 3; beyond the second bound it is 3: aslant to {first}, straight on to {second}.",
+    "D = {d} leaves patterns 2 and 3; beyond the second bound it is 3: diagonally to {first}, straight to {second}.",
     "D = {d} lässt die Muster 2 und 3; jenseits der zweiten Schranke ist es 3: schräg nach {first}, geradeaus nach {second}.",
 );
 static AFTER: Template = Template::new(
     "pair",
-    "D = {d} leaves patterns 2 and 3; this side of the second bound it is 2: straight on to {first}, aslant to {second}.",
+    "D = {d} leaves patterns 2 and 3; on this side of the second bound it is 2: straight to {first}, diagonally to {second}.",
     "D = {d} lässt die Muster 2 und 3; diesseits der zweiten Schranke ist es 2: geradeaus nach {first}, schräg nach {second}.",
 );
 static LAST: Template = Template::new(

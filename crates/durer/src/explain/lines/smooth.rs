@@ -31,12 +31,12 @@ pub(super) const GUPTA_SPROULL: Lesson = Lesson {
 
 static SHARED: Template = Template::new(
     "pixel",
-    "{pixel} lies {d} from the line across: it gets {share} = 1 − {d} of the light, {i} of 255.",
+    "{pixel} is {d} from the line across: it gets {share} = 1 − {d} of the light, {i} of 255.",
     "{pixel} liegt quer gemessen {d} neben der Strecke und bekommt {share} = 1 − {d} des Lichts, {i} von 255.",
 );
 static FILTERED: Template = Template::new(
     "pixel",
-    "{pixel} lies {d} from the line, square to it: entry {entry} of the table gives {i} of 255.",
+    "{pixel} is at a perpendicular distance of {d} from the line: entry {entry} of the table gives {i} of 255.",
     "{pixel} liegt im rechten Winkel {d} neben der Strecke: Eintrag {entry} der Tabelle gibt {i} von 255.",
 );
 

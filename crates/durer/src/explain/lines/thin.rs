@@ -50,12 +50,12 @@ static SUMMED: Template = Template::new(
 );
 static ASLANT: Template = Template::new(
     "aslant",
-    "Pixel {pixel}. E = {e}: the line passes beyond the midpoint, so the next pixel lies aslant; E ← {e} {change} = {sum}.",
+    "Pixel {pixel}. E = {e}: the line passes beyond the midpoint, so the step is diagonal; E ← {e} {change} = {sum}.",
     "Pixel {pixel}. E = {e}: Die Strecke läuft jenseits der Mitte, das nächste Pixel liegt schräg; E ← {e} {change} = {sum}.",
 );
 static STRAIGHT: Template = Template::new(
     "straight",
-    "Pixel {pixel}. E = {e}: the line stays this side of the midpoint, so it goes straight on; E ← {e} {change} = {sum}.",
+    "Pixel {pixel}. E = {e}: the line stays on this side of the midpoint, so the step is straight; E ← {e} {change} = {sum}.",
     "Pixel {pixel}. E = {e}: Die Strecke bleibt diesseits der Mitte, es geht geradeaus; E ← {e} {change} = {sum}.",
 );
 static LAST: Template = Template::new(

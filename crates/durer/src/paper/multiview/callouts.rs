@@ -139,7 +139,7 @@ mod tests {
         for i in 0..points.len() {
             assert!((0..i).all(|j| !crosses(i, j)), "{i}");
         }
-        // Where there are too many, circles get smaller.
+        // If there are too many, circles shrink.
         assert!(super::ports(&bounds, 100).1 < APART);
     }
 }

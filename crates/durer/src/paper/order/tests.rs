@@ -24,7 +24,7 @@ fn random() -> impl FnMut() -> f64 {
     }
 }
 
-/// Creates short strokes, every fifth a square, all over a sheet of 100 × 100.
+/// Creates short strokes, every fifth of them a square, all over a sheet of 100 × 100.
 pub fn scattered(count: usize) -> Vec<Stroke> {
     let mut random = random();
     let mut stroke = |i: usize| {
@@ -39,7 +39,7 @@ pub fn scattered(count: usize) -> Vec<Stroke> {
     (0..count).map(&mut stroke).collect()
 }
 
-/// Returns the way in the air through strokes as they are drawn.
+/// Returns the length of pen-up moves between strokes in drawing order.
 fn way(strokes: &[Stroke], turns: &[Turn], start: DVec2) -> f64 {
     let mut at = start;
     let mut step = |turn: &Turn| {
@@ -73,7 +73,7 @@ fn every_stroke_is_drawn_once_and_the_way_is_much_shorter_than_the_greedy_one() 
 fn strokes_in_a_row_are_drawn_in_a_row_whichever_way_they_run() {
     let count = 200;
     let at = |i: usize| (i as f64, 0.0);
-    // 0, 99, 198, 97, …: shuffled, and every other one backwards.
+    // 0, 99, 198, 97, …: shuffled, and every other one reversed.
     let shuffled = (0..count).map(|i| (i * 99) % count);
     let ends = shuffled.map(|i| if i % 2 == 0 { [at(i), at(i + 1)] } else { [at(i + 1), at(i)] });
     let strokes: Vec<Stroke> = ends.map(|e| open(&e)).collect();

@@ -29,7 +29,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[Coherence::ScanLine, Coherence::Span],
     cost: "O(c log c + p): c pixels crossed by edges, p pixels covered",
-    limits: "where contours overlap, it is the integral of the winding number that is rounded",
+    limits: "where contours overlap, the integral of the winding number is rounded",
     pseudocode: &[
         "for each edge, cut at the sides of the pixels that it crosses:",
         "    for each piece from p to q, in pixel (x, y):",

@@ -109,6 +109,7 @@ fn chain_parts(chunks: &mut [Chunk<Edge>], parts: &[(usize, Part)]) {
         parts.iter().flat_map(|(at, part)| part.edges.clone().map(|i| (*at, i))).collect()
     };
     let with_ends: Vec<usize> = (0..parts.len()).filter(|i| parts[*i].1.ends.is_some()).collect();
+    // Chaining needs consecutive edges: copies are chained, and the results written back.
     let mut on = |places: &[(usize, usize)], chain: &dyn Fn(&mut [Edge])| {
         let mut copy: Vec<Edge> = places.iter().map(|(at, i)| chunks[*at].edges[*i]).collect();
         chain(&mut copy);
@@ -116,6 +117,7 @@ fn chain_parts(chunks: &mut [Chunk<Edge>], parts: &[(usize, Part)]) {
             chunks[*at].edges[*i].chain_as(copy);
         }
     };
+    // Without an end of a group anywhere, the whole contour is chained at once.
     let (Some(first), Some(last)) = (with_ends.first(), with_ends.last()) else {
         return on(&places(parts), &|edges| chain_contour(edges, gaps));
     };
@@ -135,6 +137,7 @@ fn chain_parts(chunks: &mut [Chunk<Edge>], parts: &[(usize, Part)]) {
         let all: Vec<_> = after(pair[0]).chain(between).chain(until(pair[1])).collect();
         on(&all, &|edges| chain(edges, None, gaps));
     }
+    // The last chain closes the contour: from its last end, across its first point, to its first end.
     let before_closing: Vec<_> = after(*last).chain(places(&parts[last + 1..])).collect();
     let closing = before_closing.len();
     let begin = places(&parts[..*first]).into_iter().chain(until(*first));

@@ -25,7 +25,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[Coherence::ScanLine, Coherence::Span],
     cost: "O(c + p) per face: c pixels crossed by its edges, p pixels covered",
-    limits: "faces that do not overlap, of one colour each; sides up to 32,767 pixels",
+    limits: "faces of one colour each that do not overlap; sides up to 32,767 pixels",
     pseudocode: &[
         "for each pixel: area ← 0, colour ← 0",
         "for each face:",
@@ -34,7 +34,7 @@ pub const INFO: Info = Info {
         "        area ← area + a",
         "        colour ← colour + a · colour of the face",
         "for each pixel with area > 0:",
-        "    if area > 1: divide area and colour by it, for faces overlap",
+        "    if area > 1, faces overlap: divide area and colour by it",
         "    pixel ← colour + (1 − area) · pixel",
     ],
 };
@@ -102,10 +102,12 @@ pub fn fill_partition(
     let paths: Vec<PathEdges> = faces.iter().map(edges).collect();
     let mut filler = BandFiller::new(width);
     let mut full = 0;
+    // Bands of rows bound the memory for the sums.
     for top in (0..height as i32).step_by(BAND_ROWS as usize) {
         let mut sums: Vec<Sums> = vec![[0; 5]; width as usize * BAND_ROWS as usize];
         let touched = faces.iter().zip(&paths).enumerate().filter(|(_, (_, p))| !p.misses(top));
         for (index, (face, path)) in touched {
+            // Each face adds its exact area, and its premultiplied colour weighted by this area.
             let [r, g, b, a] = face.color.map(u32::from);
             let weights = [1, r * a / 255, g * a / 255, b * a / 255, a];
             filler.areas(path.with(&list), top, |row, x, area| {
@@ -117,6 +119,7 @@ pub fn fill_partition(
                 }
             });
         }
+        // The sums become colours only now, so that rounding happens once per pixel.
         for (i, sum) in sums.iter().enumerate().filter(|(_, s)| s[0] != 0) {
             let (x, y) = (i as u32 % width, top as u32 + i as u32 / width);
             full += u64::from(coverage_of_area(sum[0].min(65_536) as i32) == 255);

@@ -151,6 +151,7 @@ impl Parts {
         let (one_bit, two_bits) = (u32x8::splat(simd, 1), u32x8::splat(simd, 3));
         let (none, all) = (u32x8::splat(simd, 0), u32x8::splat(simd, 63));
         let Self { cells, left, right, height, flags, marks, deltas: [d0, d1, d2], .. } = this;
+        // Columns of the queue, eight parts at a time.
         let groups = cells.as_chunks_mut::<8>().0.iter_mut();
         let groups = groups.zip(left.as_chunks_mut::<8>().0).zip(right.as_chunks_mut::<8>().0);
         let groups = groups.zip(height.as_chunks::<8>().0).zip(flags.as_chunks::<8>().0);
@@ -161,20 +162,25 @@ impl Parts {
             let (x0, x1) = (i32x8::from_slice(simd, left), i32x8::from_slice(simd, right));
             let height = i32x8::from_slice(simd, height);
             let flags = u32x8::from_slice(simd, flags);
+            // Extent in x within the target; `a` and `b` are counted from the left border of the first pixel.
             let from = x0.min(x1).max(zero).min(limit);
             let across = x0.max(x1).max(zero).min(limit) - from;
             let a = from & below;
             let b = a + across;
+            // Changes of the area in up to three cells; parts that go up count negatively.
             let [c0, c1, c2] = eight_deltas(simd, a, across, height);
             let up: i32x8<S> = (flags & one_bit).bitcast();
             let flip = zero - up;
+            // The cell of the first pixel, and the pixels touched: the second one if the part extends beyond the first.
             let column: u32x8<S> = (from >> BITS).bitcast();
             let at = u32x8::from_slice(simd, cell) + column;
             let two = b.simd_gt(one);
             let touched = two.select(two_bits, one_bit);
+            // A pixel that the neighbour in the path touches as well does not become shared by that.
             let own_left = (flags >> 1) & one_bit;
             let own_right = (flags >> 2) & one_bit;
             let own = own_left | two.select(own_right << 1, own_right);
+            // Parts of more than two pixels, or across two words of marks, are completed one by one.
             let long = b.simd_gt(one + one) | (two & (at & all).simd_eq(all));
             let long = long.select(u32x8::splat(simd, LONG), none);
             at.store_slice(cell);

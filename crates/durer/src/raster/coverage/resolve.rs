@@ -298,6 +298,7 @@ impl Resolver {
                 continue;
             }
             let middle = (upper + lower) / 2.0;
+            // Segments crossed in the middle of the slab, from left to right.
             self.active.clear();
             let crossed = self.segments.iter().filter(|s| s.y0 <= middle && s.y1 > middle);
             let crossings = crossed.map(|s| (s.x_at(middle), s.sign));
@@ -307,6 +308,7 @@ impl Resolver {
             } else {
                 crossings.for_each(|c| insert(&mut self.active, c, |a, b| a.0 < b.0));
             }
+            // Widths between crossings, where the winding number is inside; `base` is that of the left border.
             let (mut x, mut winding, mut covered) = (0.0, base, 0.0);
             for (next, sign) in &self.active {
                 if inside(winding) {
@@ -366,6 +368,7 @@ fn push_segments(piece: &Piece, out: &mut Vec<Segment>) {
         }
         (false, false) => {}
     }
+    // Parts beyond the right border do not change the pixel.
     match (upper.0 > ONE, lower.0 > ONE) {
         (true, true) => return,
         (true, false) => (x0, y0) = (1.0, y_at(1.0)),

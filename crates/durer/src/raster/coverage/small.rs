@@ -58,6 +58,7 @@ pub(super) fn fill<S: Simd, K: Sink<S>>(
 ) {
     let Touched { rows, columns } = touched;
     let (first, end) = (rows.0.max(top), rows.1.min(top + BAND_ROWS));
+    // Each edge adds its area and height to the cells of its rows.
     for edge in edges {
         let edge = edge.moved(columns.0 << BITS);
         let (from, to) = edge.rows();
@@ -67,6 +68,7 @@ pub(super) fn fill<S: Simd, K: Sink<S>>(
         }
         let steps = edge.steps();
         let rows = cells.rows.get_mut((from - top) as usize..).unwrap_or_default();
+        // A steep edge touches few pixels per row, so several rows are computed at once.
         if steps.slope.unsigned_abs() <= 1 << 32 {
             let mut row = from;
             for rows in rows.as_chunks_mut::<AT_ONCE>().0 {
@@ -82,6 +84,7 @@ pub(super) fn fill<S: Simd, K: Sink<S>>(
             }
         }
     }
+    // Running sums along the rows turn cells into coverage.
     let groups = (columns.1 - columns.0) as usize / 8 + 1;
     let rows = cells.rows.get_mut((first - top) as usize..(end - top) as usize);
     for (row, cells) in (first - top..).zip(rows.unwrap_or_default()) {

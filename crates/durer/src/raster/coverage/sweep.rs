@@ -83,21 +83,25 @@ pub(crate) fn sweep<S: Simd, K: Sink<S>>(
             // An edge also changes the cell after the last pixel it touches.
             let dirty = touched | (touched << 1) | spill;
             spill = touched >> 63;
+            // Only groups of eight cells that an edge has changed need sums.
             let mut bytes = nonzero_bytes(dirty);
             while bytes != 0 {
                 let group = bytes.trailing_zeros() as usize >> 3;
                 bytes &= bytes - 1;
                 let x = base + group * 8;
+                // Between them the coverage is constant.
                 if done < x {
                     constant(simd, sink, row, done..x.min(width), alpha(carry, rule));
                 }
                 done = x + 8;
+                // Eight running sums, continued from the previous group.
                 let Some(cells) = cells.as_chunks_mut::<8>().0.get_mut(group) else { continue };
                 let v = i32x8::from_slice(simd, cells);
                 zero.store_slice(cells);
                 let v = running_sums(simd, v, i32x8::splat(simd, carry));
                 carry = v[7];
                 let mut coverage = lanes(simd, v, rule);
+                // Pixels that several edges share are resolved exactly.
                 if let Some(resolver) = &mut resolver
                     && (shared >> (group * 8)) & 255 != 0
                 {
@@ -112,6 +116,7 @@ pub(crate) fn sweep<S: Simd, K: Sink<S>>(
             }
             base += 64;
         }
+        // The rest of the row has a constant coverage, too.
         if carry != 0 && done < width {
             constant(simd, sink, row, done..width, alpha(carry, rule));
         }

@@ -1,4 +1,4 @@
-//! The inside view: every SIMD level gives the same bytes.
+//! Unit tests: every SIMD level gives the same bytes.
 
 use super::*;
 use crate::math::DVec2;
@@ -40,7 +40,7 @@ fn convex_outlines_are_summed_with_and_without_marks_alike() {
             let angle = turn + i as f64 / corners as f64 * std::f64::consts::TAU;
             let p = DVec2::new(libm::cos(angle), libm::sin(angle) * thin) * size;
             let p = (center + p.rotate(lean)).clamp(DVec2::ZERO, DVec2::new(180.0, 140.0));
-            // Some on borders and in the middle of pixels.
+            // Some on borders and centres of pixels.
             if round % 3 == 0 { (p * 2.0).round() / 2.0 } else { p }
         };
         let (contours, mut list) = (Contours::polygon((0..corners).map(point)), Vec::new());
@@ -69,7 +69,7 @@ fn edges_and_joints_do_not_depend_on_the_chunks_they_are_made_in() {
     };
     let (size, mut edges, mut chained) = (DVec2::new(90.0, 70.0), 0, 0);
     for round in 0..400 {
-        // Short and long steps, some on the grid, some beyond the target, and a few points that are none.
+        // Short and long steps, some on the grid, some outside the target, and a few NaN points.
         let step = [0.2, 0.8, 3.0, 40.0][round % 4];
         let mut contours = Contours::new();
         for _ in 0..1 + round % 3 {

@@ -26,7 +26,7 @@ pub const WU: Info = Info {
     occluder: Occluder::None,
     coherence: &[Coherence::Edge],
     cost: "O(n), two pixels per step",
-    limits: "pixel end points; diagonal lines come out thinner",
+    limits: "pixel end points; diagonal lines look thinner",
     pseudocode: &[
         "Δx ← x2 − x1, Δy ← y2 − y1",
         "if |Δy| > |Δx|: swap the roles of x and y",
@@ -50,7 +50,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[Coherence::Edge],
     cost: "O(n), three pixels per step",
-    limits: "pixel end points; ends are cut square to the longer axis",
+    limits: "pixel end points; ends are cut perpendicular to the longer axis",
     pseudocode: &[
         "table[k] ← volume of a cone of radius 1 over a line k/32 away",
         "Δx ← x2 − x1, Δy ← y2 − y1",
@@ -58,7 +58,7 @@ pub const INFO: Info = Info {
         "for each x from x1 to x2:",
         "    y ← y1 + Δy / Δx · (x − x1)",
         "    for each of the three pixels nearest to y in the column:",
-        "        d ← distance of its centre, square to the line",
+        "        d ← perpendicular distance of its centre from the line",
         "        set the pixel to table[32 d]",
     ],
 };

@@ -26,7 +26,7 @@ pub const INFO: Info = Info {
         "if Δy > Δx: swap the roles of x and y",
         "E ← 2Δy − Δx, y ← y1",
         "for each x from x1 to x2:",
-        "    // E tells the side of the midpoint between the next two pixels",
+        "    // the sign of E is the side of the midpoint between the next two pixels",
         "    set pixel (x, y)",
         "    if E > 0:",
         "        y ← y ± 1",

@@ -29,7 +29,7 @@ pub const INFO: Info = Info {
         "    // y is the sum of all m so far",
         "    set pixel (x, ⌊y + ½⌋)",
         "    y ← y + m",
-        "// one addition and one rounding a pixel",
+        "// one addition and one rounding per pixel",
     ],
 };
 

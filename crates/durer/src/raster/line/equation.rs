@@ -27,7 +27,7 @@ pub const INFO: Info = Info {
         "for each x from x1 to x2:",
         "    y ← y1 + m · (x − x1)",
         "    set pixel (x, ⌊y + ½⌋)",
-        "// one multiplication, one addition and one rounding a pixel",
+        "// one multiplication, one addition and one rounding per pixel",
         "// every pixel is computed afresh: no error adds up",
     ],
 };

@@ -32,7 +32,7 @@ pub const INFO: Info = Info {
         "        the pen is up: next pixel",
         "    for each pixel of the pen around p:",
         "        plot it",
-        "the next line goes on at offset + length",
+        "the next line continues at offset + length",
     ],
 };
 

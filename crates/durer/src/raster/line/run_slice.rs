@@ -31,7 +31,7 @@ pub const INFO: Info = Info {
         "if Δy > Δx: swap the roles of x and y",
         "q ← Δx div Δy, r ← 2 (Δx mod Δy)",
         "// half a step across: the first run has about half the length",
-        "light ⌈Δx / 2Δy⌉ pixels, E ← what that is too long, times 2Δy",
+        "light ⌈Δx / 2Δy⌉ pixels, E ← its excess length, times 2Δy",
         "for each further row:",
         "    y ← y ± 1, E ← E − r",
         "    if E ≥ 0:",

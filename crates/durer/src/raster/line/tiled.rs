@@ -25,7 +25,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[Coherence::Area],
     cost: "O(e + p): e tiles that the boxes of the lines touch, p pixels",
-    limits: "thin lines between pixels; slower than one by one where there are few",
+    limits: "thin lines between pixels; slower than line by line if there are few lines",
     pseudocode: &[],
 };
 

@@ -191,7 +191,7 @@ mod tests {
         Blend::PlusLighter,
     ];
 
-    /// Figures of both colours worked out by hand from the specification.
+    /// Results for both colours, worked out by hand from the specification.
     #[test]
     fn two_colors_blend_as_the_specification_says() {
         let (backdrop, layer) = ([0.2, 0.4, 0.8], [0.6, 0.5, 0.1]);

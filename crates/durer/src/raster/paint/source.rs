@@ -423,7 +423,7 @@ mod tests {
 
     #[test]
     fn stops_are_found_among_many_and_among_those_at_one_place() {
-        // Two stops at each of 0, 0.01, …: the colour jumps there, and is even between.
+        // Two stops at each of 0, 0.01, …: the colour jumps there and is constant between.
         let level = |i: u32| [(i * 37 % 256) as u8, (i * 91 % 256) as u8, 0, 255];
         let pair = |i: u32| [level(i), level(i + 1)].map(|color| (f64::from(i) / 100.0, color));
         let stops: Vec<(f64, Color)> = (0..=100).flat_map(pair).collect();

@@ -1,4 +1,4 @@
-//! The inside view: every SIMD level gives the same bytes.
+//! Unit tests: every SIMD level gives the same bytes.
 
 use super::*;
 use crate::math::DVec2;

@@ -27,7 +27,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(p): p pixels to the right of all edges, each of them once per edge",
-    limits: "the even-odd rule; a plane of its own; vertices are snapped to 1/256 of a pixel",
+    limits: "the even-odd rule; needs a separate plane; vertices are snapped to 1/256 of a pixel",
     pseudocode: &[
         "clear the plane",
         "for each edge of the polygon, in any order:",
@@ -35,8 +35,8 @@ pub const INFO: Info = Info {
         "        x ← first pixel right of the crossing",
         "        for each pixel from x to the end of the row:",
         "            complement it",
-        "// inside is what was complemented an odd number of times:",
-        "// it has an odd number of edges to its left",
+        "// pixels complemented an odd number of times are inside:",
+        "// they have an odd number of edges to their left",
     ],
 };
 
@@ -51,7 +51,7 @@ pub const FENCE: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(p): p pixels between all edges and the fence, each of them once per edge",
-    limits: "the even-odd rule; a plane of its own; vertices are snapped to 1/256 of a pixel",
+    limits: "the even-odd rule; needs a separate plane; vertices are snapped to 1/256 of a pixel",
     pseudocode: &[
         "clear the plane; put the fence through the polygon, before column f",
         "for each edge of the polygon, in any order:",
@@ -59,8 +59,8 @@ pub const FENCE: Info = Info {
         "        x ← first pixel right of the crossing",
         "        x ≤ f: complement the pixels from x to the fence",
         "        x > f: complement the pixels from the fence to x, exclusive",
-        "// each row crosses an even number of edges, so the fence itself leaves nothing behind",
-        "// inside is what was complemented an odd number of times",
+        "// each row crosses an even number of edges, so the fence itself has no effect",
+        "// pixels complemented an odd number of times are inside",
     ],
 };
 

@@ -28,7 +28,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[Coherence::Span],
     cost: "O(c + p): c crossings of edges with rows, p pixels of the plane",
-    limits: "the even-odd rule; a plane of its own; vertices are snapped to 1/256 of a pixel",
+    limits: "the even-odd rule; needs a separate plane; vertices are snapped to 1/256 of a pixel",
     pseudocode: &[
         "clear the plane",
         "for each edge of the polygon, in any order:",

@@ -44,7 +44,7 @@ pub const INFO: Info = Info {
         "        add (y, x, direction) to the list",
         "sort the list by y, then by x",
         "for each row:",
-        "    for each two neighbours between which the rule says inside:",
+        "    for each two neighbours with the inside between them, by the rule:",
         "        fill from the x of the first to that of the second, exclusive",
     ],
 };

@@ -110,7 +110,7 @@ pub const NAIVE: Info = Info {
         "    pop (x, y)",
         "    if (x, y) is outside, not of the region, or filled: continue",
         "    fill (x, y)",
-        "    for each neighbour, in the reverse of the order taught:",
+        "    for each neighbour, in the reverse of the textbook order:",
         "        push it",
         "// the last one pushed is the next one popped",
     ],

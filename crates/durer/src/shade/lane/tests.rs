@@ -1,4 +1,4 @@
-//! Numbers one by one and side by side.
+//! Scalar lanes and vector lanes give the same.
 
 use super::*;
 use crate::simd::dispatch;

@@ -1,4 +1,4 @@
-//! Lobes beside what they are to be.
+//! Lobes, compared with expected results.
 
 use super::*;
 use crate::math::DVec3;
@@ -9,8 +9,8 @@ fn plain() -> Material {
     Material { model: ShadingModel::MetallicRoughness, ..Material::default() }
 }
 
-/// Returns the light that leaves a surface of base colour 0.5 in a white room, seen at an angle of
-/// this cosine.
+/// Returns the light that leaves a surface of base colour 0.5 in a white room, at the given cosine of the viewing
+/// angle.
 fn in_white_room(m: &Material, cosine: f32) -> Vec3 {
     let lights = PreparedLights {
         origin: DVec3::ZERO,
@@ -70,7 +70,7 @@ fn no_lobe_makes_more_light_than_there_is() {
     ];
     for (m, cosine) in all.iter().flat_map(|m| [0.05, 0.2, 0.5, 1.0].map(|c| (m, c))) {
         let light = in_white_room(m, cosine);
-        // The closed form of what mirrors reflect is above Fresnel's law at grazing angles.
+        // The closed form of the reflected light exceeds Fresnel's law at grazing angles.
         assert!(light.min_element() > 0.3 && light.max_element() < 1.06, "{cosine}: {light}");
     }
 }
@@ -104,7 +104,7 @@ fn what_goes_through_does_not_come_back() {
 
 #[test]
 fn reflections_stay_on_clear_glass() {
-    // Nothing but a highlight: as bright over black as if it were opaque.
+    // Only a highlight: as bright over black as if it were opaque.
     let (color, alpha) = glass(Vec3::splat(0.9), Vec3::splat(0.8), 0.0);
     assert!((color * alpha - Vec3::splat(0.8)).length() < 1e-6);
     // No highlight: plain blending.

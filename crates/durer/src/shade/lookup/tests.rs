@@ -1,4 +1,4 @@
-//! Look-ups one by one and side by side.
+//! Look-ups one by one and sixteen at a time give the same.
 
 use super::*;
 use crate::scene::{Image, Sampler};
@@ -19,7 +19,7 @@ fn sixteen<S: Simd>(simd: S, texture: &PreparedTexture<'_>, at: &[[f32; 16]; 6])
 fn sixteen_look_ups_are_sixteen_times_one() {
     let strange =
         [f32::NAN, f32::INFINITY, f32::MIN, -0.0, 1e-40, -1e-9, 1.0, 8_388_609.0, 3e9, -2.5];
-    // Numbers from 0 to 1 that follow each other without order.
+    // Pseudo-random numbers from 0 to 1.
     let mut seed = 7_u32;
     let mut random = || {
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -43,7 +43,7 @@ fn sixteen_look_ups_are_sixteen_times_one() {
                             lanes[k] = strange[(round + k) % strange.len()];
                         }
                         agrees(&texture, &at);
-                        // Near to each other, about as far apart as their derivatives say.
+                        // Near each other, about as far apart as their derivatives.
                         for (k, lanes) in at.iter_mut().enumerate() {
                             let (middle, scale) = (random(), random() * random() * 0.1);
                             let middle = if k < 2 { middle } else { 0.0 };

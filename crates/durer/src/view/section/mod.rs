@@ -29,10 +29,10 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(n) for n triangles, O(c²) at worst for c new edges of a cap",
-    limits: "bodies that penetrate each other are capped each by itself",
+    limits: "bodies that intersect are capped separately",
     pseudocode: &[
         "for each plane n · P + d = 0, n inwards:",
-        "    h(V) ← n · V + d for each vertex V, 0 if V is on the plane but for rounding",
+        "    h(V) ← n · V + d for each vertex V, 0 if V is on the plane up to rounding",
         "    for each triangle of a mesh:",
         "        no corner has h > 0: it is cut away; all have h > 0: it is kept",
         "        else a vertex at t = h / (h − h′) on each edge from h > 0 to h′ ≤ 0; one triangle or two are kept",

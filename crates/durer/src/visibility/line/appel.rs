@@ -1,16 +1,17 @@
 //! Appel's algorithm: quantitative invisibility carried along the edges of solids.
 //!
-//! A. Appel, *The notion of quantitative invisibility and the machine rendering of solids*, Proceedings of the ACM National
-//! Conference, 1967. The quantitative invisibility of a point is the number of faces that hide it. It is counted at one
-//! corner of each connected part, by a ray to the eye; from there it is carried along the edges. It changes only where an
-//! edge crosses behind a contour edge, one between a face that turns its front to the eye and one that turns its back, where
-//! it pierces a face, and at corners, where faces of the corner itself may hide one edge and not another. Class: object
-//! space. Cost: O(e c) time for e edges and c contour edges, and O(f) for each ray; memory O(edges and crossings).
+//! A. Appel, *The notion of quantitative invisibility and the machine rendering of solids*, Proceedings of the ACM
+//! National Conference, 1967. The quantitative invisibility of a point is the number of faces that hide it. It is
+//! counted at one corner of each connected part, by a ray to the eye; from there it is carried along the edges. It
+//! changes only where an edge crosses behind a contour edge, one between a face that turns its front to the eye and one
+//! that turns its back, where it pierces a face, and at corners, where faces of the corner itself may hide one edge and
+//! not another. Class: object space. Cost: O(e c) time for e edges and c contour edges, and O(f) for each ray; memory
+//! O(edges and crossings).
 //!
-//! [`super::hidden_line`] finds the same numbers line by line, with faces from a grid, which is what production uses: there
-//! a wrong crossing spoils one line and not all that follow.
+//! [`super::hidden_line`] finds the same numbers line by line, with faces from a grid, and is used for production:
+//! there a wrong crossing spoils one line and not all that follow.
 //!
-//! Deviations: the edges between two faces that turn their backs are carried, too, with what hides them; crossings are found by
+//! Deviations: edges between two back faces are carried too, with the faces that hide them; crossings are found by
 //! comparing each edge with each contour edge.
 
 use super::face_net::{Carrier, FaceNet};
@@ -46,7 +47,7 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// Options for the changes to look for.
+/// Options for the changes to be found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
     /// True if edges may pierce faces; false leaves out the comparison of all edges with all faces.
@@ -160,7 +161,7 @@ impl Step {
     }
 }
 
-/// Returns the lines that a list of steps leads to.
+/// Returns the lines resulting from a list of steps.
 pub fn replay(net: &FaceNet, steps: &[Step]) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for step in steps {
@@ -184,8 +185,8 @@ fn line(net: &FaceNet, edge: usize, corners: [usize; 2], invisibility: u32) -> L
     Line { edge, ends, spans: vec![Span { from: 0.0, to: 1.0, invisibility }] }
 }
 
-/// Returns the edges of closed bodies, in the order of the net, with the number of faces that hide each part of them. Edges
-/// between faces of one plane are no lines.
+/// Returns the edges of closed bodies, in the order of the net, with the number of faces that hide each part of them.
+/// Edges between faces of one plane are left out.
 ///
 /// ```
 /// use durer::math::DVec3;
@@ -206,8 +207,8 @@ fn line(net: &FaceNet, edge: usize, corners: [usize; 2], invisibility: u32) -> L
 /// ```
 ///
 /// # Errors
-/// [`Error::Parameter`] for faces that do not bound closed bodies, and for bodies that touch each other so that the numbers
-/// contradict each other.
+/// [`Error::Parameter`] for faces that do not bound closed bodies, and for bodies that touch each other so that the
+/// numbers contradict each other.
 pub fn draw(net: &FaceNet, options: &Options, t: &mut impl Tracer<Step>) -> Result<Vec<Line>> {
     if !net.is_closed() {
         let value = format!("{} whose edges do not all have two", net.faces().len());
@@ -263,8 +264,8 @@ impl<T: Tracer<Step>> Carrier for Run<'_, T> {
 }
 
 impl<T> Run<'_, T> {
-    /// Returns the places where the invisibility of an edge changes, in their order along it: the parameter on the page, the
-    /// cause, and whether the edge goes behind a face there.
+    /// Returns the places where the invisibility of an edge changes, in their order along it: the parameter on the
+    /// page, the cause, and whether the edge goes behind a face there.
     fn changes(&self, edge: usize, corners: [usize; 2]) -> Vec<(f64, Cause, bool)> {
         let (net, mut found) = (self.net, Vec::new());
         let own = &net.edges()[edge].faces;

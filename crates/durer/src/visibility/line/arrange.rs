@@ -95,7 +95,7 @@ pub(super) fn arrange(page: &Page, pieces: Pieces, how: How) -> Vec<Line> {
         chain.closed &= chain.points.len() > 2;
     }
     chains.retain(|c| c.points.len() > 1 && c.length() >= steps);
-    // Hidden lines first: what is visible is drawn over them.
+    // Hidden lines first: visible ones are drawn over them.
     chains.sort_by_key(|c| std::cmp::Reverse((c.invisibility, c.class)));
     let line = |c: super::chain::Chain| Line {
         class: c.class,

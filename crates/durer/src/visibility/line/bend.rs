@@ -1,8 +1,8 @@
 //! The bend of smooth surfaces at their outlines.
 //!
-//! A surface hides its own outline where it bends towards the eye, behind a cusp: there the slope grows against the
-//! sight. Like the radial curvature of Doug DeCarlo, Adam Finkelstein, Szymon Rusinkiewicz and Anthony Santella,
-//! *Suggestive contours for conveying shape*, SIGGRAPH 2003, that is averaged over the faces around each
+//! A surface hides its own outline where it bends towards the eye, behind a cusp: there the slope increases against the
+//! line of sight. The bend, similar to the radial curvature of Doug DeCarlo, Adam Finkelstein, Szymon Rusinkiewicz and
+//! Anthony Santella, *Suggestive contours for conveying shape*, SIGGRAPH 2003, is averaged over the faces around each
 //! vertex and linear along edges. O(n).
 
 use super::crossing::Crossing;
@@ -74,7 +74,7 @@ fn radial(
         let slopes = corners.map(|c| surface.slopes[c as usize]);
         let (u, v) = (b - a, c - a);
         let sight = plane.sight_at((a + b + c) / 3.0).normalize_or_zero();
-        // The gradient of what is linear in a plane, times twice its area.
+        // The gradient of a linear function in a plane, times twice the area.
         let across = u.cross(v);
         let gradient = (v * (slopes[1] - slopes[0]) - u * (slopes[2] - slopes[0])).cross(across);
         let growth = gradient.dot(sight) / across.length();

@@ -60,7 +60,7 @@ pub(super) fn walks(pieces: &[Piece]) -> Vec<Walk> {
     let partner = partners(pieces);
     let mut used = vec![false; pieces.len()];
     let mut found = Vec::new();
-    // Open ones start at their ends; what is left then is closed.
+    // Open chains start at their ends; the remaining ones are closed.
     let open = (0..pieces.len() as u32 * 2).filter(|&end| partner[end as usize] == NONE);
     for start in open.chain((0..pieces.len() as u32).map(|p| p * 2)) {
         if !used[start as usize / 2] {

@@ -1,15 +1,15 @@
-//! Creases go on where they get blunter.
+//! Continuation of creases that become blunter.
 //!
-//! An edge of a body that is rounded off little by little falls below any crease angle somewhere. As in the
-//! hysteresis of John Canny, *A computational approach to edge detection*, IEEE Transactions on Pattern
-//! Analysis and Machine Intelligence, 1986, a crease that began above the angle goes on through weaker edges, down
-//! to a second angle, as long as it goes straight on. O(n log n) for n edges that are sharp or weak.
+//! An edge of a body that is gradually rounded off falls below any crease angle somewhere. As in the hysteresis of John
+//! Canny, *A computational approach to edge detection*, IEEE Transactions on Pattern Analysis and Machine Intelligence,
+//! 1986, a crease that began above the angle continues through weaker edges, down to a second angle, as long as it is
+//! straight. O(n log n) for n edges that are sharp or weak.
 
 use super::edge_lines::{EdgeLine, Sharpness};
 use crate::math::{DVec3, by_coordinates};
 use crate::target::drawing::LineClass;
 
-/// The cosine of the turn up to which an edge goes on in the next: 45°.
+/// The cosine of the turn up to which an edge continues in the next: 45°.
 const ON: f64 = 0.707;
 
 /// Number of edges at a point from which none is continued in another: their square would be too
@@ -73,7 +73,7 @@ fn partners(lines: &[EdgeLine], points: &[DVec3]) -> Vec<u32> {
             ends.push(End { vertex, away: away.normalize_or_zero(), end: 2 * i + k as u32 });
         }
     }
-    // Around a vertex by direction: what is straightest of equals must not be left to the order of the lines.
+    // Around a vertex by direction: the choice among equally straight ones must not depend on the order of the lines.
     ends.sort_unstable_by(|a, b| {
         a.vertex
             .cmp(&b.vertex)
@@ -140,10 +140,10 @@ mod tests {
         let mut reversed = goes_on[..3].to_vec();
         reversed.reverse();
         assert_eq!(kept(&reversed), kept(&goes_on[..3]));
-        // What is weak on both sides of a gap belongs to the sharp edge on its own side alone.
+        // A weak edge between sharp ones across a gap belongs to the sharp edge on its own side only.
         assert_eq!(kept(&[goes_on[0], goes_on[1], line([3, 4], Weak)]), [[0, 1], [1, 2]]);
         assert_eq!(kept(&row([Weak; 4])), [[0u32; 2]; 0]);
-        // A branch is no way on: the row itself goes on straighter.
+        // A branch is no continuation: the row itself continues straighter.
         let branch = [line([1, 2], Sharp), line([2, 3], Sharp), line([2, 5], Weak)];
         assert_eq!(kept(&branch), [[1, 2], [2, 3]]);
     }

@@ -94,7 +94,7 @@ pub(super) enum Outside {
 pub(super) enum Sharpness {
     /// Hardly.
     Blunt,
-    /// Enough for a crease that began elsewhere to go on.
+    /// Enough to continue a crease that began elsewhere.
     Weak,
     /// Enough for a crease.
     Sharp,
@@ -118,7 +118,7 @@ pub(super) struct Rules<'a> {
     pub whole: Whole<'a>,
     /// Cosine of the crease angle.
     pub crease: f32,
-    /// Cosine of the angle down to which a crease goes on; at least `crease`.
+    /// Cosine of the angle down to which a crease continues; at least `crease`.
     pub crease_end: f32,
 }
 
@@ -309,7 +309,7 @@ impl Rules<'_> {
                 .filter(|e| *e != ends)
                 .max_by(|x, y| length(*x).total_cmp(&length(*y)));
             let Some(edge) = longest else { return item };
-            // Of three or more, which comes first would be left to the order of the triangles.
+            // With three or more, the first would depend on the order of the triangles.
             let [a, b] = self.edges.at(edge) else { return item };
             (item, ends) = (if a.item() == item { b.item() } else { a.item() }, edge);
         }

@@ -1,12 +1,13 @@
-//! Creases that fade.
+//! Creases that fade out.
 //!
-//! Where two surfaces meet at an angle that falls to nothing, as a pipe and its elbow may, the line between them begins as
-//! a crease and ends as a bend like others of the mesh. What tells it from those is the part of its turn that the surfaces
-//! beside it do not explain: on a smooth surface, an edge turns by half of what the facets at both sides bend by. As in
-//! Andreas Hubeli and Markus Gross, *Multiresolution feature extraction for unstructured meshes*, IEEE Visualization 2001,
-//! edges are weighted by more than their own two faces, and kept by hysteresis: a line begins at a sharp corner with an
-//! edge that clearly is none of the surface, goes on along its smoothest continuation while it fades, and must end at
-//! another sharp corner, for a coarse mesh loses it on the way. O(k) for k edges that may be the first.
+//! Where two surfaces meet at an angle that decreases to zero, as a pipe and its elbow may, the line between them
+//! begins as a crease and ends as a bend like others of the mesh. It differs from those in the part of its turn that
+//! the surfaces beside it do not explain: on a smooth surface, an edge turns by half of the bends of the facets on both
+//! sides. As in Andreas Hubeli and Markus Gross, *Multiresolution feature extraction for unstructured meshes*, IEEE
+//! Visualization 2001, edges are weighted by more than their own two faces, and kept by hysteresis: a line begins at a
+//! sharp corner with an edge that clearly does not belong to the surface, follows its smoothest continuation while it
+//! fades, and must end at another sharp corner, because a coarse mesh loses it on the way. O(k) for k edges that may be
+//! the first.
 
 use super::vertex_normals::{Directions, direction};
 use crate::math::{DVec3, by_coordinates};
@@ -131,7 +132,7 @@ impl Fading<'_> {
         let [.., before, at] = line.vertices[..] else { return None };
         let last = self.along(before, at);
         let straight = last.try_normalize()?;
-        // It bends as it has bent, by what is half of two edges.
+        // Half the curvature at the vertex before.
         let bend = match line.vertices[..] {
             [.., first, _, _] => {
                 let earlier = self.along(first, before);
@@ -235,8 +236,8 @@ impl Fading<'_> {
     }
 }
 
-/// Returns the lines of which no other one passes a vertex between their ends: on a mesh so coarse that lines cross, they
-/// cannot be told from facets.
+/// Returns the lines of which no other one passes a vertex between their ends: on a mesh so coarse that lines cross,
+/// they cannot be told from facets.
 fn apart(mut lines: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
     for line in &mut lines {
         if line.first() > line.last() {

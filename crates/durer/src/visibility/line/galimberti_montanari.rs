@@ -1,16 +1,16 @@
 //! Galimberti and Montanari's algorithm: the set of faces that hide a point, carried along edges.
 //!
-//! R. Galimberti, U. Montanari, *An algorithm for hidden line elimination*, Communications of the ACM 12(4), 1969. The nature of
-//! a point is the set of faces that hide it. It is found by comparing one corner of each connected part with all faces; from
-//! there it is carried along the edges. A face enters or leaves the nature where an edge crosses behind one of the face's
-//! edges, or pierces the face; a part of an edge is drawn if its nature is empty. Class: object space. Cost: O(e f k) time for
-//! e edges and f faces of k edges; memory O(edges and changes).
+//! R. Galimberti, U. Montanari, *An algorithm for hidden line elimination*, Communications of the ACM 12(4), 1969. The
+//! nature of a point is the set of faces that hide it. It is found by comparing one corner of each connected part with
+//! all faces; from there it is carried along the edges. A face enters or leaves the nature where an edge crosses behind
+//! one of the face's edges, or pierces the face; a part of an edge is drawn if its nature is empty. Class: object
+//! space. Cost: O(e f k) time for e edges and f faces of k edges; memory O(edges and changes).
 //!
-//! [`super::appel`] counts faces, for which it needs closed bodies; here each face has a name, so any plane polygons will
-//! do, and the result names the faces that hide a part.
+//! [`super::appel`] counts faces, for which it needs closed bodies; here faces are identified, so any plane polygons
+//! will do, and the result names the faces that hide a part.
 //!
-//! Deviations: the paper's faces bound bodies, and those that turn their backs are left out before; here that is done only where
-//! all bodies are closed. Lines in which faces pierce each other are not added.
+//! Deviations: the paper's faces bound bodies, and back faces are removed first; here they are removed only if all
+//! bodies are closed. Lines along which faces intersect are not added.
 
 use super::face_net::{Carrier, FaceNet};
 use crate::Result;
@@ -29,7 +29,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::Area,
     coherence: &[Coherence::Edge],
     cost: "O(e f k) time for e edges and f faces of k edges; O(edges and changes) memory",
-    limits: "plane polygons; faces that touch others without common corners are left to rounding",
+    limits: "plane polygons; faces that touch others without common corners depend on rounding",
     pseudocode: &[
         "leave out the faces of closed bodies that turn their backs to the eye: they hide nothing more",
         "for each connected part of the edges, with a corner V:",
@@ -95,8 +95,8 @@ impl Line {
         seen.map(move |part| [part.from, part.to].map(|t| p.lerp(q, t)))
     }
 
-    /// Ends the last part at t, and begins another one with a nature. A part without length is none: there one face takes the
-    /// place of another at their common edge.
+    /// Ends the last part at t, and begins another one with a nature. A part without length is none: there one face
+    /// takes the place of another at their common edge.
     fn change(&mut self, t: f64, nature: Vec<usize>) {
         let next = Part { from: t, to: 1.0, nature };
         match self.parts.last_mut() {
@@ -193,8 +193,8 @@ pub fn replay(net: &FaceNet, steps: &[Step]) -> Vec<Line> {
     lines
 }
 
-/// Returns the edges of plane polygons, in the order of the net, with the faces that hide each part of them. Edges between faces
-/// of one plane are no lines.
+/// Returns the edges of plane polygons, in the order of the net, with the faces that hide each part of them. Edges
+/// between faces of one plane are no lines.
 ///
 /// ```
 /// use durer::math::DVec3;

@@ -7,8 +7,8 @@
 //! raises or lowers it; where a curve passes a horizon between two columns, the crossing is interpolated. Coherence
 //! used: scan lines, from curve to curve. Cost: O(curves · columns) time, O(columns) memory.
 //!
-//! Limits: between columns horizons are straight, so what is narrower than a column may be lost, and crossings are
-//! as exact as columns are narrow. [`super::floating_horizon`] has none of these limits.
+//! Limits: between columns horizons are straight, so features narrower than a column may be lost, and crossings are
+//! only as exact as the column width. [`super::floating_horizon`] has neither of these limits.
 
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
@@ -36,7 +36,7 @@ pub const INFO: Info = Info {
         "    for each two neighbouring points:",
         "        both visible on the same side: draw the line between them",
         "        else: interpolate where it passes the horizon,",
-        "              and draw what is visible of it",
+        "              and draw its visible part",
         "    for each point: upper[x] ← max(upper[x], y), lower[x] ← min(lower[x], y)",
         "    raise the horizons along the line to the ends of the curve before",
     ],

@@ -121,7 +121,7 @@ impl<'a> Tree<'a> {
         }
         let (a, b) = ([2 * a + 1, 2 * a + 2], [2 * b + 1, 2 * b + 2]);
         let pairs = [(a[0], b[0]), (a[0], b[1]), (a[1], b[0]), (a[1], b[1])];
-        // Of a node with itself, one of the mixed pairs is enough.
+        // For a node with itself, one of the mixed pairs is enough.
         let pairs = pairs.into_iter().filter(|(x, y)| x <= y);
         into.extend(pairs.filter(|&(x, y)| self.may_meet(x, y)));
     }

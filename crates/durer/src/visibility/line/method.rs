@@ -1,4 +1,4 @@
-//! All ways to draw lines.
+//! The methods of drawing lines.
 
 use super::{floating_horizon, hidden_line, wireframe};
 
@@ -9,7 +9,7 @@ crate::info::family! {
         Wireframe => wireframe::INFO,
         /// Visible parts of edges, and how many surfaces hide the rest.
         HiddenLine => hidden_line::INFO,
-        /// The lines of a surface y = f(x, z) that rise above or sink below those before them.
+        /// The lines of a surface y = f(x, z) that rise above or sink below those in front of them.
         FloatingHorizon => floating_horizon::INFO,
     }
 }

@@ -1,4 +1,4 @@
-//! Visible lines: what of the edges of a scene can be seen, as exact drawings.
+//! Visible lines: the visible parts of the edges of a scene, as exact drawings.
 
 pub mod appel;
 mod arrange;

@@ -1,8 +1,8 @@
-//! Lines that lie on each other are drawn once.
+//! Coincident lines are drawn once.
 //!
-//! Pieces are taken in the order of preference (visible before hidden, then by class, then the longest);
-//! what an earlier one covers is cut from a later one. Candidates come from a uniform grid; O(n) for lines that do
-//! not crowd.
+//! Pieces are processed in the order of preference (visible before hidden, then by class, then the longest); the parts
+//! that an earlier piece covers are cut from later ones. Candidates come from a uniform grid; O(n) for lines that are
+//! not crowded.
 
 use super::page::GridPoint;
 use super::piece::Piece;
@@ -42,7 +42,7 @@ pub(super) fn drawn_once(mut pieces: Vec<Piece>, how: Near<'_>) -> Vec<Piece> {
     let mut near: Vec<u32> = Vec::new();
     let mut gone: Vec<Gone> = Vec::new();
     while let Some(piece) = pieces.pop() {
-        // All edges of a large mesh are many: what is done gives way to what is kept.
+        // The edges of a large mesh are many: memory of processed ones is released as results grow.
         if pieces.len() < pieces.capacity() / 8 * 7 {
             pieces.shrink_to_fit();
         }
@@ -204,11 +204,11 @@ mod tests {
             let how = Near { beneath: 200.0, corners: &corners, ..near(2.0, 64.0) };
             drawn_once(vec![line(ends, 1), seen], how)[1..].to_vec()
         };
-        // Beside it, and a little longer; from it to what lies beside it; and longer ones by more.
+        // Beside it, and a little longer; from it to neighbouring lines; and longer ones by more.
         assert_eq!(left([[100, 150], [10_100, 150]]), []);
         assert_eq!(left([[3000, 0], [3000, 180]]), []);
         assert_eq!(left([[100, 150], [12_000, 150]]), [line([[10_000, 150], [12_000, 150]], 1)]);
-        // Across it, at an angle to it, and further off.
+        // Across it, at an angle to it, and farther away.
         for ends in [
             [[500, -300], [500, 300]],
             [[0, 0], [5000, 190]],
@@ -253,7 +253,7 @@ mod tests {
             invisibility: 0,
             smooth: false,
         };
-        // Each lies on the next; the first and the last are apart.
+        // Each overlaps the next; the first and the last are apart.
         let bundle = [line(90_000, 0), line(100_000, 60), line(95_000, 114)];
         for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
             let pieces = order.map(|i| bundle[i]).to_vec();

@@ -1,7 +1,7 @@
 //! The integer grid of a drawing: the scene's vertices, projected and snapped.
 //!
-//! All decisions in the plane are made with integers and are exact; what projects to one place up to
-//! rounding is at one place.
+//! All decisions in the plane are made with integers and are exact; points that project to one position up to rounding
+//! get one position.
 
 use crate::math::{DVec2, DVec3, Rect};
 use crate::view::picture_plane::{Borders, PicturePlane, PlanePoint};
@@ -76,7 +76,7 @@ impl Page {
     }
 }
 
-/// A face, or what is left of one in front of the eye.
+/// A face, or the part of one in front of the eye.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cut {
     pub item: u32,
@@ -213,7 +213,7 @@ impl Around {
         }
     }
 
-    /// Returns the bounds of what is in the window, and the guard around it.
+    /// Returns the bounds of the contents of the window, and the guard around it.
     fn limited(&self, window: Rect, faces: &Faces, plane: &PicturePlane) -> Self {
         let mut depths = Self::default();
         let volume = Borders { depth: true, sides: Some(GUARD) };

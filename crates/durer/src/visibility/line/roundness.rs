@@ -1,8 +1,8 @@
 //! The choice of objects that approximate smooth surfaces.
 //!
-//! A mesh of a round part turns a little at each of its edges; one that is modelled in few facets turns by more, and
-//! they are what it is. Told apart by area, object by object, from the angles alone: not by the view, so that all views
-//! of a thing are drawn alike. O(n).
+//! At each edge the mesh of a round part turns a little; a shape modelled with few facets turns by more and really has
+//! these edges. The two are distinguished by area, object by object, from the angles alone and not by the view, so that
+//! all views of an object are drawn alike. O(n).
 
 use super::planes::Planes;
 use crate::math::DVec3;
@@ -13,52 +13,53 @@ use std::ops::Range;
 /// Objects whose outlines are those of the smooth surfaces that meshes approximate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Smooth {
-    /// They run along edges of the mesh.
+    /// Outlines run along edges of the mesh.
     #[default]
     Off,
-    /// They are smooth on objects that the mesh says are round: where most of what bends, by area and without
-    /// creases, turns by less than 25° from facet to facet, or has facets too narrow to be seen as such. Bends of more
-    /// than 30° are edges on the former, too.
+    /// Outlines are smooth on objects that the mesh shows to be round: most of their bent area, without creases, turns
+    /// by less than 25° from facet to facet, or has facets too narrow to be visible. On the former, bends of more than
+    /// 30° are edges too.
     Auto,
-    /// They are smooth wherever the mesh has no creases.
+    /// Outlines are smooth wherever the mesh has no creases.
     On,
 }
 
-/// The cosine within which faces are one flat face: 0.1°. Less may be rounding of the file's coordinates.
+/// The cosine of the angle up to which faces count as one flat face: 0.1°. Smaller angles may be rounding of the file's
+/// coordinates.
 pub(super) const FLAT: f64 = 1.0 - 1.5e-6;
 
-/// The turn in radians up to which facets may be those of a round part: as for curves through lines
-/// ([`crate::curve::fit`]), of 30° with 12 facets all around.
+/// The angle in radians up to which facets may belong to a round part, as for curves through lines
+/// ([`crate::curve::fit`]): 30°, that is, 12 facets all around.
 const ROUND: f64 = std::f64::consts::FRAC_PI_6;
 
-/// The cosine of 25°: facets that turn by more are seen as such, with or without shading.
+/// The cosine of 25°: facets that turn by more are visible as such, with or without shading.
 const COARSE: f64 = 0.906;
 
-/// The part of the bent area that may turn by so much on a round object, at fins and small features: meshes of round
-/// parts have up to 5 %, those of few facets from 20 % on.
+/// The part of the bent area that may exceed this angle on a round object, at fins and small features: meshes of round
+/// parts have up to 5 %, shapes modelled with few facets from 20 % on.
 const COARSE_PART: f64 = 0.125;
 
-/// The part of an object's diagonal within which facets pass for the surface itself: less than a pen's width where the
-/// object fills a page. So a thin wire may have few facets around, and be round.
+/// The distance, as a part of an object's diagonal, within which facets count as the surface itself: less than a pen's
+/// width if the object fills a page. So a thin wire may have few facets around and still be round.
 const UNSEEN: f64 = 0.002;
 
 /// The items of objects that have smooth outlines.
 pub(super) struct Round {
-    /// True for each of these.
+    /// True for each item of these objects.
     pub items: Vec<bool>,
-    /// True for those of objects whose facets are too narrow to be seen; empty if there are none.
+    /// True for items of objects with facets too narrow to be visible; empty if there are none.
     narrow: Vec<bool>,
-    /// The angle in radians from which edges of the others are sharp, and of the narrow ones.
+    /// The angles in radians from which edges are sharp: of the other objects, and of those with narrow facets.
     sharp: [f64; 2],
 }
 
 impl Round {
-    /// Returns whether an item is of an object whose facets are too narrow to be seen.
+    /// Returns whether an item belongs to an object with facets too narrow to be visible.
     pub fn is_narrow(&self, item: u32) -> bool {
         self.narrow.get(item as usize) == Some(&true)
     }
 
-    /// Returns the angles in radians from which edges are sharp, and whether they are those of narrow facets.
+    /// Returns the angles in radians from which edges are sharp, each with whether it is for narrow facets.
     pub fn sharp(&self) -> impl Iterator<Item = (f64, bool)> {
         let kinds = if self.narrow.is_empty() { 1 } else { 2 };
         self.sharp.into_iter().zip([false, true]).take(kinds)
@@ -66,7 +67,8 @@ impl Round {
 }
 
 impl Smooth {
-    /// Returns the items of objects that have smooth outlines, where creases are from `crease` on; `None` if none has.
+    /// Returns the items of objects with smooth outlines, with creases from the angle `crease` on; `None` if there are
+    /// none.
     pub(super) fn round(
         self,
         (faces, edges): (&Faces, &Edges),
@@ -105,7 +107,7 @@ impl Smooth {
     }
 }
 
-/// Share of an object that bends: the areas beside its edges, twice.
+/// Share of an object that is bent: the areas beside its edges, doubled.
 #[derive(Debug, Clone, Copy, Default)]
 struct Bent {
     round: f64,
@@ -144,8 +146,8 @@ fn sizes(faces: &Faces, objects: usize) -> Vec<f64> {
     boxes.into_iter().map(|[min, max]| (max - min).max(DVec3::ZERO).length()).collect()
 }
 
-/// Returns the bends in parts of one object each, in an order that is always the same. Facets that are no further from
-/// a round surface than what is `unseen` of their object, if that is given, are not coarse.
+/// Returns the bends in parts of one object each, in a fixed order. Facets that are no farther from a round surface
+/// than the share `unseen` of their object's diagonal, if given, do not count as coarse.
 fn bends(
     (faces, edges): (&Faces, &Edges),
     planes: &Planes,
@@ -157,7 +159,7 @@ fn bends(
     parallel::map(jobs, of).concat()
 }
 
-/// Returns the same of the edges whose smaller vertices lie in a range.
+/// Returns the same for the edges whose smaller vertices are in a range.
 fn bends_from(
     (faces, edges): (&Faces, &Edges),
     planes: &Planes,

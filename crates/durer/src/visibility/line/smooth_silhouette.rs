@@ -1,18 +1,18 @@
 //! Silhouettes of the smooth surface that a mesh approximates.
 //!
-//! Aaron Hertzmann and Denis Zorin, *Illustrating smooth surfaces*, SIGGRAPH 2000: where the normal, interpolated over
-//! a triangle, is at a right angle to the line of sight. The lines run through the triangles and do not zigzag along
-//! their edges. What the mesh hides ends at the mesh's own outline beside them, though, so a line drawn on the
-//! triangles would leave gaps and stubs where others end on it. Here the mesh itself gets the silhouette, as in Pierre
-//! Bénard, Aaron Hertzmann and Michael Kass, *Computing smooth surface contours with accurate topology*, ACM
-//! Transactions on Graphics, 2014: triangles are divided along it, and the new vertices lie on the smooth surface, over
-//! the edges of the mesh as in Alex Vlachos, Jörg Peters, Chas Boyd and Jason Mitchell, *Curved PN triangles*, I3D
-//! 2001. Outline and hidden lines are then those of one and the same mesh, but which side of it is seen the normals
-//! say: facets beside an outline may be turned otherwise, and slivers any way. A facet that shows the other side lies
-//! folded over the outline, and what is behind it is counted once less: so the number of surfaces in front changes at
-//! the outline, to the bit, and 2014's search for consistent positions is not needed.
+//! Aaron Hertzmann and Denis Zorin, *Illustrating smooth surfaces*, SIGGRAPH 2000: the silhouette is where the normal,
+//! interpolated over a triangle, is at a right angle to the line of sight. The lines run through the triangles and do
+//! not zigzag along their edges. But lines hidden by the mesh end at the mesh's own outline beside them, so a
+//! silhouette drawn on the triangles would leave gaps and stubs where others end on it. Here the mesh itself gets the
+//! silhouette, as in Pierre Bénard, Aaron Hertzmann and Michael Kass, *Computing smooth surface contours with accurate
+//! topology*, ACM Transactions on Graphics, 2014: triangles are divided along it, and the new vertices are on the
+//! smooth surface, over the edges of the mesh as in Alex Vlachos, Jörg Peters, Chas Boyd and Jason Mitchell, *Curved PN
+//! triangles*, I3D 2001. Outline and hidden lines are then those of the same mesh, but the normals determine its
+//! visible side: facets beside an outline may be turned otherwise, and slivers in any direction. A facet that shows the
+//! other side is folded over the outline, and lines behind it are counted once less: so the number of surfaces in front
+//! changes exactly at the outline, and the search for consistent positions of 2014 is not needed.
 //!
-//! Where a surface hides its own outline, `bend` says. O(n log n).
+//! `bend` finds where a surface hides its own outline. O(n log n).
 
 use super::bend::{Bend, Bends};
 use super::crossing::{Crossing, crossings};

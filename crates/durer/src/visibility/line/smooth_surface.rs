@@ -1,9 +1,9 @@
 //! The smooth surface that a mesh approximates, near its outlines: a normal at each corner of each
 //! triangle.
 //!
-//! The normals are those of the file where it has some, else averages (`vertex_normals`). An average of faces that
-//! all show one side shows that side too, so outlines run only where faces of both sides meet. O(n), and O(k log k)
-//! for k triangles there.
+//! The normals are those of the file if it has any, else averages (`vertex_normals`). An average of faces that all show
+//! one side shows that side too, so outlines run only where faces of both sides meet. O(n), and O(k log k) for k
+//! triangles there.
 
 use super::planes::Planes;
 use super::roundness::Round;

@@ -1,14 +1,13 @@
-//! Creases that one angle does not tell.
+//! Creases that no single angle distinguishes.
 //!
-//! A mesh of round parts turns from facet to facet by about equal steps, and an edge is a step alone. So the turns
-//! straight across an edge on both sides of it say what it is: between two flat faces that bend no further an edge is a
-//! crease, however blunt; and few edges above the crease angle, between facets that go on to bend about as much, are no
-//! crease where they begin and end in the open. As in Tamal Dey and Lei Wang, *Voronoi-based feature curves extraction
-//! for sampled singular surfaces*, Computers & Graphics, 2013, a feature is known from what is around it, and not from
-//! one threshold. O(n), and O(k log k) for k such edges.
+//! A mesh of round parts turns from facet to facet by about equal steps, while an edge is a single step. So the turns
+//! straight across an edge on both sides of it classify it: an edge between two flat faces that bend no further is a
+//! crease, however obtuse; and a few edges above the crease angle, between facets that continue to bend by about as
+//! much, are no crease if they begin and end in the open. As in Tamal Dey and Lei Wang, *Voronoi-based feature curves
+//! extraction for sampled singular surfaces*, Computers & Graphics, 2013, a feature is recognized by its surroundings,
+//! not by one threshold. O(n), and O(k log k) for k such edges.
 //!
-//! Flat faces are of two triangles or more: single ones that are turned against each other are what scanned meshes are
-//! made of.
+//! Flat faces consist of two triangles or more: scanned meshes consist of single triangles turned against each other.
 
 use super::fading::{FIRST_COSINE, Fading};
 use super::planes::Planes;
@@ -31,7 +30,7 @@ const JOB: usize = 1 << 15;
 /// An edge, the smaller vertex first.
 type Ends = [u32; 2];
 
-/// Edges of the mesh that are creases, or are none, whatever they turn by; each in order.
+/// Edges of the mesh that are creases, and edges that are not, whatever their angles; each list in order.
 pub(super) struct Steps {
     creases: Vec<Ends>,
     facets: Vec<Ends>,
@@ -164,7 +163,7 @@ impl Turns {
         count
     }
 
-    /// Returns the edges of which one end alone is a sharp edge's, and which may be the first of a crease that fades.
+    /// Returns the edges with exactly one end on a sharp edge, which may be the first of a fading crease.
     fn fading(&self, vertices: usize) -> Vec<Ends> {
         if self.first.is_empty() || self.sharp.is_empty() {
             return Vec::new();
@@ -202,7 +201,7 @@ impl Turns {
 struct Lines(Vec<u32>);
 
 impl Lines {
-    /// Returns the first of those that a vertex is joined with.
+    /// Returns the first of the vertices with which a vertex is joined.
     fn first(&mut self, mut vertex: u32) -> u32 {
         while self.0[vertex as usize] != vertex {
             let before = self.0[vertex as usize];
@@ -306,7 +305,7 @@ mod tests {
         assert_eq!(held(turns(&[[3, 7]], &[0])), row);
         assert_eq!(held(turns(&[], &[0, 2])), row[..2]);
         assert_eq!(held(turns(&[], &[0])), [[0; 2]; 0]);
-        // A loop ends nowhere; a branch of it does.
+        // A loop has no ends, but a branch of it has one.
         let ring = vec![[0, 1], [0, 2], [1, 2], [2, 5]];
         assert_eq!(turns(&[], &[]).held(ring.clone(), 8), ring[..3]);
     }

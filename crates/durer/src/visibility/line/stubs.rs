@@ -1,10 +1,9 @@
 //! Short lines that end in the open are cut back.
 //!
-//! On a mesh the silhouette of a round surface is a zigzag of edges: it leaves spurs where it turns into
-//! the surface, and gaps where one edge hides the next. Creases flicker where a rounding is about as
-//! sharp as the crease angle. A draughtsman draws none of this. So tips of such lines that nearly meet
-//! are joined, and those that end in the open are cut back to the next junction, or left out, if that is
-//! not far. O(n) for lines that do not crowd.
+//! On a mesh the silhouette of a round surface is a zigzag of edges: it leaves spurs where it turns into the surface,
+//! and gaps where one edge hides the next. Creases flicker where a rounding is about as sharp as the crease angle. A
+//! draughtsman draws none of this. So tips of such lines that nearly meet are joined, and those that end in the open
+//! are cut back to the next junction, or left out, if that is near. O(n) for lines that are not crowded.
 
 use super::chain::{Walk, point, walks};
 use super::overlap::distance;
@@ -30,7 +29,7 @@ const BACK_LENGTH: f64 = 12.0;
 /// The cosine of a turn back: 135°.
 const BACK: f64 = -0.707;
 
-/// Gaps up to this part of a stub are closed, whichever line goes on in the other.
+/// Gaps up to this part of a stub are closed, whichever line continues the other.
 const GAP: f64 = 0.3;
 
 /// Gaps up to this many stubs are closed where a line goes straight on beyond, and is longer than the gap.
@@ -150,7 +149,7 @@ impl<'a> Lines<'a> {
         let mut cuts: Vec<Cut> = pieces.filter(|&i| self.dust[i]).map(Cut::All).collect();
         let meets = self.touch.max(self.length * MEETS);
         for ways in self.open_walks() {
-            // Sharp edges go on; what is short and alone comes from faces that are hardly turned.
+            // Sharp edges continue; short isolated ones come from faces that are hardly turned.
             let alone = self.length_of(&ways[0]) <= self.length
                 && ways.iter().all(|ends| self.is_in_the_open(ends, self.length));
             if alone {
@@ -384,7 +383,7 @@ mod tests {
         };
         let cut = without_stubs(frame(true), 1000.0, 10.0);
         assert_eq!(ends(&cut)[1], [0, 0, 49_500, 0]);
-        // Sharp edges end where they end; and longer ones have a reason.
+        // Sharp edges end where they end; and longer ones are kept.
         assert_eq!(without_stubs(frame(false), 1000.0, 10.0), frame(false));
         assert_eq!(without_stubs(frame(true), 100.0, 10.0), frame(true));
     }
@@ -396,7 +395,7 @@ mod tests {
         let tail = |second| vec![frame, hidden([0, 0], [50_000, 30_000]), second];
         let back = tail(hidden([50_000, 30_000], [-20_000, 20_000]));
         assert_eq!(without_stubs(back.clone(), 12_000.0, 10.0), [frame]);
-        // What goes on has a reason, and so has what is longer, or to be seen.
+        // Lines with a continuation are kept, and so are longer lines and those that are visible on their own.
         let on = tail(hidden([50_000, 30_000], [100_000, 90_000]));
         assert_eq!(without_stubs(on.clone(), 12_000.0, 10.0), on);
         assert_eq!(without_stubs(back.clone(), 9000.0, 10.0), back);
@@ -413,7 +412,7 @@ mod tests {
         let cut = without_stubs(rim(1000), 15_000.0, 10.0);
         assert_eq!(ends(&cut)[0], [0, 0, 100_000, 0]);
         assert_eq!(chains_of(&cut), 1);
-        // Further aside there is a corner to be seen, and further on a line.
+        // A greater distance to the side makes a visible corner, a greater distance ahead a visible line.
         assert_eq!(without_stubs(rim(5000), 15_000.0, 10.0), rim(5000));
         assert_eq!(without_stubs(rim(1000), 10_000.0, 10.0), rim(1000));
     }
@@ -430,7 +429,7 @@ mod tests {
         let found = without_stubs(pieces.clone(), 10_000.0, 10.0);
         let gap = [far, 0, far + 2000, 0];
         assert_eq!(ends(&found), [ends(&pieces)[0], ends(&pieces)[1], gap]);
-        // What holds a line is not dust for it.
+        // A line that supports another is not removed as dust.
         pieces.truncate(1);
         pieces.push(Piece { class: LineClass::Crease, ..piece([far, 0], [far + 500, 500], true) });
         let found = without_stubs(pieces, 10_000.0, 10.0);
@@ -439,12 +438,12 @@ mod tests {
 
     #[test]
     fn dashes_of_one_line_are_joined() {
-        // An outline along a face that is nearly edge-on; sharp, as it is at a rim.
+        // An outline along a face that is nearly edge-on; sharp, as at a rim.
         let dash = |k: i32, up: i32| piece([k * 30_000, up], [k * 30_000 + 18_000, up], false);
         let dashes = [0, 1, 2, 3].map(|k| dash(k, 0)).to_vec();
         let found = without_stubs(dashes.clone(), 10_000.0, 10.0);
         assert_eq!(chains_of(&found), 1, "{found:?}");
-        // Further apart than the line is long, or aside, they are other lines.
+        // Farther apart than the line is long, or to the side, they are separate lines.
         let apart = vec![dash(0, 0), dash(2, 0)];
         assert_eq!(chains_of(&without_stubs(apart, 10_000.0, 10.0)), 2);
         let short = vec![piece([0, 0], [12_000, 0], false), piece([26_000, 0], [38_000, 0], false)];
@@ -461,7 +460,7 @@ mod tests {
         // Side by side, both from the left, they are two.
         let beside = vec![pieces[0], smooth([1000, 60_000], [498_000, 1500])];
         assert_eq!(chains_of(&without_stubs(beside, 10_000.0, 10.0)), 2);
-        // A short piece is not a line that goes on.
+        // A short piece is no continuation.
         let short = piece([507_000, 1900], [498_000, 1500], false);
         let sharp = vec![piece([0, 0], [500_000, 0], false), short];
         assert_eq!(chains_of(&without_stubs(sharp, 10_000.0, 10.0)), 2);

@@ -1,5 +1,5 @@
-//! Pieces of lines by place: a uniform grid. Where the pieces lie in few of its cells, as those of a long row, cells
-//! are smaller, and share lists by a hash of their number.
+//! Pieces of lines by position: a uniform grid. If the pieces are in few of its cells, as in a long row, cells are
+//! smaller and share lists by a hash of their number.
 
 use super::page::GridPoint;
 use super::piece::Piece;

@@ -1,9 +1,9 @@
 //! The edges at which curved faces meet others smoothly.
 //!
-//! A mesh does not say where its faces were, but there the curvature changes at once: straight across the first edge of
-//! a fillet, the surface bends as the fillet does on one side, and on the other, of a plane or along a cylinder,
-//! hardly. The facets of the fillet begin on the edge itself, so the mesh turns there by half of what it turns from
-//! facet to facet. O(n log n).
+//! A mesh does not record its original faces, but at their borders the curvature changes abruptly: straight across the
+//! first edge of a fillet, the surface bends like the fillet on one side, and hardly on the other, along a plane or a
+//! cylinder. The facets of the fillet begin at the edge itself, so the mesh turns there by half of the turn from facet
+//! to facet. O(n log n).
 
 use super::planes::Planes;
 use super::roundness::FLAT;
@@ -58,7 +58,7 @@ fn is_tangent(directions: &Directions<'_>, ends: [u32; 2], sides: &[Side], creas
         let (width, Some(curvature)) = round else { return false };
         let own = turn / (curvature.abs() * width);
         let is_flatter = |o: f64| o.abs() * UNEVEN <= curvature.abs();
-        // What meets it is wider than one facet of it, or it would be as round.
+        // The adjoining face is wider than a facet and flatter, or it would be just as round.
         TURN.contains(&own) && width < flat.0 && flat.1.is_none_or(is_flatter)
     };
     meets(a, b) || meets(b, a)

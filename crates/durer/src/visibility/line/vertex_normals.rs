@@ -5,8 +5,8 @@
 //! Thürmer and Charles Wüthrich, *Computing vertex normals from polygonal facets*, Journal of Graphics Tools, 1998, and
 //! large flat faces keep their own direction beside narrow roundings.
 //!
-//! What is beyond a sharp edge does not count: beyond a crease, and beyond a bend between two flat faces that are
-//! no facets of anything round. O(n) for vertices of bounded degree.
+//! Faces beyond a sharp edge do not count: beyond a crease, and beyond a bend between two flat faces that are no facets
+//! of a round surface. O(n) for vertices of bounded degree.
 
 use super::planes::Planes;
 use super::roundness::FLAT;
@@ -211,9 +211,9 @@ impl<'a> Directions<'a> {
         next.is_some_and(|curvature| curvature * curvature >= 2.0 * least)
     }
 
-    /// Returns the width of the flat face that a triangle is a part of, straight across from the edge `ends`, as far as that
-    /// is followed, and the bend of the surface in that direction at its other end: the turn over the mean width of the
-    /// faces there, if it is round; above 0 where it is convex.
+    /// Returns the width of the flat face that a triangle is a part of, straight across from the edge `ends`, as far as
+    /// that is followed, and the bend of the surface in that direction at its other end: the turn over the mean width
+    /// of the faces there, if it is round; above 0 where it is convex.
     pub fn next_bend(&self, ends: [u32; 2], item: u32) -> (f64, Option<f64>) {
         self.next_turn(ends, item, FLAT)
     }

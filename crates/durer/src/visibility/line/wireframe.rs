@@ -1,8 +1,8 @@
-//! Wireframe: all edges, whatever lies in front.
+//! Wireframe: all edges, whatever is in front of them.
 //!
-//! Timothy Johnson, *Sketchpad III: a computer program for drawing in three dimensions*, AFIPS Spring
-//! Joint Computer Conference, 1963. Object space; O(n log n) for n edges. The picture is ambiguous:
-//! nothing says which side is in front (Necker's cube), and several bodies may have the same one.
+//! Timothy Johnson, *Sketchpad III: a computer program for drawing in three dimensions*, AFIPS Spring Joint Computer
+//! Conference, 1963. Object space; O(n log n) for n edges. The picture is ambiguous: it does not show which side is in
+//! front (Necker's cube), and different bodies may have the same picture.
 
 use super::arrange::{How, Pieces, arrange, arranged, on_page};
 use super::edge_lines::NO_ITEM;
@@ -31,7 +31,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O(n log n) for n edges",
-    limits: "ambiguous: nothing says what is in front",
+    limits: "ambiguous: lines in front and behind look alike",
     pseudocode: &[],
 };
 

@@ -1,8 +1,8 @@
-//! Outlines of smooth surfaces do not run to and fro.
+//! Outlines of smooth surfaces without zigzags.
 //!
-//! Where triangles are slivers, the places at which an outline crosses their sides may come in another order in the
-//! picture than along it. An outline can turn back at a cusp, but then one of its sides is hidden; one that turns back
-//! twice, and shows all of it, is noise of the mesh. What is between the turns becomes one point. O(n log n).
+//! Where triangles are slivers, an outline may cross their sides in another order in the picture than along the
+//! outline. An outline can turn back at a cusp, but then one of its sides is hidden; one that turns back twice, and is
+//! entirely visible, is noise of the mesh. The part between the turns becomes one point. O(n log n).
 
 use super::chain::{point, walks};
 use super::page::GridPoint;
@@ -85,7 +85,7 @@ mod tests {
         let mut pieces = row(&zigzag, true);
         without_zigzags(&mut pieces);
         assert_eq!(pieces, row(&[[0, 0], [950, 10], [920, 30], [1900, 50]], true));
-        // Sharp edges, a single turn and a long way back are what they are.
+        // Sharp edges, a single turn and a long way back stay unchanged.
         let cases: [(&[[i32; 2]], bool); 3] = [
             (&zigzag, false),
             (&[[0, 0], [1000, 0], [900, 20]], true),

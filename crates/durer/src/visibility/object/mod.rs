@@ -1,5 +1,4 @@
-//! The scene as solvers in object space take it: faces with shared vertices, their edges, the bodies
-//! they bound.
+//! The scene in the form of object-space solvers: faces with shared vertices, their edges, the bodies that they bound.
 
 pub mod bodies;
 pub mod edges;

@@ -1,9 +1,9 @@
 //! Orientation of faces: the turn of each, and the outward direction.
 //!
 //! A. F. Möbius, *Ueber die Bestimmung des Inhaltes eines Polyëders*, Berichte der Königlich Sächsischen Gesellschaft
-//! der Wissenschaften 17, 1865: faces of an orientable surface can be run around so that each edge is run through once
-//! in either direction; then the sum of the tetrahedra from any point to the faces is the volume, which is negative if
-//! the faces are turned inwards. Convex bodies have a simpler test: a face is turned outwards if its normal points away
+//! der Wissenschaften 17, 1865: faces of an orientable surface can be traversed so that each edge is passed once in
+//! each direction; then the sum of the tetrahedra from any point to the faces is the volume, which is negative if the
+//! faces are turned inwards. Convex bodies have a simpler test: a face is turned outwards if its normal points away
 //! from the mean of all corners. Object space. Cost: O(n log n) time and O(n) memory for n corners.
 //!
 //! Limits: pieces of surface that cannot be oriented (Möbius' strip) stay as they are. Coherence used: edges.

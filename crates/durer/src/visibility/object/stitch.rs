@@ -1,4 +1,4 @@
-//! Faces that meet up to rounding find each other.
+//! Joining of faces that meet up to rounding.
 //!
 //! A closed surface has no borders. If a mesh has some only because corners of neighbouring faces were rounded
 //! differently, because each face is a separate mesh, or because the edge of one face runs along several edges of

@@ -1,7 +1,7 @@
-//! Vertices at one place get one number.
+//! Welding: vertices at one position get one number.
 //!
-//! Formats without shared vertices (STL) and exporters that write a vertex per face leave edges
-//! without neighbours; here they find each other. O(n) time and memory, by hashing places.
+//! Formats without shared vertices (STL) and exporters that write a vertex per face leave edges without neighbours;
+//! here these are found. O(n) time and memory, by hashing positions.
 
 use crate::math::{DVec3, Vec3};
 use crate::scene::Aabb;

@@ -21,7 +21,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::Area,
     coherence: &[],
     cost: "O(k log k) per pixel for k fragments",
-    limits: "4 × 4 sub-pixels; opaque fragments; faces that cut each other share sub-pixels by a rule of thumb",
+    limits: "4 × 4 sub-pixels; opaque fragments; faces that intersect share sub-pixels by an estimate",
     pseudocode: &[
         "left[s] ← 1 for each of the 16 sub-pixels; sort the fragments by nearest depth",
         "for each fragment, from near to far:",
@@ -30,10 +30,10 @@ pub const INFO: Info = Info {
         "    if the next fragment overlaps it in depth:",
         "        M ← inside and the mask of the next one",
         "        share ← (z2max − z1min) / ((z1max − z1min) + (z2max − z2min))",
-        "        take share of what is left in M",
-        "    take all that is left in the others of inside",
-        "    weight of the fragment ← what it took / 16",
-        "weight of the background ← what is left / 16",
+        "        take share of the rest in M",
+        "    take all the rest in the others of inside",
+        "    weight of the fragment ← its total / 16",
+        "weight of the background ← the rest / 16",
     ],
 };
 

@@ -32,7 +32,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::Area,
     coherence: &[Coherence::Face, Coherence::Frame],
     cost: "O(n log n) pieces as a rule, O(n²) at worst, for n polygons; a walk per eye linear in the pieces",
-    limits: "plane polygons; at most so many pieces as the options say",
+    limits: "plane polygons; at most as many pieces as the options allow",
     pseudocode: &[
         "build(list):",
         "    try some polygons as root: how many others does each one's plane split?",
@@ -44,7 +44,7 @@ pub const INFO: Info = Info {
         "paint(tree):",
         "    on which side of the root's plane is the eye?",
         "    paint the tree of the other side",
-        "    paint the root, over what is there",
+        "    paint the root over the picture so far",
         "    paint the tree of the eye's side",
     ],
 };

@@ -1,15 +1,15 @@
 //! Solids combined by set operations, scan line by scan line.
 //!
-//! P. R. Atherton, *A scan-line hidden surface removal procedure for constructive solid geometry*, SIGGRAPH 1983. Class: image
-//! space. A row of the picture cuts the faces of closed solids; between two ends of such runs of pixels the faces that cover
-//! them are sorted by depth. From front to back each face is the way into its solid or out of it, and the first one after
-//! which the expression holds is seen: the combined surface is never computed. Where the order is not the same at both
-//! ends of a span, it is divided. Cost: O(n log n + rows · (r log r + spans · f (log f + t))): r runs in a row, f faces of a
-//! span, t terms of the expression.
+//! P. R. Atherton, *A scan-line hidden surface removal procedure for constructive solid geometry*, SIGGRAPH 1983.
+//! Class: image space. A row of the picture cuts the faces of closed solids into runs of pixels; between two ends of
+//! runs the covering faces are sorted by depth. From front to back each face leads into its solid or out of it, and the
+//! first one after which the expression holds is visible: the combined surface is never computed. A span whose order
+//! differs at both ends is divided. Cost: O(n log n + rows · (r log r + spans · f (log f + t))): r runs in a row, f
+//! faces of a span, t terms of the expression.
 //!
-//! Deviations: spans with faces that change their order are halved until the order is one, down to a pixel, where the paper
-//! divides them at the crossing; the eye looks along z in parallel, from outside of all solids. Faces at one depth are passed
-//! together, and the first of them is seen.
+//! Deviations: spans with faces that change their order are halved until the order is constant, down to a pixel, where
+//! the paper divides them at the crossing; the eye looks along z in parallel, from outside all solids. Faces at one
+//! depth are passed together, and the first of them is visible.
 
 use super::{Face, Screen};
 use crate::clip::polygon::BooleanOp;
@@ -35,7 +35,7 @@ pub const INFO: Info = Info {
         "    cut the faces by the row: runs of pixels, each with a depth at every pixel",
         "    for each span between the ends of runs, and the faces that cover it:",
         "        sort these faces by depth at the left end",
-        "        their order at the right end is another one: divide the span, take its halves",
+        "        their order at the right end differs: divide the span, take its halves",
         "        inside ← false for each solid",
         "        for each face from front to back:",
         "            inside of its solid ← not inside",
@@ -117,7 +117,8 @@ impl Expression {
         self.terms.contains(&Term::Solid(solid))
     }
 
-    /// Returns whether a point is in the result, given the solids that it is inside; it is inside none that is not named.
+    /// Returns whether a point is in the result, given the solids that it is inside; it is inside none that is not
+    /// named.
     pub fn holds(&self, inside: &[bool]) -> bool {
         self.holds_with(inside, &mut Vec::new())
     }
@@ -238,7 +239,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
 /// };
 /// assert_eq!(seen(BooleanOp::Union)?, [0, 0, 2, 2, 2, 2]);
 /// assert_eq!(seen(BooleanOp::Intersection)?, [NO_ITEM, NO_ITEM, 0, 0, NO_ITEM, NO_ITEM]);
-/// // What the second block takes away of the first one shows its own back.
+/// // Where the second block is subtracted from the first, its own back is visible.
 /// assert_eq!(seen(BooleanOp::Difference)?, [0, 0, 3, 3, NO_ITEM, NO_ITEM]);
 /// # Ok::<(), durer::Error>(())
 /// ```

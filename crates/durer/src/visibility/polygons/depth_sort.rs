@@ -31,7 +31,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::Area,
     coherence: &[Coherence::Face, Coherence::Depth],
     cost: "O(n²) tests for n polygons and pieces; memory O(pixels of all pieces)",
-    limits: "one sample per pixel; plane polygons; at most as many pieces as the options say",
+    limits: "one sample per pixel; plane polygons; at most as many pieces as the options allow",
     pseudocode: &[
         "sort the polygons by their farthest corner, the farthest first",
         "while polygons are left:",
@@ -45,7 +45,7 @@ pub const INFO: Info = Info {
         "        if none holds:",
         "            if Q is not marked: mark it, move it to the front of the list, begin with it",
         "            else they overlap cyclically: split Q along P's plane, sort again without marks",
-        "    paint P, over what is there",
+        "    paint P over the picture so far",
     ],
 };
 

@@ -1,4 +1,4 @@
-//! A plane polygon before the eye.
+//! A plane polygon in front of the eye.
 
 use super::Screen;
 use crate::curve::Contours;

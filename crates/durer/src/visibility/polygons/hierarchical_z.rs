@@ -8,8 +8,8 @@
 //!
 //! Deviations: the eye looks along z in parallel, so that cells are seen as rectangles, the front of a cell is its
 //! lowest z, and children come in the order of z. A face belongs to the smallest cell that holds it. The paper's
-//! temporal coherence (the faces seen last time first) is left out. Among equally near faces the first wins, as in the
-//! family.
+//! temporal coherence (the faces visible in the previous picture first) is left out. Among equally near faces the first
+//! wins, as in the family.
 
 use super::octree::tree::{self, Division, Holding, Octree};
 use super::pyramid::{Entry, Pyramid};

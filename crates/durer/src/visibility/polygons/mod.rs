@@ -1,12 +1,12 @@
-//! Visible surfaces as they are taught: the published methods on plane polygons of any number of corners, a file each,
+//! Visible surfaces as in textbooks: the published methods on plane polygons of any number of corners, a file each,
 //! small enough to be read beside the paper.
 //!
 //! The eye looks along z: x goes to the right and y down, in pixels, and z is the distance from the eye. All methods
 //! find the same nearest polygon at each pixel's centre, of equally near ones the first; [`regions`] finds the visible
-//! region of each polygon, without pixels, [`portals`] the rooms that are visible through doors, and [`csg`] the visible
-//! parts of solids that are united, intersected or subtracted. [`patch_subdivision`] does the same as the others for
-//! curved patches, and [`shadow_volumes`] finds which pixels are in shadow. Methods that render models are in
-//! [`super::surface`], methods that divide them into visible regions in [`super::region`].
+//! region of each polygon, without pixels, [`portals`] the rooms that are visible through doors, and [`csg`] the
+//! visible parts of solids that are united, intersected or subtracted. [`patch_subdivision`] does the same as the
+//! others for curved patches, and [`shadow_volumes`] finds which pixels are in shadow. Methods that render models are
+//! in [`super::surface`], methods that divide them into visible regions in [`super::region`].
 //!
 //! ```
 //! use durer::math::DVec3;

@@ -1,8 +1,9 @@
-//! The painter's method alone: sorted by depth once, then painted over each other from back to front, with no tests.
+//! The painter's method alone: faces are sorted once by depth, then painted over each other from back to front, without
+//! tests.
 //!
-//! In Newell, Newell, Sancha, *A Solution to the Hidden Surface Problem*, ACM Annual Conference 1972, the first step
-//! of the depth sort. Class: list priority. Cost: O(n log n + covered pixels). It is wrong where faces overlap in depth
-//! and in the picture, and no order at all is right where they overlap in a ring: so it is not a member of any family.
+//! In Newell, Newell, Sancha, *A Solution to the Hidden Surface Problem*, ACM Annual Conference 1972, the first step of
+//! the depth sort. Class: list priority. Cost: O(n log n + covered pixels). It is wrong where faces overlap in depth
+//! and in the picture, and no order at all is right where they overlap cyclically: so it is not a member of any family.
 //! Use [`crate::visibility::surface::depth_sort`].
 
 use super::{Face, Screen};
@@ -29,7 +30,7 @@ pub const INFO: Info = Info {
         "sort the faces by z, the farthest first",
         "for each face in this order:",
         "    for each row that it covers:",
-        "        paint it over whatever is there",
+        "        paint it over the picture so far",
         "// nothing is tested: where faces overlap in depth",
         "// the picture may be wrong",
     ],

@@ -1,14 +1,16 @@
 //! Catmull's subdivision: curved patches divided until a piece covers at most one pixel's centre.
 //!
-//! E. Catmull, *A Subdivision Algorithm for Computer Display of Curved Surfaces*, dissertation, University of Utah, 1974; the
-//! z-buffer was made for it ([`super::z_buffer`]). A bicubic patch is halved in both directions, and its quarters likewise, until the
-//! rectangle around a piece has one centre of a pixel in it, or none. Surfaces of a higher degree are displayed so without
-//! intersecting them with rays or scan lines. Class: image space. Cost: O(covered pixels) pieces, and O(log of the patch's size in
-//! pixels) more along each outline; memory O(pixels + depth of the division).
+//! E. Catmull, *A Subdivision Algorithm for Computer Display of Curved Surfaces*, dissertation, University of Utah,
+//! 1974, for which the z-buffer was invented ([`super::z_buffer`]). A bicubic patch is halved in both directions, and
+//! its quarters likewise, until the rectangle around a piece contains at most one pixel's centre. Thus surfaces of a
+//! higher degree are displayed without intersecting them with rays or scan lines. Class: image space. Cost: O(covered
+//! pixels) pieces, and O(log of the patch's size in pixels) more along each outline; memory O(pixels + depth of the
+//! division).
 //!
-//! Deviations: patches are Bézier ones, halved by de Casteljau's algorithm, where the paper keeps differences, which take fewer
-//! additions. A piece with one centre is divided until it is nearly a parallelogram, then the centre is compared with that, and the
-//! depth is the piece's own there; the paper takes the corners' polygon. Colours are not part of it.
+//! Deviations: patches are Bézier patches, halved by de Casteljau's algorithm, where the paper keeps differences, which
+//! take fewer additions. A piece with one centre is divided until it is nearly a parallelogram, then the centre is
+//! compared with that, and the depth is the piece's own there; the paper uses the polygon of the corners. Colours are
+//! not included.
 
 use super::Screen;
 use crate::curve::bezier::{bicubic, split};
@@ -47,8 +49,8 @@ pub const INFO: Info = Info {
 /// Options for the division.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Largest distance, in pixels, of a piece with one centre from the parallelogram that approximates it; outlines are
-    /// off by at most as much. Positive; half of it takes about one more division there.
+    /// Largest distance, in pixels, of a piece with one centre from the parallelogram that approximates it; outlines
+    /// are off by at most as much. Positive; half of it takes about one more division there.
     pub flatness: f64,
     /// The most divisions of a piece of a piece: a patch of 2ⁿ pixels needs about n.
     pub max_depth: u32,
@@ -150,8 +152,8 @@ impl Patch {
         ]
     }
 
-    /// Returns the columns and rows of a screen whose pixels have their centres in the rectangle around the control points, borders
-    /// included.
+    /// Returns the columns and rows of a screen whose pixels have their centres in the rectangle around the control
+    /// points, borders included.
     fn centers(&self, screen: &Screen) -> [Range<u32>; 2] {
         let points = self.rows.as_flattened();
         let along = |axis: usize, size: u32| {
@@ -181,7 +183,8 @@ impl Patch {
         })
     }
 
-    /// Returns the depth at a point of the screen; `None` if the parallelogram, grown by a distance, does not cover that.
+    /// Returns the depth at a point of the screen; `None` if the parallelogram, grown by a distance, does not cover
+    /// that.
     fn depth(&self, p: DVec2, grown: f64) -> Option<f64> {
         let [origin, along, across] = self.parallelogram();
         let area = along.perp_dot(across);
@@ -318,8 +321,8 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Picture> {
 /// ```
 ///
 /// # Errors
-/// [`Error::Parameter`] for a flatness that is not positive; [`Error::Limit`] for more divisions or pieces than the options allow;
-/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+/// [`Error::Parameter`] for a flatness that is not positive; [`Error::Limit`] for more divisions or pieces than the
+/// options allow; [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
 pub fn render(
     patches: &[Patch],
     screen: &Screen,

@@ -6,9 +6,8 @@
 //! it, are treated in the same way, and so is the outside. Coherence used: areas. Cost: O(n²) cuts where few overlap;
 //! memory O(regions).
 //!
-//! Deviations: cuts are made by the overlay, which takes any polygons; polygons that pierce each other are divided
-//! where their planes meet. [`crate::visibility::region::planar_map`] finds the same regions of models, in far less
-//! time.
+//! Deviations: cuts are made by the overlay, which accepts any polygons; intersecting polygons are divided where their
+//! planes meet. [`crate::visibility::region::planar_map`] finds the same regions of models in far less time.
 
 use super::Face;
 use crate::clip::line::HalfPlane;
@@ -39,9 +38,9 @@ pub const INFO: Info = Info {
         "    P ← the polygon of the list with the nearest corner",
         "    for each other polygon Q of the list:",
         "        cut Q along the outline of P",
-        "        put what lies outside into the outside list",
-        "        if what lies inside is behind P: it is hidden",
-        "        else: put what is in front of P into the inside list",
+        "        put the part outside into the outside list",
+        "        if the part inside is behind P: it is hidden",
+        "        else: put the part in front of P into the inside list",
         "    add the inside list, with P behind it",
         "    add the outside list, with what was behind the list",
     ],
@@ -164,7 +163,8 @@ impl Region {
 /// ```
 ///
 /// # Errors
-/// [`Error::Limit`] for more cuts than the options allow; [`Error::Memory`] where the budget of the work does not suffice.
+/// [`Error::Limit`] for more cuts than the options allow; [`Error::Memory`] where the budget of the work does not
+/// suffice.
 pub fn regions(
     faces: &[Face],
     options: &Options,

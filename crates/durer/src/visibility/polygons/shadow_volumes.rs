@@ -1,19 +1,21 @@
 //! Shadow volumes: pixels in shadow, found by counting the sides of volumes in front of the visible point.
 //!
-//! F. C. Crow, *Shadow algorithms for computer graphics*, Computer Graphics 11(2), SIGGRAPH 1977. Behind each face that the
-//! light meets there is a volume without light; its sides go out from the face's outline, away from the light. Along the ray of
-//! a pixel the number of volumes grows by one at a side that turns its front to the eye, and shrinks by one at a back; a point
-//! before which more fronts than backs were passed is in shadow. Faces that share an edge have a common volume without a side
-//! there. Class: image space. Cost: O(pixels that sides cover) time; memory O(pixels + edges).
+//! F. C. Crow, *Shadow algorithms for computer graphics*, Computer Graphics 11(2), SIGGRAPH 1977. Behind each face that
+//! the light hits there is a volume without light; its sides extend from the face's outline away from the light. Along
+//! the ray of a pixel the number of volumes grows by one at a side that turns its front to the eye, and shrinks by one
+//! at a back; a point is in shadow if more fronts than backs were passed before it. Faces that share an edge have a
+//! common volume without a side there. Class: image space. Cost: O(pixels that sides cover) time; memory O(pixels +
+//! edges).
 //!
-//! Where the eye itself may be in a volume, as with a light behind the faces, the count begins with the number of volumes there;
-//! or it begins at the far end ([`Count::ZFail`]; W. Bilodeau, M. Songy, 1999, and J. Carmack, 2000), with sides beyond the visible
-//! point, and with the faces that cast shadows as the volumes' near ends. The eye's rays are parallel here, so all of them have one
-//! far end.
+//! If the eye itself may be in a volume, for example with a light behind the faces, the count begins with the number of
+//! volumes there; or it begins at the far end ([`Count::ZFail`]; W. Bilodeau, M. Songy, 1999, and J. Carmack, 2000),
+//! with sides beyond the visible point, and with the casting faces as the near ends of the volumes. The eye's rays are
+//! parallel here, so all of them have the same far end.
 //!
-//! Deviations: Crow's sides are polygons among the others of a scan-line method, here each is drawn by itself against depths that
-//! are known. Faces need not bound bodies: each is turned to the light, and an edge that two faces run through in the same direction
-//! counts twice (P. Bergeron, *A general version of Crow's shadow volumes*, IEEE Computer Graphics and Applications 6(9), 1986).
+//! Deviations: Crow's sides are polygons among the others of a scan-line method; here each is drawn separately against
+//! known depths. Faces need not bound bodies: each is turned to the light, and an edge that two faces run through in
+//! the same direction counts twice (P. Bergeron, *A general version of Crow's shadow volumes*, IEEE Computer Graphics
+//! and Applications 6(9), 1986).
 
 use super::{Face, Screen, z_buffer};
 use crate::Result;
@@ -68,8 +70,8 @@ pub enum Count {
 pub struct Options {
     /// End at which counting begins.
     pub count: Count,
-    /// True if all faces bound closed bodies and run counter-clockwise seen from outside: only those that the light sees cast
-    /// shadows then, which halves the counts.
+    /// True if all faces bound closed bodies and run counter-clockwise seen from outside: only those that the light
+    /// sees cast shadows then, which halves the counts.
     pub closed: bool,
 }
 
@@ -90,15 +92,15 @@ impl Side {
         self.away[0].cross(self.ends[1] - self.ends[0])
     }
 
-    /// Returns whether the side turns its front to the eye, so that a ray from there enters the volume; `None` if it is seen
-    /// edge-on.
+    /// Returns whether the side turns its front to the eye, so that a ray from there enters the volume; `None` if it is
+    /// seen edge-on.
     pub fn front(&self) -> Option<bool> {
         let z = self.normal().z;
         (z != 0.0 && z.is_finite()).then_some(z < 0.0)
     }
 
-    /// Returns the depth of the side at a point of the screen; `None` if it does not cover that. Of two sides with a common border
-    /// one covers it.
+    /// Returns the depth of the side at a point of the screen; `None` if it does not cover that. Of two sides with a
+    /// common border one covers it.
     pub fn depth(&self, p: DVec2) -> Option<f64> {
         let front = self.front()?;
         let ([a, b], normal) = (self.ends, self.normal());
@@ -112,7 +114,8 @@ impl Side {
         covers.then(|| a.z - normal.truncate().dot(p - flat(a)) / normal.z)
     }
 
-    /// Returns the smallest rectangle of pixels around all that the side covers on a screen: columns and rows, ends excluded.
+    /// Returns the smallest rectangle of pixels around all that the side covers on a screen: columns and rows, ends
+    /// excluded.
     fn bounds(&self, screen: &Screen) -> [std::ops::Range<u32>; 2] {
         let along = |axis: usize, size: u32| {
             let at = self.ends.map(|end| end[axis]);
@@ -227,8 +230,8 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Picture> {
     Ok(picture)
 }
 
-/// Returns the nearest face at each pixel's centre, and the number of shadow volumes that contain it. The light has a place, or its
-/// rays have a direction.
+/// Returns the nearest face at each pixel's centre, and the number of shadow volumes that contain it. The light has a
+/// place, or its rays have a direction.
 ///
 /// ```
 /// use durer::math::DVec3;
@@ -379,13 +382,13 @@ impl Counting<'_> {
         }
     }
 
-    /// Returns whether the volume of a caster contains the end of a ray through a pixel's centre: whether the light, seen from
-    /// there, is behind the caster.
+    /// Returns whether the volume of a caster contains the end of a ray through a pixel's centre: whether the light,
+    /// seen from there, is behind the caster.
     fn is_at_end(&self, caster: &Caster, light: Eye, center: DVec2) -> bool {
         let is_near_end = self.count == Count::ZPass;
         let face = &self.faces[caster.face as usize];
         let (at, is_before) = match light {
-            // All rays run together there, so that one point stands for all.
+            // All rays meet there, so that one point represents all.
             Eye::At(light) => (light.truncate(), face.depth(light.truncate()) < light.z),
             Eye::Along(direction) if direction.truncate() == DVec2::ZERO => {
                 (center, direction.z < 0.0)

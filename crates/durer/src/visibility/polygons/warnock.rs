@@ -5,9 +5,9 @@
 //! others, or if it is a pixel; a window that is not simple is divided into four. Cost: O(windows · polygons that meet
 //! them), where windows follow the visible edges; memory O(rows of polygons + windows that wait · polygons).
 //!
-//! Deviations: windows are whole pixels, and a polygon's relation to a window is decided by the centres that it covers, so that
-//! the picture is the z-buffer's. [`crate::visibility::surface::warnock`] is the same for the triangles of models, with samples
-//! below pixels and surfaces that blend.
+//! Deviations: windows are whole pixels, and a polygon's relation to a window is decided by the centres that it covers,
+//! so that the picture is the z-buffer's. [`crate::visibility::surface::warnock`] is the same for the triangles of
+//! models, with samples below pixels and surfaces that blend.
 
 use super::{Face, Screen};
 use crate::Result;
@@ -228,8 +228,8 @@ fn hides(faces: &[Face], window: &Window, face: u32, other: u32) -> bool {
     })
 }
 
-/// Returns the column and the row before which a window is divided: its middle, or the corner of a polygon in it that is
-/// nearest to the middle.
+/// Returns the column and the row before which a window is divided: its middle, or the corner of a polygon in it that
+/// is nearest to the middle.
 fn division(faces: &[Face], window: &Window, concerned: &[u32], division: Division) -> [i32; 2] {
     let Window { x0, y0, x1, y1 } = *window;
     let middle = [x0 + (x1 - x0) / 2, y0 + (y1 - y0) / 2];

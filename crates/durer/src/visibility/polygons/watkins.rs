@@ -40,7 +40,7 @@ pub const INFO: Info = Info {
         "            find the nearest of them at both ends of the span",
         "            if it is the same one: fill the span with it",
         "            else: halve the span and decide both halves",
-        "        turn over the flag of the edge's polygon",
+        "        invert the flag of the edge's polygon",
         "    remove the edges that end here; x ← x + Δx/Δy of the others",
     ],
 };

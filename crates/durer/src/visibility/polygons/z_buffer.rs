@@ -1,8 +1,8 @@
-//! The z-buffer as the plain loop that it is.
+//! The z-buffer as a plain loop.
 //!
 //! E. Catmull, *A Subdivision Algorithm for Computer Display of Curved Surfaces*, dissertation, University of Utah,
 //! 1974. Class: image space. Cost: O(covered pixels) time, two numbers per pixel.
-//!       [`crate::visibility::surface::z_buffer`] renders models with the same result.
+//! [`crate::visibility::surface::z_buffer`] renders models with the same result.
 
 use super::{Face, Screen};
 use crate::Result;
@@ -27,7 +27,7 @@ pub const INFO: Info = Info {
         "for each face:",
         "    for each pixel (x, y) that it covers:",
         "        z ← depth of the face's plane at (x, y)",
-        "        // the only question: is it nearer than what is there?",
+        "        // the only question: is it nearer than the stored depth?",
         "        if z < depth[x, y]:",
         "            depth[x, y] ← z",
         "            item[x, y] ← face",

@@ -1,4 +1,4 @@
-//! Hatching: tones as parallel lines, for pens that know no grey.
+//! Hatching: tones as parallel lines, for pens without shades of grey.
 //!
 //! All lines of one direction are at multiples of one distance, and a region takes every first, second, fourth, … of
 //! them, so lines continue through neighbours of the same tone and end where the tone gets lighter. The darkest tones

@@ -1,4 +1,4 @@
-//! Exact shadows: the picture that a light sees, divided like the eye's, and laid back on the faces.
+//! Exact shadows: the picture seen from a light, divided like the eye's, and projected back onto the faces.
 //!
 //! P. Atherton, K. Weiler, D. Greenberg, *Polygon Shadow Generation*, SIGGRAPH 1978. Class: object space. Cost: one
 //! visible-region problem per light (six for a light among the faces). The edges that divide a face in the light's

@@ -1,4 +1,4 @@
-//! Trapping: filled shapes reach a little under the neighbours that are painted after them.
+//! Trapping: filled shapes extend a little under the neighbours that are painted after them.
 //!
 //! Viewers blend the border of each shape with the colours below it, so the background shines through between two
 //! shapes that share a border. Extending a shape under its neighbour closes the gap, a technique known from printing

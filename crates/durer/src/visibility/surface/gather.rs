@@ -1,4 +1,4 @@
-//! Vectors at points of several triangles side by side, so that they can be shaded in one go.
+//! Vectors at points of several triangles side by side, so that they can be shaded together.
 
 use crate::math::Vec3;
 use crate::shade::lane::Vec3Lane;

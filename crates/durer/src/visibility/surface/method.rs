@@ -181,6 +181,7 @@ pub fn render_with(
 ) -> crate::Result<()> {
     let window = input.view.window();
     let (width, height) = (u64::from(window.width()), u64::from(window.height()));
+    // Charge the lists that grow with triangles and pixels; the z-buffer charges its materials itself.
     let [per_triangle, per_pixel] = method.bytes();
     let triangles = (input.triangles.len() as u64).saturating_mul(per_triangle);
     let pixels = (width * height).saturating_mul(per_pixel);

@@ -26,7 +26,7 @@ use crate::{Error, Result};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
     /// Texels along the side of a map, 1 … 16,384; half as many where a light looks to six sides. Time
-    /// and memory (4 bytes a texel) grow with its square, the steps along shadows' edges shrink with it.
+    /// and memory (4 bytes per texel) grow with its square, the steps along shadows' edges shrink with it.
     pub side: u32,
 }
 

@@ -25,7 +25,7 @@ fn the_far_curve_crosses_the_near_one_at_a_half_and_at_one_and_a_half() {
     let far: Vec<_> = pieces.iter().filter(|q| q.curve == 1).map(|q| q.seen).collect();
     assert_eq!(far, [Seen::Above, Seen::Below, Seen::Below, Seen::Above]);
     assert_eq!(replay(steps.steps()), pieces);
-    // The two arrays after both curves.
+    // Both horizon arrays after the two curves.
     let mut horizons = [[0.0; 2]; 3];
     for step in steps.steps() {
         if let Step::Horizon { column, horizons: new } = *step {
@@ -37,7 +37,7 @@ fn the_far_curve_crosses_the_near_one_at_a_half_and_at_one_and_a_half() {
 
 #[test]
 fn what_lies_between_the_horizons_is_hidden() {
-    // A ridge, a valley, and a curve that goes behind both.
+    // A ridge, a valley, and a curve that passes behind both.
     let all = curves(&[(0, &[3.0, 3.0, 3.0]), (0, &[0.0, 0.0, 0.0]), (0, &[2.0, 4.0, -1.0])]);
     let pieces = draw(&all, &Options::columns(3), &mut NoTrace).unwrap();
     let last: Vec<Piece> = pieces.into_iter().filter(|q| q.curve == 2).collect();
@@ -80,7 +80,7 @@ fn mirrored_curves_give_mirrored_pieces() {
 
 #[test]
 fn gaps_at_the_ends_are_filled() {
-    // Two bands beside each other, from y = 0 to 4; column 3 lies between them.
+    // Two adjacent bands, from y = 0 to 4; column 3 is between them.
     let (low, high) = ([0.0; 3], [4.0; 3]);
     let all = curves(&[(4, &low), (4, &high), (0, &low), (0, &high), (1, &[2.0, 2.0, 2.0])]);
     let seen = |fill_ends| {
@@ -104,17 +104,17 @@ fn newells_sums_are_the_normal_and_its_length_the_area() {
         let next = ring.iter().cycle().skip(1);
         ring.iter().zip(next).map(|(a, b)| (u(*a) - u(*b)) * (v(*a) + v(*b))).sum()
     };
-    // Nx = Σ (y_i − y_j)(z_i + z_j), and so on around: twice the vector area.
+    // Nx = Σ (y_i − y_j)(z_i + z_j), and cyclically: twice the vector area.
     let n = DVec3::new(sums(|c| c.y, |c| c.z), sums(|c| c.z, |c| c.x), sums(|c| c.x, |c| c.y));
     assert_eq!(newell_area(&ring) * 2.0, n);
     assert_eq!(n, DVec3::new(-12.0, 0.0, 24.0));
-    // Outward from a convex body: P the mean of the corners, v = P_k − P, N · v > 0.
+    // Outward of a convex body: P is the mean of the corners, v = P_k − P, N · v > 0.
     let body_middle = DVec3::new(2.0, 1.5, -3.0);
     assert!(n.dot(ring[0] - body_middle) > 0.0);
 }
 
-/// N · (P_k − P) for the faces of a cube of side 2: area 4 times distance 1, negative for what is turned inwards; what the
-/// eye culls afterwards is right for any of them.
+/// Checks N · (P_k − P) for the faces of a cube of side 2: area 4 times distance 1, negative for faces turned
+/// inwards; later culling by the eye is right for any of them.
 #[test]
 fn outward_faces_have_a_positive_product() {
     let corner = |n: usize| DVec3::from([0, 1, 2].map(|k| if n >> k & 1 == 1 { 2.0 } else { 0.0 }));
@@ -146,7 +146,7 @@ fn outward_faces_have_a_positive_product() {
         for (ring, _) in faces.iter_mut().zip(&found.turned).filter(|(_, turned)| **turned) {
             ring.reverse();
         }
-        // Seen along (−1, −2, −3) the faces at x = 2, y = 2 and z = 2 are fronts.
+        // Seen along (−1, −2, −3), the faces at x = 2, y = 2 and z = 2 are front faces.
         let front = |ring: &[usize; 4]| {
             let ring = ring.map(|corner| points[corner]);
             face_along(newell_area(&ring), DVec3::new(-1.0, -2.0, -3.0)) == Face::Front

@@ -30,7 +30,7 @@ fn nine_regions_have_their_codes() {
     let order = [Outcode::BOTTOM, Outcode::LEFT, Outcode::TOP, Outcode::RIGHT];
     assert_eq!(Outcode::LEFT.digits(&order), "0100");
     assert_eq!((Outcode::NEAR | Outcode::LEFT).to_string(), "010001");
-    // The corners of any primitive: all beyond the top.
+    // The corners of any primitive: all beyond the top border.
     let roof = [p(-5.0, 12.0), p(5.0, 20.0), p(15.0, 11.0)];
     let codes = roof.map(|corner| Outcode::of_point_2d(&window(), corner));
     assert_eq!(codes[0] & codes[1] & codes[2], Outcode::TOP);
@@ -39,7 +39,7 @@ fn nine_regions_have_their_codes() {
 #[test]
 fn cohen_and_sutherland_reject_ad_after_one_cut() {
     use cohen_sutherland::Step;
-    // A is left of the window, D above it; the line passes its upper left corner outside.
+    // A is left of the window, D above it; the line passes outside the window's upper left corner.
     let (a, d) = (p(-4.0, 8.0), p(2.0, 17.0));
     let mut steps = Recorder::default();
     let seen = cohen_sutherland::clip(&window(), Segment::new(a, d), &mut steps).unwrap();
@@ -87,7 +87,7 @@ fn short_ways_cut_no_more_than_they_must() {
     assert_eq!(cuts(p(5.0, 5.0), p(15.0, 30.0)), 2, "beyond two borders");
 }
 
-/// From 8 to 4 to 2 to 3: the last visible pixel is at x = 3, where y = 1.5 rounds up.
+/// Checks that halving goes from 8 to 4 to 2 to 3: the last visible pixel is at x = 3, where y = 1.5 rounds up.
 #[test]
 fn halving_ends_at_the_last_visible_pixel() {
     let window = midpoint::PixelWindow::new(IVec2::ZERO, IVec2::new(3, 9)).unwrap();
@@ -109,7 +109,7 @@ fn halving_a_thousand_pixels_takes_ten_turns_an_end() {
     }
 }
 
-/// Border, relation and numbers of the steps.
+/// Border, relation and numbers of each step.
 fn borders<P: Copy>(steps: &[Passage<P>]) -> Vec<(usize, Relation, Numbers)> {
     let border = |step: &Passage<P>| match *step {
         Passage::Border { border, relation, numbers } => Some((border, relation, numbers)),
@@ -136,7 +136,7 @@ fn half_planes_tell_by_the_signs_of_e() {
     assert_eq!(seen, Some(Segment::new(p(5.0, 4.0), p(9.0, 4.0))));
     assert_eq!(clip(p(0.0, 5.0), p(1.0, 6.0)).0, None);
     assert_eq!(clip(p(5.0, 0.0), p(9.0, 1.0)).1, Relation::Inside);
-    // A segment in the line itself has E = 0 twice; the half-plane is closed, so it is inside.
+    // A segment in the line itself has E = 0 at both ends; the half-plane is closed, so it is inside.
     let (seen, relation, e, t) = clip(q1, q2);
     assert_eq!((seen, relation), (Some(Segment::new(q1, q2)), Relation::Inside));
     assert_eq!((e, t), ([0.0, 0.0], None));
@@ -184,7 +184,7 @@ fn turning_a_segment_swaps_entering_and_leaving() {
         borders(steps.steps())
     };
     let (there, back) = (numbers(a, b), numbers(b, a));
-    // Outer normal · v: below 0 enters, above 0 leaves.
+    // Outward normal · v: below 0 the line enters, above 0 it leaves.
     let classes = |all: &[(usize, Relation, Numbers)]| -> Vec<f64> {
         all.iter().map(|(_, _, numbers)| numbers.p().signum()).collect()
     };
@@ -244,7 +244,7 @@ fn a_factor_of_homogeneous_points_moves_t_but_not_the_place() {
     }
 }
 
-/// In space, with the cube 0 … 1: d1 = x, d2 = w − x, d3 = y, d4 = w − y, d5 = z, d6 = w − z.
+/// Checks a segment in space with the cube 0 … 1: d1 = x, d2 = w − x, d3 = y, d4 = w − y, d5 = z, d6 = w − z.
 #[test]
 fn a_cube_from_0_to_1_has_six_boundary_coordinates() {
     use durer::clip::line::ClipBox;
@@ -268,7 +268,7 @@ fn a_cube_from_0_to_1_has_six_boundary_coordinates() {
         let other = homogeneous::clip_homogeneous_box(&cube, back, &mut NoTrace).unwrap().unwrap();
         assert_eq!((other.end, other.start), (seen.start, seen.end));
     }
-    // Beyond the far side, though x and y are right; and a line along a diagonal through the eye.
+    // Beyond the far side although x and y are inside; and a line along a diagonal through the eye.
     let at = |p: [f64; 4]| DVec4::from(p);
     let beyond = Segment::new(at([0.5, 0.5, 1.5, 1.0]), at([0.6, 0.5, 1.1, 1.0]));
     assert_eq!(homogeneous::clip_homogeneous_box(&cube, beyond, &mut NoTrace), Ok(None));

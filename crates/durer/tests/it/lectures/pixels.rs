@@ -45,7 +45,7 @@ fn every_slope_follows_its_e_in_all_octants_and_both_directions() {
             assert_eq!(next, e + added, "{dx} {dy}");
         }
         assert_eq!(steps[0].e, 2 * short - long);
-        // The pixels that are lit are those of the steps.
+        // The lit pixels are those of the steps.
         let (mut lit, mut told) = (Vec::new(), places(&steps));
         let (from, to) = (IVec2::new(3, -2), IVec2::new(3 + dx, dy - 2));
         let options = Default::default();
@@ -64,7 +64,7 @@ fn the_analyzer_adds_the_slope_and_rounds() {
         assert!(near(step.across, y));
         assert_eq!(step.pixel.y, (y + 0.5_f64).floor() as i32);
     }
-    // Steeper than the diagonal y is stepped and 1/m added.
+    // For lines steeper than the diagonal, y is stepped and 1/m added.
     let steep = line(LineRasterizer::Dda, (0, 0), (3, 5));
     assert!(near(steep[1].across, 0.6) && steep[1].pixel == IVec2::new(1, 1));
 }
@@ -95,7 +95,7 @@ fn edge_tables_have_the_entries_of_the_lecture() {
     let mut steps = Recorder::default();
     let options = polygon::Options::default();
     edge_table::fill(&triangle(), 16, 16, &options, |_| {}, &mut steps);
-    // y_min, y_max, x, Δx/Δy as whole pixels and rest.
+    // y_min, y_max, x, Δx/Δy as whole pixels and remainder.
     let entry = |edge: &Edge| {
         let rest = edge.remainder as f64 / edge.whole as f64;
         (edge.rows, edge.x, edge.step, (rest * 15.0).round() as i32)
@@ -106,7 +106,7 @@ fn edge_tables_have_the_entries_of_the_lecture() {
         .filter_map(|step| if let Row::Table(edge) = step { Some(entry(edge)) } else { None })
         .collect();
     table.sort_unstable();
-    // 8/3 = 2 + 2/3, 2/5, −6/2 = −3; the rests in fifteenths.
+    // 8/3 = 2 + 2/3, 2/5, −6/2 = −3; the remainders in fifteenths.
     assert_eq!(table, [((1, 4), 2, 2, 10), ((1, 6), 2, 0, 6), ((4, 6), 10, -3, 0)]);
     let active = |row| -> Vec<(i32, f64)> {
         let of = |step: &Row| match *step {
@@ -119,7 +119,7 @@ fn edge_tables_have_the_entries_of_the_lecture() {
         (1, vec![2.0, 2.0]),
         (2, vec![2.4, 2.0 + 8.0 / 3.0]),
         (3, vec![2.8, 2.0 + 16.0 / 3.0]),
-        // The long edge has ended at its y_max, the one below begins at its y_min.
+        // The long edge ends at its y_max; the one below begins at its y_min.
         (4, vec![3.2, 10.0]),
         (5, vec![3.6, 7.0]),
         (6, vec![]),
@@ -164,7 +164,7 @@ fn filling_between_bresenhams_borders_is_wrong_at_extrema() {
         pixels.dedup_by_key(|p| p.1);
         pixels.iter().for_each(|p| marked[p.1 as usize] += usize::from(*p != corners[a]));
     }
-    // One mark a row at the upper corner would fill all to the right of it.
+    // A single mark in the row of the upper corner would fill everything to its right.
     assert_eq!((marked[1], marked[6]), (1, 1));
     let mut rows = Vec::new();
     let options = polygon::Options::default();
@@ -176,7 +176,7 @@ fn filling_between_bresenhams_borders_is_wrong_at_extrema() {
 fn squares_that_share_edges_light_each_pixel_once() {
     let mut lit = vec![0; 16 * 16];
     for (row, column) in (0..4).flat_map(|row| (0..4).map(move |column| (row, column))) {
-        // Off the grid by half a pixel: all edges go through pixels' centres.
+        // Off the grid by half a pixel: all edges pass through pixel centres.
         let at = |x: i32, y: i32| p(f64::from(x) * 3.0 + 1.5, f64::from(y) * 3.0 + 1.5);
         let (c, r) = (column, row);
         let ring = [at(c, r), at(c + 1, r), at(c + 1, r + 1), at(c, r + 1)];
@@ -188,7 +188,7 @@ fn squares_that_share_edges_light_each_pixel_once() {
     }
     assert!(lit.iter().all(|n| *n <= 1));
     assert_eq!(lit.iter().sum::<i32>(), 144);
-    // Left and upper borders belong to a square, right and lower ones do not.
+    // Left and upper borders belong to a square, right and lower borders do not.
     assert_eq!([lit[16 + 1], lit[13 * 16 + 13]], [1, 0]);
 }
 
@@ -207,7 +207,7 @@ fn boundary_fill_stops_at_what_is_filled() {
     }
 }
 
-/// The order of the recursive form, written as it is taught.
+/// The order of the recursive form, written as in textbooks.
 fn recursive(image: &mut Pixels<u8>, x: i64, y: i64, order: &mut Vec<(u32, u32)>) {
     let (Ok(column), Ok(row)) = (u32::try_from(x), u32::try_from(y)) else { return };
     let Some(current) = image.get(column, row) else { return };
@@ -236,7 +236,7 @@ fn a_stack_of_pixels_keeps_the_order_of_the_recursion() {
     let found: Vec<(u32, u32)> = runs(steps.steps()).iter().map(pixel).collect();
     assert_eq!(found, order);
     assert_eq!(order[..3], [(1, 1), (2, 1), (3, 1)]);
-    // Spans take fewer turns and less room.
+    // Spans take fewer iterations and less memory.
     let mut spans: Recorder<Filling> = Recorder::default();
     boundary_fill(&mut image.clone(), seed, 7, 9, 0, SeedFill::Spans, &how, &mut spans);
     let deepest = |steps: &[Filling]| {
@@ -269,7 +269,7 @@ fn barycentric_coordinates_have_three_forms() {
 
 #[test]
 fn picture_memory_wraps_around_where_nothing_clips() {
-    // Row after row in memory: beyond the right border lies the next row's beginning.
+    // Rows follow each other in memory: the next row begins beyond the right border.
     let (width, height) = (8, 4);
     let mut memory = vec![0_u8; width * height];
     for step in line(LineRasterizer::Bresenham, (5, 1), (10, 1)) {

@@ -1,4 +1,4 @@
-//! Polygons at windows.
+//! Clipping of polygons at windows.
 
 use super::p;
 use durer::clip::line::HalfPlane;
@@ -15,8 +15,7 @@ fn borders() -> [HalfPlane; 4] {
     [plane(-DVec2::Y, high), plane(-DVec2::X, high), plane(DVec2::Y, low), plane(DVec2::X, low)]
 }
 
-/// Returns the smallest of all rotations of a ring, so that rings that begin elsewhere compare
-/// equal.
+/// Returns the smallest of all rotations of a ring, so that rings with other starting points compare equal.
 fn cyclic(ring: &[DVec2]) -> Vec<DVec2> {
     let key = |k: usize| -> Vec<[f64; 2]> {
         (0..ring.len()).map(|i| ring[(i + k) % ring.len()].to_array()).collect()
@@ -81,7 +80,8 @@ fn a_triangle_at_four_borders_has_the_lists_of_the_lecture() {
         let is = |step: &&Edge<DVec2>| matches!(step, Edge::Edge { rule, .. } if *rule == wanted);
         steps.steps().iter().filter(is).count()
     };
-    // As often in as out, and in one list two vertices in a row are out: at the bottom, and on the left.
+    // Entries and exits are equally many, and in one list two consecutive vertices are outside: at the bottom, and on
+    // the left.
     assert_eq!([Rule::OutIn, Rule::InOut, Rule::OutOut].map(rules), [4, 4, 2]);
 }
 
@@ -100,7 +100,7 @@ fn border_by_border_and_stage_by_stage_leave_the_same_ring() {
 
 #[test]
 fn a_ring_that_falls_apart_keeps_a_bridge() {
-    // Eight corners: a U upside down, whose back is beyond the top.
+    // Eight corners: an upside-down U whose back is beyond the top.
     let ring = [
         (1.0, 5.0),
         (3.0, 5.0),
@@ -123,7 +123,7 @@ fn a_ring_that_falls_apart_keeps_a_bridge() {
 
 #[test]
 fn edge_by_edge_is_wrong_for_polygons() {
-    // A triangle around a corner of the window: clipped edges alone do not close.
+    // A triangle around a corner of the window: clipped edges alone do not form a closed ring.
     let window = Rect::new(DVec2::ZERO, DVec2::splat(10.0)).unwrap();
     let triangle = [p(5.0, 5.0), p(25.0, 5.0), p(5.0, 25.0)];
     let wrong = naive::clip(&window, &triangle, &mut NoTrace).unwrap();
@@ -177,7 +177,7 @@ fn weiler_and_atherton_walk_both_lists() {
     assert_eq!(listed(Operand::Subject), expected);
     let window: Vec<DVec2> = listed(Operand::Clip).into_iter().map(|(at, _)| at).collect();
     assert_eq!(window, [w[0], w[1], i, j, k, l, w[2], w[3]]);
-    // The walks, each along the subject first, with the changes of list between.
+    // The walks, each along the subject first, with the changes between the lists.
     let turn = |at, to_subject| Walk::Turn { at, to_subject };
     let passed = |list, at| Walk::Passed { list, at };
     let walk = |from: DVec2, on: [DVec2; 2], to: DVec2| {

@@ -1,4 +1,4 @@
-//! Space and surfaces: codes in space, the order of tests, the order of fragments, and the classification.
+//! Space and surfaces: outcodes in space, the order of tests, the order of fragment operations, and the classification.
 
 use super::p;
 use durer::clip::outcode::{DepthRange, Outcode};
@@ -43,14 +43,14 @@ fn the_and_of_all_codes_rejects_any_polygon() {
         let codes = ring.iter().map(|&(x, y)| Outcode::of_point_2d(&window, p(x, y)).0);
         codes.fold(0b1111, |all, code| all & code)
     };
-    // All above; above and to the right; around the window, where the test decides nothing.
+    // All above; above and to the right; around the window, where outcodes decide nothing.
     assert_eq!(and(&[(1.0, 5.0), (3.0, 6.0), (-2.0, 7.0)]), 0b1000);
     assert_eq!(and(&[(5.0, 5.0), (9.0, 6.0), (5.0, 7.0)]), 0b1010);
     assert_eq!(and(&[(-1.0, -1.0), (9.0, -1.0), (2.0, 9.0)]), 0);
 }
 
-/// Far to near; of the tests 1 and 2a to 2d the first that holds decides; what may hide the other is marked and moved,
-/// and what was marked already is split.
+/// Checks the order from far to near; of the tests 1 and 2a to 2d the first that holds decides; a face that may hide
+/// the other is marked and moved, and a face already marked is split.
 #[test]
 fn depth_sort_has_its_tests_in_order() {
     let tests =
@@ -60,12 +60,12 @@ fn depth_sort_has_its_tests_in_order() {
     let count = |example: &str, kind: &str| {
         frames("depth-sort", example).iter().filter(|frame| frame.kind == kind).count()
     };
-    // Three beams, each over the next: two splits. Faces that pierce each other have no order either.
+    // Three cyclically overlapping beams: two splits. Faces that pierce each other have no order either.
     assert_eq!(count("cyclic", "split"), 2);
     assert_eq!(count("penetration", "split"), 1);
 }
 
-/// Outside, inside, crossing, surrounding; rules 1 to 4 in their order, and one look at a quad around the window.
+/// Checks outside, inside, intersecting, surrounding; rules 1 to 4 in their order, and a quad around the window.
 #[test]
 fn warnock_has_four_relations_and_four_rules() {
     let look = |faces: &[Face], size: u32| {
@@ -85,7 +85,7 @@ fn warnock_has_four_relations_and_four_rules() {
     assert_eq!(alone[0], Rules::Look { window: whole, relations: surrounding });
     assert_eq!(alone[1], Rules::Simple { window: whole, rule: Rule::Single, face: Some(0) });
     assert!(alone[2..].iter().all(|step| matches!(step, Rules::Draw { .. })));
-    // A small triangle before it in one quarter: three quarters by rule 2, the fourth is divided on.
+    // A small triangle in front of it in one quarter: three quarters by rule 2, the fourth is subdivided further.
     let triangle = face(&[(1.0, 9.0), (7.5, 9.0), (1.0, 15.5)], 2.0);
     let steps = look(&[quad.clone(), triangle], 16);
     let both = vec![(0, Relation::Surrounding), (1, Relation::Inside)];
@@ -107,7 +107,7 @@ fn warnock_has_four_relations_and_four_rules() {
         matches!(step, Rules::Look { relations, .. } if relations.contains(&(1, Relation::Crossing)))
     });
     assert!(crossing);
-    // Two that pierce each other in a single pixel: no window is simple before it. Beside them is nothing.
+    // Two that pierce each other in a single pixel: no larger window is simple. Beside them is nothing.
     let sloped = |z: [f64; 2]| {
         let corners = [(3.0, 3.0, z[0]), (5.0, 3.0, z[1]), (5.0, 5.0, z[1]), (3.0, 5.0, z[0])];
         Face::new(&corners.map(DVec3::from)).unwrap()
@@ -139,7 +139,7 @@ fn fragment(depth: f32, alpha: f32) -> Fragment {
     }
 }
 
-/// Scissor, alpha, stencil, depth, blending, in this order, each with its numbers.
+/// Checks scissor, alpha, stencil, depth, blending, in this order, each with its numbers.
 #[test]
 fn fragments_go_from_test_to_test() {
     let counting = StencilFace { pass: StencilOp::Increment, ..StencilFace::default() };
@@ -170,7 +170,7 @@ fn fragments_go_from_test_to_test() {
     let mut rebuilt = target();
     replay(steps.steps(), &mut rebuilt);
     assert!(rebuilt == traced);
-    // ½ red over white, in linear light, with the depth of the fragment; the next one is behind it.
+    // ½ red over white, in linear light, with the depth of the fragment; the next fragment is behind it.
     let half = |step: &Step| matches!(step, Step::Blend { result, .. } if (result.y - 0.5).abs() < 1e-6 && result.x == 1.0);
     let lines: Vec<usize> = steps.steps().iter().map(Step::line).collect();
     assert_eq!(lines, [2, 3, 5, 7, 9, 12, 2, 3, 5, 7, 2, 3, 2]);

@@ -1,4 +1,4 @@
-//! The four polygon algorithms on inputs that all of them take.
+//! The four polygon algorithms on inputs that all of them accept.
 
 use durer::clip::polygon::overlay::{Options, overlay};
 use durer::clip::polygon::{
@@ -8,7 +8,7 @@ use durer::math::DVec2;
 use durer::trace::{NoTrace, Recorder};
 use proptest::prelude::*;
 
-/// Sixteen directions, counter-clockwise, as whole numbers.
+/// Sixteen directions, counter-clockwise, as integers.
 const DIRECTIONS: [(i32, i32); 16] = [
     (2, 0),
     (2, 1),
@@ -35,8 +35,8 @@ fn ring(center: (i32, i32), lengths: &[i32]) -> Vec<DVec2> {
     DIRECTIONS.iter().zip(lengths).map(point).collect()
 }
 
-/// Returns a star-shaped polygon around a whole-numbered centre, with or without a star-shaped
-/// hole, on a grid so coarse that borders touch and run together all the time.
+/// Returns a star-shaped polygon around an integer centre, with or without a star-shaped hole, on a grid so coarse that
+/// borders often touch and coincide.
 fn star() -> impl Strategy<Value = Shapes> {
     let center = (-4..=4, -4..=4);
     let lengths = prop::collection::vec(5..=8, 16);
@@ -70,7 +70,7 @@ proptest! {
         }
     }
 
-    /// In a rectangle all members of the family give one region; in a triangle all but the first.
+    /// Checks that all members of the family give one region in a rectangle, and all but the first in a triangle.
     #[test]
     fn the_whole_family_clips_to_convex_masks(
         a in star(), x in (-12..=4, 1..=14), y in (-12..=4, 1..=14),

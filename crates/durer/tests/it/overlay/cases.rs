@@ -1,4 +1,4 @@
-//! Readers for the shared suites, as plain as the files are.
+//! Readers for the shared test suites, as simple as the files are.
 
 use std::path::PathBuf;
 
@@ -90,7 +90,7 @@ fn points(line: &str) -> Vec<DVec2> {
     numbers.chunks_exact(2).map(|p| DVec2::new(p[0], p[1])).collect()
 }
 
-/// Returns all files of a shared folder with this ending, at any depth, sorted.
+/// Returns all files of a shared folder with this extension, at any depth, sorted.
 pub fn shared_files(folder: &str, ending: &str) -> Vec<String> {
     fn collect(dir: &std::path::Path, ending: &str, found: &mut Vec<PathBuf>) {
         for entry in std::fs::read_dir(dir).into_iter().flatten().flatten() {
@@ -113,8 +113,7 @@ pub fn shared_files(folder: &str, ending: &str) -> Vec<String> {
     found.into_iter().map(relative).collect()
 }
 
-/// Returns the polygons of a GeoJSON geometry, feature or collection; the closing point is left
-/// out.
+/// Returns the polygons of a GeoJSON geometry, feature or collection, without the closing points.
 pub fn geojson(value: &serde_json::Value) -> Shapes {
     let mut shapes = Shapes::new();
     add_geojson(value, &mut shapes);

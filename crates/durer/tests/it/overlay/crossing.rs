@@ -1,4 +1,4 @@
-//! Greiner–Hormann on rings that cross themselves and one another, beside the overlay.
+//! Greiner–Hormann on rings that cross themselves and one another, compared with the overlay.
 
 use durer::clip::polygon::greiner_hormann::{Step, greiner_hormann, replay};
 use durer::clip::polygon::overlay::{Options, overlay};
@@ -20,14 +20,14 @@ fn cut(a: &Shapes, b: &Shapes, op: BooleanOp) -> durer::Result<Shapes> {
     greiner_hormann(a, b, op, &Default::default(), &mut NoTrace)
 }
 
-/// Returns the area that rings enclose by the even-odd rule.
+/// Returns the area of rings by the even-odd rule.
 fn enclosed(shapes: &Shapes) -> f64 {
     let options = Options::with_rule(WindingRule::EvenOdd);
     let valid = overlay(shapes, &Shapes::new(), BooleanOp::Union, &options, &mut NoTrace);
     valid.expect("finite").shapes.area()
 }
 
-/// A pentagram's centre is wound around twice: outside by the even-odd rule.
+/// Checks a pentagram, whose centre is wound around twice: outside by the even-odd rule.
 const STAR: &[(f64, f64)] = &[(5., 10.), (8., 0.5), (0., 6.5), (10., 6.5), (2., 0.5)];
 const RIGHT: &[(f64, f64)] = &[(5.5, 1.), (11., 1.), (11., 9.), (5.5, 9.)];
 
@@ -74,12 +74,12 @@ fn rings_that_cross_and_touch_are_refused() {
     let corner_on_edge = shapes(&[&[(1., 1.), (5., 1.), (5., 5.), (1., 5.)]]);
     let refused = cut(&bow, &corner_on_edge, BooleanOp::Union);
     assert!(refused.is_err_and(|e| e.to_string().contains("touches the other polygon")));
-    // The same corner touching a ring that does not cross is taken.
+    // The same corner on a ring that does not cross is accepted.
     let triangle = shapes(&[&[(0., 0.), (4., 0.), (4., 4.)]]);
     assert!(cut(&triangle, &corner_on_edge, BooleanOp::Union).is_ok());
 }
 
-/// Rings of few points on two lattices that have no point and no line in common.
+/// Checks rings of few points on two lattices that have no point and no line in common.
 fn ring(shift: f64) -> impl Strategy<Value = Vec<DVec2>> {
     let at = move |(x, y): (i32, i32)| DVec2::new(f64::from(x) + shift, f64::from(y) + shift * 0.7);
     prop::collection::vec((0..12, 0..12), 3..9)

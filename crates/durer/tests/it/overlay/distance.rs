@@ -1,5 +1,5 @@
-//! The distance between the border of a region and that of an exact one, both ways: Hausdorff's
-//! distance of the borders, by brute force.
+//! The distance between the border of a region and that of an exact one, in both directions: the Hausdorff distance of
+//! the borders, by brute force.
 
 use durer::clip::polygon::overlay::Options;
 use durer::clip::polygon::{BooleanOp, Shapes};
@@ -31,9 +31,8 @@ fn distance((a, b): Edge, p: DVec2) -> f64 {
     (a + d * t).distance(p)
 }
 
-/// Returns the pieces of the inputs' edges between crossings on whose two sides the region differs,
-/// told by points `off` beside their middles; so a border of the exact region passes within `off`
-/// of each middle.
+/// Returns the parts of the inputs' edges between crossings where the region differs on the two sides, tested at points
+/// `off` beside their midpoints; so a border of the exact region passes within `off` of each midpoint.
 fn border(a: &Shapes, b: &Shapes, op: BooleanOp, options: &Options, off: f64) -> Vec<Edge> {
     let (ours, theirs) = (edges(a), edges(b));
     let all: Vec<Edge> = ours.iter().chain(&theirs).copied().filter(|(p, q)| p != q).collect();
@@ -70,7 +69,7 @@ fn border(a: &Shapes, b: &Shapes, op: BooleanOp, options: &Options, off: f64) ->
     border
 }
 
-/// Returns the largest distance from the result's border to the exact one, and the other way round.
+/// Returns the largest distance from the result's border to the exact one, and vice versa.
 pub fn both_ways(
     [a, b]: [&Shapes; 2],
     op: BooleanOp,

@@ -1,4 +1,4 @@
-//! Cases of the kinds that published bug reports are about, redrawn, and long rings.
+//! Long rings, and redrawn cases of published bug reports.
 
 use durer::clip::line::{LineClipper, Segment};
 use durer::clip::polygon::overlay::{Options, overlay};
@@ -21,8 +21,8 @@ fn area(a: &Shapes, b: &Shapes, op: BooleanOp) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Two slanted quads side by side whose common edge is rounded differently in each, by some ulps:
-    /// neither half may vanish, and there is nothing in both (libgeos/geos#1344, iOverlay#19).
+    /// Checks two slanted quads side by side whose common edge is rounded differently in each, by some ulps: neither
+    /// half may vanish, and their intersection is empty (libgeos/geos#1344, iOverlay#19).
     #[test]
     fn neighbours_with_a_rounded_edge_are_joined(
         angle in -1.6..1.6f64, at in prop::array::uniform2(-400.0..400.0f64), size in prop::array::uniform3(0.5..40.0f64),
@@ -40,8 +40,8 @@ proptest! {
         prop_assert!((area(&a, &b, BooleanOp::Difference) - size[0] * size[2]).abs() < 1e-4);
     }
 
-    /// No corner of the window that the polygon does not cover (AngusJohnson/Clipper2#542, #1095):
-    /// areas do not show it, distances do.
+    /// Checks that the result contains no corner of the window that the polygon does not cover
+    /// (AngusJohnson/Clipper2#542, #1095): areas do not show it, distances do.
     #[test]
     fn rectangle_clips_have_no_stray_corner(
         ring in prop::collection::vec((-9i32..=9, -9i32..=9), 3), window in (-6i32..=2, -6i32..=2, 1i32..=8, 1i32..=8),
@@ -67,7 +67,7 @@ fn whole((x, y): (i32, i32)) -> DVec2 {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Triangles with hardly any area, beside and across others, add hardly any to a union
+    /// Checks that triangles with hardly any area, beside and across others, add hardly any to a union
     /// (AngusJohnson/Clipper2#1067).
     #[test]
     fn slivers_add_no_more_than_their_area(
@@ -75,7 +75,7 @@ proptest! {
         slivers in prop::collection::vec((0..6usize, 1..6usize, 0.0..1.0f64, -2..=2i32, -2..=2i32), 1..4),
     ) {
         let corner = |i: usize| whole(corners[i % 6]);
-        // All run one way: in a region wound both ways, winding numbers may cancel.
+        // All have one direction: in a region wound in both, winding numbers may cancel.
         let triangle = |mut ring: [DVec2; 3]| {
             if signed_area(&ring) < 0.0 {
                 ring.reverse();
@@ -103,7 +103,7 @@ proptest! {
         prop_assert!(added >= -0.1 * length && added <= most + 0.1 * length, "{added} {most}");
     }
 
-    /// A strip a few units wide along a bent line, whose two sides touch and cross after rounding, gives
+    /// Checks that a strip a few units wide along a bent line, whose two sides touch and cross after rounding, gives
     /// simple rings (AngusJohnson/Clipper2#1083).
     #[test]
     fn narrow_strips_give_simple_rings(
@@ -113,7 +113,7 @@ proptest! {
         let mut at = DVec2::ZERO;
         let line: Vec<DVec2> = steps.iter().map(|&s| { at += whole(s); at }).collect();
         let back = line.iter().zip(&off).rev().map(|(&p, &o)| p + whole(o));
-        // Halfway points of the way back, rounded, lie beside the way out.
+        // Midpoints of the way back, rounded, are beside the way out.
         let back: Vec<DVec2> = back.collect();
         let halves = back.windows(2).flat_map(|w| [w[0], ((w[0] + w[1]) * 0.5).round()]);
         let strip = Shapes::from_rings([line.iter().copied().chain(halves).collect::<Vec<_>>()]);
@@ -123,8 +123,7 @@ proptest! {
     }
 }
 
-/// A window with its borders exchanged is refused, and no number that is none gets in
-/// (ratatui/ratatui#2722).
+/// Checks that a window with swapped borders is refused, and that NaN is not accepted (ratatui/ratatui#2722).
 #[test]
 fn reversed_windows_and_nan_end_at_once() {
     assert!(Rect::new(DVec2::ONE, DVec2::ZERO).is_err());
@@ -135,7 +134,7 @@ fn reversed_windows_and_nan_end_at_once() {
     }
 }
 
-/// Returns a ring of n vertices that goes in and out between two radii, with whole-numbered noise.
+/// Returns a ring of n vertices that alternates between two radii, with integer noise.
 fn coast(n: usize, seed: u64, center: DVec2) -> Shapes {
     let mut state = seed;
     let mut noise = || {
@@ -176,14 +175,14 @@ fn rings_of_a_hundred_thousand_vertices() {
     }
 }
 
-/// Straight below the first point of a hole in a lattice there is nothing but more such points.
+/// Checks a lattice of holes: straight below the first point of a hole there are only further such points.
 #[test]
 fn holes_in_columns_find_what_is_below_all_of_them() {
     let square = |x: f64, y: f64, side: f64| {
         [(x, y), (x + side, y), (x + side, y + side), (x, y + side)].map(DVec2::from)
     };
     let places = (0..144).map(|i| (f64::from(i % 12), f64::from(i / 12)));
-    // Around the upper left quarter there is a ring more, and a step to the left in each other row.
+    // Around the upper left quarter there is another ring, and every other row steps to the left.
     let mut rings = vec![square(-9.0, -9.0, 40.0), square(-5.0, 14.0, 12.0)];
     rings.extend(places.clone().map(|(x, y)| square(4.0 * x - 4.0 + y % 2.0, 4.0 * y - 6.0, 2.0)));
     let shapes = Shapes::from_rings(rings);

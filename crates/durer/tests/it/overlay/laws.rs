@@ -1,4 +1,4 @@
-//! Laws that hold for every input, on inputs made to be hard.
+//! Laws that hold for every input, on deliberately hard inputs.
 
 use durer::clip::polygon::overlay::{self, Operand, Options, Output, overlay};
 use durer::clip::polygon::{BooleanOp, Shapes, WindingRule};
@@ -16,8 +16,8 @@ fn valid(out: &Output) -> Result<(), TestCaseError> {
     validity::check(&out.shapes, out.cell).map_err(TestCaseError::fail)
 }
 
-/// Returns a bound on the change of an area by snapping: every edge sweeps at most its length times
-/// a cell's diagonal, and an edge of the input is at most as long as the extent's diagonal.
+/// Returns a bound on the change of an area by snapping: every edge sweeps at most its length times a cell's diagonal,
+/// and an edge of the input is at most as long as the extent's diagonal.
 fn bound(a: &Shapes, b: &Shapes, cell: f64) -> f64 {
     let length = |s: &Shapes| -> f64 {
         let around =
@@ -57,7 +57,7 @@ fn star(n: usize, turn: f64, x: f64) -> Shapes {
     let point = |i: usize| {
         let t = (i as f64 + turn) / n as f64;
         let r = if i.is_multiple_of(2) { 1.0 + (i % 7) as f64 * 0.01 } else { 0.2 };
-        // A square's border instead of a circle's: no sine is needed.
+        // The border of a square replaces a circle: no sine is needed.
         let s = 4.0 * t.rem_euclid(1.0);
         let (side, along) = (s.floor() as i32, s.fract() * 2.0 - 1.0);
         let p = match side {
@@ -78,7 +78,7 @@ proptest! {
     fn results_on_a_tiny_grid_are_valid(
         a in soup(4, 7, 6), b in soup(4, 7, 6), op in op(), rule in rule(), coarse: bool,
     ) {
-        // With cells as large as the points' own spacing, everything snaps onto everything.
+        // With cells as large as the spacing of the points, everything snaps to everything.
         let grid = coarse.then_some(1.0);
         let out = run(&a, &b, op, &Options { grid, ..Options::with_rule(rule) });
         valid(&out)?;
@@ -171,7 +171,7 @@ proptest! {
             Operand::Subject => a.points()[i],
             Operand::Clip => b.points()[i],
         };
-        // The points themselves are attributes too: interpolated, they are the result's points.
+        // The points themselves are attributes too: interpolated, they equal the result's points.
         let points = out.attributes(point, |p, q, t| p.lerp(q, t), |p, q| {
             assert!(p.distance(q) <= out.cell * 1e-3 + 1e-12, "{p} {q}");
             p

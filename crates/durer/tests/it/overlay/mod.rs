@@ -1,4 +1,4 @@
-//! `overlay()`: laws, hard cases, and validity by an independent judge.
+//! `overlay()`: laws, hard cases, and validity checked independently.
 
 mod agreement;
 pub mod cases;

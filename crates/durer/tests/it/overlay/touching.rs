@@ -1,5 +1,5 @@
-//! The textbook algorithms on valid polygons whose rings touch one another, and the other's borders,
-//! wherever they can: small whole coordinates leave them no other way.
+//! The textbook algorithms on valid polygons whose rings touch one another and the other's borders often, because their
+//! coordinates are small integers.
 
 use durer::clip::polygon::greiner_hormann::greiner_hormann;
 use durer::clip::polygon::overlay::{Options, overlay};
@@ -13,15 +13,14 @@ use proptest::test_runner::RngSeed;
 use super::laws::soup;
 use super::validity;
 
-/// Between these and the next power of two crossings are whole multiples of a small number.
+/// From this number to the next power of two, crossings are exact multiples of a small number.
 const OFFSET: f64 = 64.0;
 
-/// The step of numbers from 64 to 128.
+/// The spacing of numbers from 64 to 128.
 const STEP: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// Returns valid polygons of whole coordinates: what the overlay makes of random rings on its
-/// coarsest grid, without the vertices that lie on straight borders, so that other rings touch edges
-/// too.
+/// Returns valid polygons with integer coordinates: the overlay of random rings on its coarsest grid, without the
+/// vertices on straight borders, so that other rings touch edges too.
 fn polygons(grid: i32) -> impl Strategy<Value = Shapes> {
     (soup(4, 8, grid), any::<bool>()).prop_map(|(rings, reversed)| {
         let options = Options { grid: Some(1.0), ..Options::default() };
@@ -98,8 +97,8 @@ proptest! {
         walks_agree(&window(x, y), &a)?;
     }
 
-    /// No longer on a lattice, borders that touched pass by an ulp from one another, and crossings are rounded to
-    /// vertices. Rings of one operand that cross then are refused.
+    /// Checks polygons off the lattice: borders that touched now pass an ulp apart, and crossings are rounded to
+    /// vertices. If then rings of one operand cross, they are refused.
     #[test]
     fn walks_find_the_region_of_rounded_coordinates(
         a in polygons(5), b in polygons(5), scale in 0..4usize, offset in 0..3usize,
@@ -122,7 +121,7 @@ proptest! {
         }
     }
 
-    /// Bridges are allowed, but no ring without an area, and no hole without its outer ring.
+    /// Checks that a result has no ring without an area and no hole without its outer ring; bridges are allowed.
     #[test]
     fn convex_clips_leave_no_flat_rings(
         a in polygons(10), x in (0..=8, 1..=9), y in (0..=8, 1..=9), triangle: bool,

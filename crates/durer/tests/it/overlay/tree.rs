@@ -1,4 +1,4 @@
-//! The nesting tree beside the plain definition: the smallest ring around a ring is its parent.
+//! The nesting tree, compared with the plain definition: a ring's parent is the smallest ring around it.
 
 use durer::clip::polygon::overlay::{Options, overlay};
 use durer::clip::polygon::{BooleanOp, NestingTree, Shapes, Vertex, WindingRule, signed_area};
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::whole::soup;
 
-/// Returns whether a point that is on no ring's border lies within a ring.
+/// Returns whether a point on no ring's border is inside a ring.
 fn encloses<P: Vertex>(ring: &[P], p: P) -> bool {
     let mut inside = false;
     for (i, &a) in ring.iter().enumerate() {
@@ -20,7 +20,7 @@ fn encloses<P: Vertex>(ring: &[P], p: P) -> bool {
     inside
 }
 
-/// Checks a tree against the definition; `between` gives the middle of two points, exactly.
+/// Checks a tree against the definition; `between` gives the exact midpoint of two points.
 pub fn check<P: Vertex>(shapes: &Shapes<P>, tree: &NestingTree, between: impl Fn(P, P) -> P) {
     assert_eq!(tree.len(), shapes.ring_count());
     for r in 0..tree.len() {
@@ -39,7 +39,7 @@ pub fn check<P: Vertex>(shapes: &Shapes<P>, tree: &NestingTree, between: impl Fn
     assert_eq!(children + tree.roots().len(), tree.len());
 }
 
-/// In even coordinates every edge has a middle in whole numbers.
+/// With even coordinates every edge has an integer midpoint.
 fn doubled(shapes: &Shapes<I64Vec2>) -> Shapes<I64Vec2> {
     let mut shapes = shapes.clone();
     shapes.points_mut().iter_mut().for_each(|p| *p *= 2);

@@ -1,7 +1,7 @@
-//! The validity of shapes in the sense of OGC Simple Features, decided exactly and by its own
-//! means: every pair of edges is compared.
+//! The validity of shapes in the sense of OGC Simple Features, decided exactly and independently: every pair of edges
+//! is compared.
 //!
-//! Coordinates are those of a grid of `cell`, so that they become whole numbers.
+//! Coordinates are multiples of `cell`, so that they become integers.
 
 use durer::clip::polygon::Shapes;
 
@@ -34,7 +34,7 @@ fn twice_area(ring: &[P]) -> i128 {
     (1..ring.len().saturating_sub(1)).map(|i| cross(ring[0], ring[i], ring[i + 1])).sum()
 }
 
-/// Returns whether the boxes around two rings have no point in common.
+/// Returns whether the boxes of two rings are disjoint.
 fn apart(a: &[P], b: &[P]) -> bool {
     let range = |ring: &[P], f: fn(&P) -> i128| {
         let (low, high) = (ring.iter().map(f).min(), ring.iter().map(f).max());
@@ -90,7 +90,7 @@ fn touches(a: &[P], b: &[P], same: bool) -> Result<Vec<P>, String> {
     Ok(found)
 }
 
-/// Returns whether `inner` lies within `outer`, where they touch at most in points.
+/// Returns whether `inner` is within `outer` and touches it at most in points.
 fn within(inner: &[P], outer: &[P]) -> bool {
     if apart(inner, outer) {
         return false;
@@ -105,7 +105,7 @@ fn within(inner: &[P], outer: &[P]) -> bool {
     corners.chain(middles).map(|p| locate(&doubled, p)).find(|&side| side != 0) == Some(1)
 }
 
-/// Rings that touch form a graph of rings and points; a cycle in it would cut the interior apart.
+/// Checks the graph of touching rings and their points: a cycle in it would split the interior.
 fn connected(rings: &[Vec<P>]) -> Result<(), String> {
     let mut parent: Vec<usize> = (0..rings.len()).collect();
     let mut points: Vec<(P, usize)> = Vec::new();

@@ -1,4 +1,4 @@
-//! `overlay()` on whole numbers.
+//! `overlay()` on integers.
 
 use durer::Error;
 use durer::clip::polygon::overlay::{self, Operand, Options, Origin, Output, overlay};
@@ -81,7 +81,7 @@ proptest! {
     }
 }
 
-/// 2⁴¹ − 2 across, more than the 32-bit path holds, and odd numbers beyond 2⁵³.
+/// Checks an extent of 2⁴¹ − 2, more than the 32-bit path supports, and odd numbers beyond 2⁵³.
 #[test]
 fn the_widest_input_is_exact() {
     let wide = (1 << 41) - 2;
@@ -118,7 +118,7 @@ fn what_whole_numbers_cannot_have_is_refused() {
     assert!(matches!(try_on([I64Vec2::ZERO; 2], coarse), Err(Error::Parameter { .. })));
     let own = Options { grid: Some(1.0), ..Options::default() };
     assert!(try_on([I64Vec2::ZERO; 2], own).is_ok());
-    // With f64 alone these two are one place.
+    // In f64 alone these two coincide.
     let (p, q) = (I64Vec2::new((1 << 53) + 1, 0), I64Vec2::new(1 << 53, 0));
     assert_eq!((p.as_dvec2(), p == q), (DVec2::new(q.x as f64, 0.0), false));
 }

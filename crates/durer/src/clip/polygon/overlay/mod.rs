@@ -62,7 +62,7 @@ pub const INFO: Info = Info {
     pseudocode: &[
         "choose a grid; move all points to its cells",
         "find where edges cross; divide them at the cells that they pass",
-        "sort edges that lie on one another into one",
+        "merge edges that coincide",
         "for the lowest edge of each connected part: its winding number by a ray",
         "    carry it around every node from edge to edge",
         "    both sides of each edge now have the windings of subject and clip",

@@ -1,4 +1,4 @@
-//! Tests of the work in patches: in this build they are so small that these inputs have many.
+//! Tests of the work in patches: this build makes them so small that these inputs have many.
 
 use std::sync::LazyLock;
 
@@ -40,7 +40,7 @@ const RULES: [WindingRule; 4] =
     [WindingRule::EvenOdd, WindingRule::NonZero, WindingRule::Positive, WindingRule::Negative];
 
 proptest! {
-    // A case takes milliseconds in patches so tiny; the laws of tests/it/overlay have more of them.
+    // A case takes milliseconds with such small patches; tests/it/overlay has more cases of these laws.
     #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
@@ -90,7 +90,7 @@ proptest! {
     }
 }
 
-/// A ring that spans many patches and is touched by nothing, and one with holes that do not.
+/// Checks a ring that spans many patches and touches nothing, and one with holes that do not.
 #[test]
 fn long_rings_keep_their_points() {
     let circle = |n: usize, radius: f64| -> Vec<DVec2> {
@@ -108,7 +108,7 @@ fn long_rings_keep_their_points() {
     assert_eq!((out.points().len(), out.ring_count()), (500, 1));
 }
 
-/// Edges that lie on one another come never apart, however often the plane is divided.
+/// Checks that coincident edges never separate, however often the plane is divided.
 #[test]
 fn many_copies_of_a_ring_are_one_ring() {
     let square = [(0.0, 0.0), (30.0, 0.0), (30.0, 30.0), (0.0, 30.0)];

@@ -299,7 +299,7 @@ mod tests {
         DVec2::new(x.into(), y.into())
     }
 
-    /// Returns rings that may be anything, each a polygon or a hole of the one before.
+    /// Returns arbitrary rings, each a polygon or a hole of the one before.
     fn rings() -> impl Strategy<Value = Shapes> {
         let ring = prop::collection::vec((-6i32..=6, -6i32..=6), 0..14);
         prop::collection::vec((ring, any::<bool>()), 0..9).prop_map(|rings| {
@@ -322,7 +322,7 @@ mod tests {
         overlay::overlay(shapes, &Shapes::new(), op, &options, &mut NoTrace).unwrap().shapes
     }
 
-    /// Returns rings that start elsewhere and run either way.
+    /// Returns the rings with other first points and directions.
     fn turned(shapes: &Shapes, by: usize, flip: bool) -> Shapes {
         let mut out = Shapes::new();
         for polygon in shapes.polygons() {

@@ -1,4 +1,4 @@
-//! The rectangle clip against Sutherland–Hodgman's areas, and its own laws.
+//! The rectangle clip, compared with areas of Sutherland–Hodgman, and its own laws.
 
 use super::*;
 use crate::clip::attribute::interpolate;
@@ -64,12 +64,12 @@ fn directions_of_input_rings_do_not_matter() {
 #[test]
 fn touching_the_border_adds_nothing() {
     let w = window(0.0, 0.0, 10.0, 10.0);
-    // Outside, touching with an edge, and with a corner.
+    // Outside, touching along an edge, and in a corner.
     assert!(
         clipped(&w, &polygon(&[&[(10.0, 2.0), (12.0, 2.0), (12.0, 4.0), (10.0, 4.0)]])).is_empty()
     );
     assert!(clipped(&w, &polygon(&[&[(10.0, 10.0), (12.0, 10.0), (12.0, 14.0)]])).is_empty());
-    // Inside, touching from within: copied.
+    // Inside, touching the border from inside: copied.
     let diamond = [(5.0, 0.0), (10.0, 5.0), (5.0, 10.0), (0.0, 5.0)];
     assert_eq!(clipped(&w, &polygon(&[&diamond])), [vec![diamond.to_vec()]]);
 }
@@ -106,7 +106,7 @@ fn a_point_that_is_not_finite_is_named() {
     assert_eq!(error, Error::NonFinite { what: "point", index: 1 });
 }
 
-/// Returns a star-shaped ring around a centre: simple whatever the radii are.
+/// Returns a star-shaped ring around a centre: simple for any radii.
 fn star(center: DVec2, radii: &[f64]) -> Vec<DVec2> {
     let n = radii.len() as f64;
     let at = |(i, r): (usize, &f64)| {
@@ -129,7 +129,7 @@ fn star_with_hole() -> impl Strategy<Value = Shapes> {
     })
 }
 
-/// Returns a simple ring on a small grid: the outline of random columns of cells on one line.
+/// Returns a simple ring on a small grid: the outline of random columns of cells in a row.
 fn skyline() -> impl Strategy<Value = Shapes> {
     prop::collection::vec(1i32..5, 1..8).prop_map(|heights| {
         let mut ring = vec![p(-3.0, -2.0)];
@@ -150,14 +150,14 @@ fn laws(w: &Rect, shapes: &Shapes) -> Result<(), TestCaseError> {
     prop_assert_eq!(&clip(w, shapes, &Options, &mut NoTrace).unwrap(), &got);
     prop_assert_eq!(&replay(shapes, steps.steps()), &got);
 
-    // The area is that of Sutherland–Hodgman, whose bridging edges have none.
+    // The area is that of Sutherland–Hodgman, whose bridging edges enclose none.
     let expected: f64 = shapes
         .rings()
         .map(|r| signed_area(&sutherland_hodgman::clip(w, r, &mut NoTrace).unwrap()))
         .sum();
     prop_assert!((got.area() - expected).abs() < 1e-9, "{} {} {:?}", got.area(), expected, got);
 
-    // Outer rings run one way, holes the other; all points lie in the window; none is doubled.
+    // Outer rings have one direction, holes the other; all points are in the window; none is repeated.
     for polygon in got.polygons() {
         prop_assert!(signed_area(polygon.outer()) > -1e-12);
         prop_assert!(polygon.holes().all(|h| signed_area(h) < 1e-12));
@@ -180,7 +180,7 @@ fn laws(w: &Rect, shapes: &Shapes) -> Result<(), TestCaseError> {
         prop_assert!(*source != Source::Corner || corners.contains(point));
     }
 
-    // Clipping again changes nothing but the starting vertex.
+    // A second clip changes only the starting vertex.
     let again = clip(w, &got, &Options, &mut NoTrace).unwrap();
     prop_assert_eq!(again, got);
     Ok(())
@@ -217,7 +217,7 @@ proptest! {
         let points: Vec<DVec2> = points.iter().map(|&(x, y)| p(f64::from(x), f64::from(y))).collect();
         let w = window(-2.0, -1.0, 2.0, 3.0);
         let got = clip_lines(&w, &points, &[points.len()], true).unwrap();
-        // The pieces are what single segments leave, in the same order.
+        // The pieces are those left of single segments, in the same order.
         let length = |pieces: &mut dyn Iterator<Item = (DVec2, DVec2)>| pieces.map(|(a, b)| (b - a).length()).sum::<f64>();
         let mut singles = points.windows(2).filter_map(|e| crate::clip::line::cut_inside(&w, e[0], e[1])).map(|s| (s.start, s.end));
         let mut ours = got.pieces().flat_map(|(_, piece)| piece.windows(2).map(|e| (e[0], e[1])).collect::<Vec<_>>());
@@ -232,7 +232,7 @@ proptest! {
             prop_assert!(at >= last, "{:?}", got.sources);
             last = at;
         }
-        // A cut only at the border: the ends of pieces are the polyline's ends, or on it.
+        // Cuts only at the border: the ends of pieces are the polyline's ends, or on the border.
         let on_border = |v: &DVec2| v.x == -2.0 || v.x == 2.0 || v.y == -1.0 || v.y == 3.0;
         let ends = [points[0], points[points.len() - 1]];
         for (_, piece) in got.pieces() {

@@ -174,7 +174,7 @@ fn each_beside(rings: &[Ring<'_>], mut f: impl FnMut(usize, &[usize]) -> bool) {
 mod tests {
     use super::*;
 
-    /// Returns squares within squares, each a polygon with a square hole or without; `odd` is moved out of line.
+    /// Returns nested squares, each a polygon with or without a square hole; `odd` is moved out of line.
     fn squares(count: i32, odd: Option<i32>) -> Shapes {
         let ring = |left: i32, right: i32| {
             [(left, left), (right, left), (right, right), (left, right)]

@@ -1,4 +1,4 @@
-//! Small shapes of every fault, and random squares.
+//! Small shapes with every fault, and random squares.
 
 use super::*;
 
@@ -46,7 +46,7 @@ fn flaws_have_a_reason_and_a_place() {
     let bowtie: &[(f64, f64)] = &[(0.0, 0.0), (4.0, 4.0), (4.0, 0.0), (0.0, 4.0)];
     assert_eq!(faults(&[&[bowtie]]), [(Fault::Crossing, (2.0, 2.0))]);
     let spike: &[(f64, f64)] = &[(0.0, 0.0), (2.0, 0.0), (2.0, 5.0), (2.0, 2.0), (0.0, 2.0)];
-    // The way back along itself, and then away from it.
+    // Back along the same line, and then away from it.
     let both = [Fault::Overlap, Fault::SelfTouch].map(|fault| (fault, (2.0, 2.0)));
     assert_eq!(faults(&[&[spike]]), both);
     let flat: &[(f64, f64)] = &[(1.0, 1.0), (2.0, 2.0), (1.0, 1.0), (1.0, 1.0)];
@@ -59,7 +59,7 @@ fn flaws_have_a_reason_and_a_place() {
     let inner: &[(f64, f64)] = &[(1.2, 1.2), (1.8, 1.2), (1.8, 1.8)];
     assert_eq!(faults(&[&[SQUARE, SMALL, inner]]), [(Fault::HoleInHole, (1.2, 1.2))]);
     assert_eq!(faults(&[&[SQUARE, SMALL], &[inner]]), []);
-    // Points that come twice in a row, and a ring that is closed twice, are no fault.
+    // Repeated consecutive points and a ring closed twice are no faults.
     let twice: &[(f64, f64)] = &[(0.0, 0.0), (9.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 0.0)];
     assert_eq!(faults(&[&[twice]]), []);
     assert!(flaws(&shapes(&[&[&[(f64::NAN, 0.0), (1.0, 0.0), (1.0, 1.0)]]])).is_err());
@@ -67,13 +67,13 @@ fn flaws_have_a_reason_and_a_place() {
 
 #[test]
 fn rings_touch_but_do_not_pass_or_divide() {
-    // With a vertex on an edge: from inside; and through to the outside, at two such places.
+    // With a vertex on an edge: from inside; and passing through to the outside, at two such points.
     let leaning: &[(f64, f64)] = &[(9.0, 4.0), (7.0, 5.0), (7.0, 3.0)];
     assert_eq!(faults(&[&[SQUARE, leaning]]), []);
     let through: &[(f64, f64)] = &[(7.0, 3.0), (9.0, 4.0), (12.0, 5.0), (9.0, 6.0), (7.0, 7.0)];
     let places = [(Fault::Crossing, (9.0, 4.0)), (Fault::Crossing, (9.0, 6.0))];
     assert_eq!(faults(&[&[SQUARE, through]]), places);
-    // A hole across the whole, touching in two points: the inside is in two parts.
+    // A hole across the whole polygon that touches it in two points: the interior is in two parts.
     let across: &[(f64, f64)] = &[(0.0, 4.0), (4.0, 3.0), (9.0, 4.0), (4.0, 5.0)];
     assert_eq!(faults(&[&[SQUARE, across]]), [(Fault::Divided, (9.0, 4.0))]);
     // A chain of three, each touching the next, from side to side.

@@ -31,7 +31,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::None,
     coherence: &[],
     cost: "O((n + k) log n) for n points of the outline and k crossings",
-    limits: "arcs are polygons within a tolerance",
+    limits: "arcs become polygons within a tolerance",
     pseudocode: &[],
 };
 
@@ -232,12 +232,12 @@ mod tests {
         about(area(&block, &round(-2.0)), 36.0);
         about(area(&block, &Options { join: Join::Bevel, ..round(2.0) }), 100.0 + 80.0 + 8.0);
         about(area(&block, &Options { join: Join::Miter, ..round(2.0) }), 196.0);
-        // A hole gets smaller as its polygon grows, and is gone in the end.
+        // A hole shrinks as its polygon grows, and finally disappears.
         let frame = Shapes::from_rings([square(0.0, 10.0), square(3.0, 4.0)]);
         about(area(&frame, &round(1.0)), 100.0 + 40.0 + PI - 4.0);
         about(area(&frame, &round(2.5)), 100.0 + 100.0 + 6.25 * PI);
         about(area(&frame, &round(-1.0)), 64.0 - (16.0 + 16.0 + PI));
-        // Nothing is left between the grown hole and the border but at its rounded corners.
+        // Between the grown hole and the border, only the rounded corners remain.
         about(area(&frame, &round(-1.5)), 2.25 * (4.0 - PI));
         about(area(&frame, &round(-2.5)), 0.0);
     }

@@ -12,7 +12,8 @@ pub(in super::super) trait Carrier {
     /// Returns the state of the first corner of a connected part.
     fn find(&mut self, corner: usize) -> Self::State;
 
-    /// Returns the state at the end of an edge, whose corners are in the direction of travel, from that at its beginning.
+    /// Returns the state at the end of an edge, whose corners are in the direction of travel, from that at its
+    /// beginning.
     fn along(&mut self, edge: usize, corners: [usize; 2], state: &Self::State) -> Self::State;
 }
 
@@ -20,8 +21,8 @@ impl FaceNet {
     /// Goes along all edges that are not flat, each once, from a corner whose state is known.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where two ways to a corner lead to different states: something touches there, so that rounding
-    /// decides which of two is in front.
+    /// [`Error::Parameter`] where two ways to a corner lead to different states: something touches there, so that
+    /// rounding decides which of two is in front.
     pub(in super::super) fn carry<C: Carrier>(&self, carrier: &mut C) -> Result<()> {
         let mut known: Vec<Option<C::State>> = self.points.iter().map(|_| None).collect();
         let mut done = vec![false; self.edges.len()];

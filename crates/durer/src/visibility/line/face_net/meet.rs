@@ -73,8 +73,8 @@ impl FaceNet {
         (0..self.faces.len()).filter(hides).collect()
     }
 
-    /// Returns the faces at a corner that hide the beginning of the line from there to another corner; those that the line
-    /// belongs to do not.
+    /// Returns the faces at a corner that hide the beginning of the line from there to another corner; those that the
+    /// line belongs to do not.
     pub fn faces_over(&self, line @ [from, to]: [usize; 2]) -> Vec<usize> {
         let hides = |face: &usize| {
             let own = &self.faces[*face];
@@ -109,7 +109,8 @@ impl FaceNet {
         right.count() % 2 == 1
     }
 
-    /// Returns whether the left side of an edge of a face, as the edge's corners are numbered, is in the face on the page.
+    /// Returns whether the left side of an edge of a face, as the edge's corners are numbered, is in the face on the
+    /// page.
     pub fn is_left_of(&self, face: usize, edge: usize) -> bool {
         let own = &self.faces[face];
         let [a, b] = self.edges[edge].corners;

@@ -1,11 +1,11 @@
-//! Plane polygons with common corners before an eye, for methods that carry visibility along edges.
+//! Plane polygons with common corners in front of an eye, for methods that carry visibility along edges.
 //!
 //! [`super::appel`] and [`super::galimberti_montanari`] find the faces that hide one corner, and update them along the
-//! edges to all others. Corners are on a page: x to the right, y up, z growing with the distance from the eye. In perspective z is the
-//! negative reciprocal of the distance, so that lines and planes remain lines and planes.
+//! edges to all others. Corners are on a page: x to the right, y up, z growing with the distance from the eye. In
+//! perspective z is the negative reciprocal of the distance, so that lines and planes remain lines and planes.
 //!
-//! The eye is turned by some millionths of a radian, or moved as little, so that edges at different distances are not on each
-//! other, and no face is seen exactly edge-on.
+//! The eye is turned by some millionths of a radian, or moved by a similar amount, so that edges at different distances
+//! do not coincide, and no face is seen exactly edge-on.
 
 mod carry;
 mod meet;
@@ -34,8 +34,8 @@ const TURN: [f64; 2] = [1.318e-6, -2.273e-6];
 /// Plane polygons with common corners, on the page of an eye.
 ///
 /// # Guarantees
-/// All corners are finite and before the eye; each face has an area and at least three corners in one plane. Faces of closed
-/// bodies run counter-clockwise seen from outside.
+/// All corners are finite and before the eye; each face has an area and at least three corners in one plane. Faces of
+/// closed bodies run counter-clockwise seen from outside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FaceNet {
     /// Corners in space.
@@ -47,7 +47,7 @@ pub struct FaceNet {
     /// Edges at each corner that are no parts of a plane.
     around: Vec<Vec<usize>>,
     closed: bool,
-    /// Distances on the page up to this are none.
+    /// Distances on the page up to this count as zero.
     small: f64,
     is_perspective: bool,
 }
@@ -96,8 +96,8 @@ impl FaceNet {
     /// ```
     ///
     /// # Errors
-    /// [`Error::NonFinite`]; [`Error::Parameter`] for faces without an area or with corners off their plane, and for corners that
-    /// are not before the eye.
+    /// [`Error::NonFinite`]; [`Error::Parameter`] for faces without an area or with corners off their plane, and for
+    /// corners that are not before the eye.
     pub fn new(faces: &[Vec<DVec3>], eye: Eye) -> Result<Self> {
         let (corners, mut rings) = numbered(faces)?;
         rings.iter_mut().for_each(without_repeats);
@@ -152,8 +152,8 @@ impl FaceNet {
         }
     }
 
-    /// Returns whether a face hides what is behind it: all do but the backs of closed bodies, before which there is always a
-    /// front.
+    /// Returns whether a face hides what is behind it: all do but the backs of closed bodies, before which there is
+    /// always a front.
     pub fn is_hider(&self, face: usize) -> bool {
         self.faces[face].front || !self.closed
     }
@@ -254,7 +254,8 @@ fn edges(faces: &mut [NetFace], extent: f64) -> Vec<NetEdge> {
     edges
 }
 
-/// Returns a value whose sign says on which side of the line from `a` to `b` a point is on the page: positive on the left.
+/// Returns a value whose sign says on which side of the line from `a` to `b` a point is on the page: positive on the
+/// left.
 fn side(a: DVec3, b: DVec3, point: DVec3) -> f64 {
     orient2d_value(a.truncate(), b.truncate(), point.truncate())
 }

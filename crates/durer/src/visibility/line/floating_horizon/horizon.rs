@@ -45,7 +45,7 @@ impl Horizon {
     }
 
     fn bucket(&self, x: f64) -> usize {
-        // The cast takes what lies left of the picture to 0.
+        // The cast maps columns left of the picture to 0.
         (((x - self.left) / self.width) as usize).min(self.buckets.len() - 1)
     }
 
@@ -140,7 +140,7 @@ impl Horizon {
 
     /// Finds the parts of the segment p … q that are covered, as sorted, disjoint ranges of 0 … 1 from p to q.
     ///
-    /// What runs along the border of the covered area is covered: it lies on a line that is there.
+    /// Lines along the border of the covered area count as covered, because they coincide with an existing line.
     pub fn hidden(&self, p: DVec2, q: DVec2, hidden: &mut Vec<[f64; 2]>) {
         hidden.clear();
         if p.x == q.x {
@@ -284,7 +284,7 @@ mod tests {
         assert_eq!(hidden(&h, at(2.0, 0.0), at(6.0, 8.0)), [[0.25, 0.5]]);
         assert_eq!(hidden(&h, at(6.0, 8.0), at(2.0, 0.0)), [[0.5, 0.75]]);
         assert_eq!(hidden(&h, at(3.0, 0.0), at(3.0, 8.0)), [[0.25, 0.5]]);
-        // Along the border: on a line that is there already.
+        // Along the border, on an existing line.
         assert_eq!(hidden(&h, at(2.0, 4.0), at(3.0, 4.0)), [[0.0, 1.0]]);
         // From a point of the border outwards.
         assert_eq!(hidden(&h, at(2.0, 4.0), at(3.0, 4.001)), [] as [[f64; 2]; 0]);

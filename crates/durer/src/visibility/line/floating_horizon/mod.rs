@@ -11,13 +11,13 @@
 //! - **Cost**: O(n h) for n cells, h the pieces of the horizon over one cell (a few), after O(n) for
 //!   projecting. Memory O(n).
 //! - **Limits**: one height per point of the grid. Horizons know that a line is hidden, not how often:
-//!   hidden lines count one surface in front of them. What lies between the eye and the near plane hides
+//!   hidden lines count one surface in front of them. Parts between the eye and the near plane hide others
 //!   all the same.
 //! - **Deviations**: cells are two triangles each, whose union is the covered area, so the result is
-//!   that of a visible-surface algorithm on [`HeightField::to_mesh`]. Where points are missing, one looks
-//!   between the pieces: there are several pairs of horizons over a column. In perspective, columns
-//!   are planes through the eye's plumb line, so the eye may be anywhere and may look anywhere, also
-//!   from within or below the surface.
+//!   that of a visible-surface algorithm on [`HeightField::to_mesh`]. Missing points leave gaps between
+//!   parts of the surface, so there are several pairs of horizons over a column. In perspective, columns
+//!   are planes through the vertical line of the eye, so the eye may have any position and direction,
+//!   also inside or below the surface.
 
 mod chain;
 mod horizon;
@@ -154,7 +154,7 @@ pub fn front_to_back(field: &HeightField, camera: &Camera) -> [Vec<usize>; 2] {
 /// use durer::trace::NoTrace;
 /// use durer::visibility::line::floating_horizon::{Options, draw};
 ///
-/// // A ridge: what lies behind its crest cannot be seen.
+/// // A ridge: the slope behind its crest is invisible.
 /// let ridge = HeightField::from_fn([2, 3], [0.0, 1.0], [-1.0, 1.0], |_, z| 1.0 - z.abs())?;
 /// let camera = Camera {
 ///     eye: DVec3::new(0.5, 0.5, 9.0),

@@ -1,8 +1,8 @@
-//! Pictures in which plumb lines are upright, so that what hides what is a question of columns.
+//! Pictures in which vertical lines are upright, so that visibility is decided column by column.
 //!
-//! What can be seen depends on the place of the eye alone, not on where it looks. So a perspective
-//! view is decided on upright pictures around the eye: one where the whole surface lies in front of
-//! it, else four quarters. A parallel view needs one.
+//! Visibility depends only on the position of the eye, not on its direction. So a perspective view is decided on
+//! upright pictures around the eye: one if the whole surface is in front of it, else four quarters. A parallel view
+//! needs one.
 
 use crate::math::{DVec2, DVec3};
 use crate::scene::{Camera, HeightField, Projection};
@@ -51,7 +51,7 @@ pub struct Picture {
     max: DVec2,
 }
 
-/// A part of a segment that lies in a picture.
+/// A part of a segment inside a picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Part {
     /// Start and end, 0 … 1 along the segment.
@@ -129,7 +129,7 @@ impl Sight {
             Self::From(eye) => {
                 let (first, last) = (first - middle, last - middle);
                 let place = (eye[axis] - first) / (last - first) * cells as f64;
-                // The cast takes what lies before the field to 0.
+                // The cast maps positions before the field to 0.
                 let own = (place as usize).min(cells);
                 (own..cells).chain((0..own).rev()).collect()
             }
@@ -176,7 +176,7 @@ impl Picture {
         };
         let levels = points.field.levels().map(|l| l.map(|y| y - points.middle.y));
         for point in points.iter() {
-            // What is beyond a level is cut there.
+            // Parts beyond a level are cut there.
             let kept = point.map(|p| levels.map_or(p, |[l, h]| DVec3 { y: p.y.clamp(l, h), ..p }));
             let place = kept.map(|p| picture.place(p));
             let inside = place.filter(|p| picture.is_inside(p));

@@ -1,4 +1,4 @@
-//! Parts of a line that are too short to be seen, and what becomes of them.
+//! Parts of a line that are too short to be visible: they are joined to neighbours.
 
 use super::span::Span;
 use std::cmp::Reverse;
@@ -83,7 +83,7 @@ impl<'a> Chain<'a> {
         true
     }
 
-    /// Returns the shortest sliver, the first of those that are equally short.
+    /// Returns the shortest sliver, the first of equally short ones.
     fn next(&mut self) -> Option<usize> {
         while let Some(Reverse((bits, i))) = self.slivers.pop() {
             if self.is_left[i] && length(&self.spans[i]).to_bits() == bits {

@@ -1,8 +1,8 @@
 //! The cells of the page that lines run through, each with a number for its list of faces.
 //!
-//! A uniform grid of about as many cells as there are faces. Where the lines run through few of them, as those of
-//! what is long and thin, or of small things far from one another, the cells are smaller, and only those that lines
-//! run through are kept, so that the lists stay short.
+//! A uniform grid of about as many cells as there are faces. If the lines run through few of them, as for long thin
+//! scenes or small objects far apart, the cells are smaller, and only those with lines are kept, so that the lists stay
+//! short.
 
 use super::super::page::{GridPoint, Vertex};
 use std::ops::Range;
@@ -10,7 +10,7 @@ use std::ops::Range;
 /// Side by side at most this many cells.
 const MOST_ACROSS: f64 = 4096.0;
 
-/// Limit on smaller cells, of which few are kept.
+/// Limit on the number of smaller cells, few of which are kept.
 const MOST_SMALL_ACROSS: f64 = 65_536.0;
 
 /// Cells are made smaller where lines run through less than one in this many, and their lists have more entries than

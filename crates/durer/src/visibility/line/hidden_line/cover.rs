@@ -186,7 +186,7 @@ mod tests {
         };
         let folded = [part(0.0, 1.0, 1), part(0.25, 0.5, -1)];
         assert_eq!(counts(&folded, [0.0; 2]), [(0.0, 0.25, 1), (0.25, 0.5, 0), (0.5, 1.0, 1)]);
-        // What is in front of the fold counts once, and nothing is hidden where nothing is in front.
+        // Surfaces in front of the fold count once, and without any nothing is hidden.
         let hidden = [part(0.5, 0.75, 1)];
         assert_eq!(counts(&hidden, [0.25, 1.0]), [(0.0, 0.25, 0), (0.25, 1.0, 1)]);
         assert_eq!(counts(&[], [0.25, 1.0]), [(0.0, 1.0, 0)]);

@@ -1,5 +1,5 @@
-//! The lines of a scene, before it is known what of them can be seen: edges of the mesh, lines where faces meet, and
-//! the lines and points of the model.
+//! The lines of a scene before their visibility is known: edges of the mesh, lines where faces meet, and the lines and
+//! points of the model.
 
 use super::super::crease_chain::connected;
 use super::super::edge_lines::{
@@ -77,7 +77,7 @@ impl<'a> Lines<'a> {
             let line = |ends| FeatureLine::new(ends, LineClass::Mark, [NO_ITEM; 2]);
             loose.extend(marks(faces, projected).filter_map(line));
         }
-        // The eye may be inside of what is cut.
+        // The eye may be inside the cut body.
         let whole = if projected.any_cut() { Whole(None) } else { whole };
         Self { faces, whole, projected, edges: of_edges, loose, crowded }
     }

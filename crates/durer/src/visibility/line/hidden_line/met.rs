@@ -1,6 +1,6 @@
-//! The faces that a line has met on its way, so that one that lies in many cells is tested once (the mailbox of John
-//! Amanatides and Andrew Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987), and the length of
-//! the line that they hide, so that the way ends once all of it is hidden.
+//! The faces already tested for a line, so that a face in many cells is tested once (the mailbox of John Amanatides and
+//! Andrew Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987), and the length of the line that
+//! they hide, so that the search ends once all of it is hidden.
 
 /// Limit on the faces that are remembered; of more some are tested again, which changes nothing.
 const MOST_SLOTS: usize = 1 << 14;

@@ -1,5 +1,4 @@
-//! Hidden lines: what can be seen of the edges of a scene, exactly, and by how many surfaces the rest
-//! is hidden.
+//! Hidden lines: the visible parts of the edges of a scene, exactly, and the number of surfaces that hide the rest.
 //!
 //! Arthur Appel, *The notion of quantitative invisibility and the machine rendering of solids*,
 //! Proceedings of the ACM National Conference, 1967: a line changes its visibility only where it passes
@@ -12,10 +11,9 @@
 //! Lawrence Roberts did (*Machine perception of three-dimensional solids*, 1963); these come from a
 //! grid over the picture. Each face cuts a line at its projected borders and at its plane (Cyrus–Beck).
 //!
-//! Rules in place of luck: vertices are snapped to a grid of about 2⁻²⁷ of the picture's extent, where all
-//! decisions in the plane are exact integers; a line that runs along the border of a face is hidden on
-//! that side only, and counts as hidden where both sides are; what touches is visible; lines that lie
-//! on each other are drawn once, the visible one first.
+//! Rules instead of chance: vertices are snapped to a grid of about 2⁻²⁷ of the picture's extent, on which all
+//! decisions in the plane are exact integers; a line along the border of a face is hidden on that side only, and counts
+//! as hidden if both sides are; touching lines are visible; coincident lines are drawn once, the visible one first.
 
 mod absorb;
 mod cells;
@@ -66,7 +64,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::Area,
     coherence: &[Coherence::Edge],
     cost: "O(n + k) for n faces and k pairs of a line and a face that overlap in the picture",
-    limits: "all faces are opaque; what lies within 2^-23 of the model's extent of a face touches it",
+    limits: "all faces are opaque; a point nearer to a face than 2^-23 of the model's extent touches it",
     pseudocode: &[
         "project all vertices to a grid of the page",
         "find the lines: edges by their class, and where faces pierce each other",

@@ -1,7 +1,7 @@
-//! The faces that can hide something, found by place.
+//! The faces that can hide something, found by position.
 //!
-//! Only those cells of a grid have lists that a line runs through; each list is in the order of the nearest
-//! depth, so that a line stops where nothing nearer comes.
+//! Only grid cells through which a line runs have lists; each list is in the order of the nearest depth, so that a line
+//! stops once no nearer face follows.
 
 use super::super::facing::{Facing, turned_on_grid};
 use super::super::page::{Page, Projected, Vertex};
@@ -260,7 +260,7 @@ fn where_any(count: u32, is: impl Fn(u32) -> bool) -> Vec<bool> {
 fn hiding(faces: &Faces, bodies: &Bodies, facing: &Facing, projected: &Projected) -> Vec<bool> {
     let mut front_only: Vec<bool> = bodies.all().iter().map(|b| b.closed).collect();
     if projected.any_cut() {
-        // The eye may be inside of what is cut.
+        // The eye may be inside the cut body.
         for (item, t) in faces.triangles() {
             if let (None, Some(body)) = (projected.corners(t), bodies.of(item)) {
                 front_only[body as usize] = false;

@@ -1,4 +1,4 @@
-//! Convex bodies as Roberts has them: a plane for each face, its inside positive.
+//! Convex bodies in Roberts' form: a plane for each face, its inside positive.
 
 use crate::math::{DVec3, Plane};
 use crate::view::cull::newell_area;
@@ -29,11 +29,12 @@ pub struct Edge {
 }
 
 impl Body {
-    /// Creates a body from its faces, each a ring of corners in either direction. Corners are common where they are equal.
+    /// Creates a body from its faces, each a ring of corners in either direction. Corners are common where they are
+    /// equal.
     ///
     /// # Errors
-    /// [`Error::NonFinite`]; [`Error::Parameter`] for faces without an area, for a surface that is not closed, and for a body
-    /// that is not convex.
+    /// [`Error::NonFinite`]; [`Error::Parameter`] for faces without an area, for a surface that is not closed, and for
+    /// a body that is not convex.
     pub fn new(faces: &[Vec<DVec3>]) -> Result<Self> {
         let (corners, rings) = numbered(faces)?;
         let middle = corners.iter().sum::<DVec3>() / corners.len().max(1) as f64;
@@ -97,8 +98,8 @@ impl Body {
         &self.corners
     }
 
-    /// Returns the planes of the faces, each once, in the order of the faces: the columns of the body's matrix. Normals have
-    /// unit length and point inwards.
+    /// Returns the planes of the faces, each once, in the order of the faces: the columns of the body's matrix. Normals
+    /// have unit length and point inwards.
     pub fn planes(&self) -> &[Plane] {
         &self.planes
     }
@@ -162,8 +163,8 @@ pub(in crate::visibility::line) fn numbered(
     Ok((corners, rings))
 }
 
-/// Returns the edges between two planes in the order of the rings, whose planes are `owners`; `None` if an edge has not exactly
-/// two faces.
+/// Returns the edges between two planes in the order of the rings, whose planes are `owners`; `None` if an edge has not
+/// exactly two faces.
 fn edges(rings: &[Vec<usize>], owners: &[usize]) -> Option<Vec<Edge>> {
     let mut edges: Vec<(Edge, usize)> = Vec::new();
     let mut known = BTreeMap::new();

@@ -1,12 +1,13 @@
 //! Roberts' algorithm: the hidden lines of convex bodies, body by body.
 //!
-//! L. G. Roberts, *Machine perception of three-dimensional solids*, MIT Lincoln Laboratory TR 315, 1963; the quick test and the
-//! junction lines as in D. F. Rogers, *Procedural Elements for Computer Graphics*, 1985, section 4-3. A body is a matrix whose
-//! columns are the planes of its faces, positive inside. A plane whose value at the eye is positive belongs to a face that
-//! looks away; a line between two of them is hidden by its own body. Of any other line, the points P(t) that a body hides are
-//! those from which a ray to the eye, P(t) + α E in homogeneous coordinates, is inside all planes for some α ≥ 0: linear
-//! inequalities in t and α, whose smallest and largest t are the ends of the hidden part. Class: object space. Cost: O(l b m²)
-//! for l lines, b bodies and m planes of a body; memory O(lines + visible parts).
+//! L. G. Roberts, *Machine perception of three-dimensional solids*, MIT Lincoln Laboratory TR 315, 1963; the quick test
+//! and the junction lines as in D. F. Rogers, *Procedural Elements for Computer Graphics*, 1985, section 4-3. A body is
+//! a matrix whose columns are the planes of its faces, positive inside. A plane whose value at the eye is positive
+//! belongs to a face that looks away; a line between two of them is hidden by its own body. Of any other line, the
+//! points P(t) that a body hides are those from which a ray to the eye, P(t) + α E in homogeneous coordinates, is
+//! inside all planes for some α ≥ 0: linear inequalities in t and α, whose smallest and largest t are the ends of the
+//! hidden part. Class: object space. Cost: O(l b m²) for l lines, b bodies and m planes of a body; memory O(lines +
+//! visible parts).
 //!
 //! Deviations: the linear program is solved by eliminating α (Fourier and Motzkin), pair by pair of planes, as the
 //! textbooks solve it by hand, but without testing solutions. What is hidden is open: a line in the surface of another
@@ -52,7 +53,7 @@ pub const INFO: Info = Info {
         "        for each pair of a plane with w > 0, or α = 0, and one with w ≤ 0:",
         "            solve for t; it bounds the hidden part from below or above",
         "        hidden from the largest lower to the smallest upper bound",
-        "    draw what no body hides",
+        "    draw the parts that no body hides",
     ],
 };
 
@@ -73,7 +74,7 @@ impl Default for Options {
 /// A line with its visible parts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// The body of which it is an edge, twice, or the two bodies that pierce each other in it.
+    /// The body that has this edge, twice, or the two bodies that intersect along it.
     pub bodies: [usize; 2],
     /// Its ends, t = 0 and t = 1.
     pub ends: [DVec3; 2],
@@ -96,8 +97,8 @@ impl Line {
     }
 }
 
-/// Returns the lines that their own bodies do not hide, with the parts of them that no other body hides: edges body by body,
-/// then junction lines. Edges between faces of one plane are no lines.
+/// Returns the lines that their own bodies do not hide, with the parts of them that no other body hides: edges body by
+/// body, then junction lines. Edges between faces of one plane are no lines.
 ///
 /// ```
 /// use durer::math::DVec3;
@@ -157,7 +158,7 @@ fn extent(bodies: &[Body]) -> f64 {
     corners().map(|corner| corner.distance(middle)).fold(0.0, f64::max)
 }
 
-/// Adds the edges of a body of which one face at least is seen.
+/// Adds the edges of a body with at least one visible face.
 fn add_edges(
     lines: &mut Vec<Line>,
     (body, own): (usize, &Body),
@@ -178,8 +179,8 @@ fn add_edges(
     }
 }
 
-/// Adds the lines in which faces of two bodies that are both seen pierce each other: between the points where the common line
-/// of two planes enters and leaves both bodies.
+/// Adds the lines in which faces of two bodies that are both seen pierce each other: between the points where the
+/// common line of two planes enters and leaves both bodies.
 fn add_junctions(
     lines: &mut Vec<Line>,
     (numbers, bodies): ([usize; 2], [&Body; 2]),
@@ -196,7 +197,8 @@ fn add_junctions(
     }
 }
 
-/// Returns the part of two planes' common line that is in both bodies; `None` where there is none, or only along a face.
+/// Returns the part of two planes' common line that is in both bodies; `None` where there is none, or only along a
+/// face.
 fn common_part(a: &Plane, b: &Plane, bodies: [&Body; 2], small: f64) -> Option<[DVec3; 2]> {
     let along = a.normal.cross(b.normal);
     let square = along.length_squared();

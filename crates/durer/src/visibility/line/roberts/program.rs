@@ -52,9 +52,9 @@ impl Program {
         self.values.iter().position(|v| v.start <= 0.0 && v.end <= 0.0 && v.eye <= 0.0)
     }
 
-    /// Finds the part of the line that is hidden: where some α ≥ 0 makes h = start + t (end − start) + α · eye positive for
-    /// all planes. α is eliminated: planes whose value at the eye is positive bound it from below, those where it is
-    /// negative from above, and each lower bound must be less than each upper one.
+    /// Finds the part of the line that is hidden: where some α ≥ 0 makes h = start + t (end − start) + α · eye positive
+    /// for all planes. α is eliminated: planes whose value at the eye is positive bound it from below, those where it
+    /// is negative from above, and each lower bound must be less than each upper one.
     pub fn hidden(mut self, mut report: impl FnMut(Bound)) -> Option<[f64; 2]> {
         let lower = |v: &Values| v.eye > 0.0;
         for far in 0..self.values.len() {

@@ -47,7 +47,7 @@ pub enum Step {
     Line {
         /// Its number.
         line: usize,
-        /// The body of which it is an edge, or the two whose faces meet in it.
+        /// The body that has this edge, or the two whose faces meet along it.
         bodies: [usize; 2],
         /// Its ends.
         ends: [DVec3; 2],

@@ -50,8 +50,8 @@ impl Tree {
     /// Creates the tree of polygons; the memory for their pieces is charged to `work` as long as the tree is there.
     ///
     /// # Errors
-    /// [`crate::Error::Limit`] for more pieces than the options allow; [`crate::Error::Memory`] where the budget does not
-    /// suffice.
+    /// [`crate::Error::Limit`] for more pieces than the options allow; [`crate::Error::Memory`] where the budget does
+    /// not suffice.
     pub fn new(
         faces: &[Face],
         options: &Options,

@@ -1,10 +1,10 @@
 //! Octree: faces in cells of space, whose pixels are filled from front to back.
 //!
-//! D. Meagher, *Geometric modeling using octree encoding*, Computer Graphics and Image Processing 19(2), 1982. Class: image space,
-//! with an order of cells that is the same for all scenes: of the eight children of a cell the four near ones come before the
-//! four far ones, and none of the four hides another. Each pixel is filled once, by the first cell that has a face in
-//! it; a cell all of whose pixels are filled is left out with everything in it. Cost: O(cells and parts of faces in them, and
-//! pixels of these); memory O(4/3 pixels + parts of faces in cells).
+//! D. Meagher, *Geometric modeling using octree encoding*, Computer Graphics and Image Processing 19(2), 1982. Class:
+//! image space, with an order of cells that is the same for all scenes: of the eight children of a cell the four near
+//! ones come before the four far ones, and none of the four hides another. Each pixel is filled once, by the first cell
+//! that has a face in it; a cell all of whose pixels are filled is left out with everything in it. Cost: O(cells and
+//! parts of faces in them, and pixels of these); memory O(4/3 pixels + parts of faces in cells).
 //!
 //! Deviations: the paper's cells are full or empty, here the smallest ones hold faces, which are compared by their
 //! depths; the eye looks along z in parallel. A pyramid, the paper's quadtree, records filled pixels. Cells do not

@@ -1,16 +1,16 @@
-//! Cells and portals: rooms are drawn only through the openings by which they are seen.
+//! Cells and portals: rooms are drawn only through the openings through which they are visible.
 //!
-//! D. Luebke, C. Georges, *Portals and mirrors: simple, fast evaluation of potentially visible sets*, Symposium on Interactive
-//! 3D Graphics 1995; cells and portals by C. B. Jones, *A new approach to the 'hidden line' problem*, The Computer Journal
-//! 14(3), 1971. Class: image space for the windows, with an order of cells from near to far. A model is divided into cells
-//! with opaque walls, which are connected by openings, the portals. What is seen of a cell through a portal lies within the
-//! rectangle around the portal on the screen; through a row of portals, within the intersection of their rectangles. When
-//! that is empty, nothing behind the portal is drawn. Cost: O(visited cells and their walls and portals), independent of
-//! the size of the model; walls are drawn by a z-buffer.
+//! D. Luebke, C. Georges, *Portals and mirrors: simple, fast evaluation of potentially visible sets*, Symposium on
+//! Interactive 3D Graphics 1995; cells and portals by C. B. Jones, *A new approach to the 'hidden line' problem*, The
+//! Computer Journal 14(3), 1971. Class: image space for the windows, with an order of cells from near to far. A model
+//! is divided into cells with opaque walls, which are connected by openings, the portals. The part of a cell visible
+//! through a portal is inside the rectangle around the portal on the screen; through a row of portals, inside the
+//! intersection of their rectangles. If that is empty, nothing behind the portal is drawn. Cost: O(visited cells and
+//! their walls and portals), independent of the size of the model; walls are drawn by a z-buffer.
 //!
-//! **Cells are convex**, so no line of sight enters a cell twice: a cell on the way to a cell is not entered from there. Rectangles
-//! are widened to whole pixels. A portal that reaches to the eye keeps the window as it is. Mirrors, which the paper treats
-//! as portals to a reflected model, are left out.
+//! **Cells are convex**, so no line of sight enters a cell twice: a cell already on the path is not entered again.
+//! Rectangles are widened to whole pixels. A portal that extends to the eye leaves the window unchanged. Mirrors, which
+//! the paper treats as portals to a reflected model, are left out.
 
 mod plan;
 
@@ -34,8 +34,8 @@ pub const INFO: Info = Info {
     class: Class::ImageSpace,
     occluder: Occluder::Area,
     coherence: &[Coherence::Object, Coherence::Area],
-    cost: "O(visited cells, their walls and portals); cells that are not seen cost nothing",
-    limits: "models of closed convex cells; rectangles are larger than portals that are seen aslant",
+    cost: "O(visited cells, their walls and portals); invisible cells cost nothing",
+    limits: "models of closed convex cells; rectangles are larger than portals seen obliquely",
     pseudocode: &[
         "enter(cell of the eye, whole picture)",
         "enter(cell, window):",

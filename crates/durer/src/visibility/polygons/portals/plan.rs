@@ -1,4 +1,4 @@
-//! Cells with their walls and portals, and how they come from a plan of rooms.
+//! Cells with their walls and portals, and their construction from a plan of rooms.
 
 use crate::clip::line::{ConvexPolygon, Edge};
 use crate::math::{DVec2, DVec3};
@@ -58,12 +58,12 @@ impl Plan {
         &self.cells
     }
 
-    /// Builds rooms of one height on a plan: convex rings in x and z, and doors as high as the rooms, each with both ends on
-    /// walls of two rooms. Walls reach from y = −height / 2 to height / 2; there are no floors and ceilings.
+    /// Builds rooms of one height on a plan: convex rings in x and z, and doors as high as the rooms, each with both
+    /// ends on walls of two rooms. Walls reach from y = −height / 2 to height / 2; there are no floors and ceilings.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a room that is not convex, and for a door that is not in the walls of two rooms; those of
-    /// [`Self::new`].
+    /// [`Error::Parameter`] for a room that is not convex, and for a door that is not in the walls of two rooms; those
+    /// of [`Self::new`].
     pub fn of_rooms(rooms: &[Vec<DVec2>], doors: &[[DVec2; 2]], height: f64) -> Result<Self> {
         let all = || rooms.iter().flatten();
         let extent = all().fold(0.0, |most: f64, p| most.max(p.abs().max_element()));

@@ -1,4 +1,4 @@
-//! The lines along which the picture may be divided: sides of faces, and where faces penetrate.
+//! The lines along which the picture may be divided: sides of faces, and intersections of faces.
 
 use super::cells::Cells;
 use super::faces::{CLEARLY, Face, Place, float, nearest};

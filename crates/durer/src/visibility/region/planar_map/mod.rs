@@ -110,7 +110,7 @@ pub fn replay(steps: &[Step]) -> Vec<VisibleRegion> {
 /// A part of the picture that shows one surface or the background.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VisibleRegion {
-    /// The triangle, or one of those, that it shows: index in scene order.
+    /// The triangle that it shows, or one of several: index in scene order.
     pub item: u32,
     /// The outer ring, counter-clockwise (y up), then holes, clockwise; plane units (see
     /// [`crate::target::drawing::Drawing`]); open. A ring may touch itself in a point.

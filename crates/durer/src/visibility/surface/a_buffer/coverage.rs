@@ -97,7 +97,7 @@ mod tests {
     use crate::simd::dispatch;
     use crate::simd::levels;
 
-    /// The inside lies right of the first edge and left of the second.
+    /// Edges such that the inside is right of the first and left of the second.
     const LEFT: Lanes = [2.25, 21.0, f32::INFINITY, f32::INFINITY];
     const RIGHT: Lanes = [11.5, 21.0, f32::NEG_INFINITY, f32::NEG_INFINITY];
     const HEIGHT: Lanes = [0.75, -0.75, 0.0, 0.0];

@@ -1,4 +1,4 @@
-//! A triangle with all that its fragments have in common.
+//! A triangle with the data common to all its fragments.
 
 use super::edges::Slopes;
 use super::mask::Direction;

@@ -57,7 +57,7 @@ impl<'a> Faces<'a> {
         (active + places + order + self.starts.len() * size_of::<u32>()) as u64
     }
 
-    /// Sorts the triangles by their first row of those from the first to before the end.
+    /// Sorts the triangles by the first of the rows `top` … `end` − 1 that they touch.
     pub fn new(input: &'a SurfaceInput<'a>, [top, end]: [i32; 2]) -> Self {
         let first_row = |t: &ScreenTriangle| {
             let [first, last] = touched(&t.y);
@@ -66,15 +66,18 @@ impl<'a> Faces<'a> {
         // Counting sort.
         let mut starts = vec![0; (end - top).max(0) as usize + 2];
         let (mut in_pieces, mut latest) = (false, None);
+        // Count the triangles of each row; parts of one item are adjacent in the input.
         for t in &input.triangles {
             in_pieces |= latest.replace(t.item) == Some(t.item);
             if let Some(row) = first_row(t) {
                 starts[row + 2] += 1;
             }
         }
+        // Sums of the counts are the places where the rows begin.
         for row in 2..starts.len() {
             starts[row] += starts[row - 1];
         }
+        // Place each triangle in its row; the entries that advance end as the starts of the next rows.
         let mut waiting = vec![Active::NONE; starts.last().map_or(0, |&n| n as usize)];
         for (index, t) in input.triangles.iter().enumerate() {
             if let Some(row) = first_row(t) {

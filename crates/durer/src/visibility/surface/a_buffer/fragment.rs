@@ -191,6 +191,7 @@ impl<'a> Pool<'a> {
         added: &mut impl FnMut(i32, &Fragment),
     ) -> bool {
         let Row { t, face, depths, areas, functions, columns } = row;
+        // Leave out pixels beyond the far plane and those hidden by opaque fragments added before.
         let (first, mut sum) = *next;
         let count = (columns[1] - first).min(EIGHT as i32);
         let [depth, z_min, z_max] = depths.of_eight(simd, first);
@@ -200,6 +201,7 @@ impl<'a> Pool<'a> {
         if seen == 0 && next.0 >= columns[1] {
             return true;
         }
+        // Areas and masks of all eight pixels: the running sum of the area needs the hidden ones, too.
         let [here, after] = areas.changes(simd, first, first == columns[0]);
         let at = functions.at(simd, (first - columns[0]) as usize);
         let masks = face.slopes.masks(simd, self.table, at);
@@ -210,12 +212,14 @@ impl<'a> Pool<'a> {
             let (x, column) = (first + i as i32, first as usize + i);
             let area = sum + here[i % EIGHT];
             sum = area + after[i % EIGHT];
+            // Pixels without a fragment: no area, hidden, or excluded by the test.
             if area <= 0.0 || seen >> i & 1 == 0 || !passes(x) {
                 continue;
             }
             if limited && self.fragments.len() >= self.max_fragments {
                 return false;
             }
+            // The fragment, cut off at the far plane if it crosses it.
             let mask = masks.get(self.table, i);
             let mut fragment = Fragment {
                 item: t.item,
@@ -230,11 +234,13 @@ impl<'a> Pool<'a> {
             if let Some(far) = &face.far {
                 fragment.cut_off(self.table, far, depth[i % EIGHT]);
             }
+            // Link it before the earlier fragments of its pixel.
             let head = std::mem::replace(&mut self.heads[column], self.fragments.len() as u32);
             let cover = &mut self.covers[column];
             if head == END {
                 *cover = Cover::default();
             }
+            // A sliver between sub-pixels is visible where the nearest one is; opaque masks may close the pixel.
             if fragment.mask == 0 {
                 let at = [p[i % EIGHT], q[i % EIGHT], r[i % EIGHT], 0.0];
                 fragment.seen_by = functions.nearest(simd, &face.slopes, self.table, at);

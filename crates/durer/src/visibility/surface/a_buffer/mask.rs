@@ -259,7 +259,7 @@ mod tests {
             let bits = table.full().count_ones();
             for (a, b, e) in functions().filter(|(a, b, _)| a.abs() + b.abs() > 0.0) {
                 let count = table.half_plane(&Direction::new(a, b), e).count_ones();
-                // By 64 × 64 points.
+                // Counted on 64 × 64 points.
                 let inside = centers(64).filter(|[u, v]| a * u + b * v + e > 0.0).count();
                 let expected = inside as f32 / 4096.0;
                 let found = count as f32 / bits as f32;

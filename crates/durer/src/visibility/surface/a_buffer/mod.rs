@@ -302,6 +302,7 @@ impl Rows<'_> {
         let mut x = x0;
         while x < x1 {
             let filled = pool.next_filled([x, x1]);
+            // Pixels without fragments show the background.
             if x < filled {
                 queue.sums[x as usize..filled as usize].fill(Vec4::ZERO + behind);
                 (x..filled).for_each(|x| t.step(|| Step::Background { x, share: 1.0 }));
@@ -318,6 +319,7 @@ impl Rows<'_> {
                 }
                 pixel.background = 1.0 - only.area;
             } else {
+                // Several fragments: blended ones are composed in depth order, opaque ones share the pixel.
                 pixel.begin(pool, x, table.full(), faces.in_pieces);
                 if pixel.is_blended() {
                     queue.sums[x as usize] = blended(pixel, &place, lit, t);
@@ -331,6 +333,7 @@ impl Rows<'_> {
                     }
                 }
             }
+            // The background gets the rest.
             if pixel.background > 0.0 {
                 t.step(|| Step::Background { x, share: pixel.background });
                 queue.sums[x as usize] += behind * pixel.background;

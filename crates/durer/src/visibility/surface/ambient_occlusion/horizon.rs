@@ -185,12 +185,14 @@ fn light<S: Simd>(
     (turn, looks): (usize, &mut Looks),
 ) -> [f32; LANES] {
     let splat = |v: f32| f32x16::splat(simd, v);
+    // Direction to the eye, and pixels per unit of length, at each point.
     let (to_eye, per_unit) = if planes.lens.perspective {
         let distance = points.place.dot(points.place).sqrt();
         (points.place.scale(splat(-1.0) / distance), splat(around.pixels) / distance)
     } else {
         (Vec3x16 { x: splat(0.0), y: splat(0.0), z: splat(1.0) }, splat(around.pixels))
     };
+    // The reach is rounded, so that neighbours often have the same and are lit together.
     let reach = (per_unit * around.radius).min(splat(FARTHEST as f32));
     let reach: [f32; LANES] = points.shown.select(reach, splat(0.0)).into();
     let reach = reach.map(rounded_down);
@@ -234,6 +236,7 @@ fn light_above<S: Simd>(
         let across = on_screen.minus(to_eye.scale(forth));
         let axis = across.cross(to_eye);
         let squared = axis.dot(axis);
+        // The normal projected into the plane, and its angle to the line of sight.
         let off = points.normal.dot(axis) / squared;
         let off = squared.simd_gt(splat(1e-20)).select(off, splat(0.0));
         let in_plane = points.normal.minus(axis.scale(off));
@@ -249,6 +252,7 @@ fn light_above<S: Simd>(
             let highest = highest(simd, planes, around, (points, to_eye), low, pixels);
             arcs += arc(simd, side, highest, [cos_n, sin_n]);
         }
+        // The length of the projected normal weights the slice; too short ones contribute nothing.
         sum += length.simd_gt(splat(1e-4)).select(length * arcs, splat(0.0));
     }
     sum

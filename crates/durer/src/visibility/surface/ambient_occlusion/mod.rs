@@ -32,8 +32,8 @@ pub const INFO: Info = Info {
     class: Class::ImageSpace,
     occluder: Occluder::Point,
     coherence: &[],
-    cost: "O(n) for n pixels that show something",
-    limits: "only what the picture shows takes light away",
+    cost: "O(n) for n pixels that show a surface",
+    limits: "only visible surfaces occlude",
     pseudocode: &[],
 };
 
@@ -47,7 +47,7 @@ pub struct Options {
     /// Largest distance of occluders, world units, above 0. A tenth to a fifth of the
     /// model's size shows how its parts lie relative to each other.
     pub radius: f64,
-    /// Share of the light that full occlusion takes away, 0…1.
+    /// Share of the light that full occlusion removes, 0…1.
     pub strength: f32,
 }
 

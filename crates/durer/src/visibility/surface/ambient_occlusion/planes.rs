@@ -24,8 +24,8 @@ const MARGIN: usize = ((FARTHEST as usize + 1) >> PHASES_SHIFT) + LANES + 1;
 /// Distances and normals of the visible surfaces, in the directions of the screen: to the right, down, and back to the
 /// eye.
 ///
-/// The order within a row: first the pixels at 0, 4, 8 …, then those at 1, 5, 9 …, so that pixels with the same directions
-/// are side by side, and so are their samples.
+/// The order within a row: first the pixels at 0, 4, 8 …, then those at 1, 5, 9 …, so that pixels with the same
+/// directions are side by side, and so are their samples.
 pub struct Planes {
     pub width: u32,
     pub height: u32,

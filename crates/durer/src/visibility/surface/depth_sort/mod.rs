@@ -49,7 +49,7 @@ pub const INFO: Info = Info {
     class: Class::ListPriority,
     occluder: Occluder::Area,
     coherence: &[Coherence::Face, Coherence::Depth],
-    cost: "O(n log n + n · polygons near by and at like depths), O(n²) where all faces cross",
+    cost: "O(n log n + n · nearby polygons at similar depths), O(n²) where all faces cross",
     limits: "one sample per pixel",
     pseudocode: &[
         "sort the polygons by their farthest point, the farthest first",
@@ -60,7 +60,7 @@ pub const INFO: Info = Info {
         "        1 depths apart, 2a boxes apart, 2b Q wholly before P's plane,",
         "        2c P wholly behind Q's plane, 2d projections apart",
         "        if none holds:",
-        "            if Q is not marked: mark it, move it before P and look at it",
+        "            if Q is not marked: mark it, move it before P and continue with it",
         "            else they overlap cyclically: split one along the plane of the other",
         "    paint P",
     ],
@@ -94,7 +94,7 @@ pub enum Test {
 }
 
 impl Test {
-    /// Returns the test's number as it is taught; the last test is not in the paper.
+    /// Returns the test's number in textbooks; the last test is not in the paper.
     pub const fn number(self) -> &'static str {
         match self {
             Self::Depths => "1",
@@ -233,11 +233,13 @@ fn order_within(
     most: u64,
     t: &mut impl Tracer<Step>,
 ) -> Result<Vec<ScreenPolygon>> {
+    // Both the pieces and the lists of the tiles are charged.
     let pieces = Pieces::new(&input.triangles, pixels_of(input.view));
     let _tiles = input.work.charge(METHOD, Tiles::bytes(&pieces, input.view))?;
     let tiles = Tiles::new(&pieces, input.view);
     let mut charge = input.work.charge(METHOD, 0)?;
     let turns = turns(input, previous);
+    // The queue orders pieces by their turns, then by depth.
     let queue = (0..pieces.len()).map(|i| (turns[i as usize], pieces.key(i))).collect();
     let done = vec![false; pieces.len() as usize];
     let mut sorter = Sorter {
@@ -252,6 +254,7 @@ fn order_within(
         done,
         stack: Vec::new(),
     };
+    // Pieces are painted one by one; splitting makes further ones, up to the limits.
     let mut polygons = Vec::with_capacity(input.triangles.len());
     while let Some(p) = sorter.next() {
         if sorter.advance(p, t) {
@@ -272,7 +275,7 @@ fn order_within(
 /// in it come first, by depth.
 fn turns(input: &SurfaceInput<'_>, previous: &[u32]) -> Vec<u32> {
     let mut places: Vec<(u32, u32)> = previous.iter().copied().zip(0..).collect();
-    // Of an item in pieces, the first piece counts.
+    // For an item in pieces, the first piece counts.
     places.sort_unstable();
     let turn = |item: u32| {
         let at = places.partition_point(|p| p.0 < item);
@@ -480,7 +483,7 @@ mod tests {
     use crate::visibility::surface::Cull;
     use crate::visibility::surface::setup::Filter;
 
-    /// Returns triangles around the origin, turned against each other: each penetrates all others.
+    /// Returns triangles around the origin, rotated against each other: each intersects all others.
     fn penetrating(count: u32) -> Scene {
         let corner = |i: u32, k: u32| {
             let [a, b] = [f64::from(i * 7 + k * 40), f64::from(i * 3 + k * 50)].map(|v| v * 0.7);

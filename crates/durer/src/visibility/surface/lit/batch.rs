@@ -183,6 +183,7 @@ impl Batch {
         }
         let info = lit.run_info(this.first_item);
         let (sight, lights) = (lit.sight, lit.shared.lights);
+        // First the frames: unit normals and directions to the eye.
         for Waiting { vectors, views, patch, .. } in &mut this.waiting {
             let (view, normal) = (sight.towards_eye_x16(simd, *patch), loaded(simd, vectors));
             // Positions are not used.
@@ -190,11 +191,13 @@ impl Batch {
             let frame = points.frame();
             (*vectors, *views) = (stored(frame.normal), stored(frame.view));
         }
+        // Then the light of each frame.
         for Waiting { vectors, views, .. } in &mut this.waiting {
             let (normal, view) = (loaded(simd, vectors), loaded(simd, views));
             let frame = Frame { view, face: normal, normal };
             *vectors = stored(shade_frame(&frame, view, info.material, lights, info.shading));
         }
+        // At last the codes: of whole pixels at once, of shared pixels once the sums of a patch are complete.
         let mut sums = [f32x16::splat(simd, 0.0); 3];
         for Waiting { vectors, to, .. } in &this.waiting {
             let Vec3Lane { x, y, z } = loaded(simd, vectors);

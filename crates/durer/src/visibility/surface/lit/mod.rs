@@ -201,6 +201,7 @@ impl<'a> Lit<'a> {
         let lit = self.reflected(item, run, material, shading);
         let sight = self.sight;
         let t = self.triangles.get(item, run);
+        // Weights of the corners, direction to the viewpoint and normals, at a pixel or at any point.
         let (w, view, normal, face) = match seen {
             Seen::Pixel(x, y) => {
                 let view = sight.towards_eye([x, y]);
@@ -211,6 +212,7 @@ impl<'a> Lit<'a> {
             }
         };
         let position = blend(&t.positions(), w);
+        // The values that every material needs.
         let mut tex_coords = [TexCoord::default(); TEX_COORD_SETS];
         let mut surface = Surface {
             position,
@@ -220,6 +222,7 @@ impl<'a> Lit<'a> {
             lit: lit.map(|corners| Reflected::interpolate(corners, w)),
             ..Surface::default()
         };
+        // Colours and texture coordinates of the vertices, if the mesh and the material have them.
         if !mesh.colors.is_empty() {
             let [a, b, c] = t.corners.map(|c| mesh.colors[c as usize]);
             surface.color = a * w[0] + b * w[1] + c * w[2];
@@ -233,6 +236,7 @@ impl<'a> Lit<'a> {
                 let corners = t.corners.map(|c| coordinates[c as usize]);
                 tex_coords[set] = tex_coord(&corners, w, right, down);
             }
+            // A normal map needs the change of the position over the screen, and the tangent.
             if material.has_normal_map() {
                 surface.position_dx = blend(&t.positions(), right) - position;
                 surface.position_dy = blend(&t.positions(), down) - position;

@@ -1,4 +1,4 @@
-//! Lighting visible items sixteen pixels at a time, where their materials allow it.
+//! Lighting of visible items, sixteen pixels at a time, where their materials allow it.
 
 use super::known::Known;
 use super::{Lit, LookedUp, RunInfo};
@@ -160,7 +160,7 @@ impl<'a> Lit<'a> {
         })
     }
 
-    /// Returns the normals of an item, if they are settled and no more are needed.
+    /// Returns the normals of an item, if they are settled and nothing else is needed.
     #[inline(always)]
     pub(super) fn settled_plane(&mut self, item: u32, run: usize) -> Option<&NormalPlane> {
         match self.part {
@@ -244,6 +244,7 @@ impl<'a> Lit<'a> {
         let mut positions = Gathered::default();
         let (with_positions, with_shadows) = (self.with_positions(), self.with_shadows());
         let (mut faces, mut unsettled, mut left) = (Gathered::default(), 0, there & !known);
+        // Gather the vectors of each pixel; settled triangles need only the plane of their normals.
         while left != 0 {
             let i = left.trailing_zeros() as usize % 16;
             left &= left - 1;
@@ -292,6 +293,7 @@ impl<'a> Lit<'a> {
         let (mut normal, mut position) = ([view.x; 3], [view.x; 3]);
         let (mut unsettled, mut left) = (0, there);
         while left != 0 {
+            // All pixels that show the same item are computed together.
             let item = items[left.trailing_zeros() as usize % 16];
             let same = shown.simd_eq(u32x16::splat(simd, item));
             let bits = same.to_bitmask();

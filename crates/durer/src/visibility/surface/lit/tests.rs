@@ -1,4 +1,4 @@
-//! However pixels are lit, alone or with others, in whatever order, the bits are the same.
+//! Pixels lit alone or with others, in any order, have the same bits.
 
 use super::*;
 use crate::math::{DMat4, DVec3};
@@ -40,8 +40,8 @@ impl Numbers {
     }
 }
 
-/// Returns two runs of triangles that look all ways; every fourth is nearly or wholly edge-on, some have
-/// normals that are not on their front's side, or none.
+/// Returns two runs of triangles in all directions; every fourth is nearly or exactly edge-on, and some have no normals
+/// or normals on the side of their back.
 fn scene() -> Scene {
     let mut numbers = Numbers(7);
     let mesh = |numbers: &mut Numbers| {
@@ -50,7 +50,7 @@ fn scene() -> Scene {
             let a = numbers.vector();
             let (b, mut c) = (numbers.vector(), numbers.vector());
             if i % 4 == 0 {
-                // Towards the eye from a, but for a little.
+                // Nearly towards the eye from a.
                 let off = [0.0, 1e-7, 1e-4][numbers.below(3) as usize];
                 c = a + (EYE.as_vec3() - a) * 0.3 + numbers.vector() * off;
             }
@@ -98,7 +98,7 @@ fn scene() -> Scene {
     }
 }
 
-/// Colours of a patch as bits, by pixel; those without an item are left out.
+/// Returns the colours of a patch as bits, by pixel, leaving out pixels without an item.
 type Bits = Vec<[u32; 3]>;
 
 fn bits(colors: &[[f32; 16]; 4], items: &[u32; 16]) -> Bits {
@@ -106,8 +106,7 @@ fn bits(colors: &[[f32; 16]; 4], items: &[u32; 16]) -> Bits {
     shown.map(|i| [0, 1, 2].map(|k| colors[k][i].to_bits())).collect()
 }
 
-/// Returns whether an item may be lit at a pixel: normals of settled triangles are only good where the
-/// triangle is.
+/// Returns whether an item may be lit at a pixel: normals of settled triangles are valid only on the triangle.
 fn may_be_lit(lit: &mut Lit<'_>, item: u32, [x, y]: [i32; 2]) -> bool {
     let t = lit.triangle(item);
     let ([constant, dx, dy], [x, y]) = t.edge_functions(x, y);
@@ -123,20 +122,20 @@ fn middle(lit: &mut Lit<'_>, item: u32) -> [i32; 2] {
     [at.x / at.w, at.y / at.w].map(|v| v as i32)
 }
 
-/// Returns an item at all pixels of a patch.
+/// Returns an item at every pixel of a patch.
 fn of_one<S: Simd>(simd: S, lit: &mut Lit<'_>, item: u32, patch: Patch) -> [[f32; 16]; 4] {
     let mut colors = [[0.0; 16]; 4];
     Lit::colors_x16(simd, lit, u32x16::splat(simd, item), patch, &mut colors);
     colors
 }
 
-/// Lights pixels whose samples show several items, as the sum of these by their weights; returns for how many patches
-/// that was found.
+/// Lights pixels whose samples show several items, as the weighted sum of these; returns the number of patches where
+/// this applied.
 fn light_samples<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usize {
     let (mut batch, mut found) = (Batch::default(), 0);
     let (mut codes, mut expected) = ([0; 16 * 256], [0; 16 * 256]);
     for k in 0..256 {
-        // Of each pixel two items at most, whose sum is the same in either order; more of the patch.
+        // At most two items per pixel, whose sum is the same in either order; more per patch.
         let run = numbers.below(2) * TRIANGLES;
         let mut kind = || run + 8 * numbers.below(3) + [1, 2, 5][numbers.below(3) as usize];
         let kinds = [kind(), kind(), kind()];
@@ -174,13 +173,13 @@ fn light_samples<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> 
     found
 }
 
-/// Lights each pixel of patches in every way; returns the number of pixels that are settled.
+/// Lights each pixel of patches in every way; returns the number of settled pixels.
 fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usize {
     let (mut batch, mut settled) = (Batch::default(), 0);
     let (mut codes, mut expected) = ([0; 16 * 64], [0; 16 * 64]);
     let mut known = KnownNormals::new(16 * 64, 1);
     for k in 0..64 {
-        // As many triangles as a patch may show, of one run or of both.
+        // The largest number of triangles that a patch may show, of one run or of both.
         let (kinds, runs) = (1 + numbers.below(12), 1 + numbers.below(2));
         let kinds: Vec<u32> = (0..kinds).map(|_| numbers.below(TRIANGLES * runs)).collect();
         let mut item = kinds[0];
@@ -218,7 +217,8 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usiz
                 if patch == Patch::block(at) {
                     expected[16 * k + i] = u32::from_le_bytes([code[0], code[1], code[2], 255]);
                     let normals = lit.triangle(items[i]).normals;
-                    // Of some the normals are known, of others that they are not, or those of another.
+                    // For some, the normals are known; for others, they are known to be missing, or to be those of
+                    // another.
                     let normal = match numbers.below(3) {
                         0 => [f32::NAN; 3],
                         _ => normals.at([x, y]).to_array(),
@@ -229,7 +229,7 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usiz
                         _ => {}
                     }
                 }
-                // The whole patch of its triangle.
+                // A patch covered entirely by its triangle.
                 let of_one = of_one(simd, lit, items[i], patch);
                 let mut only = [NO_ITEM; 16];
                 only[i] = items[i];

@@ -148,6 +148,7 @@ impl Bvh {
 /// Divides boxes in two; returns how many are in the first part. `None` if they cannot be divided.
 fn split(boxes: &[Box3], part: &mut [u32], depth: u32, likelihood: Likelihood) -> Option<usize> {
     let middle = |i: u32| boxes[i as usize].middle();
+    // The axis along which the middles of the boxes extend farthest.
     let (lo, hi) = part
         .iter()
         .map(|&i| middle(i))
@@ -164,6 +165,7 @@ fn split(boxes: &[Box3], part: &mut [u32], depth: u32, likelihood: Likelihood) -
     if !(extent[axis] > 0.0 && extent[axis] < f32::INFINITY) {
         return None;
     }
+    // Deep nodes are halved by number, which bounds the depth.
     let half = part.len() / 2;
     if depth >= DEEP {
         part.select_nth_unstable_by(half, |&a, &b| middle(a)[axis].total_cmp(&middle(b)[axis]));
@@ -173,6 +175,7 @@ fn split(boxes: &[Box3], part: &mut [u32], depth: u32, likelihood: Likelihood) -
         let place = (middle(i)[axis] - lo[axis]) / extent[axis] * BINS as f32;
         (place as usize).min(BINS - 1)
     };
+    // Others are divided at the cheapest border of a bin.
     let cut = best_cut(boxes, part, bin, likelihood);
     let mut left = 0;
     for k in 0..part.len() {

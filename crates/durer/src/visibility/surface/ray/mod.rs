@@ -50,7 +50,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::Point,
     coherence: &[Coherence::Object],
     cost: "O(n log n) once, about O(log n) per ray; memory O(n)",
-    limits: "lines and points are seen, but have no shadow and no mirror image",
+    limits: "lines and points are visible, but have no shadows and no reflections",
     pseudocode: &[
         "colour(pixel) ← trace(ray from the eye through the pixel, 0)",
         "trace(ray, depth):",

@@ -21,7 +21,7 @@ const LEAST: f32 = 1.0 / 512.0;
 /// Largest depth to which rays are followed, whatever the options say.
 const DEEPEST: u32 = 32;
 
-/// Blended surfaces that are looked through behind the last bounce; more count as opaque.
+/// Number of blended surfaces that a ray passes through after the last bounce; further ones count as opaque.
 const MOST_LAYERS: usize = 1024;
 
 /// Distance from a ray's origin, as a factor of the largest coordinate, within which it hits nothing: more than the
@@ -31,7 +31,7 @@ const CLEARANCE: f32 = 1.0 / (1 << 18) as f32;
 /// Callback for each ray that is cast.
 type Hear<'h> = &'h mut dyn FnMut(RayKind, u32, &Ray, Option<WorldHit>);
 
-/// One thread's light.
+/// Lighting state of one thread.
 pub struct Whitted<'a> {
     world: Option<&'a WorldTriangles>,
     shared: Lighting<'a>,
@@ -43,7 +43,7 @@ pub struct Whitted<'a> {
     stack: Vec<(u32, f32)>,
 }
 
-/// A point that is to be lit.
+/// A point to be lit.
 #[derive(Clone, Copy)]
 struct Point {
     item: u32,
@@ -54,7 +54,7 @@ struct Point {
     /// Unit normals, turned to the viewer.
     normal: Vec3,
     face_normal: Vec3,
-    /// True if the face's front is seen.
+    /// True if the front of the face is seen.
     front: bool,
 }
 
@@ -184,8 +184,8 @@ impl<'a> Whitted<'a> {
         self.light(world, &point, path, hear)
     }
 
-    /// Returns the colour of a ray after the last bounce: everything that it passes through, straight
-    /// on, up to the first opaque surface.
+    /// Returns the colour of a ray after the last bounce: everything that it passes through, straight ahead, up to the
+    /// first opaque surface.
     fn straight_on(
         &mut self,
         world: &WorldTriangles,

@@ -54,7 +54,7 @@ impl<'a> ActiveList<'a> {
         (self.active.capacity() * size_of::<Active>()) as u64
     }
 
-    /// Goes on to row `y`; rows come one after the other from the window's first.
+    /// Advances to row `y`; rows come in order from the window's first.
     ///
     /// Calls `enter` for each triangle that begins; the earlier ones keep their order.
     pub fn advance(&mut self, y: i32, mut enter: impl FnMut(&Active)) -> &[Active] {

@@ -105,6 +105,7 @@ pub fn set_up<S: Simd>(
 ) {
     let [of_a, of_b, of_c] = &corners;
     let (a, b, c) = (Corner::new(simd, of_a), Corner::new(simd, of_b), Corner::new(simd, of_c));
+    // Triangles that must be cut first are left to the caller; those outside or not finite are left out.
     let (all, any) = (a.code & b.code & c.code, a.code | b.code | c.code);
     let non_finite = with_bits(simd, any, code::NON_FINITE);
     let outside = with_bits(simd, all, code::OUTSIDE);
@@ -122,6 +123,7 @@ pub fn set_up<S: Simd>(
         (true, Behind::Positive) => area.simd_ge(zero),
         (true, Behind::Negative) => area.simd_le(zero),
     };
+    // Bounding boxes that contain no sample of the window are left out.
     let ([of_columns, of_rows], reach) = (rules.window, rules.filter.sample_reach);
     let columns = Span::new([a.x, b.x, c.x], reach);
     let rows = Span::new([a.y, b.y, c.y], reach);
@@ -132,8 +134,10 @@ pub fn set_up<S: Simd>(
         return;
     }
 
+    // From here on the corners are ordered so that the area is positive.
     let negative = narrowed(simd, area).simd_lt(simd.splat_f32x8(0.0));
     let (b, c) = (c.where_set(negative, b), b.where_set(negative, c));
+    // Small triangles are sampled at once; those that cover no sample are left out.
     if !rules.sampled.is_empty() {
         let samples = rules.sampled.len();
         let small = (columns.is_small(samples) & rows.is_small(samples)).to_bitmask() & eight.seen;
@@ -146,12 +150,14 @@ pub fn set_up<S: Simd>(
             }
         }
     }
+    // Depth planes, and the range of depths at the vertices.
     let rest = Rest::new(simd, [of_a, of_b, of_c], negative);
     let [depth, depth_dx, depth_dy] = depth_planes(simd, [a, b, c], rest, area.abs());
     let nothing = simd.splat_f32x8(0.0);
     // Adding 0 turns −0, whose bits have another order, into 0.
     let depth_min = a.depth.min(b.depth).min(c.depth).max(nothing) + nothing;
     let depth_max = a.depth.max(b.depth).max(c.depth).max(nothing) + nothing;
+    // Sampled triangles need the data for their fragments.
     if eight.sampled.which != 0 {
         let negative = negative.to_bitmask();
         eight.sampled.from_behind =
@@ -167,6 +173,7 @@ pub fn set_up<S: Simd>(
             return;
         }
     }
+    // The others are stored as rows, one triangle each.
     let (x0, x1, x2) = (a.x.bitcast(), b.x.bitcast(), c.x.bitcast());
     let (y0, y1, y2) = (a.y.bitcast(), b.y.bitcast(), c.y.bitcast());
     let first = transpose(simd, [x0, x1, x2, y0, y1, y2, depth, depth_dx]);

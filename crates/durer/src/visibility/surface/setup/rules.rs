@@ -9,7 +9,7 @@ pub struct Rules {
     pub filter: Filter,
     /// The pixels of the view's window, along x and y: the first, and the one after the last.
     pub window: [[i32; 2]; 2],
-    /// The sign that the area of those has that are seen from behind.
+    /// The sign of the area of triangles seen from behind.
     pub behind: Behind,
     /// True if these are left out.
     pub cull_back: bool,

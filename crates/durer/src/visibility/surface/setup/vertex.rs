@@ -115,6 +115,7 @@ fn transform<S: Simd>(simd: S, by: &Transform, from: &[Vec3], to: &mut [ScreenVe
 #[inline(always)]
 fn transform_eight<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 8], to: &mut [ScreenVertex; 8]) {
     let m = &by.screen_from_mesh;
+    // Homogeneous screen coordinates, in double precision.
     let [a, b, c, d, e, f, g, h] = p;
     let px: f32x8<S> = [a.x, b.x, c.x, d.x, e.x, f.x, g.x, h.x].simd_into(simd);
     let py: f32x8<S> = [a.y, b.y, c.y, d.y, e.y, f.y, g.y, h.y].simd_into(simd);
@@ -139,6 +140,7 @@ fn transform_eight<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 8], to: &mut [Sc
     // Zero times an infinity is NaN.
     let sum = (hx + hy + hz + hw) * 0.0;
     let non_finite = !sum.simd_eq(zero).to_bitmask();
+    // Adding MAGIC rounds to the grid, with the coordinates in the low bits; the rests are the differences.
     let snap_scale = f64::from(SUBPIXELS);
     let (grid_x, grid_y) = (x * snap_scale, y * snap_scale);
     let (snapped_x, snapped_y) = (grid_x + MAGIC, grid_y + MAGIC);
@@ -147,6 +149,7 @@ fn transform_eight<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 8], to: &mut [Sc
     let (rest_x, rest_y) = (narrowed(simd, rest_x), narrowed(simd, rest_y));
     let (x, y) = (low_bits(simd, snapped_x).bitcast(), low_bits(simd, snapped_y).bitcast());
     let depth = narrowed(simd, z);
+    // Written vertex by vertex; the codes only if any is set.
     let rows = transpose(simd, [x, y, none, depth, rest_x, rest_y, none, none]);
     for (to, row) in to.iter_mut().zip(&rows) {
         row.bitcast::<u32x8<S>>().store_slice(&mut to.0);

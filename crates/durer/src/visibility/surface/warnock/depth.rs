@@ -1,5 +1,4 @@
-//! The comparison of two triangles' depths all over a window: certain for every sample, as
-//! computed.
+//! The comparison of two triangles' depths over a whole window, certain for every sample as computed.
 
 use crate::visibility::surface::cover::{SampleGrid, Window};
 use crate::visibility::surface::setup::ScreenTriangle;
@@ -15,12 +14,12 @@ fn nearest(t: &ScreenTriangle, grid: SampleGrid, window: &Window) -> f32 {
     corners.fold(f32::INFINITY, |near, [x, y]| near.min(grid.depth(t, x, y)))
 }
 
-/// Returns the depth of the triangle's plane and how much rounding may move it.
+/// Returns the depth of the triangle's plane and a bound on its rounding error.
 fn on_plane(t: &ScreenTriangle, grid: SampleGrid, [x, y]: [i32; 2]) -> (f64, f64) {
     let [dx, dy] = grid.from_origin(t, x, y).map(f64::from);
     let (ax, ay) = (f64::from(t.depth_dx) * dx, f64::from(t.depth_dy) * dy);
     let depth = f64::from(t.depth);
-    // Two products and two sums, each off by half an ulp of f32, in two numbers.
+    // Two products and two sums, each with an error of half an ulp of f32, for two numbers.
     let slack = 4.0 * f64::from(f32::EPSILON) * (depth.abs() + ax.abs() + ay.abs());
     (depth + (ax + ay), slack)
 }

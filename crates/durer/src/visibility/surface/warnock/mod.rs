@@ -45,7 +45,7 @@ pub const INFO: Info = Info {
     occluder: Occluder::Area,
     coherence: &[Coherence::Area],
     cost: "O(triangles · log pixels) for small triangles; memory likewise",
-    limits: "where surfaces blend, each sample is decided",
+    limits: "where surfaces blend, each sample is decided separately",
     pseudocode: &[
         "look(window, polygons that concern it):",
         "    all outside: the window shows the background",

@@ -114,6 +114,7 @@ impl Bins {
         let mut assembler = Assembler::new(scene, view, filter, level);
         assembler = assembler.with_memory(std::mem::take(vertices));
         let most = job.pieces.iter().map(|(_, range)| range.len()).sum();
+        // Only opaque triangles are sampled during set-up, and only if places of the screen fit their numbers.
         let screen = TileGrid::of(view);
         let is_early = job.coverage == Coverage::Opaque && screen.count() <= MOST_TILES;
         let early = if is_early { early } else { &[] };
@@ -126,6 +127,7 @@ impl Bins {
             micropolygons: Micropolygons::new(screen, early, fragments),
             normals: None,
         };
+        // Each run is assembled into the sorter, with normals for small triangles if its lighting needs them.
         for (run, range) in &job.pieces {
             let normals = !early.is_empty() && lighting.asks_for_normals(*run);
             sorter.normals =

@@ -106,8 +106,8 @@ mod tests {
     use crate::visibility::surface::setup::{Filter, runs};
     use crate::visibility::surface::{Cull, Samples};
 
-    /// Creates far triangles, then a wall of many small ones before most of them; on the right half of the last rows
-    /// nothing hides them.
+    /// Creates far triangles, then a wall of many small ones in front of most of them; in the right half of the last
+    /// rows nothing hides them.
     fn scene() -> (Scene, View) {
         let mut positions = Vec::new();
         for i in 0..300_u32 {

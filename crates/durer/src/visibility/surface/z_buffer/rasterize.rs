@@ -141,6 +141,7 @@ fn rasterize_box<S: Simd, T: FragmentTest>(
     let lane_y = S::i32s::from_slice(simd, &plane.lanes[1][..lanes::<S>()]);
     let mut edges = LaneEdges { row: [lane_x; 3], step_y: [0; 3] };
     let mut step_x = [0; 3];
+    // Edge functions at each lane, and their steps to the next row and column.
     for (i, step_x) in step_x.iter_mut().enumerate() {
         let j = (i + 1) % 3;
         let (dx, dy) = (t.x[j] - t.x[i], t.y[j] - t.y[i]);

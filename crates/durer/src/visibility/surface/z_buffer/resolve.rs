@@ -106,6 +106,7 @@ fn resolve_opaque<S: Simd>(
             // The last row may have no row below; then the pixels written there are not copied.
             let places = [first, second];
             let samples = &samples[..count];
+            // If the samples show few items of one plain run, these are lit together, weighted by their samples.
             let few = samples.first().is_some_and(|first| patch.shows_few(simd, *first));
             if few
                 && !knows_any(simd, planes, known, places)
@@ -113,6 +114,7 @@ fn resolve_opaque<S: Simd>(
             {
                 continue;
             }
+            // Otherwise pixels whose samples all show one item are lit once; the others go to the queue.
             let (above, above_differs) = whole_pixels(simd, planes, first);
             let (below, below_differs) = whole_pixels(simd, planes, second);
             let differs = [above_differs, below_differs];
@@ -134,6 +136,7 @@ fn resolve_opaque<S: Simd>(
     }
     Batch::flush(simd, batch, lit, codes);
     PointQueue::flush(simd, queue, lit);
+    // Sums of the queue are encoded after all of them were lit.
     for pixel in queue.pixels.drain(..) {
         codes[pixel as usize] =
             u32::from_le_bytes(encode_premultiplied(queue.sums[pixel as usize]));
@@ -161,7 +164,7 @@ fn expect_column<S: Simd>(
             for quarter in 0..4 {
                 let mut new;
                 if plane.shift > 0 {
-                    // Four pixels, in turn to the left and to the right, of four samples each.
+                    // Four pixels, alternately the left and the right half of eight, of four samples each.
                     let items = plane.items_of_eight(first + quarter / 2 * TILE as usize);
                     let half = quarter % 2 * 16;
                     let shown = u32x16::from_slice(simd, &items[half..half + 16]);
@@ -189,6 +192,7 @@ fn expect_column<S: Simd>(
                 }
                 left |= new << (16 * quarter);
             }
+            // Each marked item is requested; all are prepared together at the end.
             while left != 0 {
                 let bit = left.trailing_zeros() as usize;
                 left &= left - 1;

@@ -166,7 +166,7 @@ fn four_of_eight<S: Simd>(simd: S, items: &[u32], pixel: usize) -> [u32x8<S>; 4]
     let b = u32x8::from_slice(simd, &items[8..16]);
     let c = u32x8::from_slice(simd, &items[16..24]);
     let d = u32x8::from_slice(simd, &items[24..]);
-    // Of all pixels: samples 0 and 2, then 1 and 3.
+    // For all pixels: samples 0 and 2, then 1 and 3.
     let (even_ab, even_cd) = (simd.unzip_low_u32x8(a, b), simd.unzip_low_u32x8(c, d));
     let (odd_ab, odd_cd) = (simd.unzip_high_u32x8(a, b), simd.unzip_high_u32x8(c, d));
     let first = simd.unzip_low_u32x8(even_ab, even_cd);

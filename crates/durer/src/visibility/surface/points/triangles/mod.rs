@@ -72,7 +72,7 @@ pub enum Part {
     All,
 }
 
-/// Items of one run of which the same part is to be prepared; their places are already reserved.
+/// Items of one run whose same part is to be prepared; their places are already reserved.
 #[derive(Debug, Clone, Copy, Default)]
 struct Wanted {
     items: [u32; 8],
@@ -186,6 +186,7 @@ impl<'a> Triangles<'a> {
             return;
         }
         let mesh = &self.scene.meshes[self.runs[index].mesh];
+        // Unused lanes repeat the first item.
         for i in count..8 {
             (items[i], corners[i]) = (items[0], corners[0]);
             read.set(i, mesh, corners[0]);
@@ -198,6 +199,7 @@ impl<'a> Triangles<'a> {
         let Some(t) = &self.transform else { return };
         let (items, corners, read) = (&*items, &*corners, &*read);
         let (kept, normals) = (&mut *self.kept, &mut *self.normals);
+        // If the latest triangles were settled, these probably are: prepare their normals alone first.
         let (first, settled) = (part == Part::Normals && self.settled, &mut self.settled);
         dispatch!(self.level, simd => {
             if first {

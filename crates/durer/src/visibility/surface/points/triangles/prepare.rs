@@ -52,6 +52,7 @@ pub(super) fn prepare<S: Simd>(
     let on_screen = OnScreen::new(simd, t, mesh, &at, normals.as_ref());
     let planes = on_screen.normal_planes(simd).by_primitive(simd);
     let OnScreen { edges: [constant, dx, dy], sides, .. } = on_screen;
+    // Positions of the corners relative to the eye, and face normals turned to the visible side.
     let zero = simd.splat_f64x8(0.0);
     let mut eye = [[zero; 3]; 3];
     for (to, [x, y, z]) in eye.iter_mut().zip(&at) {
@@ -64,6 +65,7 @@ pub(super) fn prepare<S: Simd>(
     }
     let face = face_normals(simd, &eye, t.handedness);
     let [nx, ny, nz] = seen(face, sides);
+    // Edge functions and face normals, item by item.
     let none = simd.splat_f32x8(0.0);
     let ([a, b, c], [d, e, f]) = (constant, dx);
     let first = transpose(simd, [a, b, c, none, d, e, f, none]);
@@ -80,6 +82,7 @@ pub(super) fn prepare<S: Simd>(
         to.seen_face_normal = Vec3::new(nx, ny, nz);
         to.from_behind = side < 0.0;
     }
+    // Normals and positions of the corners.
     for (i, [px, py, pz]) in eye.into_iter().enumerate() {
         let [nx, ny, nz] = seen(normals.as_ref().map_or(face, |n| n[i]), sides);
         let (px, py, pz) = (narrowed(simd, px), narrowed(simd, py), narrowed(simd, pz));
@@ -201,6 +204,7 @@ impl<'n, S: Simd> OnScreen<'n, S> {
             cross_y[i] = w[u] * lx[v] - w[v] * lx[u];
             cross_w[i] = lx[u] * ly[v] - lx[v] * ly[u];
         }
+        // Edge functions: the inverse of the corners' matrix, scaled by the w of the farthest vertex.
         let determinant = lx[0] * cross_x[0] + ly[0] * cross_y[0] + w[0] * cross_w[0];
         let flat = simd.simd_eq_f64x8(determinant, zero);
         let inverse = aw / determinant;
@@ -219,6 +223,7 @@ impl<'n, S: Simd> OnScreen<'n, S> {
         let behind = simd.simd_gt_f32x8(behind, none);
         let sides = simd.splat_f32x8(1.0);
         let sides = if is_triangle { simd.select_f32x8(behind, -sides, sides) } else { sides };
+        // Settled triangles have gentle edge functions, w in a small range, and normals that agree with the front.
         let (front, settled) = if is_triangle {
             let front = front(simd, t, at);
             let range = narrowed(simd, aw / least_w.max(simd.splat_f64x8(t.least_w)));

@@ -1,4 +1,4 @@
-//! The promises about settled triangles.
+//! The guarantees of settled triangles.
 
 use super::*;
 use crate::math::DVec3;
@@ -22,8 +22,7 @@ impl Numbers {
 
 const COUNT: u32 = 2_000;
 
-/// Returns triangles of all sizes, some of them needles, with normals more or less like their
-/// faces'.
+/// Returns triangles of all sizes, some of them needles, with normals that differ more or less from their faces'.
 fn scene() -> Scene {
     let (mut numbers, mut mesh) = (Numbers(3), Mesh::default());
     for _ in 0..COUNT {
@@ -43,7 +42,7 @@ fn scene() -> Scene {
     Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
 }
 
-/// Returns the corners of a triangle on the screen, if all are before the eye.
+/// Returns the corners of a triangle on the screen, if all are in front of the eye.
 fn on_screen(scene: &Scene, view: &View, item: u32) -> Option<[[f64; 2]; 3]> {
     let mut at = [[0.0; 2]; 3];
     for (i, to) in at.iter_mut().enumerate() {
@@ -69,7 +68,7 @@ fn settled_normals_are_those_of_the_corners_and_on_the_side_that_is_seen() {
     let scene = scene();
     let runs = runs(&scene).expect("runs");
     let (eye, target, up) = (DVec3::new(0.2, 0.1, 3.0), DVec3::ZERO, DVec3::Y);
-    // Settled triangles, samples that were in triangles, and pixels whose centres were too.
+    // Settled triangles, samples inside triangles, and samples whose pixel centres are inside too.
     let (mut settled, mut samples, mut centers) = (0, 0, 0);
     for projection in
         [Projection::Perspective { fov_y: 0.8 }, Projection::Orthographic { height: 2.5 }]
@@ -97,7 +96,7 @@ fn settled_normals_are_those_of_the_corners_and_on_the_side_that_is_seen() {
                         (low[axis] + (range * f64::from(numbers.next())).floor()) as i32
                     });
                     let center = pixel.map(|v| f64::from(v) + 0.5);
-                    // Vertices are rounded before samples are found in triangles.
+                    // Vertices are rounded before samples are tested against triangles.
                     let most = f64::from(reach) / 256.0 + 0.5 / 256.0;
                     let at = center.map(|v| v + (f64::from(numbers.next()) * 2.0 - 1.0) * most);
                     if !is_inside(corners, at) {

@@ -23,14 +23,14 @@ struct Fragment {
     samples: u32,
 }
 
-/// Number of fragments that are collected before the ones known to be nearest are lit.
+/// Number of fragments collected before those known to be nearest are lit.
 const MANY: usize = if cfg!(test) { 64 } else { 4 * TILE_PIXELS };
 
-/// Number of triangles between tests whether any pixel still shows what is behind.
+/// Number of triangles between tests whether surfaces behind are still visible at any pixel.
 const AT_ONCE: usize = 8;
 
-/// Lights the first triangles, at least this many, and those whose depths overlap theirs, sorted pixel by pixel;
-/// returns how many they are.
+/// Lights the first triangles, at least `at_least`, and those whose depths overlap theirs, sorted pixel by pixel;
+/// returns their number.
 #[inline(always)]
 pub fn light_sorted<S: Simd>(
     simd: S,
@@ -46,6 +46,7 @@ pub fn light_sorted<S: Simd>(
     let (mut taken, mut farthest) = (0, f32::NEG_INFINITY);
     let mut limit = MANY;
     while taken < triangles.len() && !layers.hide_all(area[1]) {
+        // The next triangles, as far as their depths overlap those collected.
         let mut part = 0;
         for t in triangles[taken..].iter().take(AT_ONCE) {
             if t.depth_min > farthest && taken + part >= at_least {
@@ -61,6 +62,7 @@ pub fn light_sorted<S: Simd>(
         let mut open = Open { fragments, closed: &layers.closed };
         rasterize(simd, planes, area, these, Some(&mut open));
         taken += part;
+        // If there are many, those nearer than all triangles to come are lit now.
         if let Some(next) = triangles.get(taken)
             && fragments.list.len() >= limit
         {
@@ -72,7 +74,7 @@ pub fn light_sorted<S: Simd>(
     taken
 }
 
-/// Fragments that nothing opaque hides, to be sorted.
+/// Fragments that nothing opaque hides, before sorting.
 pub struct Fragments {
     list: Vec<Fragment>,
     /// Room for sorting.
@@ -87,8 +89,8 @@ impl Fragments {
         Self { list: Vec::new(), by_place: Vec::new(), offsets, tile: [0; 2] }
     }
 
-    /// Sorts the fragments of each pixel, near ones first; at equal depths the lower item, which is visible, first.
-    /// Mostly they are in that order already.
+    /// Sorts the fragments of each pixel, near ones first; at equal depths the lower item, which is visible, comes
+    /// first. Most of them are already in this order.
     fn sort(&mut self) {
         // Fragments are collected triangle by triangle, so fragments of one item at one pixel are consecutive.
         let mut next = [0; TILE_PIXELS + 1];
@@ -129,7 +131,7 @@ struct Open<'a> {
 }
 
 impl FragmentTest for Open<'_> {
-    /// Records the fragments and lets nothing be written.
+    /// Records the fragments and writes nothing.
     fn pass<S: Simd>(
         &mut self,
         simd: S,
@@ -159,7 +161,7 @@ impl FragmentTest for Open<'_> {
     }
 }
 
-/// Lights the fragments that are nearer than `bound`, a lower bound of the depths still to come.
+/// Lights the fragments nearer than `bound`, a lower bound of the depths still to come.
 #[simd]
 fn light_nearer<S: Simd>(
     simd: S,

@@ -140,6 +140,7 @@ impl Layers {
             (there.select(straight, zero) * alpha).store_slice(to);
         }
         alpha.store_slice(&mut colors[3]);
+        // Less light passes through the samples covered.
         let rest = 1.0 - alpha;
         let mut most = zero;
         for i in 0..self.count {
@@ -152,10 +153,12 @@ impl Layers {
             after.store_slice(through);
             most = most.max(after);
         }
+        // Pixels with next to nothing passing through any sample are closed.
         let closes = there & most.simd_le(f32x16::splat(simd, LEAST_THROUGH));
         self.closed_count += closes.to_bitmask().count_ones() as usize;
         let all = u32x16::splat(simd, u32::MAX);
         closes.select(all, u32x16::from_slice(simd, closed)).store_slice(closed);
+        // The layer becomes the farthest of its block, linked to the one in front of it.
         let (farthest, all_touched) = &mut self.farthest[block];
         let nearer = std::mem::replace(farthest, self.all.len() as u32);
         *all_touched |= touched as u16;

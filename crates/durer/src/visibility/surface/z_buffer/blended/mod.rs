@@ -178,7 +178,7 @@ fn is_large(t: &ScreenTriangle, [tile, size]: [[i32; 2]; 2]) -> bool {
     })
 }
 
-/// Lays the lit surfaces over what is behind them, block by block.
+/// Composes the lit surfaces over the background, block by block.
 #[simd]
 pub fn resolve_blended<S: Simd>(
     simd: S,
@@ -192,11 +192,13 @@ pub fn resolve_blended<S: Simd>(
     let mut under = [[f32x16::splat(simd, 0.0); 4]; MOST_SAMPLES];
     let under = &mut under[..layers.count];
     for (block, &(_, touched)) in layers.farthest.iter().enumerate() {
+        // Blocks without blended surfaces keep their colours.
         if touched == 0 {
             continue;
         }
         behind_block(simd, planes, block, lit, area, under);
         layers.lay_over(simd, block, under);
+        // The pixel is the mean of its samples.
         let mut sums = [f32x16::splat(simd, 0.0); 4];
         for colors in under.iter() {
             for (sum, color) in sums.iter_mut().zip(colors) {
@@ -208,6 +210,7 @@ pub fn resolve_blended<S: Simd>(
         for (to, sum) in mean.iter_mut().zip(sums) {
             (sum * (1.0 / layers.count as f32)).store_slice(to);
         }
+        // Opaque pixels are encoded together, the others one by one.
         let opaque: [u32; LANES] = encode_opaque_x16(simd, opaque(simd, &mean)).into();
         let [x, y] = block_at(block);
         for lane in (0..LANES).filter(|lane| touched >> lane & 1 == 1) {
@@ -248,10 +251,12 @@ fn behind_block<S: Simd>(
     }
     let none = u32x16::splat(simd, NO_ITEM);
     let mut shown = [none; MOST_SAMPLES];
+    // The items at each sample of the block.
     for plane in planes {
         let samples = &mut shown[plane.first..plane.first + (1 << plane.shift)];
         block_of(simd, &plane.item, (y * TILE + x) as usize, samples);
     }
+    // Samples that show the same item at the same pixel as an earlier one copy its colour.
     for i in 0..colors.len() {
         colors[i] = behind;
         let items = shown[i];
@@ -264,6 +269,7 @@ fn behind_block<S: Simd>(
                 *to = same.select(*from, *to);
             }
         }
+        // The remaining ones are lit.
         let unlit = left.simd_ne(none);
         if unlit.any_true() {
             let mut shaded = [[0.0; LANES]; 4];

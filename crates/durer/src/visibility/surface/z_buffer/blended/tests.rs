@@ -11,15 +11,15 @@ use crate::visibility::surface::lit::Lighting;
 use crate::visibility::surface::setup::{Coverage, Filter, runs};
 use crate::visibility::surface::{Cull, Samples};
 
-/// Creates sheets one behind another, each of many triangles that share their edges; before and between them some that
-/// cross, and something opaque.
+/// Creates sheets one behind another, each of many triangles with common edges; in front and between them some that
+/// intersect, and something opaque.
 fn scene() -> Scene {
     let mut positions = Vec::new();
     for sheet in 0..12 {
         let z = 0.8 - 0.12 * sheet as f32;
         for (x, y) in (0..3).flat_map(|y| (0..3).map(move |x| (x, y))) {
             let at = |i: i32, j: i32| {
-                // Tilted, but apart from the next, which begins farther to the left, where it is nearest.
+                // Tilted, but apart from the next one, which begins farther left, where it is nearest.
                 let (x, y) = (i as f32 * 0.6 - 0.8, j as f32 * 0.7 - 1.1);
                 Vec3::new(x - 0.02 * sheet as f32, y, z - 0.02 * x)
             };
@@ -87,7 +87,7 @@ fn sheets_look_as_if_all_fragments_were_sorted() {
             (Blended::new(samples.offsets()), Blended::new(samples.offsets()));
         let taken = dispatch!(level, simd => {
             light_blended(simd, &mut sheets, triangles, planes, area, &mut lit);
-            // Only sorted; and how many sheets there would be.
+            // Only sorted; and the number of sheets that there would be.
             let (mut rest, mut taken) = (triangles, [0; 2]);
             sorted.layers.open(area);
             while !rest.is_empty() {

@@ -1,4 +1,4 @@
-//! Fragments beside what the triangles give that they are made of.
+//! Fragments, compared with the triangles that they come from.
 
 use super::tiles::ITEM_BITS;
 use super::*;
@@ -18,11 +18,10 @@ use crate::visibility::surface::{Cull, Samples};
 
 const COUNT: usize = 6_000;
 
-/// Size of two tiles and a piece of a third across, and as many down.
+/// Size of two tiles and a part of a third, in each direction.
 const SIZE: [i32; 2] = [150, 140];
 
-/// Returns triangles of up to some three pixels across, some of them larger, of all slopes, with
-/// normals.
+/// Returns triangles of at most about three pixels, some of them larger, of all slopes, with normals.
 fn scene() -> Scene {
     let mut seed = 11_u32;
     let mut random = || {
@@ -35,7 +34,7 @@ fn scene() -> Scene {
         let size = if i % 20 == 0 { 0.15 } else { 0.025 };
         let [a, b, c] = [0; 3].map(|_| middle + Vec3::new(random(), random(), random()) * size);
         let face = (b - a).cross(c - a).normalize_or_zero();
-        // Of some the normals point anywhere, so that they are found when they are requested.
+        // Some normals point anywhere, so that they are computed on demand.
         let off = if i % 10 == 0 { 2.0 } else { 0.1 };
         for corner in [a, b, c] {
             mesh.positions.push(corner);
@@ -59,19 +58,19 @@ fn nearest(
         Fragments::draw(simd, fragments, &mut planes[0], None, tile);
         rasterize(simd, &mut planes, [at, size], bins.of_tile(tile), None::<&mut AllPass>);
     });
-    // Values beyond the border mean nothing.
+    // Values outside the border are unspecified.
     let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (y * TILE + x) as usize));
     let count = samples.offsets().len();
     let samples = pixels.flat_map(|pixel| count * pixel..count * (pixel + 1));
     samples.map(|sample| (planes[0].item[sample], planes[0].depth[sample])).collect()
 }
 
-/// Fragments with normals that were found.
+/// Number of fragments whose normals were found.
 #[derive(Default)]
 struct Found {
     known: usize,
     unsettled: usize,
-    /// By the upper bits of their items.
+    /// Grouped by the upper bits of their items.
     uppers: [usize; 2],
 }
 
