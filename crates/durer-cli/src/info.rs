@@ -13,10 +13,12 @@ use durer::view::cull::triangle_area;
 use durer::view::topology::written_topology;
 use durer::visibility::object::{Edges, Faces, SceneOrientation};
 use durer::work::Work;
+use durer_formats::geo::GeoFormat;
 use durer_formats::told::{cut, escaped};
-use durer_formats::{Facts, Model, ModelFormat, Place};
+use durer_formats::{Facts, Model, ModelFormat, Place, archive, is_name_of_model};
 use serde::Serialize;
 use std::fmt::Write;
+use std::fs::File;
 use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
@@ -157,14 +159,21 @@ fn tell_all(args: &InfoArgs, messages: &Messages, infos: &mut Vec<Told>) -> Resu
     Ok(())
 }
 
-/// Returns whether a file holds map data, and no model: by its first bytes, or else by its name. Standard input holds
-/// a model.
+/// Returns whether a file holds map data, and no model: by its first bytes, or else by its name; an archive by the names
+/// in it. Standard input holds a model.
 fn is_layer(path: &Path) -> bool {
     if is_stream(path) {
         return false;
     }
     let Ok(mut source) = layer::bytes(path) else { return false };
     let Ok(head) = source.fill_buf() else { return false };
+    if head.starts_with(archive::MAGIC) {
+        let names = File::open(path).ok().and_then(|file| archive::names(file).ok());
+        return names.is_some_and(|names| {
+            let is_map = |name: &String| GeoFormat::of_name(name).is_some();
+            names.iter().any(is_map) && !names.iter().any(|name| is_name_of_model(name))
+        });
+    }
     let lower = head.get(..2).unwrap_or_default().to_ascii_lowercase();
     // Rows that begin with x are points of a model, as other columns beside them say.
     let is_cloud = ModelFormat::of_name(&path.to_string_lossy()) == Some(ModelFormat::Xyz)

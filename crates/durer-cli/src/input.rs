@@ -189,7 +189,7 @@ pub fn bytes_within(path: &Path, limits: &Limits) -> Result<Vec<u8>, Failure> {
     let file = File::open(path).map_err(|e| fail(in_words(&e)))?;
     let metadata = file.metadata().map_err(|e| fail(in_words(&e)))?;
     if metadata.is_dir() {
-        return Err(fail("it is a folder; name the model in it".to_owned()));
+        return Err(fail("it is a folder; name the file in it".to_owned()));
     }
     if metadata.len() <= limit {
         charge(metadata.len()).map_err(fail)?;

@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod arc;
+pub mod archive;
 mod budget;
 mod cloud;
 pub mod collada;
@@ -56,5 +57,5 @@ pub mod xyz;
 pub use error::{Error, Place, Result, Warning};
 pub use model::{Found, Limits, Model, NoResources, Pose, ReadOptions, Resources};
 pub use pieces::{Facts, Pieces, Visit};
-pub use sniff::{ModelFormat, read_model};
+pub use sniff::{ModelFormat, is_name_of_model, read_model};
 pub use uri::data_uri;

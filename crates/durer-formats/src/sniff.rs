@@ -1,10 +1,11 @@
 //! The detection of a model's format: by its content first, then by its name.
 
+use crate::archive::{self, Member};
 use crate::geo::GeoFormat;
 use crate::text::{Cursor, utf8};
 use crate::{
-    Error, Model, ReadOptions, Resources, Result, collada, e57, fbx, gltf, gzip, image, las, obj,
-    off, ply, stl, threemf, xyz,
+    Error, Model, Place, ReadOptions, Resources, Result, collada, e57, fbx, gltf, gzip, image, las,
+    obj, off, ply, stl, threemf, xyz,
 };
 
 /// Number of bytes of a file that are examined.
@@ -183,7 +184,7 @@ fn is_obj(bytes: &[u8]) -> bool {
 }
 
 /// Reads a model of any known format: by its content, or where that says nothing, by the suffix of
-/// `name`. The file may be compressed by gzip.
+/// `name`. The file may be compressed by gzip, or be the only model of a ZIP archive, whose other files it may use.
 ///
 /// # Errors
 /// [`Error::Unknown`] if neither content nor name determines the format; [`Error::Decode`] for broken gzip,
@@ -197,6 +198,38 @@ pub fn read_model(
     options: &ReadOptions,
 ) -> Result<Model> {
     let bytes = &*gzip::unpacked(bytes, &options.limits)?;
+    if !bytes.starts_with(archive::MAGIC) || is_3mf(bytes) {
+        return read_unpacked(bytes, name, resources, options);
+    }
+    let Member { name, bytes, beside, .. } =
+        archive::only(bytes, &options.limits, is_name_of_model, ("models", None))?;
+    read_unpacked(&bytes, &name, &beside, options).map_err(|error| {
+        error.at(|place| match place {
+            Place::Whole => Place::Path(name),
+            inner => Place::Path(format!("{name}, {}", inner.to_string().trim_end_matches(": "))),
+        })
+    })
+}
+
+/// Returns whether an archive is 3MF, or broken.
+fn is_3mf(bytes: &[u8]) -> bool {
+    let of_3mf = |name: &String| name == "[Content_Types].xml" || name.starts_with("3D/");
+    archive::names(std::io::Cursor::new(bytes)).map_or(true, |names| names.iter().any(of_3mf))
+}
+
+/// Returns whether a file in an archive is a model by its name; texts and tables are more likely something else.
+pub fn is_name_of_model(name: &str) -> bool {
+    let is_text = || [".txt", ".csv", ".asc"].iter().any(|suffix| name.ends_with(suffix));
+    ModelFormat::of_name(name).is_some_and(|format| format != ModelFormat::Xyz || !is_text())
+}
+
+/// Reads a model whose file is not compressed.
+fn read_unpacked(
+    bytes: &[u8],
+    name: &str,
+    resources: &dyn Resources,
+    options: &ReadOptions,
+) -> Result<Model> {
     match ModelFormat::of_content(bytes).or_else(|| ModelFormat::of_name(name)) {
         Some(ModelFormat::Gltf) => gltf::read(bytes, resources, options),
         Some(ModelFormat::Obj) => obj::read(bytes, resources, options),

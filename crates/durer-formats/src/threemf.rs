@@ -37,7 +37,7 @@ use package::Package;
 /// missing or contain themselves, a missing plate; [`crate::Error::Unsupported`] if a
 /// part requires an extension that is not read; [`crate::Error::Limit`] for data above a limit.
 pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
-    let mut package = Package::open(bytes, options.limits.clone())?;
+    let mut package = Package::open(bytes, &options.limits)?;
     let mut model = Model { format: "3MF".to_owned(), ..Model::default() };
     let root = package.root()?;
     let mut assembly = Assembly::new(&mut model, &mut package, options.limits.clone());

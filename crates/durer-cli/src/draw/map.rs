@@ -10,7 +10,7 @@ use durer::map::{self, Label, Map, Style};
 use durer::math::Rect;
 use durer::raster::paint::Canvas;
 use durer::view::window::Window;
-use durer_formats::geo::Feature;
+use durer_formats::geo::{Beside, Feature, Reader};
 use durer_formats::svg::no_glyphs;
 use std::time::Instant;
 
@@ -105,7 +105,8 @@ impl Job<'_> {
         let name = display_name(&given.layer.input);
         let fail = |e: durer_formats::Error| Failure::Data(format!("{name}: {e}"));
         self.messages.progress.stage(|| format!("reading {name}"));
-        let reader = crate::layer::reader(&given.layer.input, given.format, &given.bytes[..], None);
+        let beside = Beside { name: &given.name, resources: &*given.resources, layer: None };
+        let reader = Reader::with(given.format, &given.bytes[..], &beside);
         let mut reader = reader.map_err(fail)?;
         let mut features = Vec::new();
         while let Some(feature) = reader.next_feature().map_err(fail)? {

@@ -26,10 +26,11 @@ use durer::raster::paint::{Canvas, Options};
 use durer::target::Pixels;
 use durer::view::window::{PixelRect, Viewport};
 use durer_formats::geo::GeoFormat;
-use durer_formats::{Limits, Warning};
+use durer_formats::{Limits, Resources, Warning, archive};
 use layers::Layer;
 use report::{LayerReport, Report};
 use std::io::Read;
+use std::path::Path;
 use std::time::Instant;
 
 /// The longer side of a map in pixels, where no size is given.
@@ -113,6 +114,9 @@ struct Given<'a> {
     layer: &'a Layer,
     format: GeoFormat,
     bytes: Vec<u8>,
+    /// The name of the file, and access to those beside it.
+    name: String,
+    resources: Box<dyn Resources>,
 }
 
 impl Job<'_> {
@@ -165,9 +169,10 @@ impl Job<'_> {
     /// Finds the format of a layer.
     fn given<'a>(&mut self, layer: &'a Layer, bytes: Vec<u8>) -> Result<Given<'a>, Failure> {
         let name = display_name(&layer.input);
+        let (bytes, file, resources) = self.unpacked(layer, bytes)?;
         let svg = GeoFormat::of_content(&bytes) == Some(GeoFormat::Svg);
         let told = self.args.from.filter(|_| !svg);
-        let format = told.or_else(|| crate::layer::format_of(&layer.input, &bytes));
+        let format = told.or_else(|| crate::layer::format_of(Path::new(&file), &bytes));
         let Some(format) = format else {
             let (what, read) = (crate::layer::foreign(&bytes), GeoFormat::READ);
             let message = format!("{name}: {what}; durer draw reads SVG, and map data from {read}");
@@ -175,7 +180,25 @@ impl Job<'_> {
         };
         let (input, map) = (name, None);
         self.report.layers.push(LayerReport { input, format: format.name(), map });
-        Ok(Given { layer, format, bytes })
+        Ok(Given { layer, format, bytes, name: file, resources })
+    }
+
+    /// Returns the bytes of a layer's file, its name, and access to the files beside it; those of the only map of an
+    /// archive.
+    fn unpacked(
+        &self,
+        layer: &Layer,
+        bytes: Vec<u8>,
+    ) -> Result<(Vec<u8>, String, Box<dyn Resources>), Failure> {
+        let path = &layer.input;
+        if !bytes.starts_with(archive::MAGIC) {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            return Ok((bytes, name, input::folder(path)));
+        }
+        let packed = crate::layer::packed(bytes, None, &self.limits());
+        let packed = packed.map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))?;
+        let name = packed.name.rsplit('/').next().unwrap_or_default().to_owned();
+        Ok((packed.bytes, name, Box::new(packed.beside)))
     }
 
     /// Returns the limits on inputs.

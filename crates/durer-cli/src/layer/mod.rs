@@ -18,10 +18,10 @@ use crate::input::{self, display_name};
 use crate::places::is_stream;
 use crate::watch;
 use durer::work::Work;
-use durer_formats::ModelFormat;
 use durer_formats::geo::{Beside, Feature, GeoFormat, Points, Reader, unzipped};
+use durer_formats::{Limits, ModelFormat, archive};
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Cursor};
 use std::path::Path;
 use watched::Watched;
 
@@ -73,6 +73,9 @@ pub fn open(
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
     let mut source = bytes(path)?;
     let head = source.fill_buf().map_err(|e| fail(in_words(&e)))?;
+    if head.starts_with(archive::MAGIC) {
+        return open_archive(path, source, (format, layer), work);
+    }
     let Some(format) = format.or_else(|| format_of(path, head)) else {
         let what = foreign(head);
         return Err(fail(format!("{what}; map data are read from {}", GeoFormat::READ)));
@@ -81,20 +84,48 @@ pub fn open(
     let named = GeoFormat::of_name(&path.to_string_lossy());
     let named = named.filter(|named| named.is_geojson() && format == GeoFormat::GeoJson);
     let source = Box::new(Watched::new(source, work, !format.is_geojson()));
-    let reader = reader(path, format, source as Box<dyn BufRead>, layer);
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let beside = Beside { name: &name, resources: &*input::folder(path), layer };
+    let reader = Reader::with(format, source as Box<dyn BufRead>, &beside);
     Ok((named.unwrap_or(format), reader.map_err(|e| fail(words(&e)))?))
 }
 
-/// Returns a reader of a file's bytes that finds files beside it.
-pub fn reader<R: std::io::Read>(
-    path: &Path,
-    format: GeoFormat,
-    source: R,
+/// A file of map data in an archive, and the files beside it there.
+pub type Packed = archive::Member<Vec<u8>>;
+
+/// Returns the only file of map data in a ZIP archive, or of several the one that the layer names.
+pub fn packed(
+    bytes: Vec<u8>,
     layer: Option<&str>,
-) -> durer_formats::Result<Reader<R>> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let folder = input::folder(path);
-    Reader::with(format, source, &Beside { name: &name, resources: &*folder, layer })
+    limits: &Limits,
+) -> durer_formats::Result<Packed> {
+    let is_map = |name: &str| GeoFormat::of_name(name).is_some();
+    archive::only(bytes, limits, is_map, ("files of map data", layer))
+}
+
+/// Opens the file of map data in a ZIP archive.
+fn open_archive(
+    path: &Path,
+    mut source: impl BufRead,
+    (format, layer): (Option<GeoFormat>, Option<&str>),
+    work: &Work,
+) -> Result<(GeoFormat, Source), Failure> {
+    let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
+    let limits = Limits { work: work.clone(), ..Limits::default() };
+    let mut bytes = Vec::new();
+    source.read_to_end(&mut bytes).map_err(|e| fail(in_words(&e)))?;
+    work.keep("bytes of the file", bytes.len() as u64).map_err(|e| fail(e.to_string()))?;
+    let Packed { name, bytes, beside, chosen } =
+        packed(bytes, layer, &limits).map_err(|e| fail(words(&e)))?;
+    let format = format.or_else(|| format_of(Path::new(&name), &bytes));
+    let format = format.ok_or_else(|| fail(format!("{name}: {}", foreign(&bytes))))?;
+    let file = name.rsplit('/').next().unwrap_or(&name);
+    let layer = layer.filter(|_| !chosen);
+    let source = Box::new(Cursor::new(bytes)) as Box<dyn BufRead>;
+    let source = Box::new(Watched::new(source, work, !format.is_geojson()));
+    let beside = Beside { name: file, resources: &beside, layer };
+    let reader = Reader::with(format, source as Box<dyn BufRead>, &beside);
+    Ok((format, reader.map_err(|e| fail(format!("{name}: {}", words(&e))))?))
 }
 
 /// Charges the memory of a feature that stays to the budget.

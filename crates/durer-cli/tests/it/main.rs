@@ -2,6 +2,7 @@
 
 mod algorithms;
 mod annotations;
+mod archives;
 mod batch;
 #[cfg(feature = "geoparquet")]
 mod batch_parquet;

@@ -1,0 +1,92 @@
+//! Models and map data in ZIP archives.
+
+use crate::harness::Folder;
+use std::io::{Cursor, Write};
+use zip::write::{SimpleFileOptions, ZipWriter};
+
+/// Writes an archive of these files, which are not compressed.
+fn pack(folder: &Folder, archive: &str, files: &[(&str, &[u8])]) {
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    let stored = SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    for (name, bytes) in files {
+        writer.start_file(*name, stored).expect("memory");
+        writer.write_all(bytes).expect("memory");
+    }
+    folder.write(archive, writer.finish().expect("memory").into_inner());
+}
+
+const KML: &str = r#"<?xml version="1.0"?><kml xmlns="http://www.opengis.net/kml/2.2"><Placemark><name>Bern</name>
+    <Point><coordinates>7.44,46.95</coordinates></Point></Placemark></kml>"#;
+
+#[test]
+fn map_data_in_archives_are_read_with_the_files_beside_them() {
+    let folder = Folder::new();
+    folder.write(
+        "areas.geojson",
+        r#"{"type":"Feature","properties":{"n":"Ä"},"geometry":{"type":"Point","coordinates":[2,1]}}"#,
+    );
+    folder.must("clip areas.geojson -o a.shp");
+    let part = |suffix: &str| folder.read(&format!("a.{suffix}"));
+    let (shp, dbf, prj, cpg) = (part("shp"), part("dbf"), part("prj"), part("cpg"));
+    let whole: [(&str, &[u8]); 5] = [
+        ("README.txt", b"read me"),
+        ("x/a.shp", &shp),
+        ("x/a.dbf", &dbf),
+        ("x/a.prj", &prj),
+        ("x/a.cpg", &cpg),
+    ];
+    pack(&folder, "shp.zip", &whole);
+    let clip = "clip shp.zip --window 0,0,9,9 -o o.geojson";
+    folder.must(clip);
+    let plain = "clip a.shp --window 0,0,9,9 -o p.geojson";
+    folder.must(plain);
+    assert_eq!(folder.read("o.geojson"), folder.read("p.geojson"));
+    assert!(String::from_utf8_lossy(&folder.read("o.geojson")).contains("Ä"), "fields are read");
+    let told = folder.must("info shp.zip --json").json();
+    assert_eq!((&told["format"], &told["features"]), (&"shapefile".into(), &1.into()), "{told}");
+    folder.must("draw shp.zip --label n -o o.png --size 64x64");
+    folder.must("draw a.shp --label n -o p.png --size 64x64");
+    assert_eq!(folder.read("o.png"), folder.read("p.png"));
+
+    pack(&folder, "bern.kmz", &[("doc.kml", KML.as_bytes()), ("files/a.png", b"")]);
+    folder.must("clip bern.kmz --window 7,46,8,47 -o o.wkt");
+    assert_eq!(folder.read("o.wkt"), b"SRID=4326;POINT (7.44 46.95)\n");
+
+    pack(&folder, "two.zip", &[("b.kml", KML.as_bytes()), ("a.shp", &shp)]);
+    let several = "two.zip: a ZIP archive with 2 files of map data (b.kml, a.shp) is not supported";
+    folder.run("clip two.zip --window 0,0,9,9 -o o.wkt").fails(1, several);
+    folder.must("clip two.zip --layer b --window 0,0,90,90 -o o.wkt");
+    assert_eq!(folder.read("o.wkt"), b"SRID=4326;POINT (7.44 46.95)\n");
+    pack(&folder, "none.zip", &[("a.txt", b"")]);
+    folder
+        .run("clip none.zip --window 0,0,9,9 -o o.wkt")
+        .fails(1, "none.zip: not a known format: the ZIP archive holds no files of map data");
+    pack(&folder, "broken.zip", &[("broken.geojson", b"{")]);
+    folder.run("clip broken.zip --window 0,0,9,9 -o o.wkt").fails(1, "broken.zip: ");
+}
+
+#[test]
+fn models_in_archives_are_read_with_the_files_beside_them() {
+    let folder = Folder::new();
+    let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
+    let mtl = "newmtl red\nKd 1 0 0\n";
+    folder.write("a.obj", obj);
+    folder.write("a.mtl", mtl);
+    let read = ("readme.txt", &b"1 2 3"[..]);
+    pack(&folder, "a.zip", &[read, ("x/a.obj", obj.as_bytes()), ("x/a.mtl", mtl.as_bytes())]);
+    let told = folder.must("render a.zip -o o.png --size 32x32");
+    assert_eq!(told.err, "");
+    folder.must("render a.obj -o p.png --size 32x32");
+    assert_eq!(folder.read("o.png"), folder.read("p.png"));
+    let told = folder.must("info a.zip --json").json();
+    assert_eq!((&told["format"], &told["triangles"]), (&"OBJ".into(), &1.into()));
+
+    pack(&folder, "two.zip", &[("a.obj", obj.as_bytes()), ("b.stl", b"solid b\nendsolid b\n")]);
+    folder.run("render two.zip -o o.png").fails(1, "a ZIP archive with 2 models (a.obj, b.stl)");
+    pack(&folder, "none.zip", &[read]);
+    folder.run("render none.zip -o o.png").fails(1, "the ZIP archive holds no models");
+    pack(&folder, "bad.zip", &[("x/a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")]);
+    folder
+        .run("render bad.zip -o o.png")
+        .fails(1, "bad.zip: x/a.obj, line 4, column 7: vertex 9 does not exist");
+}
