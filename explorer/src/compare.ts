@@ -17,6 +17,9 @@ export class Compare {
   private cards = h("div", { class: "cards" });
   private counts = h("div", { class: "state", tabindex: 0, role: "group", "aria-label": t("counts") });
   private select: HTMLSelectElement;
+  /** Hides the counts of a run until somebody has guessed. */
+  private guesses = h("button", { type: "button", hidden: true, "aria-pressed": "false", "data-guess": "", onclick: () => this.toggleGuesses() }, t("guess"));
+  private guessing = false;
 
   constructor(
     private player: Player,
@@ -40,7 +43,7 @@ export class Compare {
       "div",
       { class: "panel" },
       h("p", { class: "hint" }, t("compareHint")),
-      h("div", { class: "choices" }, h("span", {}, h("label", { for: "compare-with" }, t("compareWith")), this.select)),
+      h("div", { class: "choices" }, h("span", {}, h("label", { for: "compare-with" }, t("compareWith")), this.select), this.guesses),
       this.cards,
       this.counts,
     );
@@ -124,13 +127,42 @@ export class Compare {
     }
   }
 
+  private toggleGuesses(): void {
+    this.guessing = !this.guessing;
+    this.guesses.setAttribute("aria-pressed", String(this.guessing));
+    this.count();
+  }
+
+  /** Asks which run is the shortest; the answer shows the counts. */
+  private ask(all: Player[]): void {
+    const fewest = Math.min(...all.map((player) => player.steps));
+    const answer = (player: Player): void => {
+      const best = all.filter((other) => other.steps === fewest).map((other) => of(other.lesson.title));
+      const isRight = player.steps === fewest;
+      const words = isRight ? `✓ ${t("right")}` : `✗ ${t("wrong")} ${best.join(", ")}`;
+      this.tell(all, h("p", { class: `verdict ${isRight ? "right" : "wrong"}`, role: "status" }, words));
+    };
+    this.counts.replaceChildren(
+      h("p", { class: "question" }, t("guessAsk")),
+      h("div", { class: "answers" }, ...all.map((player) => h("button", { type: "button", onclick: () => answer(player) }, of(player.lesson.title)))),
+    );
+  }
+
   private count(): void {
     const all = [this.player, ...this.others.map((other) => other.player)].filter((player) => player.run && player.error === "");
-    if (this.others.length === 0) return this.counts.replaceChildren();
+    this.guesses.hidden = this.others.length === 0;
+    if (this.others.length === 0) this.counts.replaceChildren();
+    else if (this.guessing && all.length > 1) this.ask(all);
+    else this.tell(all);
+  }
+
+  /** Shows how many steps of each kind the runs take. */
+  private tell(all: Player[], verdict?: HTMLElement): void {
     const kinds = [...new Set(all.flatMap((player) => kindsOf(player.lesson)))];
     const name = (kind: string): string => kindName(all.find((player) => kindsOf(player.lesson).includes(kind))!.lesson, kind);
     const rows = kinds.map((kind) => ({ kind, values: all.map((player) => player.counts().get(kind)) }));
     this.counts.replaceChildren(
+      ...(verdict ? [verdict] : []),
       h("h3", {}, t("counts")),
       h(
         "table",

@@ -3,6 +3,7 @@
 import { h } from "./dom";
 import { files, Refused, Trapped, type Opened } from "./engine";
 import type { Player } from "./player";
+import type { Sketch } from "./sketch";
 import type { Stage } from "./stage";
 import type { Input } from "./types";
 import { named, of, t } from "./words";
@@ -21,7 +22,7 @@ function withWindow(input: Input, other: Input | undefined): Input {
   return { figure: { ...own, window: own.window ?? window, clip: own.clip?.length ? own.clip : clip } };
 }
 
-export function inputPanel(player: Player, stage: Stage, notice: (text: string) => void): HTMLElement {
+export function inputPanel(player: Player, stage: Stage, sketch: Sketch, notice: (text: string) => void): HTMLElement {
   const { lesson } = player;
   const example = (): string | undefined => ("example" in player.setup.input ? player.setup.input.example : undefined);
   const buttons = lesson.examples.map((own) =>
@@ -57,7 +58,8 @@ export function inputPanel(player: Player, stage: Stage, notice: (text: string) 
     if (!file) return;
     try {
       const read = await files.ask<Opened>({ do: "read", name: file.name }, await file.arrayBuffer());
-      if (read.warnings.length > 0) notice(read.warnings.join(" "));
+      // The run takes older notices away.
+      if (read.warnings.length > 0) player.addEventListener("run", () => notice(read.warnings.join(" ")), { once: true });
       player.change({ ...player.setup, input: withWindow(read.input, player.run?.input) });
     } catch (e) {
       if (!(e instanceof Refused || e instanceof Trapped)) throw e;
@@ -149,6 +151,7 @@ export function inputPanel(player: Player, stage: Stage, notice: (text: string) 
     choices,
     byFormula,
     tools,
+    sketch.element,
     hint,
     h("div", { class: "file" }, h("label", { for: "file", class: "button" }, t("open")), picker, h("span", { class: "hint" }, t("openHint"))),
     byNumbers,

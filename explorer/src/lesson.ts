@@ -10,6 +10,7 @@ import { Player, type Setup } from "./player";
 import { Bug, exercises } from "./exercises";
 import { Quiz } from "./quiz";
 import { sharePanel } from "./share";
+import { Sketch } from "./sketch";
 import { Stage } from "./stage";
 import { trackBar } from "./tracks";
 import { Transport } from "./transport";
@@ -56,7 +57,7 @@ function sideTabsOf(twin: HTMLDetailsElement): HTMLElement {
   const panes: [WordName, string][] = [
     ["code", "code"],
     ["state", "state"],
-    ["text", "text"],
+    ["textTab", "text"],
   ];
   const element = h("div", { class: "side-tabs", role: "group", "data-shown": "code" });
   const buttons = panes.map(([name, pane]) => h("button", { type: "button", "data-pane": pane, onclick: () => select(pane) }, t(name)));
@@ -119,6 +120,7 @@ export function lessonPage(
   const player = new Player(lesson, start.setup, (address.step ?? 1) - 1);
   const stage = new Stage(player);
   const code = new Code(player);
+  const sketch = new Sketch(player, stage);
   const transport = new Transport(player);
   const compare = new Compare(player, families);
   const caption = h("p", { class: "caption", "aria-live": "polite" });
@@ -148,6 +150,7 @@ export function lessonPage(
       op: operation || undefined,
       rule: rule || undefined,
       bug: fault === undefined ? undefined : fault + 1,
+      ask: quiz.asks,
       step: player.step + 1,
       with: compare.names.length > 0 ? compare.names : undefined,
       track: address.track,
@@ -175,6 +178,7 @@ export function lessonPage(
   transport.allow = (to) => quiz.allow(to);
   transport.onnotice = (text) => say(text);
   compare.onchange = settle;
+  quiz.onchange = settle;
   code.online = (line) => {
     if (quiz.line(line) || bug?.line(line)) return;
     const runs = (step: number): boolean => player.run?.lines[step] === line;
@@ -215,7 +219,6 @@ export function lessonPage(
   const head = h(
     "header",
     { class: "head" },
-    h("p", { class: "crumb" }, h("a", { href: format({ lang: language() }) }, t("overview"))),
     h("h1", {}, of(lesson.title)),
     h("p", { class: "by" }, `${lesson.authors}, ${lesson.year}`, " · ", h("span", { class: "class" }, named(lesson.class))),
     idea(lesson),
@@ -232,7 +235,7 @@ export function lessonPage(
     h(
       "div",
       { class: "board" },
-      h("section", { class: "pane picture-pane", "aria-label": t("picture") }, stage.element, caption, notice, quiz.bar, bug?.bar, transport.element),
+      h("section", { class: "pane picture-pane", "aria-label": t("picture") }, stage.element, caption, notice, sketch.bar, quiz.bar, bug?.bar, transport.element),
       embedded
         ? h("a", { class: "full", href: format({ ...address, embed: undefined }), target: "_blank", rel: "noopener" }, t("seeFull"))
         : h(
@@ -247,7 +250,7 @@ export function lessonPage(
     embedded
       ? null
       : tabs([
-          ["input", inputPanel(player, stage, (text) => say(text))],
+          ["input", inputPanel(player, stage, sketch, (text) => say(text))],
           ["quiz", quiz.element],
           ["exercises", exercises(player, bug)],
           ["compare", compare.element],
@@ -270,7 +273,7 @@ export function lessonPage(
       player.change({ input: { example: "" }, operation: "", rule: "" }, player.setup, 0);
       return true;
     }
-    if (quiz.key(event)) return true;
+    if (sketch.key(event) || quiz.key(event)) return true;
     // A frame has nothing to scroll: presenters' remotes send these.
     const pages = embedded ? ["PageUp", "PageDown"].indexOf(event.key) : -1;
     if (pages >= 0) {
@@ -280,7 +283,10 @@ export function lessonPage(
     return transport.key(event);
   }
 
-  void player.start(start.setup, player.step).then(() => compare.restore(address.with ?? []));
+  void player.start(start.setup, player.step).then(() => {
+    compare.restore(address.with ?? []);
+    if (address.ask) quiz.begin(address.ask);
+  });
   return {
     element: main,
     title: of(lesson.title),

@@ -15,6 +15,8 @@ export interface Address {
   rule?: string;
   /** Number of a fault to find, counted from 1. */
   bug?: number;
+  /** What the quiz asks for, where the page begins with it. */
+  ask?: string;
   lang?: Language;
   /** Other algorithms to compare with. */
   with?: string[];
@@ -41,6 +43,7 @@ export function parse(hash: string): Address {
     op: text("op"),
     rule: text("rule"),
     bug: number("bug"),
+    ask: text("ask"),
     lang: lang === "de" || lang === "en" ? lang : undefined,
     with: text("with")?.split(",").slice(0, 2),
     track: text("track"),

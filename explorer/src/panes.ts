@@ -73,7 +73,7 @@ export function stateTable(player: Player): HTMLElement {
         "tr",
         {},
         h("th", { scope: "row" }, row.name),
-        ...row.cells.map((cell) => h("td", { class: cell.changed ? "changed" : undefined }, cell.text)),
+        ...row.cells.map((cell) => h("td", { class: cell.changed && cell.text !== "" ? "changed" : undefined }, cell.text)),
       ),
     );
     // An empty stack or list is an answer, too.

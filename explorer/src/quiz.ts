@@ -35,6 +35,8 @@ export class Quiz {
   readonly element: HTMLElement;
   /** Question and answers, for a place beside the picture. */
   readonly bar: HTMLElement;
+  /** Is called when the quiz begins or ends, or asks for something else. */
+  onchange: (() => void) | undefined;
   private on = false;
   private mode: Mode = "place";
   private right = 0;
@@ -78,6 +80,19 @@ export class Quiz {
     });
   }
 
+  /** Returns what the quiz asks for; undefined while there is none. */
+  get asks(): string | undefined {
+    return this.on ? this.mode : undefined;
+  }
+
+  /** Begins the quiz, as a link wants it. */
+  begin(asks: string): void {
+    const mode = this.modes.map((button) => button.dataset.mode as Mode).find((mode) => mode === asks);
+    if (!mode || this.on || !this.player.run) return;
+    this.choose(mode);
+    this.toggle();
+  }
+
   /** Returns whether a step may be shown: during its question only the answer shows it. */
   allow(to: number): boolean {
     const allowed = !this.on || this.open === undefined || to < this.open;
@@ -98,12 +113,14 @@ export class Quiz {
       void this.ask();
       this.bar.parentElement?.scrollIntoView({ block: "nearest" });
     } else this.end();
+    this.onchange?.();
   }
 
   private choose(mode: Mode): void {
     this.mode = mode;
     this.modes.forEach((button) => button.setAttribute("aria-pressed", String(button.dataset.mode === mode)));
     if (this.on) void this.ask();
+    this.onchange?.();
   }
 
   private end(): void {

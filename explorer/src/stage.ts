@@ -62,6 +62,23 @@ class View {
   }
 }
 
+/** Takes the texts out of a picture, with the light ground behind them: they are shown above the handles, which would cover them. */
+function textsOf(picture: Element): Element {
+  const texts = picture.cloneNode() as Element;
+  const from = picture.querySelector("svg");
+  if (from) {
+    const to = from.cloneNode() as Element;
+    for (const text of from.querySelectorAll(":scope > text")) {
+      const ground = text.previousElementSibling;
+      if (ground?.matches("rect[fill-opacity]")) to.append(ground);
+      to.append(text);
+    }
+    texts.append(to);
+  }
+  texts.classList.add("texts");
+  return texts;
+}
+
 function same(a: Ref | undefined, b: Ref | undefined): boolean {
   return a?.part === b?.part && a?.list === b?.list && a?.index === b?.index;
 }
@@ -93,6 +110,10 @@ export class Stage {
 
   /** Receives the place clicked, in the coordinates of the picture, while the quiz asks for one. */
   private onpick: ((at: Point, scale: number) => void) | undefined;
+  /** Called when the question for a place ends. */
+  private onleave: (() => void) | undefined;
+  /** Vertices of the polygon being drawn. */
+  private sketched: Point[] = [];
   /** Size of a step of the arrow keys in the picture: a pixel, or none for a share of the width. */
   private pickStep = 0;
   /** The place that the arrow keys move. */
@@ -154,15 +175,17 @@ export class Stage {
     if (this.hidesCodes) {
       [...picture.querySelectorAll("text")].filter((text) => /^[01]{4}$/.test(text.textContent ?? "")).forEach((text) => text.remove());
     }
+    const texts = textsOf(picture);
     const focused = (document.activeElement as SVGElement | null)?.dataset?.ref;
     this.svg.setAttribute("viewBox", `0 0 ${view.size[0]} ${view.size[1]}`);
     this.svg.setAttribute("aria-label", frame.frame.caption);
     if (this.held) {
       // The dragged handle must stay: only the picture behind it is replaced.
       this.svg.firstElementChild?.replaceWith(picture);
+      this.svg.querySelector(".texts")?.replaceWith(texts);
       this.place();
     } else {
-      this.svg.replaceChildren(picture, ...this.handles(), ...this.crosses(view));
+      this.svg.replaceChildren(picture, ...this.handles(), texts, ...this.outlined(view), ...this.crosses(view));
       this.element.classList.toggle("asks", this.onpick !== undefined);
       if (focused) this.svg.querySelector<SVGElement>(`[data-ref="${focused}"]`)?.focus();
       this.resize();
@@ -175,8 +198,10 @@ export class Stage {
   }
 
   /** Asks for a place in the picture: by a click, or by arrow keys and Enter on a cross. */
-  pick(isPixels: boolean, onpick: (at: Point, scale: number) => void): void {
+  pick(isPixels: boolean, onpick: (at: Point, scale: number) => void, onleave?: () => void): void {
+    this.leave();
     this.onpick = onpick;
+    this.onleave = onleave;
     this.pickStep = isPixels ? 1 : 0;
     this.cross = undefined;
     this.draw();
@@ -186,7 +211,41 @@ export class Stage {
   unpick(): void {
     if (!this.onpick) return;
     this.onpick = undefined;
+    this.leave();
     this.draw();
+  }
+
+  private leave(): void {
+    const { onleave } = this;
+    this.onleave = undefined;
+    onleave?.();
+  }
+
+  /** Returns the point of the input at a place of the picture, on the grid that vertices snap to. */
+  inputAt(at: Point): Point | undefined {
+    const { view } = this;
+    return view?.place.input ? this.snapped(view.from(view.drawn(at)), { part: "rings", list: 0, index: 0 }) : undefined;
+  }
+
+  /** Returns the way from a point of the input to a place, in the picture. */
+  apart(from: Point, [x, y]: Point): Point {
+    const { view } = this;
+    if (!view?.place.input) return [Infinity, Infinity];
+    const [u, v] = view.shown(view.at(from));
+    return [x - u, y - v];
+  }
+
+  /** Shows the vertices of the polygon being drawn, in the coordinates of the input. */
+  outline(points: Point[]): void {
+    this.sketched = points;
+    this.draw();
+  }
+
+  private outlined(view: View): SVGElement[] {
+    if (this.sketched.length === 0 || !view.place.input) return [];
+    const all = this.sketched.map((point) => view.at(point));
+    const dots = all.map(([cx, cy]) => s("circle", { cx, cy, r: 4 }));
+    return [s("g", { class: "sketch", "aria-hidden": "true" }, s("path", { d: `M${all.join("L")}` }), ...dots)];
   }
 
   /** Shows the place picked, until the next one; an empty look removes it. */

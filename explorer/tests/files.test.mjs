@@ -24,11 +24,18 @@ after(async () => {
   server?.close();
 });
 
+let pages = 0;
+
 /** Opens a file in the page of a lesson and waits for its run; returns the input as the page shows it. */
 async function opened(page, lesson, name, buffer) {
-  await page.evaluate((lesson) => (location.hash = `#a=${lesson}&lang=en`), lesson);
-  await page.waitForFunction((lesson) => location.hash.includes(`a=${lesson}&`), lesson);
-  await page.waitForTimeout(300);
+  // A page of its own, so that nothing is left of the file before.
+  pages += 1;
+  await page.waitForSelector("main");
+  await page.evaluate((hash) => {
+    document.querySelector("main").dataset.old = "";
+    location.hash = hash;
+  }, `#a=${lesson}&lang=en&page-of-test=${pages}`);
+  await page.waitForSelector("main:not([data-old])");
   await atStep(page, 1);
   await page.setInputFiles("#file", { name, mimeType: "", buffer });
   await page.waitForFunction(() => location.hash.includes("in=") || !document.querySelector(".picture-pane .notice").hidden);

@@ -118,6 +118,55 @@ test("a dragged vertex changes the run, and a link holds it", async () => {
   await close();
 });
 
+test("a polygon is drawn anew by clicks, and by keys", async () => {
+  const { page, faults, close } = await open(chromium, `${server.url}#a=weiler-atherton&lang=en`);
+  await atStep(page, 1);
+  const steps = await page.textContent(".place");
+  const clip = page.locator(".handle.clip");
+  const corners = await clip.count();
+  // Two corners of the clip polygon give the scale: a is (0, 10), c is (10, 0).
+  const middle = async (index) => clip.nth(index).boundingBox().then(({ x, y, width, height }) => [x + width / 2, y + height / 2]);
+  const measured = async () => [await middle(0), await middle(2), await page.locator(".stage").boundingBox()];
+  let places = await measured();
+  const clickAt = ([x, y]) => {
+    const [a, c, stage] = places;
+    const [u, v] = [a[0] + (x * (c[0] - a[0])) / 10, a[1] + ((10 - y) * (c[1] - a[1])) / 10];
+    return page.locator(".stage").click({ position: { x: u - stage.x, y: v - stage.y } });
+  };
+  await page.click("[data-sketch=rings]");
+  assert.equal(await page.locator(".handle").count(), 0, "handles would take the clicks");
+  for (const at of [[2, 2], [14, 5], [2, 8]]) await clickAt(at);
+  assert.equal(await page.locator(".sketch circle").count(), 3);
+  await accessible(page, "drawing");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.querySelectorAll(".handle.rings").length === 3);
+  assert.equal(await page.locator(".sketch").count(), 0);
+  assert.equal(await page.locator(".handle.clip").count(), corners);
+  assert.match(await page.inputValue("#numbers"), /\[2,2\],\[14,5\],\[2,8\]/);
+  // A click on the first vertex closes it, too; Escape leaves all as it was.
+  places = await measured();
+  await page.click("[data-sketch=clip]");
+  for (const at of [[1, 1], [9, 1], [9, 9], [1, 1]]) await clickAt(at);
+  await page.waitForFunction(() => document.querySelectorAll(".handle.clip").length === 3);
+  await page.click("[data-sketch=rings]");
+  await clickAt([3, 3]);
+  await page.keyboard.press("Escape");
+  await page.waitForFunction(() => document.querySelectorAll(".handle.rings").length === 3);
+  for (let k = 0; k < 2; k++) await page.keyboard.press("Control+z");
+  await page.waitForFunction((steps) => document.querySelector(".place").textContent === steps, steps);
+  // By keys: the cross begins in the middle, Enter sets a vertex there.
+  await page.click("[data-sketch=rings]");
+  await page.locator(".cross.asks").focus();
+  for (const way of ["ArrowLeft", "ArrowUp", "ArrowRight"]) {
+    await page.keyboard.press("Enter");
+    for (let k = 0; k < 20; k++) await page.keyboard.press(way);
+  }
+  await page.click("[data-sketch=done]");
+  await page.waitForFunction(() => document.querySelectorAll(".handle.rings").length === 3);
+  assert.deepEqual(faults, []);
+  await close();
+});
+
 test("languages, themes and narrow screens keep everything readable", async () => {
   for (const [width, colorScheme, lang] of [[1280, "light", "en"], [375, "dark", "de"], [320, "light", "de"]]) {
     const { page, faults, close } = await open(chromium, `${server.url}#a=weiler-atherton&lang=${lang}`, { viewport: { width, height: 800 }, colorScheme });
@@ -144,6 +193,20 @@ test("algorithms are compared on one input by one scrubber", async () => {
   await atStep(page, 4);
   await page.waitForFunction(() => /^(\d+) \/ \1 /.test(document.querySelector(".card .caption").textContent));
   assert.match(await page.textContent("#panel-compare table"), /Liang/);
+  // The counts can be guessed before they are shown; each new run asks again.
+  const steps = await page.locator("#panel-compare tbody tr").first().locator("td").allTextContents().then((all) => all.map(Number));
+  assert.notEqual(steps[0], steps[1]);
+  await page.click("[data-guess]");
+  assert.equal(await page.locator("#panel-compare table").count(), 0);
+  await page.locator("#panel-compare .answers button").nth(steps[0] < steps[1] ? 0 : 1).click();
+  assert.match(await page.textContent("#panel-compare .verdict"), /Right/);
+  assert.equal(await page.locator("#panel-compare table").count(), 1);
+  await page.click("#tab-input");
+  await page.click(".example[data-name=line-ad]");
+  await page.click("#tab-compare");
+  await page.waitForSelector("#panel-compare .answers button");
+  assert.equal(await page.locator("#panel-compare table").count(), 0);
+  await accessible(page, "guess");
   assert.deepEqual(faults, []);
   await close();
 });

@@ -21,7 +21,7 @@ const MOST_STEPS: usize = 100_000;
 /// The most captions in an answer.
 const MOST_CAPTIONS: usize = 2_000;
 
-/// The most rows of a table in an answer: a page would take long to show more.
+/// The most rows of a table, and values of a list, in an answer: a page would take long to show more.
 const MOST_ROWS: usize = 200;
 
 /// Steps by which choices are compared.
@@ -39,6 +39,7 @@ impl Runs {
     pub fn start(&mut self, request: RunRequest) -> Result<Value, Failure> {
         let words = |e: durer::Error| e.to_string();
         let lesson = lesson(&request.name)?;
+        let is_example = matches!(request.input, InputData::Example(_));
         let input = match request.input.into_input()? {
             Input::Example(name) => lesson.example(&name).map_err(words)?,
             own => own,
@@ -57,8 +58,10 @@ impl Runs {
             "templates": run.outline().map(|(_, template)| place(lesson, template)).collect::<Vec<_>>(),
             "input": InputData::of_input(&input),
         });
-        if request.choices {
+        if request.choices && (is_example || has_choices(lesson)) {
             answer["choices"] = choices(lesson, &input);
+        } else if request.choices {
+            answer["choices"] = json!({ "operations": [], "rules": [] });
         }
         while self.all.len() >= MOST_RUNS {
             self.all.pop_first();
@@ -110,22 +113,35 @@ fn options(operation: &str, rule: &str) -> Result<Options, Failure> {
 
 /// Returns the operations and the rules with which the lesson runs, if they change what happens.
 fn choices(lesson: &Lesson, input: &Input) -> Value {
-    let captions = |options: Options| {
-        let run = lesson.record(input, &options, COMPARED).ok()?;
-        Some(run.captions(0).collect::<Vec<_>>())
-    };
     let default = Options::default();
-    let distinct = |all: Vec<(&'static str, Options)>| {
-        let runs: Vec<_> = all.into_iter().map(|(name, o)| (name, captions(o))).collect();
-        let good: Vec<_> = runs.iter().filter(|(_, run)| run.is_some()).collect();
-        let differ = good.windows(2).any(|pair| pair[0].1 != pair[1].1);
-        let names = good.iter().map(|(name, _)| *name);
-        if differ { names.collect::<Vec<_>>() } else { Vec::new() }
-    };
     let operations =
         BooleanOp::ALL.iter().map(|&op| (op.name(), Options { operation: op, ..default }));
     let rules = WindingRule::ALL.iter().map(|&rule| (rule.name(), Options { rule, ..default }));
-    json!({ "operations": distinct(operations.collect()), "rules": distinct(rules.collect()) })
+    let [operations, rules] = [operations.collect::<Vec<_>>(), rules.collect()]
+        .map(|options| distinct(lesson, input, &options));
+    json!({ "operations": operations, "rules": rules })
+}
+
+/// Returns whether choices change the run of one of the lesson's examples: most lessons have none, and need not be run
+/// many times on a large input to find that out.
+fn has_choices(lesson: &Lesson) -> bool {
+    let changes = |input: &Input| {
+        let choices = choices(lesson, input);
+        ["operations", "rules"].iter().any(|&kind| choices[kind] != json!([]))
+    };
+    lesson.examples.iter().any(|example| changes(&(example.input)()))
+}
+
+/// Returns the names of the options with which the lesson runs on an input; none if all of them give the same run.
+fn distinct(lesson: &Lesson, input: &Input, all: &[(&'static str, Options)]) -> Vec<&'static str> {
+    let captions = |options: &Options| {
+        let run = lesson.record(input, options, COMPARED).ok()?;
+        Some(run.captions(0).collect::<Vec<_>>())
+    };
+    let runs = all.iter().filter_map(|(name, options)| Some((*name, captions(options)?)));
+    let good: Vec<_> = runs.collect();
+    let differ = good.windows(2).any(|pair| pair[0].1 != pair[1].1);
+    if differ { good.into_iter().map(|(name, _)| name).collect() } else { Vec::new() }
 }
 
 /// Makes a frame.
@@ -148,14 +164,26 @@ pub(crate) fn frame(run: &Frames, request: &FrameRequest) -> Result<String, Fail
     ))
 }
 
-/// Leaves rows in the middle of a long table out, with their number in their place.
+/// Leaves rows in the middle of a long table out, and values in the middle of a long list, with their number in their
+/// place.
 fn shorten(table: &mut Table) {
-    let more = table.rows.len().saturating_sub(MOST_ROWS);
+    let list =
+        |number: usize, en, de| explain::Value::List(vec![number.into(), Word::new(en, de).into()]);
+    let row = |number| Row { name: list(number, "more rows", "weitere Zeilen"), cells: Vec::new() };
+    leave_out(&mut table.rows, row);
+    for cell in table.rows.iter_mut().flat_map(|row| &mut row.cells) {
+        if let explain::Value::List(values) = &mut cell.value {
+            leave_out(values, |number| list(number, "more …", "weitere …"));
+        }
+    }
+}
+
+/// Replaces what is between the first and the last of many by a note about its number.
+fn leave_out<T>(all: &mut Vec<T>, note: impl FnOnce(usize) -> T) {
+    let more = all.len().saturating_sub(MOST_ROWS);
     if more > 0 {
-        let words = Word::new("more rows", "weitere Zeilen");
-        let name = explain::Value::List(vec![more.into(), words.into()]);
         let first = MOST_ROWS / 2;
-        table.rows.splice(first..first + more, [Row { name, cells: Vec::new() }]);
+        all.splice(first..first + more, [note(more)]);
     }
 }
 

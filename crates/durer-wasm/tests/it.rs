@@ -108,6 +108,42 @@ fn choices_are_those_that_change_the_run() {
     assert_eq!(plain, json!({ "operations": [], "rules": [] }));
     let star = choices("edge-table", "star");
     assert_eq!(star["rules"], json!(["even-odd", "non-zero"]));
+    // They are those of an input of one's own, too.
+    let mut own = |name: &str, figure: Value| {
+        let input = json!({ "figure": figure });
+        let request =
+            json!({ "do": "run", "name": name, "input": input, "cap": 9, "choices": true });
+        asked(&mut engine, &request)["choices"].clone()
+    };
+    let twice = json!([[0.0, 0.0], [9.0, 0.0], [0.0, 9.0], [0.0, 0.0], [9.0, 0.0], [0.0, 9.0]]);
+    let rules = own("edge-table", json!({ "rings": [twice] }));
+    assert_eq!(rules["rules"], json!(["even-odd", "non-zero"]));
+    let line = json!({ "window": [0.0, 0.0, 4.0, 4.0], "lines": [[[1.0, 1.0], [9.0, 3.0]]] });
+    assert_eq!(own("cohen-sutherland", line), json!({ "operations": [], "rules": [] }));
+}
+
+/// Two stars with hundreds of crossings: their lists and rings are too long to be shown whole.
+#[test]
+fn long_lists_have_their_ends() {
+    let star = |shift: f64| -> Vec<[f64; 2]> {
+        let point = |k: u32| {
+            let (turn, far) = (f64::from(k) / 180.0 * std::f64::consts::TAU, 8.0);
+            let far = if k.is_multiple_of(2) { far } else { far - 1.0 };
+            [far * turn.cos() + shift, far * turn.sin() - shift]
+        };
+        (0..180).map(point).collect()
+    };
+    let figure = json!({ "rings": [star(0.0)], "clip": [star(0.05)] });
+    let mut engine = Engine::default();
+    let request = json!({ "do": "run", "name": "weiler-atherton", "input": { "figure": figure }, "cap": 100_000 });
+    let run = asked(&mut engine, &request);
+    let last = run["steps"].as_u64().unwrap() - 1;
+    let request = json!({ "do": "frame", "handle": run["handle"], "step": last, "language": "en" });
+    let frame = asked(&mut engine, &request);
+    let list = frame["frame"]["table"]["rows"][0]["cells"][0]["text"].as_str().unwrap();
+    assert!(list.starts_with("0 ") && list.contains(" more … "), "{list}");
+    let caption = frame["frame"]["caption"].as_str().unwrap();
+    assert!(caption.contains(" … ") && caption.len() < 400, "{caption}");
 }
 
 #[test]

@@ -91,6 +91,8 @@ struct State {
     /// Active edges of the part of the beam: x below and above, windings, whether it contributes.
     active: Vec<([f64; 2], [i32; 2], bool)>,
     parts: Vec<Trapezoid>,
+    /// Their area.
+    sum: f64,
 }
 
 fn make(_: &Lesson, input: &Input, options: &Options, cap: usize) -> Result<Frames> {
@@ -109,6 +111,7 @@ fn make(_: &Lesson, input: &Input, options: &Options, cap: usize) -> Result<Fram
         told: 0,
         active: Vec::new(),
         parts: Vec::new(),
+        sum: 0.0,
     };
     Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
@@ -180,8 +183,8 @@ impl State {
             }
             Step::Part(part) => {
                 self.parts.push(part);
-                let sum: f64 = self.parts.iter().map(Trapezoid::area).sum();
-                PART.with([("area", part.area().into()), ("sum", sum.into())])
+                self.sum += part.area();
+                PART.with([("area", part.area().into()), ("sum", self.sum.into())])
             }
         }
     }

@@ -9,6 +9,8 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 pub(super) const WEILER_ATHERTON: Lesson = Lesson {
     name: weiler_atherton::INFO.name,
@@ -116,8 +118,11 @@ static EXIT: Template = Template::new(
     "Crossing {name}: the subject leaves the clip, an exit.",
     "Kreuzung {name}: Das Subjekt verlässt den Clip, ein Austritt.",
 );
-static START: Template =
-    Template::new("start", "A ring begins at {name}.", "Bei {name} beginnt ein Ring.");
+static START: Template = Template::new(
+    "start",
+    "A ring begins at {name}, a crossing that no ring has passed yet.",
+    "Bei {name} beginnt ein Ring: Diese Kreuzung hat noch keiner durchlaufen.",
+);
 static ONTO_SUBJECT: Template = Template::new(
     "turn",
     "At {name} the walk continues along the subject.",
@@ -143,46 +148,84 @@ static RING: Template = Template::new(
 #[derive(Clone)]
 struct State {
     operands: Operands,
+    names: Arc<Names>,
     lists: [Vec<(DVec2, Option<Mark>)>; 2],
-    /// Crossings in the order in which the clip's list has them, by which they are named.
-    crossings: Vec<DVec2>,
     ring: Vec<DVec2>,
     rings: Vec<Vec<DVec2>>,
 }
 
 fn show_all(operands: Operands, steps: crate::trace::Recorder<Step>) -> Frames {
+    let names = Arc::new(Names::new(&operands, steps.steps()));
     let lists = [Vec::new(), Vec::new()];
-    // Crossings are named as they are met round the clip.
-    let met = |step: &Step| match *step {
-        Step::Listed { list: Operand::Clip, at, mark: Some(_) } => Some(at),
-        _ => None,
-    };
-    let crossings = steps.steps().iter().filter_map(met).collect();
-    let mut state = State { operands, lists, crossings, ring: Vec::new(), rings: Vec::new() };
+    let mut state = State { operands, names, lists, ring: Vec::new(), rings: Vec::new() };
     Frames::new(steps, move |step, want| state.show(step, want))
 }
 
-impl State {
-    /// Returns the name of a point: numbers for the subject, letters for the clip and for crossings.
-    fn name(&self, at: DVec2) -> String {
-        let [subject, clip] = &self.operands.rings;
-        let find = |rings: &[Vec<DVec2>]| rings.iter().flatten().position(|&p| p == at);
-        if let Some(k) = find(subject) {
-            return k.to_string();
-        }
+/// Names of vertices and crossings: numbers for the subject, letters for the clip and for crossings.
+struct Names {
+    /// Names by the bits of the coordinates.
+    of: BTreeMap<[u64; 2], String>,
+    /// Name of a point that is none of them.
+    other: String,
+}
+
+impl Names {
+    fn new(operands: &Operands, steps: &[Step]) -> Self {
         let letter = |first: u8, k: usize, most: usize, long: char| {
             let letter = u8::try_from(k).ok().filter(|_| k < most).map(|k| char::from(first + k));
             letter.map_or_else(|| format!("{long}{}", k + 1), String::from)
         };
-        if let Some(k) = find(clip) {
-            return letter(b'a', k, 8, 'c');
-        }
-        let met = self.crossings.iter().position(|&p| p == at);
-        letter(b'i', met.unwrap_or(self.crossings.len()), 12, 'x')
+        let crossing = |k: usize| letter(b'i', k, 12, 'x');
+        let mut of = BTreeMap::new();
+        // Where two are at one place, the first one names it.
+        let mut add = |at: DVec2, name: String| _ = of.entry(bits(at)).or_insert(name);
+        let [subject, clip] = &operands.rings;
+        subject.iter().flatten().enumerate().for_each(|(k, &at)| add(at, k.to_string()));
+        clip.iter().flatten().enumerate().for_each(|(k, &at)| add(at, letter(b'a', k, 8, 'c')));
+        // Crossings are named as they are met round the clip; the subject's list has all others.
+        let met = |wanted: Operand| {
+            steps.iter().filter_map(move |step| match *step {
+                Step::Listed { list, at, mark: Some(_) } if list == wanted => Some(at),
+                _ => None,
+            })
+        };
+        let mut all: Vec<DVec2> = met(Operand::Clip).collect();
+        let mut known: BTreeSet<_> = all.iter().copied().map(bits).collect();
+        all.extend(met(Operand::Subject).filter(|&at| known.insert(bits(at))));
+        all.iter().enumerate().for_each(|(k, &at)| add(at, crossing(k)));
+        Self { of, other: crossing(all.len()) }
+    }
+
+    fn of(&self, at: DVec2) -> &str {
+        self.of.get(&bits(at)).unwrap_or(&self.other)
+    }
+}
+
+/// Returns the bits of coordinates, the same for both zeros.
+fn bits(at: DVec2) -> [u64; 2] {
+    (at + 0.0).to_array().map(f64::to_bits)
+}
+
+/// The most points of a ring that a sentence names.
+const MOST_NAMED: usize = 40;
+
+impl State {
+    fn name(&self, at: DVec2) -> String {
+        self.names.of(at).to_owned()
     }
 
     fn names(&self, points: &[DVec2]) -> Value {
         Value::List(points.iter().map(|&p| self.name(p).into()).collect())
+    }
+
+    /// Returns the names of points for a sentence, which has only the ends of a long ring.
+    fn ends(&self, points: &[DVec2]) -> Value {
+        if points.len() <= MOST_NAMED {
+            return self.names(points);
+        }
+        let first = self.names(&points[..MOST_NAMED / 2]);
+        let last = self.names(&points[points.len() - MOST_NAMED / 2..]);
+        Value::List(vec![first, "…".into(), last])
     }
 
     fn show(&mut self, step: &Step, want: Want) -> Shown {
@@ -229,23 +272,20 @@ impl State {
                 let values = [
                     ("name", self.name(*at).into()),
                     ("list", operand(*list)),
-                    ("ring", self.names(&self.ring)),
+                    ("ring", self.ends(&self.ring)),
                 ];
                 PASSED.with(values)
             }
             Step::Ring { points } => {
                 self.rings.push(points.clone());
                 self.ring.clear();
-                RING.with([("number", self.rings.len().into()), ("ring", self.names(points))])
+                RING.with([("number", self.rings.len().into()), ("ring", self.ends(points))])
             }
         }
     }
 
     fn listed(&mut self, list: Operand, at: DVec2, mark: Option<Mark>) -> Caption {
         self.lists[usize::from(list == Operand::Clip)].push((at, mark));
-        if mark.is_some() && !self.crossings.contains(&at) {
-            self.crossings.push(at);
-        }
         let values = [("list", operand(list)), ("name", self.name(at).into()), ("at", at.into())];
         let Some(mark) = mark else { return LISTED.with(values) };
         let word = match mark {
@@ -258,7 +298,9 @@ impl State {
     }
 
     fn table(&self) -> Table {
-        let mut table = Table::default();
+        let order =
+            Word::new("in order; ↓ enters, ↑ leaves", "der Reihe nach; ↓ tritt ein, ↑ tritt aus");
+        let mut table = Table::new([Word::new("list", "Liste"), order]);
         for (list, name) in self.lists.iter().zip([SUBJECT, CLIP]) {
             let marked = |&(at, mark): &(DVec2, Option<Mark>)| {
                 let arrow = match mark {
@@ -294,12 +336,9 @@ impl State {
             plain.for_each(|&(at, _)| self.add_named(&mut picture, at, look));
         }
         let listed = self.lists.iter().flatten().filter(|(_, mark)| mark.is_some());
-        let mut shown: Vec<DVec2> = Vec::new();
-        for &(at, _) in listed {
-            if !shown.contains(&at) {
-                self.add_named(&mut picture, at, Look::Result);
-                shown.push(at);
-            }
+        let mut shown = BTreeSet::new();
+        for &(at, _) in listed.filter(|&&(at, _)| shown.insert(bits(at))) {
+            self.add_named(&mut picture, at, Look::Result);
         }
         picture
     }

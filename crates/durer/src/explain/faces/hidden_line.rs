@@ -180,8 +180,9 @@ impl State {
                 picture.label((ends[0] + ends[1]) / 2.0, (0.0, -9.0), span.invisibility);
             }
             let [p, q] = line.ends;
-            let along = (q - p).normalize_or(DVec2::X) * 11.0;
-            for (end, name, way) in [(p, "P", -along), (q, "Q", along)] {
+            let along = (q - p).normalize_or(DVec2::X) * DVec2::new(22.0, 11.0);
+            // Not by letters: Q is the invisibility.
+            for (end, name, way) in [(p, "t = 0", -along), (q, "t = 1", along)] {
                 picture.dot(end, Look::First);
                 picture.label(end, (way.x, -way.y), name);
             }

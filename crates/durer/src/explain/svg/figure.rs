@@ -5,6 +5,7 @@ use super::{TEXT, escaped, short, width};
 use crate::explain::picture::{Look, Picture, Shape};
 use crate::explain::words::Language;
 use crate::math::DVec2;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Size of letters in pictures.
@@ -53,7 +54,8 @@ fn scale(picture: &Picture, longest: f64) -> f64 {
 pub(super) fn draw(picture: &Picture, longest: f64, language: Language) -> String {
     let size = size(picture, longest);
     let scale = scale(picture, longest);
-    let mut pen = Pen { picture, scale, size, language, labels: Vec::new(), out: String::new() };
+    let mut pen =
+        Pen { picture, scale, size, language, taken: Taken::default(), out: String::new() };
     let (w, h) = (short(size.x), short(size.y));
     let _ = write!(
         pen.out,
@@ -86,9 +88,39 @@ struct Pen<'a> {
     scale: f64,
     size: DVec2,
     language: Language,
-    /// Corners of the texts and dots drawn so far.
-    labels: Vec<[DVec2; 2]>,
+    /// Texts and dots drawn so far.
+    taken: Taken,
     out: String,
+}
+
+/// Rectangles by the cells of a grid that they touch.
+#[derive(Default)]
+struct Taken {
+    cells: BTreeMap<[i32; 2], Vec<[DVec2; 2]>>,
+}
+
+impl Taken {
+    /// Side of a cell in pixels, which most texts do not exceed.
+    const CELL: f64 = 32.0;
+
+    /// Returns the cells that a rectangle touches.
+    fn cells([low, high]: [DVec2; 2]) -> impl Iterator<Item = [i32; 2]> {
+        let [low, high] = [low, high].map(|p| (p / Self::CELL).floor().as_ivec2());
+        (low.y..=high.y).flat_map(move |y| (low.x..=high.x).map(move |x| [x, y]))
+    }
+
+    fn add(&mut self, rectangle: [DVec2; 2]) {
+        Self::cells(rectangle).for_each(|cell| {
+            self.cells.entry(cell).or_default().push(rectangle);
+        });
+    }
+
+    /// Returns whether a rectangle covers none of the others.
+    fn leaves(&self, rectangle: &[DVec2; 2]) -> bool {
+        let [low, high] = rectangle;
+        let covers = |other: &[DVec2; 2]| low.cmplt(other[1]).all() && other[0].cmplt(*high).all();
+        !Self::cells(*rectangle).filter_map(|cell| self.cells.get(&cell)).flatten().any(covers)
+    }
 }
 
 impl Pen<'_> {
@@ -168,7 +200,7 @@ impl Pen<'_> {
     fn dot(&mut self, p: DVec2, look: Look) {
         let color = look.style().stroke;
         // Texts that come later leave it free.
-        self.labels.push([p - 2.5, p + 2.5]);
+        self.taken.add([p - 2.5, p + 2.5]);
         let (x, y) = (short(p.x), short(p.y));
         let _ = match look {
             Look::Second => {
@@ -216,16 +248,10 @@ impl Pen<'_> {
             |p: DVec2| p.clamp(half.min(self.size / 2.0), (self.size - half).max(self.size / 2.0));
         let boxes =
             places.map(|by| inside(anchor + by)).map(|middle| [middle - half, middle + half]);
-        let free = |b: &[DVec2; 2]| {
-            !self
-                .labels
-                .iter()
-                .any(|other| b[0].cmplt(other[1]).all() && other[0].cmplt(b[1]).all())
-        };
         let mut boxes = boxes.peekable();
         let first = boxes.peek().copied();
-        let Some([low, high]) = boxes.find(free).or(first) else { return };
-        self.labels.push([low, high]);
+        let Some([low, high]) = boxes.find(|b| self.taken.leaves(b)).or(first) else { return };
+        self.taken.add([low, high]);
         let [x, y, w, h] = [low.x, low.y, high.x - low.x, high.y - low.y].map(short);
         let _ = write!(
             self.out,
@@ -266,5 +292,25 @@ impl Pen<'_> {
             d += &self.path(&[p(0.0, y), p(w, y)]);
         }
         self.stroke(&d, Look::Grid, "");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rectangles_are_found_across_cells() {
+        let rectangle = |x: f64, y: f64| [DVec2::new(x, y), DVec2::new(x + 10.0, y + 10.0)];
+        let mut taken = Taken::default();
+        // Over the corner of four cells.
+        taken.add(rectangle(27.0, 27.0));
+        taken.add([DVec2::new(-1e300, 500.0), DVec2::new(-1e300, f64::NAN)]);
+        for (x, y) in [(20.0, 20.0), (36.0, 20.0), (20.0, 36.0), (36.0, 36.0), (30.0, 30.0)] {
+            assert!(!taken.leaves(&rectangle(x, y)), "{x} {y}");
+        }
+        for (x, y) in [(17.0, 30.0), (37.0, 30.0), (30.0, 17.0), (30.0, 37.0)] {
+            assert!(taken.leaves(&rectangle(x, y)), "{x} {y}");
+        }
     }
 }
