@@ -211,6 +211,22 @@ export const IDEAS: Record<string, Words> = {
     en: "Distant surfaces are mixed with the colour of the air: in proportion between two distances, or by an exponential law.",
     de: "Was weiter weg ist, wird mit der Farbe der Luft gemischt: proportional zwischen zwei Entfernungen oder nach einem Exponentialgesetz.",
   },
+  "circle-clipping": {
+    en: "Clips a circle to a window: each border takes away the arc that is beyond it, and the angles that are left are the visible arcs.",
+    de: "Clippt einen Kreis an einem Fenster: Jeder Rand nimmt den Bogen weg, der jenseits von ihm liegt, und die übrigen Winkel sind die sichtbaren Bögen.",
+  },
+  "text-by-string": {
+    en: "Keeps a text only if the box around all of it is within the window: one comparison, and no label is ever cut.",
+    de: "Behält einen Text nur, wenn der Kasten um den ganzen Text im Fenster liegt: ein Vergleich, und keine Beschriftung wird zerschnitten.",
+  },
+  "text-by-character": {
+    en: "Keeps the characters whose boxes are within the window, and drops all that cross its border.",
+    de: "Behält die Zeichen, deren Kästen im Fenster liegen, und lässt alle weg, die seinen Rand kreuzen.",
+  },
+  "text-by-outline": {
+    en: "Clips the strokes and rings of those characters whose boxes cross the border, as line segments and as polygons.",
+    de: "Clippt die Striche und Ringe der Zeichen, deren Kästen den Rand kreuzen, als Strecken und als Polygone.",
+  },
   "sobkow-pospisil-yang": {
     en: "Clips a line to a window by the codes of both ends in one number: a table has a case for each of the 81 pairs of regions, which names exactly the necessary cuts.",
     de: "Clippt eine Strecke an einem Fenster mit den Codes beider Enden in einer Zahl: Eine Tabelle hat für jedes der 81 Paare von Gebieten einen Fall, der die Schnitte nennt und keine anderen.",

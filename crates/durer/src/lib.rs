@@ -85,6 +85,9 @@
 //! or [Visvalingam–Whyatt](clip::simplify::visvalingam), of lines and areas that share borders
 //! [all together](clip::simplify::coverage).
 //!
+//! **Which part of a circle, or of a text?** [`clip::circle`] finds its arcs, [`clip::text`] keeps whole strings, whole
+//! characters, or parts of outlines.
+//!
 //! **How does a map become tiles?** [`clip::tiles`].
 //!
 //! **And in three dimensions?** [`clip::volume`] clips in homogeneous coordinates, whatever the sign of w, [many

@@ -2,6 +2,7 @@
 
 pub mod attribute;
 pub mod cells;
+pub mod circle;
 pub mod crossings;
 pub(crate) mod exact;
 pub mod hilbert;
@@ -13,6 +14,7 @@ pub mod polygon;
 pub mod polyline;
 pub mod simplify;
 mod status;
+pub mod text;
 pub mod tiles;
 mod touch;
 pub mod volume;

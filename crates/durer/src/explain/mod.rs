@@ -20,6 +20,7 @@ mod air;
 mod barycentric;
 mod clip_lines;
 mod clip_polygons;
+mod clip_shapes;
 mod clip_volume;
 mod crossings;
 mod culling;
@@ -86,6 +87,7 @@ pub const PLANE: &[Family] = &[
     family("Clipping lines", "Linien clippen", clip_lines::LESSONS),
     family("Crossings of segments", "Schnittpunkte von Strecken", &[crossings::LESSON]),
     family("Clipping polygons", "Polygone clippen", clip_polygons::LESSONS),
+    family("Clipping circles and text", "Kreise und Text clippen", clip_shapes::LESSONS),
     family("Simplifying borders", "Grenzen vereinfachen", simplify::LESSONS),
     family("Window and viewport", "Fenster und Viewport", viewing::LESSONS),
     family("Points for labels", "Punkte für Beschriftungen", &[interior::LESSON, labels::LESSON]),
@@ -191,6 +193,10 @@ pub const ALGORITHMS: &[&Info] = &[
     &clip::line::homogeneous::INFO,
     &clip::line::batch::INFO,
     &clip::polyline::INFO,
+    &clip::circle::INFO,
+    &clip::text::STRING,
+    &clip::text::CHARACTER,
+    &clip::text::OUTLINE,
     &clip::crossings::bentley_ottmann::INFO,
     &clip::polygon::sutherland_hodgman::INFO,
     &clip::polygon::liang_barsky::INFO,

@@ -1,6 +1,8 @@
 //! The worked examples of the classical lectures: not only the results but also the intermediate numbers, as the steps
 //! record them.
 
+mod bodies;
+mod formulas;
 mod hidden;
 mod lines;
 mod pixels;

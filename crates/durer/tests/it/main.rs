@@ -10,6 +10,7 @@ mod clip_geometry;
 mod clip_line;
 mod clip_place;
 mod clip_polygon;
+mod clip_shapes;
 mod clip_simplify;
 mod clip_tiles;
 mod clip_volume;

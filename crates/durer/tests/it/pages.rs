@@ -70,6 +70,17 @@ fn links_of_pages_lead_to_files() {
     }
 }
 
+/// The site has each page in its navigation, and refuses to be built otherwise.
+#[test]
+fn pages_are_in_the_navigation_of_the_site() {
+    let navigation = std::fs::read_to_string(folder().join("../../properdocs.yml"));
+    let navigation = navigation.unwrap_or_default();
+    for path in pages() {
+        let name = path.file_name().expect("a page").to_string_lossy();
+        assert!(navigation.contains(&format!("algorithms/{name}\n")), "{name}");
+    }
+}
+
 /// Pictures of pages: the lesson, which names the file, its example, and the largest number of steps shown.
 const SHEETS: &[(&str, &str, usize)] = &[
     ("cohen-sutherland", "all-borders", 100),
@@ -81,6 +92,8 @@ const SHEETS: &[(&str, &str, usize)] = &[
     ("bentley-ottmann", "one-point", 16),
     ("sutherland-hodgman", "triangle", 100),
     ("maillot", "opposite", 12),
+    ("circle-clipping", "corner", 12),
+    ("text-by-outline", "word", 16),
     ("weiler-atherton", "lecture", 100),
     ("greiner-hormann", "squares", 12),
     ("vatti", "letter", 12),

@@ -8,8 +8,8 @@ use durer::visibility::back_face::Eye;
 use durer::visibility::polygons::bsp::{self, Tree};
 use durer::visibility::polygons::regions::{self, Region, regions};
 use durer::visibility::polygons::{
-    Face, PolygonMethod, Screen, depth_sort, hierarchical_z, octree, painter, warnock, watkins,
-    z_buffer,
+    Face, PolygonMethod, Screen, csg, depth_sort, hierarchical_z, octree, painter, warnock,
+    watkins, z_buffer,
 };
 use durer::visibility::surface::warnock::Division;
 use durer::work::Work;
@@ -348,6 +348,48 @@ fn pixels_cells_and_regions_that_wait_are_charged() {
     };
     assert!(found(1 << 13).is_err_and(|e| e.to_string().contains("regions of polygons")));
     assert_eq!(found(1 << 20).unwrap().len(), 1);
+}
+
+/// The painter's order, the runs of solids, the cell that is the whole picture, and the edge tables of all.
+#[test]
+fn orders_runs_and_edge_tables_are_charged() {
+    let square = |z: f64| {
+        let corners = [(0.0, 0.0), (32.0, 0.0), (32.0, 32.0), (0.0, 32.0)];
+        Face::new(&corners.map(|(x, y)| DVec3::new(x, y, z))).unwrap()
+    };
+    let all: Vec<Face> = (0..2_000).map(|k| square(f64::from(k))).collect();
+    let within = |bytes: u64| Screen { work: Work::with_budget(bytes, "the budget"), ..screen() };
+    let refused = |found: durer::Result<Pixels<u32>>, what: &str| {
+        assert!(found.is_err_and(|e| e.is_of_budget() && e.to_string().contains(what)), "{what}");
+    };
+    let painted = |screen: &Screen| painter::items(&all, screen, &Default::default(), &mut NoTrace);
+    refused(painted(&within(16_000)), "order of polygons");
+    let enough = within(64_000);
+    assert!(painted(&enough).is_ok());
+    assert_eq!(enough.work.used(), 0);
+    // A run of each face in each of the rows.
+    let solids = [all[..200].to_vec()];
+    let union = csg::Expression::fold(durer::clip::polygon::BooleanOp::Union, 1).unwrap();
+    let combined = |screen: &Screen| csg::items(&solids, &union, screen, &mut NoTrace);
+    refused(combined(&within(64_000)), "runs of pixels");
+    assert!(combined(&within(1 << 20)).is_ok());
+    // One cell with all pixels.
+    let how = octree::Options { capacity: 9, depth: 0, ..Default::default() };
+    let filled = |screen: &Screen| octree::items(&all[..2], screen, &how, &mut NoTrace);
+    refused(filled(&within(32_000)), "pixels of a cell");
+    assert!(filled(&within(1 << 17)).is_ok());
+    // The planes take 12 kB, the table of one face with thousands of corners much more.
+    let wheel = |k: u32| {
+        let angle = f64::from(k) / 2_000.0 * std::f64::consts::TAU;
+        (DVec2::from_angle(angle) * 15.0 + 16.0).extend(1.0)
+    };
+    let wheel = [Face::new(&(0..2_000).map(wheel).collect::<Vec<_>>()).unwrap()];
+    for method in PolygonMethod::ALL.iter().filter(|method| **method != PolygonMethod::Watkins) {
+        refused(method.items(&wheel, &within(160_000)), "");
+        assert!(method.items(&wheel, &within(1 << 20)).is_ok(), "{method}");
+    }
+    let looped = |bytes: u64| z_buffer::items(&wheel, &within(bytes), &mut NoTrace);
+    refused(looped(160_000), "edge table of a polygon");
 }
 
 #[test]

@@ -8,6 +8,7 @@ use durer::visibility::polygons::portals::{
     Cell, Eye, Options, Plan, Portal, Step, Wall, items, replay, visits, walls,
 };
 use durer::visibility::polygons::{Face, PolygonMethod, Screen};
+use durer::work::Work;
 
 const SIDE: usize = 4;
 const ROOM: f64 = 4.0;
@@ -105,6 +106,39 @@ fn windows_shrink_from_door_to_door() {
     let second = Eye { at: DVec3::new(6.0, 0.0, 7.0), cell: 1, focal: 24.0 };
     let cells = visits(&plan, &second, &screen(), &Options::default(), &mut NoTrace).unwrap();
     assert_eq!(cells.iter().map(|visit| visit.cell).collect::<Vec<_>>(), [1, 2]);
+}
+
+/// Two doors in one wall, the right one first and given from right to left: three pieces of wall are left in each room.
+#[test]
+fn walls_are_left_beside_doors() {
+    let room =
+        |z: f64| [(0.0, z), (8.0, z), (8.0, z + 4.0), (0.0, z + 4.0)].map(DVec2::from).to_vec();
+    let door = |from: f64, to: f64| [DVec2::new(from, 4.0), DVec2::new(to, 4.0)];
+    let plan =
+        Plan::of_rooms(&[room(0.0), room(4.0)], &[door(7.0, 5.0), door(1.0, 2.0)], 2.0).unwrap();
+    for (cell, to) in plan.cells().iter().zip([1, 0]) {
+        assert!(cell.portals.iter().all(|portal| portal.to == to) && cell.portals.len() == 2);
+        let common = cell.walls.iter().filter(|wall| wall.iter().all(|p| p.z == 4.0));
+        let mut pieces: Vec<[f64; 2]> = common.map(|wall| [wall[0].x, wall[1].x]).collect();
+        pieces.iter_mut().for_each(|piece| piece.sort_by(f64::total_cmp));
+        pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        assert_eq!(pieces, [[0.0, 1.0], [2.0, 5.0], [7.0, 8.0]]);
+        assert_eq!(cell.walls.len(), 6);
+    }
+}
+
+#[test]
+fn visits_are_charged_to_the_budget() {
+    let (rooms, doors) = rooms(&mut Random(5), 0.0);
+    let plan = Plan::of_rooms(&rooms, &doors, 2.0).unwrap();
+    let eye = Eye { at: DVec3::new(1.0, 0.0, 1.0), cell: 0, focal: 24.0 };
+    let within = |bytes: u64| Screen { work: Work::with_budget(bytes, "the budget"), ..screen() };
+    let visit = |screen: &Screen| visits(&plan, &eye, screen, &Options::default(), &mut NoTrace);
+    let refused = visit(&within(100)).unwrap_err();
+    assert!(refused.is_of_budget() && refused.to_string().contains("visits of cells"), "{refused}");
+    let enough = within(1 << 16);
+    assert_eq!(visit(&enough).unwrap(), visit(&screen()).unwrap());
+    assert_eq!(enough.work.used(), 0);
 }
 
 #[test]

@@ -9,7 +9,7 @@ mod skala;
 mod sobkow_pospisil_yang;
 
 pub(super) use cohen_sutherland::by_codes;
-pub(super) use parametric::by_parameters;
+pub(super) use parametric::{SIDES, by_parameters};
 
 use super::input::{Figure, Input};
 use super::lesson::Lesson;
@@ -70,12 +70,12 @@ fn figure(size: (f64, f64), start: (f64, f64), end: (f64, f64)) -> Input {
 }
 
 /// Returns the adjective for a border of one bit.
-fn border_name(border: Outcode) -> Value {
+pub(super) fn border_name(border: Outcode) -> Value {
     BORDERS.get(border.0.trailing_zeros() as usize).copied().unwrap_or_default().into()
 }
 
 /// Returns the ends of a window's border.
-fn side(window: &Rect, border: Outcode) -> [DVec2; 2] {
+pub(super) fn side(window: &Rect, border: Outcode) -> [DVec2; 2] {
     let [a, b, c, d] = corners(window);
     match border {
         Outcode::LEFT => [a, d],

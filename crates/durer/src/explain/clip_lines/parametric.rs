@@ -364,7 +364,7 @@ fn border_caption(border: Value, relation: Relation, n: Numbers) -> Caption {
 const W_IS_ZERO: Word = Word::new("w = 0", "w = 0");
 
 /// Names of the borders of a rectangle in tables.
-pub(super) const SIDES: [Word; 4] = [
+pub(in super::super) const SIDES: [Word; 4] = [
     Word::new("left", "links"),
     Word::new("right", "rechts"),
     Word::new("bottom", "unten"),

@@ -88,12 +88,12 @@ static EDGE_ON: Template = Template::new(
 );
 static ADDED: Template = Template::new(
     "count",
-    "Pixel {pixel}: the side has z = {depth} < {stored}, it is in front of the visible face: + {change} = {count}.",
+    "Pixel {pixel}: the side has z = {depth} < {stored}, in front of the visible point: + {change} = {count}.",
     "Pixel {pixel}: Die Seite hat z = {depth} < {stored}, liegt also vor dem Sichtbaren: + {change} = {count}.",
 );
 static TAKEN: Template = Template::new(
     "count",
-    "Pixel {pixel}: the side has z = {depth} < {stored}, it is in front of the visible face: − {change} = {count}.",
+    "Pixel {pixel}: the side has z = {depth} < {stored}, in front of the visible point: − {change} = {count}.",
     "Pixel {pixel}: Die Seite hat z = {depth} < {stored}, liegt also vor dem Sichtbaren: − {change} = {count}.",
 );
 static BEYOND: Template = Template::new(

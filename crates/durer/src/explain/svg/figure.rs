@@ -2,9 +2,11 @@
 
 use super::hatch::hatch;
 use super::{TEXT, escaped, short, width};
+use crate::clip::line::{Segment, liang_barsky};
 use crate::explain::picture::{Look, Picture, Shape};
 use crate::explain::words::Language;
-use crate::math::DVec2;
+use crate::math::{DVec2, Rect};
+use crate::trace::NoTrace;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -54,8 +56,8 @@ fn scale(picture: &Picture, longest: f64) -> f64 {
 pub(super) fn draw(picture: &Picture, longest: f64, language: Language) -> String {
     let size = size(picture, longest);
     let scale = scale(picture, longest);
-    let mut pen =
-        Pen { picture, scale, size, language, taken: Taken::default(), out: String::new() };
+    let (taken, crossed) = (Taken::default(), Vec::new());
+    let mut pen = Pen { picture, scale, size, language, taken, crossed, out: String::new() };
     let (w, h) = (short(size.x), short(size.y));
     let _ = write!(
         pen.out,
@@ -63,8 +65,10 @@ pub(super) fn draw(picture: &Picture, longest: f64, language: Language) -> Strin
     );
     // Pixels are below everything, then their grid; texts are on top, where they know what they would cover.
     for layer in 0..3 {
-        if layer == 1 {
-            pen.grid();
+        match layer {
+            1 => pen.grid(),
+            2 => pen.crossed_texts(),
+            _ => {}
         }
         let marks = picture.marks.iter().filter(|mark| layer_of(&mark.shape) == layer);
         marks.for_each(|mark| pen.mark(&mark.shape, mark.look));
@@ -90,6 +94,8 @@ struct Pen<'a> {
     language: Language,
     /// Texts and dots drawn so far.
     taken: Taken,
+    /// Texts of pixels that lines cross: the middle, the text, its colour and that of the pixel.
+    crossed: Vec<(DVec2, String, &'static str, String)>,
     out: String,
 }
 
@@ -276,7 +282,53 @@ impl Pen<'_> {
         let [x, y, w, h] = [low.x, low.y, high.x - low.x, high.y - low.y].map(short);
         let _ = write!(self.out, "<rect x='{x}' y='{y}' width='{w}' height='{h}' fill='{fill}'/>");
         if !text.is_empty() && width(text, SMALL) <= high.x - low.x + 4.0 {
-            self.middle((low + high) / 2.0, text, if dark { "#fff" } else { "#222" });
+            let (middle, color) = ((low + high) / 2.0, if dark { "#fff" } else { "#222" });
+            if self.is_crossed(middle, text) {
+                self.crossed.push((middle, text.to_owned(), color, fill.to_owned()));
+            } else {
+                self.middle(middle, text, color);
+            }
+        }
+    }
+
+    /// Returns whether a line passes through the text of a pixel; false where a dot covers it anyway.
+    fn is_crossed(&self, middle: DVec2, text: &str) -> bool {
+        let half = DVec2::new(width(text, SMALL) / 2.0, SMALL / 2.0);
+        let Ok(bounds) = Rect::new(middle - half, middle + half) else { return false };
+        let crosses = |a: DVec2, b: DVec2| {
+            let segment = Segment::new(self.at(a), self.at(b));
+            liang_barsky::clip(&bounds, segment, &mut NoTrace).is_ok_and(|part| part.is_some())
+        };
+        let mut is_crossed = false;
+        for mark in &self.picture.marks {
+            match &mark.shape {
+                Shape::Dot(p) if bounds.contains(self.at(*p)) => return false,
+                Shape::Chain(points) if !is_crossed => {
+                    is_crossed = points.windows(2).any(|pair| crosses(pair[0], pair[1]));
+                }
+                Shape::Rings(rings) if !is_crossed => {
+                    let sides = |ring: &Vec<DVec2>| {
+                        let next = ring.iter().cycle().skip(1);
+                        ring.iter().zip(next).any(|(a, b)| crosses(*a, *b))
+                    };
+                    is_crossed = rings.iter().any(sides);
+                }
+                Shape::Arrow([from, to]) => is_crossed |= crosses(*from, *to),
+                _ => {}
+            }
+        }
+        is_crossed
+    }
+
+    /// Writes the texts of pixels that lines cross, over these lines.
+    fn crossed_texts(&mut self) {
+        for (middle, text, color, fill) in std::mem::take(&mut self.crossed) {
+            let half = DVec2::new(width(&text, SMALL) / 2.0 + 1.0, SMALL / 2.0);
+            let [x, y] = (middle - half).to_array().map(short);
+            let [w, h] = (half * 2.0).to_array().map(short);
+            let _ =
+                write!(self.out, "<rect x='{x}' y='{y}' width='{w}' height='{h}' fill='{fill}'/>");
+            self.middle(middle, &text, color);
         }
     }
 

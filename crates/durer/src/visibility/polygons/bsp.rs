@@ -164,6 +164,7 @@ pub fn items(
 ) -> Result<Pixels<u32>> {
     let tree = Tree::new(faces, options, &screen.work, t)?;
     let mut items = screen.plane(NO_ITEM)?;
+    let _table = screen.edge_table(faces)?;
     for piece in tree.back_to_front(Eye::Along(DVec3::Z), t) {
         let number = tree.face(piece);
         let Some(face) = faces.get(number as usize) else { continue };

@@ -257,14 +257,20 @@ pub fn items(
         .flat_map(|(solid, faces)| faces.iter().map(move |face| (solid, face)))
         .collect();
     let items = screen.plane(NO_ITEM)?;
-    let mut rows = vec![Vec::new(); screen.height as usize];
+    let _table = screen.edge_table(faces.iter().map(|(_, face)| *face))?;
+    let mut charge = screen.work.charge_for::<Vec<Run>>("runs of pixels", screen.height.into())?;
+    let mut rows: Vec<Vec<Run>> = vec![Vec::new(); screen.height as usize];
     for (number, (_, face)) in (0..).zip(&faces).filter(|(_, (solid, _))| expression.names(*solid))
     {
+        let mut runs = 0;
         face.spans(screen, |span| {
             if let Some(row) = usize::try_from(span.y).ok().and_then(|y| rows.get_mut(y)) {
                 row.push((span.x0 as u32, span.x1 as u32, number));
+                runs += 1;
             }
         });
+        // A row grows to twice its length.
+        charge.grow(runs * size_of::<[Run; 2]>() as u64)?;
     }
     let inside = vec![false; solids.len()];
     let mut picture = Picture { faces, expression, items, inside, stack: Vec::new() };
@@ -274,7 +280,7 @@ pub fn items(
         ends.dedup();
         for span in ends.windows(2) {
             let part = Part { y, x0: span[0], x1: span[1] };
-            let covers = |&&(x0, x1, _): &&(u32, u32, u32)| x0 <= part.x0 && part.x1 <= x1;
+            let covers = |&&(x0, x1, _): &&Run| x0 <= part.x0 && part.x1 <= x1;
             let covering: Vec<u32> = row.iter().filter(covers).map(|run| run.2).collect();
             if !covering.is_empty() {
                 picture.span(part, &covering, t);
@@ -283,6 +289,9 @@ pub fn items(
     }
     Ok(picture.items)
 }
+
+/// First column, column after the last one, and face of a run of pixels.
+type Run = (u32, u32, u32);
 
 /// The picture as it becomes.
 struct Picture<'a> {

@@ -158,6 +158,7 @@ pub fn items(
     t: &mut impl Tracer<Step>,
 ) -> Result<Pixels<u32>> {
     let mut items = screen.plane(NO_ITEM)?;
+    let _table = screen.edge_table(faces)?;
     let mut charge = screen.work.charge("pixels of polygons", 0)?;
     let mut covered = |face: &Face| {
         let mut count = 0;

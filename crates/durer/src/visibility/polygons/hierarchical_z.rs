@@ -188,6 +188,7 @@ pub fn items(
     for (cell, own) in octree.cells.iter().enumerate() {
         t.step(|| Step::Cell { cell, corners: [own.low, own.high], faces: own.faces.len() });
     }
+    let _table = screen.edge_table(faces)?;
     let mut picture =
         Picture { faces, screen, pyramid: Pyramid::new(screen)?, items: screen.plane(NO_ITEM)? };
     let mut waiting: Vec<usize> = if octree.cells.is_empty() { Vec::new() } else { vec![0] };

@@ -45,9 +45,11 @@ pub mod z_buffer;
 pub use face::Face;
 
 use crate::Result;
+use crate::math::DVec2;
+use crate::raster::polygon::edge_table::Edge;
 use crate::target::Pixels;
 use crate::trace::NoTrace;
-use crate::work::Work;
+use crate::work::{Charge, Work};
 
 /// The picture that is made: an item for each pixel, which is the index of a face, or
 /// [`NO_ITEM`](crate::target::NO_ITEM).
@@ -65,6 +67,13 @@ impl Screen {
     /// Returns a plane of this size.
     fn plane<T: Copy>(&self, value: T) -> Result<Pixels<T>> {
         Pixels::within((&self.work, "planes of the picture"), self.width, self.height, value)
+    }
+
+    /// Charges the edge table for the pixels of the face with the most corners: faces are scanned one after the other.
+    fn edge_table<'a>(&self, faces: impl IntoIterator<Item = &'a Face>) -> Result<Charge> {
+        let corners = faces.into_iter().map(|face| face.corners().len()).max().unwrap_or(0);
+        // An edge is in the table, then among the active ones; its corner is in the outline.
+        self.work.charge_for::<([Edge; 2], DVec2)>("edge table of a polygon", corners as u64)
     }
 }
 

@@ -116,6 +116,9 @@ pub fn items(
         Key::Farthest => face.depths()[1],
         Key::Mean => face.corners().iter().map(|c| c.z).sum::<f64>() / face.corners().len() as f64,
     };
+    let _table = screen.edge_table(faces)?;
+    let _order =
+        screen.work.charge_for::<(f64, u32, &Face)>("order of polygons", faces.len() as u64)?;
     let mut order: Vec<(f64, u32, &Face)> =
         (0..).zip(faces).map(|(number, face)| (key(face), number, face)).collect();
     order.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));

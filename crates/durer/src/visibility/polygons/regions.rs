@@ -34,15 +34,15 @@ pub const INFO: Info = Info {
     pseudocode: &[
         "lists ← { all polygons, with nothing behind them }",
         "while there are lists:",
-        "    take one; if it is empty, what is behind it is visible: report it",
+        "    take one; if it is empty, the polygon behind it is visible: report it",
         "    P ← the polygon of the list with the nearest corner",
         "    for each other polygon Q of the list:",
         "        cut Q along the outline of P",
-        "        put the part outside into the outside list",
-        "        if the part inside is behind P: it is hidden",
-        "        else: put the part in front of P into the inside list",
+        "        put the parts outside into the outside list",
+        "        if the parts inside are behind P: they are hidden",
+        "        else: put the parts in front of P into the inside list",
         "    add the inside list, with P behind it",
-        "    add the outside list, with what was behind the list",
+        "    add the outside list, with the polygons that were behind the list",
     ],
 };
 

@@ -282,6 +282,7 @@ pub fn render(
             }
         }
     }
+    let _table = screen.edge_table(faces)?;
     for caster in casters.iter().filter(|_| options.count == Count::ZFail) {
         let (face, lit) = (caster.face, caster.lit_side_is_seen());
         t.step(|| Step::Cap { face, lit });

@@ -148,6 +148,7 @@ pub fn items(
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Result<Pixels<u32>> {
+    let _table = screen.edge_table(faces)?;
     let mut charge = screen.work.charge("polygons in windows", 0)?;
     let mut cover = |face| {
         let cover = Cover::new(face, screen);

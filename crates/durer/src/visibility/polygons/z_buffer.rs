@@ -97,6 +97,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
 pub fn items(faces: &[Face], screen: &Screen, t: &mut impl Tracer<Step>) -> Result<Pixels<u32>> {
     let mut depths = screen.plane(f64::INFINITY)?;
     let mut items = screen.plane(NO_ITEM)?;
+    let _table = screen.edge_table(faces)?;
     t.step(|| Step::Clear);
     for (number, face) in (0..).zip(faces) {
         t.step(|| Step::Face { face: number });

@@ -4,7 +4,7 @@ use super::{near, p};
 use durer::clip::line::liang_barsky::{Numbers, Step as Passage};
 use durer::clip::line::{
     End, HalfPlane, Relation, Segment, cohen_sutherland, cyrus_beck, homogeneous, liang_barsky,
-    midpoint,
+    midpoint, skala, sobkow_pospisil_yang as by_code,
 };
 use durer::clip::outcode::Outcode;
 use durer::math::{DVec2, DVec3, IVec2, Rect};
@@ -294,4 +294,63 @@ fn a_volume_tells_its_six_boundary_coordinates() {
     });
     // t from the outside end: d_out / (d_out − d_in) = −2 / (−2 − 2) = ½.
     assert_eq!(cut, Some(([2.0, -2.0], 0)));
+}
+
+/// Window (0, 0)–(10, 6), from (−4, 1) to (10, 8): A × B, its values at the corners, and the two borders of its code.
+#[test]
+fn skala_codes_the_corners_by_one_cross_product() {
+    let window = Rect::new(p(0.0, 0.0), p(10.0, 6.0)).unwrap();
+    let mut steps = Recorder::default();
+    skala::clip(&window, Segment::new(p(-4.0, 1.0), p(10.0, 8.0)), &mut steps).unwrap();
+    let steps = steps.steps();
+    assert_eq!(steps[0], skala::Step::Line { coefficients: DVec3::new(-7.0, 14.0, -42.0) });
+    let corners = steps.iter().filter_map(|s| match *s {
+        skala::Step::Corner { corner, value, side } => Some((corner, value, side.is_gt())),
+        _ => None,
+    });
+    let expected = [(0, -42.0, false), (1, -112.0, false), (2, -28.0, false), (3, 42.0, true)];
+    assert_eq!(corners.collect::<Vec<_>>(), expected);
+    // The left and the top border are between corners of different signs.
+    let cuts = steps.iter().filter_map(|s| match *s {
+        skala::Step::Cut { end, point, .. } => Some((end, point)),
+        _ => None,
+    });
+    assert_eq!(cuts.collect::<Vec<_>>(), [(End::Start, p(0.0, 3.0)), (End::End, p(6.0, 6.0))]);
+    assert_eq!(steps.last(), Some(&skala::Step::Accepted { at_once: false }));
+}
+
+/// The line code 0001 1000 twice: once through the window, once past its corner.
+#[test]
+fn a_line_code_names_the_borders_to_cut() {
+    let window = Rect::new(p(0.0, 0.0), p(10.0, 6.0)).unwrap();
+    let steps = |a: DVec2, b: DVec2| {
+        let mut steps = Recorder::default();
+        by_code::clip(&window, Segment::new(a, b), &mut steps).unwrap();
+        steps.into_steps()
+    };
+    let code = by_code::Step::Code { start: Outcode::LEFT, end: Outcode::TOP };
+    let cut = |end, border, point, code| by_code::Step::Cut { end, border, point, code };
+    let through = steps(p(-4.0, 1.0), p(10.0, 8.0));
+    let expected = [
+        code,
+        cut(End::Start, Outcode::LEFT, p(0.0, 3.0), Outcode::INSIDE),
+        cut(End::End, Outcode::TOP, p(6.0, 6.0), Outcode::INSIDE),
+        by_code::Step::Accepted { at_once: false },
+    ];
+    assert_eq!(through, expected);
+    let past = steps(p(-4.0, 3.0), p(3.0, 9.5));
+    let [first, by_code::Step::Cut { end, border, point, code: beyond }, last] = past[..] else {
+        panic!("{past:?}");
+    };
+    assert_eq!((first, last), (code, by_code::Step::Rejected { at_once: false }));
+    assert_eq!((end, border, beyond), (End::Start, Outcode::LEFT, Outcode::TOP));
+    assert!(
+        point.x == 0.0 && near(point.y, 3.0 + 4.0 * 6.5 / 7.0) && (point.y - 6.71).abs() < 5e-3
+    );
+    // Exercise 4: the codes of a segment and of the same one turned round.
+    let codes = |a: DVec2, b: DVec2| {
+        let code = |q: DVec2| Outcode::of_point_2d(&super::lines::window(), q).to_string();
+        [code(a), code(b)]
+    };
+    assert_eq!(codes(p(-5.0, 12.0), p(5.0, -3.0)), ["1001", "0100"]);
 }

@@ -4,7 +4,7 @@ use super::p;
 use durer::clip::line::HalfPlane;
 use durer::clip::polygon::sutherland_hodgman::by_borders::{self, Rule, Step as Edge};
 use durer::clip::polygon::weiler_atherton::{self, Mark, Operand, Step as Walk};
-use durer::clip::polygon::{BooleanOp, Shapes, naive, sutherland_hodgman};
+use durer::clip::polygon::{BooleanOp, Shapes, liang_barsky, maillot, naive, sutherland_hodgman};
 use durer::math::{DVec2, Rect};
 use durer::trace::{NoTrace, Recorder};
 
@@ -228,4 +228,39 @@ fn a_clockwise_subject_gives_what_it_gives_the_other_way_round() {
         assert_eq!(rings(&a), rings(&b), "{op}");
         assert_eq!(a.area(), b.area());
     }
+}
+
+/// A triangle around the corner (2, 2) of its window: the slanted edge is not seen, but turns there.
+#[test]
+fn liang_and_barsky_turn_where_an_edge_is_not_seen() {
+    use liang_barsky::Step;
+    let window = Rect::new(p(0.0, 0.0), p(2.0, 2.0)).unwrap();
+    let mut steps = Recorder::default();
+    let ring = [p(1.0, 1.0), p(5.0, 1.0), p(1.0, 5.0)];
+    let found = liang_barsky::clip(&window, &ring, &mut steps).unwrap();
+    assert_eq!(found, [p(2.0, 1.0), p(2.0, 2.0), p(1.0, 2.0), p(1.0, 1.0)]);
+    let slanted = steps.steps().iter().position(|s| matches!(s, Step::Edge { edge: 1, .. }));
+    let after = &steps.steps()[slanted.unwrap()..];
+    // It enters x ≤ 2 at ¾ and leaves y ≤ 2 at ¼: the later entry is behind the first exit.
+    assert_eq!(after[0], Step::Edge { edge: 1, enters: [0.75, -0.25], leaves: [1.25, 0.25] });
+    assert_eq!(after[1], Step::Turn(p(2.0, 2.0)));
+}
+
+/// From below left to above right, past (0, 8): codes with their fifth bit, and the corners that they name.
+#[test]
+fn maillot_goes_around_the_corner_that_an_edge_passes() {
+    use maillot::{Code, Step, Turn};
+    let window = Rect::new(p(0.0, 0.0), p(10.0, 8.0)).unwrap();
+    let ring = [p(-9.0, -1.0), p(11.0, 21.0), p(-9.0, 21.0)];
+    let mut steps = Recorder::default();
+    maillot::clip(&window, &ring, &mut steps).unwrap();
+    let Step::Edge { edge: 0, start, end } = steps.steps()[0] else { panic!() };
+    assert_eq!([start, end].map(|code| code.to_string()), ["10101", "11010"]);
+    let turn = |corner, turn| Step::Turn { corner, turn };
+    let corners = [turn(p(0.0, 8.0), Turn::CornerToCorner), turn(p(10.0, 8.0), Turn::Basic)];
+    assert_eq!(steps.steps()[1..3], corners);
+    // At x = 0 the edge is at 8.9, above the window.
+    assert!((-1.0 + 22.0 * 9.0 / 20.0 - 8.9_f64).abs() < 1e-12);
+    let beside = Code::of(&window, p(-1.0, 4.0));
+    assert_eq!((beside.to_string(), beside.is_corner), ("00001".to_owned(), false));
 }

@@ -153,6 +153,7 @@ pub fn items(
         let corners = [own.low, own.high];
         t.step(|| Step::Cell { cell, corners, children: own.children.clone() });
     }
+    let _table = screen.edge_table(faces)?;
     let mut charge = screen.work.charge("runs of pixels", 0)?;
     let mut spans = |face: &Face| {
         let mut spans = Vec::new();
@@ -175,6 +176,9 @@ pub fn items(
             t.step(|| Step::LeaveOut { cell, cells: octree.cells_in(cell) });
         } else if own.children.is_empty() {
             t.step(|| Step::Leaf { cell, faces: own.faces.clone() });
+            let _nearest = screen
+                .work
+                .charge_for::<[Nearest; 2]>("pixels of a cell", pixels_in(own, screen))?;
             picture.fill(own, root, t);
         } else {
             t.step(|| Step::Visit { cell });
@@ -184,6 +188,18 @@ pub fn items(
     }
     Ok(picture.items)
 }
+
+/// Returns the most pixels of the screen that a cell has.
+fn pixels_in(cell: &Cell, screen: &Screen) -> u64 {
+    let along = |low: f64, high: f64, size: u32| {
+        (high.ceil().min(size.into()) - low.floor().max(0.0)).max(0.0) as u64 + 1
+    };
+    let columns = along(cell.low.x, cell.high.x, screen.width);
+    columns.saturating_mul(along(cell.low.y, cell.high.y, screen.height))
+}
+
+/// A pixel of a cell, with the depth and the number of its nearest face.
+type Nearest = ([u32; 2], (f64, u32));
 
 /// The picture as it becomes.
 struct Picture<'a> {

@@ -200,7 +200,8 @@ struct Open {
 /// several portals comes several times.
 ///
 /// # Errors
-/// [`Error::Dangling`] for an eye in no cell of the plan; [`Error::Limit`] for more visits than the options allow.
+/// [`Error::Dangling`] for an eye in no cell of the plan; [`Error::Limit`] for more visits than the options allow;
+/// [`Memory`](Error::Memory) where the screen's budget does not suffice.
 pub fn visits(
     plan: &Plan,
     eye: &Eye,
@@ -212,12 +213,14 @@ pub fn visits(
     if eye.cell >= count {
         return Err(Error::Dangling { what: "cell", index: eye.cell, count });
     }
+    let mut charge = screen.work.charge("visits of cells", 0)?;
     let mut visits = Vec::new();
     let mut enter = |way: &mut Vec<Open>, cell: usize, window: Window, t: &mut _| {
         if visits.len() >= options.max_visits {
             let (value, limit) = (visits.len() as u64 + 1, options.max_visits as u64);
             return Err(Error::Limit { what: "visits of cells", value, limit });
         }
+        charge.grow(size_of::<(Visit, Open)>() as u64)?;
         let visit = Visit { cell, window, portals: way.len() };
         report(t, Step::Enter(visit));
         visits.push(visit);
@@ -318,7 +321,9 @@ pub fn items(
     let mut depths = screen.plane(f64::INFINITY)?;
     let mut items = screen.plane(NO_ITEM)?;
     for Visit { cell, window: Window { low, high }, .. } in visits(plan, eye, screen, options, t)? {
-        for Wall { item, face } in walls(plan, cell, eye, screen)? {
+        let walls = walls(plan, cell, eye, screen)?;
+        let _table = screen.edge_table(walls.iter().map(|wall| &wall.face))?;
+        for Wall { item, face } in walls {
             face.pixels(screen, |[x, y], point| {
                 let inside = x >= low[0] && x < high[0] && y >= low[1] && y < high[1];
                 if inside && depths.get(x, y).is_some_and(|stored| point.z < stored) {
