@@ -105,8 +105,8 @@ impl Job<'_> {
         let name = display_name(&given.layer.input);
         let fail = |e: durer_formats::Error| Failure::Data(format!("{name}: {e}"));
         self.messages.progress.stage(|| format!("reading {name}"));
-        let beside = Beside { name: &given.name, resources: &*given.resources, layer: None };
-        let reader = Reader::with(given.format, &given.bytes[..], &beside);
+        let beside = Beside { name: &given.file.name, resources: &*given.file.beside, layer: None };
+        let reader = Reader::with(given.format, &given.file.bytes[..], &beside);
         let mut reader = reader.map_err(fail)?;
         let mut features = Vec::new();
         while let Some(feature) = reader.next_feature().map_err(fail)? {

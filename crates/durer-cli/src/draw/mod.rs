@@ -113,10 +113,16 @@ struct Job<'a> {
 struct Given<'a> {
     layer: &'a Layer,
     format: GeoFormat,
+    file: Unpacked,
+}
+
+/// A file without its compression.
+struct Unpacked {
     bytes: Vec<u8>,
-    /// The name of the file, and access to those beside it.
+    /// Its name, without a folder.
     name: String,
-    resources: Box<dyn Resources>,
+    /// Access to the files beside it.
+    beside: Box<dyn Resources>,
 }
 
 impl Job<'_> {
@@ -169,36 +175,32 @@ impl Job<'_> {
     /// Finds the format of a layer.
     fn given<'a>(&mut self, layer: &'a Layer, bytes: Vec<u8>) -> Result<Given<'a>, Failure> {
         let name = display_name(&layer.input);
-        let (bytes, file, resources) = self.unpacked(layer, bytes)?;
-        let svg = GeoFormat::of_content(&bytes) == Some(GeoFormat::Svg);
+        let file = self.unpacked(layer, bytes)?;
+        let bytes = &file.bytes[..];
+        let svg = GeoFormat::of_content(bytes) == Some(GeoFormat::Svg);
         let told = self.args.from.filter(|_| !svg);
-        let format = told.or_else(|| crate::layer::format_of(Path::new(&file), &bytes));
+        let format = told.or_else(|| crate::layer::format_of(Path::new(&file.name), bytes));
         let Some(format) = format else {
-            let (what, read) = (crate::layer::foreign(&bytes), GeoFormat::READ);
+            let (what, read) = (crate::layer::foreign(bytes), GeoFormat::READ);
             let message = format!("{name}: {what}; durer draw reads SVG, and map data from {read}");
             return Err(Failure::Data(message));
         };
         let (input, map) = (name, None);
         self.report.layers.push(LayerReport { input, format: format.name(), map });
-        Ok(Given { layer, format, bytes, name: file, resources })
+        Ok(Given { layer, format, file })
     }
 
-    /// Returns the bytes of a layer's file, its name, and access to the files beside it; those of the only map of an
-    /// archive.
-    fn unpacked(
-        &self,
-        layer: &Layer,
-        bytes: Vec<u8>,
-    ) -> Result<(Vec<u8>, String, Box<dyn Resources>), Failure> {
+    /// Returns the file of a layer, or the only map of an archive.
+    fn unpacked(&self, layer: &Layer, bytes: Vec<u8>) -> Result<Unpacked, Failure> {
         let path = &layer.input;
         if !bytes.starts_with(archive::MAGIC) {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            return Ok((bytes, name, input::folder(path)));
+            return Ok(Unpacked { bytes, name, beside: input::folder(path) });
         }
         let packed = crate::layer::packed(bytes, None, &self.limits());
         let packed = packed.map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))?;
         let name = packed.name.rsplit('/').next().unwrap_or_default().to_owned();
-        Ok((packed.bytes, name, Box::new(packed.beside)))
+        Ok(Unpacked { bytes: packed.bytes, name, beside: Box::new(packed.beside) })
     }
 
     /// Returns the limits on inputs.
