@@ -1,9 +1,9 @@
 """Compares the speed of the Python package with pyrender, f3d, shapely, geopandas and rasterio, all in one run.
 
-    python peers/python/measure.py [--quick] > table.md
+    python peers/python/measure.py [--quick] [--cpu] > table.md
 
 Each row has the medians of runs in turn, of one process, after one run that is not counted. What is not installed, or does not
-run on the machine, is left out with its reason.
+run on the machine, is left out with its reason. CPU time does not depend on what else the machine does; it adds up the threads.
 """
 
 from __future__ import annotations
@@ -185,41 +185,48 @@ def polygons(count: int) -> list[Row]:
     return rows
 
 
-def median(runs: int, all: list[Callable[[], object]]) -> list[float]:
-    """Returns the median times of several functions, run alternately, in milliseconds."""
+def median(runs: int, all: list[Callable[[], object]], clock: Callable[[], float]) -> list[float]:
+    """Returns the median times of several things that are done in turn, in milliseconds of a clock."""
     times: list[list[float]] = [[] for _ in all]
     for turn in range(runs + 1):
         for run, own in zip(all, times, strict=True):
-            start = time.perf_counter()
+            start = clock()
             run()
             if turn:
-                own.append(1000 * (time.perf_counter() - start))
+                own.append(1000 * (clock() - start))
     return [statistics.median(own) for own in times]
 
 
-def import_time() -> float:
-    """Returns the import time beyond that of numpy, in milliseconds."""
-    code = "import time, numpy; t = time.perf_counter(); import durer; print(time.perf_counter() - t)"
-    runs = [subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True) for _ in range(7)]
-    return 1000 * statistics.median(float(run.stdout) for run in runs)
+def import_times() -> tuple[float, float]:
+    """Returns the seconds and the CPU time that the import takes beyond that of numpy, both in milliseconds."""
+    now = "time.perf_counter(), time.process_time()"
+    code = f"import time, numpy; a, b = {now}; import durer; c, d = {now}; print(c - a, d - b)"
+    runs = [subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True) for _ in range(20)]
+    times = [[1000 * float(word) for word in run.stdout.split()] for run in runs]
+    seconds, cpu = (statistics.median(column) for column in zip(*times, strict=True))
+    return seconds, cpu
 
 
 def main() -> None:
     """Prints the table."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--quick", action="store_true", help="fewer things and runs")
-    quick = parser.parse_args().quick
+    parser.add_argument("--cpu", action="store_true", help="CPU time of all threads in place of seconds")
+    arguments = parser.parse_args()
+    quick, clock = arguments.quick, time.process_time if arguments.cpu else time.perf_counter
     warnings.simplefilter("ignore")
     runs = 3 if quick else 9
     rows = [pictures(), *segments(20_000 if quick else 200_000), *polygons(10_000 if quick else 100_000)]
     print("| what | durer, ms | beside | ms | times as fast |\n|---|--:|---|--:|--:|")
     for name, own, others in rows:
-        mine, *theirs = median(runs, [own, *others.values()])
+        mine, *theirs = median(runs, [own, *others.values()], clock)
         if not others:
             print(f"| {name} | {mine:.2f} | – | – | – |", flush=True)
         for other, their in zip(others, theirs, strict=True):
             print(f"| {name} | {mine:.2f} | {other} | {their:.2f} | {their / mine:.1f} |", flush=True)
-    print(f"| import beyond numpy | {import_time():.1f} | – | – | – |\n")
+    seconds, cpu = import_times()
+    print(f"| import beyond numpy | {seconds:.1f} | – | – | – |")
+    print(f"| import beyond numpy, CPU time | {cpu:.1f} | – | – | – |\n")
     for reason in left_out:
         print(f"Left out: {reason}")
 

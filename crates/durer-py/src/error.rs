@@ -44,9 +44,7 @@ pub fn of_reader(py: Python<'_>, error: Error, name: &str) -> PyErr {
     };
     match &error {
         Error::Limit { .. } => exception(py, "LimitError", (message, None)),
-        Error::Library(inner) if inner.is_of_cost() => {
-            exception(py, "LimitError", (message, None))
-        }
+        Error::Library(inner) if inner.is_of_cost() => exception(py, "LimitError", (message, None)),
         Error::Decode { place: at, .. }
         | Error::Unsupported { place: at, .. }
         | Error::Resource { place: at, .. } => exception(py, "ReadError", (message, place(at))),

@@ -1,12 +1,13 @@
 //! Tables of geometries, as well-known binary or ragged arrays: one result for each, in parallel.
 
 use crate::args::{contiguous, flat};
-use crate::geometry::{Kind, Ragged, RaggedOut};
+use crate::geometry::{Kind, Ragged, RaggedOut, Row};
 use crate::overlay::{self, clip, mask, op, rules};
 use crate::threads::on_threads;
 use durer::clip::mask::{Mask, Rules};
-use durer::clip::polygon::BooleanOp;
-use durer::geometry::Geometry;
+use durer::clip::polygon::validity::{Touching, is_valid};
+use durer::clip::polygon::{BooleanOp, Shapes};
+use durer::geometry::{Geometry, Points};
 use durer::math::{DVec2, Rect};
 use durer_formats::geo::{from_wkb, to_wkb};
 use numpy::{
@@ -71,7 +72,6 @@ impl Task<'_> {
 
 /// Returns an empty geometry of the same kind.
 fn emptied(geometry: &Geometry) -> Geometry {
-    use durer::geometry::Points;
     match geometry {
         Geometry::Point(_) => Geometry::Point(Points::default()),
         Geometry::LineString(_) => Geometry::LineString(Points::default()),
@@ -246,14 +246,41 @@ fn arrays(py: Python<'_>, out: RaggedOut) -> PyResult<RaggedArrays<'_>> {
     Ok((kind as u8, coords, offsets.into_iter().map(|o| flat(py, o)).collect()))
 }
 
-/// Returns arrays of results, or the first error as an exception.
-fn gathered(made: Made<Option<Geometry>>, like: &Ragged<'_>) -> Result<RaggedOut, String> {
-    let (rows, errors) = parted(made);
-    if let Some((at, e)) = errors.first() {
-        return Err(format!("geometries[{at}]: {e}"));
+/// Number of rows of ragged arrays that a thread works on at a time: few enough for its cache.
+const RUN: usize = 256;
+
+/// Runs a function for each row of ragged arrays, in parallel, with a scratch buffer. Returns runs of results, one after
+/// the other, or the first error.
+fn runs<T: Send>(
+    count: usize,
+    row: impl Fn(usize, &mut Shapes) -> Result<T, String> + Send + Sync,
+) -> Result<Vec<Vec<T>>, String> {
+    let run = |first: usize| {
+        let mut scratch = Shapes::new();
+        let rows = first..count.min(first + RUN);
+        rows.map(|at| row(at, &mut scratch).map_err(|e| format!("geometries[{at}]: {e}"))).collect()
+    };
+    let made: Vec<Result<Vec<T>, String>> =
+        (0..count.div_ceil(RUN)).into_par_iter().map(|at| run(at * RUN)).collect();
+    made.into_iter().collect()
+}
+
+/// Clips a row of ragged arrays; rows away from the mask's border are decided without building a geometry.
+fn clip_row(
+    ragged: &Ragged<'_>,
+    at: usize,
+    mask: &Mask,
+    rules: &Rules,
+    scratch: &mut Shapes,
+) -> Result<Row, String> {
+    let side = ragged.bounds(at).and_then(|bounds| mask.side(&bounds));
+    let mut stays =
+        || rules.grid.is_none() && ragged.fill(at, scratch) && is_valid(scratch, Touching::No);
+    match side {
+        Some(false) => Ok(Row::Made(None)),
+        Some(true) if stays() => Ok(Row::Whole(at)),
+        _ => clip(&ragged.geometry(at), mask, rules).map(Row::Made),
     }
-    let rows: Vec<Option<Geometry>> = rows.into_iter().map(Option::flatten).collect();
-    RaggedOut::new(like.kind, like.width, &rows)
 }
 
 /// Clips ragged arrays to a region.
@@ -268,11 +295,61 @@ fn clip_ragged<'py>(
     let ragged = ragged(&given)?;
     let made = on_threads(py, threads, || {
         let (mask, rules) = (region.mask()?, rules(grid));
-        let task = Task::Clip(&mask);
-        let row = |at| Some(task.run(&ragged.geometry(at), None, &rules));
-        gathered(each(ragged.len(), row), &ragged)
+        let row = |at: usize, scratch: &mut Shapes| clip_row(&ragged, at, &mask, &rules, scratch);
+        RaggedOut::new(&ragged, &runs(ragged.len(), row)?)
     })?;
     arrays(py, made.map_err(PyValueError::new_err::<String>)?)
+}
+
+/// Numbers of rows, and their arrays.
+type Changed<'py> = (Bound<'py, PyArray1<i64>>, RaggedArrays<'py>);
+
+/// Clips ragged arrays to a region; returns only the rows that come out with other coordinates, whatever the direction of
+/// their rings.
+#[pyfunction]
+fn clip_changed<'py>(
+    py: Python<'py>,
+    given: Given<'py>,
+    region: Region,
+    grid: Option<f64>,
+    threads: usize,
+) -> PyResult<Changed<'py>> {
+    let ragged = ragged(&given)?;
+    let made = on_threads(py, threads, || {
+        let (mask, rules) = (region.mask()?, rules(grid));
+        let row = |at: usize, scratch: &mut Shapes| {
+            let row = clip_row(&ragged, at, &mask, &rules, scratch)?;
+            let same = match &row {
+                Row::Whole(_) => true,
+                Row::Made(made) => made.as_ref().is_some_and(|g| are_same(&ragged.geometry(at), g)),
+            };
+            Ok((!same).then_some((at as i64, row)))
+        };
+        let rows = runs(ragged.len(), row)?;
+        let changed = |run: Vec<Option<_>>| run.into_iter().flatten().unzip();
+        let (numbers, rows): (Vec<Vec<i64>>, Vec<Vec<_>>) = rows.into_iter().map(changed).unzip();
+        Ok((numbers.concat(), RaggedOut::new(&ragged, &rows)?))
+    })?;
+    let (numbers, made) = made.map_err(PyValueError::new_err::<String>)?;
+    Ok((flat(py, numbers), arrays(py, made)?))
+}
+
+/// Returns whether two lines or polygons have the same coordinates in the same order, rings in either direction.
+fn are_same(a: &Geometry, b: &Geometry) -> bool {
+    let turned = |a: &Points, b: &Points| {
+        let mut back = b.xy.iter().take(1).chain(b.xy.iter().skip(1).rev());
+        a.zm.is_empty()
+            && b.zm.is_empty()
+            && a.xy.len() == b.xy.len()
+            && a.xy.iter().all(|p| back.next() == Some(p))
+    };
+    match (a, b) {
+        (Geometry::LineString(a), Geometry::LineString(b)) => a == b,
+        (Geometry::Polygon(a), Geometry::Polygon(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || turned(a, b))
+        }
+        _ => false,
+    }
 }
 
 /// Overlays ragged arrays, each geometry with the one at the same index.
@@ -297,8 +374,10 @@ fn overlay_ragged<'py>(
     }
     let rules = rules(grid);
     let made = on_threads(py, threads, || {
-        let row = |at| Some(task.run(&a.geometry(at), Some(&b.geometry(at)), &rules));
-        gathered(each(a.len(), row), &a)
+        let row = |at: usize, _: &mut Shapes| {
+            task.run(&a.geometry(at), Some(&b.geometry(at)), &rules).map(Row::Made)
+        };
+        RaggedOut::new(&a, &runs(a.len(), row)?)
     })?;
     arrays(py, made.map_err(PyValueError::new_err::<String>)?)
 }
@@ -309,5 +388,6 @@ pub fn add(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(overlay_wkb, m)?)?;
     m.add_function(wrap_pyfunction!(clip_column, m)?)?;
     m.add_function(wrap_pyfunction!(clip_ragged, m)?)?;
+    m.add_function(wrap_pyfunction!(clip_changed, m)?)?;
     m.add_function(wrap_pyfunction!(overlay_ragged, m)?)
 }

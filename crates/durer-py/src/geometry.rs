@@ -2,8 +2,10 @@
 //!
 //! The layout is GeoArrow's: coordinates, then offsets from the innermost level to the outermost.
 
+use durer::clip::polygon::{Shapes, signed_area};
 use durer::geometry::{Dimensions, Geometry, Points};
-use durer::math::DVec2;
+use durer::math::{DVec2, Rect};
+use rayon::prelude::*;
 
 /// Kinds of geometries with a layout, with their numbers in shapely.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,6 +100,46 @@ impl Ragged<'_> {
         Ok(())
     }
 
+    /// Returns the box around a geometry; `None` if it is empty or not all of its coordinates are finite.
+    pub fn bounds(&self, at: usize) -> Option<Rect> {
+        let mut range = at..at + 1;
+        for offsets in self.offsets.iter().rev() {
+            range = offsets[range.start] as usize..offsets[range.end] as usize;
+        }
+        let mut positions = range.map(|at| self.position(at));
+        let first = positions.next()?;
+        let mut zero = first * 0.0;
+        let (low, high) = positions.fold((first, first), |(low, high), p| {
+            zero += p * 0.0;
+            (low.min(p), high.max(p))
+        });
+        Rect::new(low, high).ok().filter(|_| zero == DVec2::ZERO)
+    }
+
+    /// Puts a polygon of x and y into shapes, as they are given; false for all other geometries.
+    pub fn fill(&self, at: usize, shapes: &mut Shapes) -> bool {
+        shapes.clear();
+        let is_polygon = self.kind == Kind::Polygon && self.width == 2;
+        if is_polygon {
+            for ring in self.span(1, at) {
+                shapes.push_ring(self.open(ring).map(|at| self.position(at)));
+            }
+            shapes.end_polygon();
+        }
+        is_polygon
+    }
+
+    fn position(&self, at: usize) -> DVec2 {
+        DVec2::from_slice(&self.coords[at * self.width..])
+    }
+
+    /// Returns the positions of a ring without the last one if that repeats the first.
+    fn open(&self, ring: usize) -> std::ops::Range<usize> {
+        let all = self.span(0, ring);
+        let closed = all.len() > 1 && self.position(all.start) == self.position(all.end - 1);
+        all.start..all.end - usize::from(closed)
+    }
+
     fn span(&self, level: usize, at: usize) -> std::ops::Range<usize> {
         let offsets = self.offsets[level];
         offsets[at] as usize..offsets[at + 1] as usize
@@ -114,17 +156,9 @@ impl Ragged<'_> {
         points
     }
 
-    /// Returns the positions of a ring without the last, which repeats the first.
-    fn ring(&self, at: usize) -> Points {
-        let mut ring = self.points(self.span(0, at));
-        if ring.len() > 1 && ring.xy.first() == ring.xy.last() {
-            ring.pop();
-        }
-        ring
-    }
-
     fn rings(&self, level: usize, at: usize) -> Vec<Points> {
-        self.span(level, at).map(|ring| self.ring(ring)).filter(|ring| ring.len() > 2).collect()
+        let ring = |ring: usize| self.points(self.open(ring));
+        self.span(level, at).map(ring).filter(|ring| ring.len() > 2).collect()
     }
 
     /// Returns a geometry; the arrays have been checked. A point of NaN is empty.
@@ -150,8 +184,17 @@ impl Ragged<'_> {
     }
 }
 
-/// Arrays of geometries, filled one by one.
+/// Result for a geometry.
 #[derive(Debug)]
+pub enum Row {
+    /// Polygon of x and y that stays as it was given.
+    Whole(usize),
+    /// Another geometry, or nothing.
+    Made(Option<Geometry>),
+}
+
+/// Arrays of geometries that are put together one by one.
+#[derive(Debug, Clone)]
 pub struct RaggedOut {
     /// Kind of all of them.
     pub kind: Kind,
@@ -164,28 +207,77 @@ pub struct RaggedOut {
 }
 
 impl RaggedOut {
-    /// Puts geometries into arrays of the given kind, or of its multiple kind if one has several parts. A missing or
-    /// empty geometry has only its place in the arrays.
-    pub fn new(kind: Kind, width: usize, all: &[Option<Geometry>]) -> Result<Self, String> {
-        let is_multi = |g: &Geometry| match g {
-            Geometry::MultiPoint(points) => points.len() != 1,
-            Geometry::MultiLineString(lines) => lines.len() != 1,
-            Geometry::MultiPolygon(polygons) => polygons.len() != 1,
+    /// Puts runs of geometries, one after the other, into arrays of the kind of the given ones, or of its multiple kind if one
+    /// has several parts. A missing or empty geometry has only its place in the arrays.
+    pub fn new(given: &Ragged<'_>, runs: &[Vec<Row>]) -> Result<Self, String> {
+        let is_multi = |row: &Row| match row {
+            Row::Made(Some(Geometry::MultiPoint(points))) => points.len() != 1,
+            Row::Made(Some(Geometry::MultiLineString(lines))) => lines.len() != 1,
+            Row::Made(Some(Geometry::MultiPolygon(polygons))) => polygons.len() != 1,
             _ => false,
         };
-        let multi = all.iter().flatten().any(is_multi);
-        let kind = match kind {
+        let multi = runs.par_iter().any(|run| run.iter().any(is_multi));
+        let kind = match given.kind {
             Kind::Point if multi => Kind::MultiPoint,
             Kind::LineString if multi => Kind::MultiLineString,
             Kind::Polygon if multi => Kind::MultiPolygon,
             kind => kind,
         };
         let offsets = vec![vec![0]; kind.levels()];
-        let mut out = Self { kind, coords: Vec::new(), width, offsets };
-        for (at, geometry) in all.iter().enumerate() {
-            out.push(geometry.as_ref()).map_err(|e| format!("geometries[{at}]: {e}"))?;
+        let mut all = Self { kind, coords: Vec::new(), width: given.width, offsets };
+        let filled = |run: &Vec<Row>| {
+            let (mut out, mut shapes) = (all.clone(), Shapes::new());
+            let mut push = |row: &Row| match row {
+                Row::Made(made) => out.push(made.as_ref()),
+                Row::Whole(at) => {
+                    given.fill(*at, &mut shapes);
+                    out.push_polygon(&shapes);
+                    Ok(())
+                }
+            };
+            let failed = run.iter().enumerate().find_map(|(at, row)| Some((at, push(row).err()?)));
+            (out, failed)
+        };
+        let parts: Vec<_> = runs.par_iter().map(filled).collect();
+        let mut first = 0;
+        all.coords.reserve_exact(parts.iter().map(|(part, _)| part.coords.len()).sum());
+        for ((part, failed), run) in parts.into_iter().zip(runs) {
+            if let Some((at, e)) = failed {
+                return Err(format!("geometries[{}]: {e}", first + at));
+            }
+            all.append(&part);
+            first += run.len();
         }
-        Ok(out)
+        Ok(all)
+    }
+
+    /// Adds a polygon of x and y, its outer ring counter-clockwise, its holes clockwise.
+    fn push_polygon(&mut self, shapes: &Shapes) {
+        for (k, ring) in shapes.rings().enumerate() {
+            let Some(&first) = ring.first() else { continue };
+            self.coords.extend(first.to_array());
+            let rest = ring[1..].iter();
+            if (signed_area(ring) < 0.0) == (k == 0) {
+                self.coords.extend(rest.rev().flat_map(|p| p.to_array()));
+            } else {
+                self.coords.extend(rest.flat_map(|p| p.to_array()));
+            }
+            self.coords.extend(first.to_array());
+            self.end_points();
+        }
+        self.end(1);
+        if self.kind == Kind::MultiPolygon {
+            self.end(2);
+        }
+    }
+
+    /// Adds the geometries of other arrays of the same kind.
+    fn append(&mut self, other: &Self) {
+        for (own, offsets) in self.offsets.iter_mut().zip(&other.offsets) {
+            let before = own.last().copied().unwrap_or_default();
+            own.extend(offsets.iter().skip(1).map(|end| before + end));
+        }
+        self.coords.extend_from_slice(&other.coords);
     }
 
     fn add(&mut self, points: &Points, closed: bool) {

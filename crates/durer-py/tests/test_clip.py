@@ -129,6 +129,32 @@ def test_arrays_of_coordinates_give_what_wkb_gives(polygons, mask, monkeypatch):
     assert set(shapely.get_type_id(fast).tolist()) >= {-1, 0, 3, 5, 6}
 
 
+def test_chunks_do_not_show(polygons, monkeypatch):
+    given = mixed_geometries(polygons)
+    whole = durer.clip_by_rect(given, *RECT)
+    monkeypatch.setattr("durer._geometry.CHUNK", 30)
+    for threads in (1, 3):
+        parts = durer.clip_by_rect(given, *RECT, threads=threads)
+        assert (shapely.to_wkb(parts) == shapely.to_wkb(whole)).all()
+        given[131] = shapely.Polygon([(5, 5), (np.nan, 6), (6, 6)])
+        with pytest.raises(ValueError, match=r"^geometries\[131\]: .* not finite"):
+            durer.clip_by_rect(given, *RECT, threads=threads)
+        given[131] = polygons[131]
+
+
+def test_what_is_outside_is_empty_and_of_its_kind():
+    line, ring = shapely.LineString([(5, 5), (6, 6)]), shapely.box(5, 5, 6, 6)
+    some = [line, ring, shapely.MultiLineString([line, line]), shapely.MultiPolygon([ring]), shapely.Point(5, 5)]
+    given = np.array(some * 4, dtype=object)
+    made = durer.clip_by_rect(given, *RECT)
+    assert shapely.is_empty(made).all() and (shapely.get_type_id(made) == shapely.get_type_id(given)).all()
+    endless = shapely.MultiPolygon([ring, shapely.Polygon([(7, 7), (np.inf, 8), (8, 8)])])
+    for wrong in (shapely.MultiLineString([[(5, 5), (6, 6)], [(7, 7), (7, np.nan)]]), endless):
+        given[13] = wrong
+        with pytest.raises(ValueError, match=r"^geometries\[13\]: .* finite"):
+            durer.clip_by_rect(given, *RECT)
+
+
 def test_what_is_inside_whole_is_the_same_object(polygons):
     made = durer.clip_by_rect(polygons[:100], -1, -1, 2, 2)
     whole = shapely.get_num_interior_rings(polygons[:100]) == 0
@@ -164,6 +190,23 @@ def test_ragged_arrays_are_as_geometries(polygons):
     points = shapely.points(np.random.default_rng(3).uniform(0, 1, (50, 2)))
     kind, coords, offsets = durer.clip_by_rect(shapely.to_ragged_array(points), *RECT)
     assert (np.isnan(coords[:, 0]) == ~shapely.intersects(points, shapely.box(*RECT))).all()
+
+
+@pytest.mark.parametrize("comb", [False, True])
+def test_ragged_polygons_that_stay_run_as_others(comb):
+    # Clockwise, its hole counter-clockwise; beside one that the rectangle cuts in two, if any.
+    square = [(1, 1), (1, 3), (3, 3), (3, 1), (1, 1)], [(1.5, 1.5), (2, 1.5), (2, 2), (1.5, 1.5)]
+    teeth = [(4, -9), (4, 3), (5, 3), (5, -5), (6, -5), (6, 3), (7, 3), (7, -9), (4, -9)]
+    rings = [*square, teeth] if comb else [*square]
+    ends = np.cumsum([0, *map(len, rings)])
+    given = np.array(sum(rings, []), dtype=float), (ends, np.array([0, 2, 3] if comb else [0, 2]))
+    coords, offsets = durer.clip_by_rect(given, 0, 0, 9, 9)
+    assert coords[:9].tolist() == [
+        *([1, 1], [3, 1], [3, 3], [1, 3], [1, 1]),
+        *([1.5, 1.5], [2, 2], [2, 1.5], [1.5, 1.5]),
+    ]
+    assert offsets[0][:3].tolist() == [0, 5, 9] and offsets[1][:2].tolist() == [0, 2]
+    assert len(offsets) == (3 if comb else 2) and (not comb or offsets[2].tolist() == [0, 1, 3])
 
 
 def test_wrong_ragged_arrays():

@@ -1,5 +1,7 @@
 //! Work on several threads, joined in order: results never depend on how many there are.
 
+#[cfg(feature = "parallel")]
+use std::cell::Cell;
 use std::sync::{Mutex, PoisonError};
 
 /// Applies `f` to each item and returns the results in the order of the items.
@@ -66,11 +68,37 @@ pub fn each<R: Copy + Default + Send>(
     all
 }
 
+#[cfg(feature = "parallel")]
+thread_local! {
+    /// True within [`alone`].
+    static ALONE: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Runs work on this thread alone: for work so small that sharing it would cost more than it saves.
+pub fn alone<R>(work: impl FnOnce() -> R) -> R {
+    #[cfg(feature = "parallel")]
+    {
+        /// Sets the flag back, also if the work panics.
+        struct Before(bool);
+        impl Drop for Before {
+            fn drop(&mut self) {
+                ALONE.set(self.0);
+            }
+        }
+        let _before = Before(ALONE.replace(true));
+        work()
+    }
+    #[cfg(not(feature = "parallel"))]
+    {
+        work()
+    }
+}
+
 /// Returns the number of threads that share the work.
 pub fn threads() -> usize {
     #[cfg(feature = "parallel")]
     {
-        rayon::current_num_threads()
+        if ALONE.get() { 1 } else { rayon::current_num_threads() }
     }
     #[cfg(not(feature = "parallel"))]
     {

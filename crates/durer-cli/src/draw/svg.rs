@@ -31,7 +31,8 @@ impl Job<'_> {
             options.resources = folder;
         }
         self.messages.progress.stage(|| format!("reading {name}"));
-        let drawing = Drawing::read(&given.file.bytes, &options).map_err(|e| fail(e.to_string()))?;
+        let drawing =
+            Drawing::read(&given.file.bytes, &options).map_err(|e| fail(e.to_string()))?;
         self.report.read_seconds += start.elapsed().as_secs_f64();
         self.warn(&name, drawing.warnings());
 

@@ -303,6 +303,9 @@ impl<'a> Reader<'a> {
         let count = self.count(header.big, 8 * size)?;
         let mut points = Points::new(header.dimensions);
         points.xy.reserve_exact(count);
+        if size == 2 && !header.big && self.pairs(&mut points.xy, count) {
+            return Ok(points);
+        }
         for _ in 0..count {
             let at = self.at;
             let mut numbers = [0.0; 4];
@@ -312,6 +315,20 @@ impl<'a> Reader<'a> {
             self.push(&mut points, numbers, at)?;
         }
         Ok(points)
+    }
+
+    /// Reads little-endian pairs of numbers; reads nothing and returns false if one is not finite.
+    fn pairs(&mut self, points: &mut Vec<DVec2>, count: usize) -> bool {
+        let rest = self.bytes.get(self.at..).unwrap_or_default().as_chunks::<8>().0;
+        let (pairs, _) = rest.get(..2 * count).unwrap_or_default().as_chunks::<2>();
+        points.extend(pairs.iter().map(|&pair| DVec2::from(pair.map(f64::from_le_bytes))));
+        let all = points.len() == count && points.iter().all(|p| p.is_finite());
+        if all {
+            self.at += 16 * count;
+        } else {
+            points.clear();
+        }
+        all
     }
 
     fn line(&mut self, header: &Header) -> Result<Points> {

@@ -36,6 +36,7 @@ __all__ = [
     "overlay_wkb",
     "clip_column",
     "clip_ragged",
+    "clip_changed",
     "overlay_ragged",
     "rasterize",
     "trace",
@@ -139,6 +140,9 @@ def clip_column(
     data: _U8, offsets: _I64, valid: _Bool | None, region: _Region, grid: float | None, threads: int
 ) -> tuple[_U8, _I64, _Errors]: ...
 def clip_ragged(given: _Ragged, region: _Region, grid: float | None, threads: int) -> _Ragged: ...
+def clip_changed(
+    given: _Ragged, region: _Region, grid: float | None, threads: int
+) -> tuple[_I64, _Ragged]: ...
 def overlay_ragged(a: _Ragged, b: _Ragged, operation: str, grid: float | None, threads: int) -> _Ragged: ...
 def rasterize(
     shapes: Sequence[bytes],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import warnings
 from collections.abc import Callable
@@ -65,6 +66,9 @@ Many = Callable[[Wkb], tuple[Wkb, list[tuple[int, str]]]]
 #: Number of geometries from which arrays of coordinates are faster than well-known binary.
 FEW = 16
 
+#: Number of geometries that a thread works on at a time: few enough for its cache.
+CHUNK = 4096
+
 
 def _over_array(array: NDArray[Any], many: Many) -> NDArray[Any]:
     """Applies ``many`` to an array of geometries or of well-known binary; the result has the same kind of elements."""
@@ -79,20 +83,19 @@ def _over_array(array: NDArray[Any], many: Many) -> NDArray[Any]:
     return out.reshape(array.shape)
 
 
-def _kinds(flat: NDArray[Any]) -> NDArray[np.int8] | None:
-    """Returns which geometries can be arrays of coordinates, as ``_runs.kinds``; ``None`` if that is not worthwhile."""
-    if flat.size < FEW or shapely_if_imported() is None:
+def _types(flat: NDArray[Any]) -> NDArray[Any] | None:
+    """Returns shapely's type ids; ``None`` if arrays of coordinates do not pay off, or not all are geometries."""
+    shapely = shapely_if_imported()
+    if flat.size < FEW or shapely is None:
         return None
     try:
-        kinds = _runs.kinds(shapely_if_imported(), flat)
+        return shapely.get_type_id(flat)  # type: ignore[no-any-return]
     except TypeError:
         return None
-    return kinds if kinds.any() else None
 
 
-def _in_parts(parts: list[tuple[NDArray[np.intp], Callable[[], NDArray[Any]]]], size: int) -> NDArray[Any]:
-    """Returns an array built from separate parts; errors give the index in the whole array."""
-    out = np.empty(size, dtype=object)
+def _fill_in_parts(out: NDArray[Any], parts: list[tuple[NDArray[np.intp], Callable[[], NDArray[Any]]]]) -> None:
+    """Fills an array from parts built one by one; errors give the index in the whole array."""
     for rows, make in parts:
         try:
             out[rows] = make()
@@ -101,44 +104,74 @@ def _in_parts(parts: list[tuple[NDArray[np.intp], Callable[[], NDArray[Any]]]], 
             if found is None:
                 raise
             raise ValueError(f"geometries[{rows[int(found[1])]}]{str(error)[found.end() :]}") from None
-    return out
 
 
 def _clip_array(array: NDArray[Any], region: Region, grid: float | None, threads: int) -> NDArray[Any]:
     """Clips an array of geometries or of well-known binary; the result has the same kind of elements."""
     flat, shapely = array.reshape(-1), shapely_if_imported()
-
-    def many(rows: Wkb) -> tuple[Wkb, list[tuple[int, str]]]:
-        return _durer.clip_wkb(rows, region, grid, threads)
-
-    def native(given: _runs.Ragged) -> _runs.Ragged:
-        return _durer.clip_ragged(given, region, grid, threads)
-
-    kinds = _kinds(flat)
-    # Each call builds the mask again, which may cost more than it saves.
-    if kinds is None or (isinstance(region, list) and sum(map(len, region)) > 64 * np.count_nonzero(kinds)):
-        return _over_array(array, many)
+    types = _types(flat)
+    if types is None:
+        return _over_array(array, lambda rows: _durer.clip_wkb(rows, region, grid, threads))
+    bounds, chunk = region, CHUNK
     if isinstance(region, list):
         # Invalid masks raise an error below.
         mask = shapely.from_wkb(np.array(region, dtype=object), on_invalid="ignore")
         bounds = tuple(shapely.total_bounds(mask).tolist())
-    else:
-        bounds = region
-    apart = np.zeros(flat.shape, np.bool_)
-    apart[kinds > 0] = _runs.outside(shapely, flat[kinds > 0], bounds)
+        # Each chunk builds the mask again.
+        chunk = max(chunk, sum(map(len, region)))
+
+    def clip_some(rows: NDArray[np.intp]) -> NDArray[Any]:
+        return _clip_chunk(flat[rows], types[rows], region, bounds, grid, threads)
+
+    chunks = [np.arange(first, min(first + chunk, flat.size)) for first in range(0, flat.size, chunk)]
     out = np.empty(flat.shape, dtype=object)
+    if len(chunks) == 1 or threads == 1:
+        _fill_in_parts(out, [(rows, partial(clip_some, rows)) for rows in chunks])
+        return out.reshape(array.shape)
+    # shapely and the native part release the lock.
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
+        futures = [(rows, pool.submit(clip_some, rows)) for rows in chunks]
+        try:
+            _fill_in_parts(out, [(rows, future.result) for rows, future in futures])
+        finally:
+            pool.shutdown(cancel_futures=True)
+    return out.reshape(array.shape)
+
+
+def _clip_chunk(
+    flat: NDArray[Any], types: NDArray[Any], region: Region, bounds: Any, grid: float | None, threads: int
+) -> NDArray[Any]:
+    """Clips geometries of shapely to a region with these bounds."""
+    shapely = shapely_if_imported()
+
+    def native(given: _runs.Ragged) -> tuple[NDArray[np.int64], _runs.Ragged]:
+        return _durer.clip_changed(given, region, grid, threads)
+
+    def many(rows: Wkb) -> tuple[Wkb, list[tuple[int, str]]]:
+        return _durer.clip_wkb(rows, region, grid, threads)
+
+    apart = _runs.outside(shapely, flat, types, bounds)
+    out = np.empty(flat.shape, dtype=object)
+    out[apart] = _runs.empties(shapely)[types[apart]]
+    near = np.flatnonzero(~apart)
+    kinds, counts = _runs.kinds(shapely, flat[near], types[near])
+    # Each call builds the mask again, which may cost more than it saves.
+    if isinstance(region, list) and sum(map(len, region)) > 64 * np.count_nonzero(kinds):
+        kinds[:] = 0
     parts: list[Any] = []
     for kind in (_runs.LINE, _runs.POLYGON):
-        out[apart & (kinds == kind)] = _runs.empty(shapely, kind)
-        rows = np.flatnonzero((kinds == kind) & ~apart)
+        some = kinds == kind
+        rows = near[some]
         if rows.size:
-            parts.append((rows, partial(_runs.replaced, shapely, flat[rows], kind, native)))
-    rows = np.flatnonzero(kinds == 0)
-    # A wrong region is an error even if nothing has to be clipped to it.
-    if rows.size or not parts:
-        parts.append((rows, lambda: _over_array(flat[rows], many)))
-    made = _in_parts(parts, flat.size)
-    return np.where(apart, out, made).reshape(array.shape)
+            parts.append((rows, partial(_runs.replaced, shapely, flat[rows], counts[some], kind, native)))
+    rest = near[kinds == 0]
+    # A region that is wrong is an error, whatever is clipped to it.
+    if rest.size or not parts:
+        parts.append((rest, lambda: _over_array(flat[rest], many)))
+    _fill_in_parts(out, parts)
+    return out
 
 
 def _over_column(column: Any, region: Region, grid: float | None, threads: int) -> Any:
@@ -168,12 +201,20 @@ def _over_column(column: Any, region: Region, grid: float | None, threads: int) 
     return made if wrap is None else wrap(made)
 
 
+def _values(series: Any) -> NDArray[Any]:
+    return np.asarray(series.values, dtype=object)
+
+
+def _series_like(series: Any, values: NDArray[Any], rows: Any = slice(None)) -> Any:
+    """Returns values as some rows of a GeoSeries."""
+    return type(series)(values[rows], index=series.index[rows], crs=series.crs, name=series.name)
+
+
 def _clip(geometry: Any, region: Region, grid: float | None, threads: int) -> Any:
     if is_frame(geometry):
         return geometry.set_geometry(_clip(geometry.geometry, region, grid, threads))
     if is_series(geometry):
-        made = _clip_array(np.asarray(geometry.values, dtype=object), region, grid, threads)
-        return type(geometry)(made, index=geometry.index, crs=geometry.crs, name=geometry.name)
+        return _series_like(geometry, _clip_array(_values(geometry), region, grid, threads))
     if _is_ragged(geometry):
         return _ragged_like(geometry, _durer.clip_ragged(_ragged(geometry), region, grid, threads))
     if is_geometry(geometry) or isinstance(geometry, bytes):
@@ -250,14 +291,18 @@ def clip(
     if tabular and (is_frame(mask) or is_series(mask)) and geometry.crs != mask.crs:
         message = f"CRS mismatch between the CRS of left geometries and the CRS of the mask: {geometry.crs}, {mask.crs}"
         warnings.warn(message, UserWarning, stacklevel=2)
-    made = _clip(geometry, region_of(mask), grid_size, count(threads))
+    region, native = region_of(mask), count(threads)
     if not tabular:
-        return made
-    column = made.geometry if is_frame(made) else made
-    kept = ~(column.is_empty | column.isna())
+        return _clip(geometry, region, grid_size, native)
+    # Rows outside are left out before a table of the rest is made.
+    column = geometry.geometry if is_frame(geometry) else geometry
+    made = _clip_array(_values(column), region, grid_size, native)
+    shapely = shapely_if_imported()
+    kept = ~(shapely.is_empty(made) | shapely.is_missing(made))
     if keep_geom_type:
-        kept &= column.geom_type != "GeometryCollection"
-    return made[kept]
+        kept &= shapely.get_type_id(made) != shapely.GeometryType.GEOMETRYCOLLECTION
+    clipped = _series_like(column, made, kept)
+    return geometry[kept].set_geometry(clipped) if is_frame(geometry) else clipped
 
 
 def _overlay(operation: str, a: Any, b: Any, grid: float | None, threads: int | None) -> Any:
@@ -288,25 +333,30 @@ def _overlay_arrays(
 
         return _over_array(left[rows], many)
 
-    kinds, others = _kinds(left), _kinds(right)
-    if kinds is None or others is None:
+    types, others = _types(left), _types(right)
+    if types is None or others is None:
         return bytes_of(slice(None)).reshape(a.shape)
-    plain = (kinds == _runs.POLYGON) & (others == _runs.POLYGON)
+    (kinds, counts), (other_kinds, other_counts) = _runs.kinds(shapely, left, types), _runs.kinds(shapely, right, others)
+    plain = (kinds == _runs.POLYGON) & (other_kinds == _runs.POLYGON)
     simple, rest = np.flatnonzero(plain), np.flatnonzero(~plain)
 
     def polygons() -> NDArray[Any]:
-        given, other = (_runs.ragged(shapely, side[simple], _runs.POLYGON) for side in (left, right))
+        given = _runs.ragged(shapely, left[simple], counts[simple], _runs.POLYGON)
+        other = _runs.ragged(shapely, right[simple], other_counts[simple], _runs.POLYGON)
         made = _durer.overlay_ragged(given, other, operation, grid, threads)
-        return _runs.results(shapely, _runs.POLYGON, made, np.arange(simple.size))
+        return _runs.results(shapely, _runs.POLYGON, made)
 
-    return _in_parts([(simple, polygons), (rest, lambda: bytes_of(rest))], left.size).reshape(a.shape)
+    out = np.empty(left.shape, dtype=object)
+    parts = [(simple, polygons), (rest, lambda: bytes_of(rest))]
+    _fill_in_parts(out, [(rows, make) for rows, make in parts if rows.size])
+    return out.reshape(a.shape)
 
 
 def _operand(value: Any) -> NDArray[Any]:
     if is_frame(value):
         value = value.geometry
     if is_series(value):
-        return np.asarray(value.values, dtype=object)
+        return _values(value)
     if value is None or is_geometry(value) or isinstance(value, bytes):
         one = np.empty(1, dtype=object)
         one[0] = value

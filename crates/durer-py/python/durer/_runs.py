@@ -23,58 +23,74 @@ LINE, POLYGON = 1, 3
 SINGLE = {4: 0, 5: LINE, 6: POLYGON}
 
 
-def kinds(shapely: Any, flat: NDArray[Any]) -> NDArray[np.int8]:
-    """Returns 1 for lines and 3 for polygons without holes, both with x and y only; 0 for all other geometries."""
-    types = shapely.get_type_id(flat)
-    plain = (shapely.get_coordinate_dimension(flat) == 2) & (shapely.get_num_coordinates(flat) > 0)
+#: By shapely's type id (``False`` for no geometry): kinds whose length, or whose area, depends on all coordinates.
+LONG = np.array([False, True, False, False, False, True, False, False, False])
+WIDE = np.array([False, False, False, True, False, False, True, False, False])
+
+
+def kinds(shapely: Any, flat: NDArray[Any], types: NDArray[Any]) -> tuple[NDArray[np.int8], NDArray[Any]]:
+    """Returns 1 for lines and 3 for polygons without holes, both with x and y only, and 0 for all other geometries;
+    and their numbers of coordinates."""
+    counts = shapely.get_num_coordinates(flat)
+    plain = (counts > 0) & (shapely.get_coordinate_dimension(flat) == 2)
     plain &= shapely.get_srid(flat) == 0
     out = np.zeros(flat.shape, np.int8)
     out[plain & (types == LINE)] = LINE
     out[plain & (types == POLYGON) & (shapely.get_num_interior_rings(flat) == 0)] = POLYGON
-    return out
+    return out, counts
 
 
-def outside(shapely: Any, flat: NDArray[Any], bounds: Bounds) -> NDArray[np.bool_]:
-    """Returns which lines and polygons are outside a box and have only finite coordinates."""
+def outside(shapely: Any, flat: NDArray[Any], types: NDArray[Any], bounds: Bounds) -> NDArray[np.bool_]:
+    """Returns which lines and polygons, single or multiple, are outside a box and have only finite coordinates."""
     xmin, ymin, xmax, ymax = bounds
     low_x, low_y, high_x, high_y = shapely.bounds(flat).T
     apart = (high_x < xmin) | (low_x > xmax) | (high_y < ymin) | (low_y > ymax)
-    # The length of a border depends on all coordinates, unlike the bounds.
-    apart[apart] = np.isfinite(shapely.length(flat[apart]))
+    rows = np.flatnonzero(apart)
+    apart[rows] = shapely.get_srid(flat[rows]) == 0
+    apart &= LONG[types] | WIDE[types]
+    # Bounds ignore NaN.
+    for kind, measure in ((LONG, shapely.length), (WIDE, shapely.area)):
+        rows = np.flatnonzero(apart & kind[types])
+        apart[rows] = np.isfinite(measure(flat[rows]))
     return apart  # type: ignore[no-any-return]
 
 
-def ragged(shapely: Any, flat: NDArray[Any], kind: int) -> Ragged:
-    """Returns lines, or polygons without holes, as arrays."""
-    ends = _ends(shapely.get_num_coordinates(flat))
+def ragged(shapely: Any, flat: NDArray[Any], counts: NDArray[Any], kind: int) -> Ragged:
+    """Returns lines, or polygons without holes, as arrays, from their numbers of coordinates."""
+    ends = _ends(counts)
     levels = [ends] if kind == LINE else [ends, np.arange(len(flat) + 1)]
     return kind, np.ascontiguousarray(shapely.get_coordinates(flat)), levels
 
 
-def replaced(shapely: Any, flat: NDArray[Any], kind: int, native: Callable[[Ragged], Ragged]) -> NDArray[Any]:
-    """Returns the results of a native function for lines or polygons; those that it leaves unchanged, except for the
-    direction of their rings, are the same objects."""
-    given = ragged(shapely, flat, kind)
-    made = native(given)
-    same = _same(given, made)
-    out = results(shapely, kind, made, np.flatnonzero(~same))
-    all = np.empty(flat.shape, dtype=object)
-    all[same], all[~same] = flat[same], out
-    return all
-
-
-def results(shapely: Any, kind: int, made: Ragged, rows: I64) -> NDArray[Any]:
-    """Returns the geometries of some rows of arrays; rows without coordinates become empty geometries of the kind."""
-    out = np.empty(rows.shape, dtype=object)
-    left = np.diff(_runs(made)[1])[rows] > 0
-    out[~left] = empty(shapely, kind)
-    out[left] = _built(shapely, made, rows[left])
+def replaced(
+    shapely: Any,
+    flat: NDArray[Any],
+    counts: NDArray[Any],
+    kind: int,
+    native: Callable[[Ragged], tuple[I64, Ragged]],
+) -> NDArray[Any]:
+    """Returns the results of a native function for lines or polygons; unchanged ones are the same objects."""
+    rows, made = native(ragged(shapely, flat, counts, kind))
+    out = flat.copy()
+    out[rows] = results(shapely, kind, made)
     return out
 
 
-def empty(shapely: Any, kind: int) -> Any:
-    """Returns a line or polygon without points."""
-    return shapely.LineString() if kind == LINE else shapely.Polygon()
+def results(shapely: Any, kind: int, made: Ragged) -> NDArray[Any]:
+    """Returns the geometries of arrays; rows without coordinates become empty geometries of the kind."""
+    left = np.diff(made[2][-1]) > 0
+    out = np.empty(left.shape, dtype=object)
+    out[~left] = empties(shapely)[kind]
+    out[left] = _built(shapely, made, np.flatnonzero(left))
+    return out
+
+
+def empties(shapely: Any) -> NDArray[Any]:
+    """Returns empty geometries by shapely's type id, up to multiple polygons."""
+    out = np.empty(7, dtype=object)
+    kinds = ("Point", "LineString", "LineString", "Polygon", "MultiPoint", "MultiLineString", "MultiPolygon")
+    out[:] = [getattr(shapely, kind)() for kind in kinds]
+    return out
 
 
 def _ends(counts: Any) -> I64:
@@ -88,37 +104,6 @@ def _spans(first: I64, counts: I64) -> I64:
     """Returns consecutive numbers from each first one on, ``counts`` of each, one run after the other."""
     ends = _ends(counts)
     return np.repeat(first - ends[:-1], counts) + np.arange(ends[-1])
-
-
-def _runs(arrays: Ragged) -> tuple[I64, I64]:
-    """Returns where rows begin among the runs of coordinates, and among the coordinates."""
-    _, coords, levels = arrays
-    if not levels:
-        at = np.arange(len(coords) + 1)
-        return at, at
-    at = np.arange(len(levels[0])) if len(levels) == 1 else levels[-1]
-    for level in levels[-2:0:-1]:
-        at = level[at]
-    return at, levels[0][at]
-
-
-def _same(given: Ragged, made: Ragged) -> NDArray[np.bool_]:
-    """Returns which rows are a single run with their original coordinates, in either direction."""
-    (_, before), (runs, after) = _runs(given), _runs(made)
-    counts = np.diff(before)
-    rows = np.flatnonzero((np.diff(runs) == 1) & (np.diff(after) == counts))
-    out = np.zeros(counts.shape, np.bool_)
-    for turned in (False, True):
-        rows = rows[~out[rows]]
-        if not rows.size:
-            break
-        lengths = counts[rows]
-        old, new = _spans(before[rows], lengths), _spans(after[rows], lengths)
-        if turned:
-            old = np.repeat(before[rows] + before[rows + 1] - 1, lengths) - old
-        equal = (given[1][old] == made[1][new]).all(axis=1)
-        out[rows] = np.logical_and.reduceat(equal, _ends(lengths)[:-1])
-    return out
 
 
 def _built(shapely: Any, made: Ragged, rows: I64) -> NDArray[Any]:

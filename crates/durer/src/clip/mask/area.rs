@@ -43,7 +43,14 @@ impl Area {
     fn add_polygon(&mut self, rings: &[Points]) {
         for ring in rings {
             // Repeated positions are dropped.
-            let last = |&i: &usize| ring.xy[i] != ring.xy[(i + 1) % ring.len()];
+            let last = |&i: &usize| {
+                let next = if i + 1 < ring.len() { i + 1 } else { 0 };
+                ring.xy[i] != ring.xy[next]
+            };
+            if self.dimensions == Dimensions::Xy && (0..ring.len()).all(|i| last(&i)) {
+                self.shapes.push_ring(ring.xy.iter().copied());
+                continue;
+            }
             let kept: Vec<usize> = (0..ring.len()).filter(last).collect();
             self.shapes.push_ring(kept.iter().map(|&i| ring.xy[i]));
             if self.dimensions != Dimensions::Xy {

@@ -60,6 +60,13 @@ impl<P> Shapes<P> {
         }
     }
 
+    /// Removes all polygons; the memory stays.
+    pub fn clear(&mut self) {
+        self.points.clear();
+        self.ring_ends.clear();
+        self.polygon_ends.clear();
+    }
+
     /// Returns all points, ring after ring.
     pub fn points(&self) -> &[P] {
         &self.points

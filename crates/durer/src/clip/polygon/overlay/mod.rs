@@ -335,8 +335,13 @@ pub(super) fn solve<P: Vertex>(
     });
     let causes = listens || options.origins;
     let job = Job { subject, clip, op, options, lattice: &lattice, winder, bounds, causes };
-    if lattice.fits::<i32>() { job.run::<i32>(t) } else { job.run::<i64>(t) }
+    let mut run = || if lattice.fits::<i32>() { job.run::<i32>(t) } else { job.run::<i64>(t) };
+    let few = subject.points().len() + clip.points().len() < FEW;
+    if few { parallel::alone(run) } else { run() }
 }
+
+/// Number of points below which one thread is as fast as several, which others may work beside.
+const FEW: usize = if cfg!(test) { 0 } else { 1 << 9 };
 
 /// An input edge behind a segment: the index of its first point, whether the segment runs against
 /// it, and whose it is.

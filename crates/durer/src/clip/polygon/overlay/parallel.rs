@@ -1,6 +1,6 @@
 //! The same work on one thread or several, joined in order, so that the result is the same.
 
-pub use crate::parallel::{map, threads};
+pub use crate::parallel::{alone, map, threads};
 use std::cmp::Ordering;
 use std::ops::Range;
 

@@ -1,8 +1,9 @@
 //! Edges of rings, the pairs of them that may meet, and their intersections.
 
 use super::{Fault, Flaw};
+use crate::clip::exact;
 use crate::clip::polygon::Shapes;
-use crate::math::{DVec2, Orientation, orient2d};
+use crate::math::DVec2;
 
 /// An edge of a ring.
 pub struct Edge {
@@ -96,14 +97,13 @@ pub fn meeting(p: &Edge, q: &Edge) -> Meeting {
     if below || above || p.high < q.low || q.high < p.low {
         return Meeting::Apart;
     }
-    let side = |a, b, c| match orient2d(a, b, c) {
-        Orientation::CounterClockwise => 1,
-        Orientation::Clockwise => -1,
-        Orientation::Collinear => 0,
-    };
+    let side = |a, b, c| exact::side(a, b, c) as i32;
     let (qa, qb) = (side(p.a, p.b, q.a), side(p.a, p.b, q.b));
+    if qa * qb > 0 {
+        return Meeting::Apart;
+    }
     let (pa, pb) = (side(q.a, q.b, p.a), side(q.a, q.b, p.b));
-    if qa * qb > 0 || pa * pb > 0 {
+    if pa * pb > 0 {
         return Meeting::Apart;
     }
     if qa == 0 && qb == 0 {

@@ -6,9 +6,11 @@
 //! decisions are made by exact predicates.
 //!
 //! Edges are compared within horizontal slabs, in the order of their left ends. Cost: O(n √n) for n edges of usual
-//! data, O(n²) where most of them overlap in both axes; that is cut off at some thousand comparisons per edge.
+//! data, O(n²) where most of them overlap in both axes; that is cut off at some thousand comparisons per edge. Few edges are
+//! compared each with each.
 
 mod edges;
+mod few;
 mod nesting;
 #[cfg(test)]
 mod tests;
@@ -216,6 +218,9 @@ fn without_repeats(shapes: &Shapes) -> (Shapes, Vec<Flaw>) {
 /// Returns whether no two edges cross, overlap or touch, except for allowed touches. Also `false` for rings of fewer
 /// than three points, for repeated points, and if there are too many comparisons.
 pub fn edges_are_apart(shapes: &Shapes, touching: Touching) -> bool {
+    if touching == Touching::No && shapes.points().len() <= few::FEW {
+        return few::are_apart(shapes);
+    }
     each_fault(shapes, touching, |_| false)
 }
 
@@ -235,6 +240,18 @@ pub(super) fn faults(shapes: &Shapes, touching: Touching) -> Option<Vec<usize>> 
 /// Calls `tell` with the points of each fault, or without a fault if there are too many comparisons, as long as it
 /// returns true; returns whether it always did.
 fn each_fault(shapes: &Shapes, touching: Touching, mut tell: impl FnMut(&[usize]) -> bool) -> bool {
+    if shapes.points().len() <= few::FEW && few::are_apart(shapes) {
+        return true;
+    }
+    each_fault_of_many(shapes, touching, &mut tell)
+}
+
+/// Does the same by sorted edges.
+fn each_fault_of_many(
+    shapes: &Shapes,
+    touching: Touching,
+    tell: &mut impl FnMut(&[usize]) -> bool,
+) -> bool {
     for ring in 0..shapes.ring_count() {
         let range = shapes.ring_range(ring);
         if range.len() < 3 && !tell(&[range.start]) {

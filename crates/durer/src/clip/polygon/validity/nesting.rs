@@ -12,6 +12,9 @@ const CROWD: usize = if cfg!(test) { 2 } else { 512 };
 /// Returns whether holes lie in their outer rings, not in one another, and polygons not in one
 /// another; the edges are apart.
 pub fn nests(shapes: &Shapes) -> bool {
+    if shapes.ring_count() == 1 {
+        return true;
+    }
     let rings = rings_of(shapes);
     if is_crowded(&rings) {
         return alternates(shapes);

@@ -165,3 +165,36 @@ fn touching_at_a_vertex_can_be_allowed() {
     let across = shapes(&[&[SQUARE, &[(8.0, 4.0), (10.0, 4.0), (8.0, 5.0)]]]);
     assert!(!is_valid(&across, Touching::AtPoints));
 }
+
+#[test]
+fn few_edges_are_judged_as_many() {
+    let mut state = 7_u64;
+    let mut random = |range: u64| {
+        let step = (6_364_136_223_846_793_005, 1_442_695_040_888_963_407);
+        state = state.wrapping_mul(step.0).wrapping_add(step.1);
+        (state >> 33) % range
+    };
+    let mut seen = [0; 2];
+    for _ in 0..20_000 {
+        let mut shapes = Shapes::new();
+        let width = 3 + random(8);
+        for _ in 0..1 + random(2) {
+            let count = 2 + random(5);
+            shapes.push_ring(
+                (0..count).map(|_| DVec2::new(random(width) as f64, random(width) as f64)),
+            );
+            shapes.end_polygon();
+        }
+        let expected = each_fault_of_many(&shapes, Touching::No, &mut |_| false);
+        assert_eq!(few::are_apart(&shapes), expected, "{shapes:?}");
+        seen[usize::from(expected)] += 1;
+    }
+    assert!(seen.iter().all(|&count| count > 1000), "{seen:?}");
+    // As many as there may be, and one more.
+    for count in [few::FEW, few::FEW + 1] {
+        let ring = (0..count).map(|i| DVec2::new(((count - i) % 2) as f64, i as f64));
+        let comb =
+            Shapes::from_rings([ring.chain([DVec2::new(9.0, 0.0)]).skip(1).collect::<Vec<_>>()]);
+        assert!(edges_are_apart(&comb, Touching::No), "{count}");
+    }
+}
