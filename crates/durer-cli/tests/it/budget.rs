@@ -94,9 +94,9 @@ fn what_needs_more_is_refused_with_its_stage_and_the_option() {
         ("fill a.png -o o.png --at 0,0 --color red", "1M", "decoded pictures"),
         ("plot heights.xyz -o o.png", "1M", "bytes of the file"),
         ("render heights.xyz -o o.png --size 9x9", "6M", "meshes of the model"),
-        ("fix ring.geojson -o o.geojson", "2M", "crossings of the overlay"),
+        ("fix ring.geojson -o o.geojson", "2M", "graph of the overlay"),
         ("buffer ring.geojson -o o.geojson --distance 1", "2M", "of the overlay"),
-        ("clip ring.geojson -o o.geojson --window 0,0,900,900", "2M", "crossings of the overlay"),
+        ("clip ring.geojson -o o.geojson --window 0,0,900,900", "2M", "graph of the overlay"),
         ("draw elements.svg -o o.png", "8M", "elements of the drawing"),
         ("draw groups.svg -o o.png --size 2000x40", "24M", "layers of groups and clip paths"),
         (

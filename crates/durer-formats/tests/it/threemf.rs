@@ -396,7 +396,9 @@ fn cycles_gaps_and_nonsense_are_errors() {
         assert!(text.contains(expected), "{text}");
     }
     assert!(message(b"PK\x03\x04 and no more").contains("ZIP archive is broken"));
-    assert!(message(&archive(&[("a", "b")])).contains("3D/3dmodel.model: is not in the archive"));
+    let without_model = message(&archive(&[("[Content_Types].xml", "b")]));
+    assert!(without_model.contains("3D/3dmodel.model: is not in the archive"), "{without_model}");
+    assert!(message(&archive(&[("a", "b")])).contains("the ZIP archive holds no models"));
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod lines;
 mod pixels;
 mod polygons;
 mod surfaces;
+mod views;
 
 use durer::math::DVec2;
 

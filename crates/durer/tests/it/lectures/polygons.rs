@@ -4,7 +4,10 @@ use super::p;
 use durer::clip::line::HalfPlane;
 use durer::clip::polygon::sutherland_hodgman::by_borders::{self, Rule, Step as Edge};
 use durer::clip::polygon::weiler_atherton::{self, Mark, Operand, Step as Walk};
-use durer::clip::polygon::{BooleanOp, Shapes, liang_barsky, maillot, naive, sutherland_hodgman};
+use durer::clip::polygon::{
+    BooleanOp, Shapes, WindingRule, greiner_hormann, liang_barsky, maillot, naive, overlay,
+    sutherland_hodgman,
+};
 use durer::math::{DVec2, Rect};
 use durer::trace::{NoTrace, Recorder};
 
@@ -263,4 +266,73 @@ fn maillot_goes_around_the_corner_that_an_edge_passes() {
     assert!((-1.0 + 22.0 * 9.0 / 20.0 - 8.9_f64).abs() < 1e-12);
     let beside = Code::of(&window, p(-1.0, 4.0));
     assert_eq!((beside.to_string(), beside.is_corner), ("00001".to_owned(), false));
+}
+
+/// Points, each with a mark.
+type Marks = Vec<(DVec2, bool)>;
+
+/// Returns the crossings (true for an entry), the points that the walk passes (true for those on the subject), and the
+/// rings of an intersection.
+fn crossing_walk(subject: &[(f64, f64)], clip: [(f64, f64); 4]) -> (Marks, Marks, Vec<Vec<DVec2>>) {
+    let subject = Shapes::from_rings([subject.iter().map(|&at| at.into()).collect::<Vec<DVec2>>()]);
+    let clip = Shapes::from_rings([clip.map(DVec2::from)]);
+    let mut steps = Recorder::default();
+    let op = BooleanOp::Intersection;
+    let found =
+        greiner_hormann::greiner_hormann(&subject, &clip, op, &Default::default(), &mut steps);
+    assert_eq!(greiner_hormann::replay(steps.steps()), found.unwrap());
+    assert!(steps.steps().contains(&Walk::CrossingRings));
+    let (mut marks, mut passes, mut rings) = (Vec::new(), Vec::new(), Vec::new());
+    for step in steps.steps() {
+        match *step {
+            Walk::Crossing { at, entry } => marks.push((at, entry)),
+            Walk::Passed { list, at } => passes.push((at, list == Operand::Subject)),
+            Walk::Ring { ref points } => rings.push(points.clone()),
+            _ => {}
+        }
+    }
+    (marks, passes, rings)
+}
+
+/// Returns the area that a ring encloses by the even-odd rule.
+fn enclosed(ring: &[DVec2]) -> f64 {
+    let (shapes, none) = (Shapes::from_rings([ring.to_vec()]), Shapes::new());
+    let options = overlay::Options::with_rule(WindingRule::EvenOdd);
+    let valid = overlay::overlay(&shapes, &none, BooleanOp::Union, &options, &mut NoTrace);
+    valid.unwrap().shapes.area()
+}
+
+/// Page `polygon-clipping`: entries and exits take turns along a bow tie, and the ring of the result crosses itself.
+#[test]
+fn greiner_and_hormann_walk_along_a_bow_tie() {
+    let bow = [(0.0, 0.0), (4.0, 4.0), (4.0, 0.0), (0.0, 4.0)];
+    let band = [(-1.0, 1.0), (5.0, 1.0), (5.0, 3.0), (-1.0, 3.0)];
+    let (marks, passes, rings) = crossing_walk(&bow, band);
+    let ring = [p(1.0, 1.0), p(3.0, 3.0), p(4.0, 3.0), p(4.0, 1.0)];
+    let ring = [ring, [p(3.0, 1.0), p(1.0, 3.0), p(0.0, 3.0), p(0.0, 1.0)]].concat();
+    // From each entry along the bow tie, from each exit along the band, forwards or backwards.
+    let in_turn: Marks = ring.iter().enumerate().map(|(i, &at)| (at, i % 2 == 0)).collect();
+    assert_eq!([&marks, &passes], [&in_turn; 2]);
+    assert_eq!(rings, [&ring[..]]);
+    assert!((enclosed(&ring) - 6.0).abs() < 1e-6);
+}
+
+/// The example `pentagram`: six crossings, and one ring around three parts of the star.
+#[test]
+fn greiner_and_hormann_walk_along_a_pentagram() {
+    let star = [(5.0, 10.0), (8.0, 0.5), (0.0, 6.5), (10.0, 6.5), (2.0, 0.5)];
+    let right = [(5.5, 1.0), (11.0, 1.0), (11.0, 9.0), (5.5, 9.0)];
+    let (marks, _, rings) = crossing_walk(&star, right);
+    let [a, b] = [p(5.5, 10.0 - 9.5 / 6.0), p(5.0 + 27.0 / 9.5, 1.0)];
+    let [c, d, e, f] = [p(22.0 / 3.0, 1.0), p(5.5, 2.375), p(5.5, 6.5), p(5.5, 3.125)];
+    assert!(marks.iter().zip([a, b, c, d, e, f]).all(|((at, _), to)| at.distance(to) < 1e-12));
+    let entries: Vec<bool> = marks.iter().map(|(_, entry)| *entry).collect();
+    assert_eq!(entries, [true, false, true, false, true, false]);
+    let [ring] = &rings[..] else { panic!("{rings:?}") };
+    let expected = [a, b, c, d, f, p(10.0, 6.5), e];
+    assert_eq!(ring.len(), expected.len(), "{ring:?}");
+    assert!(ring.iter().zip(expected).all(|(at, to)| at.distance(to) < 1e-12), "{ring:?}");
+    // Above, on the right and below of the pentagon in the middle, which is wound around twice.
+    let parts = [0.5800439, 4.5991041, 3.8502006];
+    assert!((enclosed(ring) - parts.iter().sum::<f64>()).abs() < 1e-6);
 }

@@ -340,8 +340,8 @@ pub(super) fn solve<P: Vertex>(
     if few { parallel::alone(run) } else { run() }
 }
 
-/// Number of points below which one thread is as fast as several, which others may work beside.
-const FEW: usize = if cfg!(test) { 0 } else { 1 << 9 };
+/// Number of points below which one thread is as fast as several; unit tests of a few points run on several, too.
+const FEW: usize = if cfg!(test) { 1 } else { 1 << 9 };
 
 /// An input edge behind a segment: the index of its first point, whether the segment runs against
 /// it, and whose it is.
