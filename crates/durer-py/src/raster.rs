@@ -60,7 +60,7 @@ impl Grid {
         // A border on a line between pixels touches both.
         let high = (high + 1.0).min(size);
         let extent = high - low;
-        (extent.x > 0.0 && extent.y > 0.0).then(|| Window {
+        (extent.x > 0.0 && extent.y > 0.0).then_some(Window {
             x: low.x as i64,
             y: low.y as i64,
             width: extent.x as u32,

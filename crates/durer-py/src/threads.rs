@@ -6,9 +6,12 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Pools by their number of threads, and the process that they belong to: a forked process does not have its parent's
+/// Pools by their number of threads.
+type Pools = HashMap<usize, Arc<ThreadPool>>;
+
+/// The pools, and the process that they belong to: a forked process does not have its parent's
 /// threads.
-static POOLS: Mutex<Option<(u32, HashMap<usize, Arc<ThreadPool>>)>> = Mutex::new(None);
+static POOLS: Mutex<Option<(u32, Pools)>> = Mutex::new(None);
 
 fn pool(threads: usize) -> Result<Arc<ThreadPool>, String> {
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
