@@ -82,7 +82,8 @@ impl<B: AsRef<[u8]>> Archive<B> {
         // The size in the archive is not trusted: no memory is allocated in advance, and reading one byte beyond the
         // limit reveals a wrong size.
         let mut bytes = Vec::new();
-        let mut file = file.take(self.left.saturating_add(1));
+        let in_budget = self.work.budget().saturating_sub(self.work.used());
+        let mut file = file.take(self.left.min(in_budget).saturating_add(1));
         file.read_to_end(&mut bytes)
             .map_err(|e| at(format!("cannot be inflated: {}", foreign::inflating(&e))))?;
         if bytes.len() as u64 > self.left {
@@ -259,6 +260,10 @@ mod tests {
         let small = Limits { decoded_bytes: 999, ..Limits::default() };
         let refused = message(only(archive.clone(), &small, |_| true, ("models", None)));
         assert!(refused.contains("size of the inflated parts of 1000 is above"), "{refused}");
+        let work = Work::with_budget(500, "max_memory");
+        let poor = Limits { work, ..Limits::default() };
+        let refused = message(only(archive.clone(), &poor, |_| true, ("models", None)));
+        assert!(refused.contains("files of the archive: 1 kB of memory"), "{refused}");
         let cut = archive[..archive.len() - 9].to_vec();
         let refused = message(only(cut, &Limits::default(), |_| true, ("models", None)));
         assert!(refused.contains("the ZIP archive is broken"), "{refused}");

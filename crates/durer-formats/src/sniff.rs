@@ -95,7 +95,7 @@ impl ModelFormat {
             Some(Self::Gltf)
         } else if ply::sniff(bytes) {
             Some(Self::Ply)
-        } else if bytes.starts_with(b"PK\x03\x04") {
+        } else if bytes.starts_with(archive::MAGIC) {
             Some(Self::ThreeMf)
         } else if collada::sniff(bytes.get(..PROBE).unwrap_or(bytes)) {
             Some(Self::Collada)
@@ -219,7 +219,8 @@ fn is_3mf(bytes: &[u8]) -> bool {
 
 /// Returns whether a file in an archive is a model by its name; texts and tables are more likely something else.
 pub fn is_name_of_model(name: &str) -> bool {
-    let is_text = || [".txt", ".csv", ".asc"].iter().any(|suffix| name.ends_with(suffix));
+    let lower = name.to_ascii_lowercase();
+    let is_text = || [".txt", ".csv", ".asc"].iter().any(|suffix| lower.ends_with(suffix));
     ModelFormat::of_name(name).is_some_and(|format| format != ModelFormat::Xyz || !is_text())
 }
 

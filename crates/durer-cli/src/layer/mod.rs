@@ -21,7 +21,7 @@ use durer::work::Work;
 use durer_formats::geo::{Beside, Feature, GeoFormat, Points, Reader, unzipped};
 use durer_formats::{Limits, ModelFormat, archive};
 use std::fs::File;
-use std::io::{BufRead, BufReader, Cursor};
+use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::Path;
 use watched::Watched;
 
@@ -106,13 +106,15 @@ pub fn packed(
 /// Opens the file of map data in a ZIP archive.
 fn open_archive(
     path: &Path,
-    mut source: impl BufRead,
+    source: impl BufRead,
     (format, layer): (Option<GeoFormat>, Option<&str>),
     work: &Work,
 ) -> Result<(GeoFormat, Source), Failure> {
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
     let limits = Limits { work: work.clone(), ..Limits::default() };
     let mut bytes = Vec::new();
+    // One byte beyond the budget makes its charge fail.
+    let mut source = source.take(limits.memory().saturating_add(1));
     source.read_to_end(&mut bytes).map_err(|e| fail(in_words(&e)))?;
     work.keep("bytes of the file", bytes.len() as u64).map_err(|e| fail(e.to_string()))?;
     let Packed { name, bytes, beside, chosen } =

@@ -72,7 +72,7 @@ fn models_in_archives_are_read_with_the_files_beside_them() {
     let mtl = "newmtl red\nKd 1 0 0\n";
     folder.write("a.obj", obj);
     folder.write("a.mtl", mtl);
-    let read = ("readme.txt", &b"1 2 3"[..]);
+    let read = ("README.TXT", &b"1 2 3"[..]);
     pack(&folder, "a.zip", &[read, ("x/a.obj", obj.as_bytes()), ("x/a.mtl", mtl.as_bytes())]);
     let told = folder.must("render a.zip -o o.png --size 32x32");
     assert_eq!(told.err, "");

@@ -11,7 +11,7 @@ mod picture;
 mod points;
 mod table;
 
-use crate::{Error, Limits, Place, Result, Warning, gzip};
+use crate::{Error, Limits, Place, Result, Warning, archive, gzip};
 use durer::scene::HeightField;
 
 /// The formats of height maps.
@@ -67,7 +67,7 @@ impl HeightMapFormat {
         match () {
             () if bytes.starts_with(b"\x89PNG\r\n\x1a\n") => Some(Self::Png),
             () if bytes.starts_with(npy::MAGIC) => Some(Self::Npy),
-            () if bytes.starts_with(b"PK\x03\x04") => Some(Self::Npz),
+            () if bytes.starts_with(archive::MAGIC) => Some(Self::Npz),
             () if text.starts_with(b"{") || text.starts_with(b"[") => Some(Self::Json),
             () if text.get(..5).is_some_and(|t| t.eq_ignore_ascii_case(b"ncols")) => {
                 Some(Self::Esri)

@@ -6,7 +6,7 @@
 //! string, one for each character, and for outlines O(n) for the n points of characters that cross a border.
 //!
 //! Characters are boxes with outlines, of any font: [`of_strokes`] and [`of_glyphs`] make them. A ring is clipped by
-//! [Sutherland and Hodgman](super::polygon::sutherland_hodgman), so that what falls apart keeps a bridge along the border.
+//! [Sutherland and Hodgman](super::polygon::sutherland_hodgman), so that separate pieces keep a bridge along the border.
 
 use super::outcode::Outcode;
 use super::polygon::{rectangle, sutherland_hodgman};
@@ -209,7 +209,7 @@ pub fn replay(steps: &[Step]) -> Vec<Kept> {
     kept
 }
 
-/// Returns what is left of the characters of a string in a closed window, in their order. A character that is only space is
+/// Returns the visible parts of a string's characters in a closed window, in order. A character that is only space is
 /// kept by its box like any other, and is left out where its outline is clipped.
 ///
 /// ```
