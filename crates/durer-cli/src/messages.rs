@@ -45,6 +45,13 @@ impl Messages {
         }
     }
 
+    /// Prints a choice that the command made about a file.
+    pub fn note(&self, file: &str, message: impl std::fmt::Display) {
+        if !self.quiet {
+            self.progress.tell(&told::message(&format!("durer: {file}: {message}")));
+        }
+    }
+
     /// Prints a warning, or keeps it.
     fn warn(&self, text: &str) {
         if let Some(kept) = &mut *KEPT.lock().unwrap_or_else(PoisonError::into_inner) {

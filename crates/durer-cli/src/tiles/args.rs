@@ -17,7 +17,7 @@ Examples:
   durer tiles countries.geojson --zoom 0-6 -o tiles/
   durer tiles countries.geojson --zoom 3 -o 'tiles/{z}/{x}/{y}.geojson'
 
-Each file becomes a layer. The features of a layer are simplified together, so that neighbours keep their borders; the \
+Each file becomes a layer. Without --zoom, the levels follow from the distances between vertices and features. The features of a layer are simplified together, so that neighbours keep their borders; the \
 highest level keeps all points. Polygons are valid. Geometry beyond 180 degrees is moved to the other side.
 
 Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
@@ -34,9 +34,13 @@ pub struct TilesArgs {
     /// A folder gets one file per tile, not compressed, and `tiles.json`, a TileJSON file.
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
-    /// The zoom levels, e.g. 0-14 or 7; at most 24
-    #[arg(long, value_name = "MIN-MAX", default_value = "0-14", value_parser = zooms, help_heading = "Tiles")]
-    pub zoom: RangeInclusive<u8>,
+    /// The zoom levels, e.g. 0-14 or 7; at most 24 [default: from 0 to the level that shows the detail of the data,
+    /// in at most 100,000 tiles]
+    ///
+    /// On the highest level, vertices are about 8 cells apart, features that are near each other 2 cells, and 99 % of
+    /// the lines and areas are 4 cells long or more. A message reports the levels that were chosen.
+    #[arg(long, value_name = "MIN-MAX", value_parser = zooms, help_heading = "Tiles")]
+    pub zoom: Option<RangeInclusive<u8>>,
     /// The side of a tile, in cells of its grid
     #[arg(long, value_name = "CELLS", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=8192), help_heading = "Tiles")]
     pub extent: u32,

@@ -31,10 +31,10 @@ pub struct Made {
 }
 
 impl<'a> Maker<'a> {
-    pub fn new(args: &TilesArgs, format: TileFormat, all: &'a Layers) -> Self {
+    pub fn new(args: &TilesArgs, format: TileFormat, last_zoom: u8, all: &'a Layers) -> Self {
         let seen = all.rows.iter().map(|_| AtomicBool::new(false)).collect();
         let covered = Mutex::default();
-        Self { format, extent: args.extent, last_zoom: *args.zoom.end(), all, seen, covered }
+        Self { format, extent: args.extent, last_zoom, all, seen, covered }
     }
 
     /// Returns the number of features that are in no tile.

@@ -2,6 +2,7 @@
 
 mod args;
 mod layers;
+mod levels;
 mod make;
 mod out;
 
@@ -11,13 +12,15 @@ pub use out::deliver;
 use crate::failure::Failure;
 use crate::input::{check_streams, display_name};
 use crate::messages::Messages;
-use durer::clip::tiles::{Options, Pyramid, Tile, extent};
+use durer::clip::tiles::{Pyramid, Tile, extent};
 use durer::work::Work;
 use durer_formats::tiles::Metadata;
 use layers::Layers;
+use levels::Chosen;
 use make::Maker;
 use out::Out;
 use serde::Serialize;
+use std::ops::RangeInclusive;
 use std::time::Instant;
 
 /// Report of `--json`.
@@ -30,6 +33,8 @@ struct Report {
     features: u64,
     /// Number of features in no tile.
     lost: u64,
+    /// Source of the levels.
+    zoom_by: Chosen,
     tiles: u64,
     /// Size in bytes as written.
     bytes: u64,
@@ -95,25 +100,22 @@ pub fn run(args: &TilesArgs) -> Result<(), Failure> {
     let mut all = layers::read(args, &messages)?;
     let bounds = extent(&all.features).unwrap_or([-180.0, -85.0, 180.0, 85.0]);
     let fail = |e: durer::Error| Failure::Data(e.to_string());
-    let options = Options {
-        zooms: args.zoom.clone(),
-        extent: args.extent,
-        buffer: args.buffer,
-        method: args.method,
-        tolerance: args.tolerance,
-        tiny: args.tiny,
-    };
-    let pyramid = Pyramid::new(std::mem::take(&mut all.features), options).map_err(fail)?;
+    let features = std::mem::take(&mut all.features);
+    let (pyramid, chosen) = levels::pyramid(args, features).map_err(fail)?;
+    let zooms = pyramid.zooms();
+    if let Some(message) = chosen.message(&zooms, args) {
+        messages.note(&args.output.display().to_string(), message);
+    }
     let read_seconds = start.elapsed().as_secs_f64();
     bounded(args, &pyramid)?;
     let mut out = Out::new(format, path)?;
-    let maker = Maker::new(args, format, &all);
+    let maker = Maker::new(args, format, *zooms.end(), &all);
     let mut done = Done::default();
-    let made = args.zoom.clone().try_for_each(|zoom| {
+    let made = zooms.clone().try_for_each(|zoom| {
         messages.progress.stage(|| format!("level {zoom}"));
         level(zoom, &pyramid, &maker, (&mut out, &args.running.work), &mut done)
     });
-    let ended = made.and_then(|()| out.finish(&metadata(args, &all, bounds)));
+    let ended = made.and_then(|()| out.finish(&metadata(args, &all, &zooms, bounds)));
     if ended.is_err() && !format.is_folder() {
         // An incomplete file is not renamed to its final name.
         done = Done::default();
@@ -123,7 +125,7 @@ pub fn run(args: &TilesArgs) -> Result<(), Failure> {
     let (tiles, bytes) = levels.iter().fold((0, 0), |(t, b), l| (t + l.tiles, b + l.bytes));
     let lost = maker.lost();
     let mut warnings = std::mem::take(&mut all.warnings);
-    for message in told(args, lost, tiles).into_iter().filter(|_| ended.is_ok()) {
+    for message in told(*zooms.end(), lost, tiles).into_iter().filter(|_| ended.is_ok()) {
         messages.warning(&args.output.display().to_string(), &message);
         warnings.push(message);
     }
@@ -135,6 +137,7 @@ pub fn run(args: &TilesArgs) -> Result<(), Failure> {
         to: format.name(),
         features: all.read,
         lost,
+        zoom_by: chosen,
         tiles,
         bytes,
         levels,
@@ -165,10 +168,9 @@ pub fn too_many(count: u64, limit: u64) -> Result<(), Failure> {
     )))
 }
 
-fn told(args: &TilesArgs, lost: u64, tiles: u64) -> Vec<String> {
+fn told(last: u8, lost: u64, tiles: u64) -> Vec<String> {
     let mut told = Vec::new();
     if lost > 0 {
-        let last = args.zoom.end();
         told.push(format!(
             "{lost} features are in no tile: they are beyond the latitudes of Web Mercator, ±85.0511, or are too small \
              for the grid of level {last}"
@@ -226,14 +228,19 @@ impl From<durer::Error> for Stopped {
     }
 }
 
-fn metadata(args: &TilesArgs, all: &Layers, bounds: [f64; 4]) -> Metadata {
+fn metadata(
+    args: &TilesArgs,
+    all: &Layers,
+    zooms: &RangeInclusive<u8>,
+    bounds: [f64; 4],
+) -> Metadata {
     let stem = || args.output.file_stem().map(|stem| stem.to_string_lossy().into_owned());
     let pattern = args.output.to_string_lossy().contains("{z}");
     let name = args.name.clone().or_else(|| stem().filter(|_| !pattern));
     Metadata {
         name: name
             .unwrap_or_else(|| all.layers.first().map_or_else(String::new, |l| l.name.clone())),
-        zooms: (*args.zoom.start(), *args.zoom.end()),
+        zooms: (*zooms.start(), *zooms.end()),
         bounds,
         attribution: args.attribution.clone(),
         layers: all.infos(),

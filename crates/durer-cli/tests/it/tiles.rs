@@ -475,6 +475,45 @@ fn too_many_tiles_are_counted_and_not_made() {
 }
 
 #[test]
+fn levels_follow_from_the_data() {
+    let folder = land();
+    let ended = folder.must("tiles parcels.geojsonl -o map.pmtiles --json");
+    let report = ended.json();
+    // Vertices are some 5.6 km apart, and eight cells of level 3 are 9.8.
+    assert_eq!(report["zoom_by"], "vertices");
+    let levels = report["levels"].as_array().unwrap();
+    assert_eq!(levels.len(), 5);
+    let message =
+        "map.pmtiles: zoom levels 0-4 are chosen: level 4 shows the distances between vertices";
+    assert!(ended.err.contains(message), "{}", ended.err);
+    assert_eq!(pmtiles(&folder.read("map.pmtiles")).len() as u64, report["tiles"]);
+    // The tiles are those of the same levels by the option.
+    let ended = folder.must("tiles parcels.geojsonl --zoom 0-4 -o same.pmtiles --name map");
+    assert!(!ended.err.contains("chosen"), "{}", ended.err);
+    assert_eq!(folder.read("map.pmtiles"), folder.read("same.pmtiles"));
+    // The path and the trees are near the parcels.
+    let report = folder.must("tiles parcels.geojsonl way.wkt -o near.pmtiles --json").json();
+    assert_eq!(report["zoom_by"], "distances");
+    assert!(!folder.must("tiles parcels.geojsonl -o q.pmtiles --quiet").err.contains("chosen"));
+    // A million tiles would not show all detail of a world with small triangles.
+    let triangle = |x: i32| {
+        let (x, y) = (f64::from(x), f64::from(x % 7));
+        format!("POLYGON (({x} {y}, {} {y}, {x} {}, {x} {y}))", x + 1e-7, y + 1e-7)
+    };
+    let world = "POLYGON ((-180 -80, 180 -80, 180 80, -180 80, -180 -80))";
+    let rows: Vec<String> = (0..30).map(triangle).chain([world.to_owned()]).collect();
+    folder.write("world.wkt", rows.join("\n"));
+    let ended = folder.must("tiles world.wkt -o world.pmtiles --json --max-tiles 300");
+    assert_eq!(ended.json()["zoom_by"], "tiles");
+    let message =
+        "zoom levels 0-3 are chosen: higher levels would show more detail, in more than 300";
+    assert!(ended.err.contains(message), "{}", ended.err);
+    folder.write("place.wkt", "POINT (7 47)");
+    let report = folder.must("tiles place.wkt -o place.pmtiles --json").json();
+    assert_eq!((&report["zoom_by"], &report["tiles"]), (&"place".into(), &15.into()));
+}
+
+#[test]
 fn clipped_tiles_wrap_around_the_world() {
     let folder = Folder::new();
     folder.write("over.geojsonl", r#"{"type":"Feature","properties":null,"geometry":{"type":"Polygon","coordinates":[[[170,-10],[190,-10],[190,10],[170,10],[170,-10]]]}}

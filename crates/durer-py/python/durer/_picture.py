@@ -445,17 +445,18 @@ def tiles(
     layers: Any,
     output: str | os.PathLike[str],
     *,
-    zoom: str | int | tuple[int, int] = "0-14",
+    zoom: str | int | tuple[int, int] | None = None,
     names: Sequence[str] | None = None,
     threads: int | None = None,
     **options: Any,
 ) -> None:
     """Cuts layers of map data into web tiles, as ``durer tiles`` does: into .pmtiles, .mbtiles, or a folder.
 
-    Layers are as in ``draw``; fields of files, GeoJSON and GeoDataFrames are kept.
+    Layers are as in ``draw``; fields of files, GeoJSON and GeoDataFrames are kept. Without ``zoom``, the levels follow
+    from the detail of the data.
     """
     given = layers if isinstance(layers, list) else [layers]
-    zooms = zoom if isinstance(zoom, str) else str(zoom) if isinstance(zoom, int) else f"{zoom[0]}-{zoom[1]}"
+    zooms = zoom if zoom is None or isinstance(zoom, str) else str(zoom) if isinstance(zoom, int) else f"{zoom[0]}-{zoom[1]}"
     # Imported here, as this takes longer than importing the whole package.
     import tempfile
 
@@ -470,7 +471,7 @@ def tiles(
             with open(path, "wb") as file:
                 file.write(data)
             inputs.append(path)
-        line = [*inputs, f"--output={os.fspath(output)}", f"--zoom={zooms}"]
-        line += words({"layer": None if names is None else list(names), **options})
+        line = [*inputs, f"--output={os.fspath(output)}"]
+        line += words({"zoom": zooms, "layer": None if names is None else list(names), **options})
         call("tiles", _durer.tiles, line, count(threads))
 

@@ -3,9 +3,10 @@
 //!
 //! [`walk()`] descends from the world to the tiles of one level and clips their contents on the way; [`Tiling`] clips
 //! geometries as they are; [`Pyramid`] prepares features for vector tiles: simplified, on a grid of whole numbers, for
-//! many levels.
+//! many levels. [`Detail`] is the level at which their detail is visible.
 
 mod apart;
+mod detail;
 mod level;
 pub mod mercator;
 mod options;
@@ -16,6 +17,7 @@ mod ready;
 mod tiling;
 mod walk;
 
+pub use detail::{Detail, Reason};
 pub use options::Options;
 pub use piece::{Body, Piece, Shape};
 pub use place::{Placed, extent, place};

@@ -17,6 +17,7 @@ use crate::clip::simplify::Coverage;
 use crate::clip::simplify::coverage::Options as Simplify;
 use crate::trace::NoTrace;
 use crate::{Error, Result, parallel};
+use std::ops::RangeInclusive;
 
 /// Features prepared for all levels.
 #[derive(Debug)]
@@ -50,6 +51,28 @@ impl Pyramid {
         };
         let features = features.into_iter().zip(levels).map(ready).collect::<Result<_>>()?;
         Ok(Self { features, options })
+    }
+
+    /// Returns the levels.
+    pub fn zooms(&self) -> RangeInclusive<u8> {
+        self.options.zooms.clone()
+    }
+
+    /// Leaves out levels from the highest down until there are at most `limit` tiles, as [`Pyramid::count`] counts
+    /// them; the first level stays. The result is that of a pyramid made with these levels.
+    ///
+    /// # Errors
+    /// Of the overlay.
+    pub fn reduce(&mut self, limit: u64) -> Result<()> {
+        let (first, mut last) = (*self.options.zooms.start(), *self.options.zooms.end());
+        while last > first && self.count(limit)? > limit {
+            last -= 1;
+            self.options.zooms = first..=last;
+        }
+        for level in self.features.iter_mut().flat_map(|feature| &mut feature.levels) {
+            *level = (*level).min(last);
+        }
+        Ok(())
     }
 
     fn level(&self, zoom: u8) -> Level<'_> {
