@@ -152,7 +152,7 @@ impl Command {
     fn encoding(&mut self) -> Option<&mut EncodingArgs> {
         match self {
             Self::Render(args) => Some(&mut args.picture.encoding),
-            Self::Draw(args) => Some(&mut args.picture.file.encoding),
+            Self::Draw(args) => Some(&mut args.picture.encoding),
             Self::Fill(args) => Some(&mut args.file.encoding),
             Self::Warp(args) => Some(&mut args.file.encoding),
             Self::Plot(args) => Some(&mut args.look.encoding),

@@ -29,6 +29,9 @@ pub struct InfoArgs {
     /// model from standard input
     #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub models: Vec<PathBuf>,
+    /// Describe only this layer of a TopoJSON or GeoPackage file, or this file of an archive [default: all layers]
+    #[arg(long, value_name = "NAME")]
+    pub layer: Option<String>,
     /// Write JSON: one object, or an array of them for several files
     #[arg(long)]
     pub json: bool,
@@ -141,9 +144,18 @@ fn tell_all(args: &InfoArgs, messages: &Messages, infos: &mut Vec<Told>) -> Resu
     for path in &args.models {
         let name = input::display_name(path);
         messages.progress.stage(|| format!("reading {name}"));
-        if is_layer(path) {
-            let layers = layer::of_layers(path, &args.running.work)?;
-            infos.extend(layers.into_iter().map(|layer| Told::Layer(Box::new(layer))));
+        if let Some(files) = maps(path) {
+            let names = files.iter().map(|file| Some(file.as_str()));
+            let chosen = args.layer.as_deref();
+            let each =
+                if chosen.is_some() || files.len() < 2 { vec![chosen] } else { names.collect() };
+            for chosen in each {
+                let layers = layer::of_layers(path, chosen, &args.running.work)?;
+                infos.extend(layers.into_iter().map(|layer| Told::Layer(Box::new(layer))));
+            }
+        } else if args.layer.is_some() {
+            let message = format!("--layer: {name} holds a model, which has no layers");
+            return Err(Failure::Usage(message));
         } else {
             // The model's part of the budget is released with it.
             let options = input::read_options(&args.reading, &args.running.work.part());
@@ -159,27 +171,27 @@ fn tell_all(args: &InfoArgs, messages: &Messages, infos: &mut Vec<Told>) -> Resu
     Ok(())
 }
 
-/// Returns whether a file holds map data, and no model: by its first bytes, or else by its name; an archive by the names
-/// in it. Standard input holds a model.
-fn is_layer(path: &Path) -> bool {
+/// Returns the files of map data in an archive, or nothing for a file of map data; `None` for a model. A file is known by
+/// its first bytes, or else by its name; an archive by the names in it. Standard input holds a model.
+fn maps(path: &Path) -> Option<Vec<String>> {
     if is_stream(path) {
-        return false;
+        return None;
     }
-    let Ok(mut source) = layer::bytes(path) else { return false };
-    let Ok(head) = source.fill_buf() else { return false };
+    let mut source = layer::bytes(path).ok()?;
+    let head = source.fill_buf().ok()?;
     if head.starts_with(archive::MAGIC) {
-        let names = File::open(path).ok().and_then(|file| archive::names(file).ok());
-        return names.is_some_and(|names| {
-            let is_map = |name: &String| GeoFormat::of_name(name).is_some();
-            names.iter().any(is_map) && !names.iter().any(|name| is_name_of_model(name))
-        });
+        let names = File::open(path).ok().and_then(|file| archive::names(file).ok())?;
+        let has_model = names.iter().any(|name| is_name_of_model(name));
+        let is_map = |name: &String| GeoFormat::of_name(name).is_some();
+        let maps: Vec<String> = names.into_iter().filter(is_map).collect();
+        return (!maps.is_empty() && !has_model).then_some(maps);
     }
     let lower = head.get(..2).unwrap_or_default().to_ascii_lowercase();
     // Rows that begin with x are points of a model, as other columns beside them say.
     let is_cloud = ModelFormat::of_name(&path.to_string_lossy()) == Some(ModelFormat::Xyz)
         && lower.starts_with(b"x");
     let is_model = ModelFormat::of_content(head).is_some() || is_cloud;
-    !is_model && layer::format_of(path, head).is_some()
+    (!is_model && layer::format_of(path, head).is_some()).then(Vec::new)
 }
 
 fn of_model(name: String, model: &Model, work: &Work) -> Result<Info, Failure> {

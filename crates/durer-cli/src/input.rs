@@ -197,10 +197,14 @@ pub fn bytes_within(path: &Path, limits: &Limits) -> Result<Vec<u8>, Failure> {
     bounded(file, metadata.len(), limit).map_err(fail)
 }
 
+/// Returns the message about a file with more bytes than `--max-bytes` allows.
+pub fn too_large(limit: u64) -> String {
+    format!("it has more bytes than the limit of {limit}; --max-bytes raises it")
+}
+
 /// Returns all bytes of a source, refused above the limit.
 fn bounded(source: impl Read, expected: u64, limit: u64) -> Result<Vec<u8>, String> {
-    let too_large =
-        || format!("it has more bytes than the limit of {limit}; --max-bytes raises it");
+    let too_large = || too_large(limit);
     if expected > limit {
         return Err(too_large());
     }

@@ -46,6 +46,15 @@ impl Kind {
         Self::of_suffix(&path.extension().unwrap_or_default().to_string_lossy())
     }
 
+    /// Returns whether maps and SVG files can be drawn as it: a single picture, or vectors with colours and opacity.
+    pub fn is_of_maps(self) -> bool {
+        match self {
+            Self::Picture(_) => true,
+            Self::Gif => false,
+            Self::Drawing(format) => matches!(format, DrawingFormat::Svg | DrawingFormat::Pdf),
+        }
+    }
+
     /// Returns whether it has lines and areas instead of pixels.
     pub fn is_vector(self) -> bool {
         matches!(self, Self::Drawing(_))
@@ -131,6 +140,13 @@ impl Wanted {
         Self { kind, told: told.is_some(), suffixes: PICTURES }
     }
 
+    /// Creates an output of a command that writes pictures and, as vectors, SVG and PDF.
+    pub fn map(path: &Path, told: Option<Kind>) -> Self {
+        let of_name = || Kind::of_path(path).filter(|kind| kind.is_of_maps());
+        let kind = told.or_else(of_name).unwrap_or(Kind::PNG);
+        Self { kind, told: told.is_some(), suffixes: MAPS }
+    }
+
     /// Creates a picture whose pixels are numbers that must not change.
     pub fn plane() -> Self {
         Self { kind: Kind::PNG, told: false, suffixes: PLANES }
@@ -154,6 +170,8 @@ impl Wanted {
 
 const PICTURES: &str =
     "pictures are written as PNG, JPEG or WebP; end the name in .png, .jpg or .webp";
+const MAPS: &str = "drawings and maps are written as PNG, JPEG or WebP, or as vectors in SVG or PDF; end the name \
+                    in .png, .jpg, .webp, .svg or .pdf";
 const ANY: &str = "pictures are written as PNG, JPEG or WebP; end the name in .png, .jpg or .webp \
                    (a --turntable in one file: .png, .webp, .gif; drawings: .svg, .pdf, .dxf, .hpgl, \
                    .gcode, .geojson)";

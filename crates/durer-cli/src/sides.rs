@@ -3,6 +3,9 @@
 use crate::values::Size;
 use durer::math::DVec2;
 
+/// Part of a pixel that lengths in other units may exceed whole pixels by, as they are rounded.
+const ROUNDING: f64 = 0.01;
+
 /// A size of which one side may be open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sides {
@@ -40,7 +43,10 @@ impl Sides {
             (Some(width), Some(height)) => (width, height),
             (Some(width), None) => (width, whole(f64::from(width) * (natural.y / natural.x))),
             (None, Some(height)) => (whole(f64::from(height) * (natural.x / natural.y)), height),
-            (None, None) => (whole(natural.x.ceil()), whole(natural.y.ceil())),
+            (None, None) => {
+                let sides = (natural - ROUNDING).ceil();
+                (whole(sides.x), whole(sides.y))
+            }
         };
         Size { width, height }
     }
@@ -74,6 +80,9 @@ mod tests {
         assert_eq!(size("640x"), is(640, 427));
         assert_eq!(size("x480"), is(720, 480));
         assert_eq!(size("10x10"), is(10, 10));
+        // 200 pixels are 52.917 millimetres, rounded.
+        let open = Sides { width: None, height: None };
+        assert_eq!(open.of_shape(DVec2::new(52.917 / 25.4 * 96.0, 7.1)), is(200, 8));
         let flat = sides("640x").unwrap().of_shape(DVec2::new(1e9, 1.0));
         assert_eq!(flat, is(640, 1));
     }

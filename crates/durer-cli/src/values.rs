@@ -75,6 +75,12 @@ pub fn kind() -> impl TypedValueParser<Value = Kind> {
     PossibleValuesParser::new(Kind::names().map(named)).map(|name| Kind::of_name(&name))
 }
 
+/// Returns the name of an output format of maps.
+pub fn map_kind() -> impl TypedValueParser<Value = Kind> {
+    let names = Kind::names().filter(|name| Kind::of_name(name).is_of_maps());
+    PossibleValuesParser::new(names.map(named)).map(|name| Kind::of_name(&name))
+}
+
 /// Returns the name of a format of pictures.
 pub fn picture_format() -> impl TypedValueParser<Value = PictureFormat> {
     PossibleValuesParser::new(PictureFormat::ALL.iter().map(|f| named(f.name())))

@@ -146,7 +146,8 @@ pub struct Member<B> {
 }
 
 /// Returns the only file of an archive whose name is wanted, or of several the one that is called `choice`, with its
-/// folder or without, with its suffix or without; `kind` names in messages what is wanted.
+/// folder or without, with its suffix or without; in messages, `kind` names what is wanted, and `hint` tells what to do
+/// about several.
 ///
 /// # Errors
 /// [`Error::Unknown`] if no file is wanted; [`Error::Unsupported`] if there are several and the choice is none of them;
@@ -155,7 +156,7 @@ pub fn only<B: AsRef<[u8]>>(
     bytes: B,
     limits: &Limits,
     wanted: impl Fn(&str) -> bool,
-    (kind, choice): (&'static str, Option<&str>),
+    (kind, choice, hint): (&'static str, Option<&str>, &'static str),
 ) -> Result<Member<B>> {
     let mut archive = Archive::open(bytes, limits)?;
     let mut found: Vec<String> =
@@ -183,7 +184,7 @@ pub fn only<B: AsRef<[u8]>>(
             Err(Error::Unsupported {
                 place: Place::Whole,
                 what: format!("a ZIP archive with {} {kind} ({names}{more})", several.len()),
-                hint: "unpack it, or pack one alone".to_owned(),
+                hint: hint.to_owned(),
             })
         }
     }
@@ -225,7 +226,7 @@ mod tests {
         ]);
         let shp = |name: &str| name.ends_with(".shp");
         let limits = Limits::default();
-        let member = only(archive, &limits, shp, ("map data", None)).expect("one");
+        let member = only(archive, &limits, shp, ("map data", None, "")).expect("one");
         assert_eq!((&member.name[..], &member.bytes[..]), ("data/a.shp", &b"1"[..]));
         assert!(!member.chosen);
         assert_eq!(member.beside.read("a.dbf", 9).expect("case does not count"), b"2");
@@ -237,7 +238,7 @@ mod tests {
     fn of_several_files_one_is_chosen_by_name() {
         let archive = packed(&[("x/a.stl", b"1"), ("x/b.stl", b"2"), ("y/b.stl", b"3")]);
         let limits = Limits::default();
-        let find = |choice| only(archive.clone(), &limits, |_| true, ("models", choice));
+        let find = |choice| only(archive.clone(), &limits, |_| true, ("models", choice, ""));
         for (choice, bytes) in [("a", b"1"), ("a.stl", b"1"), ("x/b.stl", b"2"), ("y/b", b"3")] {
             let member = find(Some(choice)).expect(choice);
             assert_eq!((&member.bytes[..], member.chosen), (&bytes[..], true), "{choice}");
@@ -250,7 +251,7 @@ mod tests {
             );
         }
         assert!(message(find(Some("b"))).contains("2 models (x/b.stl, y/b.stl)"));
-        let none = only(archive.clone(), &limits, |_| false, ("models", None));
+        let none = only(archive.clone(), &limits, |_| false, ("models", None, ""));
         assert!(message(none).contains("the ZIP archive holds no models"));
     }
 
@@ -258,14 +259,14 @@ mod tests {
     fn broken_archives_and_large_files_are_refused() {
         let archive = packed(&[("a", &[0; 1000])]);
         let small = Limits { decoded_bytes: 999, ..Limits::default() };
-        let refused = message(only(archive.clone(), &small, |_| true, ("models", None)));
+        let refused = message(only(archive.clone(), &small, |_| true, ("models", None, "")));
         assert!(refused.contains("size of the inflated parts of 1000 is above"), "{refused}");
         let work = Work::with_budget(500, "max_memory");
         let poor = Limits { work, ..Limits::default() };
-        let refused = message(only(archive.clone(), &poor, |_| true, ("models", None)));
+        let refused = message(only(archive.clone(), &poor, |_| true, ("models", None, "")));
         assert!(refused.contains("files of the archive: 1 kB of memory"), "{refused}");
         let cut = archive[..archive.len() - 9].to_vec();
-        let refused = message(only(cut, &Limits::default(), |_| true, ("models", None)));
+        let refused = message(only(cut, &Limits::default(), |_| true, ("models", None, "")));
         assert!(refused.contains("the ZIP archive is broken"), "{refused}");
     }
 }

@@ -22,7 +22,7 @@ mod foreign;
 pub mod formula;
 pub mod geo;
 pub mod gltf;
-mod gzip;
+pub mod gzip;
 pub mod hdr;
 pub mod height_map;
 pub mod image;

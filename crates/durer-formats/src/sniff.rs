@@ -201,8 +201,12 @@ pub fn read_model(
     if !bytes.starts_with(archive::MAGIC) || is_3mf(bytes) {
         return read_unpacked(bytes, name, resources, options);
     }
-    let Member { name, bytes, beside, .. } =
-        archive::only(bytes, &options.limits, is_name_of_model, ("models", None))?;
+    let Member { name, bytes, beside, .. } = archive::only(
+        bytes,
+        &options.limits,
+        is_name_of_model,
+        ("models", None, "unpack it, or pack one alone"),
+    )?;
     read_unpacked(&bytes, &name, &beside, options).map_err(|error| {
         error.at(|place| match place {
             Place::Whole => Place::Path(name),

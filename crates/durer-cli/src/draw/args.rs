@@ -1,7 +1,8 @@
 //! The options of `durer draw`.
 
 use super::layers::Layers;
-use crate::encoding::PictureFileArgs;
+use crate::encoding::EncodingArgs;
+use crate::kind::Kind;
 use crate::options::RunningArgs;
 use crate::sides::{Sides, sides};
 use crate::{color, values};
@@ -17,6 +18,7 @@ Examples:
   durer draw tiger.svg -o tiger.png --size 2048x --background white
   durer draw page.svg -o page.png --font fonts/
   durer draw countries.geojson -o world.png --size 1600x --label NAME
+  durer draw countries.geojson -o world.svg
   durer draw land.geojson --fill '#f4efe6' --stroke none rivers.geojson --stroke '#4a7fb5' \\
       cities.geojson --marker-size 5 --fill '#b03030' --label name -o map.png \\
       --background '#cfe2f0' --window -10,35,30,60
@@ -35,8 +37,11 @@ pub struct DrawArgs {
     pub layers: Layers,
     /// File to write the picture to
     ///
-    /// A .png, .jpg or .webp file, or `-` for standard output. A file is only ever replaced by a complete
-    /// picture.
+    /// A .png, .jpg or .webp file, a .svg or .pdf file for vectors, or `-` for standard output. A file is only ever
+    /// replaced by a complete picture.
+    ///
+    /// Vectors show the same as pixels; a pixel is 1/96 inch. Each map layer becomes a layer, and letters become
+    /// outlines. Gradients, bitmaps, patterns, masks, filters and blend modes of an SVG are refused.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
     /// Options for the picture.
@@ -63,7 +68,8 @@ pub struct DrawArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Picture")]
 pub struct PictureArgs {
-    /// Width and height in pixels [default: an SVG's own; 1024 on the longer side of a map]
+    /// Width and height in pixels, which are 1/96 inch in SVG and PDF [default: an SVG's own; 1024 on the longer side
+    /// of a map]
     ///
     /// One side may be left out (`800x`, `x600`) and follows from the other. If the shape differs,
     /// the drawing is as large as fits, in the middle.
@@ -84,9 +90,12 @@ pub struct PictureArgs {
     /// picture]
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = viewport)]
     pub viewport: Option<PixelRect>,
+    /// The format of the output: png, jpeg or webp; svg or pdf for vectors [default: by its suffix, else png]
+    #[arg(long, value_name = "FORMAT", value_parser = values::map_kind())]
+    pub format: Option<Kind>,
     /// Compression and quality of the file.
     #[command(flatten)]
-    pub file: PictureFileArgs,
+    pub encoding: EncodingArgs,
     /// Refuse pictures with more pixels; the default is 16384x16384
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "268435456", value_parser = values::count)]
     pub max_pixels: u64,

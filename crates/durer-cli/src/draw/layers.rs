@@ -59,6 +59,8 @@ pub struct Labels {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layer {
     pub input: PathBuf,
+    /// The layer of the file, if one is named.
+    pub chosen: Option<String>,
     pub style: Style,
     pub labels: Labels,
     /// True if an option of the style was given for it.
@@ -78,6 +80,9 @@ struct LayerArgs {
     /// compressed by gzip; `-` reads standard input
     #[arg(required = true, value_name = "IN", value_hint = ValueHint::FilePath, help_heading = None)]
     input: Vec<PathBuf>,
+    /// The layer of a TopoJSON or GeoPackage file, or the file of an archive [default: all, as one]
+    #[arg(long, value_name = "NAME", help_heading = "Reading")]
+    layer: Vec<String>,
     /// The colour of areas and markers, or `none` [default: #e3e7e0]
     #[arg(long, value_name = "COLOR", value_parser = ink)]
     fill: Vec<Ink>,
@@ -180,6 +185,7 @@ impl FromArgMatches for Layers {
         let first = places.first().copied().unwrap_or(usize::MAX);
         let mut common = (Style::default(), Labels::default());
         apply(matches, 0..first, &mut common);
+        let of_all: Option<String> = last(matches, "layer", &(0..first));
         let ends = places.iter().skip(1).copied().chain([usize::MAX]);
         let layers =
             inputs.into_iter().zip(places.iter().zip(ends)).map(|(input, (start, end))| {
@@ -187,7 +193,8 @@ impl FromArgMatches for Layers {
                 let given = apply(matches, *start..end, &mut look);
                 let styled = given || look != (Style::default(), Labels::default());
                 let (style, labels) = look;
-                Layer { input, style, labels, styled }
+                let chosen = last(matches, "layer", &(*start..end)).or_else(|| of_all.clone());
+                Layer { input, chosen, style, labels, styled }
             });
         Ok(Self(layers.collect()))
     }

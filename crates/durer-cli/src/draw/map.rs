@@ -2,13 +2,12 @@
 
 use super::layers::{Labels, Priority};
 use super::report::MapCounts;
-use super::{Given, Job, MAP_SIDE, fonts, sides};
+use super::{Given, Job, MAP_SIDE, Surface, fonts, sides};
 use crate::failure::Failure;
 use crate::input::display_name;
 use durer::curve::text::Font;
 use durer::map::{self, Label, Map, Style};
 use durer::math::Rect;
-use durer::raster::paint::Canvas;
 use durer::view::window::Window;
 use durer_formats::geo::{Beside, Feature, Reader};
 use durer_formats::svg::no_glyphs;
@@ -26,7 +25,7 @@ const LISTED: usize = 12;
 
 impl Job<'_> {
     /// Returns everything that the layers paint.
-    pub(super) fn map(&mut self, given: &[Given<'_>]) -> Result<Canvas, Failure> {
+    pub(super) fn map<T: Surface>(&mut self, given: &[Given<'_>]) -> Result<T, Failure> {
         let start = Instant::now();
         let mut layers = Vec::new();
         for layer in given {
@@ -43,13 +42,14 @@ impl Job<'_> {
         };
         let extent = window.rect().size();
         let size = sides(self.args.picture.size, extent * (MAP_SIDE / extent.max_element()));
-        let canvas = self.canvas(size, [255; 4])?;
+        let target: T = self.surface(size, [255; 4])?;
         let viewport = self.viewport(size)?;
-        let mut map = Map::new(canvas, &window, &viewport).map_err(usage)?;
+        let mut map = Map::new(target, &window, &viewport).map_err(usage)?;
         let mut labels = Vec::new();
         for (index, (layer, features)) in given.iter().zip(&layers).enumerate() {
             let name = display_name(&layer.layer.input);
             self.messages.progress.stage(|| format!("drawing {name}"));
+            map.target().begin_layer(&crate::names::stem(&layer.layer.input));
             let geometries = features.iter().filter_map(|feature| feature.geometry.as_ref());
             let counts = map.layer(&layer.layer.style, geometries).map_err(usage)?;
             if counts.solid {
@@ -64,13 +64,13 @@ impl Job<'_> {
             );
         }
         self.write(&mut map, labels, given)?;
-        Ok(map.into_canvas())
+        Ok(map.into_target())
     }
 
     /// Draws the labels and counts the ones drawn.
     fn write(
         &mut self,
-        map: &mut Map,
+        map: &mut Map<impl Surface>,
         labels: Vec<Label>,
         given: &[Given<'_>],
     ) -> Result<(), Failure> {
@@ -88,6 +88,7 @@ impl Job<'_> {
         let styles: Vec<&Style> = given.iter().map(|g| &g.layer.style).collect();
         let opened = fonts.iter().map(|(bytes, index)| Font::new(bytes, index));
         let opened = opened.collect::<durer::Result<Vec<_>>>().map_err(data)?;
+        map.target().begin_layer("labels");
         let placed = map.labels(labels, &styles, &opened).map_err(data)?;
         for (layer, placed) in self.report.layers.iter_mut().zip(placed.counts) {
             if let Some(counts) = &mut layer.map {
@@ -105,7 +106,11 @@ impl Job<'_> {
         let name = display_name(&given.layer.input);
         let fail = |e: durer_formats::Error| Failure::Data(format!("{name}: {e}"));
         self.messages.progress.stage(|| format!("reading {name}"));
-        let beside = Beside { name: &given.file.name, resources: &*given.file.beside, layer: None };
+        let beside = Beside {
+            name: &given.file.name,
+            resources: &*given.file.beside,
+            layer: given.file.layer.as_deref(),
+        };
         let reader = Reader::with(given.format, &given.file.bytes[..], &beside);
         let mut reader = reader.map_err(fail)?;
         let mut features = Vec::new();
@@ -190,7 +195,7 @@ fn rank(feature: &Feature, by: &Priority) -> f64 {
 
 /// Returns the labels of a layer's features.
 fn labels_of(
-    map: &Map,
+    map: &Map<impl Surface>,
     features: &[Feature],
     labels: &Labels,
     layer: usize,

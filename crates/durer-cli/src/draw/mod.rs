@@ -12,7 +12,7 @@ pub use fonts::built_in as built_in_fonts;
 pub use layers::is_style;
 
 use crate::encoding;
-use crate::failure::{Failure, in_words};
+use crate::failure::Failure;
 use crate::input::{self, display_name};
 use crate::kind::Wanted;
 use crate::messages::Messages;
@@ -22,14 +22,18 @@ use crate::sides::Sides;
 use crate::values::Size;
 use args::Smoothing;
 use durer::math::DVec2;
-use durer::raster::paint::{Canvas, Options};
+use durer::paper::SheetPainter;
+use durer::raster::paint::{Canvas, Options, PaintTarget};
 use durer::target::Pixels;
+use durer::target::drawing::Drawing;
+use durer::target::sheet::Sheet;
 use durer::view::window::{PixelRect, Viewport};
+use durer_formats::drawing::{self, FileOptions};
 use durer_formats::geo::GeoFormat;
-use durer_formats::{Limits, Resources, Warning, archive};
+use durer_formats::{Limits, Resources, Warning, archive, gzip};
 use layers::Layer;
 use report::{LayerReport, Report};
-use std::io::Read;
+use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
 
@@ -51,15 +55,31 @@ pub fn run(args: &DrawArgs) -> Result<(), Failure> {
     for layer in &args.layers.0 {
         given.push(job.read(layer)?);
     }
-    let picture = job.draw(given)?;
-    messages.progress.stage(|| format!("writing {target}"));
-    let encode = Instant::now();
-    let format = wanted(args).kind.picture();
-    if args.picture.file.encoding.deliver(&target, format, &picture)? {
-        let message = format!("{}; --background gives it another colour", encoding::FLATTENED);
-        messages.warning(&target.to_string(), &message);
-        report.warnings.push(message);
-    }
+    let kind = wanted(args).kind;
+    let encode = match kind.drawing() {
+        Some(format) => {
+            let sheet = job.draw_vectors(given)?;
+            messages.progress.stage(|| format!("writing {target}"));
+            let (encode, options) = (Instant::now(), FileOptions::default());
+            let options = FileOptions { work: args.running.work.clone(), ..options };
+            output::deliver(&target, &args.running.work, |out| {
+                drawing::write(out, format, &sheet, &Drawing::default(), &options)
+            })?;
+            encode
+        }
+        None => {
+            let picture = job.draw(given)?;
+            messages.progress.stage(|| format!("writing {target}"));
+            let encode = Instant::now();
+            if args.picture.encoding.deliver(&target, kind.picture(), &picture)? {
+                let message =
+                    format!("{}; --background gives it another colour", encoding::FLATTENED);
+                messages.warning(&target.to_string(), &message);
+                report.warnings.push(message);
+            }
+            encode
+        }
+    };
     drop(messages);
     report.encode_seconds = encode.elapsed().as_secs_f64();
     report.total_seconds = start.elapsed().as_secs_f64();
@@ -85,7 +105,12 @@ fn check(args: &DrawArgs) -> Result<Target, Failure> {
     input::check_streams(&inputs)?;
     let first = inputs.first().map(|&input| Name { input: input.clone(), frame: None });
     let names: Vec<Name> = first.into_iter().collect();
-    args.picture.file.encoding.check(wanted(args).kind)?;
+    let kind = wanted(args).kind;
+    args.picture.encoding.check(kind)?;
+    if kind.is_vector() && args.picture.aa == Smoothing::None {
+        let message = "--aa: vectors have no pixels; end the name in .png, or leave the option out";
+        return Err(Failure::Usage(message.to_owned()));
+    }
     let target = output::plan("--output", &args.output, &names, &wanted(args))?;
     let Some(target) = target.into_iter().next() else {
         return Err(Failure::Usage("nothing to draw".to_owned()));
@@ -99,7 +124,7 @@ fn check(args: &DrawArgs) -> Result<Target, Failure> {
 
 /// Returns the output format: from --format, or from the output's name.
 fn wanted(args: &DrawArgs) -> Wanted {
-    Wanted::picture(&args.output, args.picture.file.format)
+    Wanted::map(&args.output, args.picture.format)
 }
 
 /// One run.
@@ -123,6 +148,8 @@ struct Unpacked {
     name: String,
     /// Access to the files beside it.
     beside: Box<dyn Resources>,
+    /// The layer of the file to draw.
+    layer: Option<String>,
 }
 
 impl Job<'_> {
@@ -132,33 +159,56 @@ impl Job<'_> {
         self.report.warnings.extend(warnings.iter().map(ToString::to_string));
     }
 
-    /// Draws layers that are in memory.
+    /// Draws layers that are in memory as pixels.
     fn draw(&mut self, given: Vec<Given<'_>>) -> Result<Pixels<[u8; 4]>, Failure> {
         let (start, read_before) = (Instant::now(), self.report.read_seconds);
-        let args = self.args;
-        let drawing = given.iter().find(|g| g.format == GeoFormat::Svg);
-        let canvas = match (drawing, &given[..]) {
-            (Some(_), [one]) => self.drawing(one)?,
-            (Some(drawing), _) => {
-                let name = display_name(&drawing.layer.input);
-                let message = format!("{name}: an SVG is drawn alone; only map data make layers");
-                return Err(Failure::Usage(message));
-            }
-            (None, _) => self.map(&given)?,
-        };
-        drop(given);
+        let canvas: Canvas = self.painted(given)?;
         self.messages.progress.stage(|| "painting".to_owned());
         let work = &self.args.running.work;
-        let name = args.layers.0.first().map_or(String::new(), |l| display_name(&l.input));
-        let fail = |e: durer::Error| Failure::of_library(&e).named(&name);
+        let fail = |e: durer::Error| Failure::of_library(&e).named(&self.first_name());
         let stage = (work, "planes of the picture");
         let picture = Pixels::within(stage, canvas.width(), canvas.height(), [0; 4]);
         let mut picture = picture.map_err(fail)?;
         canvas.render(&mut picture).map_err(fail)?;
         self.report.draw_seconds =
             start.elapsed().as_secs_f64() - (self.report.read_seconds - read_before);
-        (self.report.width, self.report.height) = (picture.width(), picture.height());
         Ok(picture)
+    }
+
+    /// Draws layers that are in memory as vectors.
+    fn draw_vectors(&mut self, given: Vec<Given<'_>>) -> Result<Sheet, Failure> {
+        let (start, read_before) = (Instant::now(), self.report.read_seconds);
+        let painter: SheetPainter = self.painted(given)?;
+        let name = self.first_name();
+        let fail = |e: durer::Error| Failure::of_library(&e).named(&name);
+        painter.work().check().map_err(fail)?;
+        let sheet = painter.into_sheet().map_err(|kinds| {
+            let kinds = Vec::from_iter(kinds).join(", ");
+            Failure::Data(format!(
+                "{name}: {kinds} cannot be written as vectors; a picture (.png) shows them"
+            ))
+        })?;
+        self.report.draw_seconds =
+            start.elapsed().as_secs_f64() - (self.report.read_seconds - read_before);
+        Ok(sheet)
+    }
+
+    /// Returns a target with everything that the layers paint.
+    fn painted<T: Surface>(&mut self, given: Vec<Given<'_>>) -> Result<T, Failure> {
+        let drawing = given.iter().find(|g| g.format == GeoFormat::Svg);
+        match (drawing, &given[..]) {
+            (Some(_), [one]) => self.drawing(one),
+            (Some(drawing), _) => {
+                let name = display_name(&drawing.layer.input);
+                let message = format!("{name}: an SVG is drawn alone; only map data make layers");
+                Err(Failure::Usage(message))
+            }
+            (None, _) => self.map(&given),
+        }
+    }
+
+    fn first_name(&self) -> String {
+        self.args.layers.0.first().map_or(String::new(), |l| display_name(&l.input))
     }
 
     fn read<'a>(&mut self, layer: &'a Layer) -> Result<Given<'a>, Failure> {
@@ -166,8 +216,16 @@ impl Job<'_> {
         self.messages.progress.stage(|| format!("reading {name}"));
         let start = Instant::now();
         let limits = self.limits();
-        let bytes = unzipped(input::bytes_within(&layer.input, &limits)?, self.args.max_bytes);
-        let bytes = bytes.map_err(|e| Failure::Data(format!("{name}: {e}")))?;
+        let bytes = input::bytes_within(&layer.input, &limits)?;
+        let unpacked = gzip::unpacked(&bytes, &limits).map_err(|e| match e {
+            durer_formats::Error::Limit { limit, .. } => input::too_large(limit),
+            other => other.to_string(),
+        });
+        let unpacked = match unpacked.map_err(|e| Failure::Data(format!("{name}: {e}")))? {
+            Cow::Owned(unpacked) => Some(unpacked),
+            Cow::Borrowed(_) => None,
+        };
+        let bytes = unpacked.unwrap_or(bytes);
         self.report.read_seconds += start.elapsed().as_secs_f64();
         self.given(layer, bytes)
     }
@@ -190,17 +248,20 @@ impl Job<'_> {
         Ok(Given { layer, format, file })
     }
 
-    /// Returns the file of a layer, or the only map of an archive.
+    /// Returns the file of a layer, or the only or chosen map of an archive.
     fn unpacked(&self, layer: &Layer, bytes: Vec<u8>) -> Result<Unpacked, Failure> {
         let path = &layer.input;
         if !bytes.starts_with(archive::MAGIC) {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            return Ok(Unpacked { bytes, name, beside: input::folder(path) });
+            let (beside, layer) = (input::folder(path), layer.chosen.clone());
+            return Ok(Unpacked { bytes, name, beside, layer });
         }
-        let packed = crate::layer::packed(bytes, None, &self.limits());
+        let chosen = layer.chosen.as_deref();
+        let packed = crate::layer::packed(bytes, chosen, &self.limits());
         let packed = packed.map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))?;
         let name = packed.name.rsplit('/').next().unwrap_or_default().to_owned();
-        Ok(Unpacked { bytes: packed.bytes, name, beside: Box::new(packed.beside) })
+        let layer = chosen.filter(|_| !packed.chosen).map(str::to_owned);
+        Ok(Unpacked { bytes: packed.bytes, name, beside: Box::new(packed.beside), layer })
     }
 
     /// Returns the limits on inputs.
@@ -209,25 +270,14 @@ impl Job<'_> {
         Limits { decoded_bytes: self.args.max_bytes, work, ..Limits::default() }
     }
 
-    /// Returns an empty canvas.
-    fn canvas(&self, (width, height): (u32, u32), background: [u8; 4]) -> Result<Canvas, Failure> {
-        let picture = &self.args.picture;
-        let (pixels, limit) = (u64::from(width) * u64::from(height), picture.max_pixels);
-        if pixels > limit {
-            let message = format!(
-                "the size {width}x{height}: {pixels} pixels are above the limit of {limit}; \
-                 --max-pixels raises it"
-            );
-            return Err(Failure::Usage(message));
-        }
-        let anti_alias = picture.aa == Smoothing::Coverage;
-        let options = Options { anti_alias, ..Options::default() };
-        let canvas = Canvas::new(width, height, options);
-        let mut canvas =
-            canvas.map_err(|e| Failure::Usage(format!("the size {width}x{height}: {e}")))?;
-        canvas.set_work(&self.args.running.work);
-        canvas.clear(picture.background.unwrap_or(background));
-        Ok(canvas)
+    /// Returns an empty target of a size.
+    fn surface<T: Surface>(
+        &mut self,
+        (width, height): (u32, u32),
+        background: [u8; 4],
+    ) -> Result<T, Failure> {
+        (self.report.width, self.report.height) = (width, height);
+        T::empty(self.args, (width, height), self.args.picture.background.unwrap_or(background))
     }
 
     /// Returns the part of a picture to draw in.
@@ -243,19 +293,58 @@ impl Job<'_> {
     }
 }
 
-/// Returns the bytes of a file, decompressed if they are gzip, up to a limit. (An SVG is decompressed by its reader.)
-fn unzipped(bytes: Vec<u8>, limit: u64) -> Result<Vec<u8>, String> {
-    if !bytes.starts_with(&[0x1f, 0x8b]) {
-        return Ok(bytes);
+/// A target of painting that a file is made of.
+trait Surface: PaintTarget + Sized {
+    /// Creates an empty target of a size in pixels.
+    fn empty(args: &DrawArgs, size: (u32, u32), background: [u8; 4]) -> Result<Self, Failure>;
+
+    /// Begins a layer with a name.
+    fn begin_layer(&mut self, name: &str);
+}
+
+impl Surface for Canvas {
+    fn empty(
+        args: &DrawArgs,
+        (width, height): (u32, u32),
+        background: [u8; 4],
+    ) -> Result<Self, Failure> {
+        let picture = &args.picture;
+        let (pixels, limit) = (u64::from(width) * u64::from(height), picture.max_pixels);
+        if pixels > limit {
+            let message = format!(
+                "the size {width}x{height}: {pixels} pixels are above the limit of {limit}; \
+                 --max-pixels raises it"
+            );
+            return Err(Failure::Usage(message));
+        }
+        let anti_alias = picture.aa == Smoothing::Coverage;
+        let options = Options { anti_alias, ..Options::default() };
+        let canvas = Self::new(width, height, options);
+        let mut canvas =
+            canvas.map_err(|e| Failure::Usage(format!("the size {width}x{height}: {e}")))?;
+        canvas.set_work(&args.running.work);
+        canvas.clear(background);
+        Ok(canvas)
     }
-    let source = durer_formats::geo::unzipped(Box::new(&bytes[..]), 1 << 16);
-    let mut all = Vec::new();
-    let read = source.and_then(|s| s.take(limit.saturating_add(1)).read_to_end(&mut all));
-    read.map_err(|e| in_words(&e))?;
-    let fits = all.len() as u64 <= limit;
-    fits.then_some(all).ok_or_else(|| {
-        format!("it has more bytes than the limit of {limit}; --max-bytes raises it")
-    })
+
+    fn begin_layer(&mut self, _name: &str) {}
+}
+
+impl Surface for SheetPainter {
+    fn empty(
+        args: &DrawArgs,
+        (width, height): (u32, u32),
+        background: [u8; 4],
+    ) -> Result<Self, Failure> {
+        let mut painter = Self::new(width, height);
+        painter.set_background(background);
+        painter.set_work(&args.running.work);
+        Ok(painter)
+    }
+
+    fn begin_layer(&mut self, name: &str) {
+        self.begin_layer(name);
+    }
 }
 
 /// Returns whole sides for a picture of a given shape, whose natural size is `natural`.

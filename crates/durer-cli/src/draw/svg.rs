@@ -1,13 +1,12 @@
 //! A drawing in SVG.
 
-use super::{Given, Job, fonts, frame, has_folder, sides};
+use super::{Given, Job, Surface, fonts, frame, has_folder, sides};
 use crate::failure::Failure;
 use crate::input::display_name;
 use crate::resources::Folder;
 use durer::map::Style;
 use durer::math::{DAffine2, DVec2, Rect};
 use durer::raster::coverage::FillRule;
-use durer::raster::paint::Canvas;
 use durer::view::window::{Aspect, Window, WindowToViewport, YAxis};
 use durer_formats::NoResources;
 use durer_formats::svg::{Drawing, ReadOptions};
@@ -15,9 +14,12 @@ use std::time::Instant;
 
 impl Job<'_> {
     /// Returns everything that the SVG drawing paints.
-    pub(super) fn drawing(&mut self, given: &Given<'_>) -> Result<Canvas, Failure> {
+    pub(super) fn drawing<T: Surface>(&mut self, given: &Given<'_>) -> Result<T, Failure> {
         let name = display_name(&given.layer.input);
         let fail = |what: String| Failure::Data(format!("{name}: {what}"));
+        if given.layer.chosen.is_some() {
+            return Err(Failure::Usage("--layer is for map data; an SVG has none".to_owned()));
+        }
         if given.layer.styled || given.layer.style != Style::default() {
             let message = "--fill, --stroke and other styles are for map data; an SVG has its own";
             return Err(Failure::Usage(message.to_owned()));
@@ -43,7 +45,8 @@ impl Job<'_> {
         let size = sides(picture.size, shown.size());
         // A size that was not given whole is the drawing's own.
         let given = picture.size.is_some_and(|s| s.width.is_some() && s.height.is_some());
-        let mut canvas = self.canvas(size, [0; 4]).map_err(|failure| match failure {
+        let surface = self.surface(size, [0; 4]);
+        let mut canvas: T = surface.map_err(|failure| match failure {
             Failure::Usage(message) if !given => {
                 fail(format!("{}{message}, or --size draws it smaller", drawing.place()))
             }

@@ -96,12 +96,17 @@ impl Counts {
     }
 }
 
-/// Reads a file and describes each of its layers.
-pub fn of_layers(path: &Path, work: &Work) -> Result<Vec<LayerInfo>, Failure> {
-    let (format, reader) = open(path, None, None, work)?;
-    let names = reader.layers();
+/// Reads a file and describes each of its layers, or the one that is chosen.
+pub fn of_layers(
+    path: &Path,
+    chosen: Option<&str>,
+    work: &Work,
+) -> Result<Vec<LayerInfo>, Failure> {
+    let (format, reader) = open(path, None, chosen, work)?;
+    let name = chosen.map(str::to_owned);
+    let names = if chosen.is_some() { Vec::new() } else { reader.layers() };
     if names.len() < 2 {
-        return Ok(vec![of_layer(path, format, reader, None)?]);
+        return Ok(vec![of_layer(path, format, reader, name)?]);
     }
     let mut infos = Vec::new();
     for name in names {

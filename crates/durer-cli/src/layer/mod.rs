@@ -100,7 +100,12 @@ pub fn packed(
     limits: &Limits,
 ) -> durer_formats::Result<Packed> {
     let is_map = |name: &str| GeoFormat::of_name(name).is_some();
-    archive::only(bytes, limits, is_map, ("files of map data", layer))
+    archive::only(
+        bytes,
+        limits,
+        is_map,
+        ("files of map data", layer, "unpack it, or name one with --layer"),
+    )
 }
 
 /// Opens the file of map data in a ZIP archive.

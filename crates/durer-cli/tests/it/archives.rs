@@ -57,6 +57,15 @@ fn map_data_in_archives_are_read_with_the_files_beside_them() {
     folder.run("clip two.zip --window 0,0,9,9 -o o.wkt").fails(1, several);
     folder.must("clip two.zip --layer b --window 0,0,90,90 -o o.wkt");
     assert_eq!(folder.read("o.wkt"), b"SRID=4326;POINT (7.44 46.95)\n");
+    folder.run("draw two.zip -o o.png").fails(1, several);
+    folder.run("draw two.zip -o o.png").fails(1, "unpack it, or name one with --layer");
+    let told = folder.must("draw two.zip --layer b two.zip --layer a -o o.png --json").json();
+    let format = |i: usize| told["layers"][i]["format"].clone();
+    assert_eq!((format(0), format(1)), ("kml".into(), "shapefile".into()), "{told}");
+    let told = folder.must("info two.zip --json").json();
+    assert_eq!((&told[0]["name"], &told[1]["name"]), (&"b.kml".into(), &"a.shp".into()), "{told}");
+    let told = folder.must("info two.zip --layer b --json").json();
+    assert_eq!((&told["format"], &told["features"]), (&"kml".into(), &1.into()));
     pack(&folder, "none.zip", &[("a.txt", b"")]);
     folder
         .run("clip none.zip --window 0,0,9,9 -o o.wkt")

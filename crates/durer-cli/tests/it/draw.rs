@@ -398,7 +398,7 @@ fn wrong_use_and_bad_data_are_told() {
     for (arguments, code, part) in [
         ("draw a.svg map.geojson -o a.png", 2, "an SVG is drawn alone"),
         ("draw a.svg --fill red -o a.png", 2, "an SVG has its own"),
-        ("draw a.svg -o a.bmp", 2, "pictures are written as PNG"),
+        ("draw a.svg -o a.bmp", 2, "drawings and maps are written as PNG"),
         ("draw no.svg -o a.png", 1, "no.svg: line 1, column"),
         ("draw empty.geojson -o a.png", 1, "there is nothing to draw"),
         ("draw what.txt -o a.png", 1, "not a known format; durer draw reads SVG"),

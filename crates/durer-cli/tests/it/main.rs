@@ -16,6 +16,7 @@ mod config;
 mod conformance_clip;
 mod conformance_models;
 mod draw;
+mod draw_vectors;
 mod drawings;
 mod explain;
 mod explore;

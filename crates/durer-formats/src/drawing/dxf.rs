@@ -179,7 +179,7 @@ fn layer_pen<'a>(sheet: &'a Sheet, l: &SheetLayer) -> Option<&'a Pen> {
             sheet.pens.get(*pen)
         }
         Mark::Dimension(dimension) => sheet.pens.get(dimension.text.pen),
-        Mark::Fill { .. } | Mark::Area { .. } => None,
+        Mark::Fill { .. } | Mark::Area { .. } | Mark::Group(_) => None,
     })
 }
 

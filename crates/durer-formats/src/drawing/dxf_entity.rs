@@ -70,22 +70,22 @@ pub(super) fn entity(
             }
             tags.class("AcDbText");
         }
-        Mark::Fill { rings, color } => {
+        Mark::Fill { rings, color, .. } => {
             begin(tags, "HATCH", layer, None);
             tags.int(62, palette(*color));
             true_color(tags, *color);
             let ring = |r: &Vec<DVec2>| r.iter().map(|p| (place(p), 0.0)).collect();
             hatch(tags, &rings.iter().map(ring).collect::<Vec<_>>());
         }
-        Mark::Area { rings, color } => {
+        Mark::Area { rings, color, .. } => {
             begin(tags, "HATCH", layer, None);
             tags.int(62, palette(*color));
             true_color(tags, *color);
             let ring = |r: &Curve| dxf_curve::vertices(&dxf_curve::turned_up(r, sheet.size.y));
             hatch(tags, &rings.iter().map(ring).collect::<Vec<_>>());
         }
-        // These are entities of their own kind, with blocks.
-        Mark::Dimension(_) => {}
+        // Dimensions are entities of their own kind, with blocks; files with groups are refused.
+        Mark::Dimension(_) | Mark::Group(_) => {}
     }
 }
 

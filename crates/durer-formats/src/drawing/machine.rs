@@ -155,6 +155,8 @@ pub fn passes(sheet: &Sheet, pens: Option<usize>, arcs: bool) -> Vec<Pass> {
         for mark in layer.marks.iter().flat_map(with_parts) {
             let pass = match mark {
                 Mark::Fill { .. } | Mark::Area { .. } => Some(&mut areas),
+                // Files with groups are refused.
+                Mark::Group(_) => None,
                 Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => {
                     pass_of.get(*pen).and_then(|i| found.get_mut(*i))
                 }
@@ -228,5 +230,6 @@ fn chains_of(mark: &Mark, sheet: &Sheet, arcs: bool) -> Vec<Chain> {
             open(text_strokes(*at, text, *height, *anchor))
         }
         Mark::Dimension(dimension) => open(dimension_strokes(&dimension.text)),
+        Mark::Group(_) => Vec::new(),
     }
 }

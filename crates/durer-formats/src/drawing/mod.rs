@@ -28,7 +28,7 @@ pub use svg::write as write_svg;
 
 use crate::{Error, Result};
 use durer::target::drawing::Drawing;
-use durer::target::sheet::Sheet;
+use durer::target::sheet::{Mark, Sheet};
 use durer::work::Work;
 use std::io::Write;
 use std::str::FromStr;
@@ -120,7 +120,8 @@ const MADE: &str = "file of the drawing";
 /// Writes a drawing in one of the formats: the sheet, or for GeoJSON the drawings laid onto it.
 ///
 /// # Errors
-/// [`Error::Io`] if writing fails; [`Error::Library`] if the budget has no room for the file; the errors of
+/// [`Error::Io`] if writing fails; [`Error::Library`] if the budget has no room for the file, and for groups of marks in
+/// formats other than SVG and PDF; the errors of
 /// [`MachineOptions::check`].
 pub fn write(
     out: &mut impl Write,
@@ -129,6 +130,12 @@ pub fn write(
     drawing: &Drawing,
     options: &FileOptions,
 ) -> Result<()> {
+    let has_groups =
+        sheet.layers.iter().flat_map(|l| &l.marks).any(|mark| matches!(mark, Mark::Group(_)));
+    if has_groups && !matches!(format, DrawingFormat::Svg | DrawingFormat::Pdf) {
+        let what = "a group of marks with a clip path or an opacity";
+        return Err(durer::Error::Unsupported { what, instead: "write SVG or PDF" }.into());
+    }
     match format {
         DrawingFormat::Svg => write_svg(out, sheet),
         DrawingFormat::Pdf => pdf::write_within(out, sheet, &options.work),

@@ -7,9 +7,11 @@ use crate::Result;
 use durer::curve::{PathElement, pieces};
 use durer::math::DVec2;
 use durer::paper::{dashes, dimension_strokes, text_strokes};
+use durer::target::Curve;
 use durer::target::drawing::Anchor;
-use durer::target::sheet::{Mark, Pen, Sheet};
+use durer::target::sheet::{Mark, MarkGroup, Pen, Sheet};
 use durer::work::{Charge, Work};
+use pdf_writer::writers::Resources;
 use pdf_writer::{Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -48,13 +50,13 @@ pub(super) fn write_within(out: &mut impl Write, sheet: &Sheet, work: &Work) -> 
     let longest = sheet.size.max_element() * POINTS;
     let user_unit = (longest / LONGEST).ceil().max(1.0);
     let scale = POINTS / user_unit;
-    let mut alphas = BTreeSet::new();
-    let mut words = Words::default();
+    let mut found = Found::default();
     let mut charge = work.charge(MADE, 0)?;
-    let content = content(sheet, scale, (&mut alphas, &mut words), &mut charge)?;
+    let content = content(sheet, scale, &mut found, &mut charge)?;
+    let Found { alphas, words, forms } = found;
     // Digits and a few letters take half the room at most.
     charge.grow(content.len() as u64 / 2)?;
-    let content = miniz_oxide::deflate::compress_to_vec_zlib(content.as_bytes(), LEVEL);
+    let content = packed(&content);
     let mut pdf = Pdf::new();
     pdf.set_version(1, 5);
     let layers: Vec<Ref> =
@@ -63,7 +65,11 @@ pub(super) fn write_within(out: &mut impl Write, sheet: &Sheet, work: &Work) -> 
     pdf.pages(Ref::new(PAGES)).kids([Ref::new(PAGE)]).count(1);
     let after_layers = |i: i32| Ref::new(FIRST_LAYER + layers.len() as i32 + i);
     let font = words.any.then(|| after_layers(0));
-    page(&mut pdf, sheet, scale, user_unit, &Used { layers: &layers, alphas: &alphas, font });
+    let form = |i: usize| after_layers(2 + i as i32);
+    let forms: Vec<(Ref, String)> =
+        forms.into_iter().enumerate().map(|(i, content)| (form(i), content)).collect();
+    let used = Used { layers: &layers, alphas: &alphas, font, forms: &forms };
+    page(&mut pdf, sheet, scale, user_unit, &used);
     pdf.stream(Ref::new(CONTENT), &content).filter(Filter::FlateDecode);
     let mut info = pdf.document_info(Ref::new(INFO));
     if !sheet.title.is_empty() {
@@ -77,6 +83,7 @@ pub(super) fn write_within(out: &mut impl Write, sheet: &Sheet, work: &Work) -> 
         group.pair(Name(b"Name"), TextStr(&layer.name));
     }
     words.font(&mut pdf, after_layers(0), after_layers(1));
+    forms.iter().for_each(|(id, content)| form_object(&mut pdf, *id, content, sheet, &used));
     out.write_all(&pdf.finish())?;
     Ok(())
 }
@@ -100,6 +107,8 @@ struct Used<'a> {
     layers: &'a [Ref],
     alphas: &'a BTreeSet<u8>,
     font: Option<Ref>,
+    /// Groups with an opacity.
+    forms: &'a [(Ref, String)],
 }
 
 fn page(pdf: &mut Pdf, sheet: &Sheet, scale: f64, user_unit: f64, used: &Used<'_>) {
@@ -116,8 +125,19 @@ fn page(pdf: &mut Pdf, sheet: &Sheet, scale: f64, user_unit: f64, used: &Used<'_
         properties.pair(Name(format!("L{i}").as_bytes()), *id);
     }
     properties.finish();
+    list_resources(&mut resources, used);
+}
+
+/// Lists the fonts, groups and opacities that operators name.
+fn list_resources(resources: &mut Resources<'_>, used: &Used<'_>) {
     if let Some(font) = used.font {
         resources.fonts().pair(Name(pdf_text::FONT), font);
+    }
+    if !used.forms.is_empty() {
+        let mut objects = resources.x_objects();
+        for (i, (id, _)) in used.forms.iter().enumerate() {
+            objects.pair(Name(format!("X{i}").as_bytes()), *id);
+        }
     }
     let mut states = resources.ext_g_states();
     for alpha in used.alphas {
@@ -127,8 +147,31 @@ fn page(pdf: &mut Pdf, sheet: &Sheet, scale: f64, user_unit: f64, used: &Used<'_
     }
 }
 
+/// Writes a group as an object of its own, in millimetres.
+fn form_object(pdf: &mut Pdf, id: Ref, content: &str, sheet: &Sheet, used: &Used<'_>) {
+    let content = packed(content);
+    let mut form = pdf.form_xobject(id, &content);
+    form.filter(Filter::FlateDecode);
+    form.bbox(Rect::new(0.0, 0.0, sheet.size.x as f32, sheet.size.y as f32));
+    form.group().transparency().isolated(true);
+    list_resources(&mut form.resources(), used);
+}
+
+fn packed(content: &str) -> Vec<u8> {
+    miniz_oxide::deflate::compress_to_vec_zlib(content.as_bytes(), LEVEL)
+}
+
+/// Contents that the operators of a page refer to.
+#[derive(Default)]
+struct Found {
+    alphas: BTreeSet<u8>,
+    words: Words,
+    /// Operators of the groups with an opacity.
+    forms: Vec<String>,
+}
+
 /// Current state of graphics, so that only changes are written.
-#[derive(Default, PartialEq)]
+#[derive(Default, Clone, PartialEq)]
 struct State {
     alpha: Option<u8>,
     fill: Option<[u8; 3]>,
@@ -137,57 +180,46 @@ struct State {
     dashed: bool,
 }
 
-/// Returns the page's operators; collects the opacities used.
-fn content(
-    sheet: &Sheet,
-    scale: f64,
-    (alphas, words): (&mut BTreeSet<u8>, &mut Words),
-    charge: &mut Charge,
-) -> Result<String> {
+/// Returns the page's operators; collects the contents that they refer to.
+fn content(sheet: &Sheet, scale: f64, found: &mut Found, charge: &mut Charge) -> Result<String> {
     let mut text = String::new();
     // Millimetres, y down.
     let [k, height] = [scale, sheet.size.y * scale].map(|v| short(v, 6));
     text += &format!("{k} 0 0 -{k} 0 {height} cm 1 J 1 j\n");
     let mut state = State::default();
     if let Some(color) = sheet.background {
-        set_fill(&mut text, &mut state, color, alphas);
+        set_fill(&mut text, &mut state, color, &mut found.alphas);
         text +=
             &format!("0 0 {} {} re f\n", short(sheet.size.x, DIGITS), short(sheet.size.y, DIGITS));
     }
     for (i, layer) in sheet.layers.iter().enumerate() {
         text += &format!("/OC /L{i} BDC\n");
         for mark in &layer.marks {
-            put(&mut text, &mut state, sheet, mark, (&mut *alphas, &mut *words));
-            charge.grow_to(text.capacity() as u64)?;
+            put(&mut text, &mut state, sheet, mark, found);
+            let forms: usize = found.forms.iter().map(String::capacity).sum();
+            charge.grow_to((text.capacity() + forms) as u64)?;
         }
         text += "EMC\n";
     }
     Ok(text)
 }
 
-fn put(
-    text: &mut String,
-    state: &mut State,
-    sheet: &Sheet,
-    mark: &Mark,
-    (alphas, found): (&mut BTreeSet<u8>, &mut Words),
-) {
+fn put(text: &mut String, state: &mut State, sheet: &Sheet, mark: &Mark, found: &mut Found) {
+    let fill = |even_odd: bool| if even_odd { "f*\n" } else { "f\n" };
     match mark {
-        Mark::Fill { rings, color } => {
-            set_fill(text, state, *color, alphas);
+        Mark::Fill { rings, color, even_odd } => {
+            set_fill(text, state, *color, &mut found.alphas);
             rings.iter().for_each(|ring| path(text, ring, true));
-            *text += "f\n";
+            *text += fill(*even_odd);
         }
-        Mark::Area { rings, color } => {
-            set_fill(text, state, *color, alphas);
-            for ring in rings {
-                pieces::path(ring, CUBICS).elements().iter().for_each(|e| element(text, e));
-            }
-            *text += "f\n";
+        Mark::Area { rings, color, even_odd } => {
+            set_fill(text, state, *color, &mut found.alphas);
+            curves(text, rings);
+            *text += fill(*even_odd);
         }
         Mark::Stroke { points, closed, pen } => {
             let Some(pen) = sheet.pens.get(*pen) else { return };
-            set_pen(text, state, pen, alphas);
+            set_pen(text, state, pen, &mut found.alphas);
             let length = dashes::length(points, *closed);
             set_dashes(text, state, dashes::fitted(&pen.dashes, length, *closed));
             path(text, points, *closed);
@@ -195,30 +227,77 @@ fn put(
         }
         Mark::Curve { curve, pen } => {
             let Some(pen) = sheet.pens.get(*pen) else { return };
-            set_pen(text, state, pen, alphas);
+            set_pen(text, state, pen, &mut found.alphas);
             let length = pieces::length(curve);
             set_dashes(text, state, dashes::fitted(&pen.dashes, length, curve.closed));
-            pieces::path(curve, CUBICS).elements().iter().for_each(|e| element(text, e));
+            curves(text, std::slice::from_ref(curve));
             *text += "S\n";
         }
         Mark::Text { at, text: words, height, anchor, pen } => {
             let Some(pen) = sheet.pens.get(*pen) else { return };
-            set_pen(text, state, pen, alphas);
+            set_pen(text, state, pen, &mut found.alphas);
             set_dashes(text, state, None);
-            found.write(text, (*at, DVec2::X), words, *height, *anchor);
+            found.words.write(text, (*at, DVec2::X), words, *height, *anchor);
             letters(text, &text_strokes(*at, words, *height, *anchor));
         }
         Mark::Dimension(dimension) => {
             for mark in &dimension.marks {
-                put(text, state, sheet, mark, (&mut *alphas, &mut *found));
+                put(text, state, sheet, mark, found);
             }
             let words = &dimension.text;
             let Some(pen) = sheet.pens.get(words.pen) else { return };
-            set_pen(text, state, pen, alphas);
+            set_pen(text, state, pen, &mut found.alphas);
             set_dashes(text, state, None);
-            found.write(text, (words.at, words.along), &words.text, words.height, Anchor::Middle);
+            found.words.write(
+                text,
+                (words.at, words.along),
+                &words.text,
+                words.height,
+                Anchor::Middle,
+            );
             letters(text, &dimension_strokes(words));
         }
+        Mark::Group(group) => put_group(text, state, sheet, group, found),
+    }
+}
+
+/// Writes marks with a clip path and an opacity; the state after them is that before.
+fn put_group(
+    text: &mut String,
+    state: &mut State,
+    sheet: &Sheet,
+    group: &MarkGroup,
+    found: &mut Found,
+) {
+    let (before, had_words) = (state.clone(), found.words.any);
+    *text += "q\n";
+    if let Some(clip) = &group.clip {
+        curves(text, &clip.rings);
+        *text += if clip.even_odd { "W* n\n" } else { "W n\n" };
+    }
+    if group.opacity < 1.0 {
+        let (mut content, mut own) =
+            (String::new(), State { dashed: state.dashed, ..State::default() });
+        group.marks.iter().for_each(|mark| put(&mut content, &mut own, sheet, mark, found));
+        let alpha = (group.opacity * 255.0).round() as u8;
+        set_alpha(text, state, alpha, &mut found.alphas);
+        *text += &format!("/X{} Do\n", found.forms.len());
+        found.forms.push(content);
+    } else {
+        group.marks.iter().for_each(|mark| put(text, state, sheet, mark, found));
+    }
+    *text += "Q\n";
+    *state = before;
+    if found.words.any && !had_words {
+        // The mode of text was set within the group.
+        *text += "3 Tr\n";
+    }
+}
+
+/// Appends curves as paths.
+fn curves(text: &mut String, curves: &[Curve]) {
+    for curve in curves {
+        pieces::path(curve, CUBICS).elements().iter().for_each(|e| element(text, e));
     }
 }
 

@@ -7,7 +7,7 @@ use crate::Result;
 use durer::curve::pieces;
 use durer::math::DVec2;
 use durer::paper::{dashes, dimension_strokes, text_strokes};
-use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+use durer::target::sheet::{ClipPath, Mark, Pen, Sheet, SheetLayer};
 use std::io::Write;
 
 /// Writes a sheet as an SVG document of the sheet's size.
@@ -33,15 +33,21 @@ pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
         text += &format!("<rect width=\"{width}\" height=\"{height}\"{}/>\n", paint("fill", color));
     }
     out.write_all(text.as_bytes())?;
+    let mut clips = 0;
     for layer in &sheet.layers {
-        write_layer(out, sheet, layer)?;
+        write_layer(out, sheet, layer, &mut clips)?;
     }
     out.write_all(b"</svg>\n")?;
     Ok(())
 }
 
 /// Writes a layer; the pen of its first stroke is the group's style, so that most strokes need none.
-fn write_layer(out: &mut impl Write, sheet: &Sheet, layer: &SheetLayer) -> Result<()> {
+fn write_layer(
+    out: &mut impl Write,
+    sheet: &Sheet,
+    layer: &SheetLayer,
+    clips: &mut u64,
+) -> Result<()> {
     let name = escaped(&layer.name);
     let mut text = format!(
         "<g id=\"{}\" inkscape:groupmode=\"layer\" inkscape:label=\"{name}\"",
@@ -56,7 +62,7 @@ fn write_layer(out: &mut impl Write, sheet: &Sheet, layer: &SheetLayer) -> Resul
     out.write_all(text.as_bytes())?;
     for mark in &layer.marks {
         let mut text = String::new();
-        write_mark(&mut text, sheet, mark, common);
+        write_mark(&mut text, sheet, mark, (common, &mut *clips));
         out.write_all(text.as_bytes())?;
     }
     out.write_all(b"</g>\n")?;
@@ -68,11 +74,18 @@ fn pen_of(mark: &Mark) -> Option<usize> {
     match mark {
         Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => Some(*pen),
         Mark::Fill { .. } | Mark::Area { .. } => None,
+        Mark::Group(group) => group.marks.iter().find_map(pen_of),
         Mark::Dimension(d) => d.marks.iter().find_map(pen_of).or(Some(d.text.pen)),
     }
 }
 
-fn write_mark(text: &mut String, sheet: &Sheet, mark: &Mark, common: Option<usize>) {
+/// Writes a mark in a layer with a common pen; `clips` counts the clip paths of the file.
+fn write_mark(
+    text: &mut String,
+    sheet: &Sheet,
+    mark: &Mark,
+    (common, clips): (Option<usize>, &mut u64),
+) {
     let own_pen = |pen: usize| match sheet.pens.get(pen) {
         Some(style) if common != Some(pen) => stroke_style(style),
         _ => String::new(),
@@ -103,16 +116,13 @@ fn write_mark(text: &mut String, sheet: &Sheet, mark: &Mark, common: Option<usiz
                 }
             }
         }
-        Mark::Fill { rings, color } => {
-            // Without a group's pen there is no stroke to be turned off.
-            let no_stroke = if common.is_some() { " stroke=\"none\"" } else { "" };
-            *text += &format!("<path{}{no_stroke} d=\"", paint("fill", *color));
+        Mark::Fill { rings, color, even_odd } => {
+            fill_style(text, *color, *even_odd, common);
             rings.iter().for_each(|ring| path(text, ring, true));
             *text += "\"/>\n";
         }
-        Mark::Area { rings, color } => {
-            let no_stroke = if common.is_some() { " stroke=\"none\"" } else { "" };
-            *text += &format!("<path{}{no_stroke} d=\"", paint("fill", *color));
+        Mark::Area { rings, color, even_odd } => {
+            fill_style(text, *color, *even_odd, common);
             rings.iter().for_each(|ring| svg_curve::path(text, ring));
             *text += "\"/>\n";
         }
@@ -121,12 +131,48 @@ fn write_mark(text: &mut String, sheet: &Sheet, mark: &Mark, common: Option<usiz
         }
         Mark::Dimension(dimension) => {
             *text += "<g>\n";
-            dimension.marks.iter().for_each(|mark| write_mark(text, sheet, mark, common));
+            for mark in &dimension.marks {
+                write_mark(text, sheet, mark, (common, &mut *clips));
+            }
             let words = &dimension.text;
             letters(text, &words.text, &own_pen(words.pen), &dimension_strokes(words));
             *text += "</g>\n";
         }
+        Mark::Group(group) => {
+            let clip = group.clip.as_ref().map(|clip| clip_path(text, clip, clips));
+            *text += "<g";
+            if let Some(id) = clip {
+                *text += &format!(" clip-path=\"url(#{id})\"");
+            }
+            if group.opacity < 1.0 {
+                *text += &format!(" opacity=\"{}\"", short(group.opacity, DIGITS));
+            }
+            *text += ">\n";
+            for mark in &group.marks {
+                write_mark(text, sheet, mark, (common, &mut *clips));
+            }
+            *text += "</g>\n";
+        }
     }
+}
+
+/// Begins the path of an area.
+fn fill_style(text: &mut String, color: [u8; 4], even_odd: bool, common: Option<usize>) {
+    // Without a group's pen there is no stroke to be turned off.
+    let no_stroke = if common.is_some() { " stroke=\"none\"" } else { "" };
+    let rule = if even_odd { " fill-rule=\"evenodd\"" } else { "" };
+    *text += &format!("<path{}{rule}{no_stroke} d=\"", paint("fill", color));
+}
+
+/// Writes a clip path; returns its identifier, which no layer has.
+fn clip_path(text: &mut String, clip: &ClipPath, clips: &mut u64) -> String {
+    *clips += 1;
+    let id = format!("_{clips}");
+    let rule = if clip.even_odd { " clip-rule=\"evenodd\"" } else { "" };
+    *text += &format!("<clipPath id=\"{id}\"><path{rule} d=\"");
+    clip.rings.iter().for_each(|ring| svg_curve::path(text, ring));
+    *text += "\"/></clipPath>\n";
+    id
 }
 
 /// Writes a line of text as strokes.

@@ -7,7 +7,7 @@ use durer::curve::Path;
 use durer::math::DAffine2;
 use durer::raster::coverage::FillRule;
 use durer::raster::line::wide::{Cap, Join, Stroke, has_too_many_dashes};
-use durer::raster::paint::{Blend, Canvas, MaskKind, Paint};
+use durer::raster::paint::{Blend, Canvas, MaskKind, Paint, PaintTarget};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use usvg::{Group, Node};
@@ -15,9 +15,9 @@ use usvg::{Group, Node};
 /// Largest depth of nested groups, clip paths, masks, patterns and drawings within images, all together.
 const MAX_DEPTH: u32 = 200;
 
-/// Painter of nodes onto a canvas.
-pub(super) struct Painter<'a> {
-    canvas: &'a mut Canvas,
+/// Painter of nodes onto a canvas or a sheet.
+pub(super) struct Painter<'a, T> {
+    canvas: &'a mut T,
     limits: &'a Limits,
     /// Nesting depth of the current node.
     depth: u32,
@@ -28,8 +28,8 @@ pub(super) struct Painter<'a> {
     warnings: BTreeSet<String>,
 }
 
-impl<'a> Painter<'a> {
-    pub fn new(canvas: &'a mut Canvas, limits: &'a Limits) -> Self {
+impl<'a, T: PaintTarget> Painter<'a, T> {
+    pub fn new(canvas: &'a mut T, limits: &'a Limits) -> Self {
         let bytes_left = limits.decoded_bytes;
         let (painted, warnings) = (Painted::default(), BTreeSet::new());
         Self { canvas, limits, depth: 0, bytes_left, painted, warnings }
@@ -77,6 +77,7 @@ impl<'a> Painter<'a> {
         let map = map * paint::affine(group.transform());
         if !group.filters().is_empty() {
             self.warn("filters are not drawn; elements are drawn without them");
+            self.canvas.leave_out("filters");
         }
         let blend = paint::blend(group.blend_mode());
         let clips = group.clip_path().map_or(0, |clip| self.clip(clip, map))

@@ -50,7 +50,7 @@ pub use fonts::{Fonts, no_glyphs};
 
 use crate::{Error, Limits, NoResources, Place, Resources, Result, Warning, foreign};
 use durer::math::{DAffine2, DVec2};
-use durer::raster::paint::Canvas;
+use durer::raster::paint::PaintTarget;
 use durer::work::Charge;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
@@ -192,10 +192,14 @@ impl Drawing {
     }
 
     /// Paints the drawing; `pixel_from_drawing` maps the drawing's units, y down, to pixels. Returns warnings of
-    /// elements that cannot be drawn, each kind once. Cost: the canvas's, plus the cost of each tile of a pattern and
+    /// elements that cannot be drawn, each kind once. Cost: the target's, plus the cost of each tile of a pattern and
     /// each image.
-    pub fn draw(&self, canvas: &mut Canvas, pixel_from_drawing: DAffine2) -> Vec<Warning> {
-        let mut painter = draw::Painter::new(canvas, &self.limits);
+    pub fn draw(
+        &self,
+        target: &mut impl PaintTarget,
+        pixel_from_drawing: DAffine2,
+    ) -> Vec<Warning> {
+        let mut painter = draw::Painter::new(target, &self.limits);
         painter.tree(&self.tree, pixel_from_drawing);
         painter.warnings().into_iter().map(warning).collect()
     }

@@ -4,9 +4,11 @@ use durer::math::DVec2;
 use durer::target::dimension::{DimensionText, Measure};
 use durer::target::drawing::Anchor;
 use durer::target::sheet::Dimension;
-use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+use durer::target::sheet::{ClipPath, Mark, MarkGroup, Pen, Sheet, SheetLayer};
 use durer::target::{Arc, Curve, Piece};
-use durer_formats::drawing::{DxfStrokes, write_dxf, write_hpgl, write_pdf, write_svg};
+use durer_formats::drawing::{
+    self, DrawingFormat, DxfStrokes, FileOptions, write_dxf, write_hpgl, write_pdf, write_svg,
+};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 fn points(list: &[(f64, f64)]) -> Vec<DVec2> {
@@ -59,6 +61,7 @@ fn svg_paths_are_relative_and_dots_are_dots() {
         Mark::Fill {
             rings: vec![points(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])],
             color: [1, 2, 3, 255],
+            even_odd: false,
         },
     ];
     let svg = utf8(written(|out| write_svg(out, &sheet(marks.clone()))));
@@ -96,6 +99,7 @@ fn dxf_entities_have_their_flags_weights_and_colours() {
         Mark::Fill {
             rings: vec![points(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])],
             color: [1, 2, 3, 255],
+            even_odd: false,
         },
     ];
     let dxf = utf8(written(|out| write_dxf(out, &sheet(marks.clone()), DxfStrokes::Polylines)));
@@ -293,7 +297,7 @@ fn dimension() -> Mark {
     let arrow = points(&[(10.0, 60.0), (9.5, 57.0), (10.5, 57.0)]);
     let marks = vec![
         stroke(&[(10.0, 60.0), (10.0, 30.0)], false, 0),
-        Mark::Fill { rings: vec![arrow], color: [0, 0, 0, 255] },
+        Mark::Fill { rings: vec![arrow], color: [0, 0, 0, 255], even_odd: false },
     ];
     let at = DVec2::new(9.0, 45.0);
     let words = DimensionText { at, along, text: "2× 15".to_owned(), height: 3.5, pen: 0 };
@@ -341,4 +345,44 @@ fn dimensions_are_drawn_where_nothing_knows_them() {
     let letters = hpgl.split("PU").skip(1).filter_map(|t| t.split(',').next()?.parse::<i64>().ok());
     assert!(letters.filter(|x| (200..=360).contains(x)).count() >= 4, "{hpgl}");
     assert!(!written(|out| write_pdf(out, &sheet)).is_empty());
+}
+
+#[test]
+fn groups_have_clip_paths_and_opacity() {
+    let corner = points(&[(0.0, 0.0), (9.0, 0.0), (0.0, 9.0)]);
+    let pieces = corner[1..].iter().chain(&corner[..1]).map(|p| Piece::Line(*p)).collect();
+    let rings = vec![Curve { start: corner[0], pieces, closed: true }];
+    let area = Mark::Fill { rings: vec![corner], color: [1, 2, 3, 255], even_odd: true };
+    let inner = MarkGroup { marks: vec![area.clone()], clip: None, opacity: 0.25 };
+    let clip = Some(ClipPath { rings, even_odd: true });
+    let marks =
+        vec![stroke(&[(0.0, 0.0), (5.0, 5.0)], false, 1), Mark::Group(Box::new(inner)), area];
+    let group = Mark::Group(Box::new(MarkGroup { marks, clip, opacity: 1.0 }));
+    let sheet = sheet(vec![group, stroke(&[(1.0, 0.0), (2.0, 0.0)], false, 1)]);
+    let svg = utf8(written(|out| write_svg(out, &sheet)));
+    let clip = "<clipPath id=\"_1\"><path clip-rule=\"evenodd\" d=\"M0 0h9l-9 9v-9z\"/></clipPath>";
+    let area = "<path fill=\"#010203\" fill-rule=\"evenodd\" stroke=\"none\" d=\"M0 0h9l-9 9z\"/>";
+    for part in [
+        &format!("{clip}\n<g clip-path=\"url(#_1)\">\n<path ")[..],
+        &format!("<g opacity=\".25\">\n{area}\n</g>\n{area}\n</g>\n"),
+    ] {
+        assert!(svg.contains(part), "{part} is not in\n{svg}");
+    }
+    let pdf = written(|out| write_pdf(out, &sheet));
+    let content = content(&pdf);
+    for part in ["q\n0 0 m\n", "h\nW* n\n", "/A64 gs\n/X0 Do\n", "f*\nQ\n"] {
+        assert!(content.contains(part), "{part} is not in\n{content}");
+    }
+    // The state before a group is that after it: the pen is set anew.
+    assert!(content.ends_with("] 0 d\n1 0 m\n2 0 l\nS\nEMC\n/OC /L1 BDC\nEMC\n"), "{content}");
+    assert!(content.matches(" w\n").count() == 2, "{content}");
+    let text = String::from_utf8_lossy(&pdf);
+    assert!(text.contains("/S /Transparency") && text.contains("/X0 "), "{text}");
+    let drawing = durer::target::drawing::Drawing::default();
+    for format in [DrawingFormat::Dxf, DrawingFormat::Hpgl, DrawingFormat::Gcode] {
+        let options = FileOptions::default();
+        let refused = drawing::write(&mut Vec::new(), format, &sheet, &drawing, &options);
+        let message = refused.expect_err("groups").to_string();
+        assert!(message.contains("a group of marks"), "{message}");
+    }
 }

@@ -45,7 +45,11 @@ fn above(along: DVec2) -> DVec2 {
 /// Returns a filled arrow head; `body` is the direction from its tip into it.
 fn arrow(tip: DVec2, body: DVec2, style: &Style) -> Mark {
     let (back, side) = (tip + body * style.arrow, body.perp() * (style.arrow / 6.0));
-    Mark::Fill { rings: vec![vec![tip, back + side, back - side]], color: style.color }
+    Mark::Fill {
+        rings: vec![vec![tip, back + side, back - side]],
+        color: style.color,
+        even_odd: false,
+    }
 }
 
 fn stroke(points: Vec<DVec2>, pen: usize) -> Mark {

@@ -11,7 +11,7 @@ use crate::geometry::{Geometry, Points};
 use crate::math::{DVec2, Rect};
 use crate::raster::coverage::FillRule;
 use crate::raster::line::wide::{Join, Stroke};
-use crate::raster::paint::{Canvas, Paint};
+use crate::raster::paint::{Paint, PaintTarget};
 use crate::trace::NoTrace;
 use crate::view::interior_point::{Options, interior_point};
 use crate::view::label::Placer;
@@ -211,7 +211,7 @@ pub(super) struct Ground<'a> {
 
 /// Draws as many labels as find room, each in the font that has most of its letters, the first of those.
 pub(super) fn draw(
-    canvas: &mut Canvas,
+    target: &mut impl PaintTarget,
     ground: &Ground<'_>,
     labels: Vec<Label>,
     styles: &[&Style],
@@ -220,7 +220,7 @@ pub(super) fn draw(
     let no_font = || Error::parameter("fonts", 0, "at least one font for labels");
     let mut planned = Vec::new();
     let are_many = labels.len() > MANY;
-    let work = canvas.work().clone();
+    let work = target.work().clone();
     let mut charge = work.charge("labels", 0)?;
     for label in labels {
         let unknown = || Error::Dangling { what: "style", index: label.layer, count: styles.len() };
@@ -265,7 +265,7 @@ pub(super) fn draw(
                     } else {
                         planned.outlines(spot, style)
                     };
-                    write(canvas, &outlines, style)?;
+                    write(target, &outlines, style)?;
                 }
                 None => counts.1 += 1,
             }
@@ -430,12 +430,12 @@ fn beside(at: DVec2, beside: bool, block: &Block, style: &Style) -> Vec<DVec2> {
     }
 }
 
-fn write(canvas: &mut Canvas, outlines: &Path, style: &Style) -> Result<()> {
+fn write(target: &mut impl PaintTarget, outlines: &Path, style: &Style) -> Result<()> {
     if let Some(halo) = style.label_halo {
         let width = 2.0 * HALO * style.label_size;
         let stroke = Stroke { width, join: Join::Round, ..Stroke::default() };
-        canvas.stroke(outlines, &stroke, &Paint::Color(halo), 1.0)?;
+        target.stroke(outlines, &stroke, &Paint::Color(halo), 1.0)?;
     }
-    canvas.fill(outlines, FillRule::NonZero, &Paint::Color(style.label_color), 1.0);
+    target.fill(outlines, FillRule::NonZero, &Paint::Color(style.label_color), 1.0);
     Ok(())
 }

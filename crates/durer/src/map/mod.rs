@@ -1,4 +1,4 @@
-//! Maps: layers of points, lines and areas on a canvas, each with a style, and labels that keep off each other.
+//! Maps: layers of points, lines and areas on a canvas or a sheet, each with a style, and labels that keep off each other.
 //!
 //! Neighbouring areas of one opaque colour are painted as one and leave no seam; dashed or translucent borders that two
 //! areas share are drawn once. Labels are placed within areas, along lines and beside points, upper layers and small
@@ -22,7 +22,7 @@
 //! let counts = map.layer(&style, [&land])?;
 //! assert_eq!(counts.polygons, 1);
 //! let mut picture = Pixels::new(64, 64, [255; 4]);
-//! map.into_canvas().render(&mut picture)?;
+//! map.into_target().render(&mut picture)?;
 //! assert_eq!(picture.get(32, 32), Some([200, 180, 120, 255]));
 //! # Ok::<(), durer::Error>(())
 //! ```
@@ -45,7 +45,7 @@ use crate::geometry::{Geometry, Points};
 use crate::math::{DVec2, Rect};
 use crate::raster::coverage::FillRule;
 use crate::raster::line::wide::{Cap, Join, Stroke, has_too_many_dashes};
-use crate::raster::paint::{Canvas, Paint};
+use crate::raster::paint::{Canvas, Paint, PaintTarget};
 use crate::view::window::{Aspect, Viewport, Window, WindowToViewport, YAxis};
 use borders::Borders;
 use joined::Joined;
@@ -143,8 +143,8 @@ pub fn extent(bounds: &Rect) -> Result<Window> {
 
 /// Map that is being drawn.
 #[derive(Debug)]
-pub struct Map {
-    canvas: Canvas,
+pub struct Map<T = Canvas> {
+    target: T,
     screen: WindowToViewport,
     /// Viewport.
     seen: Rect,
@@ -174,21 +174,21 @@ fn shares(style: &Style) -> bool {
         && style.stroke.is_some_and(|c| c[3] > 0 && (c[3] < 255 || !style.dashes.is_empty()))
 }
 
-impl Map {
-    /// Creates a map of a window in a viewport of the canvas, to which it is clipped. The window keeps its shape; y
+impl<T: PaintTarget> Map<T> {
+    /// Creates a map of a window in a viewport of the target, a canvas or a sheet, to which it is clipped. The window keeps its shape; y
     /// points upwards.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] for a viewport without extent.
-    pub fn new(mut canvas: Canvas, window: &Window, viewport: &Viewport) -> Result<Self> {
+    pub fn new(mut target: T, window: &Window, viewport: &Viewport) -> Result<Self> {
         let screen = WindowToViewport::new(window, viewport, Aspect::Fit, YAxis::Down);
         let p = viewport.pixels();
         let [low, high] = [(p.x0(), p.y0()), (p.x1(), p.y1())]
             .map(|(x, y)| DVec2::new(f64::from(x), f64::from(y)));
         let (seen, size) = (Rect::new(low, high)?, high - low);
-        canvas.push_clip(&Path::rectangle(low.x, low.y, size.x, size.y), FillRule::NonZero);
+        target.push_clip(&Path::rectangle(low.x, low.y, size.x, size.y), FillRule::NonZero);
         Ok(Self {
-            canvas,
+            target,
             screen,
             seen,
             counts: Counts::default(),
@@ -212,7 +212,7 @@ impl Map {
         self.counts = Counts::default();
         let fade = style.opacity < 1.0;
         if fade {
-            self.canvas.push_group();
+            self.target.push_group();
         }
         self.joined = joins(style).then(Joined::default);
         self.borders = shares(style).then(<(Borders, Path)>::default);
@@ -220,7 +220,7 @@ impl Map {
         self.fill_joined(style);
         self.stroke_borders(style)?;
         if fade {
-            self.canvas.pop(style.opacity);
+            self.target.pop(style.opacity);
         }
         self.lands.push(std::mem::take(&mut self.land));
         Ok(self.counts)
@@ -245,12 +245,17 @@ impl Map {
     ) -> Result<Placed> {
         let land = Land::new(self.lands.clone(), &self.seen)?;
         let ground = Ground { seen: &self.seen, land: &land, markers: &self.marked };
-        label::draw(&mut self.canvas, &ground, labels, styles, fonts)
+        label::draw(&mut self.target, &ground, labels, styles, fonts)
     }
 
-    /// Returns the canvas with everything drawn.
-    pub fn into_canvas(self) -> Canvas {
-        self.canvas
+    /// Returns the target, to set it up for the next layer.
+    pub fn target(&mut self) -> &mut T {
+        &mut self.target
+    }
+
+    /// Returns the target with everything drawn.
+    pub fn into_target(self) -> T {
+        self.target
     }
 
     fn geometry(&mut self, geometry: &Geometry, style: &Style) -> Result<()> {
@@ -287,7 +292,7 @@ impl Map {
         let (width, dashes) = (style.stroke_width, style.dashes.clone());
         let stroke = Stroke { width, cap, join: Join::Round, dashes, ..Stroke::default() };
         self.counts.solid |= has_too_many_dashes(path, &stroke);
-        self.canvas.stroke(path, &stroke, &Paint::Color(color), 1.0)
+        self.target.stroke(path, &stroke, &Paint::Color(color), 1.0)
     }
 
     fn lines(&mut self, lines: &[Points], style: &Style) -> Result<()> {
@@ -304,7 +309,7 @@ impl Map {
     /// Paints the areas of a layer that have been joined, so that neighbours leave no seam.
     fn fill_joined(&mut self, style: &Style) {
         if let (Some(joined), Some(fill)) = (self.joined.take(), style.fill) {
-            self.canvas.fill(&joined.into_path(), FillRule::NonZero, &Paint::Color(fill), 1.0);
+            self.target.fill(&joined.into_path(), FillRule::NonZero, &Paint::Color(fill), 1.0);
         }
     }
 
@@ -337,7 +342,7 @@ impl Map {
             }
         }
         if let Some(fill) = style.fill {
-            self.canvas.fill(&path, FillRule::EvenOdd, &Paint::Color(fill), 1.0);
+            self.target.fill(&path, FillRule::EvenOdd, &Paint::Color(fill), 1.0);
         }
         match self.borders.take() {
             Some(borders) => self.add_borders(polygons, style, borders),
@@ -380,7 +385,7 @@ impl Map {
             self.marked.extend(Rect::new(p - half, p + half));
             let path = marker(style.marker, p, style.marker_size * 0.5);
             if let Some(fill) = style.fill.filter(|_| style.marker != Marker::Cross) {
-                self.canvas.fill(&path, FillRule::NonZero, &Paint::Color(fill), 1.0);
+                self.target.fill(&path, FillRule::NonZero, &Paint::Color(fill), 1.0);
             }
             self.stroke(&path, &Style { dashes: Vec::new(), ..style.clone() })?;
         }

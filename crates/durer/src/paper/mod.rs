@@ -1,7 +1,8 @@
 //! From the plane of a picture to paper: page, scale, pens, line types, layers.
 //!
 //! [`lay_out`] puts one [`Drawing`] onto a [`Sheet`], [`lay_out_views`] several views of an object with a title block;
-//! [`paint`] makes pixels of a sheet. Writers of files take sheets.
+//! [`paint`] makes pixels of a sheet, and [`SheetPainter`] makes a sheet of painting
+//! operations. Writers of files take sheets.
 
 mod areas;
 mod broken;
@@ -15,6 +16,7 @@ mod parts;
 mod pens;
 mod placed_view;
 mod title_block;
+mod vectors;
 
 pub use broken::{Break, Breaks, ViewBreaks};
 pub use multiview::{
@@ -25,6 +27,7 @@ pub use paint::paint;
 pub use pens::Pens;
 pub use placed_view::PlacedView;
 pub use title_block::TitleBlock;
+pub use vectors::SheetPainter;
 
 use crate::curve::{pieces, stroke_font};
 use crate::math::{DVec2, Rect};
@@ -426,12 +429,12 @@ fn put_regions(sheet: &mut Sheet, views: &[Placed], tolerance: f64) {
                 r.iter().map(|p| onto_paper(*p, view.origin, view.factor)).collect()
             };
             if let Some(rings) = curves.next().flatten() {
-                marks.push(Mark::Area { rings, color: region.color });
+                marks.push(Mark::Area { rings, color: region.color, even_odd: false });
                 continue;
             }
             let rings: Vec<Vec<DVec2>> = region.rings.iter().map(ring).collect();
             if rings.iter().flatten().all(|p| p.is_finite()) && !rings.is_empty() {
-                marks.push(Mark::Fill { rings, color: region.color });
+                marks.push(Mark::Fill { rings, color: region.color, even_odd: false });
             }
         }
     }

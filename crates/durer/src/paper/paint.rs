@@ -7,8 +7,8 @@ use crate::math::{DAffine2, DVec2};
 use crate::raster::coverage::FillRule;
 use crate::raster::line::wide::{Cap, Join, Stroke};
 use crate::raster::paint::{Canvas, Options, Paint};
-use crate::target::Pixels;
 use crate::target::sheet::{Mark, Pen, Sheet};
+use crate::target::{Curve, Pixels};
 
 /// Number of marks that are painted at a time: their edges take more memory than they do.
 const AT_ONCE: usize = 1 << 15;
@@ -58,20 +58,16 @@ pub fn paint(
 
 fn put(canvas: &mut Canvas, mark: &Mark, pens: &[Pen]) -> Result<()> {
     match mark {
-        Mark::Fill { rings, color } => {
+        Mark::Fill { rings, color, even_odd } => {
             let mut path = Path::new();
             rings.iter().for_each(|r| {
                 path.extend(&Path::polygon(r.iter().copied()));
             });
-            canvas.fill(&path, FillRule::NonZero, &Paint::Color(*color), 1.0);
+            canvas.fill(&path, rule(*even_odd), &Paint::Color(*color), 1.0);
             Ok(())
         }
-        Mark::Area { rings, color } => {
-            let mut path = Path::new();
-            rings.iter().for_each(|r| {
-                path.extend(&pieces::path(r, FINE));
-            });
-            canvas.fill(&path, FillRule::NonZero, &Paint::Color(*color), 1.0);
+        Mark::Area { rings, color, even_odd } => {
+            canvas.fill(&around(rings), rule(*even_odd), &Paint::Color(*color), 1.0);
             Ok(())
         }
         Mark::Stroke { points, closed, pen } => match pens.get(*pen) {
@@ -101,7 +97,32 @@ fn put(canvas: &mut Canvas, mark: &Mark, pens: &[Pen]) -> Result<()> {
             let strokes = dimension_strokes(&dimension.text);
             strokes.iter().try_for_each(|stroke| line(canvas, stroke, false, pen))
         }
+        Mark::Group(group) => {
+            if let Some(clip) = &group.clip {
+                canvas.push_clip(&around(&clip.rings), rule(clip.even_odd));
+            }
+            canvas.push_group();
+            let done = group.marks.iter().try_for_each(|mark| put(canvas, mark, pens));
+            canvas.pop(group.opacity);
+            if group.clip.is_some() {
+                canvas.pop(1.0);
+            }
+            done
+        }
     }
+}
+
+fn rule(even_odd: bool) -> FillRule {
+    if even_odd { FillRule::EvenOdd } else { FillRule::NonZero }
+}
+
+/// Returns closed curves as one path.
+fn around(rings: &[Curve]) -> Path {
+    let mut path = Path::new();
+    rings.iter().for_each(|ring| {
+        path.extend(&pieces::path(ring, FINE));
+    });
+    path
 }
 
 fn line(canvas: &mut Canvas, points: &[DVec2], closed: bool, pen: &Pen) -> Result<()> {
@@ -130,7 +151,7 @@ mod tests {
             let ring = vec![(at(0), at(7)), (at(14), at(3)), (at(9), at(20))];
             let color = [i as u8, (i >> 3) as u8, (i >> 8) as u8, 40 + (i % 200) as u8];
             let rings = vec![ring.into_iter().map(|(x, y)| DVec2::new(x, y)).collect()];
-            Mark::Fill { rings, color }
+            Mark::Fill { rings, color, even_odd: false }
         };
         let mut marks: Vec<Mark> = (0..AT_ONCE + 200).map(fill).collect();
         let sheet = |marks: Vec<Mark>| {

@@ -57,6 +57,7 @@ pub fn marks(sheet: &mut Sheet, heights: Option<[f64; 2]>, options: &Options) ->
             // Up to the end, under the following ones, so that no seam is visible.
             rings: vec![corners(share(shade), 1.0)],
             color: map.at(share(shade) + 0.5 / SHADES as f64),
+            even_odd: false,
         })
         .collect();
     let pen = |width| Pen { width, color: options.ink, dashes: Vec::new() };

@@ -454,7 +454,7 @@ impl Layout {
         regions.reverse();
         while let Some(Region { rings, color, .. }) = regions.pop() {
             let rings = rings.into_iter().map(|ring| self.placed(ring)).collect();
-            marks.push(Mark::Fill { rings, color });
+            marks.push(Mark::Fill { rings, color, even_odd: false });
             if regions.len() < regions.capacity() / 2 {
                 regions.shrink_to_fit();
             }

@@ -40,17 +40,21 @@ pub enum Mark {
     },
     /// Filled area bounded by straight lines.
     Fill {
-        /// Open rings, filled by the non-zero rule: outer rings run in one direction, holes in the other.
+        /// Open rings. By the non-zero rule, outer rings run in one direction, holes in the other.
         rings: Vec<Vec<DVec2>>,
         /// Colour: sRGB with straight alpha.
         color: [u8; 4],
+        /// True if the rings are filled by the even-odd rule instead of the non-zero rule.
+        even_odd: bool,
     },
     /// Filled area bounded by lines and curves.
     Area {
-        /// Closed rings, filled by the non-zero rule: outer rings run in one direction, holes in the other.
+        /// Closed rings. By the non-zero rule, outer rings run in one direction, holes in the other.
         rings: Vec<Curve>,
         /// Colour: sRGB with straight alpha.
         color: [u8; 4],
+        /// True if the rings are filled by the even-odd rule instead of the non-zero rule.
+        even_odd: bool,
     },
     /// Line of text.
     Text {
@@ -67,6 +71,28 @@ pub enum Mark {
     },
     /// Dimension with its lines, arrows and text.
     Dimension(Box<Dimension>),
+    /// Marks with a common clip path and opacity. SVG and PDF files and pixels have them.
+    Group(Box<MarkGroup>),
+}
+
+/// Marks that are painted onto an empty layer, which is then laid over the marks below it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MarkGroup {
+    /// The marks, in the order of drawing.
+    pub marks: Vec<Mark>,
+    /// Area outside of which nothing is shown.
+    pub clip: Option<ClipPath>,
+    /// Opacity of the layer, 0 … 1.
+    pub opacity: f64,
+}
+
+/// Area that marks are restricted to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClipPath {
+    /// Closed rings.
+    pub rings: Vec<Curve>,
+    /// True if the even-odd rule decides which points are inside; otherwise the non-zero rule.
+    pub even_odd: bool,
 }
 
 /// Dimension: the measured points, for programs that measure again, and the marks that draw it.

@@ -69,7 +69,11 @@ impl<'a> Annotator<'a> {
 
     fn fill(&mut self, ring: Vec<DVec2>) {
         if ring.iter().all(|p| p.is_finite()) {
-            self.marks.push(Mark::Fill { rings: vec![ring], color: self.options.pens.color });
+            self.marks.push(Mark::Fill {
+                rings: vec![ring],
+                color: self.options.pens.color,
+                even_odd: false,
+            });
         }
     }
 

@@ -126,8 +126,11 @@ fn sheets_keep_layers_texts_dashes_and_what_covers_what() {
         let (at, text, anchor) = (DVec2::new(x, 5.0), x.to_string(), Anchor::Start);
         Mark::Text { at, text, height: 2.0, anchor, pen: 0 }
     };
-    let fill =
-        Mark::Fill { rings: vec![points(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])], color: [9; 4] };
+    let fill = Mark::Fill {
+        rings: vec![points(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])],
+        color: [9; 4],
+        even_odd: false,
+    };
     let lines = [[(30.0, 0.0), (20.0, 0.0)], [(0.0, 0.0), (10.0, 0.0)], [(20.0, 0.0), (10.0, 0.0)]];
     let of = |pen: usize| lines.iter().map(move |l| stroke(l, pen));
     let mixed = of(0).zip(of(1)).flat_map(|(a, b)| [a, b]).chain([text(9.0), text(28.0)]).collect();

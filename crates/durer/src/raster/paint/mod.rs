@@ -9,9 +9,11 @@ mod color;
 mod command;
 mod outline;
 mod source;
+mod target;
 
 pub use blend::Blend;
 pub use source::{Color, Filter, Gradient, Paint, Pattern, Shape, Spread};
+pub use target::PaintTarget;
 
 use std::sync::{Mutex, PoisonError};
 
