@@ -56,7 +56,7 @@ pub enum Command {
     /// Report invalid polygons and coverage errors, with their places
     #[command(after_long_help = crate::regions::CHECK, after_help = "--help shows more, and examples.")]
     Check(Box<crate::regions::CheckArgs>),
-    /// Draw an SVG file, or a map with layers, as a picture
+    /// Draw an SVG file, or a map with layers, as a picture or as vectors
     #[command(after_long_help = crate::draw::EXAMPLES, after_help = "--help shows more, and examples.")]
     Draw(Box<crate::draw::DrawArgs>),
     /// Fill the connected area around a pixel of a PNG or JPEG

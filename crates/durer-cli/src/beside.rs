@@ -32,6 +32,17 @@ pub struct Beside {
     committed: bool,
 }
 
+/// Returns an error about a new file, which names its folder if that does not exist.
+fn in_folder(error: io::Error, path: &Path) -> io::Error {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder {
+        Some(folder) if error.kind() == io::ErrorKind::NotFound => {
+            io::Error::new(error.kind(), format!("there is no folder {}", folder.display()))
+        }
+        _ => error,
+    }
+}
+
 impl Beside {
     /// Returns a file that shall replace `place`, or be there first; a link stays a link.
     pub fn create(place: &Path) -> io::Result<Self> {
@@ -52,7 +63,7 @@ impl Beside {
             let mut unfinished = unfinished();
             match OpenOptions::new().write(true).create_new(true).open(&path) {
                 Err(e) if e.kind() == io::ErrorKind::AlreadyExists && attempt < 1000 => {}
-                Err(e) => return Err(e),
+                Err(e) => return Err(in_folder(e, &path)),
                 Ok(file) => {
                     unfinished.insert(path.clone());
                     return Ok(Self { file, path, place, committed: false });

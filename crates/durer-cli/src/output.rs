@@ -188,6 +188,9 @@ fn in_its_folder(path: &Path) -> Result<Target, Failure> {
     match fs::metadata(folder) {
         Ok(m) if m.is_dir() => Ok(Target::File(path.to_owned())),
         Ok(_) => Err(Failure::of_file(path, format!("{} is not a folder", folder.display()))),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => {
+            Err(Failure::of_file(path, format!("there is no folder {}", folder.display())))
+        }
         Err(e) => {
             Err(Failure::of_file(path, format!("folder {}: {}", folder.display(), in_words(&e))))
         }
@@ -206,6 +209,9 @@ pub fn ends_in_separator(path: &Path) -> bool {
 pub fn make_folder(folder: &Path) -> Result<(), Failure> {
     if folder.as_os_str().is_empty() || folder.is_dir() {
         return Ok(());
+    }
+    if folder.exists() {
+        return Err(Failure::of_file(folder, "it is a file, where a folder is needed"));
     }
     fs::create_dir_all(folder).map_err(|e| Failure::of_file(folder, in_words(&e)))
 }

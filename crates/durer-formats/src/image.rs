@@ -45,6 +45,7 @@ pub fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Image> {
         () if starts(bmp::MAGIC) => bmp::decode(bytes, name, limits)?,
         () => match other_format(bytes) {
             Some(format) => return Err(unsupported(name, format)),
+            None if bytes.is_empty() => return Err(broken(name, "is empty")),
             None if tga::is_tga(bytes) => tga::decode(bytes, name, limits)?,
             None => return Err(broken(name, "is neither PNG nor JPEG, WebP, GIF, BMP or TGA")),
         },
@@ -148,7 +149,8 @@ mod tests {
     #[test]
     fn what_is_no_picture_is_named() {
         let error = |bytes: &[u8]| decode(bytes, "x", &Limits::default()).unwrap_err().to_string();
-        assert!(error(b"").contains("neither PNG nor JPEG"));
+        assert!(error(b"").contains("image `x`: is empty"));
+        assert!(error(b"text").contains("neither PNG nor JPEG"));
         assert!(
             error(b"\xabKTX 20\xbb\r\n\x1a\n").contains("KTX 2 (Basis Universal) is not supported")
         );

@@ -228,8 +228,13 @@ fn tell(
     if report.mixed {
         found.push(MIXED.to_owned());
     }
-    if report.given.features == 0 {
-        found.push("there is no feature in it".to_owned());
+    match (report.given.features, report.unchosen) {
+        (0, 0) => found.push("there is no feature in it".to_owned()),
+        (0, all) => found.push(format!("none of its {all} features meets --where")),
+        (some, _) if report.out.features == 0 && report.broken_off.is_none() => {
+            found.push(format!("nothing remains of its {some} features"));
+        }
+        _ => {}
     }
     if !is_shifted {
         let is_told = reader.system().code.is_some() && to.is_geojson();

@@ -63,6 +63,16 @@ impl Job<'_> {
                     .map_err(|why| Failure::Data(format!("{name}: {why}")))?,
             );
         }
+        let counts = self.report.layers.iter().filter_map(|layer| layer.map.as_ref());
+        if counts.map(MapCounts::parts).sum::<u64>() == 0 {
+            let (lo, hi) = (window.rect().min(), window.rect().max());
+            let message = format!(
+                "nothing of the map is within {:?},{:?},{:?},{:?}; durer info tells its extent",
+                lo.x, lo.y, hi.x, hi.y
+            );
+            self.messages.warning(&names(given), &message);
+            self.report.warnings.push(message);
+        }
         self.write(&mut map, labels, given)?;
         Ok(map.into_target())
     }

@@ -240,7 +240,7 @@ impl Job<'_> {
         let format = told.or_else(|| crate::layer::format_of(Path::new(&file.name), bytes));
         let Some(format) = format else {
             let (what, read) = (crate::layer::foreign(bytes), GeoFormat::READ);
-            let message = format!("{name}: {what}; durer draw reads SVG, and map data from {read}");
+            let message = format!("{name}: {what}; durer draw reads maps and drawings from {read}");
             return Err(Failure::Data(message));
         };
         let (input, map) = (name, None);

@@ -60,4 +60,9 @@ impl MapCounts {
         let Counts { points, lines, polygons, .. } = counts;
         Self { features: features as u64, points, lines, polygons, ..Self::default() }
     }
+
+    /// Returns the number of points, lines and polygons.
+    pub fn parts(&self) -> u64 {
+        self.points + self.lines + self.polygons
+    }
 }

@@ -192,7 +192,11 @@ impl LayerInfo {
             vec![("format", self.format.to_owned()), ("features", self.features.to_string())];
         let kinds = self.geometries.iter().map(|(kind, count)| format!("{count} {kind}"));
         let kinds = kinds.collect::<Vec<_>>().join(", ");
-        lines.push(("geometry", format!("{kinds} [{}]", self.dimensions)));
+        let geometry = match self.features {
+            0 => "none".to_owned(),
+            _ => format!("{kinds} [{}]", self.dimensions),
+        };
+        lines.push(("geometry", geometry));
         if let Some([left, lower, right, upper]) = self.extent {
             lines.push(("extent", format!("{left}, {lower} … {right}, {upper}")));
         }

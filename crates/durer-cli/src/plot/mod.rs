@@ -228,7 +228,10 @@ impl Surface {
 
     fn of_file(path: &Path, args: &PlotArgs, messages: &Messages) -> Result<Self, Failure> {
         let name = input::display_name(path);
-        if name != "-" && !path.exists() && Formula::parse(&name).is_ok() {
+        // A name with brackets or operators is a formula, right or wrong.
+        let is_formula =
+            || Formula::parse(&name).is_ok() || name.contains(['(', ')', '*', '^', '+', '=']);
+        if name != "-" && !path.exists() && is_formula() {
             let message = format!("there is no file `{name}`; use --formula for a formula");
             return Err(Failure::Usage(message));
         }

@@ -28,6 +28,8 @@ pub enum Chosen {
     Tiles,
     /// The default for data at a single place.
     Place,
+    /// None: there are no features.
+    Nothing,
 }
 
 /// Returns the largest number of tiles of levels that were not requested.
@@ -40,7 +42,7 @@ impl Chosen {
     pub fn message(self, zooms: &RangeInclusive<u8>, args: &TilesArgs) -> Option<String> {
         let (last, most) = (zooms.end(), most(args));
         let why = match self {
-            Self::Option => return None,
+            Self::Option | Self::Nothing => return None,
             Self::Vertices => format!("level {last} shows the distances between vertices"),
             Self::Distances => format!("level {last} shows the distances between features"),
             Self::Sizes => format!("level {last} shows 99 % of the lines and areas"),
@@ -61,6 +63,7 @@ impl Chosen {
 pub fn pyramid(args: &TilesArgs, features: Vec<Feature>) -> durer::Result<(Pyramid, Chosen)> {
     let (zooms, chosen) = match &args.zoom {
         Some(zooms) => (zooms.clone(), Chosen::Option),
+        None if features.is_empty() => (0..=0, Chosen::Nothing),
         None => of_detail(Detail::of(&features, args.extent)),
     };
     let options = Options {

@@ -45,6 +45,7 @@ mod seen;
 mod simplify;
 mod sizes;
 mod streams;
+mod stumbles;
 mod thumbnailer;
 mod tiles;
 mod up_axis;

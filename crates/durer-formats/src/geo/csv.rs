@@ -195,7 +195,9 @@ impl Reader {
     /// If no column is known to hold geometries.
     pub fn new(text: Vec<u8>) -> Result<Self> {
         let mut rows = Rows::new(&text);
-        let keys = rows.next(&text).map(|row| keys(&row)).unwrap_or_default();
+        let names = rows.next(&text).map(|row| keys(&row));
+        let keys =
+            names.ok_or_else(|| Error::whole("the file is empty; its first row has names"))?;
         let place = places(&keys).ok_or_else(|| no_place(&keys))?;
         let mut kinds = vec![Kind::Json; keys.len()];
         let mut further = rows;

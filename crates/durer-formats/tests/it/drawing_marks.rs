@@ -358,7 +358,7 @@ fn groups_have_clip_paths_and_opacity() {
     let marks =
         vec![stroke(&[(0.0, 0.0), (5.0, 5.0)], false, 1), Mark::Group(Box::new(inner)), area];
     let group = Mark::Group(Box::new(MarkGroup { marks, clip, opacity: 1.0 }));
-    let sheet = sheet(vec![group, stroke(&[(1.0, 0.0), (2.0, 0.0)], false, 1)]);
+    let sheet = sheet(vec![group, stroke(&[(1.0, 0.0), (9.0, 0.0)], false, 1)]);
     let svg = utf8(written(|out| write_svg(out, &sheet)));
     let clip = "<clipPath id=\"_1\"><path clip-rule=\"evenodd\" d=\"M0 0h9l-9 9v-9z\"/></clipPath>";
     let area = "<path fill=\"#010203\" fill-rule=\"evenodd\" stroke=\"none\" d=\"M0 0h9l-9 9z\"/>";
@@ -374,7 +374,7 @@ fn groups_have_clip_paths_and_opacity() {
         assert!(content.contains(part), "{part} is not in\n{content}");
     }
     // The state before a group is that after it: the pen is set anew.
-    assert!(content.ends_with("] 0 d\n1 0 m\n2 0 l\nS\nEMC\n/OC /L1 BDC\nEMC\n"), "{content}");
+    assert!(content.ends_with("] 0 d\n1 0 m\n9 0 l\nS\nEMC\n/OC /L1 BDC\nEMC\n"), "{content}");
     assert!(content.matches(" w\n").count() == 2, "{content}");
     let text = String::from_utf8_lossy(&pdf);
     assert!(text.contains("/S /Transparency") && text.contains("/X0 "), "{text}");

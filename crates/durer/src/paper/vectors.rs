@@ -190,8 +190,8 @@ impl SheetPainter {
         self.push(Mark::Area { rings: curves, color, even_odd });
     }
 
-    /// Returns the width on the paper of a stroke that a pen can draw.
-    fn pen_width(&self, curves: &[Curve], stroke: &Stroke, alpha: u8) -> Option<f64> {
+    /// Returns whether a pen can draw a stroke along these curves.
+    fn is_for_pen(&self, curves: &[Curve], stroke: &Stroke, alpha: u8) -> bool {
         let [x, y] = [self.paper_from_path.matrix2.x_axis, self.paper_from_path.matrix2.y_axis];
         let (scale, skew) = (x.length(), x.dot(y).abs());
         let is_similar = (y.length() - scale).abs() <= SIMILAR * scale
@@ -201,7 +201,7 @@ impl SheetPainter {
             && (stroke.cap == Cap::Round || curves.iter().all(|curve| curve.closed));
         // Translucent strokes that cross would be darker there.
         let is_plain = stroke.dashes.is_empty() && (alpha == 255 || curves.len() == 1);
-        (is_similar && is_round && is_plain).then_some(stroke.width * scale)
+        is_similar && is_round && is_plain
     }
 
     /// Returns curves without the parts of their lines that are far from the sheet.
@@ -281,10 +281,11 @@ impl PaintTarget for SheetPainter {
         });
         let near = window.and_then(|window| wide::parts_near(path, stroke, window));
         let path = near.as_ref().unwrap_or(path);
-        let curves = contours(&path.transformed(self.paper_from_path), false);
-        if let Some(width) = self.pen_width(&curves, stroke, color[3]) {
+        let width = stroke.width * self.paper_from_path.matrix2.x_axis.length();
+        let curves = self.near(contours(&path.transformed(self.paper_from_path), false), width)?;
+        if self.is_for_pen(&curves, stroke, color[3]) {
             let pen = self.pen(width, color);
-            for curve in self.near(curves, width)? {
+            for curve in curves {
                 self.push(match curve.is_straight() {
                     true => Mark::Stroke { points: corners(&curve), closed: curve.closed, pen },
                     false => Mark::Curve { curve, pen },
