@@ -45,7 +45,6 @@ fn commands_name_the_suffixes_that_they_can_write() {
     let camera = "--eye 0,0,9 --target 0,0,0 --fov 40 --near 1 --far 20 --to-eye 0,1,9";
     for command in [
         "fill a.png --at 1,1 --color red".to_owned(),
-        "draw map.wkt".to_owned(),
         format!("warp a.png d.png {camera}"),
     ] {
         for wrong in ["x.gif", "x.svg"] {
@@ -53,6 +52,11 @@ fn commands_name_the_suffixes_that_they_can_write() {
             ended.fails(2, &format!("--output {wrong}: pictures are written as PNG"));
             assert!(!ended.err.contains(".pdf"), "{}", ended.err);
         }
+    }
+    for wrong in ["x.gif", "x.dxf"] {
+        let told = format!("--output {wrong}: drawings and maps are written as PNG");
+        let ended = folder.run(&format!("draw map.wkt -o {wrong}"));
+        ended.fails(2, &told).fails(2, ".webp, .svg or .pdf");
     }
     folder.run("render cube.obj -o x.bmp").fails(2, ".svg, .pdf, .dxf, .hpgl, .gcode, .geojson");
     folder.run("render cube.obj -o x.gif").fails(2, "a GIF is for a --turntable");
