@@ -13,7 +13,6 @@ use durer::view::cull::triangle_area;
 use durer::view::topology::written_topology;
 use durer::visibility::object::{Edges, Faces, SceneOrientation};
 use durer::work::Work;
-use durer_formats::geo::GeoFormat;
 use durer_formats::told::{cut, escaped};
 use durer_formats::{Facts, Model, ModelFormat, Place, archive, is_name_of_model};
 use serde::Serialize;
@@ -182,8 +181,7 @@ fn maps(path: &Path) -> Option<Vec<String>> {
     if head.starts_with(archive::MAGIC) {
         let names = File::open(path).ok().and_then(|file| archive::names(file).ok())?;
         let has_model = names.iter().any(|name| is_name_of_model(name));
-        let is_map = |name: &String| GeoFormat::of_name(name).is_some();
-        let maps: Vec<String> = names.into_iter().filter(is_map).collect();
+        let maps = layer::packed_names(path);
         return (!maps.is_empty() && !has_model).then_some(maps);
     }
     let lower = head.get(..2).unwrap_or_default().to_ascii_lowercase();

@@ -75,7 +75,7 @@ pub enum Error {
         instead: &'static str,
     },
     /// The work would take more memory than its budget allows ([`crate::work::Work`]).
-    #[error("{stage}: {} of memory are needed, {option} allows {}", in_words(*need), in_words(*budget))]
+    #[error("{stage}: {} of memory are needed, {option} allows {}", need_in_words(*need, *budget), in_words(*budget))]
     Memory {
         /// Purpose of the memory, e.g. `"planes of the picture"`.
         stage: &'static str,
@@ -132,6 +132,12 @@ impl Error {
 /// The library's result.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
+/// Returns a number of bytes above a budget in words, which differ from those for the budget.
+fn need_in_words(need: u64, budget: u64) -> String {
+    let words = in_words(need);
+    if words == in_words(budget) { format!("more than {words}") } else { words }
+}
+
 /// Returns a number of bytes as people read it, with at most one digit behind the point: `1.2 MB`, `640 MB`; powers of
 /// 1024.
 pub fn in_words(bytes: u64) -> String {
@@ -143,4 +149,16 @@ pub fn in_words(bytes: u64) -> String {
     let number = format!("{value:.1}");
     let number = number.strip_suffix(".0").unwrap_or(&number);
     format!("{number} {}", units.get(unit).copied().unwrap_or("EB"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn needs_differ_from_the_budget_in_words() {
+        let budget = 2 << 30;
+        assert_eq!(need_in_words(budget + 1, budget), "more than 2 GB");
+        assert_eq!(need_in_words(3 << 30, budget), "3 GB");
+    }
 }

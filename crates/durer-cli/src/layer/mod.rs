@@ -108,6 +108,15 @@ pub fn packed(
     )
 }
 
+/// Returns the names of the files of map data in a ZIP archive; none for other files and for standard input.
+pub fn packed_names(path: &Path) -> Vec<String> {
+    let names = match File::open(path) {
+        Ok(file) if !is_stream(path) => archive::names(file).unwrap_or_default(),
+        _ => Vec::new(),
+    };
+    names.into_iter().filter(|name| GeoFormat::of_name(name).is_some()).collect()
+}
+
 /// Opens the file of map data in a ZIP archive.
 fn open_archive(
     path: &Path,

@@ -17,7 +17,7 @@ Examples:
   durer tiles countries.geojson --zoom 0-6 -o tiles/
   durer tiles countries.geojson --zoom 3 -o 'tiles/{z}/{x}/{y}.geojson'
 
-Each file becomes a layer. Without --zoom, the levels follow from the distances between vertices and features. The features of a layer are simplified together, so that neighbours keep their borders; the \
+Each file becomes a layer, and so does each layer of a GeoPackage or TopoJSON file. Without --zoom, the levels follow from the distances between vertices and features. The features of a layer are simplified together, so that neighbours keep their borders; the \
 highest level keeps all points. Polygons are valid. Geometry beyond 180 degrees is moved to the other side.
 
 Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
@@ -25,7 +25,7 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 /// The options of `durer tiles`.
 #[derive(Debug, Args)]
 pub struct TilesArgs {
-    /// GeoJSON (also one feature per line), WKT or WKB; `-` reads standard input
+    /// Map data: GeoJSON, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB; `-` reads standard input
     #[arg(value_name = "IN", required = true, value_hint = ValueHint::FilePath)]
     pub inputs: Vec<PathBuf>,
     /// File or folder to write the tiles to: map.pmtiles, map.mbtiles, a folder, or a folder with
@@ -67,7 +67,8 @@ pub struct TilesArgs {
     /// on the grid
     #[arg(long, value_name = "CELLS", default_value_t = 4.0, allow_hyphen_values = true, value_parser = values::not_negative, help_heading = "Simplification")]
     pub tiny: f64,
-    /// The name of a layer; one for each IN, or one for all [default: the names of the files]
+    /// The name of a layer; one for each IN, or one for all [default: the names of the files; of files with several
+    /// layers, the names of these]
     #[arg(long, value_name = "NAME", help_heading = "Layers")]
     pub layer: Vec<String>,
     /// The properties to leave out, joined by commas; by their new names where --rename gives some

@@ -3,9 +3,10 @@
 use super::args::TilesArgs;
 use crate::failure::Failure;
 use crate::input::display_name;
-use crate::layer::{Fields, keep, open, words};
+use crate::layer::{Fields, keep, open, packed_names, words};
 use crate::messages::Messages;
 use crate::names;
+use crate::places::is_stream;
 use durer::clip::tiles::{self, Placed};
 use durer_formats::geo::{Feature, GeoFormat};
 use durer_formats::tiles::{Dictionary, Field, LayerInfo, Value};
@@ -86,11 +87,14 @@ pub fn read(args: &TilesArgs, messages: &Messages) -> Result<Layers, Failure> {
     let names = layer_names(args)?;
     let mut fields = Fields::new(&args.fields);
     for (path, name) in args.inputs.iter().zip(names) {
-        let layer = all.layers.iter().position(|layer| layer.name == name).unwrap_or_else(|| {
-            all.layers.push(Layer { name, ..Layer::default() });
-            all.layers.len() - 1
-        });
-        read_file(&mut all, path, layer, &mut fields, (args, messages))?;
+        let files = packed_names(path);
+        if files.len() < 2 {
+            read_file(&mut all, path, (&name, None), &mut fields, (args, messages))?;
+        }
+        for file in files.iter().filter(|_| files.len() > 1) {
+            let name = part_name(args, name.clone(), names::stem(Path::new(file)));
+            read_file(&mut all, path, (&name, Some(file)), &mut fields, (args, messages))?;
+        }
     }
     if let Some(message) = fields.told() {
         let names: Vec<String> = args.inputs.iter().map(|path| display_name(path)).collect();
@@ -99,17 +103,34 @@ pub fn read(args: &TilesArgs, messages: &Messages) -> Result<Layers, Failure> {
     Ok(all)
 }
 
-/// Reads a file into a layer.
+/// Returns the name of the layer of a part of a file: the name given for the file, or that of the part.
+fn part_name(args: &TilesArgs, of_file: String, of_part: String) -> String {
+    if args.layer.is_empty() { of_part } else { of_file }
+}
+
+/// Reads a file, or a part of one, into a layer; each layer of the file into its own.
 fn read_file(
     all: &mut Layers,
     path: &Path,
-    layer: usize,
+    (name, part): (&str, Option<&str>),
     fields: &mut Fields,
     (args, messages): (&TilesArgs, &Messages),
 ) -> Result<(), Failure> {
     let shown = display_name(path);
     let fail = |e| Failure::Data(format!("{shown}: {}", words(&e)));
-    let (from, mut reader) = open(path, args.from, None, &args.running.work)?;
+    let (from, mut reader) = open(path, args.from, part, &args.running.work)?;
+    let parts = reader.layers();
+    if parts.len() > 1 && !is_stream(path) {
+        drop(reader);
+        return parts.iter().try_for_each(|part| {
+            let name = part_name(args, name.to_owned(), part.clone());
+            read_file(all, path, (&name, Some(part)), fields, (args, messages))
+        });
+    }
+    let layer = all.layers.iter().position(|layer| layer.name == name).unwrap_or_else(|| {
+        all.layers.push(Layer { name: name.to_owned(), ..Layer::default() });
+        all.layers.len() - 1
+    });
     if from == GeoFormat::Svg {
         return Err(Failure::Data(format!("{shown}: an SVG has no places on the earth")));
     }

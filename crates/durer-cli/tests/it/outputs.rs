@@ -43,10 +43,9 @@ fn commands_name_the_suffixes_that_they_can_write() {
     folder.must("render cube.obj -o a.png --depth d.png --size 8x8");
     folder.write("map.wkt", "POINT (1 2)");
     let camera = "--eye 0,0,9 --target 0,0,0 --fov 40 --near 1 --far 20 --to-eye 0,1,9";
-    for command in [
-        "fill a.png --at 1,1 --color red".to_owned(),
-        format!("warp a.png d.png {camera}"),
-    ] {
+    for command in
+        ["fill a.png --at 1,1 --color red".to_owned(), format!("warp a.png d.png {camera}")]
+    {
         for wrong in ["x.gif", "x.svg"] {
             let ended = folder.run(&format!("{command} -o {wrong}"));
             ended.fails(2, &format!("--output {wrong}: pictures are written as PNG"));

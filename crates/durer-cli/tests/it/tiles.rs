@@ -475,6 +475,25 @@ fn too_many_tiles_are_counted_and_not_made() {
 }
 
 #[test]
+fn each_layer_of_a_file_becomes_a_layer() {
+    let folder = Folder::new();
+    let object = |x: u32| format!(r#"{{"type":"Point","coordinates":[{x},2]}}"#);
+    let objects = format!(r#""a":{},"b c":{}"#, object(1), object(5));
+    folder.write("t.json", format!(r#"{{"type":"Topology","arcs":[],"objects":{{{objects}}}}}"#));
+    let names = |options: &str| {
+        let ended = folder.must(&format!("tiles t.json --zoom 0 {options} -o map.pmtiles"));
+        assert_eq!(ended.err, "");
+        let features = decode(&pmtiles(&folder.read("map.pmtiles"))[0].1, 4096);
+        features.into_iter().map(|f| f.layer).collect::<Vec<_>>()
+    };
+    assert_eq!(names(""), ["a", "b c"]);
+    assert_eq!(names("--layer all"), ["all", "all"]);
+    let told = folder.must("info t.json --json").json();
+    assert_eq!((&told[0]["name"], &told[1]["name"]), (&"a".into(), &"b c".into()), "{told}");
+    assert_eq!(told[0]["warnings"], serde_json::json!([]));
+}
+
+#[test]
 fn levels_follow_from_the_data() {
     let folder = land();
     let ended = folder.must("tiles parcels.geojsonl -o map.pmtiles --json");

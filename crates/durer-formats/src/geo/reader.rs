@@ -19,6 +19,10 @@ pub struct Reader<R> {
     system: System,
     /// Members of the file that are known at once.
     members: Vec<Member>,
+    /// Names of the layers of a topology that are read.
+    layers: Vec<String>,
+    /// True once a feature has been read.
+    begun: bool,
 }
 
 enum Source<R> {
@@ -55,7 +59,7 @@ impl<R: Read> Reader<R> {
     /// feature.
     pub fn with(format: GeoFormat, source: R, beside: &Beside<'_>) -> Result<Self> {
         let mut warnings = Warnings::default();
-        let mut members = Vec::new();
+        let (mut members, mut layers) = (Vec::new(), Vec::new());
         let mut system = if format.is_lonlat() { System::LONLAT } else { System::default() };
         let source = match format {
             GeoFormat::GeoJson | GeoFormat::GeoJsonSeq | GeoFormat::GeoJsonRs => {
@@ -87,10 +91,9 @@ impl<R: Read> Reader<R> {
             }
             GeoFormat::Csv => Source::Csv(csv::Reader::new(text(source)?)?),
             GeoFormat::TopoJson => {
-                let (features, further) =
-                    topojson::read(&text(source)?, beside.layer, &mut warnings)?;
-                members = further;
-                Source::Held(features.into_iter())
+                let read = topojson::read(&text(source)?, beside.layer, &mut warnings)?;
+                (members, layers) = (read.members, read.layers);
+                Source::Held(read.features.into_iter())
             }
             GeoFormat::Kml => Source::Held(kml::read(&markup(source)?, &mut warnings)?.into_iter()),
             GeoFormat::Gpx => Source::Held(gpx::read(&markup(source)?, &mut warnings)?.into_iter()),
@@ -99,7 +102,7 @@ impl<R: Read> Reader<R> {
             let message = format!("{format} has one layer; --layer does nothing");
             warnings.push(Place::Whole, message);
         }
-        Ok(Self { source, warnings, system, members })
+        Ok(Self { source, warnings, system, members, layers, begun: false })
     }
 
     /// Returns the coordinate system given by the file for all its coordinates, as far as it has been read: a member of
@@ -124,6 +127,12 @@ impl<R: Read> Reader<R> {
     /// [`Error::Decode`] with line and column, or the byte; [`Error::Unsupported`] for geometries
     /// that durer does not know; [`Error::Io`].
     pub fn next_feature(&mut self) -> Result<Option<Feature>> {
+        let layers = &self.layers;
+        if !std::mem::replace(&mut self.begun, true) && layers.len() > 1 {
+            let (count, names) = (layers.len(), crate::text::quote(layers.join(", ").as_bytes()));
+            let message = format!("its {count} layers, {names}, become one; --layer names one");
+            self.warnings.push(Place::Whole, message);
+        }
         let feature = self.next_of_source()?;
         if feature.is_none() {
             self.warnings.tell();
@@ -164,11 +173,11 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Returns the names of the layers that are read from a GeoPackage; empty for other formats.
+    /// Returns the names of the layers that are read from a GeoPackage or a TopoJSON; empty for other formats.
     pub fn layers(&self) -> Vec<String> {
         match &self.source {
             Source::GeoPackage(reader) => reader.layers(),
-            _ => Vec::new(),
+            _ => self.layers.clone(),
         }
     }
 

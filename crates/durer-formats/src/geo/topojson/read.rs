@@ -23,13 +23,19 @@ struct Topology<'a> {
     features: Vec<Feature>,
 }
 
+/// The contents of a topology.
+pub struct Topological {
+    /// The features of the layers that are read.
+    pub features: Vec<Feature>,
+    /// Members that TopoJSON does not define.
+    pub members: Vec<Member>,
+    /// Names of the layers that are read.
+    pub layers: Vec<String>,
+}
+
 /// Reads all objects of a topology as features, one object after the other; members of the topology that the format
 /// does not define come beside them. `layer` names the one object that is read.
-pub fn read(
-    text: &[u8],
-    layer: Option<&str>,
-    warnings: &mut Warnings,
-) -> Result<(Vec<Feature>, Vec<Member>)> {
+pub fn read(text: &[u8], layer: Option<&str>, warnings: &mut Warnings) -> Result<Topological> {
     let whole = Text::new(text, (1, 1)).cursor().value("a topology")?;
     let members = whole.members()?;
     if kind(&members).as_deref() != Some("Topology") {
@@ -43,13 +49,17 @@ pub fn read(
     let objects = get(&members, "\"objects\"")
         .ok_or_else(|| whole.error("a topology needs the member objects"))?;
     let mut topology = Topology { arcs, transform, count: 0, warnings, features: Vec::new() };
-    topology.objects(objects, layer)?;
+    let layers = topology.objects(objects, layer)?;
     let own = ["\"type\"", "\"arcs\"", "\"objects\"", "\"transform\"", "\"bbox\""];
     let further =
         members.iter().filter(|(name, _)| !own.iter().any(|own| own.as_bytes() == name.as_bytes()));
     let further =
         further.map(|(name, value)| Ok(Member { name: name.checked()?, value: value.checked()? }));
-    Ok((topology.features, further.collect::<Result<_>>()?))
+    Ok(Topological {
+        features: topology.features,
+        members: further.collect::<Result<_>>()?,
+        layers,
+    })
 }
 
 /// Returns the value of a member by its name in quotes.
@@ -116,7 +126,8 @@ fn arcs(list: Text<'_>, transform: Option<Transform>) -> Result<Vec<Points>> {
 }
 
 impl Topology<'_> {
-    fn objects(&mut self, objects: Text<'_>, layer: Option<&str>) -> Result<()> {
+    /// Reads the objects, or the one that is the layer; returns the names of those that are read.
+    fn objects(&mut self, objects: Text<'_>, layer: Option<&str>) -> Result<Vec<String>> {
         let objects = objects.members()?;
         let name = |text: &Text<'_>| {
             Ok::<_, Error>(Member { name: text.checked()?, value: String::new() }.key())
@@ -128,18 +139,12 @@ impl Topology<'_> {
             let names = crate::text::quote(names.join(", ").as_bytes());
             return Err(Error::whole(format!("there is no layer {layer}; it has {names}")));
         }
-        if layer.is_none() && names.len() > 1 {
-            let count = names.len();
-            let names = crate::text::quote(names.join(", ").as_bytes());
-            let message = format!("its {count} layers, {names}, become one; --layer names one");
-            self.warnings.push(Default::default(), message);
-        }
         for (name, (_, object)) in names.iter().zip(&objects) {
             if layer.is_none_or(|layer| layer == name) {
                 self.object(*object)?;
             }
         }
-        Ok(())
+        Ok(names.into_iter().filter(|name| layer.is_none_or(|layer| layer == name)).collect())
     }
 
     /// Reads the features of an object: a collection's, or the object itself.
