@@ -3,11 +3,19 @@
 import { h } from "./dom";
 import { files, Refused, Trapped } from "./engine";
 import type { Page } from "./lesson";
-import { t } from "./words";
+import type { Words } from "./types";
+import { language, of, t } from "./words";
 
 interface Method {
   name: string;
-  title: string;
+  titles: Words;
+}
+
+/** Number of operations of one kind. */
+interface Count {
+  name: string;
+  title: Words;
+  count: number;
 }
 
 interface Model {
@@ -16,6 +24,20 @@ interface Model {
 }
 
 const SIZE = 360;
+
+/** Divides an answer into its two parts: the counts in JSON, then, after a zero byte, a PNG. */
+function parts(answer: Uint8Array): { counts: Count[]; png: Uint8Array } {
+  const end = answer.indexOf(0);
+  const { counts } = JSON.parse(new TextDecoder().decode(answer.subarray(0, end))) as { counts: Count[] };
+  return { counts, png: answer.subarray(end + 1) };
+}
+
+/** Returns a table of the operations that a method took. */
+function operations(counts: Count[], caption: string): HTMLElement {
+  const numbers = new Intl.NumberFormat(language());
+  const row = ({ name, title, count }: Count) => h("tr", { "data-count": name }, h("th", { scope: "row" }, of(title)), h("td", {}, numbers.format(count)));
+  return h("table", { class: "counts" }, h("caption", { class: "visually-hidden" }, caption), h("tbody", {}, ...counts.map(row)));
+}
 
 /** Returns the pixels of a PNG. */
 async function pixels(blob: Blob): Promise<ImageData> {
@@ -84,15 +106,16 @@ export function galleryPage(): Page {
       for (const method of methods) {
         const view = { azimuth: Number(azimuth.value), elevation: Number(elevation.value) };
         const start = performance.now();
-        const png = await files.ask<Uint8Array>({ do: "render", name, method: method.name, width: SIZE, height: SIZE, ...view }, bytes.slice(0));
+        const answer = await files.ask<Uint8Array>({ do: "render", name, method: method.name, width: SIZE, height: SIZE, ...view, counts: true }, bytes.slice(0));
         const time = performance.now() - start;
         if (own !== ticket) return;
+        const { counts, png } = parts(answer);
         const blob = new Blob([png as BlobPart], { type: "image/png" });
         const data = await pixels(blob);
         first ??= data;
         const url = URL.createObjectURL(blob);
         urls.push(url);
-        cards.append(card(method, url, difference(first, data), time, `durer render ${name} --algorithm ${method.name} --azimuth=${view.azimuth} --elevation=${view.elevation} --aa 1 --size ${SIZE}x${SIZE} -o ${method.name}.png`));
+        cards.append(card(method, url, difference(first, data), counts, time, `durer render ${name} --algorithm ${method.name} --azimuth=${view.azimuth} --elevation=${view.elevation} --aa 1 --size ${SIZE}x${SIZE} -o ${method.name}.png`));
       }
       say("");
     } catch (e) {
@@ -101,15 +124,16 @@ export function galleryPage(): Page {
     }
   }
 
-  function card(method: Method, url: string, { image, count }: { image: ImageData; count: number }, time: number, command: string): HTMLElement {
-    const map = h("canvas", { width: image.width, height: image.height, hidden: count === 0, role: "img", "aria-label": `${method.title}: ${t("differs", { count })}` });
+  function card(method: Method, url: string, { image, count }: { image: ImageData; count: number }, counts: Count[], time: number, command: string): HTMLElement {
+    const map = h("canvas", { width: image.width, height: image.height, hidden: count === 0, role: "img", "aria-label": `${of(method.titles)}: ${t("differs", { count })}` });
     map.getContext("2d")!.putImageData(image, 0, 0);
     return h(
       "section",
-      { class: "card picture-card", "aria-label": method.title },
-      h("h2", {}, method.title),
-      h("img", { src: url, alt: `${model?.name ?? ""}, ${method.title}`, width: SIZE, height: SIZE }),
+      { class: "card picture-card", "aria-label": of(method.titles) },
+      h("h2", {}, of(method.titles)),
+      h("img", { src: url, alt: `${model?.name ?? ""}, ${of(method.titles)}`, width: SIZE, height: SIZE }),
       map,
+      operations(counts, t("work", { method: of(method.titles) })),
       h("p", { class: "hint" }, `${Math.round(time)} ms · ${t("differs", { count })}`),
       h("p", {}, h("a", { class: "button", href: url, download: `${method.name}.png` }, "PNG"), " ", h("button", { type: "button", "data-command": command, onclick: () => void navigator.clipboard.writeText(command).catch(() => say(command)) }, t("copyCommand"))),
     );

@@ -215,12 +215,13 @@ const WORDS = {
   noLine: { en: "No further step runs this line.", de: "Kein weiterer Schritt führt diese Zeile aus." },
   steps1: { en: "{count} steps", de: "{count} Schritte" },
   galleryLead: {
-    en: "One model by every method for visible surfaces. Pixels that differ from the first picture are shown below. All methods take one sample per pixel; the A-buffer shares pixels among surfaces, so its edges differ.",
-    de: "Ein Modell nach jedem Verfahren für sichtbare Flächen. Pixel, die vom ersten Bild abweichen, sind darunter gezeigt. Alle nehmen eine Probe je Pixel; nur der A-Buffer teilt Pixel unter Flächen auf, seine Kanten weichen also ab.",
+    en: "One model by every method for visible surfaces. Pixels that differ from the first picture are shown below. All methods take one sample per pixel; the A-buffer shares pixels among surfaces, so its edges differ. The numbers count each method's own work; those of the z-buffer are of its loop over triangles and pixels.",
+    de: "Ein Modell nach jedem Verfahren für sichtbare Flächen. Pixel, die vom ersten Bild abweichen, sind darunter gezeigt. Alle nehmen eine Probe je Pixel; nur der A-Buffer teilt Pixel unter Flächen auf, seine Kanten weichen also ab. Die Zahlen geben die Arbeit jedes Verfahrens an; beim z-Buffer ist es die seiner Schleife über Dreiecke und Pixel.",
   },
   teapot: { en: "Render the teapot", de: "Teekanne rendern" },
   azimuth: { en: "Rotation", de: "Drehung" },
   elevation: { en: "Elevation", de: "Höhe" },
+  work: { en: "Work of {method}", de: "Arbeit: {method}" },
   differs: { en: "{count} pixels differ", de: "{count} Pixel weichen ab" },
   seeFull: { en: "Open in the explorer", de: "Im Explorer öffnen" },
 } satisfies Record<string, Words>;

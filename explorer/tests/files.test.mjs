@@ -86,6 +86,14 @@ test("the gallery shows one scene by all methods, with the pixels of the command
   // One sample in each pixel: the scan-line z-buffer finds what the z-buffer finds.
   const same = cards.filter({ hasText: "Scan-line z-buffer" });
   assert.match(await same.textContent(), /: 0 pixels differ|· 0 pixels differ/);
+  // A tetrahedron on 360 × 360 pixels: each method has its own counts, and both z-buffers compare the same pixels.
+  const counts = await cards.evaluateAll((cards) => cards.map((card) => Object.fromEntries([...card.querySelectorAll("[data-count]")].map((row) => [row.dataset.count, Number(row.querySelector("td").textContent.replaceAll(",", ""))]))));
+  assert.ok(counts.every((of) => Object.keys(of).length > 1));
+  const [zBuffer, scanLine] = counts.filter((of) => "depth-comparisons" in of);
+  assert.ok(zBuffer["depths-stored"] > 1000 && zBuffer["depths-stored"] <= zBuffer["depth-comparisons"]);
+  assert.equal(scanLine["depth-comparisons"], zBuffer["depth-comparisons"]);
+  assert.equal(counts.find((of) => "rays" in of).rays, 360 * 360);
+  assert.equal(counts.find((of) => "painted" in of).painted, 4);
   if (process.env.DURER) {
     const folder = await mkdtemp(join(tmpdir(), "gallery-"));
     for (let k = 0; k < (await cards.count()); k++) {

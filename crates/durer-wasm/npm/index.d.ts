@@ -21,4 +21,4 @@ export interface Options {
 export function render(model: Uint8Array | ArrayBuffer, options?: Options): Uint8Array;
 
 /** Returns the methods that find visible surfaces. */
-export function methods(): { name: string; title: string }[];
+export function methods(): { name: string; title: string; titles: { en: string; de: string } }[];

@@ -2,9 +2,10 @@
 
 use crate::answer::Failure;
 use crate::input::InputData;
-use durer::explain::{Figure, Input};
+use crate::lessons::word;
+use durer::explain::{Figure, Input, Operations, Word, title};
 use durer::math::DVec2;
-use durer::pipeline::{RenderOptions, Samples, SurfaceMethod, render as rendered};
+use durer::pipeline::{RenderOptions, Samples, SurfaceMethod, render as rendered, render_counted};
 use durer::view::projection::{FitOptions, ViewDirection, fit_scene};
 use durer_formats::formula::Formula;
 use durer_formats::png::{Compression, write_color};
@@ -45,6 +46,9 @@ pub(crate) struct RenderRequest {
     /// Direction to the eye around the up axis and above the horizon, in degrees.
     azimuth: f64,
     elevation: f64,
+    /// True to put the method's counts of operations before the picture: JSON and a zero byte.
+    #[serde(default)]
+    counts: bool,
 }
 
 /// Request for curves of a surface.
@@ -124,12 +128,12 @@ pub(crate) fn read(request: &ReadRequest, file: &[u8]) -> Result<Value, Failure>
 pub(crate) fn methods() -> Value {
     let method = |method: &SurfaceMethod| {
         let info = method.info();
-        json!({ "name": info.name, "title": info.title })
+        json!({ "name": info.name, "title": info.title, "titles": word(title(info)) })
     };
     json!({ "methods": SurfaceMethod::ALL.iter().map(method).collect::<Vec<_>>() })
 }
 
-/// Renders a model to a PNG.
+/// Renders a model to a PNG, after the counts of operations if they are requested.
 pub(crate) fn render(request: &RenderRequest, file: &[u8]) -> Result<Vec<u8>, Failure> {
     let words = |e: durer::Error| e.to_string();
     let algorithm: SurfaceMethod = request.method.parse().map_err(words)?;
@@ -151,8 +155,23 @@ pub(crate) fn render(request: &RenderRequest, file: &[u8]) -> Result<Vec<u8>, Fa
         samples: Samples::One,
         ..RenderOptions::new(camera)
     };
-    let (picture, _) = rendered(&scene, &options).map_err(words)?;
-    let mut png = Vec::new();
-    write_color(&mut png, &picture.color, Compression::Fast).map_err(|e| e.to_string())?;
-    Ok(png)
+    let mut answer = Vec::new();
+    let picture = if request.counts {
+        let (picture, _, operations) = render_counted(&scene, &options).map_err(words)?;
+        answer = counts(&operations).to_string().into_bytes();
+        answer.push(0);
+        picture
+    } else {
+        rendered(&scene, &options).map_err(words)?.0
+    };
+    write_color(&mut answer, &picture.color, Compression::Fast).map_err(|e| e.to_string())?;
+    Ok(answer)
+}
+
+fn counts(operations: &[Operations]) -> Value {
+    let count = |of: &Operations| {
+        let Operations { name, title, count } = *of;
+        json!({ "name": name, "title": word(title), "count": count })
+    };
+    json!({ "counts": operations.iter().map(count).collect::<Vec<_>>() })
 }

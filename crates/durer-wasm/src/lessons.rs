@@ -33,7 +33,8 @@ fn family(family: &Family) -> Value {
     json!({ "title": word(family.title), "lessons": lessons })
 }
 
-fn word(word: Word) -> Value {
+/// Returns a text in every language.
+pub(crate) fn word(word: Word) -> Value {
     json!({ "en": word.en, "de": word.de })
 }
 

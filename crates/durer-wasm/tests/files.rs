@@ -40,6 +40,27 @@ fn models_are_rendered() {
     assert!(matches!(wrong, Answer::Error(text) if text.contains("guess")));
 }
 
+/// One triangle before the other, and one beside: by z-buffer and rays.
+#[test]
+fn counts_of_operations_come_before_the_picture() {
+    let request = |counts: bool, method: &str| json!({ "do": "render", "name": "a.obj", "method": method, "width": 20, "height": 20, "azimuth": 0.0, "elevation": 0.0, "counts": counts });
+    let model = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\nf 4 5 6\n";
+    let counted = |method: &str| {
+        let Answer::Bytes(plain) = asked(&request(false, method), model) else { panic!() };
+        let Answer::Bytes(both) = asked(&request(true, method), model) else { panic!() };
+        let end = both.iter().position(|&byte| byte == 0).expect("a zero byte");
+        assert!(both[end + 1..] == plain, "{method}");
+        let value: Value = serde_json::from_slice(&both[..end]).expect("JSON");
+        value["counts"].as_array().expect("counts").clone()
+    };
+    let [compared, stored] = &counted("z-buffer")[..] else { panic!("two counts") };
+    assert_eq!(compared["title"]["de"], "Tiefenvergleiche");
+    assert_eq!(stored["name"], "depths-stored");
+    let number = |count: &Value| count["count"].as_u64().expect("a number");
+    assert!(number(stored) > 40 && number(stored) <= number(compared), "{stored} {compared}");
+    assert_eq!(number(&counted("ray")[0]), 400);
+}
+
 #[test]
 fn a_formula_gives_curves_from_near_to_far() {
     let request =

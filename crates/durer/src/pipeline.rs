@@ -21,6 +21,7 @@ pub use pieces::{check_pieces, render_seen, status_of_pieces, survey};
 pub use status::{Places, Status, Unseen, drawing_status, status};
 pub use tone_marks::{ToneMarks, tone_marks};
 
+use crate::explain::{Operations, Tally};
 use crate::math::{Vec4, exp2};
 use crate::raster::fixed::GUARD_BAND;
 use crate::scene::{Camera, Light, Scene};
@@ -31,11 +32,12 @@ pub use crate::shade::{Exposure, Shading, Surroundings, ToneMap};
 use crate::simd::{Level, default_level};
 use crate::stopwatch::Stopwatch;
 use crate::target::Framebuffer;
-use crate::trace::NoTrace;
+use crate::trace::{NoTrace, Tracer};
 use crate::view::View;
 use crate::view::window::PixelRect;
 pub use crate::visibility::surface::a_buffer::Mask;
 pub use crate::visibility::surface::ambient_occlusion;
+use crate::visibility::surface::comparisons::comparisons;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::method::{self, render_with};
 use crate::visibility::surface::setup::Filter;
@@ -231,6 +233,12 @@ impl RenderOptions {
         let view = View::new(self.camera, self.width, self.height)?;
         Ok(self.window.map_or(view, |window| view.with_window(window)))
     }
+
+    /// Returns the filter for triangles on the screen.
+    fn filter(&self) -> Filter {
+        let sample_reach = self.algorithm.sample_reach();
+        Filter { cull: self.cull, sample_reach, marks: self.marks }
+    }
 }
 
 /// Report on the rendering of a picture.
@@ -298,6 +306,37 @@ pub fn render_into(
     options: &RenderOptions,
     framebuffer: &mut Framebuffer,
 ) -> Result<Report> {
+    render_traced(scene, options, framebuffer, &mut NoTrace)
+}
+
+/// Renders like [`render`], and counts the operations of the algorithm: depth comparisons, windows, pairs of polygons,
+/// rays and the like. The picture has the same bytes.
+///
+/// The counts of the z-buffer are those of its loop over triangles and pixels' centres: see
+/// [`crate::visibility::surface::comparisons`]. It is run a second time for them.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_counted(
+    scene: &Scene,
+    options: &RenderOptions,
+) -> Result<(Framebuffer, Report, Vec<Operations>)> {
+    let (mut framebuffer, mut tally) = (Framebuffer::new(0, 0), Tally::default());
+    let report = render_traced(scene, options, &mut framebuffer, &mut tally)?;
+    if options.algorithm == SurfaceMethod::ZBuffer {
+        let view = options.view()?;
+        let input = SurfaceInput::within(&options.work, scene, &view, options.filter())?;
+        tally.add_comparisons(comparisons(&input));
+    }
+    Ok((framebuffer, report, tally.operations(options.algorithm)))
+}
+
+fn render_traced(
+    scene: &Scene,
+    options: &RenderOptions,
+    framebuffer: &mut Framebuffer,
+    t: &mut impl Tracer<method::Step>,
+) -> Result<Report> {
     options.check()?;
     scene.check()?;
     let view = options.view()?;
@@ -326,7 +365,7 @@ pub fn render_into(
             };
             z_buffer::render(scene, &view, &lights, &z_options, framebuffer)?
         }
-        _ => from_screen_triangles(scene, &view, &lights, options, framebuffer)?,
+        _ => from_screen_triangles(scene, &view, &lights, options, framebuffer, t)?,
     };
     options.work.check()?;
     let start = Stopwatch::start();
@@ -456,11 +495,10 @@ fn from_screen_triangles(
     lights: &PreparedLights,
     options: &RenderOptions,
     framebuffer: &mut Framebuffer,
+    t: &mut impl Tracer<method::Step>,
 ) -> Result<z_buffer::Report> {
     let start = Stopwatch::start();
-    let sample_reach = options.algorithm.sample_reach();
-    let filter = Filter { cull: options.cull, sample_reach, marks: options.marks };
-    let input = SurfaceInput::within(&options.work, scene, view, filter)?;
+    let input = SurfaceInput::within(&options.work, scene, view, options.filter())?;
     let geometry_seconds = start.seconds();
     let start = Stopwatch::start();
     let method_options = method::Options {
@@ -472,7 +510,6 @@ fn from_screen_triangles(
         background: options.background,
         level: options.level,
     };
-    let t = &mut NoTrace;
     render_with(options.algorithm, &input, lights, &method_options, framebuffer, t)?;
     let raster_seconds = start.seconds();
     Ok(z_buffer::Report { counts: input.counts, geometry_seconds, raster_seconds })

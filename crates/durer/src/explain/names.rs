@@ -2,9 +2,23 @@
 
 use super::lesson::Lesson;
 use super::words::{Template, Word};
+use crate::info::Info;
+
+/// Returns the title of an algorithm: in German that of the textbooks, or the English one where there is no other.
+///
+/// ```
+/// use durer::explain::title;
+/// use durer::visibility::surface::SurfaceMethod;
+///
+/// assert_eq!(title(SurfaceMethod::DepthSort.info()).de, "Tiefensortierung nach Newell, Newell und Sancha");
+/// ```
+pub fn title(info: &Info) -> Word {
+    let en = info.title;
+    Word::new(en, find(TITLES, en).unwrap_or(en))
+}
 
 impl Lesson {
-    /// Returns the title: in German that of the textbooks, or the English one where there is no other.
+    /// Returns the title of the algorithm, as [`title`] does.
     ///
     /// ```
     /// let lesson = durer::explain::lesson("back-face-removal")?;
@@ -12,8 +26,7 @@ impl Lesson {
     /// # Ok::<(), durer::Error>(())
     /// ```
     pub fn title(&self) -> Word {
-        let en = self.info.title;
-        Word::new(en, find(TITLES, en).unwrap_or(en))
+        title(self.info)
     }
 }
 

@@ -48,7 +48,7 @@ mod line_counts;
 mod line_oracle;
 mod line_scenes;
 mod marks;
-mod orientation;
+mod operations;
 mod overlay;
 mod pages;
 mod paper_break;

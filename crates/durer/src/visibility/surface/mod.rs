@@ -3,6 +3,7 @@
 pub mod a_buffer;
 pub mod ambient_occlusion;
 pub(crate) mod background;
+pub mod comparisons;
 pub mod cover;
 pub mod depth_sort;
 pub(crate) mod gather;

@@ -4,6 +4,33 @@
 //! Interactive Ray Tracing 2007.
 
 use crate::math::Vec3;
+use crate::trace::Tracer;
+
+/// Number of tests of a ray on its way through the hierarchy.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Tests {
+    /// Boxes of nodes.
+    pub boxes: u32,
+    /// Triangles in leaves.
+    pub triangles: u32,
+}
+
+/// Test of a ray.
+#[derive(Debug, Clone, Copy)]
+pub enum Test {
+    Box,
+    Triangle,
+}
+
+impl Tracer<Test> for Tests {
+    #[inline(always)]
+    fn step(&mut self, make: impl FnOnce() -> Test) {
+        match make() {
+            Test::Box => self.boxes += 1,
+            Test::Triangle => self.triangles += 1,
+        }
+    }
+}
 
 /// A closed box.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,11 +144,12 @@ impl Bvh {
         stack: &mut Vec<(u32, f32)>,
         enter: impl Fn(&Box3) -> Option<f32>,
         mut visit: impl FnMut(u32, &mut f32),
+        t: &mut impl Tracer<Test>,
     ) {
         stack.clear();
-        if let Some(at) = self.nodes.first().and_then(|root| enter(&root.bounds)) {
-            stack.push((0, at));
-        }
+        let Some(root) = self.nodes.first() else { return };
+        t.step(|| Test::Box);
+        stack.extend(enter(&root.bounds).map(|at| (0, at)));
         while let Some((index, at)) = stack.pop() {
             if at > limit {
                 continue;
@@ -130,12 +158,16 @@ impl Bvh {
             if node.count > 0 {
                 let first = node.second as usize;
                 for &i in &self.order[first..first + node.count as usize] {
+                    t.step(|| Test::Triangle);
                     visit(i, &mut limit);
                 }
                 continue;
             }
             let (left, right) = (index + 1, node.second);
-            let child = |i: u32| enter(&self.nodes[i as usize].bounds).map(|at| (i, at));
+            let mut child = |i: u32| {
+                t.step(|| Test::Box);
+                enter(&self.nodes[i as usize].bounds).map(|at| (i, at))
+            };
             match (child(left), child(right)) {
                 (Some(a), Some(b)) if a.1 <= b.1 => stack.extend([b, a]),
                 (Some(a), Some(b)) => stack.extend([a, b]),
@@ -222,6 +254,7 @@ fn best_cut(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trace::NoTrace;
 
     fn boxes(count: usize) -> Vec<Box3> {
         let mut state = 1u32;
@@ -249,14 +282,31 @@ mod tests {
                         .then_some(b.min.z)
                 };
                 let mut met = Vec::new();
-                bvh.visit(f32::INFINITY, &mut Vec::new(), enter, |i, _| {
-                    met.extend(enter(&boxes[i as usize]).map(|_| i));
-                });
+                let visit = |i, _: &mut f32| met.extend(enter(&boxes[i as usize]).map(|_| i));
+                bvh.visit(f32::INFINITY, &mut Vec::new(), enter, visit, &mut NoTrace);
                 met.sort_unstable();
                 let all = (0..count as u32).filter(|&i| enter(&boxes[i as usize]).is_some());
                 assert_eq!(met, all.collect::<Vec<_>>());
             }
         }
+    }
+
+    /// Eight boxes side by side: a root, two nodes or more, and leaves of at most four.
+    #[test]
+    fn tests_are_counted() {
+        let at = |k: u32| Vec3::splat(3.0 * k as f32);
+        let boxes: Vec<Box3> =
+            (0..8).map(|k| Box3 { min: at(k), max: at(k) + Vec3::ONE }).collect();
+        let bvh = Bvh::new(&boxes, surface);
+        let tests = |enters: bool| {
+            let mut tests = Tests::default();
+            let enter = |b: &Box3| enters.then_some(b.min.z);
+            bvh.visit(f32::INFINITY, &mut Vec::new(), enter, |_, _| {}, &mut tests);
+            tests
+        };
+        assert_eq!(tests(false), Tests { boxes: 1, triangles: 0 });
+        assert_eq!(tests(true), Tests { boxes: bvh.nodes.len() as u32, triangles: 8 });
+        assert_eq!(bvh.nodes.len() % 2, 1);
     }
 
     #[test]

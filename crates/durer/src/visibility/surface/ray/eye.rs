@@ -1,8 +1,9 @@
 //! The visible surfaces along rays from the eye: an opaque one, and blended ones before it.
 
 use super::primary::ScreenHit;
-use super::{Caster, Step};
+use super::{Caster, Step, Tests};
 use crate::target::NO_ITEM;
+use crate::trace::NoTrace;
 use crate::visibility::surface::layers::{Layer, sort_layers};
 use crate::visibility::surface::visible::{Masks, nearer};
 
@@ -31,7 +32,7 @@ impl<'a> Eye<'a> {
     ) -> Option<ScreenHit> {
         let Self { caster, masks, stack, layers } = self;
         layers.clear();
-        let opaque = caster.rays.cast([x, y], offset, stack, |hit| {
+        let hides = |hit: &ScreenHit| {
             let triangle = hit.triangle as usize;
             if !masks.passes(triangle, hit.item, x, y) {
                 return false;
@@ -41,13 +42,18 @@ impl<'a> Eye<'a> {
                 layers.push(Layer { place: 0, item: hit.item, depth: hit.depth });
             }
             !blends
-        });
+        };
+        let mut tests = Tests::default();
+        let opaque = match caster.report {
+            None => caster.rays.cast([x, y], offset, stack, hides, &mut NoTrace),
+            Some(_) => caster.rays.cast([x, y], offset, stack, hides, &mut tests),
+        };
         if let Some(o) = opaque {
             layers.retain(|l| nearer((l.depth, l.item), (o.depth, o.item)));
         }
         sort_layers(layers);
         if let Some(report) = &caster.report {
-            steps.push(report.primary([x, y], offset, self.nearest(opaque)));
+            steps.push(report.primary([x, y], offset, self.nearest(opaque), tests));
         }
         opaque
     }

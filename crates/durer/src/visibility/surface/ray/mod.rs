@@ -33,11 +33,12 @@ use crate::visibility::surface::visible::{
     Visible, background_at, pixels_of, with_lighting, write, write_planes,
 };
 use bvh::Bvh;
+pub use bvh::Tests;
 use eye::Eye;
 use primary::ScreenRays;
 use report::Report;
 use whitted::Whitted;
-use world::{Ray, WorldHit, WorldTriangles};
+use world::{Cast, Ray, WorldTriangles};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -139,6 +140,8 @@ pub enum Step {
         hit: Option<u32>,
         /// Distance of the hit from the origin; infinite without one.
         t: f64,
+        /// Boxes and triangles that it was tested against.
+        tests: Tests,
     },
 }
 
@@ -299,8 +302,8 @@ impl Caster<'_> {
                     samples.offsets().iter().map(sample).collect()
                 }
             };
-            let mut hear = |kind, generation, ray: &Ray, hit: Option<WorldHit>| {
-                let step = |report: &Report| report.secondary(at, (kind, generation), ray, hit);
+            let mut hear = |kind, generation, ray: &Ray, cast: Cast| {
+                let step = |report: &Report| report.secondary(at, (kind, generation), ray, cast);
                 band.steps.extend(self.report.as_ref().map(step));
             };
             band.colors.push(self.color(&mut whitted, stacks, at, &mut hear));
@@ -314,7 +317,7 @@ impl Caster<'_> {
         whitted: &mut Whitted<'_>,
         mut stacks: Vec<Vec<u32>>,
         at: [i32; 2],
-        hear: &mut impl FnMut(RayKind, u32, &Ray, Option<WorldHit>),
+        hear: &mut impl FnMut(RayKind, u32, &Ray, Cast),
     ) -> [u8; 4] {
         let behind = background_at(&self.options.look, self.input.view.height(), at[1]);
         encode_premultiplied(mean(&mut stacks, |stack| whitted.at_pixel(stack, at, behind, hear)))

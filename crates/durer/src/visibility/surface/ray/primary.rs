@@ -5,9 +5,10 @@
 //! applied once for all rays: a triangle is hit if its three edge functions have the right sign, here as integers on
 //! the snapped triangle. No ray slips through between two triangles, and hits and depths are those of the z-buffer.
 
-use super::bvh::{Box3, Bvh, face};
+use super::bvh::{Box3, Bvh, Test, face};
 use crate::math::Vec3;
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
+use crate::trace::Tracer;
 use crate::view::View;
 use crate::visibility::surface::setup::ScreenTriangle;
 use crate::visibility::surface::visible::nearer;
@@ -41,6 +42,7 @@ impl<'a> ScreenRays<'a> {
         offset: [i32; 2],
         stack: &mut Vec<(u32, f32)>,
         mut hides: impl FnMut(&ScreenHit) -> bool,
+        tests: &mut impl Tracer<Test>,
     ) -> Option<ScreenHit> {
         let place = |v: i32, o: i32| (v << SUBPIXEL_BITS) + HALF_PIXEL + o;
         let at = [place(x, offset[0]), place(y, offset[1])];
@@ -51,7 +53,7 @@ impl<'a> ScreenRays<'a> {
         };
         let mut best: Option<ScreenHit> = None;
         let rest = offset.map(|o| o as f32 / SUBPIXELS as f32);
-        self.bvh.visit(1.0, stack, enter, |i, limit| {
+        let visit = |i: u32, limit: &mut f32| {
             let t = &self.triangles[i as usize];
             if !covers(t, at) {
                 return;
@@ -64,7 +66,8 @@ impl<'a> ScreenRays<'a> {
                 *limit = depth;
                 best = Some(hit);
             }
-        });
+        };
+        self.bvh.visit(1.0, stack, enter, visit, tests);
         best
     }
 }

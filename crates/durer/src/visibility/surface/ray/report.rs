@@ -1,7 +1,7 @@
 //! Steps of rays: where they begin, where they lead, and how far.
 
-use super::world::{Ray, WorldHit};
-use super::{RayKind, Step};
+use super::world::{Cast, Ray};
+use super::{RayKind, Step, Tests};
 use crate::math::{DMat4, DVec3, DVec4};
 use crate::raster::fixed::SUBPIXELS;
 use crate::scene::Projection;
@@ -25,7 +25,13 @@ impl Report {
 
     /// Returns the step of a ray from the eye through a point `offset` (1/256 pixel) from a pixel's centre, with the
     /// window depth and the item of its hit.
-    pub fn primary(&self, [x, y]: [i32; 2], offset: [i32; 2], hit: Option<(f32, u32)>) -> Step {
+    pub fn primary(
+        &self,
+        [x, y]: [i32; 2],
+        offset: [i32; 2],
+        hit: Option<(f32, u32)>,
+        tests: Tests,
+    ) -> Step {
         let place = |v: i32, o: i32| f64::from(v) + 0.5 + f64::from(o) / f64::from(SUBPIXELS);
         let (px, py) = (place(x, offset[0]), place(y, offset[1]));
         let at = |depth: f64| {
@@ -38,7 +44,7 @@ impl Report {
         let kind = if offset == [0; 2] { RayKind::Primary } else { RayKind::Sample };
         let t = hit.map_or(f64::INFINITY, |(depth, _)| (at(depth.into()) - origin).length());
         let hit = hit.map(|(_, item)| item);
-        Step::Ray { x, y, kind, generation: 0, origin, direction, hit, t }
+        Step::Ray { x, y, kind, generation: 0, origin, direction, hit, t, tests }
     }
 
     /// Returns the step of a ray from a surface.
@@ -47,12 +53,12 @@ impl Report {
         [x, y]: [i32; 2],
         (kind, generation): (RayKind, u32),
         ray: &Ray,
-        hit: Option<WorldHit>,
+        Cast { hit, tests }: Cast,
     ) -> Step {
         let origin = self.eye + ray.origin.as_dvec3();
         let direction = ray.direction.as_dvec3();
         let t = hit.map_or(f64::INFINITY, |hit| hit.distance.into());
         let hit = hit.map(|hit| hit.item);
-        Step::Ray { x, y, kind, generation, origin, direction, hit, t }
+        Step::Ray { x, y, kind, generation, origin, direction, hit, t, tests }
     }
 }

@@ -3,7 +3,7 @@
 //! T. Whitted, *An Improved Illumination Model for Shaded Display*, CACM 1980. Amount of reflection: C. Schlick, *An
 //! Inexpensive BRDF Model for Physically-based Rendering*, Eurographics 1994.
 
-use super::world::{Ray, WorldHit, WorldTriangles};
+use super::world::{Cast, Ray, WorldHit, WorldTriangles};
 use super::{Options, RayKind};
 use crate::math::{Vec3, Vec4};
 use crate::scene::{Material, Projection, ShadingModel};
@@ -29,7 +29,7 @@ const MOST_LAYERS: usize = 1024;
 const CLEARANCE: f32 = 1.0 / (1 << 18) as f32;
 
 /// Callback for each ray that is cast.
-type Hear<'h> = &'h mut dyn FnMut(RayKind, u32, &Ray, Option<WorldHit>);
+type Hear<'h> = &'h mut dyn FnMut(RayKind, u32, &Ray, Cast);
 
 /// Lighting state of one thread.
 pub struct Whitted<'a> {
@@ -92,7 +92,7 @@ impl<'a> Whitted<'a> {
         stack: &[u32],
         [x, y]: [i32; 2],
         behind: Vec4,
-        hear: &mut impl FnMut(RayKind, u32, &Ray, Option<WorldHit>),
+        hear: &mut impl FnMut(RayKind, u32, &Ray, Cast),
     ) -> Vec4 {
         let Some((&item, blended)) = stack.split_first() else { return behind };
         let Some(world) = self.world.filter(|_| u64::from(item) < self.triangle_count()) else {
@@ -176,9 +176,9 @@ impl<'a> Whitted<'a> {
             };
         }
         let ray = leaving(from, direction, f32::MAX);
-        let hit = self.cast(world, &ray, false);
-        hear(kind, path.generation, &ray, hit);
-        let Some(WorldHit { item, weights, .. }) = hit else { return path.behind };
+        let cast = self.cast(world, &ray, false);
+        hear(kind, path.generation, &ray, cast);
+        let Some(WorldHit { item, weights, .. }) = cast.hit else { return path.behind };
         let seen = Seen::Point { weights, view: -direction };
         let point = self.point(item, seen, weights, -direction);
         self.light(world, &point, path, hear)
@@ -197,9 +197,9 @@ impl<'a> Whitted<'a> {
         let (mut color, mut left) = (Vec4::ZERO, 1.0);
         for _ in 0..MOST_LAYERS {
             let ray = leaving(&from, direction, f32::MAX);
-            let hit = self.cast(world, &ray, false);
-            hear(RayKind::Refraction, path.generation, &ray, hit);
-            let Some(WorldHit { item, weights, .. }) = hit else { break };
+            let cast = self.cast(world, &ray, false);
+            hear(RayKind::Refraction, path.generation, &ray, cast);
+            let Some(WorldHit { item, weights, .. }) = cast.hit else { break };
             let seen = Seen::Point { weights, view: -direction };
             from = self.point(item, seen, weights, -direction);
             if self.options.shadows {
@@ -216,7 +216,7 @@ impl<'a> Whitted<'a> {
     }
 
     /// Returns the nearest hit of a ray; for shadows, blended surfaces are left out.
-    fn cast(&mut self, world: &WorldTriangles, ray: &Ray, shadow: bool) -> Option<WorldHit> {
+    fn cast(&mut self, world: &WorldTriangles, ray: &Ray, shadow: bool) -> Cast {
         let Self { lit, stack, shared, .. } = self;
         world.nearest(ray, stack, |hit| {
             let coverage = shared.runs[run_of(shared.runs, hit.item)].coverage;
@@ -268,9 +268,9 @@ impl<'a> Whitted<'a> {
             return false;
         }
         let ray = leaving(p, direction, reach);
-        let hit = self.cast(world, &ray, true);
-        hear(RayKind::Shadow, generation, &ray, hit);
-        hit.is_some()
+        let cast = self.cast(world, &ray, true);
+        hear(RayKind::Shadow, generation, &ray, cast);
+        cast.hit.is_some()
     }
 
     fn material(&self, item: u32) -> &Material {

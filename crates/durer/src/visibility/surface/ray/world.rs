@@ -2,7 +2,7 @@
 //!
 //! S. Woop, C. Benthin, I. Wald, *Watertight Ray/Triangle Intersection*, JCGT 2013.
 
-use super::bvh::{Box3, Bvh, surface};
+use super::bvh::{Box3, Bvh, Tests, surface};
 use crate::math::Vec3;
 use crate::scene::Topology;
 use crate::visibility::surface::input::SurfaceInput;
@@ -28,6 +28,13 @@ pub struct WorldHit {
     pub distance: f32,
     pub item: u32,
     pub weights: Weights,
+}
+
+/// Result of casting a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cast {
+    pub hit: Option<WorldHit>,
+    pub tests: Tests,
 }
 
 pub struct WorldTriangles {
@@ -73,11 +80,11 @@ impl WorldTriangles {
         ray: &Ray,
         stack: &mut Vec<(u32, f32)>,
         mut accept: impl FnMut(&WorldHit) -> bool,
-    ) -> Option<WorldHit> {
+    ) -> Cast {
         let (sheared, inverse) = (Sheared::new(ray), ray.direction.recip());
         let mut best: Option<WorldHit> = None;
         let enter = |b: &Box3| enter(b, ray, inverse);
-        self.bvh.visit(ray.to, stack, enter, |i, limit| {
+        let visit = |i: u32, limit: &mut f32| {
             let item = self.items[i as usize];
             if item == ray.leaves {
                 return;
@@ -90,8 +97,10 @@ impl WorldTriangles {
                 *limit = distance;
                 best = Some(hit);
             }
-        });
-        best
+        };
+        let mut tests = Tests::default();
+        self.bvh.visit(ray.to, stack, enter, visit, &mut tests);
+        Cast { hit: best, tests }
     }
 }
 
