@@ -153,3 +153,21 @@ export function toggled(input: Input, column: number, row: number): Input {
   grid.cells[place] = all[(all.indexOf(value) + 1) % all.length]!;
   return copy;
 }
+
+/** Returns whether two references are of the same vertex. */
+export function same(a: Ref | undefined, b: Ref | undefined): boolean {
+  return a?.part === b?.part && a?.list === b?.list && a?.index === b?.index;
+}
+
+/** Returns the point halfway from a vertex to the next, or on the first edge, and the vertex that it follows. */
+export function halfway(input: Input, chosen: Ref | undefined): Vertex | undefined {
+  const all = vertices(input);
+  const at = all.find(({ ref }) => same(ref, chosen) && ref.part !== "window") ?? all[0];
+  if (!at || at.ref.part === "seed" || at.ref.part === "window") return undefined;
+  const inList = all.filter(({ ref }) => ref.part === at.ref.part && ref.list === at.ref.list);
+  const next = inList[at.ref.index + 1] ?? inList[0] ?? at;
+  // Nothing follows the end of a line: the vertex is put before it.
+  const isEnd = at.ref.part === "lines" && at.ref.index + 1 === inList.length;
+  const [from, to] = isEnd ? [inList[at.ref.index - 1]!, at] : [at, next];
+  return { ref: from.ref, at: [(from.at[0] + to.at[0]) / 2, (from.at[1] + to.at[1]) / 2] };
+}

@@ -128,9 +128,9 @@ export class Quiz {
     this.open = undefined;
     this.question.textContent = "";
     this.clear();
-    this.stage.answered("");
+    this.stage.picker.answered("");
     this.stage.hidesCodes = false;
-    this.stage.unpick();
+    this.stage.picker.end();
     this.veil("");
   }
 
@@ -161,7 +161,7 @@ export class Quiz {
     this.transport.pause();
     this.veil(this.mode === "line" ? "line" : "");
     if (this.mode === "line") {
-      this.stage.unpick();
+      this.stage.picker.end();
       this.question.textContent = t("askLine");
       return;
     }
@@ -172,7 +172,7 @@ export class Quiz {
     const numbers = frame ? questions(player.lesson, frame) : [];
     if (numbers.length > 0 && (this.mode === "number" || targets.length === 0)) return this.askNumbers(numbers);
     if (targets.length > 0) return this.askPlace(next, targets);
-    this.stage.unpick();
+    this.stage.picker.end();
     this.askKind(next);
   }
 
@@ -206,8 +206,8 @@ export class Quiz {
     this.answers.replaceChildren(fields.element);
     fields.focus();
     stage.hidesCodes = "code" in question;
-    if (!stage.hidesCodes) return stage.unpick();
-    stage.pick(false, (at: Point) => {
+    if (!stage.hidesCodes) return stage.picker.end();
+    stage.picker.ask(false, (at: Point) => {
       const place = player.frame?.map;
       const code = place && codeAt(at, place, player.run?.input);
       if (code) fields.set(code);
@@ -230,7 +230,7 @@ export class Quiz {
   private askPlace(next: number, targets: Target[]): void {
     const template = this.player.lesson.templates[this.player.run!.templates[next]!]!;
     this.question.textContent = `${t("askPlace", { place: placesInWords(targets) })} “${gapped(of(template.text))}”`;
-    this.stage.pick(hasPixels(targets), (at: Point, scale: number) => this.answer(hit(targets, at, scale), undefined, true));
+    this.stage.picker.ask(hasPixels(targets), (at: Point, scale: number) => this.answer(hit(targets, at, scale), undefined, true));
   }
 
   private askKind(next: number): void {
@@ -273,7 +273,7 @@ export class Quiz {
     this.open = undefined;
     this.count(right);
     this.stage.hidesCodes = false;
-    this.stage.answered(onStage ? (right ? "right" : "wrong") : "");
+    this.stage.picker.answered(onStage ? (right ? "right" : "wrong") : "");
     this.veil("");
     const words = right ? t("right") : line === undefined ? t("wrong") : `${t("wrongLine")} ${line}.`;
     const told = (): void => {

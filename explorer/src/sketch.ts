@@ -24,7 +24,7 @@ export class Sketch {
   private points: Point[] = [];
   private starts: HTMLButtonElement[];
   private done = h("button", { type: "button", class: "primary", "data-sketch": "done", onclick: () => this.finish() }, t("sketchDone"));
-  private cancel = h("button", { type: "button", onclick: () => this.stage.unpick() }, t("sketchCancel"));
+  private cancel = h("button", { type: "button", onclick: () => this.stage.picker.end() }, t("sketchCancel"));
   private hint = h("p", { class: "telling", role: "status", "aria-live": "polite" });
 
   constructor(
@@ -53,7 +53,7 @@ export class Sketch {
   }
 
   private start(part: Part): void {
-    this.stage.pick(false, (at, scale) => this.add(at, scale), () => this.end());
+    this.stage.picker.ask(false, (at, scale) => this.add(at, scale), () => this.end());
     this.part = part;
     this.points = [];
     this.show();
@@ -76,7 +76,7 @@ export class Sketch {
     const { part, points, player } = this;
     const input = structuredClone(player.run?.input);
     if (!part || points.length < 3 || !input || !("figure" in input)) return;
-    this.stage.unpick();
+    this.stage.picker.end();
     input.figure[part] = [points];
     player.change({ ...player.setup, input }, player.setup, 0);
   }
@@ -86,7 +86,7 @@ export class Sketch {
     this.part = undefined;
     this.points = [];
     this.stage.outline([]);
-    this.stage.unpick();
+    this.stage.picker.end();
     this.show();
   }
 
@@ -94,7 +94,7 @@ export class Sketch {
   key(event: KeyboardEvent): boolean {
     if (!this.part || (event.key !== "Enter" && event.key !== "Escape")) return false;
     if (event.key === "Enter") this.finish();
-    else this.stage.unpick();
+    else this.stage.picker.end();
     return true;
   }
 }

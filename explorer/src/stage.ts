@@ -1,66 +1,17 @@
 // The picture of a step, with the vertices of the input as handles.
 
 import { h, s } from "./dom";
-import { added, gridOf, moved, nearest, removed, toggled, vertices, type Ref, type Vertex } from "./edit";
+import { added, gridOf, halfway, moved, nearest, removed, same, toggled, vertices, type Ref, type Vertex } from "./edit";
+import { Picker } from "./picker";
 import type { Player } from "./player";
-import type { Input, Place, Point } from "./types";
+import type { Input, Point } from "./types";
+import { View } from "./view";
 import { t } from "./words";
 
 /** Ratio by which drawings are made smaller than shown, so that their letters are readable. */
 const ENLARGED = 1.3;
 /** Distance within which a double click adds a vertex to an edge, in pixels of the drawing. */
 const NEAR = 30;
-
-/** Map between points of the input and pixels of a drawing. */
-class View {
-  readonly scale: number;
-  readonly size: Point;
-
-  constructor(
-    readonly place: Place,
-    longest: number,
-  ) {
-    const wide = place.max[0] - place.min[0];
-    const high = place.max[1] - place.min[1];
-    this.scale = longest / Math.max(wide, high);
-    this.size = [Math.max(1, wide * this.scale), Math.max(1, high * this.scale)];
-  }
-
-  /** Returns a point's place in the drawing. */
-  at([x, y]: Point): Point {
-    const [a, b, c, d, e, f] = this.place.input!;
-    return this.drawn([a * x + c * y + e, b * x + d * y + f]);
-  }
-
-  /** Returns the place in the drawing of a point of the picture. */
-  drawn([x, y]: Point): Point {
-    const v = (y - this.place.min[1]) * this.scale;
-    return [(x - this.place.min[0]) * this.scale, this.place.down ? v : this.size[1] - v];
-  }
-
-  /** Returns the point of the picture at a place in the drawing. */
-  shown([u, v]: Point): Point {
-    return [u / this.scale + this.place.min[0], (this.place.down ? v : this.size[1] - v) / this.scale + this.place.min[1]];
-  }
-
-  /** Returns the point of the input at a place in the drawing. */
-  from(at: Point): Point {
-    const [a, b, c, d, e, f] = this.place.input!;
-    const [u, v] = this.shown(at);
-    const [x, y] = [u - e, v - f];
-    const size = a * d - b * c;
-    return [(d * x - c * y) / size, (a * y - b * x) / size];
-  }
-
-  /** Returns the rectangle of another drawing in this one, so that equal coordinates coincide. */
-  of(other: View): { x: number; y: number; width: number; height: number } {
-    const k = this.scale / other.scale;
-    const x = (other.place.min[0] - this.place.min[0]) * this.scale;
-    const low = (other.place.min[1] - this.place.min[1]) * this.scale;
-    const height = other.size[1] * k;
-    return { x, y: this.place.down ? low : this.size[1] - low - height, width: other.size[0] * k, height };
-  }
-}
 
 /** Takes the texts out of a picture, with the light ground behind them: they are shown above the handles, which would cover them. */
 function textsOf(picture: Element): Element {
@@ -77,10 +28,6 @@ function textsOf(picture: Element): Element {
   }
   texts.classList.add("texts");
   return texts;
-}
-
-function same(a: Ref | undefined, b: Ref | undefined): boolean {
-  return a?.part === b?.part && a?.list === b?.list && a?.index === b?.index;
 }
 
 function nameOf({ ref, at }: Vertex): string {
@@ -107,20 +54,11 @@ export class Stage {
   editable = true;
   /** True during a question for an outcode: the picture shows none. */
   hidesCodes = false;
+  /** Asks for places in the picture. */
+  readonly picker = new Picker(() => this.draw());
 
-  /** Receives the place clicked, in the coordinates of the picture, while the quiz asks for one. */
-  private onpick: ((at: Point, scale: number) => void) | undefined;
-  /** Called when the question for a place ends. */
-  private onleave: (() => void) | undefined;
   /** Vertices of the polygon being drawn. */
   private sketched: Point[] = [];
-  /** Size of a step of the arrow keys in the picture: a pixel, or none for a share of the width. */
-  private pickStep = 0;
-  /** The place that the arrow keys move. */
-  private cross: Point | undefined;
-  /** The place that was picked last, and whether it was right. */
-  private mark: { at: Point; look: string } | undefined;
-
   private svg = s("svg", { class: "drawing", role: "group" });
   private view: View | undefined;
   /** The view when a drag began, until it ends. */
@@ -185,8 +123,8 @@ export class Stage {
       this.svg.querySelector(".texts")?.replaceWith(texts);
       this.place();
     } else {
-      this.svg.replaceChildren(picture, ...this.handles(), texts, ...this.outlined(view), ...this.crosses(view));
-      this.element.classList.toggle("asks", this.onpick !== undefined);
+      this.svg.replaceChildren(picture, ...this.handles(), texts, ...this.outlined(view), ...this.picker.crosses(view));
+      this.element.classList.toggle("asks", this.picker.asks);
       if (focused) this.svg.querySelector<SVGElement>(`[data-ref="${focused}"]`)?.focus();
       this.resize();
     }
@@ -195,30 +133,6 @@ export class Stage {
   /** Draws the step once more. */
   redraw(): void {
     this.draw();
-  }
-
-  /** Asks for a place in the picture: by a click, or by arrow keys and Enter on a cross. */
-  pick(isPixels: boolean, onpick: (at: Point, scale: number) => void, onleave?: () => void): void {
-    this.leave();
-    this.onpick = onpick;
-    this.onleave = onleave;
-    this.pickStep = isPixels ? 1 : 0;
-    this.cross = undefined;
-    this.draw();
-  }
-
-  /** Ends the question. */
-  unpick(): void {
-    if (!this.onpick) return;
-    this.onpick = undefined;
-    this.leave();
-    this.draw();
-  }
-
-  private leave(): void {
-    const { onleave } = this;
-    this.onleave = undefined;
-    onleave?.();
   }
 
   /** Returns the point of the input at a place of the picture, on the grid that vertices snap to. */
@@ -248,52 +162,9 @@ export class Stage {
     return [s("g", { class: "sketch", "aria-hidden": "true" }, s("path", { d: `M${all.join("L")}` }), ...dots)];
   }
 
-  /** Shows the place picked, until the next one; an empty look removes it. */
-  answered(look: "" | "right" | "wrong"): void {
-    this.mark = look !== "" && this.cross ? { at: this.cross, look } : undefined;
-  }
-
-  private picked(at: Point): void {
-    const { view, onpick } = this;
-    if (!view || !onpick) return;
-    this.cross = at;
-    onpick(at, view.scale);
-  }
-
-  /** Returns the crosses of the quiz: the place that was picked last, and the one that keys move. */
-  private crosses(view: View): SVGElement[] {
-    const cross = (at: Point, attributes: Record<string, string | number | ((event: KeyboardEvent) => void)>): SVGElement => {
-      const [x, y] = view.drawn(at);
-      return s("g", { transform: `translate(${x} ${y})`, ...attributes }, s("path", { d: "M-11 0H11M0 -11V11" }));
-    };
-    const { place } = view;
-    const last = this.mark ? [cross(this.mark.at, { class: `cross ${this.mark.look}`, "aria-hidden": "true" })] : [];
-    if (!this.onpick) return last;
-    const middle = (k: 0 | 1): number => (place.min[k] + place.max[k]) / 2;
-    const laid = (value: number): number => (this.pickStep === 1 ? Math.floor(value) + 0.5 : value);
-    const at: Point = this.cross ?? [laid(middle(0)), laid(middle(1))];
-    const name = `${t("crossHint")} (${at.map((value) => Number(value.toFixed(2))).join("; ")})`;
-    const onkeydown = (event: KeyboardEvent): void => this.crossKey(event, at, view);
-    return [...last, cross(at, { class: "cross asks", tabindex: 0, role: "button", "aria-label": name, "data-ref": "cross", onkeydown })];
-  }
-
-  private crossKey(event: KeyboardEvent, at: Point, view: View): void {
-    const size = this.pickStep || Math.max(view.place.max[0] - view.place.min[0], view.place.max[1] - view.place.min[1]) / 80;
-    const up = view.place.down ? -size : size;
-    const ways: Record<string, Point> = { ArrowLeft: [-size, 0], ArrowRight: [size, 0], ArrowUp: [0, up], ArrowDown: [0, -up] };
-    const way = ways[event.key];
-    if (event.key === "Enter" || event.key === " ") this.picked(at);
-    else if (way && !event.shiftKey) {
-      this.cross = [at[0] + way[0], at[1] + way[1]];
-      this.draw();
-    } else return;
-    event.preventDefault();
-    event.stopPropagation();
-  }
-
   private handles(): SVGElement[] {
     const { input, view } = this;
-    if (!input || !view?.place.input || !this.editable || this.onpick) return [];
+    if (!input || !view?.place.input || !this.editable || this.picker.asks) return [];
     return vertices(input).map((vertex) => this.handle(vertex, view));
   }
 
@@ -418,22 +289,14 @@ export class Stage {
   /** Adds a vertex halfway from the chosen one to the next, or on the first edge. */
   addVertex(): void {
     this.change((input) => {
-      const all = vertices(input);
-      const at = all.find(({ ref }) => same(ref, this.chosen) && ref.part !== "window") ?? all[0];
-      if (!at || at.ref.part === "seed" || at.ref.part === "window") return undefined;
-      const inList = all.filter(({ ref }) => ref.part === at.ref.part && ref.list === at.ref.list);
-      const next = inList[at.ref.index + 1] ?? inList[0] ?? at;
-      // Nothing follows the end of a line: the vertex is put before it.
-      const isEnd = at.ref.part === "lines" && at.ref.index + 1 === inList.length;
-      const [from, to] = isEnd ? [inList[at.ref.index - 1]!, at] : [at, next];
-      const middle: Point = [(from.at[0] + to.at[0]) / 2, (from.at[1] + to.at[1]) / 2];
-      return added(input, from.ref, this.snapped(middle, from.ref));
+      const found = halfway(input, this.chosen);
+      return found && added(input, found.ref, this.snapped(found.at, found.ref));
     });
   }
 
   private double(event: MouseEvent): void {
     const { view, input } = this;
-    if (!view?.place.input || !input || "grid" in input || !this.editable || this.onpick) return;
+    if (!view?.place.input || !input || "grid" in input || !this.editable || this.picker.asks) return;
     const at = view.from(this.pointer(event));
     const found = nearest(input, at);
     const scale = Math.hypot(view.place.input[0], view.place.input[1]) * view.scale;
@@ -446,7 +309,7 @@ export class Stage {
 
   private click(event: MouseEvent): void {
     const { view, input } = this;
-    if (view && this.onpick) return this.picked(view.shown(this.pointer(event)));
+    if (view && this.picker.asks) return this.picker.picked(view.shown(this.pointer(event)), view);
     const onHandle = (event.target as Element).closest(".handle");
     if (!view?.place.input || !input || !("grid" in input) || onHandle || !this.editable) return;
     const [x, y] = view.from(this.pointer(event));
