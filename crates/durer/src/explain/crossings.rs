@@ -56,6 +56,34 @@ pub(super) const LESSON: Lesson = Lesson {
             ),
             input: || segments(&[[0.0, 0.0, 9.0, 1.0], [1.0, 2.0, 8.0, 3.0], [2.0, 5.0, 7.0, 4.0]]),
         },
+        Example::new(
+            "grid",
+            "three across three: nine crossings",
+            "drei über drei: neun Schnittpunkte",
+            || {
+                segments(&[
+                    [0.0, 1.0, 9.0, 2.0],
+                    [0.0, 3.0, 9.0, 4.0],
+                    [0.0, 5.0, 9.0, 6.0],
+                    [1.0, 0.0, 2.0, 8.0],
+                    [4.0, 0.0, 5.0, 8.0],
+                    [7.0, 0.0, 8.0, 8.0],
+                ])
+            },
+        ),
+        Example::new(
+            "fan",
+            "four that begin at one point",
+            "vier, die an einem Punkt beginnen",
+            || {
+                segments(&[
+                    [0.0, 4.0, 9.0, 0.0],
+                    [0.0, 4.0, 9.0, 3.0],
+                    [0.0, 4.0, 9.0, 5.0],
+                    [0.0, 4.0, 9.0, 8.0],
+                ])
+            },
+        ),
     ],
     templates: &[&ENDS, &EVENT, &REPORT, &STATUS, &FOUND, &KNOWN, &APART],
     unreached: &[],

@@ -39,6 +39,18 @@ pub struct Example {
     pub input: fn() -> Input,
 }
 
+impl Example {
+    /// Creates an example from its name, its title in English and German, and the function that makes the input.
+    pub(super) const fn new(
+        name: &'static str,
+        en: &'static str,
+        de: &'static str,
+        input: fn() -> Input,
+    ) -> Self {
+        Self { name, title: Word::new(en, de), input }
+    }
+}
+
 impl Lesson {
     /// Runs the algorithm and returns a frame for each of its steps, at most `cap`, and one more with the number of
     /// missing ones if there are more.

@@ -58,6 +58,12 @@ const EXAMPLES: &[Example] = &[
         title: Word::new("inside: accepted at once", "innen: sofort angenommen"),
         input: || figure((10.0, 6.0), (1.0, 1.0), (8.0, 5.0)),
     },
+    Example::new(
+        "vertical",
+        "vertical: it meets two borders only",
+        "senkrecht: trifft nur zwei Ränder",
+        || figure((10.0, 6.0), (4.0, -3.0), (4.0, 9.0)),
+    ),
 ];
 
 static CODES: Template = Template::new(

@@ -41,6 +41,21 @@ pub(super) const LESSON: Lesson = Lesson {
             ),
             input: || window((0.0, 10.0), (8.0, 14.0)),
         },
+        Example::new("inside", "both ends inside", "beide Enden innen", || {
+            window((6.0, 5.0), (17.0, 9.0))
+        }),
+        Example::new(
+            "beyond",
+            "both ends beyond one border",
+            "beide Enden jenseits eines Rands",
+            || window((0.0, 2.0), (2.0, 13.0)),
+        ),
+        Example::new(
+            "corner",
+            "through a corner: one pixel remains",
+            "durch eine Ecke: ein Pixel bleibt",
+            || window((2.0, 5.0), (6.0, 1.0)),
+        ),
     ],
     templates: &[&HALVED_IN, &HALVED_OUT, &CUT, &ACCEPTED, &REJECTED],
     unreached: &[],

@@ -38,6 +38,18 @@ pub(super) const LESSON: Lesson = Lesson {
             title: Word::new("past a corner", "an einer Ecke vorbei"),
             input: || figure((10.0, 6.0), (-4.0, 3.0), (3.0, 9.5)),
         },
+        Example::new(
+            "through-corners",
+            "exactly through two corners",
+            "genau durch zwei Ecken",
+            || figure((10.0, 6.0), (-5.0, -3.0), (15.0, 9.0)),
+        ),
+        Example::new(
+            "beyond",
+            "both ends beyond one border",
+            "beide Enden jenseits eines Rands",
+            || figure((10.0, 6.0), (-4.0, 1.0), (-1.0, 5.0)),
+        ),
     ],
     templates: &[&REGION, &CORNER, &CUT, &ACCEPTED, &REJECTED],
     unreached: &[],

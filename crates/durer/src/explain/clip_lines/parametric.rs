@@ -42,6 +42,24 @@ pub(super) const CYRUS_BECK: Lesson = Lesson {
             ),
             input: || figure((10.0, 6.0), (-2.0, 7.0), (12.0, 7.0)),
         },
+        Example::new(
+            "backwards",
+            "from B to A: entering and leaving change places",
+            "von B nach A: Betreten und Verlassen tauschen",
+            || pentagon((12.5, 5.6), (-3.0, 0.2)),
+        ),
+        Example::new(
+            "inside",
+            "both ends inside: no bound changes",
+            "beide Enden innen: keine Schranke ändert sich",
+            || pentagon((3.0, 2.0), (6.0, 4.0)),
+        ),
+        Example::new(
+            "vertex",
+            "through a vertex of the window",
+            "durch eine Ecke des Fensters",
+            || pentagon((9.0, -1.0), (9.0, 8.0)),
+        ),
     ],
     templates: TEMPLATES,
     unreached: &[],
@@ -89,6 +107,15 @@ const RECTANGLES: &[Example] = &[
         title: Word::new("both ends beyond one border", "beide Enden jenseits eines Rands"),
         input: || figure((10.0, 6.0), (-4.0, 1.0), (-1.0, 5.0)),
     },
+    Example::new("corner", "through a corner: t_E = t_L", "durch eine Ecke: t_E = t_L", || {
+        figure((10.0, 6.0), (8.0, 8.0), (12.0, 4.0))
+    }),
+    Example::new(
+        "inside",
+        "both ends inside: no bound changes",
+        "beide Enden innen: keine Schranke ändert sich",
+        || figure((10.0, 6.0), (1.0, 1.0), (8.0, 5.0)),
+    ),
 ];
 
 /// Returns a convex window of five corners and a segment.

@@ -30,6 +30,35 @@ pub(super) const LESSON: Lesson = Lesson {
             title: Word::new("along a border", "an einem Rand entlang"),
             input: || with_hole(vec![p(2.0, 0.0), p(8.0, 0.0), p(8.0, -2.0), p(5.0, 3.5)]),
         },
+        Example::new("inside", "inside: one piece", "innen: ein Stück", || {
+            with_hole(vec![p(1.0, 1.0), p(8.0, 2.0), p(9.0, 9.0)])
+        }),
+        Example::new(
+            "zigzag",
+            "in and out again and again",
+            "immer wieder hinein und hinaus",
+            || {
+                with_hole(vec![
+                    p(-1.0, 1.0),
+                    p(11.0, 2.5),
+                    p(-1.0, 4.0),
+                    p(11.0, 5.5),
+                    p(-1.0, 7.0),
+                ])
+            },
+        ),
+        Example::new(
+            "in-the-hole",
+            "wholly in the hole: nothing remains",
+            "ganz im Loch: nichts bleibt",
+            || with_hole(vec![p(4.0, 4.0), p(6.0, 6.0)]),
+        ),
+        Example::new(
+            "corner",
+            "it touches a corner from outside",
+            "berührt eine Ecke von außen",
+            || with_hole(vec![p(-2.0, 2.0), p(2.0, -2.0)]),
+        ),
     ],
     templates: &[&INSIDE, &OUTSIDE],
     unreached: &[],

@@ -1,6 +1,8 @@
 //! The lesson of Vatti's scan beams.
 
-use super::{Operands, TAKES, letter_and_blade, pair, ring, squares, yes_or_no};
+use super::{
+    Operands, TAKES, apart, bars, letter_and_blade, pair, pentagram, ring, squares, yes_or_no,
+};
 use crate::Result;
 use crate::clip::polygon::scan_beams::{self, INFO, Step, Trapezoid, scan_beams};
 use crate::explain::frame::{Frames, Shown, Want, record};
@@ -42,6 +44,19 @@ pub(super) const LESSON: Lesson = Lesson {
             ),
             input: letter_and_blade,
         },
+        Example::new(
+            "bars",
+            "two bars across: four crossings",
+            "zwei gekreuzte Balken: vier Schnittpunkte",
+            bars,
+        ),
+        Example::new(
+            "pentagram",
+            "a star that crosses itself",
+            "ein Stern, der sich selbst kreuzt",
+            pentagram,
+        ),
+        Example::new("apart", "nothing in common", "nichts gemeinsam", apart),
     ],
     templates: &[&MINIMUM, &BEAM, &CROSSING, &ACTIVE, &CONTRIBUTES, &PART],
     unreached: &[],

@@ -1,6 +1,8 @@
 //! The lesson of Liang and Barsky's polygon clipping.
 
-use super::{TAKES_WINDOW, letter, ring, ring_and_window, walked, windowed};
+use super::{
+    ALONG, BESIDE, CONTAINED, TAKES_WINDOW, letter, ring, ring_and_window, walked, windowed,
+};
 use crate::Result;
 use crate::clip::polygon::liang_barsky::{INFO, Step, clip};
 use crate::explain::frame::{Frames, Shown, Want, record};
@@ -42,6 +44,9 @@ pub(super) const LESSON: Lesson = Lesson {
                 )
             },
         },
+        CONTAINED,
+        BESIDE,
+        ALONG,
     ],
     templates: &[&EDGE, &POINT, &TURN],
     unreached: &[],

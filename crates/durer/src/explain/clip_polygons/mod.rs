@@ -12,7 +12,7 @@ mod walks;
 pub(super) use stages::by_stages;
 
 use super::input::{Figure, Input};
-use super::lesson::Lesson;
+use super::lesson::{Example, Lesson};
 use super::picture::{Look, Picture, corners};
 use super::words::{Value, Word};
 use crate::Result;
@@ -66,6 +66,32 @@ fn windowed(points: Vec<DVec2>, low: (f64, f64), high: (f64, f64)) -> Input {
     Input::Figure(Figure { window, rings: vec![points], ..Figure::default() })
 }
 
+/// Returns a ring before a window of 10 × 10.
+fn before_square(points: &[(f64, f64)]) -> Input {
+    windowed(ring(points), (0.0, 0.0), (10.0, 10.0))
+}
+
+const CONTAINED: Example =
+    Example::new("inside", "inside: every vertex is kept", "innen: Jede Ecke bleibt", || {
+        before_square(&[(2.0, 2.0), (8.0, 3.0), (5.0, 8.0)])
+    });
+const BESIDE: Example = Example::new(
+    "outside",
+    "beside the window: nothing remains",
+    "neben dem Fenster: nichts bleibt",
+    || before_square(&[(12.0, 2.0), (18.0, 3.0), (15.0, 8.0)]),
+);
+const ALONG: Example =
+    Example::new("along", "an edge along a border", "eine Kante auf einem Rand", || {
+        before_square(&[(4.0, 2.0), (10.0, 2.0), (10.0, 8.0), (4.0, 8.0)])
+    });
+const AROUND: Example = Example::new(
+    "around",
+    "around the window: its four corners remain",
+    "um das Fenster: Seine vier Ecken bleiben",
+    || before_square(&[(-3.0, -3.0), (14.0, -2.0), (13.0, 13.0), (-2.0, 12.0)]),
+);
+
 /// Returns two rings.
 fn pair(subject: Vec<DVec2>, clip: Vec<DVec2>) -> Input {
     Input::Figure(Figure { rings: vec![subject], clip: vec![clip], ..Figure::default() })
@@ -84,6 +110,35 @@ fn squares() -> Input {
     pair(
         ring(&[(0.0, 0.0), (6.0, 0.0), (6.0, 6.0), (0.0, 6.0)]),
         ring(&[(3.0, 2.0), (9.0, 2.0), (9.0, 8.0), (3.0, 8.0)]),
+    )
+}
+
+/// Returns two bars that cross.
+fn bars() -> Input {
+    pair(
+        ring(&[(0.0, 3.0), (9.0, 3.0), (9.0, 6.0), (0.0, 6.0)]),
+        ring(&[(3.0, 0.0), (6.0, 0.0), (6.0, 9.0), (3.0, 9.0)]),
+    )
+}
+
+/// Returns two triangles that have nothing in common.
+fn apart() -> Input {
+    pair(ring(&[(0.0, 0.0), (4.0, 0.0), (2.0, 5.0)]), ring(&[(6.0, 1.0), (9.0, 2.0), (7.0, 6.0)]))
+}
+
+/// Returns a polygon within another one.
+fn nested() -> Input {
+    pair(
+        ring(&[(0.0, 0.0), (9.0, 0.0), (10.0, 8.0), (1.0, 7.0)]),
+        ring(&[(3.0, 2.0), (6.0, 2.5), (5.0, 5.0)]),
+    )
+}
+
+/// Returns two rectangles with a part of an edge in common.
+fn neighbours() -> Input {
+    pair(
+        ring(&[(0.0, 0.0), (4.0, 0.0), (4.0, 6.0), (0.0, 6.0)]),
+        ring(&[(4.0, 2.0), (8.0, 2.0), (8.0, 8.0), (4.0, 8.0)]),
     )
 }
 

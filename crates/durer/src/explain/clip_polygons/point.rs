@@ -52,6 +52,23 @@ pub(super) const LESSON: Lesson = Lesson {
             title: Word::new("on the border", "auf dem Rand"),
             input: || at(letter(), (4.0, 4.0)),
         },
+        Example::new(
+            "horizontal",
+            "a horizontal edge on the ray counts for nothing",
+            "eine waagrechte Kante auf dem Strahl zählt nicht",
+            || {
+                at(
+                    ring(&[(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (8.0, 3.0), (8.0, 6.0), (0.0, 6.0)]),
+                    (1.0, 3.0),
+                )
+            },
+        ),
+        Example::new(
+            "inside",
+            "inside a letter: three edges to the right",
+            "in einem Buchstaben: drei Kanten rechts",
+            || at(letter(), (2.0, 4.5)),
+        ),
     ],
     templates: &[&UP, &DOWN, &BORDER],
     unreached: &[],

@@ -1,6 +1,6 @@
 //! The lesson of the rectangle clip.
 
-use super::{TAKES_WINDOW, letter, ring, windowed};
+use super::{ALONG, AROUND, TAKES_WINDOW, letter, ring, windowed};
 use crate::Result;
 use crate::clip::polygon::Shapes;
 use crate::clip::polygon::rectangle::{self, INFO, Step, clip};
@@ -49,6 +49,8 @@ pub(super) const LESSON: Lesson = Lesson {
                 windowed(ring(&[(12.0, 2.0), (18.0, 3.0), (15.0, 8.0)]), (0.0, 0.0), (10.0, 10.0))
             },
         },
+        AROUND,
+        ALONG,
     ],
     templates: &[&INSIDE, &OUTSIDE, &CHAIN, &VERTEX, &RING_DONE, &POLYGON_DONE],
     unreached: &[],

@@ -1,6 +1,6 @@
 //! The lesson of Sutherland and Hodgman's stages.
 
-use super::{TAKES_WINDOW, before, letter, ring, ring_and_window, windowed};
+use super::{ALONG, AROUND, BESIDE, TAKES_WINDOW, before, letter, ring, ring_and_window, windowed};
 use crate::Result;
 use crate::clip::line::HalfPlane;
 use crate::clip::polygon::sutherland_hodgman::INFO;
@@ -49,6 +49,9 @@ pub(super) const LESSON: Lesson = Lesson {
                 )
             },
         },
+        AROUND,
+        ALONG,
+        BESIDE,
     ],
     templates: &[&IN_IN, &IN_OUT, &OUT_IN, &OUT_OUT, &LIST, &LAST],
     unreached: &[],

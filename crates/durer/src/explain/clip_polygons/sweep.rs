@@ -1,6 +1,6 @@
 //! Lessons of the arrangement on a grid: the overlay, and Vatti's way by a sweep line.
 
-use super::{Operands, TAKES, letter_and_blade, pair, ring};
+use super::{Operands, TAKES, apart, bars, letter_and_blade, neighbours, pair, ring};
 use crate::clip::polygon::overlay::{self, Step};
 use crate::clip::polygon::vatti;
 use crate::explain::frame::{Frames, Shown, Want, record};
@@ -62,6 +62,19 @@ const EXAMPLES: &[Example] = &[
         title: Word::new("a frame: the result has a hole", "ein Rahmen: Das Ergebnis hat ein Loch"),
         input: frame,
     },
+    Example::new(
+        "bars",
+        "two bars across: four crossings",
+        "zwei gekreuzte Balken: vier Schnittpunkte",
+        bars,
+    ),
+    Example::new(
+        "neighbours",
+        "a common border: it cancels in the union",
+        "eine gemeinsame Grenze: In der Vereinigung fällt sie weg",
+        neighbours,
+    ),
+    Example::new("apart", "nothing in common", "nichts gemeinsam", apart),
 ];
 
 /// Returns a square with a hole, and a window around the hole.

@@ -1,6 +1,6 @@
 //! The lesson of Maillot's turning points.
 
-use super::{TAKES_WINDOW, letter, ring, ring_and_window, walked, windowed};
+use super::{BESIDE, CONTAINED, TAKES_WINDOW, letter, ring, ring_and_window, walked, windowed};
 use crate::Result;
 use crate::clip::polygon::maillot::{Code, INFO, Step, Turn, clip};
 use crate::explain::frame::{Frames, Shown, Want, record};
@@ -66,6 +66,8 @@ pub(super) const LESSON: Lesson = Lesson {
                 )
             },
         },
+        CONTAINED,
+        BESIDE,
     ],
     templates: &[&EDGE, &POINT, &BASIC, &TO_BORDER, &TO_CORNER, &OPPOSITE],
     unreached: &[],

@@ -1,6 +1,9 @@
 //! Lessons of the walks along linked lists: Weiler–Atherton, and Greiner–Hormann.
 
-use super::{CLIP, Operands, SUBJECT, TAKES, lecture, letter_and_blade, pentagram, squares};
+use super::{
+    CLIP, Operands, SUBJECT, TAKES, apart, bars, lecture, letter_and_blade, nested, pentagram,
+    squares,
+};
 use crate::clip::polygon::weiler_atherton::{Mark, Operand, Step};
 use crate::clip::polygon::{greiner_hormann, weiler_atherton};
 use crate::explain::frame::{Frames, Shown, Want, record};
@@ -76,6 +79,19 @@ const EXAMPLES: &[Example] = &[
         input: letter_and_blade,
     },
     Example { name: "squares", title: Word::new("two squares", "zwei Quadrate"), input: squares },
+    Example::new(
+        "bars",
+        "two bars across: four crossings",
+        "zwei gekreuzte Balken: vier Schnittpunkte",
+        bars,
+    ),
+    Example::new(
+        "nested",
+        "one within the other: no edges cross",
+        "eines im anderen: keine Kanten schneiden sich",
+        nested,
+    ),
+    Example::new("apart", "nothing in common", "nichts gemeinsam", apart),
 ];
 
 const CROSSING_EXAMPLES: &[Example] = &[
@@ -90,6 +106,8 @@ const CROSSING_EXAMPLES: &[Example] = &[
         ),
         input: pentagram,
     },
+    EXAMPLES[3],
+    EXAMPLES[4],
 ];
 
 static CROSSING_RINGS: Template = Template::new(

@@ -41,6 +41,21 @@ const EXAMPLES: &[Example] = &[
             control(&[(0.0, 1.0), (1.0, 4.0), (3.0, 5.0), (5.0, 0.0), (7.0, 1.0), (8.0, 4.0)])
         },
     },
+    Example::new("cusp", "a curve with a cusp", "eine Kurve mit Spitze", || {
+        control(&[(0.0, 0.0), (6.0, 6.0), (0.0, 6.0), (6.0, 0.0)])
+    }),
+    Example::new(
+        "straight",
+        "control points on a line",
+        "Kontrollpunkte auf einer Geraden",
+        || control(&[(0.0, 0.0), (2.0, 1.0), (4.0, 2.0), (8.0, 4.0)]),
+    ),
+    Example::new(
+        "double",
+        "two control points in one place",
+        "zwei Kontrollpunkte an einer Stelle",
+        || control(&[(0.0, 0.0), (3.0, 5.0), (3.0, 5.0), (6.0, 0.0), (8.0, 2.0)]),
+    ),
 ];
 
 fn control(points: &[(f64, f64)]) -> Input {

@@ -49,6 +49,51 @@ const EXAMPLES: &[Example] = &[
             ])
         },
     },
+    Example::new(
+        "halves",
+        "side by side: each has its half",
+        "nebeneinander: jede hat ihre Hälfte",
+        || {
+            Input::Faces(vec![
+                slab((0.0, 0.0), (2.0, 3.9), (1.0, 1.0)),
+                slab((2.0, 0.0), (3.9, 3.9), (2.0, 2.0)),
+            ])
+        },
+    ),
+    Example::new(
+        "covered",
+        "the near face covers the pixel: the search ends",
+        "die nahe Fläche bedeckt das Pixel: Die Suche endet",
+        || {
+            Input::Faces(vec![
+                slab((0.0, 0.0), (3.9, 3.9), (1.0, 1.0)),
+                slab((0.0, 0.0), (3.9, 2.0), (3.0, 3.0)),
+            ])
+        },
+    ),
+    Example::new(
+        "three",
+        "three layers, each larger than the one before it",
+        "drei Schichten, jede größer als die davor",
+        || {
+            Input::Faces(vec![
+                slab((0.0, 0.0), (2.0, 2.0), (1.0, 1.0)),
+                slab((0.0, 0.0), (3.0, 3.0), (2.0, 2.0)),
+                slab((0.0, 0.0), (3.9, 3.9), (3.0, 3.0)),
+            ])
+        },
+    ),
+    Example::new(
+        "background",
+        "a corner only: the background has the rest",
+        "nur eine Ecke: Der Hintergrund hat den Rest",
+        || {
+            Input::Faces(vec![
+                slab((0.0, 0.0), (2.0, 1.0), (1.0, 1.0)),
+                slab((3.0, 3.0), (3.9, 3.9), (1.0, 1.0)),
+            ])
+        },
+    ),
 ];
 
 static LOOK: Template = Template::new(

@@ -1,6 +1,7 @@
 //! The lesson of back-face removal.
 
-use super::{TAKES, name};
+use super::bodies::{BOXES, cuboid};
+use super::{TAKES, name, slab};
 use crate::Result;
 use crate::explain::frame::{Frames, record};
 use crate::explain::grid::letter;
@@ -40,6 +41,29 @@ const EXAMPLES: &[Example] = &[
         ),
         input: || Input::Faces(pyramid()),
     },
+    Example::new(
+        "both",
+        "one face from before, one from behind",
+        "eine Fläche von vorn, eine von hinten",
+        || {
+            let front = slab((0.0, 0.0), (3.0, 3.0), (1.0, 2.0));
+            let back = slab((4.0, 0.0), (7.0, 3.0), (2.0, 1.0)).into_iter().rev().collect();
+            Input::Faces(vec![front, back])
+        },
+    ),
+    Example::new(
+        "turned",
+        "a box in a general position: three faces stay",
+        "ein Quader in allgemeiner Lage: drei Flächen bleiben",
+        || Input::Faces(cuboid([0.0, 0.0, 0.0], [4.0, 2.0, 3.0])),
+    ),
+    Example::new(
+        "open",
+        "a box without its front: its back is seen from inside",
+        "ein Quader ohne Vorderseite: Seine Rückwand ist von innen zu sehen",
+        || Input::Faces(cube()[1..].to_vec()),
+    ),
+    BOXES,
 ];
 
 static FRONT: Template = Template::new(

@@ -29,6 +29,39 @@ pub(super) const PIERCED: Example = Example {
     },
 };
 
+/// Two boxes side by side, in the same position.
+pub(super) const BESIDE: Example = Example::new(
+    "beside",
+    "two boxes side by side: only their own faces hide edges",
+    "zwei Quader nebeneinander: Nur die eigenen Flächen verdecken Kanten",
+    || {
+        let mut faces = cuboid([0.0, 0.0, 0.0], [2.0, 2.0, 2.0]);
+        faces.extend(cuboid([4.0, 0.0, 0.0], [6.0, 2.0, 2.0]));
+        Input::Faces(faces)
+    },
+);
+
+/// Three boxes, one behind the other.
+pub(super) const THREE: Example = Example::new(
+    "three",
+    "three boxes, one behind the other",
+    "drei Quader hintereinander",
+    || {
+        let mut faces = cuboid([0.0, 0.0, 0.0], [3.0, 3.0, 1.0]);
+        faces.extend(cuboid([0.5, 0.5, 3.0], [2.5, 2.5, 4.0]));
+        faces.extend(cuboid([1.0, 1.0, 6.0], [2.0, 2.0, 7.0]));
+        Input::Faces(faces)
+    },
+);
+
+/// A single box.
+pub(super) const BOX: Example = Example::new(
+    "box",
+    "one box: three of its edges are hidden",
+    "ein Quader: drei Kanten sind verdeckt",
+    || Input::Faces(cuboid([0.0, 0.0, 0.0], [4.0, 2.0, 3.0])),
+);
+
 /// Returns the six faces of a box with sides along the axes.
 pub(super) fn upright(low: [f64; 3], high: [f64; 3]) -> Vec<Vec<DVec3>> {
     let corner =

@@ -1,6 +1,6 @@
 //! The lessons of hidden lines whose visibility is carried along edges: by numbers, and by sets of faces.
 
-use super::bodies::{BOXES, PIERCED, check_count, turned};
+use super::bodies::{BESIDE, BOX, BOXES, PIERCED, THREE, check_count, turned};
 use super::{EXAMPLES, TAKES};
 use crate::Result;
 use crate::explain::frame::{Frames, record};
@@ -21,7 +21,7 @@ pub(super) const APPEL: Lesson = Lesson {
     name: appel::INFO.name,
     info: &appel::INFO,
     takes: BODIES,
-    examples: &[STEP, BOXES, PIERCED],
+    examples: &[STEP, BOXES, PIERCED, BESIDE, THREE, BOX],
     templates: &[&CONTOURS, &RAY, &EDGE, &EDGE_BEHIND, &CROSSES, &PIERCES, &CORNER, &CORNER_BEHIND],
     unreached: &[],
     make: |_, input, _, cap| by_numbers(input, cap),
@@ -31,7 +31,7 @@ pub(super) const GALIMBERTI_MONTANARI: Lesson = Lesson {
     name: natures::INFO.name,
     info: &natures::INFO,
     takes: TAKES,
-    examples: &[super::hidden_line::STRIP, EXAMPLES[0], BOXES],
+    examples: &[super::hidden_line::STRIP, EXAMPLES[0], BOXES, PIERCED, BESIDE, BOX],
     templates: &[
         &HIDERS,
         &COMPARED,

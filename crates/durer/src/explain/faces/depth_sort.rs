@@ -40,6 +40,10 @@ const EXAMPLES: &[Example] = &[
             Input::Faces(vec![a, b])
         },
     },
+    super::EXAMPLES[1],
+    super::EXAMPLES[3],
+    super::EXAMPLES[4],
+    super::EXAMPLES[5],
 ];
 
 static LOOK: Template = Template::new(

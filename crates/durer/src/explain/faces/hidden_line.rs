@@ -19,7 +19,7 @@ pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
     info: &INFO,
     takes: TAKES,
-    examples: &[STRIP, EXAMPLES[0], EXAMPLES[2]],
+    examples: &[STRIP, EXAMPLES[0], EXAMPLES[2], EXAMPLES[1], EXAMPLES[3], EXAMPLES[5]],
     templates: &[&PAGE, &SEEN, &PARTLY, &HIDDEN],
     unreached: &[],
     make: |_, input, _, cap| make(input, cap),

@@ -53,6 +53,42 @@ const EXAMPLES: &[Example] = &[
             ])
         },
     },
+    Example::new(
+        "flat",
+        "all curves at one height: nothing is added",
+        "alle Kurven auf einer Höhe: nichts kommt hinzu",
+        || curves(&[&[1.0, 1.0, 1.0], &[1.0, 1.0, 1.0], &[1.0, 1.0, 1.0]]),
+    ),
+    Example::new(
+        "rising",
+        "each curve above the one before it: all is seen",
+        "jede Kurve über der vorigen: alles ist zu sehen",
+        || curves(&[&[0.0, 0.5, 0.0, 0.5], &[1.0, 1.5, 1.0, 1.5], &[2.0, 2.5, 2.0, 2.5]]),
+    ),
+    Example::new(
+        "valley",
+        "a valley, whose bottom the front hides",
+        "ein Tal, dessen Grund der Vordergrund verdeckt",
+        || {
+            curves(&[
+                &[1.0, 2.0, 2.0, 2.0, 1.0],
+                &[2.0, 1.0, 0.5, 1.0, 2.0],
+                &[3.0, 2.0, 1.5, 2.0, 3.0],
+            ])
+        },
+    ),
+    Example::new(
+        "waves",
+        "waves: a crossing in every column",
+        "Wellen: in jeder Spalte ein Schnitt",
+        || {
+            curves(&[
+                &[0.0, 2.0, 0.0, 2.0, 0.0],
+                &[2.0, 0.0, 2.0, 0.0, 2.0],
+                &[1.0, 1.0, 1.0, 1.0, 1.0],
+            ])
+        },
+    ),
 ];
 
 fn curves(all: &[&[f64]]) -> Input {

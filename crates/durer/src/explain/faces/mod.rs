@@ -102,6 +102,26 @@ const EXAMPLES: &[Example] = &[
         ),
         input: || Input::Faces(beams()),
     },
+    Example::new("far-first", "the far face comes first", "die ferne Fläche kommt zuerst", || {
+        let far = slab((3.0, 0.0), (9.0, 3.0), (3.0, 3.0));
+        let near = slab((1.0, 1.0), (6.0, 4.0), (1.0, 1.0));
+        Input::Faces(vec![far, near])
+    }),
+    Example::new("coplanar", "two faces in one plane", "zwei Flächen in einer Ebene", || {
+        let a = slab((1.0, 1.0), (6.0, 4.0), (2.0, 2.0));
+        let b = slab((3.0, 0.0), (9.0, 3.0), (2.0, 2.0));
+        Input::Faces(vec![a, b])
+    }),
+    Example::new(
+        "covered",
+        "a face that another one hides wholly",
+        "eine Fläche, die eine andere ganz verdeckt",
+        || {
+            let small = slab((3.0, 1.0), (6.0, 3.0), (4.0, 4.0));
+            let large = slab((1.0, 0.0), (9.0, 4.0), (1.0, 2.0));
+            Input::Faces(vec![small, large])
+        },
+    ),
 ];
 
 /// Returns a rectangle whose distance from the eye changes from its left side to its right one.

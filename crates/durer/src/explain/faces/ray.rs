@@ -24,7 +24,7 @@ pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
     info: &INFO,
     takes: TAKES,
-    examples: &[SHADOW, MIRRORS, EXAMPLES[0]],
+    examples: &[SHADOW, MIRRORS, EXAMPLES[0], EXAMPLES[1], EXAMPLES[2], EXAMPLES[5]],
     templates: &[&BEGIN, &HIT, &MISSED, &DARK, &LIT, &MIRRORED, &AWAY],
     unreached: &[],
     make: |_, input, _, cap| make(input, cap),

@@ -1,6 +1,6 @@
 //! The lesson of Roberts' hidden lines of convex bodies.
 
-use super::bodies::{BOXES, PIERCED, check_count, upright};
+use super::bodies::{BESIDE, BOX, BOXES, PIERCED, THREE, check_count, upright};
 use crate::Result;
 use crate::explain::frame::{Frames, record};
 use crate::explain::grid::letter;
@@ -32,6 +32,9 @@ pub(super) const LESSON: Lesson = Lesson {
                 Input::Faces(faces)
             },
         },
+        BESIDE,
+        THREE,
+        BOX,
     ],
     templates: &[
         &BODY,

@@ -42,6 +42,7 @@ pub(super) const LESSON: Lesson = Lesson {
                 Input::Faces(vec![quad, vec![a, b, c]])
             },
         },
+        EXAMPLES[5],
     ],
     templates: &[&LOOK_AT, &EMPTY, &SINGLE, &SURROUNDED, &PIXEL, &DIVIDE, &DRAW],
     unreached: &[],

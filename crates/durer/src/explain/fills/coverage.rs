@@ -19,7 +19,19 @@ pub(super) const CELLS: Lesson = Lesson {
     name: cell_sums::INFO.name,
     info: &cell_sums::INFO,
     takes: super::TAKES,
-    examples: &[STRIP, TRIANGLE, EXAMPLES[2]],
+    examples: &[
+        STRIP,
+        TRIANGLE,
+        EXAMPLES[2],
+        EXAMPLES[0],
+        EXAMPLES[3],
+        Example::new(
+            "pixel",
+            "exactly one pixel: its share is 1",
+            "genau ein Pixel: Sein Anteil ist 1",
+            || ring(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)]),
+        ),
+    ],
     templates: &[&PIECE, &PIXEL, &SPAN],
     unreached: &[],
     make: |_, input, options, cap| by_cells(input, options, cap),
@@ -29,7 +41,55 @@ pub(super) const PARTITION: Lesson = Lesson {
     name: coverage::PARTITION.name,
     info: &coverage::PARTITION,
     takes: super::TAKES,
-    examples: &[DIAGONAL, FAN],
+    examples: &[
+        DIAGONAL,
+        FAN,
+        Example::new(
+            "halves",
+            "a common edge through the middle of pixels",
+            "eine gemeinsame Kante mitten durch Pixel",
+            || {
+                faces(&[
+                    &[(0.0, 0.0), (2.5, 0.0), (2.5, 3.0), (0.0, 3.0)],
+                    &[(2.5, 0.0), (5.0, 0.0), (5.0, 3.0), (2.5, 3.0)],
+                ])
+            },
+        ),
+        Example::new(
+            "aligned",
+            "along the borders of pixels: whole pixels only",
+            "auf den Grenzen der Pixel: nur ganze",
+            || {
+                faces(&[
+                    &[(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)],
+                    &[(2.0, 0.0), (4.0, 0.0), (4.0, 2.0), (2.0, 2.0)],
+                ])
+            },
+        ),
+        Example::new(
+            "sliver",
+            "a thin face between two others",
+            "eine dünne Fläche zwischen zwei anderen",
+            || {
+                faces(&[
+                    &[(0.0, 0.0), (4.0, 0.0), (4.0, 1.4)],
+                    &[(0.0, 0.0), (4.0, 1.4), (4.0, 1.6)],
+                    &[(0.0, 0.0), (4.0, 1.6), (4.0, 3.0)],
+                ])
+            },
+        ),
+        Example::new(
+            "overlap",
+            "faces that overlap: more than the whole",
+            "Flächen, die sich überlappen: mehr als das Ganze",
+            || {
+                faces(&[
+                    &[(0.0, 0.0), (3.0, 0.0), (0.0, 3.0)],
+                    &[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0)],
+                ])
+            },
+        ),
+    ],
     templates: &[&AREA, &FULL, &PART],
     unreached: &[],
     make: |_, input, _, cap| by_faces(input, cap),

@@ -90,6 +90,29 @@ const EXAMPLES: &[Example] = &[
             Input::Figure(Figure { rings: vec![square(1.0), square(5.0)], ..Figure::default() })
         },
     },
+    Example::new(
+        "stairs",
+        "stairs: horizontal edges are left out",
+        "eine Treppe: Waagrechte Kanten entfallen",
+        || {
+            ring(&[
+                (1.0, 0.0),
+                (8.0, 0.0),
+                (8.0, 2.0),
+                (6.0, 2.0),
+                (6.0, 4.0),
+                (4.0, 4.0),
+                (4.0, 6.0),
+                (1.0, 6.0),
+            ])
+        },
+    ),
+    Example::new(
+        "sliver",
+        "a sliver: rows without pixels",
+        "ein Splitter: Zeilen ohne Pixel",
+        || ring(&[(0.0, 0.0), (12.0, 7.0), (12.0, 8.0)]),
+    ),
 ];
 
 fn ring(points: &[(f64, f64)]) -> Input {

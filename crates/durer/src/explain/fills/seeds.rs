@@ -64,6 +64,21 @@ const EXAMPLES: &[Example] = &[
             )
         },
     },
+    Example::new("enclosed", "walls all around: one pixel", "ringsum Wände: ein Pixel", || {
+        walls(&["###", "#.#", "###"], [1, 1])
+    }),
+    Example::new(
+        "open",
+        "no wall: the border of the picture holds",
+        "keine Wand: Der Bildrand hält",
+        || walls(&["......", "......", "......", "......"], [2, 1]),
+    ),
+    Example::new(
+        "comb",
+        "a comb: each tooth is a run of its own",
+        "ein Kamm: Jeder Zahn ist ein eigener Lauf",
+        || walls(&[".#.#.#.", ".#.#.#.", ".#.#.#.", "......."], [3, 3]),
+    ),
 ];
 
 static SEED: Template =

@@ -62,6 +62,21 @@ const EXAMPLES: &[Example] = &[
         title: Word::new("a sliver: rows without pixels", "ein Splitter: Zeilen ohne Pixel"),
         input: || ring(&[(0.7, 0.6), (8.3, 4.1), (3.2, 1.6)]),
     },
+    Example::new(
+        "flat-top",
+        "a horizontal upper edge: its pixels belong",
+        "eine waagrechte obere Kante: Ihre Pixel gehören dazu",
+        || ring(&[(1.5, 1.5), (8.5, 1.5), (4.5, 7.5)]),
+    ),
+    Example::new("clockwise", "in the other direction", "in der anderen Richtung", || {
+        ring(&[(1.0, 1.0), (4.0, 7.0), (8.0, 2.0)])
+    }),
+    Example::new(
+        "tiny",
+        "smaller than a pixel, around its centre",
+        "kleiner als ein Pixel, um dessen Mitte",
+        || ring(&[(2.2, 2.2), (2.9, 2.4), (2.4, 2.9)]),
+    ),
 ];
 
 const LARGE: &[Example] = &[
@@ -78,6 +93,21 @@ const LARGE: &[Example] = &[
         ),
         input: || ring(&[(1.0, 1.0), (30.0, 21.0), (28.0, 23.0)]),
     },
+    Example::new("one-tile", "within one tile", "in einer Kachel", || {
+        ring(&[(1.0, 1.0), (6.0, 2.0), (3.0, 7.0)])
+    }),
+    Example::new(
+        "aligned",
+        "corners in the corners of tiles",
+        "Ecken in den Ecken von Kacheln",
+        || ring(&[(0.0, 0.0), (32.0, 0.0), (0.0, 32.0)]),
+    ),
+    Example::new("tall", "tall and narrow", "hoch und schmal", || {
+        ring(&[(10.0, 0.0), (16.0, 2.0), (12.0, 39.0)])
+    }),
+    Example::new("flat", "flat and wide", "flach und breit", || {
+        ring(&[(0.0, 10.0), (39.0, 8.0), (36.0, 18.0)])
+    }),
 ];
 
 static INSIDE: Template = Template::new(

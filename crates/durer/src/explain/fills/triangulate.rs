@@ -18,7 +18,36 @@ pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
     info: &INFO,
     takes: TAKES,
-    examples: &[ARROW, FRAME, EXAMPLES[0]],
+    examples: &[
+        ARROW,
+        FRAME,
+        EXAMPLES[0],
+        EXAMPLES[4],
+        Example::new("hexagon", "convex: any ear will do", "konvex: Jedes Ohr ist recht", || {
+            ring(&[(2.0, 0.0), (5.0, 0.0), (7.0, 3.0), (5.0, 6.0), (2.0, 6.0), (0.0, 3.0)])
+        }),
+        Example::new(
+            "spiral",
+            "a spiral: few corners are ears",
+            "eine Spirale: wenige Ecken sind Ohren",
+            || {
+                ring(&[
+                    (0.0, 0.0),
+                    (7.0, 0.0),
+                    (7.0, 7.0),
+                    (1.0, 7.0),
+                    (1.0, 3.0),
+                    (4.0, 3.0),
+                    (4.0, 4.0),
+                    (2.0, 4.0),
+                    (2.0, 6.0),
+                    (6.0, 6.0),
+                    (6.0, 1.0),
+                    (0.0, 1.0),
+                ])
+            },
+        ),
+    ],
     templates: &[&POINT, &BRIDGE, &REFLEX, &BLOCKED, &TRIANGLE, &LAST],
     unreached: &[],
     make: |_, input, _, cap| make(input, cap),

@@ -50,6 +50,24 @@ const CIRCLES: &[Example] = &[
         title: Word::new("radius 1: four pixels", "Radius 1: vier Pixel"),
         input: || line((0.0, 0.0), (0.0, 1.0)),
     },
+    Example::new("radius-2", "radius 2: twelve pixels", "Radius 2: zwölf Pixel", || {
+        line((0.0, 0.0), (2.0, 0.0))
+    }),
+    Example::new(
+        "radius-7",
+        "radius 7: the octant ends on the diagonal",
+        "Radius 7: Der Oktant endet auf der Diagonalen",
+        || line((0.0, 0.0), (7.0, 0.0)),
+    ),
+    Example::new("moved", "centre (6, 4), radius 5", "Mitte (6; 4), Radius 5", || {
+        line((6.0, 4.0), (6.0, 9.0))
+    }),
+    Example::new(
+        "radius-20",
+        "radius 20: long flat runs at first",
+        "Radius 20: zuerst lange flache Läufe",
+        || line((0.0, 0.0), (20.0, 0.0)),
+    ),
 ];
 
 const ELLIPSES: &[Example] = &[
@@ -63,6 +81,22 @@ const ELLIPSES: &[Example] = &[
         title: Word::new("radii 9 and 2: long tips", "Halbachsen 9 und 2: lange Spitzen"),
         input: || line((0.0, 0.0), (9.0, 2.0)),
     },
+    Example::new(
+        "tall",
+        "radii 2 and 9: nearly all rows are in the second region",
+        "Halbachsen 2 und 9: fast alle Zeilen liegen im zweiten Bereich",
+        || line((0.0, 0.0), (2.0, 9.0)),
+    ),
+    Example::new("circle", "equal radii: a circle", "gleiche Halbachsen: ein Kreis", || {
+        line((0.0, 0.0), (6.0, 6.0))
+    }),
+    Example::new("1-by-1", "radii 1 and 1", "Halbachsen 1 und 1", || line((0.0, 0.0), (1.0, 1.0))),
+    Example::new(
+        "moved",
+        "centre (9, 5), radii 7 and 3",
+        "Mitte (9; 5), Halbachsen 7 und 3",
+        || line((9.0, 5.0), (16.0, 8.0)),
+    ),
 ];
 
 static STRAIGHT: Template = Template::new(

@@ -62,6 +62,18 @@ const EXAMPLES: &[Example] = &[
         title: Word::new("horizontal", "waagrecht"),
         input: || line((1.0, 2.0), (9.0, 2.0)),
     },
+    Example::new(
+        "diagonal",
+        "slope 1: every step goes to the next row",
+        "Steigung 1: jeder Schritt geht in die nächste Zeile",
+        || line((0.0, 0.0), (8.0, 8.0)),
+    ),
+    Example::new(
+        "point",
+        "one pixel: start and end are the same",
+        "ein Pixel: Anfang und Ende sind gleich",
+        || line((3.0, 2.0), (3.0, 2.0)),
+    ),
 ];
 
 fn line(from: (f64, f64), to: (f64, f64)) -> Input {

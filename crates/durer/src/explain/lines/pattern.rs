@@ -46,6 +46,27 @@ const EXAMPLES: &[Example] = &[
             ])
         },
     },
+    Example::new(
+        "short",
+        "a line shorter than one dash",
+        "eine Linie, kürzer als ein Strich",
+        || lines(&[&[(1.0, 1.0), (3.0, 1.0)]]),
+    ),
+    Example::new(
+        "diagonal",
+        "along the diagonal: a step counts as one pixel",
+        "längs der Diagonalen: ein Schritt zählt als ein Pixel",
+        || lines(&[&[(0.0, 0.0), (11.0, 11.0)]]),
+    ),
+    Example::new("steep", "steep and downwards", "steil und abwärts", || {
+        lines(&[&[(4.0, 14.0), (1.0, 0.0)]])
+    }),
+    Example::new(
+        "zigzag",
+        "a zigzag of short pieces: the pattern does not begin anew",
+        "ein Zickzack aus kurzen Stücken: Das Muster beginnt nicht neu",
+        || lines(&[&[(0.0, 0.0), (3.0, 3.0), (6.0, 0.0), (9.0, 3.0), (12.0, 0.0)]]),
+    ),
 ];
 
 fn lines(all: &[&[(f64, f64)]]) -> Input {

@@ -54,6 +54,30 @@ const EXAMPLES: &[Example] = &[
         ),
         input: || lines(&[vec![(0.0, 0.0), (9.0, 1.0), (0.0, 2.0)]]),
     },
+    Example::new(
+        "straight",
+        "the three ends: butt, round, square",
+        "die drei Enden: stumpf, rund, eckig",
+        || {
+            lines(&[
+                vec![(0.0, 0.0), (6.0, 0.0)],
+                vec![(0.0, 3.0), (6.0, 3.0)],
+                vec![(0.0, 6.0), (6.0, 6.0)],
+            ])
+        },
+    ),
+    Example::new(
+        "right-angles",
+        "right angles to both sides",
+        "rechte Winkel nach beiden Seiten",
+        || lines(&[vec![(0.0, 0.0), (5.0, 0.0), (5.0, 4.0), (10.0, 4.0)]]),
+    ),
+    Example::new(
+        "nearly-straight",
+        "a corner that is hardly one",
+        "eine Ecke, die kaum eine ist",
+        || lines(&[vec![(0.0, 0.0), (6.0, 0.2), (12.0, 0.0)]]),
+    ),
 ];
 
 fn lines(all: &[Vec<(f64, f64)>]) -> Input {
