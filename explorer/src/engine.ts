@@ -1,6 +1,7 @@
 // The engine as the pages use it: promises of answers. After a trap a new engine is started, and owners of runs start them again.
 
 import type { Family, Frame, Input, Language, Lesson, Run, RunRequest } from "./types";
+import { rooted } from "./root";
 import EngineWorker from "./worker?worker";
 
 /** A request that the engine refused, in its words. */
@@ -39,7 +40,7 @@ export class Engine {
     const worker = new EngineWorker();
     worker.onmessage = (event: MessageEvent<Reply>) => this.take(event.data);
     worker.onerror = (event) => this.restart(new Unloaded(event.message || this.module));
-    worker.postMessage({ url: new URL(this.module, document.baseURI).href });
+    worker.postMessage({ url: rooted(this.module) });
     return worker;
   }
 
@@ -114,7 +115,7 @@ export function engineOf(lesson: Lesson): Engine {
 
 /** Returns the families of lessons: a list that is made from the modules when the pages are built. */
 export async function lessons(): Promise<Family[]> {
-  const response = await fetch(new URL("lessons.json", document.baseURI));
+  const response = await fetch(rooted("lessons.json"));
   if (!response.ok) throw new Error(`lessons.json: ${response.status} ${response.statusText}`);
   const { families } = (await response.json()) as { families: Family[] };
   return families;

@@ -3,6 +3,7 @@
 import { h } from "./dom";
 import { files, Refused, Trapped } from "./engine";
 import type { Page } from "./lesson";
+import { rooted } from "./root";
 import type { Words } from "./types";
 import { language, of, t } from "./words";
 
@@ -87,7 +88,7 @@ export function galleryPage(): Page {
   }
 
   async function sample(): Promise<void> {
-    const response = await fetch("./teapot.obj");
+    const response = await fetch(rooted("teapot.obj"));
     if (!response.ok) return say(`teapot.obj: ${response.status}`);
     model = { name: "teapot.obj", bytes: await response.arrayBuffer() };
     await render();

@@ -12,6 +12,7 @@ import { homePage } from "./home";
 import { lessonPage, type Page } from "./lesson";
 import { format, parse, unpack, type Address } from "./link";
 import type { Setup } from "./player";
+import { rooted } from "./root";
 import { teacherPage } from "./teacher";
 import { tracksPage } from "./tracks";
 import type { Family, Input, Language } from "./types";
@@ -39,7 +40,8 @@ function remember(name: string, value: string): void {
 }
 
 function preferred(): Language {
-  const known = remembered("language") ?? navigator.language;
+  // A page of a language says so; another one follows the last choice, or the browser.
+  const known = document.documentElement.dataset.language ?? remembered("language") ?? navigator.language;
   return known.startsWith("de") ? "de" : "en";
 }
 
@@ -71,7 +73,7 @@ function bar(address: Address): HTMLElement {
     "header",
     { class: "bar" },
     h("a", { class: "skip", href: "#content", onclick: skip }, t("skip")),
-    h("a", { class: "brand", href: format({ lang }) }, h("img", { src: "./icon.svg", alt: "", width: 24, height: 24 }), "durer"),
+    h("a", { class: "brand", href: format({ lang }) }, h("img", { src: rooted("icon.svg"), alt: "", width: 24, height: 24 }), "durer"),
     h(
       "nav",
       { "aria-label": "durer" },

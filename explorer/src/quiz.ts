@@ -15,7 +15,7 @@ const ANSWERS = 4;
 
 /** Returns a sentence with gaps in place of values. */
 export function gapped(text: string): string {
-  return text.replace(/\{\w+\}/g, "…");
+  return text.replace(/\{\w+\}/g, "…").replace(/\{\w+\|[^|}]*\|([^}]*)\}/g, "$1");
 }
 
 /** Subject of a question: the place in the picture if there is one, numbers and decisions, the kind of step, or the line that runs. */

@@ -172,9 +172,9 @@ const WORDS = {
   quizEnd: { en: "That was the last step.", de: "Das war der letzte Schritt." },
   exercises: { en: "Exercises", de: "Aufgaben" },
   exercisesHint: { en: "Change the input; the run checks it.", de: "Ändern Sie die Eingabe; der Lauf prüft sie." },
-  exerciseMore: { en: "Make a run with more than {count} steps of this kind: {text}", de: "Ein Lauf mit mehr als {count} Schritten dieser Art: {text}" },
+  exerciseMore: { en: "Make a run with more than {count} {count|step|steps} of this kind: {text}", de: "Ein Lauf mit mehr als {count} {count|Schritt|Schritten} dieser Art: {text}" },
   exerciseAll: { en: "Reach every kind of step in one run ({count} of {all})", de: "Alle Arten von Schritten in einem Lauf ({count} von {all})" },
-  exerciseFew: { en: "Make a run of fewer than {count} steps", de: "Ein Lauf mit weniger als {count} Schritten" },
+  exerciseFew: { en: "Make a run of fewer than {count} {count|step|steps}", de: "Ein Lauf mit weniger als {count} {count|Schritt|Schritten}" },
   exerciseNone: { en: "Make a run without this kind of step: {text}", de: "Ein Lauf ohne diese Art von Schritt: {text}" },
   solved: { en: "solved", de: "gelöst" },
   open_: { en: "open", de: "offen" },
@@ -213,7 +213,6 @@ const WORDS = {
   nextPage: { en: "Next page", de: "Nächste Seite" },
   noMore: { en: "No further step of this kind.", de: "Kein weiterer Schritt dieser Art." },
   noLine: { en: "No further step runs this line.", de: "Kein weiterer Schritt führt diese Zeile aus." },
-  steps1: { en: "{count} steps", de: "{count} Schritte" },
   galleryLead: {
     en: "One model by every method for visible surfaces. Pixels that differ from the first picture are shown below. All methods take one sample per pixel; the A-buffer shares pixels among surfaces, so its edges differ. The numbers count each method's own work; those of the z-buffer are of its loop over triangles and pixels.",
     de: "Ein Modell nach jedem Verfahren für sichtbare Flächen. Pixel, die vom ersten Bild abweichen, sind darunter gezeigt. Alle nehmen eine Probe je Pixel; nur der A-Buffer teilt Pixel unter Flächen auf, seine Kanten weichen also ab. Die Zahlen geben die Arbeit jedes Verfahrens an; beim z-Buffer ist es die seiner Schleife über Dreiecke und Pixel.",
@@ -222,7 +221,7 @@ const WORDS = {
   azimuth: { en: "Rotation", de: "Drehung" },
   elevation: { en: "Elevation", de: "Höhe" },
   work: { en: "Work of {method}", de: "Arbeit: {method}" },
-  differs: { en: "{count} pixels differ", de: "{count} Pixel weichen ab" },
+  differs: { en: "{count} {count|pixel differs|pixels differ}", de: "{count} {count|Pixel weicht|Pixel weichen} ab" },
   seeFull: { en: "Open in the explorer", de: "Im Explorer öffnen" },
 } satisfies Record<string, Words>;
 
@@ -239,9 +238,11 @@ export function language(): Language {
   return current;
 }
 
-/** Returns a text of the pages, with `{name}` replaced by values. */
+/** Returns a text of the pages, with `{name}` replaced by values, and `{name|one|many}` by the first words for 1, the second for others. */
 export function t(name: WordName, values: Record<string, string | number> = {}): string {
-  return WORDS[name][current].replace(/\{(\w+)\}/g, (whole, key: string) => String(values[key] ?? whole));
+  return WORDS[name][current]
+    .replace(/\{(\w+)\|([^|}]*)\|([^}]*)\}/g, (_, key: string, one: string, many: string) => (values[key] === 1 ? one : many))
+    .replace(/\{(\w+)\}/g, (whole, key: string) => String(values[key] ?? whole));
 }
 
 /** Returns the text of the pages with this name, else the name itself: for names from the engine. */

@@ -167,6 +167,26 @@ test("a polygon is drawn anew by clicks, and by keys", async () => {
   await close();
 });
 
+test("each language has an address, whatever the browser prefers", async () => {
+  for (const [folder, locale, title, other] of [
+    ["de/", "en-US", "Strahlverfolgung", "Ray casting and tracing"],
+    ["en/", "de-DE", "Ray casting and tracing", "Strahlverfolgung"],
+  ]) {
+    const { page, faults, close } = await open(chromium, `${server.url}${folder}`, { locale });
+    await page.waitForSelector(".family li");
+    await page.locator(".family a", { hasText: title }).first().click();
+    await atStep(page, 1);
+    assert.ok(page.url().includes(`/${folder}#`), page.url());
+    assert.equal(await page.textContent("h1"), title);
+    // The other language is one click away, and the icon was found.
+    await page.locator(".settings button").first().click();
+    await page.waitForFunction((other) => document.querySelector("h1")?.textContent === other, other);
+    assert.ok(await page.locator(".brand img").evaluate((image) => image.naturalWidth > 0));
+    assert.deepEqual(faults, []);
+    await close();
+  }
+});
+
 test("languages, themes and narrow screens keep everything readable", async () => {
   for (const [width, colorScheme, lang] of [[1280, "light", "en"], [375, "dark", "de"], [320, "light", "de"]]) {
     const { page, faults, close } = await open(chromium, `${server.url}#a=weiler-atherton&lang=${lang}`, { viewport: { width, height: 800 }, colorScheme });

@@ -13,8 +13,8 @@
 //! | `drop` | `handle` | nothing; the run's memory is free again |
 //! | `read` | `name`, `window`; the file after a zero byte | the file as an input |
 //! | `formula` | `formula`, `columns`, `curves` | curves of a surface y = f(x, z) as an input |
-//! | `methods` | – | names of methods for visible surfaces |
-//! | `render` | `name`, `method`, …; the model after a zero byte | a PNG |
+//! | `methods` | – | names and titles of methods for visible surfaces |
+//! | `render` | `name`, `method`, `counts`, …; the model after a zero byte | a PNG; before it, with `counts`, the operations of the method in JSON and a zero byte |
 //!
 //! ```json
 //! {"do": "run", "name": "cohen-sutherland", "input": {"example": "line-eh"}, "cap": 1000}

@@ -32,7 +32,8 @@ pub fn reply(head: &str, pages: &Pages) -> Vec<u8> {
         return plain("403 Forbidden", "this server is for its own machine");
     }
     let path = target.split(['?', '#']).next().unwrap_or_default().trim_start_matches('/');
-    let path = if path.is_empty() { "index.html" } else { path };
+    let index = format!("{path}index.html");
+    let path = if path.is_empty() || path.ends_with('/') { &index } else { path };
     match pages.file(path) {
         Some(bytes) => {
             let mut reply = start("200 OK", kind(path), bytes.len());

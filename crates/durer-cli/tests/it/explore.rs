@@ -19,6 +19,8 @@ impl Drop for Served {
 fn pages_of_a_folder_are_served() {
     let folder = Folder::new();
     folder.write("index.html", "<title>pages</title>");
+    std::fs::create_dir(folder.path("de")).unwrap();
+    folder.write("de/index.html", "<title>Seiten</title>");
     folder.write("durer.wasm", b"\0asm");
     let mut command = folder.command("explore --no-open --from .");
     let mut served = Served(command.stdout(Stdio::piped()).spawn().unwrap());
@@ -35,6 +37,7 @@ fn pages_of_a_folder_are_served() {
     assert!(get("/").ends_with("<title>pages</title>"));
     // A frame in a page of another site requests the same file.
     assert!(get("/?embed").ends_with("<title>pages</title>"));
+    assert!(get("/de/").ends_with("<title>Seiten</title>"));
     let module = get("/durer.wasm");
     assert!(module.contains("application/wasm") && module.ends_with("\0asm"), "{module}");
     assert!(get("/../explore.rs").starts_with("HTTP/1.1 404"));

@@ -131,8 +131,8 @@ static CODE: Template = Template::new(
 );
 static BORDER: Template = Template::new(
     "border",
-    "Next is the {border} border: {count} vertices go in.",
-    "Nun der Rand {border}: {count} Ecken gehen hinein.",
+    "Next is the {border} border: {count} {count|vertex goes|vertices go} in.",
+    "Nun der Rand {border}: {count} {count|Ecke geht|Ecken gehen} hinein.",
 );
 static KEEP: Template = Template::new(
     "keep",

@@ -71,7 +71,7 @@ static BESIDE: Template = Template::new(
 );
 static SORTED: Template = Template::new(
     "sorted",
-    "{count} hits, sorted by depth: {names}. {first} is the visible one.",
+    "{count} {count|hit|hits}, sorted by depth: {names}. {first} is the visible one.",
     "{count} Treffer, nach Tiefe sortiert: {names}. Zu sehen ist {first}.",
 );
 static NOTHING: Template = Template::new(

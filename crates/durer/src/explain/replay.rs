@@ -71,8 +71,8 @@ pub(super) struct Shown {
 /// Sentence of a frame in place of steps that are not shown.
 static MORE: Template = Template::new(
     "more",
-    "{shown} steps are shown; {dropped} more follow.",
-    "{shown} Schritte sind gezeigt; {dropped} weitere folgen.",
+    "{shown} {shown|step is|steps are} shown; {dropped} more {dropped|follows|follow}.",
+    "{shown} {shown|Schritt ist|Schritte sind} gezeigt; {dropped} {dropped|weiterer folgt|weitere folgen}.",
 );
 
 /// Steps from one kept state to the next in a short run: the most that are taken again to make a frame.

@@ -85,8 +85,8 @@ static AWAY: Template = Template::new(
 );
 static DIVIDED: Template = Template::new(
     "triangle",
-    "Triangle {triangle}: {count} of its corners are inside; two of its edges get a vertex on the plane.",
-    "Dreieck {triangle}: Innen liegen {count} seiner Ecken; zwei seiner Kanten bekommen eine Ecke auf der Ebene.",
+    "Triangle {triangle}: {count} of its corners {count|is|are} inside; two of its edges get a vertex on the plane.",
+    "Dreieck {triangle}: Innen {count|liegt|liegen} {count} seiner Ecken; zwei seiner Kanten bekommen eine Ecke auf der Ebene.",
 );
 static EDGE: Template = Template::new(
     "edge",

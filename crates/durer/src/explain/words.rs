@@ -148,7 +148,8 @@ impl<T: Into<Self>> From<Vec<T>> for Value {
     }
 }
 
-/// Sentence about a kind of step, with `{name}` in place of values.
+/// Sentence about a kind of step, with `{name}` in place of values, and `{name|one|many}` in place of words that depend on
+/// a number: the first for 1, the second for others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Template {
     /// Kind of the step: the variant of `Step` in kebab case.
@@ -185,6 +186,10 @@ impl Caption {
         for piece in pieces(self.template.text.text(language)) {
             match piece {
                 Piece::Plain(text) => out.push_str(text),
+                Piece::Words { name, one, many } => {
+                    let is_one = |(n, v): &(&str, Value)| *n == name && *v == Value::Number(1.0);
+                    out.push_str(if self.values.iter().any(is_one) { one } else { many });
+                }
                 Piece::Name(name) => match self.values.iter().find(|(n, _)| *n == name) {
                     Some((_, value)) => out.push_str(&value.text(language)),
                     None => {
@@ -203,14 +208,24 @@ enum Piece<'a> {
     Plain(&'a str),
     /// Name of a value.
     Name(&'a str),
+    /// Words that depend on a number: for 1, and for others.
+    Words { name: &'a str, one: &'a str, many: &'a str },
 }
 
 /// Divides a template at its names.
 fn pieces(text: &str) -> impl Iterator<Item = Piece<'_>> {
     text.split('{').enumerate().flat_map(|(i, part)| match part.split_once('}') {
-        Some((name, rest)) if i > 0 => [Piece::Name(name), Piece::Plain(rest)],
+        Some((name, rest)) if i > 0 => [named(name), Piece::Plain(rest)],
         _ => [Piece::Plain(part), Piece::Plain("")],
     })
+}
+
+fn named(text: &str) -> Piece<'_> {
+    let words = text.split_once('|').and_then(|(name, rest)| Some((name, rest.split_once('|')?)));
+    match words {
+        Some((name, (one, many))) => Piece::Words { name, one, many },
+        None => Piece::Name(text),
+    }
 }
 
 #[cfg(test)]
@@ -248,5 +263,20 @@ mod tests {
         caption.values.pop();
         assert_eq!(caption.text(Language::English), "The start moves to {p}.");
         assert_eq!(names(CUT.text.en), ["end", "p"]);
+    }
+
+    #[test]
+    fn words_agree_with_numbers() {
+        static LEFT: Template = Template::new(
+            "left",
+            "{count} {count|vertex is|vertices are} left.",
+            "{count} {count|Ecke bleibt|Ecken bleiben}.",
+        );
+        let text = |count: usize, language| LEFT.with([("count", count.into())]).text(language);
+        assert_eq!(text(1, Language::English), "1 vertex is left.");
+        assert_eq!(text(0, Language::English), "0 vertices are left.");
+        assert_eq!(text(1, Language::German), "1 Ecke bleibt.");
+        assert_eq!(text(5, Language::German), "5 Ecken bleiben.");
+        assert_eq!(names(LEFT.text.en), ["count"]);
     }
 }

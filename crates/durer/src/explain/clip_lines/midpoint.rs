@@ -83,8 +83,8 @@ static HALVED_OUT: Template = Template::new(
 );
 static CUT: Template = Template::new(
     "cut",
-    "After {count} middles {end} is found: the last visible pixel is {point}.",
-    "Nach {count} Mitten ist {end} gefunden: Das letzte sichtbare Pixel ist {point}.",
+    "After {count} {count|middle|middles} {end} is found: the last visible pixel is {point}.",
+    "Nach {count} {count|Mitte|Mitten} ist {end} gefunden: Das letzte sichtbare Pixel ist {point}.",
 );
 static ACCEPTED: Template = Template::new(
     "accepted",

@@ -73,8 +73,8 @@ static CUT: Template = Template::new(
 );
 static ACCEPTED: Template = Template::new(
     "accepted",
-    "Accepted: {corners} rays were tested, {cuts} cuts were computed, none of them in vain.",
-    "Angenommen: {corners} Strahlen wurden befragt, {cuts} Schnitte berechnet, keiner umsonst.",
+    "Accepted: {corners} {corners|ray was|rays were} tested, {cuts} {cuts|cut was|cuts were} computed, none of them in vain.",
+    "Angenommen: {corners} {corners|Strahl wurde|Strahlen wurden} befragt, {cuts} {cuts|Schnitt|Schnitte} berechnet, keiner umsonst.",
 );
 static REJECTED: Template = Template::new(
     "rejected",

@@ -80,8 +80,8 @@ static AT_ONCE: Template = Template::new(
 );
 static ACCEPTED: Template = Template::new(
     "accepted",
-    "Accepted: {cuts} crossings were computed, each an end of the result.",
-    "Angenommen: {cuts} Schnittpunkte wurden berechnet, jeder ein Ende des Ergebnisses.",
+    "Accepted: {cuts} {cuts|crossing was|crossings were} computed, each an end of the result.",
+    "Angenommen: {cuts} {cuts|Schnittpunkt wurde|Schnittpunkte wurden} berechnet, jeder ein Ende des Ergebnisses.",
 );
 static BEYOND: Template = Template::new(
     "rejected",

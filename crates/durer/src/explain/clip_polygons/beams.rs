@@ -70,8 +70,8 @@ static MINIMUM: Template = Template::new(
 );
 static BEAM: Template = Template::new(
     "beam",
-    "The beam from y = {from} to {to}: {active} edges are active.",
-    "Der Streifen von y = {from} bis {to}: {active} Kanten sind aktiv.",
+    "The beam from y = {from} to {to}: {active} {active|edge is|edges are} active.",
+    "Der Streifen von y = {from} bis {to}: {active} {active|Kante ist|Kanten sind} aktiv.",
 );
 static CROSSING: Template = Template::new(
     "crossing",

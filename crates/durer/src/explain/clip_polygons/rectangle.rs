@@ -74,8 +74,8 @@ static CHAIN: Template = Template::new(
 );
 static VERTEX: Template = Template::new(
     "vertex",
-    "{point} is emitted: the ring has {count} vertices.",
-    "{point} wird ausgegeben: Der Ring hat {count} Ecken.",
+    "{point} is emitted: the ring has {count} {count|vertex|vertices}.",
+    "{point} wird ausgegeben: Der Ring hat {count} {count|Ecke|Ecken}.",
 );
 static RING_DONE: Template = Template::new(
     "ring-done",

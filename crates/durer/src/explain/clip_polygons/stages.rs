@@ -80,13 +80,13 @@ static OUT_OUT: Template = Template::new(
 );
 static LIST: Template = Template::new(
     "list",
-    "{border} border done: {count} vertices are left and go to the next border.",
-    "{border} Rand fertig: {count} Ecken bleiben und gehen zum nächsten Rand.",
+    "{border} border done: {count} {count|vertex is left and goes|vertices are left and go} to the next border.",
+    "{border} Rand fertig: {count} {count|Ecke bleibt und geht|Ecken bleiben und gehen} zum nächsten Rand.",
 );
 static LAST: Template = Template::new(
     "list",
-    "{border} border done, the last one: {count} vertices are the result.",
-    "{border} Rand fertig, der letzte: {count} Ecken sind das Ergebnis.",
+    "{border} border done, the last one: {count} {count|vertex is|vertices are} the result.",
+    "{border} Rand fertig, der letzte: {count} {count|Ecke ist|Ecken sind} das Ergebnis.",
 );
 
 /// The most vertices that have room for their names.

@@ -100,8 +100,8 @@ static CROSSING: Template = Template::new(
 );
 static SWEEP: Template = Template::new(
     "sweep",
-    "The sweep line passes the node {at}; after it {active} edges are active.",
-    "Die Sweep-Linie passiert den Knoten {at}; danach sind {active} Kanten aktiv.",
+    "The sweep line passes the node {at}; after it {active} {active|edge is|edges are} active.",
+    "Die Sweep-Linie passiert den Knoten {at}; danach {active|ist|sind} {active} {active|Kante|Kanten} aktiv.",
 );
 static RING: Template = Template::new(
     "ring",

@@ -33,8 +33,8 @@ static CHORD: Template = Template::new(
 );
 static END: Template = Template::new(
     "end",
-    "The contour ends after {count} chords.",
-    "Der Zug endet nach {count} Sehnen.",
+    "The contour ends after {count} {count|chord|chords}.",
+    "Der Zug endet nach {count} {count|Sehne|Sehnen}.",
 );
 
 /// Part of the picture's size that chords may be away from the curve.

@@ -103,8 +103,8 @@ static LOOK: Template = Template::new(
 );
 static OVERLAP: Template = Template::new(
     "overlap",
-    "{face} and {other} overlap in depth in {count} sub-pixels: {face} takes {share} of each.",
-    "{face} und {other} überlappen sich in {count} Subpixeln in der Tiefe: {face} nimmt von jedem {share}.",
+    "{face} and {other} overlap in depth in {count} {count|sub-pixel|sub-pixels}: {face} takes {share} of each.",
+    "{face} und {other} überlappen sich in {count} {count|Subpixel|Subpixeln} in der Tiefe: {face} nimmt von jedem {share}.",
 );
 static WEIGHT: Template = Template::new(
     "weight",

@@ -23,7 +23,7 @@ pub(super) const LESSON: Lesson = Lesson {
 
 static TRIED: Template = Template::new(
     "tried",
-    "{piece} is tried as root: its plane would split {count} others.",
+    "{piece} is tried as root: its plane would split {count} {count|other|others}.",
     "{piece} wird als Wurzel versucht: Die Ebene würde {count} andere teilen.",
 );
 static NODE: Template = Template::new(

@@ -37,8 +37,8 @@ pub(super) const LESSON: Lesson = Lesson {
 
 static CELL: Template = Template::new(
     "cell",
-    "Cell {cell} of the octree, z from {near} to {far}: {faces} faces belong to it and to no child.",
-    "Zelle {cell} des Octrees, z von {near} bis {far}: {faces} Flächen gehören ihr und keinem Kind.",
+    "Cell {cell} of the octree, z from {near} to {far}: {faces} {faces|face belongs|faces belong} to it and to no child.",
+    "Zelle {cell} des Octrees, z von {near} bis {far}: {faces} {faces|Fläche gehört|Flächen gehören} ihr und keinem Kind.",
 );
 static VISIT: Template = Template::new(
     "visit",
@@ -47,8 +47,8 @@ static VISIT: Template = Template::new(
 );
 static LEAVE_OUT: Template = Template::new(
     "leave-out",
-    "Cell {cell} is hidden: its {faces} faces are left out unseen.",
-    "Zelle {cell} ist verdeckt: Ihre {faces} Flächen werden ungesehen ausgelassen.",
+    "Cell {cell} is hidden: {faces} {faces|face is|faces are} left out unseen.",
+    "Zelle {cell} ist verdeckt: {faces} {faces|Fläche wird|Flächen werden} ungesehen ausgelassen.",
 );
 static HIDDEN: Template = Template::new(
     "face",

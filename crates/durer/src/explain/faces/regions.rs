@@ -24,8 +24,8 @@ pub(super) const LESSON: Lesson = Lesson {
 
 static NEAREST: Template = Template::new(
     "nearest",
-    "{face} has the nearest corner of its list: the {count} others are cut along it.",
-    "{face} hat die nächste Ecke der Liste: Die {count} anderen werden an ihr zerschnitten.",
+    "{face} has the nearest corner of its list: the {count} {count|other is|others are} cut along it.",
+    "{face} hat die nächste Ecke der Liste: Die {count} {count|andere wird|anderen werden} an ihr zerschnitten.",
 );
 static CUT: Template = Template::new(
     "cut",

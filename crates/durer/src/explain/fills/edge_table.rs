@@ -46,8 +46,8 @@ static SPAN: Template = Template::new(
 );
 static LEAVE: Template = Template::new(
     "leave",
-    "Edges with y_max = {row} leave, {count} stay; their x grows by Δx/Δy for row {row}.",
-    "Kanten mit y_max = {row} gehen, {count} bleiben; deren x wächst für Zeile {row} um Δx/Δy.",
+    "Edges with y_max = {row} leave, {count} {count|stays; its|stay; their} x grows by Δx/Δy for row {row}.",
+    "Kanten mit y_max = {row} gehen, {count} {count|bleibt|bleiben}; deren x wächst für Zeile {row} um Δx/Δy.",
 );
 
 /// The two tables.

@@ -85,8 +85,8 @@ static SEED: Template =
     Template::new("fill", "The seed {run} is filled.", "Das Saatpixel {run} wird gefüllt.");
 static FILL_PIXEL: Template = Template::new(
     "fill",
-    "Pixel {run} is popped, belongs to the region and is filled; {count} wait.",
-    "Pixel {run} wird vom Stapel genommen, gehört zum Gebiet und wird gefüllt; {count} warten.",
+    "Pixel {run} is popped, belongs to the region and is filled; {count} {count|waits|wait}.",
+    "Pixel {run} wird vom Stapel genommen, gehört zum Gebiet und wird gefüllt; {count} {count|wartet|warten}.",
 );
 static PUSH_PIXEL: Template = Template::new(
     "push",
@@ -100,8 +100,8 @@ static SKIP: Template = Template::new(
 );
 static FILL_RUN: Template = Template::new(
     "fill",
-    "Run {run} is popped and filled; {count} wait.",
-    "Der Lauf {run} wird vom Stapel genommen und gefüllt; {count} warten.",
+    "Run {run} is popped and filled; {count} {count|waits|wait}.",
+    "Der Lauf {run} wird vom Stapel genommen und gefüllt; {count} {count|wartet|warten}.",
 );
 static PUSH_RUN: Template = Template::new(
     "push",

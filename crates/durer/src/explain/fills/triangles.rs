@@ -147,8 +147,8 @@ static ACCEPTED: Template = Template::new(
 );
 static EXAMINED: Template = Template::new(
     "tile",
-    "Tile {tile}: an edge passes through it, so each pixel is tested; {count} are inside.",
-    "Kachel {tile}: Eine Kante geht hindurch, jedes Pixel wird geprüft; {count} liegen innen.",
+    "Tile {tile}: an edge passes through it, so each pixel is tested; {count} {count|is|are} inside.",
+    "Kachel {tile}: Eine Kante geht hindurch, jedes Pixel wird geprüft; {count} {count|liegt|liegen} innen.",
 );
 
 /// A triangle on its grid, and the pixels that are set.

@@ -99,8 +99,8 @@ static TRIANGLE: Template = Template::new(
 );
 static LAST: Template = Template::new(
     "triangle",
-    "Three corners are left: {a} {b} {c}, area {area}. All {count} triangles together have {sum}.",
-    "Drei Ecken sind übrig: {a} {b} {c}, Fläche {area}. Alle {count} Dreiecke zusammen haben {sum}.",
+    "Three corners are left: {a} {b} {c}, area {area}. {count} {count|triangle has|triangles together have} {sum}.",
+    "Drei Ecken sind übrig: {a} {b} {c}, Fläche {area}. {count} {count|Dreieck hat|Dreiecke zusammen haben} {sum}.",
 );
 
 /// The polygon, its corners so far, and its triangles so far.

@@ -54,22 +54,22 @@ const SLICES: Example = Example {
 
 static FIRST: Template = Template::new(
     "run",
-    "The first run ends half a step across: {count} pixels from {from} to {to}; E = {e}.",
+    "The first run ends half a step across: {count} {count|pixel|pixels} from {from} to {to}; E = {e}.",
     "Der erste Lauf endet einen halben Schritt weiter: {count} Pixel von {from} bis {to}; E = {e}.",
 );
 static SHORT: Template = Template::new(
     "run",
-    "E − r = {e} is not negative: q = {count} pixels from {from} to {to}.",
+    "E − r = {e} is not negative: q = {count} {count|pixel|pixels} from {from} to {to}.",
     "E − r = {e} ist nicht negativ: q = {count} Pixel von {from} bis {to}.",
 );
 static LONG: Template = Template::new(
     "run",
-    "E − r = {e} is negative: q + 1 = {count} pixels from {from} to {to}; E grows by 2Δy.",
+    "E − r = {e} is negative: q + 1 = {count} {count|pixel|pixels} from {from} to {to}; E grows by 2Δy.",
     "E − r = {e} ist negativ: q + 1 = {count} Pixel von {from} bis {to}; E wächst um 2Δy.",
 );
 static CUT: Template = Template::new(
     "run",
-    "E − r = {e}; the line ends before the run does: {count} pixels from {from} to {to}.",
+    "E − r = {e}; the line ends before the run does: {count} {count|pixel|pixels} from {from} to {to}.",
     "E − r = {e}; die Strecke endet vor dem Lauf: {count} Pixel von {from} bis {to}.",
 );
 static START: Template = Template::new(
