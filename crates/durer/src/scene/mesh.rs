@@ -118,6 +118,28 @@ impl Mesh {
         }
     }
 
+    /// Returns, for each triangle in order, the first triangle of its face.
+    ///
+    /// ```
+    /// use durer::scene::Mesh;
+    ///
+    /// // A quad and a triangle.
+    /// let indices = Some(vec![0, 1, 2, 0, 2, 3, 3, 2, 4]);
+    /// let mesh = Mesh { indices, faces: vec![0, 2], ..Mesh::default() };
+    /// assert_eq!(mesh.faces_of_triangles().collect::<Vec<_>>(), [0, 0, 2]);
+    /// ```
+    pub fn faces_of_triangles(&self) -> impl Iterator<Item = u32> + '_ {
+        let mut starts = self.faces.iter().copied().peekable();
+        let mut first = 0;
+        (0..self.triangle_count() as u32).map(move |i| {
+            let starts_here = std::iter::from_fn(|| starts.next_if(|&s| s <= i)).count() > 0;
+            if starts_here || self.faces.is_empty() {
+                first = i;
+            }
+            first
+        })
+    }
+
     /// Returns the ends of line `i`, or twice the vertex of point `i`; `i < primitive_count()`.
     pub fn line_or_point(&self, i: usize) -> [u32; 2] {
         let index = |i: usize| self.indices.as_ref().map_or(i as u32, |indices| indices[i]);

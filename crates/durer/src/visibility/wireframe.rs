@@ -1,4 +1,5 @@
-//! Wireframe: every edge of every face, whether something is before it or not.
+//! Wireframe: every edge of every face, whether something is before it or not. Sides of triangles inside a face of more
+//! corners are no edges.
 //!
 //! L. G. Roberts, *Machine Perception of Three-Dimensional Solids*, MIT Lincoln Laboratory TR 315, 1963, drew solids in
 //! this way before removing hidden lines. Edges are clipped in homogeneous coordinates at the near and the far plane
@@ -89,20 +90,32 @@ pub fn render(
 
 /// Returns the edges of a mesh, each once, by their vertices.
 fn edges(mesh: &Mesh) -> Vec<[u32; 2]> {
-    let mut edges = Vec::new();
     match mesh.topology {
-        Topology::Triangles => {
-            for i in 0..mesh.triangle_count() {
-                let [a, b, c] = mesh.triangle(i);
-                edges.extend([[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]));
-            }
+        Topology::Triangles => edges_of_faces(mesh),
+        Topology::Lines => {
+            let lines = (0..mesh.primitive_count()).map(|i| mesh.line_or_point(i));
+            let mut edges: Vec<[u32; 2]> = lines.collect();
+            edges.sort_unstable();
+            edges.dedup();
+            edges
         }
-        Topology::Lines => edges.extend((0..mesh.primitive_count()).map(|i| mesh.line_or_point(i))),
-        Topology::Points => {}
+        Topology::Points => Vec::new(),
     }
-    edges.sort_unstable();
-    edges.dedup();
-    edges
+}
+
+/// Returns the edges of all faces. A side of two triangles is none if both are parts of one face.
+fn edges_of_faces(mesh: &Mesh) -> Vec<[u32; 2]> {
+    let mut sides = Vec::with_capacity(3 * mesh.triangle_count());
+    for (i, face) in mesh.faces_of_triangles().enumerate() {
+        let [a, b, c] = mesh.triangle(i);
+        let own = [[a, b], [b, c], [c, a]];
+        sides.extend(own.map(|[a, b]| ([a.min(b), a.max(b)], face, i as u32)));
+    }
+    sides.sort_unstable();
+    let of_one_edge = sides.chunk_by(|(a, ..), (b, ..)| a == b);
+    let is_inside =
+        |own: &[([u32; 2], u32, u32)]| matches!(own, [(_, f, i), (_, g, k)] if f == g && i != k);
+    of_one_edge.filter(|own| !is_inside(own)).filter_map(|own| Some(own.first()?.0)).collect()
 }
 
 /// Returns the pixels at the ends of an edge between the near and the far plane; `None` if it is outside of the

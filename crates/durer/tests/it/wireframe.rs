@@ -36,6 +36,30 @@ fn a_shared_edge_is_drawn_once() {
 }
 
 #[test]
+fn sides_inside_faces_are_no_edges() {
+    // A quad, and a triangle on one of its sides.
+    let corners = [(-1., -1.), (1., -1.), (1., 1.), (-1., 1.), (0., 2.)];
+    let mut scene = of_triangles(&[[Vec3::ZERO, Vec3::X, Vec3::Y]]);
+    let mesh = &mut scene.meshes[0];
+    mesh.positions = corners.map(|(x, y)| Vec3::new(x, y, 0.0)).to_vec();
+    mesh.indices = Some(vec![0, 1, 2, 0, 2, 3, 3, 2, 4]);
+    mesh.faces = vec![0, 2];
+    let edges = |scene: &Scene| {
+        let prepared = Prepared::new(scene, 64, 64);
+        let steps = draw(scene, &prepared.view).1;
+        steps.iter().map(|Step::Edge { vertices, .. }| *vertices).collect::<Vec<_>>()
+    };
+    assert_eq!(edges(&scene), [[0, 1], [0, 3], [1, 2], [2, 3], [2, 4], [3, 4]]);
+    // The diagonal is an edge where another face has it, too.
+    let mesh = &mut scene.meshes[0];
+    mesh.indices.as_mut().unwrap().extend([2, 0, 4]);
+    mesh.faces.push(3);
+    assert!(edges(&scene).contains(&[0, 2]));
+    scene.meshes[0].faces.clear();
+    assert_eq!(edges(&scene).len(), 8);
+}
+
+#[test]
 fn the_picture_is_rebuilt_from_its_steps() {
     let scene = scenes::materials();
     let prepared = Prepared::new(&scene, 90, 70);

@@ -371,15 +371,7 @@ fn polygons(scene: &Scene) -> Option<Vec<u32>> {
         for instance in &scene.instances {
             let mesh = &scene.meshes[instance.mesh];
             let offset = first_of.len() as u32;
-            let mut starts = mesh.faces.iter().copied().peekable();
-            let mut first = 0;
-            for i in 0..mesh.triangle_count() as u32 {
-                let starts_here = std::iter::from_fn(|| starts.next_if(|&s| s <= i)).count() > 0;
-                if starts_here || mesh.faces.is_empty() {
-                    first = i;
-                }
-                first_of.push(offset + first);
-            }
+            first_of.extend(mesh.faces_of_triangles().map(|first| offset + first));
         }
         first_of
     })
