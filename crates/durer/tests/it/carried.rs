@@ -4,12 +4,14 @@
 use crate::line_scenes::{
     Random, Triangle, city, cuboid, cylinder, soup, torus, turned_boxes, view,
 };
+use durer::Error;
 use durer::math::DVec3;
 use durer::target::drawing::LineClass;
 use durer::trace::{NoTrace, Recorder};
 use durer::visibility::back_face::Eye;
 use durer::visibility::line::face_net::FaceNet;
 use durer::visibility::line::{ClassSet, appel, galimberti_montanari as natures, hidden_line};
+use durer::work::Work;
 
 const ISO: DVec3 = DVec3::new(1.0, -1.7, 0.9);
 
@@ -20,16 +22,23 @@ fn net(triangles: &[Triangle], eye: Eye) -> FaceNet {
 
 fn by_numbers(net: &FaceNet) -> Vec<appel::Line> {
     let mut steps = Recorder::default();
-    let lines = appel::draw(net, &appel::Options::default(), &mut steps).unwrap();
-    assert_eq!(appel::draw(net, &appel::Options::default(), &mut NoTrace).unwrap(), lines);
+    let lines = appel::draw(net, &appel::Options::default(), &Work::default(), &mut steps).unwrap();
+    assert_eq!(
+        appel::draw(net, &appel::Options::default(), &Work::default(), &mut NoTrace).unwrap(),
+        lines
+    );
     assert_eq!(appel::replay(net, steps.steps()), lines);
     lines
 }
 
 fn by_sets(net: &FaceNet) -> Vec<natures::Line> {
     let mut steps = Recorder::default();
-    let lines = natures::draw(net, &natures::Options::default(), &mut steps).unwrap();
-    assert_eq!(natures::draw(net, &natures::Options::default(), &mut NoTrace).unwrap(), lines);
+    let lines =
+        natures::draw(net, &natures::Options::default(), &Work::default(), &mut steps).unwrap();
+    assert_eq!(
+        natures::draw(net, &natures::Options::default(), &Work::default(), &mut NoTrace).unwrap(),
+        lines
+    );
     assert_eq!(natures::replay(net, steps.steps()), lines);
     lines
 }
@@ -187,7 +196,8 @@ fn a_plate_hides_the_middle_of_a_bar() {
     triangles.extend(cuboid([2.0, 0.0, 5.0], [4.0, 3.0, 6.0]));
     let net = net(&triangles, Eye::Along(DVec3::NEG_Z));
     let mut steps = Recorder::default();
-    let lines = appel::draw(&net, &appel::Options::default(), &mut steps).unwrap();
+    let lines =
+        appel::draw(&net, &appel::Options::default(), &Work::default(), &mut steps).unwrap();
     // One ray for each body; everything else is carried along edges.
     let rays = steps.steps().iter().filter(|step| matches!(step, appel::Step::Ray { .. }));
     assert_eq!(rays.count(), 2);
@@ -217,7 +227,8 @@ fn open_surfaces_have_natures_but_no_numbers() {
     let mut faces = [square(0.0, 0.0), square(1.0, 1.0), square(2.0, 2.0)].map(Vec::from);
     faces[1].reverse();
     let net = FaceNet::new(&faces, Eye::Along(DVec3::NEG_Z)).unwrap();
-    let refused = appel::draw(&net, &appel::Options::default(), &mut NoTrace).unwrap_err();
+    let refused =
+        appel::draw(&net, &appel::Options::default(), &Work::default(), &mut NoTrace).unwrap_err();
     assert!(refused.to_string().contains("closed"), "{refused}");
     let lines = by_sets(&net);
     let seen: f64 = lines.iter().flat_map(|line| line.visible()).map(|[p, q]| p.distance(q)).sum();
@@ -234,7 +245,7 @@ fn what_pierces_enters_at_the_face() {
     triangles.extend(cuboid([-0.2, -0.2, -4.0], [0.2, 0.2, 4.0]));
     let net = net(&triangles, Eye::Along(-ISO));
     let mut steps = Recorder::default();
-    appel::draw(&net, &appel::Options::default(), &mut steps).unwrap();
+    appel::draw(&net, &appel::Options::default(), &Work::default(), &mut steps).unwrap();
     let pierced = |step: &&appel::Step| {
         matches!(step, appel::Step::Change { cause: appel::Cause::Face(_), .. })
     };
@@ -242,7 +253,7 @@ fn what_pierces_enters_at_the_face() {
     assert_eq!(steps.steps().iter().filter(pierced).count(), 4);
     // Without the test for piercing, paths around the plate and through it contradict each other, or agree by chance.
     let options = appel::Options { piercing: false };
-    let other = appel::draw(&net, &options, &mut NoTrace);
+    let other = appel::draw(&net, &options, &Work::default(), &mut NoTrace);
     assert!(other.is_err() || other.unwrap() != by_numbers(&net));
 }
 
@@ -266,4 +277,29 @@ fn nets_refuse_what_is_not_before_the_eye() {
     wrong[1].y = f64::INFINITY;
     assert!(FaceNet::new(&[wrong], Eye::Along(DVec3::NEG_Z)).is_err());
     assert_eq!(by_numbers(&FaceNet::new(&[], Eye::Along(DVec3::Z)).unwrap()), []);
+}
+
+/// Checks that memory which is charged is given back, that too little of it is an error, and that a stop ends the work.
+#[test]
+fn lines_are_charged_to_the_work_that_can_be_stopped() {
+    let net = net(&step(), Eye::Along(-ISO));
+    let draws: [fn(&FaceNet, &Work) -> Result<usize, Error>; 2] = [
+        |net, work| Ok(appel::draw(net, &Default::default(), work, &mut NoTrace)?.len()),
+        |net, work| Ok(natures::draw(net, &Default::default(), work, &mut NoTrace)?.len()),
+    ];
+    for draw in draws {
+        let work = Work::with_budget(1 << 20, "the budget");
+        assert_eq!(draw(&net, &work), draw(&net, &Work::default()));
+        assert_eq!(work.used(), 0);
+        let stage = |bytes: u64| match draw(&net, &Work::with_budget(bytes, "the budget")) {
+            Err(Error::Memory { stage, .. }) => stage,
+            _ => "none",
+        };
+        assert_eq!(stage(1000), "corners of faces");
+        let of_lines = stage(2500);
+        assert!(["invisibility of edges", "natures of edges"].contains(&of_lines), "{of_lines}");
+        let stopped = Work::stoppable();
+        stopped.stop(Error::Cancelled);
+        assert_eq!(draw(&net, &stopped), Err(Error::Cancelled));
+    }
 }

@@ -1,11 +1,13 @@
 //! Roberts' hidden lines of convex bodies: hand-computed numbers, and the same drawing as by quantitative invisibility.
 
 use crate::line_scenes::{Random, Triangle, cuboid, soup, turned_boxes, view};
+use durer::Error;
 use durer::math::DVec3;
 use durer::trace::{NoTrace, Recorder};
 use durer::visibility::back_face::Eye;
 use durer::visibility::line::hidden_line;
 use durer::visibility::line::roberts::{self, Body, Line, Options, Step, draw};
+use durer::work::Work;
 
 const ISO: DVec3 = DVec3::new(1.0, -1.7, 0.9);
 
@@ -16,8 +18,11 @@ fn bodies(triangles: &[Triangle]) -> Vec<Body> {
 
 fn lines(bodies: &[Body], eye: Eye) -> Vec<Line> {
     let mut steps = Recorder::default();
-    let lines = draw(bodies, eye, &Options::default(), &mut steps);
-    assert_eq!(draw(bodies, eye, &Options::default(), &mut NoTrace), lines);
+    let lines = draw(bodies, eye, &Options::default(), &Work::default(), &mut steps).unwrap();
+    assert_eq!(
+        draw(bodies, eye, &Options::default(), &Work::default(), &mut NoTrace),
+        Ok(lines.clone())
+    );
     assert_eq!(roberts::replay(steps.steps()), lines);
     lines
 }
@@ -110,7 +115,7 @@ fn a_box_hides_the_middle_of_an_edge() {
     let bodies = bodies(&triangles);
     let mut steps = Recorder::default();
     let eye = Eye::Along(DVec3::NEG_Z);
-    let found = draw(&bodies, eye, &Options::default(), &mut steps);
+    let found = draw(&bodies, eye, &Options::default(), &Work::default(), &mut steps).unwrap();
     // Each front face has four edges; the others face away or are seen edge-on.
     assert_eq!(found.len(), 8);
     let long: Vec<_> = found.iter().filter(|line| line.visible.len() == 2).collect();
@@ -145,7 +150,8 @@ fn what_touches_is_seen() {
     triangles.extend(cuboid([4.0, 1.0, 0.0], [5.0, 3.0, 1.0]));
     let bodies = bodies(&triangles);
     let eye = Eye::Along(-ISO);
-    let found = draw(&bodies, eye, &Options { junctions: false }, &mut NoTrace);
+    let found =
+        draw(&bodies, eye, &Options { junctions: false }, &Work::default(), &mut NoTrace).unwrap();
     // The foot of the small box on the large one.
     let foot = |line: &&Line| line.ends.iter().all(|p| p.z == 2.0) && line.bodies == [1, 1];
     let seen = found.iter().filter(foot).filter(|line| line.visible == [[0.0, 1.0]]);
@@ -163,7 +169,8 @@ fn a_bar_through_a_box_has_two_rings_of_junctions() {
     let bodies = bodies(&triangles);
     let eye = Eye::Along(-ISO);
     let junctions = |junctions| {
-        let lines = draw(&bodies, eye, &Options { junctions }, &mut NoTrace);
+        let lines =
+            draw(&bodies, eye, &Options { junctions }, &Work::default(), &mut NoTrace).unwrap();
         lines.into_iter().filter(|line| line.bodies[0] != line.bodies[1]).collect::<Vec<_>>()
     };
     assert_eq!(junctions(false), []);
@@ -200,4 +207,22 @@ fn bodies_must_be_closed_and_convex() {
     // The two triangles of a side have one plane, and their common edge is not an edge of the body.
     assert_eq!((body.planes().len(), body.edges().len(), body.corners().len()), (6, 12, 8));
     assert_eq!(Body::several(&[]).unwrap(), []);
+}
+
+#[test]
+fn lines_are_charged_to_the_work_that_can_be_stopped() {
+    let bodies =
+        bodies(&[cuboid([0.0; 3], [1.0; 3]), cuboid([3.0, 0.0, 0.0], [4.0, 1.0, 1.0])].concat());
+    let found = |work: &Work| {
+        let eye = Eye::Along(-ISO);
+        draw(&bodies, eye, &Options::default(), work, &mut NoTrace).map(|lines| lines.len())
+    };
+    let work = Work::with_budget(1 << 20, "the budget");
+    assert_eq!((found(&work), work.used()), (Ok(18), 0));
+    let refused = found(&Work::with_budget(1000, "the budget"));
+    let Err(Error::Memory { stage, .. }) = refused else { panic!("{refused:?}") };
+    assert_eq!(stage, "lines of bodies");
+    let stopped = Work::stoppable();
+    stopped.stop(Error::Cancelled);
+    assert_eq!(found(&stopped), Err(Error::Cancelled));
 }

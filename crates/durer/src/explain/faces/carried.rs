@@ -15,6 +15,7 @@ use crate::visibility::back_face::Eye;
 use crate::visibility::line::appel::{self, Cause};
 use crate::visibility::line::face_net::FaceNet;
 use crate::visibility::line::galimberti_montanari as natures;
+use crate::work::Work;
 use std::collections::BTreeMap;
 
 pub(super) const APPEL: Lesson = Lesson {
@@ -196,7 +197,7 @@ fn state(input: &Input, takes: Word, head: Word) -> Result<State> {
 
 fn by_numbers(input: &Input, cap: usize) -> Result<Frames> {
     let mut state = state(input, BODIES, Word::new("Q", "Q"))?;
-    let steps = record(cap, |t| appel::draw(&state.net, &Default::default(), t))?;
+    let steps = record(cap, |t| appel::draw(&state.net, &Default::default(), &Work::default(), t))?;
     Ok(Frames::new(steps, move |step, want| {
         let caption = state.number(step);
         want.shown(step.line(), caption, || state.table(), || state.picture())
@@ -205,7 +206,8 @@ fn by_numbers(input: &Input, cap: usize) -> Result<Frames> {
 
 fn by_sets(input: &Input, cap: usize) -> Result<Frames> {
     let mut state = state(input, TAKES, Word::new("nature", "Natur"))?;
-    let steps = record(cap, |t| natures::draw(&state.net, &Default::default(), t))?;
+    let steps =
+        record(cap, |t| natures::draw(&state.net, &Default::default(), &Work::default(), t))?;
     Ok(Frames::new(steps, move |step, want| {
         let caption = state.nature(step);
         want.shown(step.line(), caption, || state.table(), || state.picture())

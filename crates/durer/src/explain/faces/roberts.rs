@@ -12,6 +12,7 @@ use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
 use crate::visibility::back_face::Eye;
 use crate::visibility::line::roberts::{Body, Bound, INFO, Line, Options, Step, Values, draw};
+use crate::work::Work;
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -132,8 +133,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     check_count(faces)?;
     let bodies = Body::several(faces)?;
     let steps = record(cap, |t| {
-        draw(&bodies, Eye::Along(DVec3::NEG_Z), &Options::default(), t);
-        Ok(())
+        draw(&bodies, Eye::Along(DVec3::NEG_Z), &Options::default(), &Work::default(), t)
     })?;
     let (lines, eye) = (Vec::new(), Vec::new());
     let mut state = State { bodies, lines, now: None, eye, bound: None, done: 0 };

@@ -19,6 +19,7 @@ use super::hidden_line::Span;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
 use crate::trace::Tracer;
+use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
 /// The facts.
@@ -194,12 +195,13 @@ fn line(net: &FaceNet, edge: usize, corners: [usize; 2], invisibility: u32) -> L
 /// use durer::visibility::back_face::Eye;
 /// use durer::visibility::line::appel::{Options, draw};
 /// use durer::visibility::line::face_net::FaceNet;
+/// use durer::work::Work;
 ///
 /// let corner = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let face = |leave: usize| (0..4).filter(|k| *k != leave).map(|k| corner[k]).collect();
 /// let faces = [face(0), face(1), face(2), face(3)];
 /// let net = FaceNet::new(&faces, Eye::At(DVec3::splat(9.0)))?;
-/// let lines = draw(&net, &Options::default(), &mut NoTrace)?;
+/// let lines = draw(&net, &Options::default(), &Work::default(), &mut NoTrace)?;
 /// // The three edges that meet at the origin are behind the face of the three others.
 /// let hidden = lines.iter().filter(|line| line.spans[0].invisibility == 1);
 /// assert_eq!((lines.len(), hidden.count()), (6, 3));
@@ -208,16 +210,23 @@ fn line(net: &FaceNet, edge: usize, corners: [usize; 2], invisibility: u32) -> L
 ///
 /// # Errors
 /// [`Error::Parameter`] for faces that do not bound closed bodies, and for bodies that touch each other so that the
-/// numbers contradict each other.
-pub fn draw(net: &FaceNet, options: &Options, t: &mut impl Tracer<Step>) -> Result<Vec<Line>> {
+/// numbers contradict each other; [`Error::Memory`] if the budget of the work is too small, and its reason if the work
+/// is stopped.
+pub fn draw(
+    net: &FaceNet,
+    options: &Options,
+    work: &Work,
+    t: &mut impl Tracer<Step>,
+) -> Result<Vec<Line>> {
     if !net.is_closed() {
         let value = format!("{} whose edges do not all have two", net.faces().len());
         return Err(Error::parameter("faces", value, "those of closed bodies"));
     }
+    let charge = work.charge_for::<usize>("invisibility of edges", net.edges().len() as u64)?;
     let contours: Vec<usize> = (0..net.edges().len()).filter(|e| net.is_contour(*e)).collect();
     t.step(|| Step::Contours { edges: contours.clone() });
-    let mut run = Run { net, contours, options, lines: Vec::new(), t };
-    net.carry(&mut run)?;
+    let mut run = Run { net, contours, options, lines: Vec::new(), charge, t };
+    net.carry(&mut run, work)?;
     let mut lines = run.lines;
     lines.sort_by_key(|line| line.edge);
     Ok(lines)
@@ -229,6 +238,8 @@ struct Run<'a, T> {
     contours: Vec<usize>,
     options: &'a Options,
     lines: Vec<Line>,
+    /// Charge of the contour edges and the lines.
+    charge: Charge,
     t: &'a mut T,
 }
 
@@ -242,7 +253,7 @@ impl<T: Tracer<Step>> Carrier for Run<'_, T> {
         count
     }
 
-    fn along(&mut self, edge: usize, corners: [usize; 2], &known: &u32) -> u32 {
+    fn along(&mut self, edge: usize, corners: [usize; 2], &known: &u32) -> Result<u32> {
         let faces = self.net.faces_over(corners);
         let mut count = known + faces.len() as u32;
         self.t.step(|| Step::Edge { edge, corners, faces, invisibility: [known, count] });
@@ -254,12 +265,14 @@ impl<T: Tracer<Step>> Carrier for Run<'_, T> {
             own.change(t, count);
             self.t.step(|| Step::Change { edge, t, cause, invisibility: [before, count] });
         }
+        let spans = own.spans.len() * size_of::<Span>();
+        self.charge.grow((size_of::<Line>() + spans) as u64)?;
         self.lines.push(own);
         let [from, corner] = corners;
         let faces = self.net.faces_over([corner, from]);
         let reached = count.saturating_sub(faces.len() as u32);
         self.t.step(|| Step::Corner { edge, corner, faces, invisibility: [count, reached] });
-        reached
+        Ok(reached)
     }
 }
 

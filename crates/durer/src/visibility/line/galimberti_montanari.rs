@@ -17,6 +17,7 @@ use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
 use crate::trace::Tracer;
+use crate::work::{Charge, Work};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -202,25 +203,33 @@ pub fn replay(net: &FaceNet, steps: &[Step]) -> Vec<Line> {
 /// use durer::visibility::back_face::Eye;
 /// use durer::visibility::line::face_net::FaceNet;
 /// use durer::visibility::line::galimberti_montanari::{Options, draw};
+/// use durer::work::Work;
 ///
 /// // A square before a long triangle, whose sides it hides in part.
 /// let square = [(1., -1.), (3., -1.), (3., 2.), (1., 2.)].map(|(x, y)| DVec3::new(x, y, 1.0));
 /// let behind = [(0., 0.), (5., 0.), (0., 1.)].map(|(x, y)| DVec3::new(x, y, 0.0));
 /// let faces = [square.to_vec(), behind.to_vec()];
 /// let net = FaceNet::new(&faces, Eye::Along(DVec3::NEG_Z))?;
-/// let lines = draw(&net, &Options::default(), &mut NoTrace)?;
+/// let lines = draw(&net, &Options::default(), &Work::default(), &mut NoTrace)?;
 /// let natures: Vec<_> = lines[4].parts.iter().map(|part| &part.nature[..]).collect();
 /// assert_eq!(natures, [&[][..], &[0], &[]]);
 /// # Ok::<(), durer::Error>(())
 /// ```
 ///
 /// # Errors
-/// [`Error::Parameter`](crate::Error::Parameter) for faces that touch each other so that natures contradict each other.
-pub fn draw(net: &FaceNet, options: &Options, t: &mut impl Tracer<Step>) -> Result<Vec<Line>> {
+/// [`Error::Parameter`](crate::Error::Parameter) for faces that touch each other so that natures contradict each other;
+/// [`Error::Memory`](crate::Error::Memory) if the budget of the work is too small, and its reason if the work is stopped.
+pub fn draw(
+    net: &FaceNet,
+    options: &Options,
+    work: &Work,
+    t: &mut impl Tracer<Step>,
+) -> Result<Vec<Line>> {
+    let charge = work.charge_for::<usize>("natures of edges", net.faces().len() as u64)?;
     let hiders: Vec<usize> = (0..net.faces().len()).filter(|face| net.is_hider(*face)).collect();
     t.step(|| Step::Hiders { faces: hiders.clone() });
-    let mut run = Run { net, hiders, options, lines: Vec::new(), t };
-    net.carry(&mut run)?;
+    let mut run = Run { net, hiders, options, lines: Vec::new(), charge, t };
+    net.carry(&mut run, work)?;
     let mut lines = run.lines;
     lines.sort_by_key(|line| line.edge);
     Ok(lines)
@@ -232,6 +241,8 @@ struct Run<'a, T> {
     hiders: Vec<usize>,
     options: &'a Options,
     lines: Vec<Line>,
+    /// Charge of the hiding faces and the lines.
+    charge: Charge,
     t: &'a mut T,
 }
 
@@ -247,7 +258,12 @@ impl<T: Tracer<Step>> Carrier for Run<'_, T> {
         nature
     }
 
-    fn along(&mut self, edge: usize, corners: [usize; 2], known: &Vec<usize>) -> Vec<usize> {
+    fn along(
+        &mut self,
+        edge: usize,
+        corners: [usize; 2],
+        known: &Vec<usize>,
+    ) -> Result<Vec<usize>> {
         let own = self.net.faces_over(corners);
         let mut nature = known.clone();
         own.iter().for_each(|face| toggle(&mut nature, *face));
@@ -259,12 +275,15 @@ impl<T: Tracer<Step>> Carrier for Run<'_, T> {
             line.change(t, nature.clone());
             self.t.step(|| Step::Change { edge, t, face, crossed, nature: nature.clone() });
         }
+        let natures: usize = line.parts.iter().map(|part| part.nature.len()).sum();
+        let parts = line.parts.len() * size_of::<Part>() + natures * size_of::<usize>();
+        self.charge.grow((size_of::<Line>() + parts) as u64)?;
         self.lines.push(line);
         let [from, corner] = corners;
         let own = self.net.faces_over([corner, from]);
         own.iter().for_each(|face| toggle(&mut nature, *face));
         self.t.step(|| Step::Corner { edge, corner, own, nature: nature.clone() });
-        nature
+        Ok(nature)
     }
 }
 

@@ -15,6 +15,7 @@ use durer::visibility::polygons::patch_subdivision::{self, Patch};
 use durer::visibility::polygons::portals::{self, Plan, Window};
 use durer::visibility::polygons::shadow_volumes::{self, Count};
 use durer::visibility::polygons::{Face, Screen, csg, octree};
+use durer::work::Work;
 
 /// Returns the bar and the plate before it, as the pages have them.
 fn bar_and_plate() -> Vec<Triangle> {
@@ -37,7 +38,7 @@ fn appel_carries_the_invisibility_along_the_bar() {
     let faces: Vec<Vec<DVec3>> = bar_and_plate().iter().map(|t| t.to_vec()).collect();
     let net = FaceNet::new(&faces, Eye::Along(DVec3::NEG_Z)).unwrap();
     let mut steps = Recorder::default();
-    appel::draw(&net, &appel::Options::default(), &mut steps).unwrap();
+    appel::draw(&net, &appel::Options::default(), &Work::default(), &mut steps).unwrap();
     let steps = steps.steps();
     let at = |corner: usize| net.corners()[corner];
     let rays: Vec<_> = steps
@@ -80,7 +81,7 @@ fn galimberti_and_montanari_carry_the_faces_along_the_strip() {
         slab((2.5, 1.0), (3.5, 1.8), 6.0),
     ];
     let net = FaceNet::new(&faces, Eye::Along(DVec3::Z)).unwrap();
-    let lines = natures::draw(&net, &Default::default(), &mut NoTrace).unwrap();
+    let lines = natures::draw(&net, &Default::default(), &Work::default(), &mut NoTrace).unwrap();
     let long = lines.iter().filter(|line| line.ends[0].distance(line.ends[1]) == 10.0);
     let mut count = 0;
     for line in long {
@@ -110,7 +111,8 @@ fn values_of_a_plate(depths: [f64; 2]) -> (Vec<roberts::Step>, usize) {
     let bodies = Body::several(&faces).unwrap();
     let mut steps = Recorder::default();
     let eye = Eye::Along(DVec3::NEG_Z);
-    roberts::draw(&bodies, eye, &roberts::Options::default(), &mut steps);
+    roberts::draw(&bodies, eye, &roberts::Options::default(), &Work::default(), &mut steps)
+        .unwrap();
     let ends = [DVec3::new(0.0, 1.0, 1.0), DVec3::new(10.0, 1.0, 1.0)];
     let line = steps.steps().iter().find_map(|s| match s {
         roberts::Step::Line { line, ends: own, .. } if *own == ends => Some(*line),

@@ -1,6 +1,7 @@
 //! Traversal that carries the result at one corner along edges to all corners connected with it.
 
 use super::FaceNet;
+use crate::work::Work;
 use crate::{Error, Result};
 use std::collections::VecDeque;
 
@@ -14,16 +15,28 @@ pub(in super::super) trait Carrier {
 
     /// Returns the state at the end of an edge, whose corners are in the direction of travel, from that at its
     /// beginning.
-    fn along(&mut self, edge: usize, corners: [usize; 2], state: &Self::State) -> Self::State;
+    ///
+    /// # Errors
+    /// Those of charging the results to the work.
+    fn along(
+        &mut self,
+        edge: usize,
+        corners: [usize; 2],
+        state: &Self::State,
+    ) -> Result<Self::State>;
 }
 
 impl FaceNet {
     /// Goes along all edges that are not flat, each once, from a corner whose state is known.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where two ways to a corner lead to different states: something touches there, so that
+    /// Those of the carrier and of the work, which is checked at each edge; [`Error::Parameter`] where two ways to a corner lead to different states: something touches there, so that
     /// rounding decides which of two is in front.
-    pub(in super::super) fn carry<C: Carrier>(&self, carrier: &mut C) -> Result<()> {
+    pub(in super::super) fn carry<C: Carrier>(&self, carrier: &mut C, work: &Work) -> Result<()> {
+        let (corners, edges) = (self.points.len() as u64, self.edges.len() as u64);
+        let _known = work.charge_for::<(Option<C::State>, usize)>("corners of faces", corners)?;
+        let _done = work.charge_for::<bool>("edges of faces", edges)?;
+        work.begin("edges", edges);
         let mut known: Vec<Option<C::State>> = self.points.iter().map(|_| None).collect();
         let mut done = vec![false; self.edges.len()];
         let mut waiting = VecDeque::new();
@@ -38,10 +51,12 @@ impl FaceNet {
                     if std::mem::replace(&mut done[edge], true) {
                         continue;
                     }
+                    work.check()?;
+                    work.advance(1);
                     let [a, b] = self.edges[edge].corners;
                     let to = if a == from { b } else { a };
                     let Some(state) = &known[from] else { continue };
-                    let found = carrier.along(edge, [from, to], state);
+                    let found = carrier.along(edge, [from, to], state)?;
                     match &known[to] {
                         Some(other) if *other != found => return Err(self.contradiction(to)),
                         Some(_) => {}

@@ -20,10 +20,12 @@ mod step;
 pub use body::{Body, Edge};
 pub use step::{Bound, Step, Values, replay};
 
+use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DVec3, Plane};
 use crate::trace::Tracer;
 use crate::visibility::back_face::Eye;
+use crate::work::{Charge, Work};
 use body::FLATNESS;
 pub(super) use body::numbered;
 use program::{EyePoint, Program};
@@ -105,34 +107,47 @@ impl Line {
 /// use durer::trace::NoTrace;
 /// use durer::visibility::back_face::Eye;
 /// use durer::visibility::line::roberts::{Body, Options, draw};
+/// use durer::work::Work;
 ///
 /// let corner = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let face = |leave: usize| (0..4).filter(|k| *k != leave).map(|k| corner[k]).collect();
 /// let tetrahedron = Body::new(&[face(0), face(1), face(2), face(3)])?;
 /// let eye = Eye::At(DVec3::splat(9.0));
-/// let lines = draw(&[tetrahedron], eye, &Options::default(), &mut NoTrace);
+/// let lines = draw(&[tetrahedron], eye, &Options::default(), &Work::default(), &mut NoTrace)?;
 /// // The three edges that meet at the origin are behind the face of the three others.
 /// assert_eq!(lines.len(), 3);
 /// # Ok::<(), durer::Error>(())
 /// ```
-pub fn draw(bodies: &[Body], eye: Eye, options: &Options, t: &mut impl Tracer<Step>) -> Vec<Line> {
+///
+/// # Errors
+/// [`Error::Memory`](crate::Error::Memory) if the budget of the work is too small, and its reason if the work is stopped.
+pub fn draw(
+    bodies: &[Body],
+    eye: Eye,
+    options: &Options,
+    work: &Work,
+    t: &mut impl Tracer<Step>,
+) -> Result<Vec<Line>> {
     let eye = match eye {
         Eye::At(at) => EyePoint { at, w: 1.0 },
         Eye::Along(direction) => EyePoint { at: -direction.normalize_or_zero(), w: 0.0 },
     };
     let small = extent(bodies) * FLATNESS;
-    let mut lines = Vec::new();
+    let mut lines = Lines { all: Vec::new(), charge: work.charge("lines of bodies", 0)? };
     for (body, own) in bodies.iter().enumerate() {
-        add_edges(&mut lines, (body, own), &eye, small, t);
+        add_edges(&mut lines, (body, own), &eye, small, t)?;
     }
     if options.junctions {
         for (b, second) in bodies.iter().enumerate() {
             for (a, first) in bodies[..b].iter().enumerate() {
-                add_junctions(&mut lines, ([a, b], [first, second]), &eye, small);
+                add_junctions(&mut lines, ([a, b], [first, second]), &eye, small)?;
             }
         }
     }
-    for (line, own) in lines.iter_mut().enumerate() {
+    work.begin("lines", lines.all.len() as u64);
+    for (line, own) in lines.all.iter_mut().enumerate() {
+        work.check()?;
+        work.advance(1);
         t.step(|| Step::Line { line, bodies: own.bodies, ends: own.ends });
         for (body, other) in bodies.iter().enumerate() {
             if own.visible.is_empty() {
@@ -148,7 +163,22 @@ pub fn draw(bodies: &[Body], eye: Eye, options: &Options, t: &mut impl Tracer<St
         }
         t.step(|| Step::Visible { line, parts: own.visible.clone() });
     }
-    lines
+    Ok(lines.all)
+}
+
+/// Lines that are charged to the budget.
+struct Lines {
+    all: Vec<Line>,
+    charge: Charge,
+}
+
+impl Lines {
+    /// Adds a line, of which nothing is hidden yet.
+    fn add(&mut self, bodies: [usize; 2], ends: [DVec3; 2]) -> Result<()> {
+        self.charge.grow((size_of::<Line>() + size_of::<[f64; 2]>()) as u64)?;
+        self.all.push(Line { bodies, ends, visible: vec![[0.0, 1.0]] });
+        Ok(())
+    }
 }
 
 /// Returns the largest distance of a corner from the middle of all.
@@ -160,41 +190,43 @@ fn extent(bodies: &[Body]) -> f64 {
 
 /// Adds the edges of a body with at least one visible face.
 fn add_edges(
-    lines: &mut Vec<Line>,
+    lines: &mut Lines,
     (body, own): (usize, &Body),
     eye: &EyePoint,
     small: f64,
     t: &mut impl Tracer<Step>,
-) {
+) -> Result<()> {
     let values: Vec<f64> = own.planes().iter().map(|plane| eye.value(plane)).collect();
     t.step(|| Step::Body { body, eye: values.clone() });
     let is_seen = |plane: usize| values[plane] < -small;
     for edge in own.edges() {
         let ends = own.ends(edge);
         if edge.planes.into_iter().any(is_seen) {
-            lines.push(Line { bodies: [body; 2], ends, visible: vec![[0.0, 1.0]] });
+            lines.add([body; 2], ends)?;
         } else {
             t.step(|| Step::SelfHidden { body, ends });
         }
     }
+    Ok(())
 }
 
 /// Adds the lines in which faces of two bodies that are both seen pierce each other: between the points where the
 /// common line of two planes enters and leaves both bodies.
 fn add_junctions(
-    lines: &mut Vec<Line>,
+    lines: &mut Lines,
     (numbers, bodies): ([usize; 2], [&Body; 2]),
     eye: &EyePoint,
     small: f64,
-) {
+) -> Result<()> {
     let seen = |body: usize| bodies[body].planes().iter().filter(|p| eye.value(p) < -small);
     for first in seen(0) {
         for second in seen(1) {
             if let Some(ends) = common_part(first, second, bodies, small) {
-                lines.push(Line { bodies: numbers, ends, visible: vec![[0.0, 1.0]] });
+                lines.add(numbers, ends)?;
             }
         }
     }
+    Ok(())
 }
 
 /// Returns the part of two planes' common line that is in both bodies; `None` where there is none, or only along a
