@@ -316,9 +316,11 @@ fn any_seed_fill(u: &mut Unstructured<'_>) -> Result<()> {
     let [a, b, c, d] = &mut pictures;
     let t = &mut NoTrace;
     let floods = [(a, SeedFill::Naive), (b, SeedFill::Spans)]
-        .map(|(p, m)| flood_fill(p, seed, value, tolerance, m, &options, t));
-    let boundaries = [(c, SeedFill::Naive), (d, SeedFill::Spans)]
-        .map(|(p, m)| boundary_fill(p, seed, value, boundary, tolerance, m, &options, t));
+        .map(|(p, m)| flood_fill(p, seed, value, tolerance, m, &options, t).expect("no budget"));
+    let boundaries = [(c, SeedFill::Naive), (d, SeedFill::Spans)].map(|(p, m)| {
+        let filled = boundary_fill(p, seed, value, boundary, tolerance, m, &options, t);
+        filled.expect("no budget")
+    });
     assert_eq!(floods[0], floods[1]);
     assert_eq!(boundaries[0], boundaries[1]);
     assert_eq!(pictures[0].data(), pictures[1].data());

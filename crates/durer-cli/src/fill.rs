@@ -142,7 +142,9 @@ pub fn run(args: &FillArgs) -> Result<(), Failure> {
     let mut fills = Vec::new();
     for at in &args.at {
         let (x, y) = place(*at, (width, height))?;
-        fills.push(Fill { x, y, pixels: picture.fill(args, (x, y)) });
+        let pixels = picture.fill(args, (x, y));
+        let pixels = pixels.map_err(|e| Failure::Data(format!("{name}: {e}")))?;
+        fills.push(Fill { x, y, pixels });
     }
     let fill_seconds = filling.elapsed().as_secs_f64();
     messages.progress.stage(|| format!("writing {target}"));
@@ -196,7 +198,9 @@ impl Picture {
         }
         let image = image::decode(&bytes, name, &limits).map_err(fail)?;
         let pixels = Pixels::from_data(image.width, image.height, image.data);
-        Ok(Self::Eight(orientation.turned(pixels.map_err(|e| fail(e.into()))?)))
+        let turned = orientation.turned(pixels.map_err(|e| fail(e.into()))?);
+        let charged = turned.charged_to(&args.running.work, "picture");
+        Ok(Self::Eight(charged.map_err(|e| fail(e.into()))?))
     }
 
     /// Returns the width and height.
@@ -238,7 +242,7 @@ impl Picture {
     }
 
     /// Fills from a pixel; returns how many it reaches.
-    fn fill(&mut self, args: &FillArgs, seed: (u32, u32)) -> u64 {
+    fn fill(&mut self, args: &FillArgs, seed: (u32, u32)) -> durer::Result<u64> {
         // 255 steps of 257 are the whole range of 16 bits.
         let deep = |v: u8| u16::from(v) * 257;
         match self {
@@ -279,7 +283,7 @@ fn fill<P: PixelValue>(
     color: P,
     boundary: Option<P>,
     tolerance: P::Level,
-) -> u64 {
+) -> durer::Result<u64> {
     let connectivity = match args.connectivity {
         Connectivity::Four => seed_fill::Connectivity::Four,
         Connectivity::Eight => seed_fill::Connectivity::Eight,

@@ -85,8 +85,9 @@ fn fill<'py>(
             ),
             None => flood_fill(&mut picture, (x, y), color, tolerance, way, &options, &mut NoTrace),
         };
-        seeds.iter().copied().map(fill).collect()
+        seeds.iter().copied().map(fill).collect::<durer::Result<Vec<u64>>>()
     });
+    let counts = counts.map_err(|e| error::of_library(py, &e))?;
     Ok((channels(py, picture)?, counts))
 }
 

@@ -68,6 +68,15 @@ impl<T: Copy> Pixels<T> {
         }
     }
 
+    /// Charges a plane that was made without a budget to one, until it is dropped.
+    ///
+    /// # Errors
+    /// [`Error::Memory`] if the budget has too little left.
+    pub fn charged_to(mut self, work: &Work, stage: &'static str) -> Result<Self> {
+        self.charge = work.charge_for::<T>(stage, self.data.len() as u64)?;
+        Ok(self)
+    }
+
     /// Returns the width in pixels.
     pub fn width(&self) -> u32 {
         self.width

@@ -84,8 +84,8 @@ fn empty_targets_take_everything() {
             let options = seed_fill::Options { connectivity, ..Default::default() };
             for &fill in SeedFill::ALL {
                 let t = &mut NoTrace;
-                assert_eq!(flood_fill(&mut gray, (0, 0), 9, 255, fill, &options, t), 0);
-                assert_eq!(boundary_fill(&mut gray, (4, 4), 9, 1, 0, fill, &options, t), 0);
+                assert_eq!(flood_fill(&mut gray, (0, 0), 9, 255, fill, &options, t), Ok(0));
+                assert_eq!(boundary_fill(&mut gray, (4, 4), 9, 1, 0, fill, &options, t), Ok(0));
             }
         }
     }

@@ -1,9 +1,11 @@
 //! Seed fills, compared with connected regions labelled by union-find.
 
 use crate::raster_coverage::Random;
+use durer::Error;
 use durer::raster::seed_fill::{Connectivity, Options, SeedFill, Step, boundary_fill, flood_fill};
 use durer::target::Pixels;
 use durer::trace::{NoTrace, Recorder};
+use durer::work::Work;
 
 fn root(parents: &mut [usize], mut i: usize) -> usize {
     while parents[i] != i {
@@ -75,9 +77,11 @@ fn fills_take_exactly_the_connected_region() {
             for method in SeedFill::ALL {
                 let mut filled = image.clone();
                 let mut recorder: Recorder<Step> = Recorder::default();
-                let n = flood_fill(&mut filled, seed, 9, 0, *method, &options, &mut recorder);
+                let n =
+                    flood_fill(&mut filled, seed, 9, 0, *method, &options, &mut recorder).unwrap();
                 let mut quiet = image.clone();
-                let m = flood_fill(&mut quiet, seed, 9, 0, *method, &options, &mut NoTrace);
+                let m =
+                    flood_fill(&mut quiet, seed, 9, 0, *method, &options, &mut NoTrace).unwrap();
                 assert_eq!((m, &quiet), (n, &filled), "{method} {connectivity:?}");
                 let expected: Vec<u8> = image
                     .data()
@@ -90,7 +94,7 @@ fn fills_take_exactly_the_connected_region() {
                 // If the colour is there already, nothing changes, but the pixels count.
                 let (mut same, t) = (image.clone(), &mut NoTrace);
                 let own = image.get(seed.0, seed.1).unwrap();
-                assert_eq!(flood_fill(&mut same, seed, own, 0, *method, &options, t), n);
+                assert_eq!(flood_fill(&mut same, seed, own, 0, *method, &options, t), Ok(n));
                 assert_eq!(same, image);
                 let mut replayed = image.clone();
                 for run in recorder.steps().iter().filter_map(Step::filled) {
@@ -119,17 +123,24 @@ fn boundaries_and_tolerance_on_colours() {
     for method in SeedFill::ALL {
         let fill = |tolerance| {
             let mut i = image.clone();
-            flood_fill(&mut i, (2, 1), red, tolerance, *method, &Options::default(), &mut NoTrace)
+            let four = Options::default();
+            flood_fill(&mut i, (2, 1), red, tolerance, *method, &four, &mut NoTrace).unwrap()
         };
         assert_eq!([fill(0), fill(3), fill(4), fill(30)], [1, 1, 4, 5]);
         let mut i = image.clone();
         let black = [0, 0, 0, 255];
         let four = Options::default();
-        assert_eq!(boundary_fill(&mut i, (2, 2), red, black, 0, *method, &four, &mut NoTrace), 5);
+        assert_eq!(
+            boundary_fill(&mut i, (2, 2), red, black, 0, *method, &four, &mut NoTrace),
+            Ok(5)
+        );
         let mut i = image.clone();
         let eight = Options { connectivity: Connectivity::Eight, ..Options::default() };
-        assert_eq!(boundary_fill(&mut i, (2, 2), red, black, 0, *method, &eight, &mut NoTrace), 13);
-        assert_eq!(flood_fill(&mut i, (5, 0), red, 0, *method, &eight, &mut NoTrace), 0);
+        assert_eq!(
+            boundary_fill(&mut i, (2, 2), red, black, 0, *method, &eight, &mut NoTrace),
+            Ok(13)
+        );
+        assert_eq!(flood_fill(&mut i, (5, 0), red, 0, *method, &eight, &mut NoTrace), Ok(0));
         assert_eq!(
             flood_fill(
                 &mut Pixels::new(0, 0, true),
@@ -140,7 +151,7 @@ fn boundaries_and_tolerance_on_colours() {
                 &eight,
                 &mut NoTrace
             ),
-            0
+            Ok(0)
         );
     }
 }
@@ -152,7 +163,7 @@ fn bits_differ_wholly_and_boundaries_have_their_tolerance() {
             let mut bits = Pixels::from_data(4, 1, vec![false, false, true, false]).unwrap();
             let options = Options::default();
             let n = flood_fill(&mut bits, (0, 0), true, tolerance, *method, &options, &mut NoTrace);
-            assert_eq!((n, bits.data()), (2, &[true, true, true, false][..]), "{method}");
+            assert_eq!((n, bits.data()), (Ok(2), &[true, true, true, false][..]), "{method}");
         }
         // The border is the set of values that differ by the tolerance or less.
         for (tolerance, expected) in [(9, 5), (10, 3), (20, 2), (29, 2)] {
@@ -169,7 +180,7 @@ fn bits_differ_wholly_and_boundaries_have_their_tolerance() {
                 &options,
                 &mut NoTrace,
             );
-            assert_eq!(n, expected, "{method} {tolerance}");
+            assert_eq!(n, Ok(expected), "{method} {tolerance}");
         }
     }
 }
@@ -195,8 +206,38 @@ fn long_runs_that_meet_at_corners_are_one_region_of_eight() {
                 let options = Options { connectivity, ..Options::default() };
                 let mut filled = image.clone();
                 let n = flood_fill(&mut filled, seed, 7, 0, *method, &options, &mut NoTrace);
-                assert_eq!(n, expected, "{method} {connectivity:?} {mirrored} {seed:?}");
+                assert_eq!(n, Ok(expected), "{method} {connectivity:?} {mirrored} {seed:?}");
             }
         }
     }
+}
+
+#[test]
+fn stacks_are_charged_to_the_budget_of_the_image() {
+    let (width, height) = (256_u32, 200_u32);
+    let own = u64::from(width * height);
+    let filled = |budget: u64, method: SeedFill| {
+        let work = Work::with_budget(budget, "the budget");
+        let mut image = Pixels::within((&work, "image"), width, height, 0_u8).unwrap();
+        let t = &mut NoTrace;
+        let found = flood_fill(&mut image, (9, 9), 7, 0, method, &Options::default(), t);
+        // What the fill had is given back.
+        assert_eq!(work.used(), own, "{method}");
+        (found, image)
+    };
+    for &method in SeedFill::ALL {
+        let (found, image) = filled(64 << 20, method);
+        assert_eq!((found, image.data()[0]), (Ok(own), 7), "{method}");
+        // Enough for the bits of the pixels, one each, but not for a stack.
+        let (refused, image) = filled(own + own / 8 + 100, method);
+        let Err(Error::Memory { stage, .. }) = refused else { panic!("{method}: {refused:?}") };
+        assert_eq!(stage, "stack of the fill");
+        assert!(image.data().iter().all(|p| *p == 0), "{method}");
+    }
+    // The form that is traced, too.
+    let work = Work::with_budget(own + own / 8 + 100, "the budget");
+    let mut image = Pixels::within((&work, "image"), width, height, 0_u8).unwrap();
+    let mut steps: Recorder<Step> = Recorder::default();
+    let (spans, options) = (SeedFill::Spans, Options::default());
+    assert!(flood_fill(&mut image, (9, 9), 7, 0, spans, &options, &mut steps).is_err());
 }

@@ -133,10 +133,8 @@ fn make(method: SeedFill, input: &Input, cap: usize) -> Result<Frames> {
     let cells = grid.cells.iter().map(|&cell| u16::from(cell)).collect();
     let mut image = Pixels::from_data(grid.columns, grid.rows(), cells)?;
     let [x, y] = grid.seed;
-    let steps = record(cap, |t| {
-        flood_fill(&mut image, (x, y), FILLED, 0, method, &Default::default(), t);
-        Ok(())
-    })?;
+    let steps =
+        record(cap, |t| flood_fill(&mut image, (x, y), FILLED, 0, method, &Default::default(), t))?;
     let (filled, stack) = (Vec::new(), Vec::new());
     let mut state = State { grid, by_pixels: method == SeedFill::Naive, filled, stack };
     Ok(Frames::new(steps, move |step, want| state.show(step, want)))

@@ -6,15 +6,18 @@
 //! 1990). A tracer sees that form; without one, runs are found 64 pixels at a time, row after row away from the seed,
 //! and only parts behind a turn of the region are kept on a stack. All fill the same set; none recurses.
 //!
-//! Class: image space. Cost: O(n) for n filled pixels; the naive form touches each up to eight times.
+//! Class: image space. Cost: O(n) for n filled pixels; the naive form touches each up to eight times. Stacks, and the bits
+//! that mark pixels, are charged to the budget of the image.
 
 mod region;
 mod rows;
 mod words;
 
+use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder, family};
 use crate::target::Pixels;
 use crate::trace::Tracer;
+use crate::work::Charge;
 use region::Region;
 
 /// Neighbourhood of pixels.
@@ -213,6 +216,9 @@ impl<T: PixelValue, const N: usize> PixelValue for [T; N] {
 /// Fills the pixels connected with the seed whose channels differ from the seed's by at most
 /// `tolerance`; returns how many were filled. A seed outside the image fills nothing.
 ///
+/// # Errors
+/// Those of [`fill_where`].
+///
 /// ```
 /// use durer::raster::seed_fill::{Options, SeedFill, flood_fill};
 /// use durer::target::Pixels;
@@ -220,8 +226,9 @@ impl<T: PixelValue, const N: usize> PixelValue for [T; N] {
 ///
 /// let mut image = Pixels::from_data(3, 2, vec![0_u8, 0, 9, 9, 9, 0]).unwrap();
 /// let fill = SeedFill::Spans;
-/// assert_eq!(flood_fill(&mut image, (0, 0), 7, 0, fill, &Options::default(), &mut NoTrace), 2);
+/// assert_eq!(flood_fill(&mut image, (0, 0), 7, 0, fill, &Options::default(), &mut NoTrace)?, 2);
 /// assert_eq!(image.data(), [7, 7, 9, 9, 9, 0]);
+/// # Ok::<(), durer::Error>(())
 /// ```
 pub fn flood_fill<P: PixelValue>(
     image: &mut Pixels<P>,
@@ -231,13 +238,16 @@ pub fn flood_fill<P: PixelValue>(
     method: SeedFill,
     options: &Options,
     t: &mut impl Tracer<Step>,
-) -> u64 {
-    let Some(like) = image.get(seed.0, seed.1) else { return 0 };
+) -> Result<u64> {
+    let Some(like) = image.get(seed.0, seed.1) else { return Ok(0) };
     fill_where(image, seed, value, |p| p.difference(like) <= tolerance, method, options, t)
 }
 
 /// Fills the pixels connected with the seed up to a boundary: those whose channels differ from the
 /// boundary's by more than `tolerance`; returns how many were filled.
+///
+/// # Errors
+/// Those of [`fill_where`].
 ///
 /// ```
 /// use durer::raster::seed_fill::{Options, SeedFill, boundary_fill};
@@ -248,8 +258,9 @@ pub fn flood_fill<P: PixelValue>(
 /// let mut row = Pixels::from_data(7, 1, vec![0_u8, 0, 5, 0, 0, 9, 0]).unwrap();
 /// let options = Options { stop_at_value: true, ..Options::default() };
 /// let fill = SeedFill::Naive;
-/// assert_eq!(boundary_fill(&mut row, (0, 0), 5, 9, 0, fill, &options, &mut NoTrace), 2);
+/// assert_eq!(boundary_fill(&mut row, (0, 0), 5, 9, 0, fill, &options, &mut NoTrace)?, 2);
 /// assert_eq!(row.data(), [5, 5, 5, 0, 0, 9, 0]);
+/// # Ok::<(), durer::Error>(())
 /// ```
 #[expect(clippy::too_many_arguments, reason = "one call, all of it the kind of fill")]
 pub fn boundary_fill<P: PixelValue>(
@@ -261,7 +272,7 @@ pub fn boundary_fill<P: PixelValue>(
     method: SeedFill,
     options: &Options,
     t: &mut impl Tracer<Step>,
-) -> u64 {
+) -> Result<u64> {
     let inside = |p: P| p.difference(boundary) > tolerance;
     if options.stop_at_value {
         let is_new = |p: P| p.difference(value) == P::Level::default();
@@ -271,6 +282,10 @@ pub fn boundary_fill<P: PixelValue>(
 }
 
 /// Fills the pixels connected with the seed for which `inside` holds; returns how many were filled.
+///
+/// # Errors
+/// [`Error::Memory`](crate::Error::Memory) if the budget that the image is charged to is too small for the stack, and its
+/// reason if that work is stopped. The image is then as it was.
 pub fn fill_where<P: Copy>(
     image: &mut Pixels<P>,
     seed: (u32, u32),
@@ -279,22 +294,41 @@ pub fn fill_where<P: Copy>(
     method: SeedFill,
     options: &Options,
     t: &mut impl Tracer<Step>,
-) -> u64 {
-    let Some(true) = image.get(seed.0, seed.1).map(&inside) else { return 0 };
+) -> Result<u64> {
+    let Some(true) = image.get(seed.0, seed.1).map(&inside) else { return Ok(0) };
     let eight = options.connectivity == Connectivity::Eight;
+    let words = u64::from(image.width().div_ceil(64)) * u64::from(image.height());
+    let mut charge = image.work().charge_for::<u64>(STACK, words)?;
     if method == SeedFill::Spans && !listens(image, seed, &inside, t) {
-        return rows::fill(image, seed, value, &inside, eight);
+        charge.grow(words.saturating_mul(rows::PER_WORD))?;
+        return Ok(rows::fill(image, seed, value, &inside, eight));
     }
     let mut region = Region::new(image, &inside);
     let found = match method {
-        SeedFill::Naive => naive(&mut region, seed, eight, t),
-        SeedFill::Spans => spans(&mut region, seed, eight, t),
+        SeedFill::Naive => naive(&mut region, seed, eight, &mut charge, t)?,
+        SeedFill::Spans => spans(&mut region, seed, eight, &mut charge, t)?,
     };
     for y in 0..region.height {
         region.paint(y, image.row_mut(y as u32), value, &inside);
     }
-    found
+    Ok(found)
 }
+
+/// Stage of charges and errors.
+const STACK: &str = "stack of the fill";
+
+/// Raises the charge of a stack that has grown by this many bytes since, once it is worth it.
+fn charge_stack(charge: &mut Charge, charged: &mut usize, bytes: usize) -> Result<()> {
+    if bytes > *charged {
+        let next = bytes.max(2 * *charged).max(STACK_STEP);
+        charge.grow((next - *charged) as u64)?;
+        *charged = next;
+    }
+    Ok(())
+}
+
+/// Bytes by which the charge of a stack begins.
+const STACK_STEP: usize = 1 << 12;
 
 /// Reports the run of the seed to a tracer; returns whether there is a tracer.
 fn listens<P: Copy>(
@@ -319,10 +353,16 @@ fn listens<P: Copy>(
 const NEIGHBOURS: [(i64, i64); 8] =
     [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)];
 
-fn naive(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer<Step>) -> u64 {
+fn naive(
+    region: &mut Region,
+    seed: (u32, u32),
+    eight: bool,
+    charge: &mut Charge,
+    t: &mut impl Tracer<Step>,
+) -> Result<u64> {
     let neighbours = if eight { &NEIGHBOURS[..] } else { &NEIGHBOURS[..4] };
     let mut stack = vec![(i64::from(seed.0), i64::from(seed.1))];
-    let mut found = 0;
+    let (mut found, mut charged) = (0, 0);
     while let Some((x, y)) = stack.pop() {
         if !region.is_open(x, y) {
             t.step(|| Step::Skip(Run::pixel((x, y))));
@@ -332,19 +372,27 @@ fn naive(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer
         found += 1;
         let waiting = stack.len();
         t.step(|| Step::Fill { run: Run::pixel((x, y)), waiting });
+        let most = waiting + neighbours.len();
+        charge_stack(charge, &mut charged, most * size_of::<(i64, i64)>())?;
         // The last one pushed is taken first, so pixels are visited in the order of the recursive form.
         stack.extend(neighbours.iter().rev().map(|(dx, dy)| (x + dx, y + dy)));
         stack.iter().skip(waiting).for_each(|&at| t.step(|| Step::Push(Run::pixel(at))));
     }
-    found
+    Ok(found)
 }
 
 /// Fills the spans of a region from a seed on, whose run has been reported, and returns the number of their pixels.
-fn spans(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer<Step>) -> u64 {
+fn spans(
+    region: &mut Region,
+    seed: (u32, u32),
+    eight: bool,
+    charge: &mut Charge,
+    t: &mut impl Tracer<Step>,
+) -> Result<u64> {
     let reach = usize::from(eight);
     let first = region.take_run(seed.1 as usize, seed.0 as usize);
     let mut stack = vec![(seed.1 as usize, first.0, first.1)];
-    let mut found = 0;
+    let (mut found, mut charged) = (0, 0);
     while let Some((y, start, end)) = stack.pop() {
         if found > 0 {
             let waiting = stack.len();
@@ -359,11 +407,12 @@ fn spans(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer
             let mut x = from;
             while let Some(hit) = region.next_open(next, x, to) {
                 let run = region.take_run(next, hit);
+                charge_stack(charge, &mut charged, (stack.len() + 1) * size_of::<[usize; 3]>())?;
                 stack.push((next, run.0, run.1));
                 t.step(|| Step::Push(Run::of((next, run.0, run.1))));
                 x = run.1;
             }
         }
     }
-    found
+    Ok(found)
 }

@@ -8,6 +8,9 @@ use super::region::{Region, paint, read_row};
 use super::words::{Waiting, leftwards, rightwards, widen};
 use crate::target::Pixels;
 
+/// Bytes for each 64 pixels beside their bits: their seeds, and a place on the stack, which each word has at most once.
+pub(super) const PER_WORD: u64 = 16;
+
 /// Fills the pixels connected with the seed, a pixel inside; returns their number.
 pub(super) fn fill<P: Copy>(
     image: &mut Pixels<P>,

@@ -199,11 +199,13 @@ fn boundary_fill_stops_at_what_is_filled() {
     for method in SeedFill::ALL {
         let how = How { stop_at_value: true, ..How::default() };
         let mut image = row();
-        let count = boundary_fill(&mut image, (0, 0), 7, 9, 0, *method, &how, &mut NoTrace);
+        let count =
+            boundary_fill(&mut image, (0, 0), 7, 9, 0, *method, &how, &mut NoTrace).unwrap();
         assert_eq!((count, image.data()), (2, &[7, 7, 7, 0, 0, 9, 0][..]), "{method}");
         let mut image = row();
         let all = How::default();
-        assert_eq!(boundary_fill(&mut image, (0, 0), 7, 9, 0, *method, &all, &mut NoTrace), 5);
+        let count = boundary_fill(&mut image, (0, 0), 7, 9, 0, *method, &all, &mut NoTrace);
+        assert_eq!(count, Ok(5));
     }
 }
 
@@ -228,7 +230,7 @@ fn a_stack_of_pixels_keeps_the_order_of_the_recursion() {
     let how = How { connectivity: Connectivity::Four, stop_at_value: true };
     let mut steps: Recorder<Filling> = Recorder::default();
     let seed = (1, 1);
-    boundary_fill(&mut image.clone(), seed, 7, 9, 0, SeedFill::Naive, &how, &mut steps);
+    boundary_fill(&mut image.clone(), seed, 7, 9, 0, SeedFill::Naive, &how, &mut steps).unwrap();
     let mut order = Vec::new();
     recursive(&mut image.clone(), 1, 1, &mut order);
     let runs = |steps: &[Filling]| steps.iter().filter_map(Filling::filled).collect::<Vec<_>>();
@@ -238,7 +240,7 @@ fn a_stack_of_pixels_keeps_the_order_of_the_recursion() {
     assert_eq!(order[..3], [(1, 1), (2, 1), (3, 1)]);
     // Spans take fewer iterations and less memory.
     let mut spans: Recorder<Filling> = Recorder::default();
-    boundary_fill(&mut image.clone(), seed, 7, 9, 0, SeedFill::Spans, &how, &mut spans);
+    boundary_fill(&mut image.clone(), seed, 7, 9, 0, SeedFill::Spans, &how, &mut spans).unwrap();
     let deepest = |steps: &[Filling]| {
         let waiting =
             |s: &Filling| if let Filling::Fill { waiting, .. } = s { *waiting } else { 0 };
