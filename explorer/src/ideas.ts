@@ -207,6 +207,22 @@ export const IDEAS: Record<string, Words> = {
     en: "The unchanged colour of the texture, without any light: for models whose textures were photographed with their light.",
     de: "Die Farbe der Textur, wie sie ist, ohne jedes Licht: für Modelle, deren Texturen mit ihrem Licht fotografiert wurden.",
   },
+  "viewport-layout": {
+    en: "Divides a screen into viewports, row by row, by whole pixels: none belongs to two viewports, and none is left over.",
+    de: "Teilt einen Schirm zeilenweise in Viewports, in ganzen Pixeln: Keines gehört zu zweien, und keines bleibt übrig.",
+  },
+  "texture-sampling": {
+    en: "Looks up the value of an image at (u, v): the wrap mode brings the coordinates into the image, then the nearest texel is taken, or four are averaged.",
+    de: "Schlägt den Wert eines Bildes bei (u; v) nach: Der Randmodus bringt die Koordinaten ins Bild, dann zählt das nächste Texel, oder vier werden gemittelt.",
+  },
+  "mip-map": {
+    en: "Keeps the image in ever smaller sizes and takes, for each pixel, the two sizes whose texels are about as large as the pixel, so that distant textures do not flicker.",
+    de: "Hält das Bild in immer kleineren Größen bereit und nimmt je Pixel die beiden, deren Texel etwa so groß sind wie das Pixel; so flimmern ferne Texturen nicht.",
+  },
+  "display-lists": {
+    en: "Records commands once and calls them often, with another matrix each time: a wheel is recorded once and drawn four times.",
+    de: "Zeichnet Befehle einmal auf und ruft sie oft auf, jedes Mal mit einer anderen Matrix: Ein Rad wird einmal aufgezeichnet und viermal gezeichnet.",
+  },
   fog: {
     en: "Distant surfaces are mixed with the colour of the air: in proportion between two distances, or by an exponential law.",
     de: "Was weiter weg ist, wird mit der Farbe der Luft gemischt: proportional zwischen zwei Entfernungen oder nach einem Exponentialgesetz.",

@@ -2,12 +2,49 @@
 
 use super::lighting::MAX_LIGHTS;
 use super::{Command, MAX_STACK, MaterialFace, Pipeline, bitmap, draw, pixels};
+use crate::info::{Class, Info, Occluder};
+use crate::math::DMat4;
 use crate::target::Framebuffer;
+use crate::trace::{NoTrace, Tracer};
 use crate::{Error, Result};
+
+/// The facts of display lists.
+pub const INFO: Info = Info {
+    name: "display-lists",
+    title: "Display lists",
+    authors: "J. D. Foley, A. van Dam; M. Segal, K. Akeley",
+    year: 1982,
+    source: "Fundamentals of Interactive Computer Graphics; The OpenGL Graphics System, 1992",
+    class: Class::ObjectSpace,
+    occluder: Occluder::None,
+    coherence: &[],
+    cost: "O(commands), those of a list for each call",
+    limits: "64 lists in each other, 32 matrices on the stack, 2^24 commands",
+    pseudocode: &[
+        "record(commands): keep them under a new number; nothing is executed, the state stays",
+        "execute(commands): begin with the first",
+        "while commands or calls are left:",
+        "    at the end of a list: go on behind its call",
+        "    take the next command:",
+        "    call, as many lists in each other as the limit: error; what was drawn stays",
+        "    call: keep the place behind it; begin the list with the state as it is",
+        "    matrix: replace the model-view matrix, or multiply it from the right",
+        "    push: put a copy of the matrix onto its stack; pop: take it back from there",
+        "    colour, light, material, texture, test …: set it; it stays after the end of the list",
+        "    draw, evaluate: vertices go through the matrix as it is now, then to the pixels",
+    ],
+};
 
 /// The name of a display list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ListId(usize);
+
+impl ListId {
+    /// Returns the number of the list in its collection, counted from 0.
+    pub const fn number(self) -> usize {
+        self.0
+    }
+}
 
 /// Lists call each other to this depth; OpenGL demands as much.
 pub const MAX_NESTING: usize = 64;
@@ -27,6 +64,16 @@ impl DisplayLists {
     pub fn record(&mut self, commands: Vec<Command>) -> ListId {
         self.lists.push(commands);
         ListId(self.lists.len() - 1)
+    }
+
+    /// Keeps commands as [`Self::record`] does, and reports it.
+    pub fn record_traced(&mut self, commands: Vec<Command>, t: &mut impl Tracer<Step>) -> ListId {
+        let list = self.record(commands);
+        t.step(|| {
+            let commands = self.lists.last().cloned().unwrap_or_default();
+            Step::Recorded { list, commands }
+        });
+        list
     }
 
     /// Replaces the commands of a list; later calls run the new ones.
@@ -50,6 +97,76 @@ impl DisplayLists {
     }
 }
 
+/// Step of recording or executing commands.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step {
+    /// Commands were kept as a list.
+    Recorded {
+        /// The new list.
+        list: ListId,
+        /// Its commands.
+        commands: Vec<Command>,
+    },
+    /// A list was called.
+    Called {
+        /// The list.
+        list: ListId,
+        /// Number of lists in each other from now on.
+        depth: usize,
+    },
+    /// A call went beyond [`MAX_NESTING`].
+    Refused {
+        /// The list.
+        list: ListId,
+        /// Number of lists in each other before the call.
+        depth: usize,
+    },
+    /// A list came to its end.
+    Returned {
+        /// Number of lists in each other from now on.
+        depth: usize,
+    },
+    /// A command other than a call was executed.
+    Executed {
+        /// The command.
+        command: Command,
+        /// Number of lists in each other; 0 for commands outside of lists.
+        depth: usize,
+        /// Model-view matrix after it.
+        model_view: DMat4,
+        /// Number of matrices on the stack after it.
+        kept: usize,
+    },
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Recorded { .. } => 1,
+            Self::Returned { .. } => 4,
+            Self::Refused { .. } => 6,
+            Self::Called { .. } => 7,
+            Self::Executed { command, .. } => match command {
+                Command::LoadModelView(_) | Command::MultiplyModelView(_) => 8,
+                Command::PushModelView | Command::PopModelView => 9,
+                command if command.draws() => 11,
+                _ => 10,
+            },
+        }
+    }
+}
+
+/// Returns the commands that a list of steps executes: without calls, they draw and set the same.
+pub fn replay(steps: &[Step]) -> Vec<Command> {
+    let executed = |step: &Step| match step {
+        Step::Executed { command, .. } => Some(command.clone()),
+        Step::Recorded { .. } | Step::Called { .. } => None,
+        Step::Refused { .. } | Step::Returned { .. } => None,
+    };
+    steps.iter().filter_map(executed).collect()
+}
+
 fn dangling(list: ListId, count: usize) -> Error {
     Error::Dangling { what: "display list", index: list.0, count }
 }
@@ -68,26 +185,50 @@ pub fn execute(
     pipeline: &mut Pipeline,
     target: &mut Framebuffer,
 ) -> Result<()> {
+    execute_traced(commands, lists, pipeline, target, &mut NoTrace)
+}
+
+/// Executes commands as [`execute`] does, and reports the steps.
+///
+/// # Errors
+/// Those of [`execute`].
+pub fn execute_traced(
+    commands: &[Command],
+    lists: &DisplayLists,
+    pipeline: &mut Pipeline,
+    target: &mut Framebuffer,
+    t: &mut impl Tracer<Step>,
+) -> Result<()> {
     let mut waiting = vec![commands.iter()];
     let mut done = 0;
     while let Some(latest) = waiting.last_mut() {
         let Some(command) = latest.next() else {
             waiting.pop();
+            if let Some(depth) = waiting.len().checked_sub(1) {
+                t.step(|| Step::Returned { depth });
+            }
             continue;
         };
         done += 1;
         if done > MAX_COMMANDS {
             return Err(Error::Limit { what: "commands", value: done, limit: MAX_COMMANDS });
         }
-        if let Command::Call(list) = command {
-            if waiting.len() > MAX_NESTING {
-                let (value, limit) = (waiting.len() as u64, MAX_NESTING as u64);
-                return Err(Error::Limit { what: "nesting of display lists", value, limit });
-            }
-            waiting.push(lists.commands(*list)?.iter());
-        } else {
+        let depth = waiting.len() - 1;
+        let &Command::Call(list) = command else {
             one(command, pipeline, target)?;
+            t.step(|| {
+                let (model_view, kept) = (pipeline.model_view, pipeline.stack.len());
+                Step::Executed { command: command.clone(), depth, model_view, kept }
+            });
+            continue;
+        };
+        if depth >= MAX_NESTING {
+            t.step(|| Step::Refused { list, depth });
+            let (value, limit) = (waiting.len() as u64, MAX_NESTING as u64);
+            return Err(Error::Limit { what: "nesting of display lists", value, limit });
         }
+        waiting.push(lists.commands(list)?.iter());
+        t.step(|| Step::Called { list, depth: depth + 1 });
     }
     Ok(())
 }

@@ -43,7 +43,9 @@ pub use lighting::{
     ColorMaterial, Light, LightModel, Lighting, MAX_LIGHTS, Material, MaterialFace, ShadeModel,
     Step as LightStep,
 };
-pub use list::{DisplayLists, ListId, MAX_COMMANDS, MAX_NESTING, execute};
+pub use list::{
+    DisplayLists, INFO, ListId, MAX_COMMANDS, MAX_NESTING, Step, execute, execute_traced, replay,
+};
 pub use pixels::{PixelBlock, PixelPlane, read_pixels};
 pub use state::{CullFace, MAX_STACK, Pipeline, RasterPosition};
 pub use texture::{Texture, TextureFunction};
@@ -164,4 +166,58 @@ pub enum Command {
     EvaluatePatch(Patch, [u32; 2]),
     /// Replays a display list with the current state; its changes of the state stay.
     Call(ListId),
+}
+
+impl Command {
+    /// Returns whether the command writes pixels; others only change the state.
+    pub const fn draws(&self) -> bool {
+        matches!(
+            self,
+            Self::Clear { .. }
+                | Self::DrawPixels(_)
+                | Self::Bitmap(_)
+                | Self::CopyPixels(..)
+                | Self::Draw(..)
+                | Self::EvaluateCurve(..)
+                | Self::EvaluatePatch(..)
+        )
+    }
+
+    /// Returns the name of the command, as that of its variant.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Clear { .. } => "Clear",
+            Self::LoadModelView(_) => "LoadModelView",
+            Self::MultiplyModelView(_) => "MultiplyModelView",
+            Self::PushModelView => "PushModelView",
+            Self::PopModelView => "PopModelView",
+            Self::LoadProjection(_) => "LoadProjection",
+            Self::Viewport(_) => "Viewport",
+            Self::Color(_) => "Color",
+            Self::Index(_) => "Index",
+            Self::Normal(_) => "Normal",
+            Self::TexCoord(_) => "TexCoord",
+            Self::Lighting(_) => "Lighting",
+            Self::Light(..) => "Light",
+            Self::LightModel(_) => "LightModel",
+            Self::Material(..) => "Material",
+            Self::ColorMaterial(_) => "ColorMaterial",
+            Self::Normalize(_) => "Normalize",
+            Self::ShadeModel(_) => "ShadeModel",
+            Self::Texture(_) => "Texture",
+            Self::RasterPosition(_) => "RasterPosition",
+            Self::PixelZoom(_) => "PixelZoom",
+            Self::DrawPixels(_) => "DrawPixels",
+            Self::Bitmap(_) => "Bitmap",
+            Self::CopyPixels(..) => "CopyPixels",
+            Self::Cull(_) => "Cull",
+            Self::DepthRange(_) => "DepthRange",
+            Self::PolygonOffset(_) => "PolygonOffset",
+            Self::Fragments(_) => "Fragments",
+            Self::Draw(..) => "Draw",
+            Self::EvaluateCurve(..) => "EvaluateCurve",
+            Self::EvaluatePatch(..) => "EvaluatePatch",
+            Self::Call(_) => "Call",
+        }
+    }
 }

@@ -38,17 +38,20 @@ mod labels;
 mod lesson;
 mod letters;
 mod lines;
+mod lists;
 mod names;
 mod operations;
 mod picking;
 mod picture;
 mod replay;
+mod screens;
 mod section;
 mod shades;
 mod shadow;
 mod simplify;
 mod svg;
 mod table;
+mod textures;
 mod tones;
 mod viewing;
 mod warping;
@@ -69,7 +72,7 @@ pub use without::WITHOUT_LESSON;
 pub use words::{Caption, Language, Template, Value, Word};
 
 use crate::info::Info;
-use crate::{Result, clip, curve, fragment, raster, shade, view, visibility};
+use crate::{Result, clip, commands, curve, fragment, raster, shade, view, visibility};
 
 /// Lessons of one family with their title.
 #[derive(Debug, Clone, Copy)]
@@ -108,7 +111,9 @@ pub const SPACE: &[Family] = &[
         &[culling::LESSON, picking::LESSON, warping::LESSON],
     ),
     family("Shading", "Schattierung", shades::LESSONS),
+    family("Textures", "Texturen", textures::LESSONS),
     family("Shadows", "Schatten", &[shadow::LESSON, faces::SHADOW_VOLUMES]),
+    family("Display lists", "Displaylisten", &[lists::LESSON]),
     family("Fragments", "Fragmente", &[fragments::LESSON, air::LESSON]),
 ];
 
@@ -223,6 +228,7 @@ pub const ALGORITHMS: &[&Info] = &[
     &clip::place::VIEWPORT,
     &clip::place::PER_PIXEL,
     &view::mapping::INFO,
+    &view::layout::INFO,
     &view::cull::INFO,
     &view::pick::INFO,
     &view::section::INFO,
@@ -263,11 +269,14 @@ pub const ALGORITHMS: &[&Info] = &[
     &shade::gouraud::INFO,
     &shade::phong::INFO,
     &shade::metallic_roughness::INFO,
+    &shade::texture::INFO,
+    &shade::texture::MIP_MAP,
     &shade::shadow::INFO,
     &fragment::INFO,
     &fragment::halftone::error_diffusion::INFO,
     &fragment::halftone::clustered_dot::INFO,
     &fragment::fog::INFO,
+    &commands::INFO,
     &visibility::back_face::INFO,
     &visibility::object::orientation::INFO,
     &visibility::surface::z_buffer::INFO,

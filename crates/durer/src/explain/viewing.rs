@@ -11,7 +11,9 @@ use crate::math::{DAffine2, DVec2, Rect};
 use crate::view::mapping::{self, INFO, Step, map};
 use crate::view::window::{PixelRect, Viewport, Window, YAxis};
 
-pub(super) const LESSONS: &[Lesson] = &[Lesson {
+pub(super) const LESSONS: &[Lesson] = &[MAPPING, super::screens::LESSON];
+
+const MAPPING: Lesson = Lesson {
     name: INFO.name,
     info: &INFO,
     takes: TAKES,
@@ -36,7 +38,7 @@ pub(super) const LESSONS: &[Lesson] = &[Lesson {
     templates: &[&COLUMNS, &ROWS, &POINT],
     unreached: &[],
     make,
-}];
+};
 
 const TAKES: Word =
     Word::new("a window with lines or points", "ein Fenster mit Linien oder Punkten");

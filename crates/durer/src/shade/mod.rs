@@ -32,6 +32,7 @@ pub mod shadow;
 mod slot;
 pub mod studio;
 mod surface;
+mod texel;
 pub mod texture;
 pub mod tone;
 pub mod tone_map;

@@ -5,9 +5,12 @@
 //! Williams 1983 and the OpenGL specification (4.6, 8.14): the longer of the two screen derivatives.
 
 use super::mip::{Level, MipChain};
+pub use super::texel::{INFO, MIP_MAP, Step, replay, weights};
+use super::texel::{bilinear, mix};
 pub use super::usage::Usage;
 use crate::math::{Vec2, Vec4};
 use crate::scene::{Filter, Image, MipFilter, Sampler, Wrap};
+use crate::trace::{NoTrace, Tracer};
 use std::sync::Arc;
 
 /// An image with its mip chain, ready to be sampled; cheap to clone.
@@ -46,18 +49,59 @@ impl<'a> PreparedTexture<'a> {
     /// Cost: one fetch for nearest, four for bilinear, eight between two levels.
     #[inline]
     pub fn sample(&self, uv: Vec2, ddx: Vec2, ddy: Vec2) -> Vec4 {
+        self.sample_traced(uv, ddx, ddy, &mut NoTrace)
+    }
+
+    /// Returns the same as [`Self::sample`], and reports the steps.
+    ///
+    /// ```
+    /// use durer::math::Vec2;
+    /// use durer::scene::{Image, Sampler};
+    /// use durer::shade::PreparedTexture;
+    /// use durer::shade::texture::{Step, Usage};
+    /// use durer::trace::Recorder;
+    ///
+    /// let data = [0, 255].map(|grey| [grey, grey, grey, 255]).to_vec();
+    /// let image = Image { width: 2, height: 1, data, ..Image::default() };
+    /// let texture = PreparedTexture::new(&image, Sampler::default(), Usage::Data);
+    /// let mut steps = Recorder::default();
+    /// let middle = texture.sample_traced(Vec2::splat(0.5), Vec2::ZERO, Vec2::ZERO, &mut steps);
+    /// assert_eq!(middle.x, 0.5);
+    /// assert!(matches!(steps.steps().last(), Some(Step::Bilinear { fractions: [0.5, 0.0], .. })));
+    /// ```
+    #[inline(always)]
+    pub fn sample_traced(&self, uv: Vec2, ddx: Vec2, ddy: Vec2, t: &mut impl Tracer<Step>) -> Vec4 {
         let (x, y) = (ddx * self.size, ddy * self.size);
         let footprint2 = x.length_squared().max(y.length_squared());
-        let sum = match self.detail(footprint2) {
-            Detail::Magnified => self.filtered(0, uv, self.sampler.mag),
-            Detail::Level(level) => self.filtered(level, uv, self.sampler.min),
-            Detail::Between(level, t) => {
-                let near = self.filtered(level, uv, self.sampler.min);
-                let far = self.filtered(level + 1, uv, self.sampler.min);
-                near * (1.0 - t) + far * t
+        let detail = self.detail(footprint2);
+        t.step(|| self.chosen([x, y], footprint2, &detail));
+        let sum = match detail {
+            Detail::Magnified => self.filtered(0, uv, self.sampler.mag, t),
+            Detail::Level(level) => self.filtered(level, uv, self.sampler.min, t),
+            Detail::Between(level, weight) => {
+                let near = self.filtered(level, uv, self.sampler.min, t);
+                let far = self.filtered(level + 1, uv, self.sampler.min, t);
+                let value = mix(near, far, weight);
+                t.step(|| Step::Between { weight, value });
+                value
             }
         };
-        self.straight(sum)
+        let color = self.straight(sum);
+        if self.chain.usage == Usage::ColorWithAlpha {
+            t.step(|| Step::Divided(color));
+        }
+        color
+    }
+
+    /// Returns the step that says which levels were chosen.
+    fn chosen(&self, ways: [Vec2; 2], footprint2: f32, detail: &Detail) -> Step {
+        let lod = if footprint2 > 0.0 { half_log2(footprint2) } else { f32::NEG_INFINITY };
+        let (level, weight) = match *detail {
+            Detail::Magnified => (0, None),
+            Detail::Level(level) => (level, None),
+            Detail::Between(level, weight) => (level, Some(weight)),
+        };
+        Step::Detail { ways, lod, mip: self.sampler.mip, level, weight }
     }
 
     /// Returns the levels for the square of the longer screen derivative in texels.
@@ -85,20 +129,30 @@ impl<'a> PreparedTexture<'a> {
 
     /// Returns one level, filtered; premultiplied where alpha weights the colour.
     #[inline(always)]
-    fn filtered(&self, level: usize, uv: Vec2, filter: Filter) -> Vec4 {
-        let level = self.chain.level(level);
+    fn filtered(&self, number: usize, uv: Vec2, filter: Filter, t: &mut impl Tracer<Step>) -> Vec4 {
+        let level = self.chain.level(number);
+        let (wrap_u, wrap_v) = (self.sampler.wrap_u, self.sampler.wrap_v);
+        t.step(|| {
+            let to = Vec2::new(wrapped(uv.x, wrap_u), wrapped(uv.y, wrap_v));
+            Step::Wrapped { level: number, size: [level.width, level.height], from: uv, to }
+        });
         match filter {
             Filter::Nearest => {
-                let x = nearest(uv.x, level.width, self.sampler.wrap_u);
-                let y = nearest(uv.y, level.height, self.sampler.wrap_v);
-                self.fetch(level, x, y)
+                let x = nearest(uv.x, level.width, wrap_u);
+                let y = nearest(uv.y, level.height, wrap_v);
+                let value = self.fetch(level, x, y);
+                t.step(|| Step::Nearest { level: number, texel: [x, y], value });
+                value
             }
             Filter::Linear => {
-                let (x0, x1, tx) = linear(uv.x, level.width, self.sampler.wrap_u);
-                let (y0, y1, ty) = linear(uv.y, level.height, self.sampler.wrap_v);
-                let top = self.fetch(level, x0, y0) * (1.0 - tx) + self.fetch(level, x1, y0) * tx;
-                let low = self.fetch(level, x0, y1) * (1.0 - tx) + self.fetch(level, x1, y1) * tx;
-                top * (1.0 - ty) + low * ty
+                let (x0, x1, tx) = linear(uv.x, level.width, wrap_u);
+                let (y0, y1, ty) = linear(uv.y, level.height, wrap_v);
+                let texels = [[x0, y0], [x1, y0], [x0, y1], [x1, y1]];
+                let values = texels.map(|[x, y]| self.fetch(level, x, y));
+                let fractions = [tx, ty];
+                let value = bilinear(values, fractions);
+                t.step(|| Step::Bilinear { level: number, texels, fractions, values, value });
+                value
             }
         }
     }

@@ -4,8 +4,74 @@
 //! can touch another.
 
 use super::window::{PixelRect, Viewport};
+use crate::info::{Class, Info, Occluder};
+use crate::trace::{NoTrace, Tracer};
 use crate::{Error, Result};
 use std::str::FromStr;
+
+/// Facts about the division of a screen.
+pub const INFO: Info = Info {
+    name: "viewport-layout",
+    title: "Several viewports on one screen",
+    authors: "William M. Newman, Robert F. Sproull",
+    year: 1973,
+    source: "Principles of Interactive Computer Graphics",
+    class: Class::ImageSpace,
+    occluder: Occluder::None,
+    coherence: &[],
+    cost: "O(n) for n viewports",
+    limits: "a grid of rows; at least one pixel for each viewport",
+    pseudocode: &[
+        "for each row r of R, from the top:",
+        "    y0 ← ⌊H r / R⌋; y1 ← ⌊H (r + 1) / R⌋",
+        "    n ← number of names in the row: as many as columns, or fewer in the last row",
+        "    for each name, number c of n, from the left:",
+        "        x0 ← ⌊W c / n⌋; x1 ← ⌊W (c + 1) / n⌋",
+        "        its viewport has the columns x0 to x1 − 1 and the rows y0 to y1 − 1",
+        "        map the window onto the viewport, and clip to it what is drawn",
+        "// the end of a part is the beginning of the next: no pixel belongs to two viewports or to none",
+    ],
+};
+
+/// Step of the division of a screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    /// The rows of pixels of a row of viewports.
+    Row {
+        /// Number of the row, from the top.
+        row: usize,
+        /// First row of pixels, and the one behind the last.
+        y: [i32; 2],
+        /// Number of viewports in it.
+        cells: usize,
+    },
+    /// A viewport.
+    Cell {
+        /// Number in its row, from the left.
+        column: usize,
+        /// Its pixels.
+        pixels: PixelRect,
+    },
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Row { .. } => 2,
+            Self::Cell { .. } => 6,
+        }
+    }
+}
+
+/// Returns the viewports that a list of steps leads to.
+pub fn replay(steps: &[Step]) -> Vec<PixelRect> {
+    let cell = |step: &Step| match step {
+        Step::Cell { pixels, .. } => Some(*pixels),
+        Step::Row { .. } => None,
+    };
+    steps.iter().filter_map(cell).collect()
+}
 
 /// A grid of named cells, filled row by row from the upper left.
 ///
@@ -51,6 +117,11 @@ impl Layout {
         Ok(Self { columns, rows, names })
     }
 
+    /// Returns the number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
     /// Returns the names of the cells, row by row.
     pub fn names(&self) -> &[String] {
         &self.names
@@ -62,14 +133,29 @@ impl Layout {
     /// [`Error::Parameter`] if a cell would have no pixel, [`Error::TooLarge`] for a side above
     /// 2³¹ − 1.
     pub fn viewports(&self, width: u32, height: u32) -> Result<Vec<(&str, Viewport)>> {
+        self.viewports_traced(width, height, &mut NoTrace)
+    }
+
+    /// Returns the viewports as [`Self::viewports`] does, and reports the steps.
+    ///
+    /// # Errors
+    /// Those of [`Self::viewports`].
+    pub fn viewports_traced(
+        &self,
+        width: u32,
+        height: u32,
+        t: &mut impl Tracer<Step>,
+    ) -> Result<Vec<(&str, Viewport)>> {
         let screen = PixelRect::of_size(width, height)?;
         let mut cells = Vec::with_capacity(self.names.len());
         for (row, names) in self.names.chunks(self.columns).enumerate() {
             let (y0, y1) = part(screen.y1(), row, self.rows);
+            t.step(|| Step::Row { row, y: [y0, y1], cells: names.len() });
             for (column, name) in names.iter().enumerate() {
                 let (x0, x1) = part(screen.x1(), column, names.len());
                 let pixels = PixelRect::new(x0, y0, x1, y1)?;
                 cells.push((name.as_str(), Viewport::new(pixels)?));
+                t.step(|| Step::Cell { column, pixels });
             }
         }
         Ok(cells)

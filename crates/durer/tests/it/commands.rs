@@ -1,8 +1,8 @@
 //! Commands: state, display lists, evaluators, and uses of stencils.
 
 use durer::commands::{
-    Command, CullFace, Curve, DisplayLists, MAX_NESTING, Patch, Pipeline, Primitive, Vertex,
-    execute,
+    Command, CullFace, Curve, DisplayLists, MAX_NESTING, Patch, Pipeline, Primitive, Step, Vertex,
+    execute, execute_traced, replay,
 };
 use durer::curve::b_spline::BSpline;
 use durer::fragment::{
@@ -11,6 +11,7 @@ use durer::fragment::{
 use durer::math::{DMat4, DVec3, DVec4, Vec4};
 use durer::scene::{Camera, Projection};
 use durer::target::Framebuffer;
+use durer::trace::Recorder;
 use proptest::prelude::*;
 
 const SIDE: u32 = 40;
@@ -127,6 +128,51 @@ fn lists_without_end_are_errors() {
     assert!(pop.is_err());
     let push = vec![Command::PushModelView; 40];
     assert!(execute(&push, &lists, &mut Pipeline::default(), &mut target()).is_err());
+}
+
+#[test]
+fn steps_of_lists_are_commands_without_lists() {
+    let mut lists = DisplayLists::default();
+    let mut steps = Recorder::default();
+    let part = vec![color(1., 0., 0.), square(0.2, 0.0)];
+    let wheel = lists.record_traced(part.clone(), &mut steps);
+    let moved = Command::MultiplyModelView(DMat4::from_translation(DVec3::new(0.5, 0.0, 0.0)));
+    let [push, pop] = [Command::PushModelView, Command::PopModelView];
+    let car = vec![push, moved.clone(), Command::Call(wheel), pop, square(0.1, 0.1)];
+    let car = lists.record_traced(car, &mut steps);
+    let recorded = Step::Recorded { list: wheel, commands: part };
+    assert_eq!((steps.steps().len(), steps.steps().first()), (2, Some(&recorded)));
+    let main = [color(0., 1., 0.), Command::Call(car), moved, Command::Call(wheel)];
+    let (mut pipeline, mut traced) = (Pipeline::default(), target());
+    let mut steps = Recorder::default();
+    execute_traced(&main, &lists, &mut pipeline, &mut traced, &mut steps).expect("drawn");
+    assert_eq!((traced.clone(), pipeline.clone()), run(&main, &lists));
+    // Replayed without any list, they draw and set the same.
+    assert_eq!(run(&replay(steps.steps()), &DisplayLists::default()), (traced, pipeline));
+    let depths: Vec<usize> = (steps.steps().iter())
+        .filter_map(|step| match step {
+            Step::Called { depth, .. } | Step::Returned { depth } => Some(*depth),
+            Step::Executed { .. } | Step::Recorded { .. } | Step::Refused { .. } => None,
+        })
+        .collect();
+    assert_eq!(depths, [1, 2, 1, 0, 1, 0]);
+    // The matrix inside of the list, and on its stack.
+    let inside = DMat4::from_translation(DVec3::new(0.5, 0.0, 0.0));
+    let Step::Executed { model_view, kept, depth, .. } = &steps.steps()[5] else { panic!() };
+    assert_eq!((*model_view, *kept, *depth), (inside, 1, 2));
+}
+
+#[test]
+fn the_last_step_of_a_list_without_end_refuses_its_call() {
+    let mut lists = DisplayLists::default();
+    let list = lists.record(Vec::new());
+    lists.replace(list, vec![Command::Call(list)]).expect("there");
+    let mut steps = Recorder::default();
+    let (mut pipeline, mut target) = (Pipeline::default(), target());
+    let main = [Command::Call(list)];
+    assert!(execute_traced(&main, &lists, &mut pipeline, &mut target, &mut steps).is_err());
+    assert_eq!(steps.steps().len(), MAX_NESTING + 1);
+    assert_eq!(steps.steps().last(), Some(&Step::Refused { list, depth: MAX_NESTING }));
 }
 
 #[test]

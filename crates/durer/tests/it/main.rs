@@ -89,6 +89,7 @@ mod surface_warnock;
 mod surface_window;
 mod tangent_edges;
 mod textbook;
+mod texture_steps;
 mod tidy;
 mod tone_marks;
 mod view_cull;

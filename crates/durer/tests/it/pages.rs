@@ -136,6 +136,10 @@ const SHEETS: &[(&str, &str, usize)] = &[
     ("section", "pyramid", 12),
     ("greedy-labels", "cities", 12),
     ("fog", "road", 12),
+    ("viewport-layout", "five", 8),
+    ("texture-sampling", "beyond", 18),
+    ("mip-map", "into-depth", 12),
+    ("display-lists", "cars", 16),
     ("forward-warp", "hole", 12),
 ];
 

@@ -1,7 +1,8 @@
 //! Windows, viewports, layouts.
 
 use durer::math::DVec2;
-use durer::view::layout::Layout;
+use durer::trace::Recorder;
+use durer::view::layout::{self, Layout};
 use durer::view::window::*;
 use proptest::prelude::*;
 
@@ -102,9 +103,13 @@ proptest! {
         columns in 1..7usize, rows in 1..7usize, missing in 0..6usize, w in 50..90u32, h in 50..90u32,
     ) {
         let count = columns * rows - missing.min(columns - 1);
-        let layout = Layout::new(columns, rows, vec!["iso".into(); count]).unwrap();
-        let cells = layout.viewports(w, h).unwrap();
+        let grid = Layout::new(columns, rows, vec!["iso".into(); count]).unwrap();
+        let cells = grid.viewports(w, h).unwrap();
         prop_assert_eq!(cells.len(), count);
+        let mut steps = Recorder::default();
+        prop_assert_eq!(&grid.viewports_traced(w, h, &mut steps).unwrap(), &cells);
+        let pixels: Vec<PixelRect> = cells.iter().map(|(_, v)| *v.pixels()).collect();
+        prop_assert_eq!(layout::replay(steps.steps()), pixels);
         for y in 0..h as i32 {
             for x in 0..w as i32 {
                 let owners = cells.iter().filter(|(_, v)| v.pixels().contains(x, y)).count();
