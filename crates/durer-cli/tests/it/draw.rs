@@ -401,7 +401,7 @@ fn wrong_use_and_bad_data_are_told() {
         ("draw a.svg -o a.bmp", 2, "drawings and maps are written as PNG"),
         ("draw no.svg -o a.png", 1, "no.svg: line 1, column"),
         ("draw empty.geojson -o a.png", 1, "there is nothing to draw"),
-        ("draw what.txt -o a.png", 1, "not a known format; durer draw reads SVG"),
+        ("draw what.txt -o a.png", 1, "not a known format; durer draw reads maps and drawings"),
         ("draw model.gltf -o a.png", 1, "this is glTF, a model; durer render draws it"),
         ("draw model.dae -o a.png", 1, "this is COLLADA, a model; durer render draws it"),
         ("draw a.svg -o a.png --size 40000x1", 2, "32767"),
