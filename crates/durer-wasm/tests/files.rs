@@ -40,7 +40,7 @@ fn models_are_rendered() {
     assert!(matches!(wrong, Answer::Error(text) if text.contains("guess")));
 }
 
-/// One triangle before the other, and one beside: by z-buffer and rays.
+/// Two triangles, by z-buffer and rays.
 #[test]
 fn counts_of_operations_come_before_the_picture() {
     let request = |counts: bool, method: &str| json!({ "do": "render", "name": "a.obj", "method": method, "width": 20, "height": 20, "azimuth": 0.0, "elevation": 0.0, "counts": counts });

@@ -326,7 +326,7 @@ pub fn render_counted(
     if options.algorithm == SurfaceMethod::ZBuffer {
         let view = options.view()?;
         let input = SurfaceInput::within(&options.work, scene, &view, options.filter())?;
-        tally.add_comparisons(comparisons(&input));
+        tally.add_comparisons(comparisons(&input)?);
     }
     Ok((framebuffer, report, tally.operations(options.algorithm)))
 }

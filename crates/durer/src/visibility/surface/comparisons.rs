@@ -4,7 +4,7 @@
 //! blocks that nearer triangles cover. Its count would say more about the tiles than about the algorithm.
 
 use super::cover::{Cover, SampleGrid};
-use super::input::SurfaceInput;
+use super::input::{METHOD, SurfaceInput};
 use super::picture;
 use super::rows::nearest::is_nearer;
 use super::setup::Coverage;
@@ -22,15 +22,23 @@ pub struct Comparisons {
 
 /// Counts the depth comparisons at the pixels' centres, with the triangles in the order of the input.
 /// Cost: O(covered pixels); memory O(pixels).
-pub fn comparisons(input: &SurfaceInput<'_>) -> Comparisons {
+///
+/// # Errors
+/// [`crate::Error::Memory`] if the budget has no room for depths, and the reason that stopped the input's work.
+pub fn comparisons(input: &SurfaceInput<'_>) -> crate::Result<Comparisons> {
     let mut counts = Comparisons::default();
     let window = pixels_of(input.view);
+    let pixels = u64::from(input.view.window().width()) * u64::from(input.view.window().height());
+    let _depths = input.work.charge(METHOD, pixels.saturating_mul(Visible::PER_SAMPLE))?;
     let mut visible = Visible::new(window);
     let blended = input.having(Coverage::Blended);
     let lights = PreparedLights::new(&[], input.view.camera());
     with_lighting(input, &lights, &picture::Options::default(), |lighting| {
         let mut masks = Masks::new(input, lighting);
         for (place, triangle) in input.triangles.iter().enumerate() {
+            if input.work.is_stopped() {
+                return;
+            }
             let item = triangle.item;
             Cover::new(triangle, SampleGrid::PIXELS).spans(&window, |span| {
                 for x in span.x0..span.x1 {
@@ -46,5 +54,6 @@ pub fn comparisons(input: &SurfaceInput<'_>) -> Comparisons {
             });
         }
     });
-    counts
+    input.work.check()?;
+    Ok(counts)
 }

@@ -6,7 +6,7 @@
 use crate::math::Vec3;
 use crate::trace::Tracer;
 
-/// Number of tests of a ray on its way through the hierarchy.
+/// Numbers of tests of a ray on its way through the hierarchy.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Tests {
     /// Boxes of nodes.
