@@ -295,8 +295,8 @@ fn lines_are_charged_to_the_work_that_can_be_stopped() {
             Err(Error::Memory { stage, .. }) => stage,
             _ => "none",
         };
-        assert_eq!(stage(1000), "corners of faces");
-        let of_lines = stage(2500);
+        assert_eq!(stage(300), "corners of faces");
+        let of_lines = stage(1000);
         assert!(["invisibility of edges", "natures of edges"].contains(&of_lines), "{of_lines}");
         let stopped = Work::stoppable();
         stopped.stop(Error::Cancelled);
