@@ -238,7 +238,14 @@ mod tests {
     fn of_several_files_one_is_chosen_by_name() {
         let archive = packed(&[("x/a.stl", b"1"), ("x/b.stl", b"2"), ("y/b.stl", b"3")]);
         let limits = Limits::default();
-        let find = |choice| only(archive.clone(), &limits, |_| true, ("models", choice, ""));
+        let find = |choice| {
+            only(
+                archive.clone(),
+                &limits,
+                |_| true,
+                ("models", choice, "unpack it, or pack one alone"),
+            )
+        };
         for (choice, bytes) in [("a", b"1"), ("a.stl", b"1"), ("x/b.stl", b"2"), ("y/b", b"3")] {
             let member = find(Some(choice)).expect(choice);
             assert_eq!((&member.bytes[..], member.chosen), (&bytes[..], true), "{choice}");
