@@ -129,7 +129,7 @@ pub enum Step {
     /// A command other than a call was executed.
     Executed {
         /// The command.
-        command: Command,
+        command: Box<Command>,
         /// Number of lists in each other; 0 for commands outside of lists.
         depth: usize,
         /// Model-view matrix after it.
@@ -147,7 +147,7 @@ impl Step {
             Self::Returned { .. } => 4,
             Self::Refused { .. } => 6,
             Self::Called { .. } => 7,
-            Self::Executed { command, .. } => match command {
+            Self::Executed { command, .. } => match &**command {
                 Command::LoadModelView(_) | Command::MultiplyModelView(_) => 8,
                 Command::PushModelView | Command::PopModelView => 9,
                 command if command.draws() => 11,
@@ -160,7 +160,7 @@ impl Step {
 /// Returns the commands that a list of steps executes: without calls, they draw and set the same.
 pub fn replay(steps: &[Step]) -> Vec<Command> {
     let executed = |step: &Step| match step {
-        Step::Executed { command, .. } => Some(command.clone()),
+        Step::Executed { command, .. } => Some((**command).clone()),
         Step::Recorded { .. } | Step::Called { .. } => None,
         Step::Refused { .. } | Step::Returned { .. } => None,
     };
@@ -218,7 +218,7 @@ pub fn execute_traced(
             one(command, pipeline, target)?;
             t.step(|| {
                 let (model_view, kept) = (pipeline.model_view, pipeline.stack.len());
-                Step::Executed { command: command.clone(), depth, model_view, kept }
+                Step::Executed { command: Box::new(command.clone()), depth, model_view, kept }
             });
             continue;
         };

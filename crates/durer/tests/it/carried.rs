@@ -283,7 +283,8 @@ fn nets_refuse_what_is_not_before_the_eye() {
 #[test]
 fn lines_are_charged_to_the_work_that_can_be_stopped() {
     let net = net(&step(), Eye::Along(-ISO));
-    let draws: [fn(&FaceNet, &Work) -> Result<usize, Error>; 2] = [
+    type Draw = fn(&FaceNet, &Work) -> Result<usize, Error>;
+    let draws: [Draw; 2] = [
         |net, work| Ok(appel::draw(net, &Default::default(), work, &mut NoTrace)?.len()),
         |net, work| Ok(natures::draw(net, &Default::default(), work, &mut NoTrace)?.len()),
     ];

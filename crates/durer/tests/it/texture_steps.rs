@@ -15,7 +15,7 @@ const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge]
 fn noise(width: u32, height: u32) -> Image {
     let texel = |i: u32| {
         let [r, g, b, a] = i.wrapping_mul(2_654_435_761).to_le_bytes();
-        [r, g, b, if i % 2 == 0 { 255 } else { a }]
+        [r, g, b, if i.is_multiple_of(2) { 255 } else { a }]
     };
     let data = (0..width * height).map(texel).collect();
     Image { width, height, data, ..Image::default() }
