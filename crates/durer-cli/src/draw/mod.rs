@@ -60,8 +60,9 @@ pub fn run(args: &DrawArgs) -> Result<(), Failure> {
         Some(format) => {
             let sheet = job.draw_vectors(given)?;
             messages.progress.stage(|| format!("writing {target}"));
-            let (encode, options) = (Instant::now(), FileOptions::default());
-            let options = FileOptions { work: args.running.work.clone(), ..options };
+            let encode = Instant::now();
+            let work = args.running.work.clone();
+            let options = FileOptions { work, ..FileOptions::default() };
             output::deliver(&target, &args.running.work, |out| {
                 drawing::write(out, format, &sheet, &Drawing::default(), &options)
             })?;

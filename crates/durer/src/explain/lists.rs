@@ -221,7 +221,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
-/// Columns on both sides of what is drawn, and rows: corners with whole coordinates are at centres of pixels.
+/// Columns left and right of the drawing together, and rows above and below it.
 const MARGIN: f64 = 3.0;
 
 /// Returns the projection that shows a part of the plane in the middle of the framebuffer, with a margin.

@@ -1,5 +1,4 @@
-//! Wireframe: every edge of every face, whether something is before it or not. Sides of triangles inside a face of more
-//! corners are no edges.
+//! Wireframe: every edge of every face, hidden or not. Sides of triangles inside a face with more corners are not edges.
 //!
 //! L. G. Roberts, *Machine Perception of Three-Dimensional Solids*, MIT Lincoln Laboratory TR 315, 1963, drew solids in
 //! this way before removing hidden lines. Edges are clipped in homogeneous coordinates at the near and the far plane

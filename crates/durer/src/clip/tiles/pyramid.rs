@@ -62,7 +62,7 @@ impl Pyramid {
     /// them; the first level stays. The result is that of a pyramid made with these levels.
     ///
     /// # Errors
-    /// Of the overlay.
+    /// The errors of the overlay.
     pub fn reduce(&mut self, limit: u64) -> Result<()> {
         let (first, mut last) = (*self.options.zooms.start(), *self.options.zooms.end());
         while last > first && self.count(limit)? > limit {
@@ -106,7 +106,7 @@ impl Pyramid {
     /// [`count()`](super::count()).
     ///
     /// # Errors
-    /// Of the overlay.
+    /// The errors of the overlay.
     pub fn count(&self, limit: u64) -> Result<u64> {
         let zooms = || self.options.zooms.clone();
         let levels = zooms().map(|zoom| self.level(zoom).count_of_boxes());

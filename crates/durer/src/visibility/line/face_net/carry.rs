@@ -30,7 +30,8 @@ impl FaceNet {
     /// Goes along all edges that are not flat, each once, from a corner whose state is known.
     ///
     /// # Errors
-    /// Those of the carrier and of the work, which is checked at each edge; [`Error::Parameter`] where two ways to a corner lead to different states: something touches there, so that
+    /// The errors of the carrier and of the work, which is checked at each edge; [`Error::Parameter`] if two ways to a
+    /// corner lead to different states: something touches there, so that
     /// rounding decides which of two is in front.
     pub(in super::super) fn carry<C: Carrier>(&self, carrier: &mut C, work: &Work) -> Result<()> {
         let (corners, edges) = (self.points.len() as u64, self.edges.len() as u64);
