@@ -148,7 +148,10 @@ impl<'a> PreparedTexture<'a> {
                 let (x0, x1, tx) = linear(uv.x, level.width, wrap_u);
                 let (y0, y1, ty) = linear(uv.y, level.height, wrap_v);
                 let texels = [[x0, y0], [x1, y0], [x0, y1], [x1, y1]];
-                let values = texels.map(|[x, y]| self.fetch(level, x, y));
+                // Each by itself: `map` of an array may be a call for each texel.
+                let value = |[x, y]: [u32; 2]| self.fetch(level, x, y);
+                let values =
+                    [value(texels[0]), value(texels[1]), value(texels[2]), value(texels[3])];
                 let fractions = [tx, ty];
                 let value = bilinear(values, fractions);
                 t.step(|| Step::Bilinear { level: number, texels, fractions, values, value });

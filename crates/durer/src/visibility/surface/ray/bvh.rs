@@ -149,7 +149,9 @@ impl Bvh {
         stack.clear();
         let Some(root) = self.nodes.first() else { return };
         t.step(|| Test::Box);
-        stack.extend(enter(&root.bounds).map(|at| (0, at)));
+        if let Some(at) = enter(&root.bounds) {
+            stack.push((0, at));
+        }
         while let Some((index, at)) = stack.pop() {
             if at > limit {
                 continue;

@@ -1,9 +1,10 @@
 //! The visible surfaces along rays from the eye: an opaque one, and blended ones before it.
 
+use super::bvh::Test;
 use super::primary::ScreenHit;
 use super::{Caster, Step, Tests};
 use crate::target::NO_ITEM;
-use crate::trace::NoTrace;
+use crate::trace::{NoTrace, Tracer};
 use crate::visibility::surface::layers::{Layer, sort_layers};
 use crate::visibility::surface::visible::{Masks, nearer};
 
@@ -30,6 +31,29 @@ impl<'a> Eye<'a> {
         offset: [i32; 2],
         steps: &mut Vec<Step>,
     ) -> Option<ScreenHit> {
+        let mut tests = Tests::default();
+        let opaque = match self.caster.report {
+            None => self.first_opaque([x, y], offset, &mut NoTrace),
+            Some(_) => self.first_opaque([x, y], offset, &mut tests),
+        };
+        let Self { caster, layers, .. } = self;
+        if let Some(o) = opaque {
+            layers.retain(|l| nearer((l.depth, l.item), (o.depth, o.item)));
+        }
+        sort_layers(layers);
+        if let Some(report) = &caster.report {
+            steps.push(report.primary([x, y], offset, self.nearest(opaque), tests));
+        }
+        opaque
+    }
+
+    /// Returns the first opaque hit of a ray, and puts the blended ones that are found on the way into the layers.
+    fn first_opaque(
+        &mut self,
+        [x, y]: [i32; 2],
+        offset: [i32; 2],
+        tests: &mut impl Tracer<Test>,
+    ) -> Option<ScreenHit> {
         let Self { caster, masks, stack, layers } = self;
         layers.clear();
         let hides = |hit: &ScreenHit| {
@@ -43,19 +67,7 @@ impl<'a> Eye<'a> {
             }
             !blends
         };
-        let mut tests = Tests::default();
-        let opaque = match caster.report {
-            None => caster.rays.cast([x, y], offset, stack, hides, &mut NoTrace),
-            Some(_) => caster.rays.cast([x, y], offset, stack, hides, &mut tests),
-        };
-        if let Some(o) = opaque {
-            layers.retain(|l| nearer((l.depth, l.item), (o.depth, o.item)));
-        }
-        sort_layers(layers);
-        if let Some(report) = &caster.report {
-            steps.push(report.primary([x, y], offset, self.nearest(opaque), tests));
-        }
-        opaque
+        caster.rays.cast([x, y], offset, stack, hides, tests)
     }
 
     /// Returns the depth and item of the first hit of the latest ray, which found `opaque`.
