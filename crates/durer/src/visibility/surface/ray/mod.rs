@@ -279,7 +279,8 @@ impl Caster<'_> {
     fn band(&self, top: i32, bottom: i32) -> Band {
         let mut band = Band { hits: Vec::new(), colors: Vec::new(), steps: Vec::new() };
         let mut eye = Eye::new(self);
-        let mut whitted = Whitted::new(self.world.as_ref(), self.lighting, self.options);
+        let counts = self.report.is_some();
+        let mut whitted = Whitted::new(self.world.as_ref(), self.lighting, self.options, counts);
         let window = self.input.view.window();
         let columns = window.x0()..window.x1();
         if self.input.work.is_stopped() {

@@ -4,11 +4,12 @@
 //! Inexpensive BRDF Model for Physically-based Rendering*, Eurographics 1994.
 
 use super::world::{Cast, Ray, WorldHit, WorldTriangles};
-use super::{Options, RayKind};
+use super::{Options, RayKind, Tests};
 use crate::math::{Vec3, Vec4};
 use crate::scene::{Material, Projection, ShadingModel};
 use crate::shade::color::premultiply;
 use crate::shade::{PreparedLights, Shading};
+use crate::trace::NoTrace;
 use crate::visibility::surface::Background;
 use crate::visibility::surface::layers::compose;
 use crate::visibility::surface::lit::{Lighting, Lit, Seen};
@@ -40,6 +41,8 @@ pub struct Whitted<'a> {
     /// The lights without those that do not reach the point.
     reaching: PreparedLights,
     default_material: Material,
+    /// True if tests of boxes and triangles are counted.
+    counts: bool,
     stack: Vec<(u32, f32)>,
 }
 
@@ -73,6 +76,7 @@ impl<'a> Whitted<'a> {
         world: Option<&'a WorldTriangles>,
         shared: Lighting<'a>,
         options: &'a Options,
+        counts: bool,
     ) -> Self {
         Self {
             world,
@@ -81,6 +85,7 @@ impl<'a> Whitted<'a> {
             lit: Lit::new(shared),
             reaching: shared.lights.clone(),
             default_material: Material::default(),
+            counts,
             stack: Vec::new(),
         }
     }
@@ -217,8 +222,8 @@ impl<'a> Whitted<'a> {
 
     /// Returns the nearest hit of a ray; for shadows, blended surfaces are left out.
     fn cast(&mut self, world: &WorldTriangles, ray: &Ray, shadow: bool) -> Cast {
-        let Self { lit, stack, shared, .. } = self;
-        world.nearest(ray, stack, |hit| {
+        let Self { lit, stack, shared, counts, .. } = self;
+        let accept = |hit: &WorldHit| {
             let coverage = shared.runs[run_of(shared.runs, hit.item)].coverage;
             match coverage {
                 Coverage::Opaque => true,
@@ -228,7 +233,13 @@ impl<'a> Whitted<'a> {
                     lit.alpha(hit.item, seen) > 0.0
                 }
             }
-        })
+        };
+        let mut tests = Tests::default();
+        let hit = match *counts {
+            false => world.nearest(ray, stack, accept, &mut NoTrace),
+            true => world.nearest(ray, stack, accept, &mut tests),
+        };
+        Cast { hit, tests }
     }
 
     /// Removes from [`Self::reaching`] the lights that are blocked from a point. Blended surfaces cast no shadow.

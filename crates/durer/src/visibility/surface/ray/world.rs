@@ -2,9 +2,10 @@
 //!
 //! S. Woop, C. Benthin, I. Wald, *Watertight Ray/Triangle Intersection*, JCGT 2013.
 
-use super::bvh::{Box3, Bvh, Tests, surface};
+use super::bvh::{Box3, Bvh, Test, Tests, surface};
 use crate::math::Vec3;
 use crate::scene::Topology;
+use crate::trace::Tracer;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::points::attributes::Weights;
 
@@ -34,6 +35,7 @@ pub struct WorldHit {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cast {
     pub hit: Option<WorldHit>,
+    /// All 0 unless steps are recorded.
     pub tests: Tests,
 }
 
@@ -80,7 +82,8 @@ impl WorldTriangles {
         ray: &Ray,
         stack: &mut Vec<(u32, f32)>,
         mut accept: impl FnMut(&WorldHit) -> bool,
-    ) -> Cast {
+        tests: &mut impl Tracer<Test>,
+    ) -> Option<WorldHit> {
         let (sheared, inverse) = (Sheared::new(ray), ray.direction.recip());
         let mut best: Option<WorldHit> = None;
         let enter = |b: &Box3| enter(b, ray, inverse);
@@ -98,9 +101,8 @@ impl WorldTriangles {
                 best = Some(hit);
             }
         };
-        let mut tests = Tests::default();
-        self.bvh.visit(ray.to, stack, enter, visit, &mut tests);
-        Cast { hit: best, tests }
+        self.bvh.visit(ray.to, stack, enter, visit, tests);
+        best
     }
 }
 
@@ -140,7 +142,7 @@ impl Sheared {
     }
 
     /// Returns the distance and barycentric coordinates of the hit of a triangle, from either side.
-    #[inline]
+    #[inline(always)]
     fn hit(&self, corners: &[Vec3; 3]) -> Option<(f32, Weights)> {
         let [kx, ky, kz] = self.axes;
         let local = corners.map(|p| {
