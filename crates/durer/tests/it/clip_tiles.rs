@@ -116,6 +116,38 @@ fn areas_are_divided_among_tiles() {
 }
 
 #[test]
+fn a_pyramid_with_fewer_levels_has_the_tiles_of_one_made_with_them() {
+    // A wave whose points appear level by level.
+    let point =
+        |i: u32| DVec2::new(0.1 + f64::from(i) / 400.0, 0.5 + (f64::from(i) * 1.3).sin() / 500.0);
+    let wave = Feature {
+        layer: 0,
+        body: Body::Lines { points: (0..300).map(point).collect(), ends: vec![300] },
+        fill: WindingRule::EvenOdd,
+    };
+    let options = Options { zooms: 0..=6, ..Options::default() };
+    let mut reduced = Pyramid::new(vec![wave.clone()], options.clone()).unwrap();
+    reduced.reduce(20).unwrap();
+    assert!(reduced.count(u64::MAX).unwrap() <= 20);
+    let zooms = reduced.zooms();
+    assert!(*zooms.end() > 1 && *zooms.end() < 6, "{zooms:?}");
+    let made = Pyramid::new(vec![wave], Options { zooms: zooms.clone(), ..options }).unwrap();
+    for zoom in zooms {
+        let tiles = |pyramid: &Pyramid| {
+            let mut found = Vec::new();
+            let take = |tile, pieces| {
+                found.push((tile, pieces));
+                Ok::<_, Error>(())
+            };
+            pyramid.visit(zoom, |_, pieces| pieces, take).unwrap();
+            found
+        };
+        assert!(!tiles(&made).is_empty());
+        assert_eq!(tiles(&reduced), tiles(&made), "{zoom}");
+    }
+}
+
+#[test]
 fn buffers_reach_around_the_world() {
     let options = Options { zooms: 1..=1, ..Options::default() };
     let found = tiles(vec![square(0.0, 0.1, 0.001)], &options).unwrap();
