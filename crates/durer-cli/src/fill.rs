@@ -188,7 +188,7 @@ impl Picture {
         let bytes = input::bytes_within(&args.image, &limits)?;
         let orientation = Orientation::of(&bytes);
         if image::bits_per_sample(&bytes) > 8 {
-            let image = image::decode_deep(&bytes, name, &limits).map_err(fail)?;
+            let image = image::decode_deep(&bytes, "", &limits).map_err(fail)?;
             let [r, g, b, a] = args.color;
             let channels = Channels {
                 color: image.channels.color || r != g || g != b,
@@ -196,7 +196,7 @@ impl Picture {
             };
             return Ok(Self::Sixteen(orientation.turned(image.pixels), channels));
         }
-        let image = image::decode(&bytes, name, &limits).map_err(fail)?;
+        let image = image::decode(&bytes, "", &limits).map_err(fail)?;
         let pixels = Pixels::from_data(image.width, image.height, image.data);
         let turned = orientation.turned(pixels.map_err(|e| fail(e.into()))?);
         let charged = turned.charged_to(&args.running.work, "picture");

@@ -28,7 +28,8 @@ pub struct InfoArgs {
     /// model from standard input
     #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub models: Vec<PathBuf>,
-    /// Describe only this layer of a TopoJSON or GeoPackage file, or this file of an archive [default: all layers]
+    /// Describe only this layer of a TopoJSON or GeoPackage file; of an archive, this file or FILE/LAYER [default: all
+    /// layers]
     #[arg(long, value_name = "NAME")]
     pub layer: Option<String>,
     /// Write JSON: one object, or an array of them for several files

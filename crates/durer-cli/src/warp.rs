@@ -189,8 +189,7 @@ fn check(options: &str, camera: &Camera) -> Result<(), Failure> {
 }
 
 fn load(color: &Path, depth: &Path, limits: &Limits) -> Result<Loaded, Failure> {
-    let name = color.display().to_string();
-    let image = image::decode(&input::bytes_within(color, limits)?, &name, limits)
+    let image = image::decode(&input::bytes_within(color, limits)?, "", limits)
         .map_err(|e| Failure::of_file(color, e))?;
     let colors = Pixels::from_data(image.width, image.height, image.data)
         .map_err(|e| Failure::of_file(color, e))?;

@@ -141,13 +141,14 @@ pub struct Member<B> {
     pub bytes: Vec<u8>,
     /// The files beside it.
     pub beside: Inside<B>,
-    /// True if the archive has several wanted files.
-    pub chosen: bool,
+    /// The part of the choice that names something within the file.
+    pub within: Option<String>,
 }
 
 /// Returns the only file of an archive whose name is wanted, or of several the one that is called `choice`, with its
-/// folder or without, with its suffix or without; in messages, `kind` names what is wanted, and `hint` tells what to do
-/// about several.
+/// folder or without, with its suffix or without. After a slash, a choice among several files can name something within
+/// the file, such as a layer; beside a single file, all of the choice does. In messages, `kind` names what is wanted, and
+/// `hint` tells what to do about several.
 ///
 /// # Errors
 /// [`Error::Unknown`] if no file is wanted; [`Error::Unsupported`] if there are several and the choice is none of them;
@@ -161,12 +162,12 @@ pub fn only<B: AsRef<[u8]>>(
     let mut archive = Archive::open(bytes, limits)?;
     let mut found: Vec<String> =
         files(&archive.archive).into_iter().filter(|name| wanted(name)).collect();
-    let chosen = found.len() > 1;
-    if let Some(choice) = choice.filter(|_| chosen) {
-        let all = std::mem::take(&mut found);
-        found = all.iter().filter(|name| is_called(name, choice)).cloned().collect();
-        if found.is_empty() {
-            found = all;
+    let mut within = choice;
+    if let Some(choice) = choice.filter(|_| found.len() > 1) {
+        let (called, rest) = called(&found, choice);
+        within = rest;
+        if !called.is_empty() {
+            found = called;
         }
     }
     match &found[..] {
@@ -175,7 +176,8 @@ pub fn only<B: AsRef<[u8]>>(
             let bytes = archive.read(name)?;
             let folder = name.rfind('/').map_or("", |end| &name[..=end]).to_owned();
             let beside = Inside { archive: RefCell::new(archive), folder };
-            Ok(Member { name: name.clone(), bytes, beside, chosen })
+            let (name, within) = (name.clone(), within.map(str::to_owned));
+            Ok(Member { name, bytes, beside, within })
         }
         several => {
             let shown: Vec<&str> = several.iter().map(String::as_str).take(MOST_NAMES).collect();
@@ -188,6 +190,18 @@ pub fn only<B: AsRef<[u8]>>(
             })
         }
     }
+}
+
+/// Returns the files that a choice names, and the rest of the choice after their name and a slash.
+fn called<'a>(files: &[String], choice: &'a str) -> (Vec<String>, Option<&'a str>) {
+    let ends = choice.rmatch_indices('/').map(|(slash, _)| (slash, Some(&choice[slash + 1..])));
+    let mut ways = std::iter::once((choice.len(), None)).chain(ends);
+    let found = ways.find_map(|(end, rest)| {
+        let files = files.iter().filter(|file| is_called(file, &choice[..end]));
+        let files: Vec<String> = files.cloned().collect();
+        (!files.is_empty()).then_some((files, rest))
+    });
+    found.unwrap_or_default()
 }
 
 /// Returns whether a path is called so, with its folder or without, with its suffix or without.
@@ -228,7 +242,7 @@ mod tests {
         let limits = Limits::default();
         let member = only(archive, &limits, shp, ("map data", None, "")).expect("one");
         assert_eq!((&member.name[..], &member.bytes[..]), ("data/a.shp", &b"1"[..]));
-        assert!(!member.chosen);
+        assert_eq!(member.within, None);
         assert_eq!(member.beside.read("a.dbf", 9).expect("case does not count"), b"2");
         assert!(member.beside.read("a.prj", 9).expect_err("none").contains("not in the archive"));
         assert!(member.beside.read("a.dbf", 0).expect_err("large").contains("more than 0 bytes"));
@@ -246,10 +260,21 @@ mod tests {
                 ("models", choice, "unpack it, or pack one alone"),
             )
         };
-        for (choice, bytes) in [("a", b"1"), ("a.stl", b"1"), ("x/b.stl", b"2"), ("y/b", b"3")] {
+        for (choice, bytes, within) in [
+            ("a", b"1", None),
+            ("a.stl", b"1", None),
+            ("x/b.stl", b"2", None),
+            ("y/b", b"3", None),
+            ("a/roof", b"1", Some("roof")),
+            ("x/b.stl/roof/tiles", b"2", Some("roof/tiles")),
+        ] {
             let member = find(Some(choice)).expect(choice);
-            assert_eq!((&member.bytes[..], member.chosen), (&bytes[..], true), "{choice}");
+            let found = (&member.bytes[..], member.within.as_deref());
+            assert_eq!(found, (&bytes[..], within), "{choice}");
         }
+        let alone = packed(&[("x/a.stl", b"1")]);
+        let member = only(alone, &limits, |_| true, ("models", Some("a/roof"), "")).expect("one");
+        assert_eq!(member.within.as_deref(), Some("a/roof"), "there is no file to choose");
         for choice in [None, Some("c")] {
             assert_eq!(
                 message(find(choice)),

@@ -29,7 +29,7 @@ type Picture = (u32, u32, Vec<[u8; 4]>);
 ///
 /// Palettes, greys, CMYK (inverted, as Adobe writes it) and transparency become RGBA with straight alpha; 16-bit
 /// samples are rounded to 8. The first picture of an animation is used. Neither colour profiles nor the [`Orientation`]
-/// are applied. `name` names the picture in the result and in messages.
+/// are applied. `name` names the picture in the result and, unless it is empty, in messages.
 ///
 /// # Errors
 /// [`Error::Limit`] if a side is above `limits.image_side` or the pixels above `limits.decoded_bytes`,
@@ -61,11 +61,8 @@ pub(crate) fn is_picture(bytes: &[u8]) -> bool {
 }
 
 fn unsupported(name: &str, format: &str) -> Error {
-    Error::Unsupported {
-        place: Place::Whole,
-        what: format!("image `{}`: the format {format}", shown(name)),
-        hint: "use PNG, JPEG or WebP".to_owned(),
-    }
+    let hint = "use PNG, JPEG or WebP".to_owned();
+    Error::Unsupported { place: place(name), what: format!("the format {format}"), hint }
 }
 
 /// Returns the name of a picture format that is known but not read.
@@ -96,9 +93,14 @@ fn place(name: &str) -> Place {
     if name.is_empty() { Place::Whole } else { Place::Path(format!("image `{}`", shown(name))) }
 }
 
-/// Returns a decode error that names the picture.
+/// Returns a decode error that names the picture, if it has a name.
 fn broken(name: &str, message: impl std::fmt::Display) -> Error {
-    Error::whole(format!("image `{}`: {message}", shown(name)))
+    let message = message.to_string();
+    let is_said_of_it = ["is ", "has ", "holds "].iter().any(|verb| message.starts_with(verb));
+    match place(name) {
+        Place::Whole if is_said_of_it => Error::whole(format!("it {message}")),
+        place => Error::Decode { place, message },
+    }
 }
 
 /// Checks a size against the limits and against what the file's bytes can hold.
@@ -151,6 +153,9 @@ mod tests {
         let error = |bytes: &[u8]| decode(bytes, "x", &Limits::default()).unwrap_err().to_string();
         assert!(error(b"").contains("image `x`: is empty"));
         assert!(error(b"text").contains("neither PNG nor JPEG"));
+        let unnamed = |bytes: &[u8]| decode(bytes, "", &Limits::default()).unwrap_err().to_string();
+        assert_eq!(unnamed(b""), "it is empty");
+        assert!(unnamed(b"DDS ").starts_with("the format DDS is not supported"));
         assert!(
             error(b"\xabKTX 20\xbb\r\n\x1a\n").contains("KTX 2 (Basis Universal) is not supported")
         );

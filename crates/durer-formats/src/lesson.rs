@@ -66,7 +66,7 @@ pub fn read(
         warnings.push("a window is for shapes of the plane; here it does nothing".to_owned());
     }
     if IMAGES.iter().any(|magic| bytes.starts_with(magic)) {
-        let image = image::decode(bytes, name, &options.limits)?;
+        let image = image::decode(bytes, "", &options.limits)?;
         let input = grid(&image, options.seed, &mut warnings).map(Input::Grid)?;
         return Ok(Read { input, warnings });
     }

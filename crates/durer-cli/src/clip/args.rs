@@ -59,7 +59,7 @@ pub struct ClipArgs {
     /// The format of IN [default: by its content, then by its suffix]
     #[arg(long, value_name = "FORMAT", value_parser = format, help_heading = "Formats")]
     pub from: Option<GeoFormat>,
-    /// The layer of a TopoJSON or GeoPackage file [default: all, as one]
+    /// The layer of a TopoJSON or GeoPackage file; of an archive, the file or FILE/LAYER [default: all, as one]
     #[arg(long, value_name = "NAME", help_heading = "Formats")]
     pub layer: Option<String>,
     /// The format of OUT: geojson, geojsonl, geojsons, topojson, flatgeobuf, shapefile, csv, wkt, wkb, wkb-hex or svg

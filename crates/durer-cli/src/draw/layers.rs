@@ -80,7 +80,7 @@ struct LayerArgs {
     /// compressed by gzip; `-` reads standard input
     #[arg(required = true, value_name = "IN", value_hint = ValueHint::FilePath, help_heading = None)]
     input: Vec<PathBuf>,
-    /// The layer of a TopoJSON or GeoPackage file, or the file of an archive [default: all, as one]
+    /// The layer of a TopoJSON or GeoPackage file; of an archive, the file or FILE/LAYER [default: all, as one]
     #[arg(long, value_name = "NAME", help_heading = "Reading")]
     layer: Vec<String>,
     /// The colour of areas and markers, or `none` [default: #e3e7e0]

@@ -93,7 +93,8 @@ pub fn open(
 /// A file of map data in an archive, and the files beside it there.
 pub type Packed = archive::Member<Vec<u8>>;
 
-/// Returns the only file of map data in a ZIP archive, or of several the one that the layer names.
+/// Returns the only file of map data in a ZIP archive, or of several the one that the layer names: `FILE`, or
+/// `FILE/LAYER` for a layer of the file.
 pub fn packed(
     bytes: Vec<u8>,
     layer: Option<&str>,
@@ -131,15 +132,14 @@ fn open_archive(
     let mut source = source.take(limits.memory().saturating_add(1));
     source.read_to_end(&mut bytes).map_err(|e| fail(in_words(&e)))?;
     work.keep("bytes of the file", bytes.len() as u64).map_err(|e| fail(e.to_string()))?;
-    let Packed { name, bytes, beside, chosen } =
+    let Packed { name, bytes, beside, within } =
         packed(bytes, layer, &limits).map_err(|e| fail(words(&e)))?;
     let format = format.or_else(|| format_of(Path::new(&name), &bytes));
     let format = format.ok_or_else(|| fail(format!("{name}: {}", foreign(&bytes))))?;
     let file = name.rsplit('/').next().unwrap_or(&name);
-    let layer = layer.filter(|_| !chosen);
     let source = Box::new(Cursor::new(bytes)) as Box<dyn BufRead>;
     let source = Box::new(Watched::new(source, work, !format.is_geojson()));
-    let beside = Beside { name: file, resources: &beside, layer };
+    let beside = Beside { name: file, resources: &beside, layer: within.as_deref() };
     let reader = Reader::with(format, source as Box<dyn BufRead>, &beside);
     Ok((format, reader.map_err(|e| fail(format!("{name}: {}", words(&e))))?))
 }

@@ -40,6 +40,9 @@ pub struct CheckArgs {
     /// The format of IN [default: by its content, then by its suffix]
     #[arg(long, value_name = "FORMAT", value_parser = crate::layer::format)]
     pub from: Option<GeoFormat>,
+    /// The layer of a TopoJSON or GeoPackage file; of an archive, the file or FILE/LAYER [default: all, as one]
+    #[arg(long, value_name = "NAME")]
+    pub layer: Option<String>,
     /// Also compare neighbouring features: overlaps, and points that only one of two neighbours has
     #[arg(long)]
     pub coverage: bool,
@@ -93,7 +96,8 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     let messages = Messages::new(&args.running, 1);
     let name = display_name(&args.input);
     let fail = |what: String| Failure::Data(format!("{name}: {what}"));
-    let (_, mut reader) = open(&args.input, args.from, None, &args.running.work)?;
+    let chosen = args.layer.as_deref();
+    let (_, mut reader) = open(&args.input, args.from, chosen, &args.running.work)?;
     let version = env!("CARGO_PKG_VERSION");
     let mut report = Report { version, input: name.clone(), ..Report::default() };
     let (mut layer, mut numbers): (Vec<Shapes>, Vec<u64>) = (Vec::new(), Vec::new());

@@ -41,6 +41,9 @@ pub struct FilesArgs {
     /// The format of IN [default: by its content, then by its suffix]
     #[arg(long, value_name = "FORMAT", value_parser = crate::layer::format, help_heading = "Formats")]
     pub from: Option<GeoFormat>,
+    /// The layer of a TopoJSON or GeoPackage file; of an archive, the file or FILE/LAYER [default: all, as one]
+    #[arg(long, value_name = "NAME", help_heading = "Formats")]
+    pub layer: Option<String>,
     /// The format of OUT [default: by its suffix]
     #[arg(long, visible_alias = "format", value_name = "FORMAT", value_parser = crate::layer::format, help_heading = "Formats")]
     pub to: Option<GeoFormat>,
@@ -101,7 +104,8 @@ impl<'a> Job<'a> {
             return Err(Failure::Usage(message.to_owned()));
         }
         let messages = Messages::new(&args.running, 1);
-        let (from, reader) = layer::open(&args.input, args.from, None, &args.running.work)?;
+        let (from, reader) =
+            layer::open(&args.input, args.from, args.layer.as_deref(), &args.running.work)?;
         let to = named_format(&args.output, args.to, Some(from))?;
         let report = Report {
             version: env!("CARGO_PKG_VERSION"),

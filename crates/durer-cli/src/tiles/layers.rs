@@ -89,11 +89,14 @@ pub fn read(args: &TilesArgs, messages: &Messages) -> Result<Layers, Failure> {
     for (path, name) in args.inputs.iter().zip(names) {
         let files = packed_names(path);
         if files.len() < 2 {
-            read_file(&mut all, path, (&name, None), &mut fields, (args, messages))?;
+            let whole = Part { name, ..Part::default() };
+            read_file(&mut all, path, &whole, &mut fields, (args, messages))?;
+            continue;
         }
-        for file in files.iter().filter(|_| files.len() > 1) {
-            let name = part_name(args, name.clone(), names::stem(Path::new(file)));
-            read_file(&mut all, path, (&name, Some(file)), &mut fields, (args, messages))?;
+        for file in &files {
+            let name = part_name(args, &name, names::stem(Path::new(file)));
+            let part = Part { name, file: Some(file), layer: None };
+            read_file(&mut all, path, &part, &mut fields, (args, messages))?;
         }
     }
     if let Some(message) = fields.told() {
@@ -103,32 +106,54 @@ pub fn read(args: &TilesArgs, messages: &Messages) -> Result<Layers, Failure> {
     Ok(all)
 }
 
+/// Part of a file that becomes a layer.
+#[derive(Debug, Default)]
+struct Part<'a> {
+    /// The name of the layer of the tiles.
+    name: String,
+    /// The file, of an archive with several.
+    file: Option<&'a str>,
+    /// The layer, of a file with several.
+    layer: Option<&'a str>,
+}
+
+impl Part<'_> {
+    /// Returns the part as `--layer` of other commands names it.
+    fn choice(&self) -> Option<String> {
+        match (self.file, self.layer) {
+            (Some(file), Some(layer)) => Some(format!("{file}/{layer}")),
+            (one, other) => one.or(other).map(str::to_owned),
+        }
+    }
+}
+
 /// Returns the name of the layer of a part of a file: the name given for the file, or that of the part.
-fn part_name(args: &TilesArgs, of_file: String, of_part: String) -> String {
-    if args.layer.is_empty() { of_part } else { of_file }
+fn part_name(args: &TilesArgs, of_file: &str, of_part: String) -> String {
+    if args.layer.is_empty() { of_part } else { of_file.to_owned() }
 }
 
 /// Reads a file, or a part of one, into a layer; each layer of the file into its own.
 fn read_file(
     all: &mut Layers,
     path: &Path,
-    (name, part): (&str, Option<&str>),
+    part: &Part<'_>,
     fields: &mut Fields,
     (args, messages): (&TilesArgs, &Messages),
 ) -> Result<(), Failure> {
     let shown = display_name(path);
     let fail = |e| Failure::Data(format!("{shown}: {}", words(&e)));
-    let (from, mut reader) = open(path, args.from, part, &args.running.work)?;
-    let parts = reader.layers();
-    if parts.len() > 1 && !is_stream(path) {
+    let (from, mut reader) = open(path, args.from, part.choice().as_deref(), &args.running.work)?;
+    let layers = reader.layers();
+    if layers.len() > 1 && !is_stream(path) {
         drop(reader);
-        return parts.iter().try_for_each(|part| {
-            let name = part_name(args, name.to_owned(), part.clone());
-            read_file(all, path, (&name, Some(part)), fields, (args, messages))
+        return layers.iter().try_for_each(|layer| {
+            let name = part_name(args, &part.name, layer.clone());
+            let part = Part { name, layer: Some(layer), ..*part };
+            read_file(all, path, &part, fields, (args, messages))
         });
     }
-    let layer = all.layers.iter().position(|layer| layer.name == name).unwrap_or_else(|| {
-        all.layers.push(Layer { name: name.to_owned(), ..Layer::default() });
+    let layer = all.layers.iter().position(|layer| layer.name == part.name).unwrap_or_else(|| {
+        all.layers.push(Layer { name: part.name.clone(), ..Layer::default() });
         all.layers.len() - 1
     });
     if from == GeoFormat::Svg {

@@ -74,6 +74,50 @@ fn map_data_in_archives_are_read_with_the_files_beside_them() {
     folder.run("clip broken.zip --window 0,0,9,9 -o o.wkt").fails(1, "broken.zip: ");
 }
 
+/// A TopoJSON with layers of a point each.
+fn layers(names: &[&str]) -> String {
+    let object = |name: &&str| format!(r#""{name}":{{"type":"Point","coordinates":[1,2]}}"#);
+    let objects: Vec<String> = names.iter().map(object).collect();
+    format!(r#"{{"type":"Topology","arcs":[],"objects":{{{}}}}}"#, objects.join(","))
+}
+
+#[test]
+fn layers_of_files_in_archives_are_chosen_and_become_layers_of_tiles() {
+    let folder = Folder::new();
+    let topology = layers(&["roads", "rivers"]);
+    let files = [("x/b.kml", KML.as_bytes()), ("x/t.topojson", topology.as_bytes())];
+    pack(&folder, "two.zip", &files);
+    pack(&folder, "one.zip", &files[1..]);
+    for (archive, expected) in
+        [("two.zip", &["b", "rivers", "roads"][..]), ("one.zip", &["rivers", "roads"])]
+    {
+        folder.must(&format!("tiles {archive} --zoom 0 -o t --to geojson"));
+        let metadata: serde_json::Value =
+            serde_json::from_slice(&folder.read("t/tiles.json")).expect("JSON");
+        let layers = metadata["vector_layers"].as_array().expect("layers");
+        let mut names: Vec<&str> = layers.iter().filter_map(|l| l["id"].as_str()).collect();
+        names.sort_unstable();
+        assert_eq!(names, expected, "{archive}");
+    }
+    let clip = "--window 0,0,9,9 -o o.wkt";
+    for choice in ["t/roads", "t.topojson/roads", "x/t/roads", "x/t.topojson/roads"] {
+        folder.must(&format!("clip two.zip --layer {choice} {clip}"));
+        assert_eq!(folder.read("o.wkt"), b"SRID=4326;POINT (1 2)\n", "{choice}");
+        folder.must(&format!("draw two.zip --layer {choice} -o o.png --size 9x9"));
+        let told = folder.must(&format!("info two.zip --layer {choice} --json")).json();
+        assert_eq!(told["features"], 1, "{choice}");
+    }
+    for command in ["fix", "check", "buffer --distance 1", "dissolve"] {
+        let out = if command == "check" { "" } else { "-o o.geojson" };
+        let ended = folder.must(&format!("{command} two.zip --layer t/roads {out}"));
+        assert_eq!(ended.err, "", "{command}: one layer is read");
+        let ended = folder.must(&format!("{command} one.zip {out}"));
+        assert!(ended.err.contains("its 2 layers, roads, rivers, become one"), "{}", ended.err);
+    }
+    folder.run(&format!("clip two.zip --layer t/lakes {clip}")).fails(1, "there is no layer lakes");
+    folder.run(&format!("clip two.zip --layer u/roads {clip}")).fails(1, "name one with --layer");
+}
+
 #[test]
 fn models_in_archives_are_read_with_the_files_beside_them() {
     let folder = Folder::new();

@@ -187,7 +187,11 @@ fn wrong_use_is_told() {
         ("fill a.png -o b.png --color red", 2, "--at"),
         ("fill a.png -o b.png --at 1,1 --color reddish", 2, "a colour is"),
         ("fill a.png -o b.png --at 1,1 --color red --tolerance 256", 2, "256"),
-        ("fill no.png -o b.png --at 1,1 --color red", 1, "neither PNG nor JPEG"),
+        (
+            "fill no.png -o b.png --at 1,1 --color red",
+            1,
+            "error: no.png: it is neither PNG nor JPEG",
+        ),
         ("fill none.png -o b.png --at 1,1 --color red", 1, "none.png"),
     ] {
         folder.run(arguments).fails(code, part);

@@ -3,8 +3,8 @@
 //! Source: Microsoft, *Bitmap Storage* (BITMAPCOREHEADER to BITMAPV5HEADER).
 
 use super::bytes::Bytes;
-use super::{Picture, broken, check_size};
-use crate::{Error, Limits, Place, Result};
+use super::{Picture, broken, check_size, place};
+use crate::{Error, Limits, Result};
 
 /// The first bytes.
 pub(super) const MAGIC: &[u8] = b"BM";
@@ -106,8 +106,8 @@ fn header(bytes: &[u8], name: &str) -> Result<Header> {
         }
         _ => {
             return Err(Error::Unsupported {
-                place: Place::Whole,
-                what: format!("image `{name}`: a bitmap of {bits} bits packed by method {packing}"),
+                place: place(name),
+                what: format!("a bitmap of {bits} bits packed by method {packing}"),
                 hint: "save it as PNG".to_owned(),
             });
         }

@@ -2,7 +2,7 @@
 
 use super::{ReadOptions, Told, fonts, prepared, resolved, source};
 use crate::image::Orientation;
-use crate::{Error, Found, Limits, Place, Result, png, uri};
+use crate::{Found, Limits, Place, Result, png, uri};
 use durer::target::Pixels;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -93,22 +93,15 @@ fn kind(
             check(&bytes, &limits)?;
             Ok(ImageKind::JPEG(Arc::new(bytes)))
         }
-        _ => {
-            as_png(&bytes, &limits, told).map(|png| ImageKind::PNG(Arc::new(png))).map_err(in_words)
-        }
+        _ => as_png(&bytes, &limits, told)
+            .map(|png| ImageKind::PNG(Arc::new(png)))
+            .map_err(|e| e.to_string()),
     }
-}
-
-/// Returns an error without the placeholder for a picture that has no name.
-fn in_words(error: Error) -> String {
-    let words = error.to_string().replacen("image ``: ", "", 1);
-    let is_said_of_it = ["is ", "has ", "holds "].iter().any(|verb| words.starts_with(verb));
-    if is_said_of_it { format!("it {words}") } else { words }
 }
 
 fn check(bytes: &[u8], limits: &Limits) -> std::result::Result<(), String> {
     if bytes.len() < SMALL {
-        crate::image::decode(bytes, "", limits).map_err(in_words)?;
+        crate::image::decode(bytes, "", limits).map_err(|e| e.to_string())?;
     }
     Ok(())
 }
