@@ -156,7 +156,7 @@ pub fn passes(sheet: &Sheet, pens: Option<usize>, arcs: bool) -> Vec<Pass> {
             let pass = match mark {
                 Mark::Fill { .. } | Mark::Area { .. } => Some(&mut areas),
                 // Files with groups are refused.
-                Mark::Group(_) => None,
+                Mark::Gradient(_) | Mark::Group(_) => None,
                 Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => {
                     pass_of.get(*pen).and_then(|i| found.get_mut(*i))
                 }
@@ -230,6 +230,6 @@ fn chains_of(mark: &Mark, sheet: &Sheet, arcs: bool) -> Vec<Chain> {
             open(text_strokes(*at, text, *height, *anchor))
         }
         Mark::Dimension(dimension) => open(dimension_strokes(&dimension.text)),
-        Mark::Group(_) => Vec::new(),
+        Mark::Gradient(_) | Mark::Group(_) => Vec::new(),
     }
 }

@@ -13,9 +13,11 @@ mod hpgl;
 mod machine;
 mod number;
 mod pdf;
+mod pdf_gradient;
 mod pdf_text;
 mod svg;
 mod svg_curve;
+mod svg_paint;
 
 pub use dxf::write as write_dxf;
 pub use dxf_tags::DxfStrokes;
@@ -120,9 +122,9 @@ const MADE: &str = "file of the drawing";
 /// Writes a drawing in one of the formats: the sheet, or for GeoJSON the drawings laid onto it.
 ///
 /// # Errors
-/// [`Error::Io`] if writing fails; [`Error::Library`] if the budget has no room for the file, and for groups of marks in
-/// formats other than SVG and PDF; the errors of
-/// [`MachineOptions::check`].
+/// [`Error::Io`] if writing fails; [`Error::Library`] if the budget has no room for the file, for gradients and groups of
+/// marks in formats other than SVG and PDF, and for gradients in PDF that repeat more than some thousand times; the errors
+/// of [`MachineOptions::check`].
 pub fn write(
     out: &mut impl Write,
     format: DrawingFormat,
@@ -130,10 +132,14 @@ pub fn write(
     drawing: &Drawing,
     options: &FileOptions,
 ) -> Result<()> {
-    let has_groups =
-        sheet.layers.iter().flat_map(|l| &l.marks).any(|mark| matches!(mark, Mark::Group(_)));
-    if has_groups && !matches!(format, DrawingFormat::Svg | DrawingFormat::Pdf) {
-        let what = "a group of marks with a clip path or an opacity";
+    let refused = sheet.layers.iter().flat_map(|l| &l.marks).find_map(|mark| match mark {
+        Mark::Group(_) => Some("a group of marks with a clip path or an opacity"),
+        Mark::Gradient(_) => Some("a gradient"),
+        _ => None,
+    });
+    if let Some(what) = refused
+        && !matches!(format, DrawingFormat::Svg | DrawingFormat::Pdf)
+    {
         return Err(durer::Error::Unsupported { what, instead: "write SVG or PDF" }.into());
     }
     match format {

@@ -2,6 +2,7 @@
 
 use super::MADE;
 use super::number::{push, short};
+use super::pdf_gradient::{self, Gradients, Objects};
 use super::pdf_text::{self, Words};
 use crate::Result;
 use durer::curve::{PathElement, pieces};
@@ -9,7 +10,7 @@ use durer::math::DVec2;
 use durer::paper::{dashes, dimension_strokes, text_strokes};
 use durer::target::Curve;
 use durer::target::drawing::Anchor;
-use durer::target::sheet::{Mark, MarkGroup, Pen, Sheet};
+use durer::target::sheet::{GradientArea, Mark, MarkGroup, Pen, Sheet};
 use durer::work::{Charge, Work};
 use pdf_writer::writers::Resources;
 use pdf_writer::{Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
@@ -50,10 +51,11 @@ pub(super) fn write_within(out: &mut impl Write, sheet: &Sheet, work: &Work) -> 
     let longest = sheet.size.max_element() * POINTS;
     let user_unit = (longest / LONGEST).ceil().max(1.0);
     let scale = POINTS / user_unit;
+    pdf_gradient::check(sheet)?;
     let mut found = Found::default();
     let mut charge = work.charge(MADE, 0)?;
     let content = content(sheet, scale, &mut found, &mut charge)?;
-    let Found { alphas, words, forms } = found;
+    let Found { alphas, words, forms, gradients } = found;
     // Digits and a few letters take half the room at most.
     charge.grow(content.len() as u64 / 2)?;
     let content = packed(&content);
@@ -68,7 +70,9 @@ pub(super) fn write_within(out: &mut impl Write, sheet: &Sheet, work: &Work) -> 
     let form = |i: usize| after_layers(2 + i as i32);
     let forms: Vec<(Ref, String)> =
         forms.into_iter().enumerate().map(|(i, content)| (form(i), content)).collect();
-    let used = Used { layers: &layers, alphas: &alphas, font, forms: &forms };
+    let mut numbers = 2 + forms.len() as i32..;
+    let objects = gradients.objects(|| after_layers(numbers.next().unwrap_or_default()));
+    let used = Used { layers: &layers, alphas: &alphas, font, forms: &forms, gradients: &objects };
     page(&mut pdf, sheet, scale, user_unit, &used);
     pdf.stream(Ref::new(CONTENT), &content).filter(Filter::FlateDecode);
     let mut info = pdf.document_info(Ref::new(INFO));
@@ -84,6 +88,7 @@ pub(super) fn write_within(out: &mut impl Write, sheet: &Sheet, work: &Work) -> 
     }
     words.font(&mut pdf, after_layers(0), after_layers(1));
     forms.iter().for_each(|(id, content)| form_object(&mut pdf, *id, content, sheet, &used));
+    gradients.write(&mut pdf, &objects, sheet);
     out.write_all(&pdf.finish())?;
     Ok(())
 }
@@ -109,6 +114,7 @@ struct Used<'a> {
     font: Option<Ref>,
     /// Groups with an opacity.
     forms: &'a [(Ref, String)],
+    gradients: &'a Objects,
 }
 
 fn page(pdf: &mut Pdf, sheet: &Sheet, scale: f64, user_unit: f64, used: &Used<'_>) {
@@ -128,7 +134,7 @@ fn page(pdf: &mut Pdf, sheet: &Sheet, scale: f64, user_unit: f64, used: &Used<'_
     list_resources(&mut resources, used);
 }
 
-/// Lists the fonts, groups and opacities that operators name.
+/// Lists the fonts, groups, gradients and opacities that operators name.
 fn list_resources(resources: &mut Resources<'_>, used: &Used<'_>) {
     if let Some(font) = used.font {
         resources.fonts().pair(Name(pdf_text::FONT), font);
@@ -139,7 +145,9 @@ fn list_resources(resources: &mut Resources<'_>, used: &Used<'_>) {
             objects.pair(Name(format!("X{i}").as_bytes()), *id);
         }
     }
+    used.gradients.list_shadings(resources);
     let mut states = resources.ext_g_states();
+    used.gradients.list_masks(&mut states);
     for alpha in used.alphas {
         let mut state = states.insert(Name(format!("A{alpha}").as_bytes())).dict();
         let value = f32::from(*alpha) / 255.0;
@@ -168,6 +176,7 @@ struct Found {
     words: Words,
     /// Operators of the groups with an opacity.
     forms: Vec<String>,
+    gradients: Gradients,
 }
 
 /// Current state of graphics, so that only changes are written.
@@ -217,6 +226,7 @@ fn put(text: &mut String, state: &mut State, sheet: &Sheet, mark: &Mark, found: 
             curves(text, rings);
             *text += fill(*even_odd);
         }
+        Mark::Gradient(area) => put_gradient(text, state, sheet, area, found),
         Mark::Stroke { points, closed, pen } => {
             let Some(pen) = sheet.pens.get(*pen) else { return };
             set_pen(text, state, pen, &mut found.alphas);
@@ -259,6 +269,23 @@ fn put(text: &mut String, state: &mut State, sheet: &Sheet, mark: &Mark, found: 
         }
         Mark::Group(group) => put_group(text, state, sheet, group, found),
     }
+}
+
+/// Writes an area as a clip path that is filled with a gradient.
+fn put_gradient(
+    text: &mut String,
+    state: &mut State,
+    sheet: &Sheet,
+    area: &GradientArea,
+    found: &mut Found,
+) {
+    let (filled, alpha) = found.gradients.fill(&area.gradient, sheet.size);
+    set_alpha(text, state, alpha, &mut found.alphas);
+    *text += "q\n";
+    curves(text, &area.rings);
+    *text += if area.even_odd { "W* n\n" } else { "W n\n" };
+    *text += &filled;
+    *text += "Q\n";
 }
 
 /// Writes marks with a clip path and an opacity; the state after them is that before.

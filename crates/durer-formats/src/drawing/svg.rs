@@ -3,11 +3,14 @@
 
 use super::number::{push, short};
 use super::svg_curve::{self, DIGITS, pair, separator};
+use super::svg_paint::{self, paint};
 use crate::Result;
 use durer::curve::pieces;
 use durer::math::DVec2;
 use durer::paper::{dashes, dimension_strokes, text_strokes};
+use durer::target::gradient::Gradient;
 use durer::target::sheet::{ClipPath, Mark, Pen, Sheet, SheetLayer};
+use std::collections::BTreeMap;
 use std::io::Write;
 
 /// Writes a sheet as an SVG document of the sheet's size.
@@ -33,12 +36,41 @@ pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
         text += &format!("<rect width=\"{width}\" height=\"{height}\"{}/>\n", paint("fill", color));
     }
     out.write_all(text.as_bytes())?;
-    let mut clips = 0;
+    let mut defined = Defined::default();
     for layer in &sheet.layers {
-        write_layer(out, sheet, layer, &mut clips)?;
+        write_layer(out, sheet, layer, &mut defined)?;
     }
     out.write_all(b"</svg>\n")?;
     Ok(())
+}
+
+/// The clip paths and gradients that a file has so far.
+#[derive(Default)]
+struct Defined {
+    count: u64,
+    /// Identifiers of gradients by their definitions.
+    gradients: BTreeMap<String, String>,
+}
+
+impl Defined {
+    /// Returns an identifier, which no layer has.
+    fn identifier(&mut self) -> String {
+        self.count += 1;
+        format!("_{}", self.count)
+    }
+
+    /// Returns the identifier of a gradient, and writes it if it is new.
+    fn gradient(&mut self, text: &mut String, gradient: &Gradient) -> String {
+        let [start, end] = svg_paint::definition(gradient);
+        let definition = format!("{start}>{end}");
+        if let Some(id) = self.gradients.get(&definition) {
+            return id.clone();
+        }
+        let id = self.identifier();
+        *text += &format!("<{start} id=\"{id}\">{end}\n");
+        self.gradients.insert(definition, id.clone());
+        id
+    }
 }
 
 /// Writes a layer; the pen of its first stroke is the group's style, so that most strokes need none.
@@ -46,7 +78,7 @@ fn write_layer(
     out: &mut impl Write,
     sheet: &Sheet,
     layer: &SheetLayer,
-    clips: &mut u64,
+    defined: &mut Defined,
 ) -> Result<()> {
     let name = escaped(&layer.name);
     let mut text = format!(
@@ -62,7 +94,7 @@ fn write_layer(
     out.write_all(text.as_bytes())?;
     for mark in &layer.marks {
         let mut text = String::new();
-        write_mark(&mut text, sheet, mark, (common, &mut *clips));
+        write_mark(&mut text, sheet, mark, (common, &mut *defined));
         out.write_all(text.as_bytes())?;
     }
     out.write_all(b"</g>\n")?;
@@ -73,18 +105,18 @@ fn write_layer(
 fn pen_of(mark: &Mark) -> Option<usize> {
     match mark {
         Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => Some(*pen),
-        Mark::Fill { .. } | Mark::Area { .. } => None,
+        Mark::Fill { .. } | Mark::Area { .. } | Mark::Gradient(_) => None,
         Mark::Group(group) => group.marks.iter().find_map(pen_of),
         Mark::Dimension(d) => d.marks.iter().find_map(pen_of).or(Some(d.text.pen)),
     }
 }
 
-/// Writes a mark in a layer with a common pen; `clips` counts the clip paths of the file.
+/// Writes a mark in a layer with a common pen.
 fn write_mark(
     text: &mut String,
     sheet: &Sheet,
     mark: &Mark,
-    (common, clips): (Option<usize>, &mut u64),
+    (common, defined): (Option<usize>, &mut Defined),
 ) {
     let own_pen = |pen: usize| match sheet.pens.get(pen) {
         Some(style) if common != Some(pen) => stroke_style(style),
@@ -117,13 +149,19 @@ fn write_mark(
             }
         }
         Mark::Fill { rings, color, even_odd } => {
-            fill_style(text, *color, *even_odd, common);
+            fill_style(text, &paint("fill", *color), *even_odd, common);
             rings.iter().for_each(|ring| path(text, ring, true));
             *text += "\"/>\n";
         }
         Mark::Area { rings, color, even_odd } => {
-            fill_style(text, *color, *even_odd, common);
+            fill_style(text, &paint("fill", *color), *even_odd, common);
             rings.iter().for_each(|ring| svg_curve::path(text, ring));
+            *text += "\"/>\n";
+        }
+        Mark::Gradient(area) => {
+            let id = defined.gradient(text, &area.gradient);
+            fill_style(text, &format!(" fill=\"url(#{id})\""), area.even_odd, common);
+            area.rings.iter().for_each(|ring| svg_curve::path(text, ring));
             *text += "\"/>\n";
         }
         Mark::Text { at, text: words, height, anchor, pen } => {
@@ -132,14 +170,14 @@ fn write_mark(
         Mark::Dimension(dimension) => {
             *text += "<g>\n";
             for mark in &dimension.marks {
-                write_mark(text, sheet, mark, (common, &mut *clips));
+                write_mark(text, sheet, mark, (common, &mut *defined));
             }
             let words = &dimension.text;
             letters(text, &words.text, &own_pen(words.pen), &dimension_strokes(words));
             *text += "</g>\n";
         }
         Mark::Group(group) => {
-            let clip = group.clip.as_ref().map(|clip| clip_path(text, clip, clips));
+            let clip = group.clip.as_ref().map(|clip| clip_path(text, clip, defined));
             *text += "<g";
             if let Some(id) = clip {
                 *text += &format!(" clip-path=\"url(#{id})\"");
@@ -149,25 +187,24 @@ fn write_mark(
             }
             *text += ">\n";
             for mark in &group.marks {
-                write_mark(text, sheet, mark, (common, &mut *clips));
+                write_mark(text, sheet, mark, (common, &mut *defined));
             }
             *text += "</g>\n";
         }
     }
 }
 
-/// Begins the path of an area.
-fn fill_style(text: &mut String, color: [u8; 4], even_odd: bool, common: Option<usize>) {
+/// Begins the path of an area with the attributes of its colour.
+fn fill_style(text: &mut String, fill: &str, even_odd: bool, common: Option<usize>) {
     // Without a group's pen there is no stroke to be turned off.
     let no_stroke = if common.is_some() { " stroke=\"none\"" } else { "" };
     let rule = if even_odd { " fill-rule=\"evenodd\"" } else { "" };
-    *text += &format!("<path{}{rule}{no_stroke} d=\"", paint("fill", color));
+    *text += &format!("<path{fill}{rule}{no_stroke} d=\"");
 }
 
-/// Writes a clip path; returns its identifier, which no layer has.
-fn clip_path(text: &mut String, clip: &ClipPath, clips: &mut u64) -> String {
-    *clips += 1;
-    let id = format!("_{clips}");
+/// Writes a clip path; returns its identifier.
+fn clip_path(text: &mut String, clip: &ClipPath, defined: &mut Defined) -> String {
+    let id = defined.identifier();
     let rule = if clip.even_odd { " clip-rule=\"evenodd\"" } else { "" };
     *text += &format!("<clipPath id=\"{id}\"><path{rule} d=\"");
     clip.rings.iter().for_each(|ring| svg_curve::path(text, ring));
@@ -196,18 +233,6 @@ fn dash_array(pen: Option<&Pen>, length: f64, closed: bool) -> String {
         }
         None => String::new(),
     }
-}
-
-/// Returns a colour attribute, and the opacity if it is not opaque.
-fn paint(name: &str, [r, g, b, a]: [u8; 4]) -> String {
-    let color = match [r, g, b].map(|c| (c >> 4, c & 15)) {
-        [(r, s), (g, t), (b, u)] if r == s && g == t && b == u => format!("#{r:x}{g:x}{b:x}"),
-        _ => format!("#{r:02x}{g:02x}{b:02x}"),
-    };
-    if a == 255 {
-        return format!(" {name}=\"{color}\"");
-    }
-    format!(" {name}=\"{color}\" {name}-opacity=\"{}\"", short(f64::from(a) / 255.0, 3))
 }
 
 /// Appends path data: differences to the last point, which are shorter than places. They are between

@@ -109,6 +109,7 @@ impl<'a, T: PaintTarget> Painter<'a, T> {
                 self.canvas.set_anti_alias(self.smooth(path));
                 self.canvas.push_clip(&paint::path(path.data()), rule(fill.rule()));
             }
+            _ if self.united(root, map) => {}
             _ => {
                 self.canvas.begin_mask();
                 self.deeper(|this| this.group(root, map));
@@ -116,6 +117,16 @@ impl<'a, T: PaintTarget> Painter<'a, T> {
             }
         }
         outer + 1
+    }
+
+    /// Pushes a clip path of several shapes, if the canvas can do so; returns whether it is done.
+    fn united(&mut self, root: &Group, map: DAffine2) -> bool {
+        let mut shapes = Vec::new();
+        if !areas(root, map, MAX_DEPTH, &mut shapes) {
+            return false;
+        }
+        self.canvas.set_transform(DAffine2::IDENTITY);
+        self.canvas.push_united_clip(&shapes)
     }
 
     /// Pushes a mask; returns how many layers have to be popped.
@@ -296,6 +307,27 @@ fn single_path(group: &Group) -> Option<&usvg::Path> {
         [Node::Path(path)] if path.fill().is_none() || path.stroke().is_none() => Some(path),
         _ => None,
     }
+}
+
+/// Collects the filled paths of a group, in pixels; returns whether there is nothing else in it.
+fn areas(group: &Group, map: DAffine2, depth: u32, found: &mut Vec<(Path, FillRule)>) -> bool {
+    let map = map * paint::affine(group.transform());
+    plain(group)
+        && depth > 0
+        && group.children().iter().all(|node| match node {
+            Node::Group(group) => areas(group, map, depth - 1, found),
+            Node::Text(text) => areas(text.flattened(), map, depth - 1, found),
+            Node::Image(_) => false,
+            Node::Path(path) if !path.is_visible() => true,
+            Node::Path(path) => match (path.fill(), path.stroke()) {
+                (Some(fill), None) => {
+                    found.push((paint::path(path.data()).transformed(map), rule(fill.rule())));
+                    true
+                }
+                (None, None) => true,
+                (_, Some(_)) => false,
+            },
+        })
 }
 
 /// Returns whether a group only transforms its content.

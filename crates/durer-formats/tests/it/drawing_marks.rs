@@ -1,10 +1,12 @@
 //! Every kind of mark in every writer: its text in the file, to the byte if it is short.
 
-use durer::math::DVec2;
+use durer::math::{DAffine2, DVec2};
 use durer::target::dimension::{DimensionText, Measure};
 use durer::target::drawing::Anchor;
-use durer::target::sheet::Dimension;
-use durer::target::sheet::{ClipPath, Mark, MarkGroup, Pen, Sheet, SheetLayer};
+use durer::target::gradient::{Gradient, Shape, Spread};
+use durer::target::sheet::{
+    ClipPath, Dimension, GradientArea, Mark, MarkGroup, Pen, Sheet, SheetLayer,
+};
 use durer::target::{Arc, Curve, Piece};
 use durer_formats::drawing::{
     self, DrawingFormat, DxfStrokes, FileOptions, write_dxf, write_hpgl, write_pdf, write_svg,
@@ -385,4 +387,70 @@ fn groups_have_clip_paths_and_opacity() {
         let message = refused.expect_err("groups").to_string();
         assert!(message.contains("a group of marks"), "{message}");
     }
+}
+
+#[test]
+fn gradients_are_elements_and_shadings() {
+    let corner = points(&[(0.0, 0.0), (9.0, 0.0), (0.0, 9.0)]);
+    let pieces = corner[1..].iter().chain(&corner[..1]).map(|p| Piece::Line(*p)).collect();
+    let rings = vec![Curve { start: corner[0], pieces, closed: true }];
+    let area = |shape: Shape, spread: Spread, alpha: u8| {
+        let stops = vec![(0.0, [255, 0, 0, 255]), (0.5, [0, 0, 0, 255]), (1.0, [0, 0, 255, alpha])];
+        let gradient = Gradient { shape, stops, spread, transform: DAffine2::IDENTITY };
+        let rings = rings.clone();
+        Mark::Gradient(Box::new(GradientArea { rings, even_odd: false, gradient }))
+    };
+    let line = Shape::Linear { start: DVec2::new(1.0, 2.0), end: DVec2::new(4.0, 2.0) };
+    let (center, focus) = (DVec2::new(3.0, 4.0), DVec2::new(3.0, 5.0));
+    let circle = Shape::Radial { center, radius: 2.0, focus, focus_radius: 0.0 };
+    let marks = vec![
+        area(line, Spread::Pad, 255),
+        area(line, Spread::Pad, 255),
+        area(circle, Spread::Pad, 128),
+    ];
+    let sheet = sheet(marks);
+    let svg = utf8(written(|out| write_svg(out, &sheet)));
+    let units = "gradientUnits=\"userSpaceOnUse\"";
+    let stops = "<stop offset=\"0\" stop-color=\"#f00\"/><stop offset=\".5\" stop-color=\"#000\"/>";
+    for part in [
+        &format!("<linearGradient {units} x1=\"1\" y1=\"2\" x2=\"4\" y2=\"2\" id=\"_1\">{stops}")[..],
+        "<path fill=\"url(#_1)\" d=\"M0 0h9l-9 9v-9z\"/>\n<path fill=\"url(#_1)\"",
+        &format!(
+            "<radialGradient {units} cx=\"3\" cy=\"4\" r=\"2\" fx=\"3\" fy=\"5\" id=\"_2\">{stops}"
+        ),
+        "<stop offset=\"1\" stop-color=\"#00f\" stop-opacity=\".502\"/></radialGradient>",
+    ] {
+        assert!(svg.contains(part), "{part} is not in\n{svg}");
+    }
+    let pdf = written(|out| write_pdf(out, &sheet));
+    let operators = content(&pdf);
+    for part in ["h\nW n\n/S0 sh\nQ\n", "h\nW n\n/G0 gs\n/S3 sh\nQ\n"] {
+        assert!(operators.contains(part), "{part} is not in\n{operators}");
+    }
+    let text = String::from_utf8_lossy(&pdf);
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in [
+        "/ShadingType 2 /ColorSpace /DeviceRGB /Coords [1 2 4 2] /Extend [true true]",
+        "/ShadingType 3 /ColorSpace /DeviceGray /Coords [3 5 0 3 4 2] /Extend [true true]",
+        "/Bounds [0.5] /Encode [0 1 0 1]",
+    ] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+    let drawing = durer::target::drawing::Drawing::default();
+    let write = |format: DrawingFormat, sheet: &Sheet| {
+        drawing::write(&mut Vec::new(), format, sheet, &drawing, &FileOptions::default())
+    };
+    for format in [DrawingFormat::Dxf, DrawingFormat::Hpgl, DrawingFormat::Gcode] {
+        let message = write(format, &sheet).expect_err("gradients").to_string();
+        assert!(message.contains("a gradient"), "{message}");
+    }
+    let end = DVec2::new(1.0 + 1e-3, 2.0);
+    let often = self::sheet(vec![area(
+        Shape::Linear { start: DVec2::new(1.0, 2.0), end },
+        Spread::Repeat,
+        255,
+    )]);
+    let message = write(DrawingFormat::Pdf, &often).expect_err("too often").to_string();
+    assert!(message.contains("repeats more than"), "{message}");
+    write(DrawingFormat::Svg, &often).expect("SVG repeats as often as wanted");
 }

@@ -101,7 +101,7 @@ impl Near {
             Mark::Stroke { points, closed, .. } => self.chain(points, *closed),
             Mark::Curve { curve, .. } => self.chain(&pieces::points(curve, NEAR), curve.closed),
             Mark::Fill { rings, .. } => rings.iter().for_each(|ring| self.chain(ring, true)),
-            Mark::Area { .. } => {}
+            Mark::Area { .. } | Mark::Gradient(_) => {}
             Mark::Group(group) => group.marks.iter().for_each(|mark| self.add(mark)),
             Mark::Text { .. } => self.quads.extend(text_quad(mark)),
             Mark::Dimension(dimension) => {

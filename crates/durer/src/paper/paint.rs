@@ -9,6 +9,7 @@ use crate::raster::line::wide::{Cap, Join, Stroke};
 use crate::raster::paint::{Canvas, Options, Paint};
 use crate::target::sheet::{Mark, Pen, Sheet};
 use crate::target::{Curve, Pixels};
+use std::sync::Arc;
 
 /// Number of marks that are painted at a time: their edges take more memory than they do.
 const AT_ONCE: usize = 1 << 15;
@@ -68,6 +69,11 @@ fn put(canvas: &mut Canvas, mark: &Mark, pens: &[Pen]) -> Result<()> {
         }
         Mark::Area { rings, color, even_odd } => {
             canvas.fill(&around(rings), rule(*even_odd), &Paint::Color(*color), 1.0);
+            Ok(())
+        }
+        Mark::Gradient(area) => {
+            let paint = Paint::Gradient(Arc::new(area.gradient.clone()));
+            canvas.fill(&around(&area.rings), rule(area.even_odd), &paint, 1.0);
             Ok(())
         }
         Mark::Stroke { points, closed, pen } => match pens.get(*pen) {

@@ -4,6 +4,7 @@ mod curve;
 pub mod dimension;
 pub mod drawing;
 mod framebuffer;
+pub mod gradient;
 pub mod sheet;
 
 pub use curve::{Arc, Curve, Piece};

@@ -4,6 +4,7 @@
 use super::Curve;
 use super::dimension::{DimensionText, Measure};
 use super::drawing::Anchor;
+use super::gradient::Gradient;
 use crate::math::DVec2;
 
 /// Pen that draws a stroke.
@@ -56,6 +57,8 @@ pub enum Mark {
         /// True if the rings are filled by the even-odd rule instead of the non-zero rule.
         even_odd: bool,
     },
+    /// Filled area whose colour changes. SVG and PDF files and pixels have them.
+    Gradient(Box<GradientArea>),
     /// Line of text.
     Text {
         /// Point of the base line.
@@ -73,6 +76,17 @@ pub enum Mark {
     Dimension(Box<Dimension>),
     /// Marks with a common clip path and opacity. SVG and PDF files and pixels have them.
     Group(Box<MarkGroup>),
+}
+
+/// Filled area whose colour changes along a line or between two circles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GradientArea {
+    /// Closed rings. By the non-zero rule, outer rings run in one direction, holes in the other.
+    pub rings: Vec<Curve>,
+    /// True if the rings are filled by the even-odd rule instead of the non-zero rule.
+    pub even_odd: bool,
+    /// The colours; lengths in millimetres of the paper.
+    pub gradient: Gradient,
 }
 
 /// Marks that are painted onto an empty layer, which is then laid over the marks below it.
@@ -124,7 +138,7 @@ pub struct SheetLayer {
 impl Mark {
     /// Returns whether the mark is an area, which covers the marks beneath.
     pub const fn is_area(&self) -> bool {
-        matches!(self, Self::Fill { .. } | Self::Area { .. })
+        matches!(self, Self::Fill { .. } | Self::Area { .. } | Self::Gradient(_))
     }
 }
 

@@ -155,7 +155,7 @@ impl ByPen {
             Mark::Curve { curve, pen } => self.of(pen).1.push(Chain::Curved(curve)),
             Mark::Text { pen, .. } => self.of(pen).2.push(mark),
             Mark::Dimension(ref dimension) => self.of(dimension.text.pen).2.push(mark),
-            Mark::Fill { .. } | Mark::Area { .. } | Mark::Group(_) => {}
+            Mark::Fill { .. } | Mark::Area { .. } | Mark::Gradient(_) | Mark::Group(_) => {}
         }
     }
 

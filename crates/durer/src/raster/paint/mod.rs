@@ -11,8 +11,9 @@ mod outline;
 mod source;
 mod target;
 
+pub use crate::target::gradient::{Gradient, Shape, Spread};
 pub use blend::Blend;
-pub use source::{Color, Filter, Gradient, Paint, Pattern, Shape, Spread};
+pub use source::{Color, Filter, Paint, Pattern};
 pub use target::PaintTarget;
 
 use std::sync::{Mutex, PoisonError};

@@ -6,57 +6,10 @@ use std::sync::Arc;
 use super::color::{Space, premultiply};
 use crate::math::{DAffine2, DVec2};
 use crate::target::Pixels;
+use crate::target::gradient::{Gradient, Shape, Spread};
 
 /// 8-bit sRGB with straight alpha.
 pub type Color = [u8; 4];
-
-/// Extension of a gradient before its first and after its last stop.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Spread {
-    /// The colour of the end.
-    #[default]
-    Pad,
-    /// The gradient again.
-    Repeat,
-    /// The gradient turned round, and so on.
-    Reflect,
-}
-
-/// Curve along which a gradient's parameter runs from 0 to 1; points in the paint's own space.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Shape {
-    /// Gradient from one point to another, constant across.
-    Linear {
-        /// Point where the parameter is 0.
-        start: DVec2,
-        /// Point where the parameter is 1.
-        end: DVec2,
-    },
-    /// Gradient from a focal circle to an outer circle, as in SVG and PDF.
-    Radial {
-        /// Centre of the outer circle, where the parameter is 1.
-        center: DVec2,
-        /// Radius of the outer circle.
-        radius: f64,
-        /// Centre of the inner circle, where the parameter is 0.
-        focus: DVec2,
-        /// Radius of the inner circle.
-        focus_radius: f64,
-    },
-}
-
-/// A colour ramp along a line or between two circles.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Gradient {
-    /// Geometry of the parameter.
-    pub shape: Shape,
-    /// Parameters 0 … 1 in rising order and their colours.
-    pub stops: Vec<(f64, Color)>,
-    /// Extension outside 0 … 1.
-    pub spread: Spread,
-    /// Map from the paint's own space to the path's.
-    pub transform: DAffine2,
-}
 
 /// An image, as it is or spread over the plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -196,14 +149,9 @@ impl<P: Space> Source<P> {
     }
 
     fn gradient(g: &Arc<Gradient>, pixel_from_paint: DAffine2, opacity: f64) -> Self {
-        let Some(last) = g.stops.last() else { return Self::Solid(P::CLEAR) };
-        let flat = match g.shape {
-            Shape::Linear { start, end } => start == end,
-            Shape::Radial { radius, .. } => radius.partial_cmp(&0.0) != Some(Ordering::Greater),
-        };
-        let inverse = inverse(pixel_from_paint);
-        let (false, Some(paint_from_pixel)) = (flat || g.stops.len() == 1, inverse) else {
-            return Self::Solid(premultiply(last.1, opacity as f32));
+        let only = g.only_color(pixel_from_paint);
+        let (None, Some(paint_from_pixel)) = (only, inverse(pixel_from_paint)) else {
+            return Self::Solid(premultiply(only.unwrap_or_default(), opacity as f32));
         };
         Self::Ramp(Box::new(Ramp::new(g, paint_from_pixel, opacity)))
     }

@@ -36,6 +36,12 @@ pub trait PaintTarget {
     /// Restricts later marks to the inside of a path.
     fn push_clip(&mut self, path: &Path, rule: FillRule);
 
+    /// Restricts later marks to the inside of any of several paths, if the target needs no mask for that; returns
+    /// whether it does.
+    fn push_united_clip(&mut self, _paths: &[(Path, FillRule)]) -> bool {
+        false
+    }
+
     /// Starts a group.
     fn push_group(&mut self);
 

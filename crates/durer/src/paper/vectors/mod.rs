@@ -1,23 +1,28 @@
 //! A sheet as the target of painting operations, for maps and SVG drawings as vectors.
 
+mod contours;
+
 use crate::Result;
-use crate::clip::polygon::{rectangle, sutherland_hodgman};
-use crate::curve::{Path, PathElement, flatten, pieces};
+use crate::clip::polygon::overlay::{self, overlay};
+use crate::clip::polygon::{BooleanOp, Shapes, WindingRule, rectangle, sutherland_hodgman};
+use crate::curve::{Path, flatten, pieces};
 use crate::math::{DAffine2, DVec2, Rect};
 use crate::raster::coverage::FillRule;
 use crate::raster::line::wide::{self, Cap, Join, Stroke};
 use crate::raster::paint::{Blend, MaskKind, Options, Paint, PaintTarget};
-use crate::target::sheet::{ClipPath, Mark, MarkGroup, Pen, Sheet, SheetLayer};
+use crate::target::gradient::{Gradient, scale_of};
+use crate::target::sheet::{ClipPath, GradientArea, Mark, MarkGroup, Pen, Sheet, SheetLayer};
 use crate::target::{Curve, Piece};
 use crate::trace::NoTrace;
 use crate::work::Work;
+use contours::{contours, corners, upright};
 use std::collections::BTreeSet;
 
 /// Millimetres of a pixel: 96 of them are an inch, as in CSS.
 const MILLIMETRES: f64 = 25.4 / 96.0;
 
-/// Largest relative difference of the axes of a map that keeps the shape of pens.
-const SIMILAR: f64 = 1e-9;
+/// Relative difference of areas that are the same by both rules: the curves of both are rounded to one grid.
+const SAME: f64 = 1e-9;
 
 /// Name of the recorded marks in errors about memory.
 const NOTED: &str = "marks of the drawing";
@@ -25,7 +30,8 @@ const NOTED: &str = "marks of the drawing";
 /// Painter of marks onto a sheet, whose pixels are 1/96 inch.
 ///
 /// Strokes with round joins become strokes with pens; other strokes, dashed and translucent ones become areas of the
-/// same outline. Parts far beyond the sheet are cut off.
+/// same outline. Parts far beyond the sheet are cut off. For CAD, where lines are to be lines, it paints differently
+/// ([`SheetPainter::set_cad`]).
 ///
 /// ```
 /// use durer::curve::Path;
@@ -51,6 +57,15 @@ pub struct SheetPainter {
     marks: Vec<Mark>,
     open: Vec<Open>,
     refused: BTreeSet<&'static str>,
+    /// Part of the paper to which marks are cut; only for CAD.
+    cut: Option<Rect>,
+}
+
+/// Colours of a mark.
+#[derive(Debug, Clone, PartialEq)]
+enum Ink {
+    Plain([u8; 4]),
+    Gradient(Gradient),
 }
 
 /// A clip path, mask or group that is open, with its marks.
@@ -65,6 +80,10 @@ enum Kind {
     Clip(ClipPath),
     /// A clip path that holds the whole sheet, or a finished mask.
     Everything,
+    /// A clip path that holds nothing of the sheet.
+    Nothing,
+    /// A rectangle that marks are cut to, for which this one was in force before.
+    Cut(Rect),
     Group,
     Mask,
 }
@@ -81,7 +100,16 @@ impl SheetPainter {
             marks: Vec::new(),
             open: Vec::new(),
             refused: BTreeSet::new(),
+            cut: None,
         }
+    }
+
+    /// Prepares for CAD, whose files have neither clip paths nor groups and fill areas by the even-odd rule: strokes
+    /// become strokes with pens whatever their joins, with the dashes of the pen; marks are cut at the border of the
+    /// paper and at upright clip paths; areas that wind otherwise become areas of the even-odd rule. Gradients, other
+    /// clip paths and groups with an opacity are refused.
+    pub fn set_cad(&mut self) {
+        self.cut = Rect::new(DVec2::ZERO, self.sheet.size).ok();
     }
 
     /// Sets the colour of the paper; a transparent one leaves it blank.
@@ -121,9 +149,11 @@ impl SheetPainter {
     /// Moves all marks to the current layer.
     fn end_layer(&mut self) {
         let kinds: Vec<Kind> = self.open.iter().map(|open| open.kind.clone()).collect();
+        let cut = self.cut;
         while !self.open.is_empty() {
             self.pop(1.0);
         }
+        self.cut = cut;
         self.open.extend(kinds.into_iter().map(|kind| Open { kind, marks: Vec::new() }));
         let marks = std::mem::take(&mut self.marks);
         match self.sheet.layers.last_mut() {
@@ -143,21 +173,41 @@ impl SheetPainter {
         }
     }
 
-    /// Returns the colour of a paint; notes other paints.
-    fn color(&mut self, paint: &Paint, opacity: f64) -> Option<[u8; 4]> {
+    /// Returns the ink of a paint, unless nothing of it is visible; notes paints that no ink is like.
+    fn ink(&mut self, paint: &Paint, opacity: f64) -> Option<Ink> {
+        let faded = |[r, g, b, a]: [u8; 4]| {
+            let alpha = (f64::from(a) * opacity.clamp(0.0, 1.0)).round() as u8;
+            [r, g, b, alpha]
+        };
+        let plain = |color| Some(faded(color)).filter(|c| c[3] > 0).map(Ink::Plain);
         match paint {
-            Paint::Color([r, g, b, a]) => {
-                let alpha = (f64::from(*a) * opacity.clamp(0.0, 1.0)).round() as u8;
-                return (alpha > 0).then_some([*r, *g, *b, alpha]);
+            Paint::Color(color) => plain(*color),
+            Paint::Gradient(gradient) => {
+                let mut gradient = gradient.mapped(self.paper_from_path);
+                if let Some(color) = gradient.only_color(gradient.transform) {
+                    return plain(color);
+                }
+                gradient.stops.iter_mut().for_each(|(_, color)| *color = faded(*color));
+                gradient.stops.iter().any(|(_, color)| color[3] > 0).then_some(())?;
+                if self.cut.is_some() {
+                    self.leave_out("gradients");
+                    return None;
+                }
+                Some(Ink::Gradient(gradient))
             }
-            Paint::Gradient(_) => self.leave_out("gradients"),
-            Paint::Pattern(_) => self.leave_out("bitmaps and patterns"),
+            Paint::Pattern(_) => {
+                self.leave_out("bitmaps and patterns");
+                None
+            }
         }
-        None
     }
 
-    /// Returns the sheet with as much room around it as its longer side.
+    /// Returns the part of the plane that marks are cut to: the sheet with as much room around it as its longer side,
+    /// or less for CAD.
     fn around(&self) -> Option<Rect> {
+        if self.cut.is_some() {
+            return self.cut;
+        }
         let room = DVec2::splat(self.sheet.size.max_element());
         Rect::new(-room, self.sheet.size + room).ok()
     }
@@ -178,11 +228,23 @@ impl SheetPainter {
         cut
     }
 
-    fn add_area(&mut self, path: &Path, rule: FillRule, color: [u8; 4]) {
-        let (curves, even_odd) = (contours(path, true), rule == FillRule::EvenOdd);
+    fn add_area(&mut self, path: &Path, rule: FillRule, ink: Ink) {
+        let even_odd = rule == FillRule::EvenOdd;
+        let alternating = if even_odd { None } else { self.alternating(path) };
+        let (curves, even_odd) = match &alternating {
+            Some(path) => (contours(path, true), true),
+            None => (contours(path, true), even_odd),
+        };
         if curves.is_empty() {
             return;
         }
+        let color = match ink {
+            Ink::Plain(color) => color,
+            Ink::Gradient(gradient) => {
+                let area = GradientArea { rings: curves, even_odd, gradient };
+                return self.push(Mark::Gradient(Box::new(area)));
+            }
+        };
         if curves.iter().all(Curve::is_straight) {
             let rings = curves.iter().map(corners).collect();
             return self.push(Mark::Fill { rings, color, even_odd });
@@ -190,23 +252,48 @@ impl SheetPainter {
         self.push(Mark::Area { rings: curves, color, even_odd });
     }
 
+    /// Returns the contours of a path on the paper as polygons of one ring each.
+    fn rings(&self, path: &Path) -> Shapes {
+        let flat = flatten(path, self.options.tolerance * MILLIMETRES);
+        Shapes::from_rings(flat.iter().map(|(ring, _)| ring))
+    }
+
+    /// Returns what rings enclose by a rule; nothing if the work is stopped.
+    fn filled(&self, rings: &Shapes, rule: WindingRule) -> Option<Shapes> {
+        let options =
+            overlay::Options { work: self.work.part(), ..overlay::Options::with_rule(rule) };
+        let filled = overlay(rings, &Shapes::new(), BooleanOp::Union, &options, &mut NoTrace);
+        filled.inspect_err(|error| self.work.stop(error.clone())).ok().map(|output| output.shapes)
+    }
+
+    /// Returns for CAD the area of a path that winds around points several times, as one to be filled by the even-odd
+    /// rule.
+    fn alternating(&self, path: &Path) -> Option<Path> {
+        self.cut?;
+        let rings = self.rings(path);
+        let by_winding = self.filled(&rings, WindingRule::NonZero)?;
+        let by_turns = self.filled(&rings, WindingRule::EvenOdd)?;
+        let difference = by_winding.area().abs() - by_turns.area().abs();
+        let is_same = difference.abs() <= SAME * by_winding.area().abs();
+        (!is_same).then(|| polygons(&by_winding))
+    }
+
     /// Returns whether a pen can draw a stroke along these curves.
     fn is_for_pen(&self, curves: &[Curve], stroke: &Stroke, alpha: u8) -> bool {
-        let [x, y] = [self.paper_from_path.matrix2.x_axis, self.paper_from_path.matrix2.y_axis];
-        let (scale, skew) = (x.length(), x.dot(y).abs());
-        let is_similar = (y.length() - scale).abs() <= SIMILAR * scale
-            && skew <= SIMILAR * scale * scale
-            && scale > 0.0;
+        if self.cut.is_some() {
+            let has_dots = stroke.dashes.iter().any(|length| *length <= 0.0);
+            return scale_of(&self.paper_from_path).is_some() && !has_dots;
+        }
         let is_round = stroke.join == Join::Round
             && (stroke.cap == Cap::Round || curves.iter().all(|curve| curve.closed));
         // Translucent strokes that cross would be darker there.
         let is_plain = stroke.dashes.is_empty() && (alpha == 255 || curves.len() == 1);
-        is_similar && is_round && is_plain
+        scale_of(&self.paper_from_path).is_some() && is_round && is_plain
     }
 
     /// Returns curves without the parts of their lines that are far from the sheet.
     fn near(&self, curves: Vec<Curve>, width: f64) -> Result<Vec<Curve>> {
-        let reach = DVec2::splat(width);
+        let reach = DVec2::splat(if self.cut.is_some() { 0.0 } else { width });
         let Some(around) = self.around() else { return Ok(curves) };
         let around = Rect::new(around.min() - reach, around.max() + reach)?;
         let is_near = |curve: &Curve| {
@@ -236,8 +323,8 @@ impl SheetPainter {
         Ok(near)
     }
 
-    fn pen(&mut self, width: f64, color: [u8; 4]) -> usize {
-        let pen = Pen { width, color, dashes: Vec::new() };
+    fn pen(&mut self, width: f64, color: [u8; 4], dashes: Vec<f64>) -> usize {
+        let pen = Pen { width, color, dashes };
         let known = self.sheet.pens.iter().rposition(|other| *other == pen);
         known.unwrap_or_else(|| {
             self.sheet.pens.push(pen);
@@ -262,15 +349,15 @@ impl PaintTarget for SheetPainter {
     fn set_anti_alias(&mut self, _smooth: bool) {}
 
     fn fill(&mut self, path: &Path, rule: FillRule, paint: &Paint, opacity: f64) {
-        if let Some(color) = self.color(paint, opacity) {
-            self.add_area(&self.outline(path), rule, color);
+        if let Some(ink) = self.ink(paint, opacity) {
+            self.add_area(&self.outline(path), rule, ink);
         }
     }
 
     fn stroke(&mut self, path: &Path, stroke: &Stroke, paint: &Paint, opacity: f64) -> Result<()> {
         wide::check(stroke)?;
         self.work.check()?;
-        let Some(color) = self.color(paint, opacity).filter(|_| stroke.width > 0.0) else {
+        let Some(ink) = self.ink(paint, opacity).filter(|_| stroke.width > 0.0) else {
             return Ok(());
         };
         let path_from_paper = self.paper_from_path.inverse();
@@ -283,8 +370,14 @@ impl PaintTarget for SheetPainter {
         let path = near.as_ref().unwrap_or(path);
         let width = stroke.width * self.paper_from_path.matrix2.x_axis.length();
         let curves = self.near(contours(&path.transformed(self.paper_from_path), false), width)?;
-        if self.is_for_pen(&curves, stroke, color[3]) {
-            let pen = self.pen(width, color);
+        if let Ink::Plain(color) = ink
+            && self.is_for_pen(&curves, stroke, color[3])
+        {
+            // An odd number of lengths is taken twice.
+            let times = 1 + stroke.dashes.len() % 2;
+            let scale = width / stroke.width;
+            let lengths = std::iter::repeat_n(&stroke.dashes, times).flatten();
+            let pen = self.pen(width, color, lengths.map(|length| length * scale).collect());
             for curve in curves {
                 self.push(match curve.is_straight() {
                     true => Mark::Stroke { points: corners(&curve), closed: curve.closed, pen },
@@ -300,21 +393,57 @@ impl PaintTarget for SheetPainter {
         for (ring, _) in outline.iter() {
             filled.extend(&Path::polygon(ring.iter().copied()));
         }
-        self.add_area(&self.outline(&filled), FillRule::NonZero, color);
+        self.add_area(&self.outline(&filled), FillRule::NonZero, ink);
         Ok(())
     }
 
     fn push_clip(&mut self, path: &Path, rule: FillRule) {
         let path = self.outline(path);
         let paper = [DVec2::ZERO, self.sheet.size];
+        if let Some(cut) = self.cut {
+            let kind = match upright(&path) {
+                Some(inside) => {
+                    self.cut = Some(inside);
+                    Kind::Cut(cut)
+                }
+                None if contours(&path, true).is_empty() => Kind::Nothing,
+                None => {
+                    self.leave_out("clip paths");
+                    Kind::Everything
+                }
+            };
+            return self.open.push(Open { kind, marks: Vec::new() });
+        }
         let kind = match upright(&path) {
             Some(inside) if paper.iter().all(|corner| inside.contains(*corner)) => Kind::Everything,
-            _ => Kind::Clip(ClipPath {
-                rings: contours(&path, true),
-                even_odd: rule == FillRule::EvenOdd,
-            }),
+            _ => {
+                let (rings, even_odd) = (contours(&path, true), rule == FillRule::EvenOdd);
+                if rings.is_empty() {
+                    Kind::Nothing
+                } else {
+                    Kind::Clip(ClipPath { rings, even_odd })
+                }
+            }
         };
         self.open.push(Open { kind, marks: Vec::new() });
+    }
+
+    fn push_united_clip(&mut self, paths: &[(Path, FillRule)]) -> bool {
+        let mut all = Shapes::new();
+        for (path, rule) in paths {
+            let rings = self.rings(&self.outline(path));
+            let rule = match rule {
+                FillRule::NonZero => WindingRule::NonZero,
+                FillRule::EvenOdd => WindingRule::EvenOdd,
+            };
+            let Some(inside) = self.filled(&rings, rule) else { return false };
+            all.append(&inside);
+        }
+        let Some(union) = self.filled(&all, WindingRule::NonZero) else { return false };
+        let map = std::mem::replace(&mut self.paper_from_path, DAffine2::IDENTITY);
+        self.push_clip(&polygons(&union), FillRule::EvenOdd);
+        self.paper_from_path = map;
+        true
     }
 
     fn push_group(&mut self) {
@@ -322,7 +451,7 @@ impl PaintTarget for SheetPainter {
     }
 
     fn begin_mask(&mut self) {
-        self.leave_out("masks and clip paths of several shapes");
+        self.leave_out("masks");
         self.open.push(Open { kind: Kind::Mask, marks: Vec::new() });
     }
 
@@ -339,16 +468,22 @@ impl PaintTarget for SheetPainter {
         if blend != Blend::Normal {
             self.leave_out("blend modes");
         }
+        if let Kind::Cut(before) = kind {
+            self.cut = Some(before);
+        }
         let (clip, opacity) = match kind {
             _ if marks.is_empty() => return,
-            Kind::Mask => return,
+            Kind::Mask | Kind::Nothing => return,
             Kind::Clip(clip) => (Some(clip), 1.0),
             Kind::Group if opacity < 1.0 => (None, opacity.max(0.0)),
-            Kind::Group | Kind::Everything => {
+            Kind::Group | Kind::Everything | Kind::Cut(..) => {
                 let below = self.open.last_mut().map_or(&mut self.marks, |open| &mut open.marks);
                 return below.extend(marks);
             }
         };
+        if self.cut.is_some() {
+            return self.leave_out("opacities of whole layers");
+        }
         self.push(Mark::Group(Box::new(MarkGroup { marks, clip, opacity })));
     }
 
@@ -357,183 +492,33 @@ impl PaintTarget for SheetPainter {
     }
 }
 
+/// Returns polygons as a path.
+fn polygons(shapes: &Shapes) -> Path {
+    let mut path = Path::new();
+    for ring in shapes.rings() {
+        path.extend(&Path::polygon(ring.iter().copied()));
+    }
+    path
+}
+
 /// Returns about the bytes that a mark takes, without those of marks in it.
 fn bytes(mark: &Mark) -> u64 {
+    let of_curves =
+        |rings: &[Curve]| -> usize { rings.iter().map(|r| size_of_val(&r.pieces[..]) + 48).sum() };
     let own = match mark {
         Mark::Fill { rings, .. } => rings.iter().map(|r| size_of_val(&r[..]) + 24).sum(),
         Mark::Stroke { points, .. } => size_of_val(&points[..]),
         Mark::Curve { curve, .. } => size_of_val(&curve.pieces[..]),
-        Mark::Area { rings, .. } => rings.iter().map(|r| size_of_val(&r.pieces[..]) + 48).sum(),
+        Mark::Area { rings, .. } => of_curves(rings),
+        Mark::Gradient(area) => {
+            size_of::<GradientArea>()
+                + of_curves(&area.rings)
+                + size_of_val(&area.gradient.stops[..])
+        }
         Mark::Text { .. } | Mark::Dimension(_) | Mark::Group(_) => 0,
     };
     (size_of::<Mark>() + own) as u64
 }
 
-/// Returns the contours of a path that have an extent, all of them closed where areas are meant.
-fn contours(path: &Path, areas: bool) -> Vec<Curve> {
-    let mut found: Vec<Curve> = Vec::new();
-    let mut open: Option<Curve> = None;
-    let mut end = |open: &mut Option<Curve>, closes: bool| {
-        let Some(mut curve) = open.take().filter(|curve| !curve.pieces.is_empty()) else { return };
-        if closes || areas {
-            if curve.end() != curve.start {
-                curve.pieces.push(Piece::Line(curve.start));
-            }
-            curve.closed = true;
-        }
-        let points = curve.pieces.iter().map(Piece::end).chain([curve.start]);
-        if points.into_iter().all(DVec2::is_finite) {
-            found.push(curve);
-        }
-    };
-    let mut start = DVec2::ZERO;
-    for element in path.elements() {
-        let piece = match *element {
-            PathElement::MoveTo(p) => {
-                end(&mut open, false);
-                start = p;
-                open = Some(Curve { start: p, pieces: Vec::new(), closed: false });
-                continue;
-            }
-            PathElement::Close => {
-                end(&mut open, true);
-                continue;
-            }
-            PathElement::LineTo(p) => Piece::Line(p),
-            PathElement::QuadTo(c, p) => {
-                let from = open.as_ref().map_or(start, Curve::end);
-                Piece::Cubic(from.lerp(c, 2.0 / 3.0), p.lerp(c, 2.0 / 3.0), p)
-            }
-            PathElement::CubicTo(a, b, p) => Piece::Cubic(a, b, p),
-        };
-        // After its end, a contour continues at its start.
-        let curve = open.get_or_insert(Curve { start, pieces: Vec::new(), closed: false });
-        curve.pieces.push(piece);
-    }
-    end(&mut open, false);
-    found
-}
-
-/// Returns the points of a straight curve; of a closed one, the first is not repeated.
-fn corners(curve: &Curve) -> Vec<DVec2> {
-    let mut points: Vec<DVec2> =
-        std::iter::once(curve.start).chain(curve.pieces.iter().map(Piece::end)).collect();
-    if curve.closed && points.len() > 1 {
-        points.pop();
-    }
-    points
-}
-
-/// Returns the rectangle that a path is, if it is an upright one.
-fn upright(path: &Path) -> Option<Rect> {
-    let curves = contours(path, true);
-    let [curve] = &curves[..] else { return None };
-    let points = corners(curve);
-    let &[a, b, c, d] = &points[..] else { return None };
-    let is_upright = (a.x == b.x && b.y == c.y && c.x == d.x && d.y == a.y)
-        || (a.y == b.y && b.x == c.x && c.y == d.y && d.x == a.x);
-    if is_upright && curve.is_straight() { Rect::around(points) } else { None }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::paper::paint;
-    use crate::raster::paint::Canvas;
-    use crate::target::Pixels;
-
-    const SIDE: u32 = 64;
-
-    /// Returns the largest difference of a picture that is drawn directly from one that is drawn by way of a sheet.
-    fn difference(draw: impl Fn(&mut dyn PaintTarget)) -> u8 {
-        let mut canvas = Canvas::new(SIDE, SIDE, Options::default()).expect("canvas");
-        let mut painter = SheetPainter::new(SIDE, SIDE);
-        canvas.clear([255; 4]);
-        draw(&mut canvas);
-        draw(&mut painter);
-        let mut direct = Pixels::new(SIDE, SIDE, [255; 4]);
-        canvas.render(&mut direct).expect("rendered");
-        assert!(direct.data().iter().any(|pixel| *pixel != [255; 4]), "nothing is painted");
-        let sheet = painter.into_sheet().expect("vectors");
-        let by_sheet = paint(sheet, SIDE, SIDE, [255; 4]).expect("painted");
-        let channels = direct.data().iter().flatten().zip(by_sheet.data().iter().flatten());
-        channels.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
-    }
-
-    fn star(far: f64) -> Path {
-        let corners = [(32.0, 4.0), (50.0, 60.0), (4.0, 24.0), (60.0, 24.0), (14.0, far)];
-        Path::polygon(corners.map(DVec2::from))
-    }
-
-    #[test]
-    fn a_sheet_shows_what_a_canvas_shows() {
-        let red = Paint::Color([200, 0, 0, 255]);
-        let thin = Paint::Color([0, 0, 90, 120]);
-        let round = Stroke { width: 3.0, cap: Cap::Round, join: Join::Round, ..Stroke::default() };
-        for rule in [FillRule::NonZero, FillRule::EvenOdd] {
-            for far in [60.0, 1e7] {
-                assert!(difference(|t| t.fill(&star(far), rule, &red, 0.7)) <= 2, "{rule:?} {far}");
-                let clipped = difference(|t| {
-                    t.push_clip(&star(far), rule);
-                    t.fill(&Path::circle(DVec2::splat(30.0), 25.0), FillRule::NonZero, &red, 1.0);
-                    t.pop(1.0);
-                    t.fill(&Path::circle(DVec2::splat(9.0), 5.0), FillRule::NonZero, &red, 1.0);
-                });
-                assert!(clipped <= 3, "{rule:?} {far}: {clipped}");
-            }
-        }
-        let dashed = Stroke { dashes: vec![5.0, 3.0], cap: Cap::Butt, ..round.clone() };
-        let mitred = Stroke { join: Join::Miter, cap: Cap::Square, ..round.clone() };
-        for stroke in [&round, &dashed, &mitred] {
-            for (paint, far) in [(&red, 60.0), (&thin, 60.0), (&red, 1e5)] {
-                let found = difference(|t| {
-                    t.set_transform(DAffine2::from_scale(DVec2::new(1.0, 0.8)));
-                    t.stroke(&star(far), stroke, paint, 1.0).expect("stroke");
-                    t.set_transform(DAffine2::IDENTITY);
-                    t.stroke(&star(far), stroke, paint, 0.5).expect("stroke");
-                });
-                assert!(found <= 6, "{stroke:?} {far}: {found}");
-            }
-        }
-        let group = difference(|t| {
-            t.push_group();
-            t.fill(&star(60.0), FillRule::NonZero, &red, 1.0);
-            t.push_group();
-            t.fill(&Path::circle(DVec2::splat(30.0), 25.0), FillRule::NonZero, &thin, 1.0);
-            t.pop(1.0);
-            t.pop(0.4);
-        });
-        assert!(group <= 3, "{group}");
-    }
-
-    #[test]
-    fn layers_keep_the_clip_paths_that_are_open() {
-        let mut painter = SheetPainter::new(SIDE, SIDE);
-        let red = Paint::Color([200, 0, 0, 255]);
-        painter.push_clip(&Path::rectangle(-1.0, -1.0, 99.0, 99.0), FillRule::NonZero);
-        painter.push_clip(&Path::rectangle(8.0, 8.0, 9.0, 9.0), FillRule::NonZero);
-        for name in ["a", "a", "b"] {
-            painter.begin_layer(name);
-            painter.fill(&star(60.0), FillRule::NonZero, &red, 1.0);
-        }
-        let sheet = painter.into_sheet().expect("vectors");
-        let names: Vec<&str> = sheet.layers.iter().map(|layer| &layer.name[..]).collect();
-        assert_eq!(names, ["a", "a-2", "b"]);
-        for layer in &sheet.layers {
-            let [Mark::Group(group)] = &layer.marks[..] else { panic!("{:?}", layer.marks) };
-            assert!(group.clip.is_some() && group.marks.len() == 1);
-        }
-    }
-
-    #[test]
-    fn content_without_vectors_is_named() {
-        let mut painter = SheetPainter::new(SIDE, SIDE);
-        painter.begin_mask();
-        painter.end_mask(MaskKind::Alpha);
-        painter.push_group();
-        painter.pop_blended(1.0, Blend::Multiply);
-        let refused = painter.into_sheet().expect_err("refused");
-        let names = ["blend modes", "masks and clip paths of several shapes"];
-        assert_eq!(Vec::from_iter(refused), names);
-    }
-}
+mod tests;
