@@ -46,12 +46,13 @@ impl Kind {
         Self::of_suffix(&path.extension().unwrap_or_default().to_string_lossy())
     }
 
-    /// Returns whether maps and SVG files can be drawn as it: a single picture, or vectors with colours and opacity.
+    /// Returns whether maps and SVG files can be drawn as it: a single picture, or vectors with colours.
     pub fn is_of_maps(self) -> bool {
         match self {
             Self::Picture(_) => true,
             Self::Gif => false,
-            Self::Drawing(format) => matches!(format, DrawingFormat::Svg | DrawingFormat::Pdf),
+            Self::Drawing(DrawingFormat::Svg | DrawingFormat::Pdf | DrawingFormat::Dxf) => true,
+            Self::Drawing(_) => false,
         }
     }
 
@@ -140,7 +141,7 @@ impl Wanted {
         Self { kind, told: told.is_some(), suffixes: PICTURES }
     }
 
-    /// Creates an output of a command that writes pictures and, as vectors, SVG and PDF.
+    /// Creates an output of a command that writes pictures and, as vectors, SVG, PDF and DXF.
     pub fn map(path: &Path, told: Option<Kind>) -> Self {
         let of_name = || Kind::of_path(path).filter(|kind| kind.is_of_maps());
         let kind = told.or_else(of_name).unwrap_or(Kind::PNG);
@@ -170,8 +171,8 @@ impl Wanted {
 
 const PICTURES: &str =
     "pictures are written as PNG, JPEG or WebP; end the name in .png, .jpg or .webp";
-const MAPS: &str = "drawings and maps are written as PNG, JPEG or WebP, or as vectors in SVG or PDF; end the name \
-                    in .png, .jpg, .webp, .svg or .pdf";
+const MAPS: &str = "drawings and maps are written as PNG, JPEG or WebP, or as vectors in SVG, PDF or DXF; end the \
+                    name in .png, .jpg, .webp, .svg, .pdf or .dxf";
 const ANY: &str = "pictures are written as PNG, JPEG or WebP; end the name in .png, .jpg or .webp \
                    (a --turntable in one file: .png, .webp, .gif; drawings: .svg, .pdf, .dxf, .hpgl, \
                    .gcode, .geojson)";

@@ -37,11 +37,12 @@ pub struct DrawArgs {
     pub layers: Layers,
     /// File to write the picture to
     ///
-    /// A .png, .jpg or .webp file, a .svg or .pdf file for vectors, or `-` for standard output. A file is only ever
-    /// replaced by a complete picture.
+    /// A .png, .jpg or .webp file, a .svg, .pdf or .dxf file for vectors, or `-` for standard output. A file is only
+    /// ever replaced by a complete picture.
     ///
     /// Vectors show the same as pixels; a pixel is 1/96 inch. Each map layer becomes a layer, and letters become
-    /// outlines. Gradients, bitmaps, patterns, masks, filters and blend modes of an SVG are refused.
+    /// outlines. Bitmaps, patterns, masks, filters and blend modes of an SVG are refused; in DXF also gradients, clip
+    /// paths and --opacity.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
     /// Options for the picture.
@@ -68,7 +69,7 @@ pub struct DrawArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Picture")]
 pub struct PictureArgs {
-    /// Width and height in pixels, which are 1/96 inch in SVG and PDF [default: an SVG's own; 1024 on the longer side
+    /// Width and height in pixels, which are 1/96 inch in vectors [default: an SVG's own; 1024 on the longer side
     /// of a map]
     ///
     /// One side may be left out (`800x`, `x600`) and follows from the other. If the shape differs,
@@ -90,7 +91,7 @@ pub struct PictureArgs {
     /// picture]
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = viewport)]
     pub viewport: Option<PixelRect>,
-    /// The format of the output: png, jpeg or webp; svg or pdf for vectors [default: by its suffix, else png]
+    /// The format of the output: png, jpeg or webp; svg, pdf or dxf for vectors [default: by its suffix, else png]
     #[arg(long, value_name = "FORMAT", value_parser = values::map_kind())]
     pub format: Option<Kind>,
     /// Compression and quality of the file.

@@ -2,7 +2,7 @@
 
 use super::layers::{Labels, Priority};
 use super::report::MapCounts;
-use super::{Given, Job, MAP_SIDE, Surface, fonts, sides};
+use super::{Given, Job, MAP_SIDE, Surface, fonts, is_for_cad, sides};
 use crate::failure::Failure;
 use crate::input::display_name;
 use durer::curve::text::Font;
@@ -38,7 +38,7 @@ impl Job<'_> {
                 let (lo, hi) = (given.min(), given.max());
                 Window::new(lo.x, hi.x, lo.y, hi.y).map_err(usage)?
             }
-            None => extent(&layers, &names(given))?,
+            None => extent(&layers, &self.names())?,
         };
         let extent = window.rect().size();
         let size = sides(self.args.picture.size, extent * (MAP_SIDE / extent.max_element()));
@@ -51,7 +51,9 @@ impl Job<'_> {
             self.messages.progress.stage(|| format!("drawing {name}"));
             map.target().begin_layer(&crate::names::stem(&layer.layer.input));
             let geometries = features.iter().filter_map(|feature| feature.geometry.as_ref());
-            let counts = map.layer(&layer.layer.style, geometries).map_err(usage)?;
+            let fail = |e: durer::Error| Failure::of_library(&e).named(&name);
+            let counts = map.layer(&layer.layer.style, geometries).map_err(fail)?;
+            map.target().work().check().map_err(fail)?;
             if counts.solid {
                 let message = "lines with more than 100,000 dashes and gaps are drawn solid";
                 self.messages.warning(&name, message);
@@ -70,7 +72,7 @@ impl Job<'_> {
                 "nothing of the map is within {:?},{:?},{:?},{:?}; durer info tells its extent",
                 lo.x, lo.y, hi.x, hi.y
             );
-            self.messages.warning(&names(given), &message);
+            self.messages.warning(&self.names(), &message);
             self.report.warnings.push(message);
         }
         self.write(&mut map, labels, given)?;
@@ -95,7 +97,13 @@ impl Job<'_> {
         }
         self.messages.progress.stage(|| "placing labels".to_owned());
         let data = |e: durer::Error| Failure::Data(e.to_string());
-        let styles: Vec<&Style> = given.iter().map(|g| &g.layer.style).collect();
+        let mut styles: Vec<Style> = given.iter().map(|g| g.layer.style.clone()).collect();
+        if is_for_cad(self.args) {
+            // Programs for CAD print white as black.
+            let halos = styles.iter_mut().map(|style| &mut style.label_halo);
+            halos.filter(|halo| **halo == Some([255; 4])).for_each(|halo| *halo = None);
+        }
+        let styles: Vec<&Style> = styles.iter().collect();
         let opened = fonts.iter().map(|(bytes, index)| Font::new(bytes, index));
         let opened = opened.collect::<durer::Result<Vec<_>>>().map_err(data)?;
         map.target().begin_layer("labels");
@@ -135,11 +143,6 @@ impl Job<'_> {
         }
         Ok(features)
     }
-}
-
-fn names(given: &[Given<'_>]) -> String {
-    let names: Vec<String> = given.iter().map(|g| display_name(&g.layer.input)).collect();
-    names.join(", ")
 }
 
 /// Returns the window around all features, with some space.

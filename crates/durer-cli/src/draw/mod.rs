@@ -14,7 +14,7 @@ pub use layers::is_style;
 use crate::encoding;
 use crate::failure::Failure;
 use crate::input::{self, display_name};
-use crate::kind::Wanted;
+use crate::kind::{Kind, Wanted};
 use crate::messages::Messages;
 use crate::output::{self, Name, Target};
 use crate::places::is_stream;
@@ -23,12 +23,14 @@ use crate::values::Size;
 use args::Smoothing;
 use durer::math::DVec2;
 use durer::paper::SheetPainter;
-use durer::raster::paint::{Canvas, Options, PaintTarget};
+use durer::raster::coverage::FillRule;
+use durer::raster::paint::{Canvas, Options, Paint, PaintTarget};
 use durer::target::Pixels;
 use durer::target::drawing::Drawing;
 use durer::target::sheet::Sheet;
 use durer::view::window::{PixelRect, Viewport};
-use durer_formats::drawing::{self, FileOptions};
+use durer::work::Work;
+use durer_formats::drawing::{self, DrawingFormat, FileOptions};
 use durer_formats::geo::GeoFormat;
 use durer_formats::{Limits, Resources, Warning, archive, gzip};
 use layers::Layer;
@@ -58,14 +60,11 @@ pub fn run(args: &DrawArgs) -> Result<(), Failure> {
     let kind = wanted(args).kind;
     let encode = match kind.drawing() {
         Some(format) => {
-            let sheet = job.draw_vectors(given)?;
+            let sheet = job.draw_vectors(given, format)?;
             messages.progress.stage(|| format!("writing {target}"));
             let encode = Instant::now();
-            let work = args.running.work.clone();
-            let options = FileOptions { work, ..FileOptions::default() };
-            output::deliver(&target, &args.running.work, |out| {
-                drawing::write(out, format, &sheet, &Drawing::default(), &options)
-            })?;
+            let work = &args.running.work;
+            output::deliver(&target, work, |out| write(out, format, &sheet, work))?;
             encode
         }
         None => {
@@ -88,8 +87,47 @@ pub fn run(args: &DrawArgs) -> Result<(), Failure> {
     if args.json { crate::report::print(&report) } else { Ok(()) }
 }
 
+/// Writes a sheet as a file of vectors.
+fn write(
+    out: &mut impl std::io::Write,
+    format: DrawingFormat,
+    sheet: &Sheet,
+    work: &Work,
+) -> durer_formats::Result<()> {
+    let options = FileOptions { work: work.clone(), ..FileOptions::default() };
+    drawing::write(out, format, sheet, &Drawing::default(), &options)
+}
+
 /// Draws layers whose bytes are in memory, one for each input that the options name.
 pub fn pixels(args: &DrawArgs, layers: Vec<Vec<u8>>) -> Result<Pixels<[u8; 4]>, Failure> {
+    in_memory(args, layers, |job, given| job.draw(given))
+}
+
+/// Draws layers whose bytes are in memory as [`pixels`] does, and returns the file of vectors of the output's kind.
+pub fn vectors(args: &DrawArgs, layers: Vec<Vec<u8>>) -> Result<Vec<u8>, Failure> {
+    let kind = wanted(args).kind;
+    let Some(format) = kind.drawing() else {
+        let names: Vec<_> = DrawingFormat::ALL.iter().map(|f| Kind::Drawing(*f)).collect();
+        let names = names.iter().filter(|kind| kind.is_of_maps()).map(|kind| kind.suffix());
+        let names = names.collect::<Vec<_>>().join(", ");
+        return Err(Failure::Usage(format!(
+            "vectors of maps and SVG files are written as {names}"
+        )));
+    };
+    check_kind(args, kind)?;
+    let sheet = in_memory(args, layers, |job, given| job.draw_vectors(given, format))?;
+    let mut bytes = Vec::new();
+    write(&mut bytes, format, &sheet, &args.running.work)
+        .map_err(|e| Failure::Data(e.to_string()))?;
+    Ok(bytes)
+}
+
+/// Does something with layers whose bytes are in memory, without messages.
+fn in_memory<T>(
+    args: &DrawArgs,
+    layers: Vec<Vec<u8>>,
+    draw: impl FnOnce(&mut Job<'_>, Vec<Given<'_>>) -> Result<T, Failure>,
+) -> Result<T, Failure> {
     let messages = Messages::new(&args.running, 1);
     let mut report = Report::default();
     let mut job = Job { args, messages: &messages, report: &mut report };
@@ -97,7 +135,17 @@ pub fn pixels(args: &DrawArgs, layers: Vec<Vec<u8>>) -> Result<Pixels<[u8; 4]>, 
     for (layer, bytes) in args.layers.0.iter().zip(layers) {
         given.push(job.given(layer, bytes)?);
     }
-    job.draw(given)
+    draw(&mut job, given)
+}
+
+/// Refuses options of pixels for vectors, and the other way round.
+fn check_kind(args: &DrawArgs, kind: Kind) -> Result<(), Failure> {
+    args.picture.encoding.check(kind)?;
+    if kind.is_vector() && args.picture.aa == Smoothing::None {
+        let message = "--aa: vectors have no pixels; end the name in .png, or leave the option out";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    Ok(())
 }
 
 /// Checks options that the parser cannot check; returns the target of the picture.
@@ -106,12 +154,7 @@ fn check(args: &DrawArgs) -> Result<Target, Failure> {
     input::check_streams(&inputs)?;
     let first = inputs.first().map(|&input| Name { input: input.clone(), frame: None });
     let names: Vec<Name> = first.into_iter().collect();
-    let kind = wanted(args).kind;
-    args.picture.encoding.check(kind)?;
-    if kind.is_vector() && args.picture.aa == Smoothing::None {
-        let message = "--aa: vectors have no pixels; end the name in .png, or leave the option out";
-        return Err(Failure::Usage(message.to_owned()));
-    }
+    check_kind(args, wanted(args).kind)?;
     let target = output::plan("--output", &args.output, &names, &wanted(args))?;
     let Some(target) = target.into_iter().next() else {
         return Err(Failure::Usage("nothing to draw".to_owned()));
@@ -162,36 +205,49 @@ impl Job<'_> {
 
     /// Draws layers that are in memory as pixels.
     fn draw(&mut self, given: Vec<Given<'_>>) -> Result<Pixels<[u8; 4]>, Failure> {
-        let (start, read_before) = (Instant::now(), self.report.read_seconds);
-        let canvas: Canvas = self.painted(given)?;
-        self.messages.progress.stage(|| "painting".to_owned());
-        let work = &self.args.running.work;
-        let fail = |e: durer::Error| Failure::of_library(&e).named(&self.first_name());
-        let stage = (work, "planes of the picture");
-        let picture = Pixels::within(stage, canvas.width(), canvas.height(), [0; 4]);
-        let mut picture = picture.map_err(fail)?;
-        canvas.render(&mut picture).map_err(fail)?;
-        self.report.draw_seconds =
-            start.elapsed().as_secs_f64() - (self.report.read_seconds - read_before);
-        Ok(picture)
+        self.timed(|this| {
+            let canvas: Canvas = this.painted(given)?;
+            this.messages.progress.stage(|| "painting".to_owned());
+            let work = &this.args.running.work;
+            let fail = |e: durer::Error| Failure::of_library(&e).named(&this.names());
+            let stage = (work, "planes of the picture");
+            let picture = Pixels::within(stage, canvas.width(), canvas.height(), [0; 4]);
+            let mut picture = picture.map_err(fail)?;
+            canvas.render(&mut picture).map_err(fail)?;
+            Ok(picture)
+        })
     }
 
-    /// Draws layers that are in memory as vectors.
-    fn draw_vectors(&mut self, given: Vec<Given<'_>>) -> Result<Sheet, Failure> {
+    /// Draws layers that are in memory as vectors, for a format.
+    fn draw_vectors(
+        &mut self,
+        given: Vec<Given<'_>>,
+        format: DrawingFormat,
+    ) -> Result<Sheet, Failure> {
+        self.timed(|this| {
+            let painter: SheetPainter = this.painted(given)?;
+            painter.work().check().map_err(|e| Failure::of_library(&e).named(&this.names()))?;
+            painter.into_sheet().map_err(|kinds| {
+                let kinds = Vec::from_iter(kinds).join(", ");
+                let name = this.names();
+                let vectors = if format == DrawingFormat::Dxf { "DXF" } else { "vectors" };
+                Failure::Data(format!(
+                    "{name}: {kinds} cannot be written as {vectors}; a picture (.png) shows them"
+                ))
+            })
+        })
+    }
+
+    /// Draws, and reports the time that it takes without reading.
+    fn timed<T>(
+        &mut self,
+        draw: impl FnOnce(&mut Self) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
         let (start, read_before) = (Instant::now(), self.report.read_seconds);
-        let painter: SheetPainter = self.painted(given)?;
-        let name = self.first_name();
-        let fail = |e: durer::Error| Failure::of_library(&e).named(&name);
-        painter.work().check().map_err(fail)?;
-        let sheet = painter.into_sheet().map_err(|kinds| {
-            let kinds = Vec::from_iter(kinds).join(", ");
-            Failure::Data(format!(
-                "{name}: {kinds} cannot be written as vectors; a picture (.png) shows them"
-            ))
-        })?;
-        self.report.draw_seconds =
-            start.elapsed().as_secs_f64() - (self.report.read_seconds - read_before);
-        Ok(sheet)
+        let drawn = draw(self);
+        let read = self.report.read_seconds - read_before;
+        self.report.draw_seconds = start.elapsed().as_secs_f64() - read;
+        drawn
     }
 
     /// Returns a target with everything that the layers paint.
@@ -208,25 +264,18 @@ impl Job<'_> {
         }
     }
 
-    fn first_name(&self) -> String {
-        self.args.layers.0.first().map_or(String::new(), |l| display_name(&l.input))
+    /// Returns the names of all inputs.
+    fn names(&self) -> String {
+        let names: Vec<String> =
+            self.args.layers.0.iter().map(|layer| display_name(&layer.input)).collect();
+        names.join(", ")
     }
 
     fn read<'a>(&mut self, layer: &'a Layer) -> Result<Given<'a>, Failure> {
         let name = display_name(&layer.input);
         self.messages.progress.stage(|| format!("reading {name}"));
         let start = Instant::now();
-        let limits = self.limits();
-        let bytes = input::bytes_within(&layer.input, &limits)?;
-        let unpacked = gzip::unpacked(&bytes, &limits).map_err(|e| match e {
-            durer_formats::Error::Limit { limit, .. } => input::too_large(limit),
-            other => other.to_string(),
-        });
-        let unpacked = match unpacked.map_err(|e| Failure::Data(format!("{name}: {e}")))? {
-            Cow::Owned(unpacked) => Some(unpacked),
-            Cow::Borrowed(_) => None,
-        };
-        let bytes = unpacked.unwrap_or(bytes);
+        let bytes = input::bytes_within(&layer.input, &self.limits())?;
         self.report.read_seconds += start.elapsed().as_secs_f64();
         self.given(layer, bytes)
     }
@@ -234,7 +283,20 @@ impl Job<'_> {
     /// Finds the format of a layer.
     fn given<'a>(&mut self, layer: &'a Layer, bytes: Vec<u8>) -> Result<Given<'a>, Failure> {
         let name = display_name(&layer.input);
-        let file = self.unpacked(layer, bytes)?;
+        let start = Instant::now();
+        let unpacked = gzip::unpacked(&bytes, &self.limits()).map_err(|e| match e {
+            durer_formats::Error::Limit { limit, .. } => input::too_large(limit),
+            other => other.to_string(),
+        });
+        let unpacked = match unpacked.map_err(|e| Failure::Data(format!("{name}: {e}")))? {
+            Cow::Owned(unpacked) => Some(unpacked),
+            Cow::Borrowed(_) => None,
+        };
+        let file = self.unpacked(layer, unpacked.unwrap_or(bytes))?;
+        if file.bytes.is_empty() {
+            return Err(Failure::Data(format!("{name}: the file is empty")));
+        }
+        self.report.read_seconds += start.elapsed().as_secs_f64();
         let bytes = &file.bytes[..];
         let svg = GeoFormat::of_content(bytes) == Some(GeoFormat::Svg);
         let told = self.args.from.filter(|_| !svg);
@@ -261,8 +323,8 @@ impl Job<'_> {
         let packed = crate::layer::packed(bytes, chosen, &self.limits());
         let packed = packed.map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))?;
         let name = packed.name.rsplit('/').next().unwrap_or_default().to_owned();
-        let layer = chosen.filter(|_| !packed.chosen).map(str::to_owned);
-        Ok(Unpacked { bytes: packed.bytes, name, beside: Box::new(packed.beside), layer })
+        let (bytes, layer) = (packed.bytes, packed.within);
+        Ok(Unpacked { bytes, name, beside: Box::new(packed.beside), layer })
     }
 
     /// Returns the limits on inputs.
@@ -338,14 +400,29 @@ impl Surface for SheetPainter {
         background: [u8; 4],
     ) -> Result<Self, Failure> {
         let mut painter = Self::new(width, height);
-        painter.set_background(background);
         painter.set_work(&args.running.work);
+        if !is_for_cad(args) {
+            painter.set_background(background);
+            return Ok(painter);
+        }
+        painter.set_cad();
+        if background[3] > 0 && background != [255; 4] {
+            let [width, height] = [width, height].map(f64::from);
+            let sheet = durer::curve::Path::rectangle(0.0, 0.0, width, height);
+            painter.begin_layer("background");
+            painter.fill(&sheet, FillRule::EvenOdd, &Paint::Color(background), 1.0);
+        }
         Ok(painter)
     }
 
     fn begin_layer(&mut self, name: &str) {
         self.begin_layer(name);
     }
+}
+
+/// Returns whether the output is a file for CAD, whose paper is as white as the program's.
+fn is_for_cad(args: &DrawArgs) -> bool {
+    wanted(args).kind.drawing() == Some(DrawingFormat::Dxf)
 }
 
 /// Returns whole sides for a picture of a given shape, whose natural size is `natural`.

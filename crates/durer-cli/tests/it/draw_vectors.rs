@@ -1,4 +1,4 @@
-//! `durer draw` to SVG and PDF: the vectors show what the pixels show.
+//! `durer draw` to SVG, PDF and DXF: the vectors show what the pixels show.
 
 use crate::harness::{Folder, Picture};
 
@@ -19,25 +19,28 @@ const SVG: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 40
 <circle cx="48" cy="22" r="8" fill="#070" stroke="#000" stroke-dasharray="3 2"/></g>
 <path fill-rule="evenodd" d="M2 2h12v12h-12zM5 5h6v6h-6z" fill="#808" fill-opacity=".8"/></svg>"##;
 
-/// Draws to pixels and to SVG, draws the SVG to pixels, and returns the mean and the largest difference of a channel.
-fn differences(folder: &Folder, drawing: &str) -> (f64, u8) {
+/// Draws to pixels and to SVG, draws the SVG to pixels, and returns the mean and the largest difference of a channel, and
+/// the share of channels that differ by more than 24.
+fn differences(folder: &Folder, drawing: &str) -> (f64, u8, f64) {
     folder.must(&format!("draw {drawing} -o a.png"));
     folder.must(&format!("draw {drawing} -o v.svg"));
     folder.must("draw v.svg -o b.png");
     let [a, b] = ["a.png", "b.png"].map(|name| Picture::decode(&folder.read(name)));
     assert_eq!(a.size(), b.size());
     let (width, height) = a.size();
-    let (mut sum, mut most, mut painted) = (0.0, 0, false);
+    let (mut sum, mut most, mut many, mut painted) = (0.0, 0, 0.0, false);
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
         // JPEG-like pictures without transparency have three channels.
         for (p, q) in a.pixel(x, y).iter().zip(b.pixel(x, y)) {
             sum += f64::from(p.abs_diff(*q));
             most = most.max(p.abs_diff(*q));
+            many += f64::from(u8::from(p.abs_diff(*q) > 24));
         }
         painted |= a.pixel(x, y) != a.pixel(0, 0);
     }
     assert!(painted, "{drawing}: nothing is painted");
-    (sum / f64::from(width * height), most)
+    let pixels = f64::from(width * height);
+    (sum / pixels, most, many / pixels)
 }
 
 #[test]
@@ -55,9 +58,85 @@ fn vectors_show_what_pixels_show() {
         "a.svg --background white",
         "a.svg --size 300x --background white --window 10,5,50,30",
     ] {
-        let (mean, most) = differences(&folder, drawing);
+        let (mean, most, _) = differences(&folder, drawing);
         assert!(mean < 0.5 && most <= 24, "{drawing}: {mean} {most}");
     }
+}
+
+/// Gradients along lines and between circles: skewed, repeated, reflected, translucent, with jumps of the colour, in
+/// clip paths and groups, and of strokes.
+const GRADIENTS: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 120 90">
+<linearGradient id="a"><stop stop-color="#c00"/><stop offset=".3" stop-color="#fd0"/>
+ <stop offset=".6" stop-color="#08c"/><stop offset=".6" stop-color="#fff"/><stop offset="1"/></linearGradient>
+<linearGradient id="b" href="#a" gradientUnits="userSpaceOnUse" x1="40" y1="5" x2="50" y2="9"
+ gradientTransform="rotate(20) scale(1 .7) skewX(20)" spreadMethod="reflect"/>
+<linearGradient id="c" href="#a" x2=".2" y2=".1" spreadMethod="repeat"/>
+<linearGradient id="d" x1=".3" x2=".7"><stop stop-color="#060"/><stop stop-color="#f0f" stop-opacity=".2"/>
+ <stop offset="1" stop-color="#f80" stop-opacity=".9"/><stop offset="1" stop-color="#00f" stop-opacity=".5"/></linearGradient>
+<radialGradient id="e" href="#a"/>
+<radialGradient id="f" href="#d" fx=".3" fy=".4" r=".4" spreadMethod="pad"/>
+<radialGradient id="g" href="#a" fx=".4" fr=".05" r=".3" spreadMethod="repeat"/>
+<radialGradient id="h" href="#d" gradientTransform="rotate(15)" r=".2" spreadMethod="reflect"/>
+<clipPath id="k"><circle cx="15" cy="75" r="12"/></clipPath>
+<rect x="2" y="2" width="30" height="20" fill="url(#a)"/><rect x="40" y="2" width="30" height="20" fill="url(#b)"/>
+<circle cx="95" cy="15" r="13" fill="url(#c)"/><rect x="2" y="30" width="30" height="25" fill="url(#d)"/>
+<ellipse cx="55" cy="42" rx="18" ry="12" fill="url(#e)"/><rect x="80" y="30" width="35" height="25" fill="url(#f)"/>
+<g clip-path="url(#k)"><rect x="2" y="60" width="30" height="26" fill="url(#g)"/></g>
+<g opacity=".6"><rect x="40" y="60" width="30" height="26" fill="url(#h)"/>
+ <circle cx="70" cy="70" r="9" fill="url(#a)"/></g>
+<path d="M82 84Q90 40 98 84t18-20" fill="none" stroke="url(#c)" stroke-width="5" opacity=".8"/>
+</svg>
+"##;
+
+#[test]
+fn clip_paths_of_several_shapes_are_written_as_vectors() {
+    let folder = Folder::new();
+    folder.write(
+        "c.svg",
+        r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 40">
+<clipPath id="a"><circle cx="15" cy="20" r="12"/><g><path clip-rule="evenodd"
+ d="M20 5h30v30h-30zM28 12h14v14h-14z" transform="rotate(8 35 20)"/></g><text x="2" y="12" font-size="12">ab</text></clipPath>
+<g clip-path="url(#a)"><rect width="60" height="40" fill="#28c"/><path d="M0 40L60 0" stroke="#fa0" stroke-width="9"/></g></svg>"##,
+    );
+    let (mean, most, many) = differences(&folder, "c.svg --size 300x --background white");
+    // Where the outlines of two shapes cross, a mask has the coverage of both.
+    assert!(mean < 0.5 && many < 1e-3, "{mean} {most} {many}");
+    folder.must("draw c.svg -o c.pdf");
+}
+
+#[test]
+fn gradients_are_written_as_vectors() {
+    let folder = Folder::new();
+    folder.write("g.svg", GRADIENTS);
+    let (mean, _, many) = differences(&folder, "g.svg --size 360x --background white");
+    // A pixel through whose centre the border of two colours goes may get either.
+    assert!(mean < 0.1 && many < 1e-3, "{mean} {many}");
+    folder.must("draw g.svg -o v.svg");
+    let text = String::from_utf8(folder.read("v.svg")).expect("UTF-8");
+    for part in [
+        "spreadMethod=\"reflect\"",
+        "spreadMethod=\"repeat\"",
+        " gradientTransform=\"matrix(",
+        " stop-opacity=\".2\"/>",
+        " fr=\"",
+        "<path fill=\"url(#_",
+    ] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+    folder.must("draw g.svg -o v.pdf");
+    let pdf = folder.read("v.pdf");
+    let text = String::from_utf8_lossy(&pdf);
+    for part in ["/ShadingType 2", "/ShadingType 3", "/S /Luminosity", "/FunctionType 3"] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+    folder.must("draw g.svg -o w.pdf");
+    assert_eq!(folder.read("w.pdf"), pdf);
+    let many = GRADIENTS.replace("x2=\".2\" y2=\".1\"", "x2=\".00001\"");
+    folder.write("g.svg", many);
+    folder.must("draw g.svg -o v.svg");
+    let refused = folder.run("draw g.svg -o x.pdf");
+    refused.fails(1, "a gradient that repeats more than some thousand times is not supported");
+    assert!(!folder.path("x.pdf").exists());
 }
 
 #[test]
@@ -110,9 +189,9 @@ fn content_without_vectors_is_refused() {
     let png = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
     body("bitmap.svg", &format!("<image width='9' height='9' href='{png}'/>"));
     body(
-        "gradient.svg",
-        "<linearGradient id='g'><stop stop-color='red'/><stop offset='1'/></linearGradient>
-         <rect width='9' height='9' fill='url(#g)'/>",
+        "pattern.svg",
+        "<pattern id='p' width='.1' height='.1'><circle r='1'/></pattern>
+         <rect width='9' height='9' fill='url(#p)'/>",
     );
     body("blend.svg", "<rect width='9' height='9' style='mix-blend-mode:multiply' fill='red'/>");
     body(
@@ -125,10 +204,10 @@ fn content_without_vectors_is_refused() {
     );
     for (name, kind) in [
         ("bitmap", "bitmaps and patterns"),
-        ("gradient", "gradients"),
+        ("pattern", "bitmaps and patterns"),
         ("blend", "blend modes"),
         ("filter", "filters"),
-        ("mask", "masks and clip paths of several shapes"),
+        ("mask", "masks"),
     ] {
         let message = format!("{name}.svg: {kind} cannot be written as vectors; a picture (.png)");
         folder.run(&format!("draw {name}.svg -o {name}.pdf")).fails(1, &message);
@@ -136,7 +215,8 @@ fn content_without_vectors_is_refused() {
         assert!(!folder.path(&format!("{name}.pdf")).exists());
     }
     for (options, part) in [
-        ("-o a.dxf", "as vectors in SVG or PDF; end the name in .png"),
+        ("-o a.hpgl", "as vectors in SVG, PDF or DXF; end the name in .png"),
+        ("-o a.dxf --aa none", "--aa: vectors have no pixels"),
         ("-o a.svg --aa none", "--aa: vectors have no pixels"),
         ("-o a.svg --quality 3", "--quality: only a JPEG has one"),
         ("-o a.svg --format pdf", "--format says pdf"),
@@ -168,4 +248,80 @@ fn one_layer_of_a_file_is_drawn_and_described() {
     folder.run("draw a.svg --layer b -o a.png").fails(2, "--layer is for map data");
     folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     folder.run("info m.obj --layer b").fails(2, "--layer: m.obj holds a model");
+}
+
+/// Returns the entities of a DXF file: their kind, then their codes with values.
+fn entities(dxf: &str) -> Vec<Vec<(i32, String)>> {
+    let lines: Vec<&str> = dxf.lines().collect();
+    let tag = |pair: &[&str]| (pair[0].trim().parse().expect("a code"), pair[1].trim().to_owned());
+    let tags: Vec<(i32, String)> = lines.chunks_exact(2).map(tag).collect();
+    let start = tags.iter().position(|t| t.0 == 2 && t.1 == "ENTITIES").expect("a section");
+    let mut found: Vec<Vec<(i32, String)>> = Vec::new();
+    for tag in &tags[start + 1..] {
+        match (tag.0, &tag.1[..]) {
+            (0, "ENDSEC") => break,
+            (0, _) => found.push(vec![tag.clone()]),
+            _ => found.last_mut().expect("an entity").push(tag.clone()),
+        }
+    }
+    found
+}
+
+#[test]
+fn maps_become_polylines_and_hatches_for_cad() {
+    let folder = Folder::new();
+    folder.write("map.geojson", MAP);
+    folder.write("ways.geojson", MAP);
+    let style =
+        "--stroke #ff8000 --label name ways.geojson --fill none --stroke #0000ff80 --dashes 4,2,1";
+    folder.must(&format!(
+        "draw map.geojson {style} -o a.dxf --size 100x100 --window 0,0,100,100 --background #def"
+    ));
+    let dxf = String::from_utf8(folder.read("a.dxf")).expect("ASCII");
+    let all = entities(&dxf);
+    let of = |kind: &str, layer: &str| {
+        let is =
+            |e: &&Vec<(i32, String)>| e[0].1 == kind && e.iter().any(|t| t.0 == 8 && t.1 == layer);
+        all.iter().filter(is).collect::<Vec<_>>()
+    };
+    let value = |entity: &[(i32, String)], code: i32| {
+        entity.iter().find(|t| t.0 == code).map(|t| t.1.clone()).unwrap_or_default()
+    };
+    // The ring, its hole and the point; the way, and the part of the far area that is within the picture.
+    let lines = of("LWPOLYLINE", "map");
+    let closed = lines.iter().filter(|l| value(l, 70) == "129").count();
+    assert_eq!((lines.len(), closed), (5, 3), "{lines:?}");
+    let [ring, _] = &of("HATCH", "map")[..2] else { panic!("the areas are filled") };
+    assert_eq!((value(ring, 91), value(ring, 420)), ("2".into(), 0xe3_e7_e0.to_string()));
+    for (layer, color) in [("map", 0xff_80_00), ("ways", 0x00_00_ff)] {
+        let at = dxf.find(&format!("\n  2\n{layer}\n 70\n")).expect("a layer");
+        assert!(dxf[at..at + 80].contains(&format!("420\n{color}\n")), "{}", &dxf[at..at + 80]);
+    }
+    // Dashes are those of the line type, of which an odd number is taken twice; the colour is half transparent.
+    let [way, ..] = &of("LWPOLYLINE", "ways")[..] else { panic!("no lines") };
+    assert_eq!(value(way, 440), ((2 << 24) + 0x80).to_string());
+    let types = &dxf[dxf.find("Center").expect("a line type")..];
+    assert!(types.starts_with("Center ____ _ ____ _ ____ _ ____\n 72\n65\n 73\n6\n"), "{dxf}");
+    assert_eq!(of("HATCH", "background").len(), 1);
+    let letters = of("HATCH", "labels");
+    assert!(letters.len() >= 4 && of("LWPOLYLINE", "labels").is_empty(), "no halo");
+    let sizes = all.iter().flatten().filter(|t| t.0 == 10 || t.0 == 20);
+    for (_, place) in sizes {
+        let place: f64 = place.parse().expect("a number");
+        assert!((-1e-6..=100.0 * 25.4 / 96.0 + 1e-6).contains(&place), "{place} is off the sheet");
+    }
+    let refused = folder.run("draw map.geojson --opacity .5 -o b.dxf");
+    refused.fails(1, "map.geojson: opacities of whole layers cannot be written as DXF; a picture");
+    folder.write("g.svg", GRADIENTS);
+    let refused = folder.run("draw g.svg -o b.dxf");
+    refused.fails(
+        1,
+        "g.svg: clip paths, gradients cannot be written as DXF; a picture (.png) shows them",
+    );
+    assert!(!folder.path("b.dxf").exists());
+    folder.write(
+        "a.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='M1 1h9'/></svg>",
+    );
+    folder.must("draw a.svg -o a.dxf");
 }

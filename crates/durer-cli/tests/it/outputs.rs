@@ -52,10 +52,10 @@ fn commands_name_the_suffixes_that_they_can_write() {
             assert!(!ended.err.contains(".pdf"), "{}", ended.err);
         }
     }
-    for wrong in ["x.gif", "x.dxf"] {
+    for wrong in ["x.gif", "x.hpgl"] {
         let told = format!("--output {wrong}: drawings and maps are written as PNG");
         let ended = folder.run(&format!("draw map.wkt -o {wrong}"));
-        ended.fails(2, &told).fails(2, ".webp, .svg or .pdf");
+        ended.fails(2, &told).fails(2, ".webp, .svg, .pdf or .dxf");
     }
     folder.run("render cube.obj -o x.bmp").fails(2, ".svg, .pdf, .dxf, .hpgl, .gcode, .geojson");
     folder.run("render cube.obj -o x.gif").fails(2, "a GIF is for a --turntable");

@@ -12,9 +12,8 @@ use super::MADE;
 use super::dxf_dimension::Dimensions;
 use super::dxf_entity::{block, entity};
 use super::dxf_tags::{
-    APPIDS, BLOCK_RECORDS, CENTER, CONTINUOUS, DxfStrokes, FIRST, GROUPS, HIDDEN, LAYERS, LTYPES,
-    MODEL, PAPER, ROOT, STYLES, Tags, UCSS, VIEWS, VPORTS, line_type, palette, symbol, true_color,
-    weight,
+    APPIDS, BLOCK_RECORDS, CONTINUOUS, DxfStrokes, FIRST, GROUPS, HIDDEN, LAYERS, LTYPES, MODEL,
+    PAPER, ROOT, STYLES, Tags, UCSS, VIEWS, VPORTS, palette, symbol, true_color, weight,
 };
 use crate::Result;
 use durer::math::DVec2;
@@ -38,7 +37,7 @@ pub(super) fn write_within(
     work: &Work,
 ) -> Result<()> {
     let mut charge = work.charge(MADE, 0)?;
-    let mut body = Tags { text: String::new(), next: FIRST, owner: MODEL, line_type: CONTINUOUS };
+    let mut body = Tags::new(sheet, FIRST);
     let dimensions = Dimensions::of(&mut body, sheet, strokes);
     tables(&mut body, sheet, &dimensions);
     blocks(&mut body, sheet, &dimensions);
@@ -46,7 +45,9 @@ pub(super) fn write_within(
     body.section("ENTITIES");
     for layer in &sheet.layers {
         let name = symbol(&layer.name);
-        body.line_type = line_type(layer_pen(sheet, layer));
+        let pen = layer_pen(sheet, layer);
+        body.line_type = body.line_type(pen);
+        body.color = Some(layer_color(pen));
         for mark in &layer.marks {
             match mark {
                 Mark::Dimension(dimension) => {
@@ -61,7 +62,7 @@ pub(super) fn write_within(
     body.tag(0, "ENDSEC");
     objects(&mut body);
     body.tag(0, "EOF");
-    let mut head = Tags { text: String::new(), next: 0, owner: MODEL, line_type: CONTINUOUS };
+    let mut head = Tags::new(sheet, 0);
     header(&mut head, sheet, &dimensions, body.next);
     out.write_all(head.text.as_bytes())?;
     out.write_all(body.text.as_bytes())?;
@@ -91,7 +92,7 @@ fn header(tags: &mut Tags, sheet: &Sheet, dimensions: &Dimensions, seed: u32) {
 fn tables(tags: &mut Tags, sheet: &Sheet, dimensions: &Dimensions) {
     tags.section("TABLES");
     viewport(tags, sheet);
-    line_types(tags, sheet);
+    line_types(tags);
     layers(tags, sheet);
     tags.table("STYLE", STYLES, 1);
     tags.record("STYLE", STYLES, "AcDbTextStyleTableRecord").tag(2, "Standard").int(70, 0);
@@ -137,23 +138,25 @@ fn viewport(tags: &mut Tags, sheet: &Sheet) {
     tags.tag(0, "ENDTAB");
 }
 
-/// Writes the line types. The dashes of HIDDEN and CENTER are taken from the sheet's first pens of the kind; CENTER is
-/// written only where it is used.
-fn line_types(tags: &mut Tags, sheet: &Sheet) {
-    let first = |name: &str| sheet.pens.iter().find(|p| line_type(Some(p)) == name);
-    let hidden: &[f64] = first(HIDDEN).map_or(&[3.0, 1.5], |p| p.dashes.as_slice());
-    let mut types: Vec<(&str, &str, &[f64])> = vec![
-        ("ByBlock", "", &[]),
-        ("ByLayer", "", &[]),
-        (CONTINUOUS, "Solid line", &[]),
-        (HIDDEN, "Hidden __ __ __ __ __ __ __ __ __ __", hidden),
-    ];
-    if let Some(pen) = first(CENTER) {
-        types.push((CENTER, "Center ____ _ ____ _ ____ _ ____", &pen.dashes));
+/// Writes the line types; HIDDEN is there even if no pen is dashed.
+fn line_types(tags: &mut Tags) {
+    let solid = [("ByBlock", ""), ("ByLayer", ""), (CONTINUOUS, "Solid line")];
+    let mut types: Vec<(String, &str, Vec<f64>)> =
+        solid.into_iter().map(|(name, words)| (name.to_owned(), words, Vec::new())).collect();
+    let (dashes, center) =
+        ("Hidden __ __ __ __ __ __ __ __ __ __", "Center ____ _ ____ _ ____ _ ____");
+    if tags.dashed.iter().all(|dashed| dashed.name != HIDDEN) {
+        types.push((HIDDEN.to_owned(), dashes, vec![3.0, 1.5]));
+    }
+    // Those with few dashes come first.
+    for is_center in [false, true] {
+        let of_kind = tags.dashed.iter().filter(|dashed| dashed.is_center() == is_center);
+        let words = if is_center { center } else { dashes };
+        types.extend(of_kind.map(|d| (d.name.clone(), words, d.lengths.clone())));
     }
     tags.table("LTYPE", LTYPES, types.len());
     for (name, description, dashes) in types {
-        tags.record("LTYPE", LTYPES, "AcDbLinetypeTableRecord").tag(2, name).int(70, 0);
+        tags.record("LTYPE", LTYPES, "AcDbLinetypeTableRecord").tag(2, &name).int(70, 0);
         tags.tag(3, description).int(72, 65).int(73, dashes.len() as i64);
         tags.real(40, dashes.iter().sum());
         for (i, length) in dashes.iter().enumerate() {
@@ -179,16 +182,21 @@ fn layer_pen<'a>(sheet: &'a Sheet, l: &SheetLayer) -> Option<&'a Pen> {
             sheet.pens.get(*pen)
         }
         Mark::Dimension(dimension) => sheet.pens.get(dimension.text.pen),
-        Mark::Fill { .. } | Mark::Area { .. } | Mark::Group(_) => None,
+        Mark::Fill { .. } | Mark::Area { .. } | Mark::Gradient(_) | Mark::Group(_) => None,
     })
+}
+
+fn layer_color(pen: Option<&Pen>) -> [u8; 4] {
+    pen.map_or([0, 0, 0, 255], |p| p.color)
 }
 
 fn layer(tags: &mut Tags, name: &str, pen: Option<&Pen>) {
     tags.record("LAYER", LAYERS, "AcDbLayerTableRecord").tag(2, name).int(70, 0);
-    let color = pen.map_or([0, 0, 0, 255], |p| p.color);
+    let color = layer_color(pen);
     tags.int(62, palette(color));
     true_color(tags, color);
-    tags.tag(6, line_type(pen)).int(370, pen.map_or(-3, weight));
+    let line_type = tags.line_type(pen);
+    tags.tag(6, &line_type).int(370, pen.map_or(-3, weight));
     // The plot style "Normal", which files without named plot styles do not have.
     tags.handle(390, 0);
 }

@@ -1,7 +1,9 @@
 //! Marks of a sheet as entities of DXF.
 
 use super::dxf_curve;
-use super::dxf_tags::{DxfStrokes, MODEL, PAPER, Tags, Target, begin, palette, string, true_color};
+use super::dxf_tags::{
+    DxfStrokes, MODEL, PAPER, Tags, Target, begin, palette, string, transparency, true_color,
+};
 use durer::math::DVec2;
 use durer::target::Curve;
 use durer::target::drawing::Anchor;
@@ -71,22 +73,25 @@ pub(super) fn entity(
             tags.class("AcDbText");
         }
         Mark::Fill { rings, color, .. } => {
-            begin(tags, "HATCH", layer, None);
-            tags.int(62, palette(*color));
-            true_color(tags, *color);
+            begin_hatch(tags, layer, *color);
             let ring = |r: &Vec<DVec2>| r.iter().map(|p| (place(p), 0.0)).collect();
             hatch(tags, &rings.iter().map(ring).collect::<Vec<_>>());
         }
         Mark::Area { rings, color, .. } => {
-            begin(tags, "HATCH", layer, None);
-            tags.int(62, palette(*color));
-            true_color(tags, *color);
+            begin_hatch(tags, layer, *color);
             let ring = |r: &Curve| dxf_curve::vertices(&dxf_curve::turned_up(r, sheet.size.y));
             hatch(tags, &rings.iter().map(ring).collect::<Vec<_>>());
         }
-        // Dimensions are entities of their own kind, with blocks; files with groups are refused.
-        Mark::Dimension(_) | Mark::Group(_) => {}
+        // Dimensions are entities of their own kind, with blocks; files with gradients and groups are refused.
+        Mark::Dimension(_) | Mark::Gradient(_) | Mark::Group(_) => {}
     }
+}
+
+fn begin_hatch(tags: &mut Tags, layer: &str, color: [u8; 4]) {
+    begin(tags, "HATCH", layer, None);
+    tags.int(62, palette(color));
+    true_color(tags, color);
+    transparency(tags, color);
 }
 
 /// Writes a solid fill between rings, each as its corners with the bulges of the arcs that begin there.

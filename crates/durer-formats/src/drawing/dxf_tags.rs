@@ -2,7 +2,7 @@
 
 use super::number::push;
 use durer::math::DVec2;
-use durer::target::sheet::Pen;
+use durer::target::sheet::{Pen, Sheet};
 
 /// The line weights that the format has, in hundredths of a millimetre.
 const WEIGHTS: &[i64] = &[
@@ -45,10 +45,59 @@ pub(super) struct Tags {
     /// The block record that entities belong to.
     pub owner: u32,
     /// The line type of the layer.
-    pub line_type: &'static str,
+    pub line_type: String,
+    /// The colour of the layer; `None` in blocks.
+    pub color: Option<[u8; 4]>,
+    /// The dashed line types.
+    pub dashed: Vec<Dashed>,
+}
+
+/// A line type of dashes.
+pub(super) struct Dashed {
+    pub name: String,
+    /// Lengths of dashes and gaps in turn, in millimetres.
+    pub lengths: Vec<f64>,
+}
+
+impl Dashed {
+    /// Returns whether dashes are long and short by turns.
+    pub fn is_center(&self) -> bool {
+        self.lengths.len() > 3
+    }
+
+    /// Returns the line types of a sheet's pens: HIDDEN and CENTER, and further ones with numbers.
+    pub fn of_sheet(sheet: &Sheet) -> Vec<Self> {
+        let mut all: Vec<Self> = Vec::new();
+        for pen in sheet.pens.iter().filter(|pen| !pen.dashes.is_empty()) {
+            if all.iter().any(|known| known.lengths == pen.dashes) {
+                continue;
+            }
+            let mut dashed = Self { name: String::new(), lengths: pen.dashes.clone() };
+            let is_center = dashed.is_center();
+            let base = if is_center { "CENTER" } else { HIDDEN };
+            let number = all.iter().filter(|known| known.is_center() == is_center).count();
+            dashed.name =
+                if number == 0 { base.to_owned() } else { format!("{base}{}", number + 1) };
+            all.push(dashed);
+        }
+        all
+    }
 }
 
 impl Tags {
+    /// Creates an empty part of a file of a sheet.
+    pub fn new(sheet: &Sheet, next: u32) -> Self {
+        let (text, line_type) = (String::new(), CONTINUOUS.to_owned());
+        let dashed = Dashed::of_sheet(sheet);
+        Self { text, next, owner: MODEL, line_type, color: None, dashed }
+    }
+
+    /// Returns the name of a pen's line type.
+    pub fn line_type(&self, pen: Option<&Pen>) -> String {
+        let dashed = pen.and_then(|pen| self.dashed.iter().find(|d| d.lengths == pen.dashes));
+        dashed.map_or(CONTINUOUS, |dashed| &dashed.name).to_owned()
+    }
+
     pub fn tag(&mut self, code: u16, value: &str) -> &mut Self {
         self.text += &format!("{code:>3}\n{value}\n");
         self
@@ -115,18 +164,9 @@ impl Tags {
     }
 }
 
-/// The names of line types: solid, dashed, and with alternating long and short dashes.
+/// The names of the solid and of the first dashed line type.
 pub(super) const CONTINUOUS: &str = "CONTINUOUS";
 pub(super) const HIDDEN: &str = "HIDDEN";
-pub(super) const CENTER: &str = "CENTER";
-
-pub(super) fn line_type(pen: Option<&Pen>) -> &'static str {
-    match pen.map_or(0, |p| p.dashes.len()) {
-        0 => CONTINUOUS,
-        1..=3 => HIDDEN,
-        _ => CENTER,
-    }
-}
 
 /// Returns the nearest line weight of the format.
 pub(super) fn weight(pen: &Pen) -> i64 {
@@ -170,17 +210,33 @@ pub(super) struct Target<'a> {
     pub pen: Option<&'a Pen>,
 }
 
-/// Writes the common start of an entity. Colour, line type and weight are the layer's; line type and weight are
-/// written here where a layer may have marks of several pens.
+/// Writes the opacity of a colour that has one.
+pub(super) fn transparency(tags: &mut Tags, [.., alpha]: [u8; 4]) {
+    if alpha < 255 {
+        tags.int(440, (2 << 24) | i64::from(alpha));
+    }
+}
+
+/// Writes the common start of an entity. Colour, line type and weight are the layer's; they are written here where a
+/// layer has marks of several pens.
 pub(super) fn begin(tags: &mut Tags, kind: &str, layer: &str, pen: Option<&Pen>) {
     let (handle, owner) = (tags.fresh(), tags.owner);
     tags.tag(0, kind).handle(5, handle).handle(330, owner).class("AcDbEntity").tag(8, layer);
     if let Some(pen) = pen {
-        let line_type = line_type(Some(pen));
+        let line_type = tags.line_type(Some(pen));
         if line_type != tags.line_type {
-            tags.tag(6, line_type);
+            tags.tag(6, &line_type);
+        }
+        let is_own = |layer: [u8; 4]| layer[..3] != pen.color[..3];
+        let has_own = tags.color.is_some_and(is_own);
+        if has_own {
+            tags.int(62, palette(pen.color));
         }
         tags.int(370, weight(pen));
+        if has_own {
+            true_color(tags, pen.color);
+        }
+        transparency(tags, pen.color);
     }
 }
 
