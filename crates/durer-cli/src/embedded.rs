@@ -274,6 +274,22 @@ pub fn draw_layers(words: &[String], layers: Vec<Vec<u8>>) -> Result<Pixels<[u8;
     draw::pixels(&args, layers)
 }
 
+/// Draws layers as [`draw_layers`] does, and returns a file of vectors, by its suffix.
+///
+/// # Errors
+/// Those of [`draw_layers`]; [`Failure::Usage`] for a format without vectors, [`Failure::Data`] for content that the
+/// format cannot hold.
+pub fn draw_vectors(
+    words: &[String],
+    layers: Vec<Vec<u8>>,
+    suffix: &str,
+) -> Result<Vec<u8>, Failure> {
+    let fixed = [format!("--output=picture.{suffix}"), "--quiet".to_owned()];
+    let (mut args, _): (DrawArgs, _) = parse("draw", words.iter().cloned().chain(fixed))?;
+    args.running.work = watch::work(&args.running);
+    draw::vectors(&args, layers)
+}
+
 /// Cuts files of map data into tiles, with the arguments of `durer tiles`.
 ///
 /// # Errors

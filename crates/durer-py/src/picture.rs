@@ -186,6 +186,19 @@ fn draw_layers<'py>(
     channels(py, drawn.map_err(|e| error::of_failure(py, &e))?)
 }
 
+/// Draws an SVG or the layers of a map as the bytes of a vector file.
+#[pyfunction]
+fn draw_vectors<'py>(
+    py: Python<'py>,
+    words: Vec<String>,
+    layers: Vec<Vec<u8>>,
+    suffix: &str,
+    threads: usize,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let drawn = on_threads(py, threads, || embedded::draw_vectors(&words, layers, suffix))?;
+    Ok(PyBytes::new(py, &drawn.map_err(|e| error::of_failure(py, &e))?))
+}
+
 /// Cuts files of map data into tiles.
 #[pyfunction]
 fn tiles(py: Python<'_>, words: Vec<String>, threads: usize) -> PyResult<()> {
@@ -210,6 +223,7 @@ pub fn add(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(plot, m)?)?;
     m.add_function(wrap_pyfunction!(plot_pixels, m)?)?;
     m.add_function(wrap_pyfunction!(draw_layers, m)?)?;
+    m.add_function(wrap_pyfunction!(draw_vectors, m)?)?;
     m.add_function(wrap_pyfunction!(tiles, m)?)?;
     m.add_function(wrap_pyfunction!(css_color, m)?)
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import subprocess
 
 import numpy as np
@@ -98,6 +99,34 @@ def test_draw(samples, command, tmp_path):
         durer.draw([])
     with pytest.raises(ValueError):
         durer.draw(b"no map")
+
+
+@pytest.mark.parametrize("suffix", ["svg", "pdf", "dxf"])
+def test_draw_writes_vectors_as_the_command(suffix, samples, command, tmp_path):
+    countries = samples / "countries.geojson"
+    out, own = tmp_path / f"a.{suffix}", tmp_path / f"b.{suffix}"
+    words = [str(countries), "--fill=tan", "--label=name", "--size=200x", str(countries), "--fill=none", "--stroke=red"]
+    subprocess.run([*command, "draw", *words, "-o", str(out), "--quiet"], check=True)
+    layers = [(countries, {"fill": "tan", "label": "name"}), (countries, {"fill": "none", "stroke": "red"})]
+    picture = durer.draw(layers, (200, None))
+    picture.save(own)
+    assert own.read_bytes() == out.read_bytes()
+    assert picture.encode(suffix.upper()) == out.read_bytes()
+    again = pickle.loads(pickle.dumps(picture))
+    assert again == picture and again.encode(suffix) == out.read_bytes()
+
+
+def test_vectors_of_drawings(tmp_path):
+    square = {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]]}
+    picture = durer.draw([square, (square, {"opacity": 0.5})], (9, 9))
+    assert 'inkscape:label="layer1"' in picture.to_svg()
+    with pytest.raises(ValueError, match="opacities of whole layers cannot be written as DXF"):
+        picture.save(tmp_path / "a.dxf")
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(ValueError, match="hpgl"):
+        picture.encode("hpgl")
+    with pytest.raises(ValueError, match="aa"):
+        durer.draw(square, (9, 9), aa="none").to_svg()
 
 
 def test_tiles(samples, tmp_path):

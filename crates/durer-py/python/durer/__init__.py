@@ -21,7 +21,7 @@ from ._geometry import (
     union,
 )
 from ._lines import LINE_CLASSES, Drawing, Lines, drawing, hidden_lines
-from ._picture import Image, Planes, Plot, draw, fill, plot, render, render_planes, tiles, warp
+from ._picture import DrawnImage, Image, Planes, Plot, draw, fill, plot, render, render_planes, tiles, warp
 from ._raster import rasterize
 from ._scene import Scene, read, scene
 from ._steps import Algorithm, Page, Trace, algorithms, lessons, trace
@@ -31,6 +31,7 @@ __all__ = [
     "Algorithm",
     "Camera",
     "Drawing",
+    "DrawnImage",
     "Image",
     "LimitError",
     "Lines",

@@ -241,6 +241,53 @@ def render_planes(
     return Planes(pixels if color else None, depths, items, normals, _seen_from(eye, pixels))
 
 
+#: Formats of vectors that maps and SVG files are drawn as.
+VECTORS = ("svg", "pdf", "dxf")
+
+
+class DrawnImage(Image):
+    """A picture of an SVG or a map, which can also be written as vectors.
+
+    >>> picture = draw('<svg xmlns="http://www.w3.org/2000/svg" width="4" height="4"><rect width="4" height="4"/></svg>')
+    >>> picture.to_svg()[:5], picture.encode("pdf")[:5]
+    ('<svg ', b'%PDF-')
+    """
+
+    __slots__ = ("_arguments", "_layers", "_threads")
+
+    def __init__(self, pixels: ArrayLike, arguments: list[str], layers: list[bytes], threads: int) -> None:
+        super().__init__(pixels)
+        self._arguments, self._layers, self._threads = arguments, layers, threads
+
+    def encode(self, format: str = "png", *, quality: int = 90, compression: str = "fast") -> bytes:
+        """Returns the bytes of a ``png``, ``jpg`` or ``webp`` file, or of an ``svg``, ``pdf`` or ``dxf`` file with vectors.
+
+        Vectors are the same as those of ``durer draw -o``; content that a format cannot hold is an error.
+        """
+        if format.lower() not in VECTORS:
+            return super().encode(format, quality=quality, compression=compression)
+        return call("draw", _durer.draw_vectors, self._arguments, self._layers, format.lower(), self._threads)
+
+    def to_svg(self) -> str:
+        """Returns the text of an SVG file."""
+        return self.encode("svg").decode()
+
+    def save(self, path: str | os.PathLike[str], *, quality: int = 90, compression: str = "fast") -> None:
+        """Writes a file by its suffix: .png, .jpg, .webp, or .svg, .pdf, .dxf with vectors."""
+        super().save(path, quality=quality, compression=compression)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (DrawnImage, (np.asarray(self.pixels), self._arguments, self._layers, self._threads))
+
+
+def _layer_name(layer: Any, number: int) -> str:
+    """Returns the path of a file, beside which others may be, or a name for data."""
+    if not isinstance(layer, str | os.PathLike) or (isinstance(layer, str) and layer.lstrip()[:1] in ("<", "{", "[")):
+        return f"layer{number}"
+    path = str(os.fspath(layer))
+    return os.path.join(os.curdir, path) if path.startswith("-") else path
+
+
 def _layer_bytes(layer: Any, labelled: bool) -> bytes:
     """Returns the bytes of a layer: those of a file unchanged, or of geometries."""
     if isinstance(layer, bytes | bytearray | memoryview):
@@ -265,13 +312,14 @@ def _styled(layer: Any) -> tuple[Any, dict[str, Any]]:
     return layer, {}
 
 
-def draw(layers: Any, size: Any = None, *, threads: int | None = None, **options: Any) -> Image:
-    """Draws an SVG, or a map of layers; the pixels are the same as those of ``durer draw``.
+def draw(layers: Any, size: Any = None, *, threads: int | None = None, **options: Any) -> DrawnImage:
+    """Draws an SVG, or a map of layers; pixels and vectors are the same as those of ``durer draw``.
 
     ``layers`` is one layer or a list of them, from the bottom to the top: a path, the text or bytes of an SVG or of map
     data, a GeoJSON mapping, an array of geometries or a GeoDataFrame; or a tuple of one of these and its style, e.g.
     ``(land, {"fill": "tan", "stroke": "none"})``. Further keyword arguments are the options of the command; style
-    options apply to all layers.
+    options apply to all layers. ``save("map.svg")``, ``.pdf`` and ``.dxf`` write vectors, in which each layer has the name
+    of its file.
 
     >>> draw('<svg xmlns="http://www.w3.org/2000/svg" width="4" height="4"><rect width="4" height="4"/></svg>').pixels[0, 0]
     array([  0,   0,   0, 255], dtype=uint8)
@@ -284,8 +332,9 @@ def draw(layers: Any, size: Any = None, *, threads: int | None = None, **options
     for number, layer in enumerate(given):
         what, style = _styled(layer)
         contents.append(_layer_bytes(what, "label" in style or "label" in options))
-        line += [f"layer{number}", *words(style)]
-    return Image(call("draw", _durer.draw_layers, line, contents, count(threads)))
+        line += [_layer_name(what, number), *words(style)]
+    pixels = call("draw", _durer.draw_layers, line, contents, count(threads))
+    return DrawnImage(pixels, line, contents, count(threads))
 
 
 class Plot:
