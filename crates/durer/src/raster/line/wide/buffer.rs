@@ -15,7 +15,7 @@ use crate::clip::polygon::{
 use crate::curve::{Contours, Path};
 use crate::geometry::Geometry;
 use crate::info::{Class, Info, Occluder};
-use crate::math::DVec2;
+use crate::math::{DAffine2, DVec2};
 use crate::trace::NoTrace;
 use crate::work::Work;
 use crate::{Error, Result};
@@ -177,8 +177,50 @@ fn chains(geometry: &Geometry, out: &mut Vec<Vec<DVec2>>) {
     }
 }
 
+/// Coordinates of buffers are at most this: 10³⁰⁰ less room for products in the overlay.
+const FARTHEST: f64 = 1e299;
+
+/// Farther coordinates are scaled for the stroke, whose points lie within ±10¹⁵.
+const FAR: f64 = 1e12;
+
 /// Joins `shapes` and a stroke along a path, or subtracts the stroke.
+///
+/// # Errors
+/// [`Error::Parameter`] if places would be farther than [`FARTHEST`].
 fn joined(
+    shapes: &Shapes,
+    rule: WindingRule,
+    op: BooleanOp,
+    path: &Path,
+    options: &Options,
+) -> Result<Shapes> {
+    let size = path.bounds().map_or(0.0, |b| b.min().abs().max(b.max().abs()).max_element());
+    let farthest = size + options.distance.abs();
+    if farthest > FARTHEST && options.distance.is_finite() {
+        return Err(Error::parameter("distance", options.distance, "within ±1e299 of all places"));
+    }
+    // Halves, as often as needed: scaling by powers of two is exact.
+    let mut scale = 1.0;
+    while farthest * scale > FAR {
+        scale *= 0.5;
+    }
+    if scale == 1.0 || !farthest.is_finite() {
+        return joined_near(shapes, rule, op, path, options);
+    }
+    let scaled = |shapes: &Shapes, scale: f64| {
+        let mut shapes = shapes.clone();
+        shapes.points_mut().iter_mut().for_each(|p| *p *= scale);
+        shapes
+    };
+    let (distance, tolerance) =
+        (options.distance * scale, options.tolerance.map(|length| length * scale));
+    let options = Options { distance, tolerance, ..options.clone() };
+    let path = path.transformed(DAffine2::from_scale(DVec2::splat(scale)));
+    let near = joined_near(&scaled(shapes, scale), rule, op, &path, &options)?;
+    Ok(scaled(&near, scale.recip()))
+}
+
+fn joined_near(
     shapes: &Shapes,
     rule: WindingRule,
     op: BooleanOp,
@@ -240,6 +282,28 @@ mod tests {
         // Between the grown hole and the border, only the rounded corners remain.
         about(area(&frame, &round(-1.5)), 2.25 * (4.0 - PI));
         about(area(&frame, &round(-2.5)), 0.0);
+    }
+
+    #[test]
+    fn large_distances_and_coordinates_are_those_of_small_ones() {
+        let block = Shapes::from_rings([square(0.0, 10.0)]);
+        let options = |distance: f64| Options { distance, ..Options::default() };
+        for exponent in [3, 12, 15, 16, 40, 150, 290] {
+            let distance = 10_f64.powi(exponent);
+            let found = of_polygons(&block, RULE, &options(distance)).expect("buffer");
+            let bounds = found.bounds().expect("something");
+            for side in [-bounds.min(), bounds.max() - 10.0] {
+                let error = (side / distance - 1.0).abs().max_element();
+                assert!(error < 1e-3, "{distance}: {bounds:?}");
+            }
+        }
+        let far = square(1e17, 4e17);
+        let found = of_polygons(&Shapes::from_rings([far]), RULE, &options(1e17)).expect("buffer");
+        assert!((found.bounds().expect("something").max() / 6e17 - 1.0).abs().max_element() < 1e-3);
+        for distance in [1e300, -1e300, f64::MAX] {
+            let told = of_polygons(&block, RULE, &options(distance)).expect_err("too far");
+            assert!(told.to_string().contains("within ±1e299"), "{told}");
+        }
     }
 
     #[test]
