@@ -36,7 +36,7 @@ pub struct Beside {
 fn in_folder(error: io::Error, path: &Path) -> io::Error {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     match folder {
-        Some(folder) if error.kind() == io::ErrorKind::NotFound => {
+        Some(folder) if error.kind() == io::ErrorKind::NotFound && !folder.is_dir() => {
             io::Error::new(error.kind(), format!("there is no folder {}", folder.display()))
         }
         _ => error,

@@ -172,14 +172,14 @@ fn tell_all(args: &InfoArgs, messages: &Messages, infos: &mut Vec<Told>) -> Resu
 }
 
 /// Returns the files of map data in an archive, or nothing for a file of map data; `None` for a model. A file is known by
-/// its first bytes, or else by its name; an archive by the names in it. Standard input holds a model.
+/// its first bytes, or else by its name; an archive by the names in it, and on standard input as a model.
 fn maps(path: &Path) -> Option<Vec<String>> {
-    if is_stream(path) {
-        return None;
-    }
-    let mut source = layer::bytes(path).ok()?;
-    let head = source.fill_buf().ok()?;
+    let head = head(path)?;
+    let head = &head[..];
     if head.starts_with(archive::MAGIC) {
+        if is_stream(path) {
+            return None;
+        }
         let names = File::open(path).ok().and_then(|file| archive::names(file).ok())?;
         let has_model = names.iter().any(|name| is_name_of_model(name));
         let maps = layer::packed_names(path);
@@ -191,6 +191,14 @@ fn maps(path: &Path) -> Option<Vec<String>> {
         && lower.starts_with(b"x");
     let is_model = ModelFormat::of_content(head).is_some() || is_cloud;
     (!is_model && layer::format_of(path, head).is_some()).then(Vec::new)
+}
+
+/// Returns the first bytes of a file, decompressed if they are gzip; those of standard input stay to be read.
+fn head(path: &Path) -> Option<Vec<u8>> {
+    if is_stream(path) {
+        return std::io::stdin().lock().fill_buf().ok().map(<[u8]>::to_vec);
+    }
+    layer::bytes(path).ok()?.fill_buf().ok().map(<[u8]>::to_vec)
 }
 
 fn of_model(name: String, model: &Model, work: &Work) -> Result<Info, Failure> {

@@ -60,7 +60,10 @@ mod watch;
 
 use args::{Cli, Command};
 use clap::CommandFactory;
+use clap::error::{ContextKind, ContextValue};
 use config::Configured;
+use durer_formats::ModelFormat;
+use durer_formats::geo::GeoFormat;
 use durer_formats::told::shown_path;
 use failure::Failure;
 use options::RunningArgs;
@@ -127,7 +130,14 @@ fn is_verbose(given: &clap::ArgMatches) -> bool {
 
 /// Ends the process with clap's message: help, the version, or an error of the command line. Returns a failure if the
 /// message cannot be printed.
-fn answered(answer: clap::Error) -> Failure {
+fn answered(mut answer: clap::Error) -> Failure {
+    if let Some(ContextValue::String(word)) = answer.get(ContextKind::InvalidSubcommand)
+        && let Some(command) = command_of(word)
+    {
+        let tip = format!("a command comes before the file: durer {command} {word}");
+        answer.remove(ContextKind::SuggestedSubcommand);
+        answer.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+    }
     if answer.use_stderr() {
         answer.exit();
     }
@@ -135,6 +145,12 @@ fn answered(answer: clap::Error) -> Failure {
         Ok(()) => std::process::exit(answer.exit_code()),
         Err(e) => Failure::of_stdout(&e),
     }
+}
+
+/// Returns the command that draws a file of this name.
+fn command_of(name: &str) -> Option<&'static str> {
+    let is_map = || GeoFormat::of_name(name).is_some();
+    ModelFormat::of_name(name).map(|_| "render").or_else(|| is_map().then_some("draw"))
 }
 
 fn run(command: Command) -> Result<(), Failure> {

@@ -23,6 +23,17 @@ pub fn cut(text: &str) -> Cow<'_, str> {
     cut_at(text, WORDS)
 }
 
+/// Returns a number with what is counted, e.g. `1 feature has` or `2 features have`.
+///
+/// ```
+/// use durer_formats::told::counted;
+/// assert_eq!(counted(1, "feature has", "features have"), "1 feature has");
+/// assert_eq!(counted(0, "feature has", "features have"), "0 features have");
+/// ```
+pub fn counted(count: u64, one: &str, several: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { several })
+}
+
 fn cut_at(text: &str, most: usize) -> Cow<'_, str> {
     let mut ends = text.char_indices().map(|(at, _)| at).skip(most - 1);
     match (ends.next(), ends.next()) {

@@ -12,6 +12,7 @@ use durer::clip::cells::{self, Piece};
 use durer::clip::mask::Rules;
 use durer::clip::polygon::{Shapes, WindingRule};
 use durer_formats::geo::{Feature, Member};
+use durer_formats::told::counted;
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -58,7 +59,11 @@ pub fn read(
         messages.warning(&name, message);
     }
     if without > 0 && !cells.is_empty() {
-        messages.warning(&name, format!("{without} features enclose nothing and are not cells"));
+        let (one, several) = (
+            "feature encloses nothing and is no cell",
+            "features enclose nothing and are no cells",
+        );
+        messages.warning(&name, counted(without, one, several));
     }
     if cells.is_empty() {
         return Err(fail("there is no polygon to cut with".to_owned()));

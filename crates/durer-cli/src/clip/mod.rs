@@ -20,6 +20,7 @@ use crate::places::is_stream;
 use durer::clip::mask::{Algorithm, Area, Cutter, Made, Mask, Rules};
 use durer::clip::polygon::{BooleanOp, PolygonClipper, Shapes, WindingRule};
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, System, Writer};
+use durer_formats::told::counted;
 use rayon::prelude::*;
 use report::Report;
 use srids::Srids;
@@ -203,36 +204,41 @@ fn tell(
     // An SVG gives the fill rule of crossing paths itself.
     if report.repaired > 0 && report.from != GeoFormat::Svg.name() {
         found.push(format!(
-            "polygons of {} features crossed, pinched or overlapped themselves or one another; made \
-             valid by the even-odd rule",
-            report.repaired
+            "polygons of {} crossed, pinched or overlapped themselves or one another; made valid by the \
+             even-odd rule",
+            counted(report.repaired, "feature", "features")
         ));
     }
     if report.lost > 0 {
         found.push(format!(
             "polygons of the mask smaller than a cell of the grid, by default 2^-40 of the feature's \
-             extent, may be lost at {} features",
-            report.lost
+             extent, may be lost at {}",
+            counted(report.lost, "feature", "features")
         ));
     }
     if report.long_ways > 0 {
         found.push(format!(
-            "{} features have edges over more than 180 degrees of longitude, which are kept; if they are \
-             meant to cross the 180th meridian, cut them there, as RFC 7946 requires",
-            report.long_ways
+            "{} edges over more than 180 degrees of longitude, which are kept; if they are meant to cross the \
+             180th meridian, cut them there, as RFC 7946 requires",
+            counted(report.long_ways, "feature has", "features have")
         ));
     }
     if report.flat > 0 {
-        found.push(format!("left out: {} lines without length", report.flat));
+        let flat = counted(report.flat, "line without length", "lines without length");
+        found.push(format!("left out: {flat}"));
     }
     if report.mixed {
         found.push(MIXED.to_owned());
     }
     match (report.given.features, report.unchosen) {
         (0, 0) => found.push("there is no feature in it".to_owned()),
-        (0, all) => found.push(format!("none of its {all} features meets --where")),
+        (0, all) => {
+            let all = counted(all, "feature", "features");
+            found.push(format!("none of its {all} meets --where"));
+        }
         (some, _) if report.out.features == 0 && report.broken_off.is_none() => {
-            found.push(format!("nothing remains of its {some} features"));
+            let some = counted(some, "feature", "features");
+            found.push(format!("nothing remains of its {some}; durer info tells the extent"));
         }
         _ => {}
     }
@@ -244,26 +250,22 @@ fn tell(
     let (lines, points) = (report.given.lines, report.given.points);
     if joins(args) && lines + points > 0 {
         let op = args.cutting.op;
-        found
-            .push(format!("left out: {lines} lines and {points} points; --op {op} joins polygons"));
+        let (lines, points) = (counted(lines, "line", "lines"), counted(points, "point", "points"));
+        found.push(format!("left out: {lines} and {points}; --op {op} joins polygons"));
     }
     if report.beyond > 0 {
-        let features = report.beyond;
+        let features = counted(report.beyond, "feature reaches", "features reach");
         found.push(format!(
-            "{features} features reach beyond the latitudes of Web Mercator, ±85.0511; the parts there are in no tile"
+            "{features} beyond the latitudes of Web Mercator, ±85.0511; the parts there are in no tile"
         ));
     }
     if report.too_far > 0 {
-        let features = report.too_far;
-        found.push(format!(
-            "{features} features lie more than four worlds beyond 180 degrees; left out"
-        ));
+        let features = counted(report.too_far, "feature lies", "features lie");
+        found.push(format!("{features} more than four worlds beyond 180 degrees; left out"));
     }
     if report.replaced > 0 {
-        let features = report.replaced;
-        found.push(format!(
-            "the member \"tile\" of {features} features is replaced by the tile's name"
-        ));
+        let features = counted(report.replaced, "feature", "features");
+        found.push(format!("the member \"tile\" of {features} is replaced by the tile's name"));
     }
     for message in found {
         let warning = durer_formats::Warning { place: Default::default(), message };

@@ -3,11 +3,13 @@
 use super::{Source, open, words};
 use crate::failure::Failure;
 use crate::input::display_name;
+use crate::places::is_stream;
 use durer::clip::mask::is_valid;
 use durer::math::Rect;
 use durer::work::Work;
 use durer_formats::geo::crs::Crs;
 use durer_formats::geo::{Dimensions, Feature, FieldKind, GeoFormat, Schema, System};
+use durer_formats::told::counted;
 use durer_formats::told::escaped;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -104,7 +106,9 @@ pub fn of_layers(
 ) -> Result<Vec<LayerInfo>, Failure> {
     let (format, reader) = open(path, None, chosen, work)?;
     let name = chosen.map(str::to_owned);
-    let names = if chosen.is_some() { Vec::new() } else { reader.layers() };
+    // Standard input is read once, with all layers as one.
+    let is_whole = chosen.is_some() || is_stream(path);
+    let names = if is_whole { Vec::new() } else { reader.layers() };
     if names.len() < 2 {
         return Ok(vec![of_layer(path, format, reader, name)?]);
     }
@@ -206,7 +210,11 @@ impl LayerInfo {
             lines.push(("crs", format!("{own}{hint}")));
         }
         let invalid = match self.first_invalid {
-            Some(first) => format!("{} features, the first is number {first}", self.invalid),
+            Some(first) if self.invalid == 1 => format!("1 feature, number {first}"),
+            Some(first) => {
+                let features = counted(self.invalid, "feature", "features");
+                format!("{features}, the first is number {first}")
+            }
             None => "none".to_owned(),
         };
         lines.push(("invalid", invalid));

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use clap::Args;
 use durer_formats::geo::crs::{Crs, Transform};
 use durer_formats::geo::{Feature, System};
+use durer_formats::told::counted;
 
 /// Options for coordinate systems.
 #[derive(Debug, Clone, Default, Args)]
@@ -92,7 +93,11 @@ impl Shift {
         let name =
             system.map_or_else(|| "the new system".to_owned(), |code| format!("EPSG:{code}"));
         let lost = (lost > 0).then(|| {
-            format!("{lost} features reach beyond the area of {name}; left out (use --window to cut them first)")
+            let (one, several) = ("feature reaches", "features reach");
+            format!(
+                "{} beyond the area of {name}; left out (use --window to cut there first)",
+                counted(lost, one, several)
+            )
         });
         let told: Vec<String> = lost.into_iter().chain(self.shifted()).collect();
         (!told.is_empty()).then(|| told.join("; "))

@@ -10,6 +10,7 @@ use durer::raster::line::wide::buffer::{self, Options};
 use durer::raster::line::wide::{Cap, Join};
 use durer_formats::geo::crs::Crs;
 use durer_formats::geo::{Feature, Geometry};
+use durer_formats::told::counted;
 
 pub const EXAMPLES: &str = "\
 Examples:
@@ -123,7 +124,8 @@ pub fn run(args: &BufferArgs) -> Result<(), Failure> {
     let whole = Area::flat(all).union(&options.work).map_err(|e| job.fail(e))?;
     let given = job.report.given.features;
     if whole.shapes.is_empty() && given > 0 {
-        job.report.warnings.push(format!("nothing is left of {given} features"));
+        let given = counted(given, "feature", "features");
+        job.report.warnings.push(format!("nothing is left of {given}"));
     }
     let features = whole.into_geometry().map(Feature::of_geometry).into_iter().collect();
     job.write(features)

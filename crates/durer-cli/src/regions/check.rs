@@ -12,6 +12,7 @@ use durer::clip::polygon::Shapes;
 use durer::clip::polygon::mismatch::misfits;
 use durer::clip::polygon::validity::flaws;
 use durer_formats::geo::{GeoFormat, Geometry, Points};
+use durer_formats::told::counted;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -208,19 +209,17 @@ impl Report {
             println!("and {more} more; --most prints more of them");
         }
         if self.valid {
-            println!("{}: {} features, nothing is wrong", self.input, self.features);
+            let features = counted(self.features, "feature", "features");
+            println!("{}: {features}, nothing is wrong", self.input);
         }
     }
 
     /// Returns the numbers of faults by kind, in one line.
     fn sum(&self) -> String {
         let counts: Vec<String> = self.counts.iter().map(|(f, n)| format!("{n} {f}")).collect();
-        let total = self.features;
-        let invalid = self.invalid;
-        format!(
-            "{}: {invalid} of {total} features are not valid; faults: {}",
-            self.input,
-            counts.join(", ")
-        )
+        let total = counted(self.features, "feature", "features");
+        let (invalid, verb) = (self.invalid, if self.invalid == 1 { "is" } else { "are" });
+        let counts = counts.join(", ");
+        format!("{}: {invalid} of {total} {verb} not valid; faults: {counts}", self.input)
     }
 }

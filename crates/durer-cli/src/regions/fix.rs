@@ -6,6 +6,7 @@ use clap::Args;
 use durer::clip::mask::{Rules, match_points};
 use durer::clip::polygon::WindingRule;
 use durer_formats::geo::{Feature, Geometry};
+use durer_formats::told::counted;
 use rayon::prelude::*;
 
 pub const EXAMPLES: &str = "\
@@ -100,7 +101,8 @@ fn match_all(mut job: Job<'_>, args: &FixArgs) -> Result<(), Failure> {
     }
     let count = with_matched_points(&mut all);
     if count > 0 {
-        job.report.warnings.push(format!("{count} features got points that their neighbours have"));
+        let features = counted(count as u64, "feature", "features");
+        job.report.warnings.push(format!("{features} got points that their neighbours have"));
     }
     job.write(all)
 }
@@ -115,7 +117,6 @@ fn with_matched_points(features: &mut [Feature]) -> usize {
 
 /// Returns the message about features that were made valid.
 pub fn told(repaired: u64) -> String {
-    format!(
-        "{repaired} features are not valid; they were made so by the even-odd rule, as durer fix does"
-    )
+    let (one, several) = ("feature is not valid; it was", "features are not valid; they were");
+    format!("{} made so by the even-odd rule, as durer fix does", counted(repaired, one, several))
 }

@@ -22,6 +22,7 @@ use crate::options::RunningArgs;
 use crate::places::is_stream;
 use clap::{Args, ValueHint};
 use durer_formats::geo::{Feature, GeoFormat, Geometry};
+use durer_formats::told::counted;
 use rayon::prelude::*;
 use serde::Serialize;
 use simplify::Simplified;
@@ -212,9 +213,11 @@ impl<'a> Job<'a> {
         let own = std::mem::take(&mut self.report.warnings);
         let none =
             (self.report.given.features == 0).then(|| "there is no feature in it".to_owned());
-        let gone = self.gone;
-        let gone =
-            (gone > 0).then(|| format!("{gone} features have nothing left and are left out"));
+        let (one, several) = (
+            "feature has nothing left and is left out",
+            "features have nothing left and are left out",
+        );
+        let gone = (self.gone > 0).then(|| counted(self.gone, one, several));
         let odd = self.report.simplified.as_ref().and_then(Simplified::told);
         let more = [self.fields.told(), none, odd, gone].into_iter().flatten();
         let own: Vec<String> = own.into_iter().chain(more).collect();

@@ -10,6 +10,7 @@ use crate::places::is_stream;
 use durer::clip::tiles::{self, Placed};
 use durer_formats::geo::{Feature, GeoFormat};
 use durer_formats::tiles::{Dictionary, Field, LayerInfo, Value};
+use durer_formats::told::counted;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -61,9 +62,13 @@ impl Found {
         self.count += u64::from(found);
     }
 
-    fn told(&self, what: &str) -> Option<String> {
+    fn told(&self, one: &str, several: &str) -> Option<String> {
         let Self { count, first } = self;
-        (*count > 0).then(|| format!("{count} features (the first is feature {first}) {what}"))
+        match count {
+            0 => None,
+            1 => Some(format!("feature {first} {one}")),
+            _ => Some(format!("{count} features (the first is feature {first}) {several}")),
+        }
     }
 }
 
@@ -189,7 +194,10 @@ fn read_file(
     all.warnings.extend(reader.warnings().iter().map(|warning| format!("{shown}: {warning}")));
     let none = match (all.read == before, kept) {
         (true, _) => Some("there is no feature in it".to_owned()),
-        (false, 0) => Some(format!("none of its {} features meets --where", all.read - before)),
+        (false, 0) => {
+            let features = counted(all.read - before, "feature", "features");
+            Some(format!("none of its {features} meets --where"))
+        }
         _ => None,
     };
     for message in none.into_iter().chain(doubts.messages()) {
@@ -211,8 +219,9 @@ fn layer_names(args: &TilesArgs) -> Result<Vec<String>, Failure> {
         (1, count) => Ok(vec![args.layer[0].clone(); count]),
         (names, count) if names == count => Ok(args.layer.clone()),
         (names, count) => {
-            let message =
-                format!("--layer: {names} names for {count} files; give one for each, or one");
+            let (names, files) =
+                (counted(names as u64, "name", "names"), counted(count as u64, "file", "files"));
+            let message = format!("--layer: {names} for {files}; give one for each, or one");
             Err(Failure::Usage(message))
         }
     }
@@ -244,16 +253,27 @@ fn stems(inputs: &[PathBuf]) -> Vec<String> {
 impl Doubts {
     fn messages(&self) -> Vec<String> {
         let found = [
-            self.far.told("lie more than four worlds beyond 180 degrees; left out"),
+            self.far.told(
+                "lies more than four worlds beyond 180 degrees; left out",
+                "lie more than four worlds beyond 180 degrees; left out",
+            ),
             self.latitudes.told(
+                "has latitudes beyond 90 degrees; are longitude and latitude in the wrong order, or --coordinates?",
                 "have latitudes beyond 90 degrees; are longitude and latitude in the wrong order, or --coordinates?",
             ),
-            self.poles.told("go around a pole; they are closed along it"),
+            self.poles.told(
+                "goes around a pole; it is closed along it",
+                "go around a pole; they are closed along it",
+            ),
             self.long.told(
+                "has an edge of more than 180 degrees, which goes around the world; --short-way lets it cross the date line",
                 "have edges of more than 180 degrees, which go around the world; --short-way lets them cross the date line",
             ),
-            self.ids.told("have ids that are not whole numbers; vector tiles know no others, left out"),
-            self.no_geometry.told("have no geometry; left out"),
+            self.ids.told(
+                "has an id that is not a whole number; vector tiles know no others, left out",
+                "have ids that are not whole numbers; vector tiles know no others, left out",
+            ),
+            self.no_geometry.told("has no geometry; left out", "have no geometry; left out"),
         ];
         found.into_iter().flatten().collect()
     }

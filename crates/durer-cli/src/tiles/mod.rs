@@ -15,6 +15,7 @@ use crate::messages::Messages;
 use durer::clip::tiles::{Pyramid, Tile, extent};
 use durer::work::Work;
 use durer_formats::tiles::Metadata;
+use durer_formats::told::counted;
 use layers::Layers;
 use levels::Chosen;
 use make::Maker;
@@ -172,8 +173,8 @@ fn told(last: u8, lost: u64, tiles: u64) -> Vec<String> {
     let mut told = Vec::new();
     if lost > 0 {
         told.push(format!(
-            "{lost} features are in no tile: they are beyond the latitudes of Web Mercator, ±85.0511, or are too small \
-             for the grid of level {last}"
+            "{} beyond the latitudes of Web Mercator, ±85.0511, or too small for the grid of level {last}",
+            counted(lost, "feature is in no tile: it is", "features are in no tile: they are")
         ));
     }
     if tiles == 0 {

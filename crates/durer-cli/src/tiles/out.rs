@@ -25,7 +25,10 @@ pub fn format(args: &TilesArgs) -> Result<(TileFormat, PathBuf), Failure> {
     let path = &args.output;
     let usage = |what: &str| Err(Failure::Usage(format!("--output {}: {what}", path.display())));
     if is_stream(path) {
-        return usage("tiles are many files, or one that is not written from start to end");
+        return usage(
+            "tiles are many files, or one that is not written from start to end; name a .pmtiles or .mbtiles \
+             file, or a folder",
+        );
     }
     let text = path.to_string_lossy();
     let pattern = text.find("{z}").map(|at| (&text[..at], &text[at..]));

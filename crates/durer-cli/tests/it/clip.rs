@@ -162,7 +162,7 @@ fn fill_rules_decide_what_crossing_rings_enclose() {
         assert_eq!(report.json()["out"]["area"], areas, "{rule}");
     }
     let warned = folder.must("clip a.wkt --window -9,-9,9,9 -o o.wkt");
-    assert!(warned.err.contains("1 features crossed"), "{}", warned.err);
+    assert!(warned.err.contains("polygons of 1 feature crossed"), "{}", warned.err);
 }
 
 /// Runs `durer clip` on WKT and returns its output line by line.
@@ -349,7 +349,7 @@ fn what_joining_leaves_out_is_told() {
     let folder = Folder::new();
     folder
         .write("a.wkt", "POLYGON((0 0,1 0,1 1,0 0))\nLINESTRING(0 0,1 1)\nPOINT(0 0)\nPOINT(1 0)");
-    let told = "left out: 1 lines and 2 points";
+    let told = "left out: 1 line and 2 points";
     for (op, names) in [("union", true), ("xor", true), ("intersection", false)] {
         let line = format!("clip a.wkt --op {op} --window -9,-9,9,9 -o o.wkt");
         assert_eq!(folder.must(&line).err.contains(told), names, "{op}");

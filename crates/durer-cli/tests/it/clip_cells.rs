@@ -104,7 +104,7 @@ fn cells_are_of_polygons_and_go_with_no_other_mask() {
     folder.write("bow.wkt", "POLYGON ((0 0, 4 4, 4 0, 0 4, 0 0))\nPOINT (1 1)");
     let told = folder.must("clip in.geojsonl --cells bow.wkt -o out.geojsonl").err;
     assert!(told.contains("made valid by the even-odd rule"), "{told}");
-    assert!(told.contains("1 features enclose nothing and are not cells"), "{told}");
+    assert!(told.contains("1 feature encloses nothing and is no cell"), "{told}");
 }
 
 #[test]

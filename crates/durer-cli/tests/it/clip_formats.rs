@@ -140,7 +140,7 @@ fn coordinates_are_brought_to_another_system() {
     folder.write("pole.wkt", "SRID=4326;POINT (0 90)\nSRID=4326;POINT (0 9)");
     let ended = folder.must("clip pole.wkt --from-crs 4326 --to-crs 3857 -o o.csv --json");
     assert_eq!(ended.json()["out"]["features"], 1);
-    assert!(ended.err.contains("1 features reach beyond the area of EPSG:3857"), "{}", ended.err);
+    assert!(ended.err.contains("1 feature reaches beyond the area of EPSG:3857"), "{}", ended.err);
 }
 
 #[test]

@@ -180,8 +180,8 @@ fn masks_too_small_for_the_grid_are_told() {
     for (size, features) in [("0.5000001", 1), ("0.75", 0)] {
         folder.write("mask.wkt", small(size));
         let ended = folder.must("clip a.wkt --by mask.wkt -o o.wkt --json");
-        let told = format!("may be lost at {features} features");
-        assert_eq!(ended.err.contains(&told), features > 0, "{size}: {}", ended.err);
+        let told = "may be lost at 1 feature";
+        assert_eq!(ended.err.contains(told), features > 0, "{size}: {}", ended.err);
     }
     folder.write("mask.wkt", format!("{}\nPOLYGON((0 0,1e6 0,1e6 1e6,0 0))", small("0.5000001")));
     let ended = folder.must("clip a.wkt --by mask.wkt -o o.wkt");

@@ -190,7 +190,7 @@ fn wrong_use_is_told() {
         (
             "fill no.png -o b.png --at 1,1 --color red",
             1,
-            "error: no.png: it is neither PNG nor JPEG",
+            "durer: no.png: it is neither PNG nor JPEG",
         ),
         ("fill none.png -o b.png --at 1,1 --color red", 1, "none.png"),
     ] {

@@ -33,7 +33,7 @@ fn buffers_have_the_area_that_they_should() {
     let gone = "buffer in.geojson --where n=2 --distance=-2 -o out.geojson --json";
     let gone = folder.must(gone);
     assert_eq!(gone.json()["out"]["features"], 0);
-    assert!(gone.err.contains("1 features have nothing left and are left out"), "{}", gone.err);
+    assert!(gone.err.contains("1 feature has nothing left and is left out"), "{}", gone.err);
     let line = "buffer in.geojson --where n=5 --distance 2 --cap butt -o out.geojson --json";
     assert_eq!(folder.must(line).json()["out"]["area"], 40.0);
     assert_eq!(features(&folder, "out.geojson")[0]["properties"]["n"], 5);
@@ -55,7 +55,7 @@ fn features_with_one_value_become_one() {
     assert_eq!(found[0]["geometry"]["coordinates"].as_array().map(Vec::len), Some(4));
     assert_eq!(found[2]["geometry"]["type"], "LineString");
     assert_eq!(told.json()["out"]["area"], 8.0 + 16.0 + 4.0 + 16.0);
-    assert!(told.err.contains("1 features are not valid"), "{}", told.err);
+    assert!(told.err.contains("1 feature is not valid"), "{}", told.err);
     let told = folder.must("dissolve in.geojson --by owner -o out.geojson --json");
     assert!(told.err.contains("no feature has the field owner"), "{}", told.err);
     assert!(told.err.contains("some features have and others lack"), "{}", told.err);
@@ -105,7 +105,7 @@ fn faults_are_told_with_their_places() {
     let good = r#"{"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4],[0,0]]]}"#;
     folder.write("good.geojson", good);
     let ended = folder.must("check good.geojson --coverage --gap-width 1");
-    assert_eq!(ended.out, b"good.geojson: 1 features, nothing is wrong\n");
+    assert_eq!(ended.out, b"good.geojson: 1 feature, nothing is wrong\n");
     assert_eq!(folder.run("check good.geojson --gap-width 1").code, 2);
     // Repairs while reading are reported as faults.
     let open =
@@ -128,7 +128,7 @@ fn neighbours_get_the_points_that_they_lack_and_stay_a_coverage_when_cut() {
     folder.write("mask.wkt", "POLYGON ((33 8.2, 36 8.6, 35 11, 32.5 9.5, 33 8.2))");
     folder.run("check in.geojson --coverage").fails(1, "not valid");
     let told = folder.must("fix in.geojson --coverage -o out.geojson --json");
-    assert!(told.err.contains("1 features got points that their neighbours have"), "{}", told.err);
+    assert!(told.err.contains("1 feature got points that their neighbours have"), "{}", told.err);
     assert_eq!(told.json()["repaired"], 1);
     // All three have the vertex now; the second has an interpolated height there.
     let out = String::from_utf8(folder.read("out.geojson")).unwrap();

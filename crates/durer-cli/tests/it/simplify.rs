@@ -52,7 +52,7 @@ fn shares_streams_and_drops() {
     assert!(none.ends_with("LINESTRING (0 9, 6 9)\n"), "{none}");
     let ended =
         folder.must("simplify parcels.wkt --tolerance 0.5 --drop-below 2 -o big.wkt --json");
-    assert!(ended.err.contains("1 features have nothing left"), "{}", ended.err);
+    assert!(ended.err.contains("1 feature has nothing left"), "{}", ended.err);
     assert_eq!(ended.json()["dropped"]["small_rings"], 2);
     assert!(!text(&folder, "big.wkt").contains("5 1"));
     folder.must("simplify parcels.wkt --each --tolerance 0.5 -o each.wkt");
@@ -76,7 +76,7 @@ fn what_is_no_ring_is_told() {
     );
     let ended = folder.must("simplify a.wkt --tolerance 0.1 -o b.wkt --json");
     assert!(ended.err.contains("3 rings of fewer than three different points"), "{}", ended.err);
-    assert!(ended.err.contains("1 features have nothing left"), "{}", ended.err);
+    assert!(ended.err.contains("1 feature has nothing left"), "{}", ended.err);
     let text = text(&folder, "b.wkt");
     assert_eq!(text, "MULTIPOLYGON (((2 0, 3 0, 2 1, 2 0)))\nPOLYGON EMPTY\n");
 }

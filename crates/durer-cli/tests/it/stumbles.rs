@@ -1,6 +1,8 @@
 //! Mistakes of newcomers: each message tells what is right.
 
-use crate::harness::Folder;
+use crate::harness::{Ended, Folder};
+use std::io::Write;
+use std::process::Stdio;
 
 const AREA: &str = r#"{"type":"Feature","properties":{"n":1},"geometry":{"type":"Polygon",
     "coordinates":[[[1,1],[4,1],[4,3],[1,1]]]}}"#;
@@ -20,7 +22,7 @@ fn empty_files_are_called_empty() {
     let folder = folder();
     folder.run("draw empty.csv -o o.png").fails(1, "empty.csv: the file is empty");
     folder.run("fill empty.png -o o.png --at 0,0 --color red").fails(1, "is empty");
-    folder.run("draw empty.geojson -o o.png").fails(1, "there is nothing to draw");
+    folder.run("draw empty.geojson -o o.png").fails(1, "empty.geojson: the file is empty");
     let told = folder.must("info empty.geojson");
     assert!(String::from_utf8_lossy(&told.out).contains("geometry    none\n"), "{told:?}");
     let ended = folder.must("tiles empty.geojson -o o.pmtiles --json");
@@ -51,9 +53,9 @@ fn results_without_content_are_told() {
     for (command, part) in [
         (
             "clip a.geojson --window 8,8,9,9 -o o.wkt",
-            "a.geojson: nothing remains of its 1 features",
+            "a.geojson: nothing remains of its 1 feature; durer info tells the extent",
         ),
-        ("clip a.geojson --where n=2 -o o.wkt", "a.geojson: none of its 1 features meets --where"),
+        ("clip a.geojson --where n=2 -o o.wkt", "a.geojson: none of its 1 feature meets --where"),
         (
             "draw a.geojson a.wkt --window 8,8,9,9 -o o.png",
             "nothing of the map is within 8.0,8.0,9.0,9.0",
@@ -77,4 +79,65 @@ fn formulas_given_as_files_are_recognized() {
         folder.run(&format!("plot {formula} -o o.png")).fails(2, "use --formula for a formula");
     }
     folder.run("plot missing.asc -o o.png").fails(1, "missing.asc: No such file");
+}
+
+#[test]
+fn files_in_other_encodings_say_so() {
+    let folder = Folder::new();
+    let text = r#"{"type":"Feature","properties":{"n":"Köln"},"geometry":{"type":"Point","coordinates":[1,2]}}"#;
+    let latin: Vec<u8> = text.chars().map(|c| c as u8).collect();
+    folder.write("latin.geojson", &latin);
+    let utf16 = |text: &str| -> Vec<u8> {
+        std::iter::once(0xfeff).chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect()
+    };
+    folder.write("wide.geojson", utf16(text));
+    folder.write("wide.csv", utf16("lon,lat\n1,2\n"));
+    let kml = r#"<kml xmlns="http://www.opengis.net/kml/2.2"><Placemark><Point><coordinates>1,2</coordinates></Point></Placemark></kml>"#;
+    folder.write("wide.kml", utf16(kml));
+    for command in [
+        "clip % --window 0,0,5,5 -o o.geojson",
+        "tiles % -o o.pmtiles",
+        "draw % -o o.png",
+        "check %",
+    ] {
+        let run = |name: &str| folder.run(&command.replace('%', name));
+        run("latin.geojson").fails(1, "this is not UTF-8; save the file in UTF-8");
+        run("wide.geojson").fails(1, "wide.geojson: this is text in UTF-16; save it in UTF-8");
+        run("wide.csv").fails(1, "wide.csv: this is text in UTF-16; save it in UTF-8");
+        assert_eq!(run("wide.kml").code, 0, "XML names its encoding: {command}");
+    }
+}
+
+#[test]
+fn maps_on_standard_input_are_described() {
+    let folder = Folder::new();
+    let piped = |text: &str| {
+        let mut command = folder.command("info - --json");
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("run");
+        child.stdin.take().expect("a pipe").write_all(text.as_bytes()).expect("written");
+        Ended::of(child.wait_with_output().expect("ended"))
+    };
+    let told = piped(r#"{"type":"Point","coordinates":[1,2]}"#).json();
+    assert_eq!((&told["format"], &told["features"]), (&"geojson".into(), &1.into()), "{told}");
+    let layers =
+        r#"{"a":{"type":"Point","coordinates":[1,2]},"b":{"type":"Point","coordinates":[3,4]}}"#;
+    let told = piped(&format!(r#"{{"type":"Topology","arcs":[],"objects":{layers}}}"#)).json();
+    assert_eq!(told["features"], 2, "{told}");
+    assert!(told["warnings"][0].as_str().expect("a warning").contains("become one"), "{told}");
+    let told = piped("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").json();
+    assert_eq!(told["format"], "OBJ");
+    let told = piped("x,y,z\n1,2,3\n4,5,6\n").json();
+    assert_eq!(told["features"], 2, "{told}");
+}
+
+#[test]
+fn files_without_a_command_name_the_command() {
+    let folder = Folder::new();
+    folder.run("a.stl -o a.png").fails(2, "a command comes before the file: durer render a.stl");
+    folder.run("a.geojson").fails(2, "a command comes before the file: durer draw a.geojson");
+    folder.run("rendr a.stl").fails(2, "a similar subcommand exists: 'render'");
+    folder.write("a.wkt", "POINT (1 2)");
+    folder.run("tiles a.wkt -o -").fails(2, "name a .pmtiles or .mbtiles file, or a folder");
+    folder.write("empty.svg", "");
+    folder.run("draw empty.svg -o a.png").fails(1, "empty.svg: the file is empty");
 }

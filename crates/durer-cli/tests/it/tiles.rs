@@ -249,7 +249,7 @@ fn land() -> Folder {
 fn tiles_have_what_their_features_have() {
     let folder = land();
     let ended = folder.must("tiles parcels.geojsonl way.wkt --zoom 0-6 -o map.pmtiles --json");
-    assert!(ended.err.contains("1 features (the first is feature 3) have ids"), "{}", ended.err);
+    assert!(ended.err.contains("feature 3 has an id that is not"), "{}", ended.err);
     let report = ended.json();
     let tiles = pmtiles(&folder.read("map.pmtiles"));
     assert_eq!(report["tiles"], tiles.len());
@@ -328,11 +328,7 @@ fn what_lies_beyond_the_date_line_comes_from_the_other_side() {
     assert!(long.contains(told), "{long}");
     let ended = folder.must("tiles cross.wkt --zoom 0 --buffer 0 --short-way -o short.pmtiles");
     assert!(!ended.err.contains("180 degrees"), "{}", ended.err);
-    assert!(
-        ended.err.contains("1 features (the first is feature 2) go around a pole"),
-        "{}",
-        ended.err
-    );
+    assert!(ended.err.contains("feature 2 goes around a pole"), "{}", ended.err);
     let lines = |name: &str| {
         let tiles = pmtiles(&folder.read(name));
         decode(&tiles[0].1, 4096)
@@ -432,7 +428,7 @@ fn features_and_fields_are_chosen_as_by_other_commands() {
     assert_eq!(document["vector_layers"][0]["fields"], fields);
     // Positions in the file count all features, including those left out.
     let ended = folder.must("tiles parcels.geojsonl --zoom 0 --where id=nine --select roof -o u");
-    assert!(ended.err.contains("1 features (the first is feature 3) have ids"), "{}", ended.err);
+    assert!(ended.err.contains("feature 3 has an id that is not"), "{}", ended.err);
     assert!(ended.err.contains("no feature has the field roof; there are"), "{}", ended.err);
     let ended =
         folder.must("tiles parcels.geojsonl way.wkt --zoom 0 --where use=wood --exclude size -o v");
@@ -465,7 +461,7 @@ fn too_many_tiles_are_counted_and_not_made() {
     folder.run("clip world.wkt --tiles 3 --max-tiles 63 -o d").fails(1, "at least 64 tiles");
     assert_eq!(folder.names(), ["world.wkt"], "nothing is begun");
     let report = folder.must("clip world.wkt --tiles 3 -o d --json");
-    assert!(report.err.contains("1 features reach beyond the latitudes"), "{}", report.err);
+    assert!(report.err.contains("1 feature reaches beyond the latitudes"), "{}", report.err);
     assert_eq!(report.json()["tiles"], 64);
     // A slanted line meets few of the tiles in its bounding box.
     folder.write("line.wkt", "LINESTRING (-170 -80, 170 80)\n");
@@ -540,8 +536,8 @@ fn clipped_tiles_wrap_around_the_world() {
 {"type":"Feature","properties":null,"geometry":{"type":"Polygon","coordinates":[[[-180,80],[180,80],[180,90],[-180,90],[-180,80]]]}}
 {"type":"Feature","properties":null,"geometry":{"type":"Point","coordinates":[1e9,5]}}"#);
     let ended = folder.must("clip over.geojsonl --tiles 2 -o t.geojsonl --json");
-    assert!(ended.err.contains("1 features reach beyond the latitudes"), "{}", ended.err);
-    assert!(ended.err.contains("1 features lie more than four worlds"), "{}", ended.err);
+    assert!(ended.err.contains("1 feature reaches beyond the latitudes"), "{}", ended.err);
+    assert!(ended.err.contains("1 feature lies more than four worlds"), "{}", ended.err);
     let text = String::from_utf8(folder.read("t.geojsonl")).unwrap();
     assert_eq!(ended.json()["tiles"], 8);
     let point = text.lines().find(|line| line.contains("\"Point\"")).unwrap();
@@ -560,7 +556,7 @@ fn wrong_use_is_told() {
         ("-o a.pmtiles --to mvt", "different formats"),
         ("-o a.pmtiles --zoom 3-1", "the lower level comes first"),
         ("-o a.pmtiles --zoom 25", "0 to 24"),
-        ("-o a.pmtiles --layer a --layer b", "2 names for 1 files"),
+        ("-o a.pmtiles --layer a --layer b", "2 names for 1 file;"),
         ("-o a.pmtiles --extent 16", "less than the extent"),
     ] {
         folder.run(&format!("tiles parcels.geojsonl {options}")).fails(2, part);
@@ -569,6 +565,6 @@ fn wrong_use_is_told() {
     folder.run("tiles a.svg -o a.pmtiles").fails(1, "an SVG has no places on the earth");
     folder.write("swapped.wkt", "POINT (5 95)\n");
     let ended = folder.must("tiles swapped.wkt --zoom 0 -o a.pmtiles");
-    assert!(ended.err.contains("have latitudes beyond 90"), "{}", ended.err);
+    assert!(ended.err.contains("has latitudes beyond 90"), "{}", ended.err);
     assert!(ended.err.contains("there is no tile"), "{}", ended.err);
 }

@@ -42,8 +42,9 @@ pub(crate) fn sniff(head: &[u8]) -> bool {
 /// [`Error::Limit`] for data above a limit. All other faults are warnings.
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let text = xml::utf8(bytes);
-    let text = std::str::from_utf8(&text)
-        .map_err(|e| Error::byte(e.valid_up_to() as u64, "this is not UTF-8"))?;
+    let text = std::str::from_utf8(&text).map_err(|e| {
+        Error::byte(e.valid_up_to() as u64, "this is not UTF-8; save the file in UTF-8")
+    })?;
     let limits = options.limits.clone();
     let document = Document::parse(text, limits.decoded_bytes)?;
     let root = document.root().filter(|&r| document.name(r) == "COLLADA");

@@ -45,7 +45,17 @@ pub fn of_content(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
         .map(|(_, what, hint)| (*what, *hint))
         .or_else(|| root().map(|(_, what, hint)| (*what, *hint)))
         .or_else(|| is_pbf(bytes).then_some(("OpenStreetMap PBF", EXPORT)))
+        .or_else(|| is_utf16(bytes).then_some(("text in UTF-16", "save it in UTF-8")))
         .or_else(|| is_dbf(bytes).then_some(("a table of a Shapefile", "open the .shp beside it")))
+}
+
+/// Returns whether text in UTF-16 begins, other than XML, with a mark of the order of bytes.
+fn is_utf16(bytes: &[u8]) -> bool {
+    match bytes {
+        [0xff, 0xfe, first, ..] => *first != b'<',
+        [0xfe, 0xff, _, second, ..] => *second != b'<',
+        _ => false,
+    }
 }
 
 /// Returns whether a block of OpenStreetMap's format begins.

@@ -31,8 +31,9 @@ impl<'a> Text<'a> {
 
     /// Returns the value unchanged; checked to be JSON.
     pub fn checked(&self) -> Result<String> {
-        let text = std::str::from_utf8(self.as_bytes())
-            .map_err(|e| self.error_at(self.from + e.valid_up_to(), "this is not UTF-8"))?;
+        let text = std::str::from_utf8(self.as_bytes()).map_err(|e| {
+            self.error_at(self.from + e.valid_up_to(), "this is not UTF-8; save the file in UTF-8")
+        })?;
         serde_json::from_str::<serde::de::IgnoredAny>(text).map_err(|e| {
             let lines = text.split_inclusive('\n').take(e.line().saturating_sub(1));
             let at = lines.map(str::len).sum::<usize>() + e.column().saturating_sub(1);
