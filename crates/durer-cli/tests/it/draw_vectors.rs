@@ -94,8 +94,8 @@ fn clip_paths_of_several_shapes_are_written_as_vectors() {
     folder.write(
         "c.svg",
         r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 40">
-<clipPath id="a"><circle cx="15" cy="20" r="12"/><g><path clip-rule="evenodd"
- d="M20 5h30v30h-30zM28 12h14v14h-14z" transform="rotate(8 35 20)"/></g><text x="2" y="12" font-size="12">ab</text></clipPath>
+<clipPath id="a"><circle cx="15" cy="20" r="12"/><path clip-rule="evenodd"
+ d="M20 5h30v30h-30zM28 12h14v14h-14z" transform="rotate(8 35 20)"/><text x="2" y="12" font-size="12">ab</text></clipPath>
 <g clip-path="url(#a)"><rect width="60" height="40" fill="#28c"/><path d="M0 40L60 0" stroke="#fa0" stroke-width="9"/></g></svg>"##,
     );
     let (mean, most, many) = differences(&folder, "c.svg --size 300x --background white");

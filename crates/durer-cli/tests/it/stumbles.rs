@@ -1,6 +1,6 @@
 //! Mistakes of newcomers: each message tells what is right.
 
-use crate::harness::{Ended, Folder};
+use crate::harness::{Ended, Folder, Picture};
 use std::io::Write;
 use std::process::Stdio;
 
@@ -140,4 +140,19 @@ fn files_without_a_command_name_the_command() {
     folder.run("tiles a.wkt -o -").fails(2, "name a .pmtiles or .mbtiles file, or a folder");
     folder.write("empty.svg", "");
     folder.run("draw empty.svg -o a.png").fails(1, "empty.svg: the file is empty");
+}
+
+#[test]
+fn models_are_seen_at_any_place_and_in_any_size() {
+    let folder = Folder::new();
+    for (at, side) in [(1e9, 1.0), (-4e9, 0.5), (0.0, 1e-9), (0.0, 1e9)] {
+        let end = at + side;
+        folder.write(
+            "a.obj",
+            format!("v {at} 0 0\nv {end} 0 0\nv {at} {side} 0\nv {at} 0 {side}\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"),
+        );
+        let ended = folder.must("render a.obj -o a.png --size 32");
+        assert_eq!(ended.err, "", "{at} {side}");
+        assert!(Picture::decode(&folder.read("a.png")).shows_something(), "{at} {side}");
+    }
 }

@@ -390,6 +390,21 @@ fn groups_have_clip_paths_and_opacity() {
 }
 
 #[test]
+fn dxf_entities_of_other_pens_than_the_layer_have_their_own_colour() {
+    let marks = vec![
+        stroke(&[(0.0, 0.0), (5.0, 5.0)], false, 0),
+        stroke(&[(1.0, 0.0), (9.0, 0.0)], false, 2),
+    ];
+    let sheet = sheet(marks);
+    let dxf = utf8(written(|out| write_dxf(out, &sheet, DxfStrokes::Polylines)));
+    let entities = &dxf[dxf.find("ENTITIES").expect("a section")..];
+    let weights: Vec<&str> = entities.split("AcDbEntity").skip(1).collect();
+    assert!(weights[0].starts_with("\n  8\nfirst\n370\n50\n100\n"), "{}", weights[0]);
+    let own = "\n  8\nfirst\n 62\n1\n370\n70\n420\n16711712\n440\n33554560\n100\n";
+    assert!(weights[1].starts_with(own), "{}", weights[1]);
+}
+
+#[test]
 fn gradients_are_elements_and_shadings() {
     let corner = points(&[(0.0, 0.0), (9.0, 0.0), (0.0, 9.0)]);
     let pieces = corner[1..].iter().chain(&corner[..1]).map(|p| Piece::Line(*p)).collect();

@@ -411,11 +411,14 @@ fn finished(
     Ok(camera)
 }
 
+/// Share of a place below which an extent there is lost to rounding: some thousand of the last digits of double precision.
+const LOST: f64 = 1e-12;
+
 /// Returns the amount to add to an extent so that it is visible: 0, unless the extent is 0 or lost to rounding at its
 /// place.
 fn smallest_extent(center: DVec3, size: f64) -> f64 {
     let place = center.abs().max_element();
-    if size > place * 1e-9 { 0.0 } else { (place * 1e-6).max(if size > 0.0 { 0.0 } else { 1.0 }) }
+    if size > place * LOST { 0.0 } else { (place * 1e-6).max(if size > 0.0 { 0.0 } else { 1.0 }) }
 }
 
 /// Returns the box itself, or a cube if it has no extent at all.
