@@ -43,10 +43,16 @@ fn in_folder(error: io::Error, path: &Path) -> io::Error {
     }
 }
 
+/// Returns the place that a link to a missing file names, or the place itself.
+fn linked(place: &Path) -> PathBuf {
+    let folder = place.parent().unwrap_or(Path::new(""));
+    fs::read_link(place).map_or_else(|_| place.to_owned(), |target| folder.join(target))
+}
+
 impl Beside {
     /// Returns a file that shall replace `place`, or be there first; a link stays a link.
     pub fn create(place: &Path) -> io::Result<Self> {
-        let place = fs::canonicalize(place).unwrap_or_else(|_| place.to_owned());
+        let place = fs::canonicalize(place).unwrap_or_else(|_| linked(place));
         if fs::metadata(&place).is_ok_and(|m| m.permissions().readonly()) {
             return Err(io::Error::other("the file is read-only"));
         }

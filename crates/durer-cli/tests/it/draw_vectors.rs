@@ -324,4 +324,8 @@ fn maps_become_polylines_and_hatches_for_cad() {
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='M1 1h9'/></svg>",
     );
     folder.must("draw a.svg -o a.dxf");
+    folder.write("straße.geojson", MAP);
+    folder.must("draw straße.geojson -o a.dxf");
+    let dxf = String::from_utf8(folder.read("a.dxf")).expect("ASCII");
+    assert!(dxf.contains("\n  8\nstra\\U+00DFe\n"), "the name of the layer is escaped");
 }

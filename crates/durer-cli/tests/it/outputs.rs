@@ -206,3 +206,17 @@ fn turntables_are_numbered() {
     folder.must("render cube.obj -o dir/ --turntable 2 --size 16x16");
     assert!(folder.path("dir/cube_0001.png").is_file());
 }
+
+#[cfg(unix)]
+#[test]
+fn links_stay_links_even_to_files_that_are_missing() {
+    let folder = Folder::new();
+    folder.write("map.wkt", "POINT (1 2)");
+    std::fs::create_dir(folder.path("far")).expect("folder");
+    std::os::unix::fs::symlink("far/a.png", folder.path("a.png")).expect("link");
+    for _ in 0..2 {
+        folder.must("draw map.wkt -o a.png --size 9x9");
+        assert!(folder.path("a.png").is_symlink() && folder.path("far/a.png").is_file());
+    }
+    assert_eq!(std::fs::read_dir(folder.path("far")).expect("folder").count(), 1);
+}

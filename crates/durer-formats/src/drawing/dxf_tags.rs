@@ -242,7 +242,7 @@ pub(super) fn begin(tags: &mut Tags, kind: &str, layer: &str, pen: Option<&Pen>)
 
 /// Returns a name of a table's entry: the format forbids a few characters.
 pub(super) fn symbol(name: &str) -> String {
-    string(name).replace(['<', '>', '/', '\\', '"', ':', ';', '?', '*', '|', ',', '=', '`'], "_")
+    string(&name.replace(['<', '>', '/', '\\', '"', ':', ';', '?', '*', '|', ',', '=', '`'], "_"))
 }
 
 /// Returns text on one line; `^` and characters beyond ASCII are escaped as the format requires.
