@@ -264,6 +264,8 @@ class DrawnImage(Image):
 
         Vectors are the same as those of ``durer draw -o``; content that a format cannot hold is an error.
         """
+        if format.lower() not in (*VECTORS, "png", "jpg", "jpeg", "webp"):
+            raise ValueError(f"'{format}' is not a format of maps; there are png, jpg, webp, svg, pdf and dxf")
         if format.lower() not in VECTORS:
             return super().encode(format, quality=quality, compression=compression)
         return call("draw", _durer.draw_vectors, self._arguments, self._layers, format.lower(), self._threads)

@@ -72,8 +72,8 @@ fn a_sheet_shows_what_a_canvas_shows() {
 #[test]
 fn several_clip_paths_are_united() {
     let circle = |x: f64| Path::circle(DVec2::new(x, 32.0), 12.0);
-    let mut ring = circle(44.0);
-    ring.extend(&Path::circle(DVec2::new(44.0, 32.0), 6.0));
+    let mut ring = circle(36.0);
+    ring.extend(&Path::circle(DVec2::new(36.0, 32.0), 6.0));
     let paths = [(circle(20.0), FillRule::NonZero), (ring, FillRule::EvenOdd)];
     let red = Paint::Color([200, 0, 0, 255]);
     let found = difference(|t| {
