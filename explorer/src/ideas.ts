@@ -51,6 +51,22 @@ export const IDEAS: Record<string, Words> = {
     en: "Maps a part of the world to a rectangle of the screen: move the window to the origin, scale it, and move it to the viewport.",
     de: "Bildet einen Teil der Welt auf ein Rechteck des Bildschirms ab: Fenster in den Ursprung schieben, skalieren, in den Viewport schieben.",
   },
+  validity: {
+    en: "Tells whether polygons are valid, and where not: edges are compared in pairs, then the points where rings touch, then the nesting of rings, all by exact signs.",
+    de: "Sagt, ob Polygone gültig sind, und wo nicht: Kanten werden paarweise verglichen, dann die Punkte, in denen Ringe sich berühren, dann, was worin liegt, alles mit exakten Vorzeichen.",
+  },
+  "clip-attributes": {
+    en: "Where clipping makes a new vertex, its colour, texture coordinate and normal are mixed by the same t as its position, before the division by w; mixed afterwards, by the place on the screen, they would be wrong.",
+    de: "Wo das Clippen eine neue Ecke macht, werden Farbe, Texturkoordinate und Normale mit demselben t gemischt wie der Ort, vor der Division durch w; danach, nach dem Ort am Schirm, wären sie falsch.",
+  },
+  points: {
+    en: "A point of size 1 lights the pixel that its centre is in; a larger one a square of pixels whose centre moves to the middle of a pixel or to a corner, as the size is odd or even.",
+    de: "Ein Punkt der Größe 1 setzt das Pixel, in dem seine Mitte liegt, ein größerer ein Quadrat aus Pixeln, dessen Mitte in die Mitte eines Pixels oder auf eine Ecke rückt, je nachdem, ob die Größe ungerade oder gerade ist.",
+  },
+  "smooth-points": {
+    en: "A disc keeps its place and its size: each pixel gets as much of it as the disc covers, so that it moves smoothly and small points become dim instead of vanishing.",
+    de: "Eine Scheibe behält Ort und Größe: Jedes Pixel bekommt so viel, wie die Scheibe von ihm bedeckt. So bewegt sie sich stetig, und kleine Punkte werden blass statt zu verschwinden.",
+  },
   equation: {
     en: "Draws a line by its equation: for each column, compute y and set the nearest pixel. Right, but with a multiplication and a rounding per pixel.",
     de: "Zeichnet eine Strecke nach ihrer Gleichung: je Spalte y ausrechnen und das nächste Pixel setzen. Richtig, aber mit Multiplikation und Rundung je Pixel.",
@@ -206,6 +222,10 @@ export const IDEAS: Record<string, Words> = {
   unlit: {
     en: "The unchanged colour of the texture, without any light: for models whose textures were photographed with their light.",
     de: "Die Farbe der Textur, wie sie ist, ohne jedes Licht: für Modelle, deren Texturen mit ihrem Licht fotografiert wurden.",
+  },
+  "metallic-roughness": {
+    en: "A rough surface is made of tiny mirrors: how many face the half-way direction, how many of these are seen, and how much each mirrors give the highlight; in plastics the light that enters comes back in all directions.",
+    de: "Eine raue Fläche besteht aus winzigen Spiegeln: Wie viele nach der Mittelrichtung zeigen, wie viele davon zu sehen sind und wie viel jeder spiegelt, ergibt das Glanzlicht; bei Kunststoff kommt eingedrungenes Licht nach allen Seiten zurück.",
   },
   "viewport-layout": {
     en: "Divides a screen into viewports, row by row, by whole pixels: none belongs to two viewports, and none is left over.",

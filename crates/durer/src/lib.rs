@@ -99,6 +99,7 @@
 //!
 //! | shape | ways |
 //! |---|---|
+//! | point | [squares and smooth discs](raster::point) |
 //! | line, one pixel wide | [equation](raster::line::equation), [DDA](raster::line::dda), [Bresenham](raster::line::bresenham), [run-slice](raster::line::run_slice), [double-step](raster::line::double_step), [many of them by tiles](raster::line::tiled) |
 //! | smooth line | [Wu, Gupta–Sproull](raster::line::anti_aliased) |
 //! | wide line, dashes | [outline of the stroke](raster::line::wide) |

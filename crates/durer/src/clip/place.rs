@@ -190,7 +190,7 @@ pub fn clip<A: Blend>(
     polygon: &[(DVec3, A)],
     clip_from_world: &DMat4,
     depth: DepthRange,
-    t: &mut impl Tracer<Step>,
+    t: &mut impl Tracer<Step<A>>,
 ) -> Vec<NdcVertex<A>> {
     let transformed = |(p, a): &(DVec3, A)| ClipVertex {
         position: *clip_from_world * p.extend(1.0),
@@ -234,7 +234,7 @@ const ALL_BORDERS: std::ops::Range<usize> = 0..6;
 fn between_near_and_far<A: Blend>(
     ring: &[ClipVertex<A>],
     depth: DepthRange,
-    t: &mut impl Tracer<Step>,
+    t: &mut impl Tracer<Step<A>>,
 ) -> Vec<ClipVertex<A>> {
     if ring.iter().any(|v| !v.position.is_finite()) {
         t.step(|| Step::Rejected);
@@ -250,7 +250,7 @@ fn between_near_and_far<A: Blend>(
                 attributes: A::blend(&i.attributes, -d_out, &o.attributes, d_in, total),
             }
         };
-        ring = cut_ring(&ring, Outcode::BORDERS[k], distance, cut, |v| v.position, t);
+        ring = cut_ring(&ring, Outcode::BORDERS[k], distance, cut, ClipVertex::parts, t);
     }
     ring
 }
@@ -272,7 +272,7 @@ fn divided<A: Blend>(ring: impl Iterator<Item = ClipVertex<A>>) -> Vec<NdcVertex
 fn in_world<A: Blend>(
     polygon: &[(DVec3, A)],
     planes: &[Plane; 6],
-    t: &mut impl Tracer<Step>,
+    t: &mut impl Tracer<Step<A>>,
 ) -> Vec<(DVec3, A)> {
     if polygon.iter().any(|(p, _)| !p.is_finite()) {
         t.step(|| Step::Rejected);
@@ -284,7 +284,7 @@ fn in_world<A: Blend>(
         let cut = |[i, o]: [&(DVec3, A); 2], [d_in, d_out]: [f64; 2]| {
             Blend::blend(i, -d_out, o, d_in, d_in - d_out)
         };
-        ring = cut_ring(&ring, border, distance, cut, |v| v.0.extend(1.0), t);
+        ring = cut_ring(&ring, border, distance, cut, |v| (v.0.extend(1.0), v.1.clone()), t);
     }
     ring
 }
@@ -306,7 +306,7 @@ fn nearest_w(clip_from_world: &DMat4, depth: DepthRange) -> f64 {
 fn before_eye<A: Blend>(
     ring: &[ClipVertex<A>],
     smallest_w: f64,
-    t: &mut impl Tracer<Step>,
+    t: &mut impl Tracer<Step<A>>,
 ) -> Vec<ClipVertex<A>> {
     if ring.iter().any(|v| !v.position.is_finite()) {
         t.step(|| Step::Rejected);
@@ -319,20 +319,21 @@ fn before_eye<A: Blend>(
         let attributes = A::blend(&i.attributes, -d_out, &o.attributes, d_in, total);
         ClipVertex { position, attributes }
     };
-    cut_ring(ring, EYE, |v| v.position.w - smallest_w, cut, |v| v.position, t)
+    cut_ring(ring, EYE, |v| v.position.w - smallest_w, cut, ClipVertex::parts, t)
 }
 
 fn in_ndc<A: Blend>(
     mut ring: Vec<NdcVertex<A>>,
     depth: DepthRange,
     borders: std::ops::Range<usize>,
-    t: &mut impl Tracer<Step>,
+    t: &mut impl Tracer<Step<A>>,
 ) -> Vec<NdcVertex<A>> {
     for k in borders {
         let border = Outcode::BORDERS[k];
         let distance =
             |v: &NdcVertex<A>| volume::boundary_coordinates(v.position.extend(1.0), depth)[k];
-        ring = cut_ring(&ring, border, distance, cut_ndc, |v| v.position.extend(1.0), t);
+        let parts = |v: &NdcVertex<A>| (v.position.extend(1.0), v.attributes.clone());
+        ring = cut_ring(&ring, border, distance, cut_ndc, parts, t);
     }
     if ring.len() < 3 { Vec::new() } else { ring }
 }

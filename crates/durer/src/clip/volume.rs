@@ -41,6 +41,31 @@ pub const INFO: Info = Info {
     ],
 };
 
+/// The facts of what new vertices get: the same algorithm, with values beside the positions.
+pub const ATTRIBUTES: Info = Info {
+    name: "clip-attributes",
+    title: "Attributes at new vertices",
+    authors: "P. S. Heckbert",
+    year: 1990,
+    source: "Generic convex polygon scan conversion and clipping, in Graphics Gems",
+    cost: "O(vertices × borders crossed), a mix of each value per new vertex",
+    limits: "values that are linear in space: colours, texture coordinates, normals before they are made unit length",
+    pseudocode: &[
+        "for each vertex: its values, d1 … d6, and the outcode of their signs",
+        "AND of the outcodes ≠ 0, or nothing is left in the end: reject, stop",
+        "OR of the outcodes = 0: accept, stop",
+        "for each border that some vertex lies beyond:",
+        "    for each vertex P of the ring, Q the next, by their d:",
+        "        d(P) ≥ 0: keep P with its values",
+        "        signs differ: t ← d(P) / (d(P) − d(Q)); x, y, z, w and each value: P + t·(Q − P)",
+        "drop vertices with w ≤ 0",
+        "divide x, y, z by w; the values stay as they are, and 1/w is kept for the pixels",
+        "// on the screen the new vertex is s = t·w(Q) / ((1 − t)·w(P) + t·w(Q)) of the way:",
+        "// values that are mixed there by s are wrong, unless w(P) = w(Q)",
+    ],
+    ..INFO
+};
+
 /// Coordinates beyond this are left out: products of two must stay finite.
 const COORDINATE_LIMIT: f64 = 1e150;
 
@@ -119,9 +144,17 @@ pub struct ClipVertex<A = ()> {
     pub attributes: A,
 }
 
-/// Step of the algorithm. Vertex numbers refer to the ring at the start of a border's turn.
+impl<A: Clone> ClipVertex<A> {
+    /// Returns the position and the attributes.
+    pub(crate) fn parts(&self) -> (DVec4, A) {
+        (self.position, self.attributes.clone())
+    }
+}
+
+/// Step of the algorithm, with the attributes of new vertices. Vertex numbers refer to the ring at the start of a
+/// border's turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Step {
+pub enum Step<A = ()> {
     /// Outcode of a vertex.
     Code {
         /// Its number in the input.
@@ -153,14 +186,16 @@ pub enum Step {
         distances: [f64; 2],
         /// The new vertex.
         position: DVec4,
+        /// Its attributes, mixed by the same t as its position.
+        attributes: A,
     },
     /// Vertices without a place, w ≤ 0, were dropped from the result.
     Dropped,
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1: of [`INFO`] and of all places of
-    /// [`super::place`].
+impl<A> Step<A> {
+    /// Returns the line of the pseudocode that runs, counted from 1: of [`INFO`], of [`ATTRIBUTES`], and of all places
+    /// of [`super::place`].
     pub fn line(&self) -> usize {
         match self {
             Self::Code { .. } => 1,
@@ -263,7 +298,7 @@ impl Options {
 fn needed<A>(
     vertices: &[ClipVertex<A>],
     options: &Options,
-    t: &mut impl Tracer<Step>,
+    t: &mut impl Tracer<Step<A>>,
 ) -> Option<Outcode> {
     let (mut any, mut all) = (Outcode::INSIDE, Outcode(u8::MAX));
     let mut sound = !vertices.is_empty();
@@ -291,7 +326,7 @@ fn needed<A>(
 pub fn clip_segment<A: Blend>(
     segment: [ClipVertex<A>; 2],
     options: &Options,
-    t: &mut impl Tracer<Step>,
+    t: &mut impl Tracer<Step<A>>,
 ) -> Option<[ClipVertex<A>; 2]> {
     let borders = needed(&segment, options, t)?;
     let mut ends = segment;
@@ -312,7 +347,8 @@ pub fn clip_segment<A: Blend>(
                 Some(v) if outside == Some(vertex) => {
                     let (inside, outside) = (1 - vertex, vertex);
                     let distances = [d[inside], d[outside]];
-                    Step::Cut { inside, outside, distances, position: v.position }
+                    let (position, attributes) = v.parts();
+                    Step::Cut { inside, outside, distances, position, attributes }
                 }
                 _ => Step::Keep { vertex },
             });
@@ -344,7 +380,7 @@ pub fn clip_segment<A: Blend>(
 pub fn clip_polygon<A: Blend>(
     ring: &[ClipVertex<A>],
     options: &Options,
-    t: &mut impl Tracer<Step>,
+    t: &mut impl Tracer<Step<A>>,
 ) -> Vec<ClipVertex<A>> {
     let mut ring = ring.to_vec();
     clip_ring(&mut ring, &mut Vec::new(), options, t);
@@ -397,14 +433,14 @@ fn clip_ring<A: Blend>(
     ring: &mut Vec<ClipVertex<A>>,
     spare: &mut Vec<ClipVertex<A>>,
     options: &Options,
-    t: &mut impl Tracer<Step>,
+    t: &mut impl Tracer<Step<A>>,
 ) {
     let Some(borders) = needed(ring, options, t) else { return ring.clear() };
     for (k, &border) in Outcode::BORDERS.iter().enumerate() {
         if borders.contains(border) {
             let distance = |v: &ClipVertex<A>| options.distances(v.position)[k];
             let cut = |ends: [&ClipVertex<A>; 2], d: [f64; 2]| options.cut(k, ends, d);
-            cut_into(ring, spare, border, distance, cut, |v| v.position, t);
+            cut_into(ring, spare, border, distance, cut, ClipVertex::parts, t);
             std::mem::swap(ring, spare);
         }
     }
@@ -427,29 +463,30 @@ fn unseen<A>(vertices: &[ClipVertex<A>], options: &Options) -> bool {
 
 /// Returns one border of the Sutherland–Hodgman method: the part of a ring with `distance ≥ 0`.
 ///
-/// `cut` receives the inside end and the outside end of an edge with their distances.
-pub(super) fn cut_ring<V: Clone>(
+/// `cut` receives the inside end and the outside end of an edge with their distances; `parts` returns the position and
+/// the attributes of a new vertex for the steps.
+pub(super) fn cut_ring<V: Clone, A>(
     ring: &[V],
     border: Outcode,
     distance: impl Fn(&V) -> f64,
     cut: impl Fn([&V; 2], [f64; 2]) -> V,
-    position: impl Fn(&V) -> DVec4,
-    t: &mut impl Tracer<Step>,
+    parts: impl Fn(&V) -> (DVec4, A),
+    t: &mut impl Tracer<Step<A>>,
 ) -> Vec<V> {
     let mut kept = Vec::with_capacity(ring.len() + 1);
-    cut_into(ring, &mut kept, border, distance, cut, position, t);
+    cut_into(ring, &mut kept, border, distance, cut, parts, t);
     kept
 }
 
 /// Cuts a ring as [`cut_ring`] does, into existing memory.
-fn cut_into<V: Clone>(
+fn cut_into<V: Clone, A>(
     ring: &[V],
     kept: &mut Vec<V>,
     border: Outcode,
     distance: impl Fn(&V) -> f64,
     cut: impl Fn([&V; 2], [f64; 2]) -> V,
-    position: impl Fn(&V) -> DVec4,
-    t: &mut impl Tracer<Step>,
+    parts: impl Fn(&V) -> (DVec4, A),
+    t: &mut impl Tracer<Step<A>>,
 ) {
     t.step(|| Step::Border(border));
     kept.clear();
@@ -468,8 +505,8 @@ fn cut_into<V: Clone>(
         if ends[0] > 0.0 && ends[1] < 0.0 {
             let new = cut([&ring[inside], &ring[outside]], ends);
             t.step(|| {
-                let position = position(&new);
-                Step::Cut { inside, outside, distances: ends, position }
+                let (position, attributes) = parts(&new);
+                Step::Cut { inside, outside, distances: ends, position, attributes }
             });
             kept.push(new);
         }

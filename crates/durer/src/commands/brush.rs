@@ -36,9 +36,22 @@ impl<'a> Brush<'a> {
     /// Passes a fragment on, unless its column or row is negative.
     pub fn put(
         &self,
+        at: [i32; 2],
+        depth: f64,
+        look: &Look,
+        front: bool,
+        target: &mut Framebuffer,
+    ) {
+        self.put_covered(at, depth, look, 1.0, front, target);
+    }
+
+    /// Passes a fragment on as [`Self::put`] does, with the alpha of its textured colour multiplied by a coverage.
+    pub fn put_covered(
+        &self,
         [x, y]: [i32; 2],
         depth: f64,
         look: &Look,
+        coverage: f64,
         front: bool,
         target: &mut Framebuffer,
     ) {
@@ -50,6 +63,7 @@ impl<'a> Brush<'a> {
             Some(texture) => texture.apply(color, look.tex_coords),
             None => color,
         };
+        let color = color * DVec4::ONE.with_w(coverage);
         let fragment = Fragment {
             x: x as u32,
             y: y as u32,

@@ -9,6 +9,7 @@ use crate::fragment::{FragmentState, Scissor};
 use crate::math::{DMat3, DMat4, DVec2, DVec3, DVec4, IVec2, Vec4};
 use crate::raster::interpolate::{PerspectivePlane, ScreenPlane};
 use crate::raster::line::{self, bresenham, projected};
+use crate::raster::point;
 use crate::raster::triangle::{self, SnappedTriangle, TriangleRasterizer};
 use crate::shade::color::encode_rgba8;
 use crate::target::{Framebuffer, NO_ITEM, Origin};
@@ -167,7 +168,7 @@ pub(super) fn draw(
     let corners: Vec<Corner> = vertices.iter().map(|v| of.corner(v)).collect();
     let brush = Brush::new(p);
     match primitive {
-        Primitive::Points => corners.iter().for_each(|c| point(&brush, *c, target)),
+        Primitive::Points => corners.iter().for_each(|c| dot(&brush, *c, target)),
         Primitive::Lines => {
             corners.as_chunks().0.iter().for_each(|ends| segment(&brush, *ends, target));
         }
@@ -226,16 +227,22 @@ fn window(p: &Pipeline, target: &Framebuffer) -> [i32; 4] {
     [x, y, x.saturating_add(w), y.saturating_add(h)].map(|v| v.min(i32::MAX as u32) as i32)
 }
 
-fn point(brush: &Brush, corner: Corner, target: &mut Framebuffer) {
+/// Draws a point. It is clipped in clip space, by its centre, so its window is left to the side at which it ends.
+fn dot(brush: &Brush, corner: Corner, target: &mut Framebuffer) {
     let p = brush.pipeline();
     let Some([v, _]) = clip_segment([corner, corner], &Options::default(), &mut NoTrace) else {
         return;
     };
     let v = on_screen(p, &v, target);
-    let at = pixel(p, v.at, target);
+    let [x0, y0, x1, y1] = window(p, target);
+    let window = Some(PixelRect::spanning(x0, y0, x1, y1));
+    let options = point::Options { size: p.point_size, smooth: p.point_smooth, window };
     let Paint { front: color, index, tex_coord, .. } = v.paint;
     let look = Look { color, index, tex_coords: [tex_coord; 3] };
-    brush.put(at.to_array(), v.depth, &look, true, target);
+    let plot = |at: IVec2, area| {
+        brush.put_covered(at.to_array(), v.depth, &look, area, true, target);
+    };
+    point::draw(v.at, &options, plot, &mut NoTrace);
 }
 
 /// Returns the pixel of a place; the border at which the viewport ends belongs to its last pixels.

@@ -4,6 +4,7 @@ use super::lighting::MAX_LIGHTS;
 use super::{Command, MAX_STACK, MaterialFace, Pipeline, bitmap, draw, pixels};
 use crate::info::{Class, Info, Occluder};
 use crate::math::DMat4;
+use crate::raster::point::MAX_SIZE;
 use crate::target::Framebuffer;
 use crate::trace::{NoTrace, Tracer};
 use crate::{Error, Result};
@@ -276,6 +277,11 @@ fn one(command: &Command, p: &mut Pipeline, target: &mut Framebuffer) -> Result<
             return Err(Error::parameter("pixel zoom", zoom, "finite"));
         }
         Command::PixelZoom(zoom) => p.pixel_zoom = *zoom,
+        Command::PointSize(size) if !(*size > 0.0 && *size <= MAX_SIZE) => {
+            return Err(Error::parameter("point size", size, "above 0, at most 256"));
+        }
+        Command::PointSize(size) => p.point_size = *size,
+        Command::PointSmooth(smooth) => p.point_smooth = *smooth,
         Command::DrawPixels(block) => pixels::draw(p, block, target),
         Command::Bitmap(bitmap) => bitmap::draw(p, bitmap, target)?,
         Command::CopyPixels(rectangle, plane) => {

@@ -56,7 +56,7 @@ use crate::math::{DMat4, DVec2, DVec3, Vec4};
 /// Kind of shapes formed by vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Primitive {
-    /// Each vertex a pixel.
+    /// Each vertex a point: a pixel, a square of pixels or a disc, see [`crate::raster::point`].
     Points,
     /// Two vertices a line, one pixel wide.
     Lines,
@@ -144,6 +144,10 @@ pub enum Command {
     RasterPosition(Vertex),
     /// Sets the width and height of a drawn pixel.
     PixelZoom(DVec2),
+    /// Sets the side or diameter of points, in pixels.
+    PointSize(f64),
+    /// Sets whether points are smooth discs, whose pixels have their alpha multiplied by the disc's area in them.
+    PointSmooth(bool),
     /// Draws a rectangle of pixels at the raster position.
     DrawPixels(PixelBlock),
     /// Draws the set bits of a mask at the raster position, which moves on; nothing if that was clipped away.
@@ -207,6 +211,8 @@ impl Command {
             Self::Texture(_) => "Texture",
             Self::RasterPosition(_) => "RasterPosition",
             Self::PixelZoom(_) => "PixelZoom",
+            Self::PointSize(_) => "PointSize",
+            Self::PointSmooth(_) => "PointSmooth",
             Self::DrawPixels(_) => "DrawPixels",
             Self::Bitmap(_) => "Bitmap",
             Self::CopyPixels(..) => "CopyPixels",

@@ -67,6 +67,10 @@ pub struct Pipeline {
     pub raster: Option<RasterPosition>,
     /// Width and height of a drawn pixel, in pixels; negative to mirror; initially 1.
     pub pixel_zoom: DVec2,
+    /// Side or diameter of points in pixels; at first 1.
+    pub point_size: f64,
+    /// True if points are smooth discs; at first false.
+    pub point_smooth: bool,
     /// Faces to leave out; at first none.
     pub cull: CullFace,
     /// Window depths of the near and the far plane; at first 0 and 1.
@@ -97,6 +101,8 @@ impl Default for Pipeline {
             texture: None,
             raster: Some(RasterPosition::default()),
             pixel_zoom: DVec2::ONE,
+            point_size: 1.0,
+            point_smooth: false,
             cull: CullFace::None,
             depth_range: DepthRange::default(),
             polygon_offset: PolygonOffset::default(),

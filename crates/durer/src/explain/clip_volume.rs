@@ -5,11 +5,14 @@ use super::input::Input;
 use super::lesson::{Example, Lesson};
 use super::picture::{Look, Picture};
 use super::table::Table;
+use super::wedges::{
+    ACCEPTED, BORDER, CLIP_SPACE, DROPPED, REJECTED, begun, clip_space, number, seen, wedge,
+};
 use super::words::{Caption, Template, Value, Word};
 use crate::clip::outcode::{DepthRange, Outcode};
-use crate::clip::place::{self, ClipPlace, EYE};
+use crate::clip::place::{self, ClipPlace};
 use crate::clip::volume::{self, ClipVertex, Step};
-use crate::math::{DMat4, DVec2, DVec3, DVec4};
+use crate::math::{DMat4, DVec3, DVec4};
 use crate::trace::Recorder;
 use crate::{Error, Result};
 
@@ -23,6 +26,7 @@ pub(super) const LESSONS: &[Lesson] = &[
         unreached: &[],
         make: |_, input, _, cap| volume(input, cap),
     },
+    super::new_vertices::LESSON,
     place(ClipPlace::World, WITHOUT_CODES),
     place(ClipPlace::ClipSpace, WITH_CODES),
     place(ClipPlace::AfterDivision, WITHOUT_CODES),
@@ -47,10 +51,6 @@ const fn place(place: ClipPlace, templates: &'static [&'static Template]) -> Les
     }
 }
 
-const CLIP_SPACE: Word = Word::new(
-    "two or more points of clip space (x, y, z, w)",
-    "zwei oder mehr Punkte des Clip-Raums (x, y, z, w)",
-);
 const FACE: Word = Word::new(
     "a face in space; the eye is in the origin and looks along −z, from 1 to 10",
     "eine Fläche im Raum; das Auge ist im Ursprung und blickt nach −z, von 1 bis 10",
@@ -116,10 +116,6 @@ const FACES: &[Example] = &[
     },
 ];
 
-fn clip_space(points: &[(f64, f64, f64, f64)]) -> Input {
-    Input::ClipSpace(points.iter().map(|&p| p.into()).collect())
-}
-
 fn face(points: &[(f64, f64, f64)]) -> Input {
     Input::Faces(vec![points.iter().map(|&p| p.into()).collect()])
 }
@@ -128,11 +124,6 @@ static CODE: Template = Template::new(
     "code",
     "Vertex {vertex} = {p}, w = {w}: d1 … d6 are {d}, the outcode is {code}.",
     "Ecke {vertex} = {p}, w = {w}: d1 … d6 sind {d}, der Outcode ist {code}.",
-);
-static BORDER: Template = Template::new(
-    "border",
-    "Next is the {border} border: {count} {count|vertex goes|vertices go} in.",
-    "Nun der Rand {border}: {count} {count|Ecke geht|Ecken gehen} hinein.",
 );
 static KEEP: Template = Template::new(
     "keep",
@@ -144,33 +135,6 @@ static CUT: Template = Template::new(
     "From {inside} inside to {outside} outside: d is {d_in} and {d_out}, so t = {t}; the new vertex is {p}, w = {w}.",
     "Von {inside} innen nach {outside} außen: d ist {d_in} und {d_out}, also t = {t}; die neue Ecke ist {p}, w = {w}.",
 );
-static ACCEPTED: Template = Template::new(
-    "accepted",
-    "No outcode has a bit: everything is inside, nothing is cut.",
-    "Kein Outcode hat ein Bit: Alles liegt innen, nichts wird geschnitten.",
-);
-static REJECTED: Template = Template::new(
-    "rejected",
-    "The rest is beyond one border or has no area: rejected.",
-    "Was übrig ist, liegt ganz jenseits eines Rands oder ist keine Fläche: abgelehnt.",
-);
-static DROPPED: Template = Template::new(
-    "dropped",
-    "Vertices with w ≤ 0 have no place on the screen: they are dropped.",
-    "Ecken mit w ≤ 0 haben keinen Ort auf dem Schirm: Sie fallen weg.",
-);
-
-/// The borders in the order of their bits, then the eye plane.
-const BORDERS: [Word; 7] = [
-    Word::new("left", "links"),
-    Word::new("right", "rechts"),
-    Word::new("bottom", "unten"),
-    Word::new("top", "oben"),
-    Word::new("near", "vorn"),
-    Word::new("far", "hinten"),
-    Word::new("eye", "am Auge"),
-];
-
 fn volume(input: &Input, cap: usize) -> Result<Frames> {
     let points = input.clip_space(CLIP_SPACE)?;
     let vertex = |&position: &DVec4| ClipVertex { position, attributes: () };
@@ -279,7 +243,7 @@ impl State {
                 self.out.extend(self.ring.get(vertex).copied());
                 KEEP.with([("vertex", vertex.into())])
             }
-            Step::Cut { inside, outside, distances: [d_in, d_out], position } => {
+            Step::Cut { inside, outside, distances: [d_in, d_out], position, .. } => {
                 self.out.push(position);
                 let t = d_in / (d_in - d_out);
                 CUT.with([
@@ -309,10 +273,8 @@ impl State {
         if self.border.is_some() {
             self.ring = std::mem::take(&mut self.out);
         }
-        let index = if border == EYE { 6 } else { border.0.trailing_zeros() as usize };
-        self.border = Some(index);
-        let name = BORDERS.get(index).copied().unwrap_or_default();
-        BORDER.with([("border", name.into()), ("count", self.ring.len().into())])
+        self.border = Some(number(border));
+        begun(border, self.ring.len())
     }
 
     /// Returns the axis that the border is about: 0 for x, 1 for y, 2 for z.
@@ -344,38 +306,9 @@ impl State {
 
     /// Draws the wedge −w ≤ c ≤ w of one coordinate c across w upwards, as Blinn and Newell do.
     fn picture(&self) -> Picture {
-        let axis = self.axis();
-        let place =
-            |points: &[DVec4]| -> Vec<DVec2> { points.iter().map(|&p| seen(p, axis)).collect() };
-        let [start, ring, out] = [&self.start, &self.ring, &self.out].map(|points| place(points));
-        // The same extent for all coordinates: the wedge keeps its size from border to border.
-        let all = (0..3).flat_map(|axis| self.start.iter().map(move |&p| seen(p, axis)));
-        let wedge = [DVec2::new(-1.5, 0.0), DVec2::new(1.5, 1.5)];
-        let mut picture = Picture::around(all.chain(ring.clone()).chain(wedge), 0.12);
-        picture.picture_from_input = None;
-        let high = picture.extent[1].y;
-        picture.chain([DVec2::new(-high, high), DVec2::ZERO, DVec2::new(high, high)], Look::Window);
-        let wide = picture.extent.map(|p| DVec2::new(p.x, 0.0));
-        picture.chain(wide, Look::Thin);
-        let name = ["x", "y", "z"].get(axis).copied().unwrap_or_default();
-        // Beside the tip, where faces are rare.
-        let arm = (high * 0.25).min(picture.extent[1].x).min(-picture.extent[0].x);
-        picture.label(DVec2::new(arm, arm), (22.0, 4.0), format!("{name} = w"));
-        picture.label(DVec2::new(-arm, arm), (-24.0, 4.0), format!("{name} = −w"));
-        picture.ring(start, Look::Pale);
-        if !self.gone {
-            picture.ring(ring.clone(), Look::First);
-            for (i, &p) in ring.iter().enumerate() {
-                picture.named(p, i, Look::First);
-            }
-            picture.chain(out.clone(), Look::Result);
-            out.iter().for_each(|&p| picture.dot(p, Look::Result));
-        }
-        picture
+        let names = (0..self.ring.len()).map(Value::from);
+        let ring: Vec<_> = names.zip(self.ring.iter().copied()).collect();
+        let rings = if self.gone { None } else { Some((&*ring, &*self.out)) };
+        wedge(self.axis(), &self.start, rings)
     }
-}
-
-/// Returns where a point is in the picture of one coordinate and w.
-fn seen(p: DVec4, axis: usize) -> DVec2 {
-    DVec2::new(p.to_array().get(axis).copied().unwrap_or_default(), p.w)
 }

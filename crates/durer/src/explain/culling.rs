@@ -46,6 +46,48 @@ pub(super) const LESSON: Lesson = Lesson {
                 scene(&[(0.0, 0.0), (6.0, 3.0), (0.0, 6.0)], &objects)
             },
         },
+        Example::new(
+            "around",
+            "a box around everything: all planes cut it",
+            "ein Kasten um alles: Alle Ebenen schneiden ihn",
+            || {
+                scene(
+                    &[(0.0, 0.0), (6.0, 0.0), (3.0, 5.0)],
+                    &[vec![(-3.0, -2.0), (9.0, -2.0), (9.0, 7.0), (-3.0, 7.0)]],
+                )
+            },
+        ),
+        Example::new(
+            "touching",
+            "boxes that touch a border from inside and from outside",
+            "Kästen, die einen Rand von innen und von außen berühren",
+            || {
+                let box_at = |x: f64| vec![(x, 2.0), (x + 2.0, 2.0), (x + 2.0, 4.0), (x, 4.0)];
+                scene(
+                    &[(0.0, 0.0), (8.0, 0.0), (8.0, 6.0), (0.0, 6.0)],
+                    &[box_at(6.0), box_at(8.0)],
+                )
+            },
+        ),
+        Example::new(
+            "diagonal",
+            "a long diagonal object: its box is cut, it is not",
+            "ein langes schräges Objekt: Sein Kasten wird geschnitten, es selbst nicht",
+            || {
+                let bar = vec![(4.0, 7.0), (9.0, 2.0), (9.4, 2.4), (4.4, 7.4)];
+                scene(&[(0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0)], &[bar])
+            },
+        ),
+        Example::new(
+            "all-inside",
+            "three objects inside: every plane is tested for each",
+            "drei Objekte innen: Für jedes wird jede Ebene geprüft",
+            || {
+                let small = |x: f64, y: f64| vec![(x, y), (x + 1.0, y), (x + 0.5, y + 1.0)];
+                let objects = [small(1.0, 1.0), small(3.0, 1.5), small(2.0, 3.0)];
+                scene(&[(0.0, 0.0), (5.0, 0.0), (6.0, 3.0), (3.0, 5.5), (0.0, 4.0)], &objects)
+            },
+        ),
     ],
     templates: &[&INSIDE, &CROSSING, &OUTSIDE, &ALL, &SOME, &NONE],
     unreached: &[],

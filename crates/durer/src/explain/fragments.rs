@@ -54,6 +54,33 @@ const EXAMPLES: &[Example] = &[
         ),
         input: || Input::Faces([(0.0, 6.0, 4.0), (2.0, 4.0, 1.0)].map(strip).to_vec()),
     },
+    Example::new(
+        "near-first",
+        "the nearer face first: what is behind it is dropped",
+        "die nähere Fläche zuerst: Was dahinter liegt, wird verworfen",
+        || Input::Faces([(2.0, 4.0, 1.0), (0.0, 6.0, 4.0)].map(strip).to_vec()),
+    ),
+    Example::new(
+        "equal-depths",
+        "equal depths: z < z does not hold, the first one stays",
+        "gleiche Tiefen: z < z gilt nicht, die erste bleibt",
+        || Input::Faces([(0.0, 4.0, 3.0), (2.0, 6.0, 3.0)].map(strip).to_vec()),
+    ),
+    Example::new(
+        "faint",
+        "a faint third face: the alpha test drops it before it is counted",
+        "eine blasse dritte Fläche: Der Alpha-Test verwirft sie, bevor sie zählt",
+        || Input::Faces([(0.0, 5.0, 4.0), (1.0, 3.0, 3.0), (2.0, 5.0, 2.0)].map(strip).to_vec()),
+    ),
+    Example::new(
+        "third-layer",
+        "the third layer is refused, though it is the nearest",
+        "die dritte Schicht wird verweigert, obwohl sie die nächste ist",
+        || {
+            let all = [(0.0, 5.0, 5.0), (0.0, 5.0, 4.0), (0.0, 1.0, 3.0), (2.0, 4.0, 1.0)];
+            Input::Faces(all.map(strip).to_vec())
+        },
+    ),
 ];
 
 /// Returns a rectangle from one x to another at a depth.

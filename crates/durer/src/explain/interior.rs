@@ -59,6 +59,43 @@ const EXAMPLES: &[Example] = &[
             area(vec![land, lake])
         },
     },
+    Example::new(
+        "triangle",
+        "a triangle: the centre of its inscribed circle",
+        "ein Dreieck: die Mitte seines Inkreises",
+        || area(vec![vec![(0.0, 0.0), (8.0, 0.0), (0.0, 6.0)]]),
+    ),
+    Example::new(
+        "rooms",
+        "two rooms and a corridor: the larger room has it",
+        "zwei Räume und ein Gang: Der größere Raum hat ihn",
+        || {
+            area(vec![vec![
+                (0.0, 0.0),
+                (3.0, 0.0),
+                (3.0, 2.0),
+                (7.0, 2.0),
+                (7.0, -1.0),
+                (12.0, -1.0),
+                (12.0, 5.0),
+                (7.0, 5.0),
+                (7.0, 3.0),
+                (3.0, 3.0),
+                (3.0, 4.0),
+                (0.0, 4.0),
+            ]])
+        },
+    ),
+    Example::new(
+        "moat",
+        "a ring around an island: equally far all around",
+        "ein Ring um eine Insel: ringsum gleich weit",
+        || {
+            let land = vec![(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0)];
+            let island = vec![(3.0, 3.0), (3.0, 6.0), (6.0, 6.0), (6.0, 3.0)];
+            area(vec![land, island])
+        },
+    ),
 ];
 
 fn area(rings: Vec<Vec<(f64, f64)>>) -> Input {

@@ -38,6 +38,33 @@ pub(super) const LESSON: Lesson = Lesson {
             title: Word::new("places in a row", "Orte in einer Reihe"),
             input: || map(&[(8.0, 12.0), (13.0, 12.0), (18.0, 12.0), (23.0, 12.0), (28.0, 12.0)]),
         },
+        Example::new(
+            "corners",
+            "places in the corners: labels turn inwards",
+            "Orte in den Ecken: Die Beschriftungen weichen nach innen aus",
+            || map(&[(1.0, 1.0), (39.0, 1.0), (39.0, 23.0), (1.0, 23.0)]),
+        ),
+        Example::new(
+            "crowd",
+            "nine places on little room: some are left out",
+            "neun Orte auf engem Raum: Einige gehen leer aus",
+            || {
+                let row = |y: f64| [(16.0, y), (20.0, y), (24.0, y)];
+                map(&[row(14.0), row(12.0), row(10.0)].concat())
+            },
+        ),
+        Example::new(
+            "same",
+            "four places at one point, and a fifth",
+            "vier Orte auf einem Punkt, und ein fünfter",
+            || map(&[(20.0, 12.0); 5]),
+        ),
+        Example::new(
+            "border",
+            "along the right border: all labels are on the left",
+            "am rechten Rand: Alle Beschriftungen stehen links",
+            || map(&[(36.0, 20.0), (38.0, 15.0), (36.0, 10.0), (38.0, 4.0)]),
+        ),
     ],
     templates: &[&FREE, &TAKEN, &BEYOND, &PLACED, &LEFT_OUT],
     unreached: &[],

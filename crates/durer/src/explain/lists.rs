@@ -37,6 +37,35 @@ pub(super) const LESSON: Lesson = Lesson {
             ),
             input: || figure(&[ARM], &[]),
         },
+        Example::new(
+            "one",
+            "one place: recorded once, called twice all the same",
+            "ein Ort: einmal aufgezeichnet und doch zweimal aufgerufen",
+            || figure(&[WHEEL, BODY], &[(8.0, 2.0)]),
+        ),
+        Example::new(
+            "part-alone",
+            "a part without a body: only matrices between the calls",
+            "ein Teil ohne Körper: nur Matrizen zwischen den Aufrufen",
+            || figure(&[WHEEL], &[(4.0, 4.0), (12.0, 4.0), (8.0, 9.0)]),
+        ),
+        Example::new(
+            "same-place",
+            "two calls at one place: push and pop bring the matrix back",
+            "zwei Aufrufe an einem Ort: Push und Pop stellen die Matrix wieder her",
+            || figure(&[ARM, BODY], &[(4.0, 10.0), (4.0, 10.0)]),
+        ),
+        Example::new(
+            "two-bodies",
+            "two rings of the body in one list",
+            "zwei Ringe des Körpers in einer Liste",
+            || {
+                figure(
+                    &[WHEEL, BODY, &[(5.0, 6.0), (9.0, 6.0), (9.0, 8.0), (6.0, 8.0)]],
+                    &[(4.0, 2.0), (12.0, 2.0)],
+                )
+            },
+        ),
     ],
     templates: &[
         &RECORDED, &CALLED, &REFUSED, &RETURNED, &MATRIX, &PUSHED, &POPPED, &STATE, &DRAWN,

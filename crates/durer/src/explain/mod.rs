@@ -39,7 +39,9 @@ mod lesson;
 mod letters;
 mod lines;
 mod lists;
+mod microfacets;
 mod names;
+mod new_vertices;
 mod operations;
 mod picking;
 mod picture;
@@ -53,8 +55,10 @@ mod svg;
 mod table;
 mod textures;
 mod tones;
+mod validity;
 mod viewing;
 mod warping;
+mod wedges;
 mod without;
 mod words;
 
@@ -93,11 +97,12 @@ pub const PLANE: &[Family] = &[
     family("Clipping lines", "Linien clippen", clip_lines::LESSONS),
     family("Crossings of segments", "Schnittpunkte von Strecken", &[crossings::LESSON]),
     family("Clipping polygons", "Polygone clippen", clip_polygons::LESSONS),
+    family("Valid polygons", "Gültige Polygone", &[validity::LESSON]),
     family("Clipping circles and text", "Kreise und Text clippen", clip_shapes::LESSONS),
     family("Simplifying borders", "Grenzen vereinfachen", simplify::LESSONS),
     family("Window and viewport", "Fenster und Viewport", viewing::LESSONS),
     family("Points for labels", "Punkte für Beschriftungen", &[interior::LESSON, labels::LESSON]),
-    family("Lines and circles", "Linien und Kreise", lines::LESSONS),
+    family("Points, lines and circles", "Punkte, Linien und Kreise", lines::LESSONS),
     family("Filling areas", "Flächen füllen", fills::LESSONS),
     family("Halftones", "Halbtöne", tones::LESSONS),
 ];
@@ -222,6 +227,7 @@ pub const ALGORITHMS: &[&Info] = &[
     &clip::simplify::visvalingam::INFO,
     &clip::simplify::coverage::INFO,
     &clip::volume::INFO,
+    &clip::volume::ATTRIBUTES,
     &clip::place::WORLD,
     &clip::place::CLIP_SPACE,
     &clip::place::AFTER_DIVISION,
@@ -235,6 +241,8 @@ pub const ALGORITHMS: &[&Info] = &[
     &view::label::INFO,
     &view::interior_point::INFO,
     &view::warp::INFO,
+    &raster::point::INFO,
+    &raster::point::DISC,
     &raster::line::equation::INFO,
     &raster::line::dda::INFO,
     &raster::line::bresenham::INFO,

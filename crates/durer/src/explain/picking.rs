@@ -47,6 +47,43 @@ const EXAMPLES: &[Example] = &[
             Input::Faces(vec![left, right])
         },
     },
+    Example::new(
+        "common-edge",
+        "on the common edge of two faces: only one is hit",
+        "auf der gemeinsamen Kante zweier Flächen: Nur eine wird getroffen",
+        || {
+            let left = slab((0.0, 0.0), (5.5, 7.0), (2.0, 2.0));
+            Input::Faces(vec![left, slab((5.5, 0.0), (10.0, 7.0), (2.0, 2.0))])
+        },
+    ),
+    Example::new(
+        "same-depth",
+        "two faces in one plane: the first one counts as nearer",
+        "zwei Flächen in einer Ebene: Die erste gilt als näher",
+        || {
+            let first = slab((0.0, 0.0), (8.0, 7.0), (3.0, 3.0));
+            Input::Faces(vec![first, slab((3.0, 1.0), (10.0, 6.0), (3.0, 3.0))])
+        },
+    ),
+    Example::new(
+        "beside",
+        "in the box, but beside the triangle",
+        "im Kasten, aber neben dem Dreieck",
+        || {
+            let corner = [(0.0, 0.0), (10.0, 0.0), (0.0, 7.0)];
+            let corner = corner.map(|(x, y)| crate::math::DVec3::new(x, y, -2.0)).to_vec();
+            Input::Faces(vec![corner, slab((0.0, 0.0), (10.0, 8.0), (4.0, 4.0))])
+        },
+    ),
+    Example::new(
+        "slanted",
+        "slanted faces: the depth at the point decides",
+        "schräge Flächen: Die Tiefe am Punkt entscheidet",
+        || {
+            let falling = slab((0.0, 0.0), (10.0, 6.0), (1.0, 8.0));
+            Input::Faces(vec![falling, slab((0.0, 0.0), (10.0, 6.0), (7.0, 2.0))])
+        },
+    ),
 ];
 
 static MET: Template = Template::new(

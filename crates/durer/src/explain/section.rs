@@ -41,6 +41,45 @@ pub(super) const LESSON: Lesson = Lesson {
             title: Word::new("a wall is missing: no cap", "eine Wand fehlt: keine Deckfläche"),
             input: || Input::Faces(frame(true)),
         },
+        Example::new(
+            "corner",
+            "the plane goes through four corners: edges without new vertices",
+            "die Ebene geht durch vier Ecken: Kanten ohne neue Ecken",
+            || {
+                let around = [(0.0, 2.0), (2.0, 0.0), (4.0, 2.0), (2.0, 4.0)];
+                let around = around.map(|(x, z)| DVec3::new(x, 2.0, z));
+                let tip = |y: f64| DVec3::new(2.0, y, 2.0);
+                let pair = |k: usize| [around[k], around[(k + 1) % 4]];
+                let upper = (0..4).map(|k| vec![pair(k)[1], pair(k)[0], tip(4.0)]);
+                let lower = (0..4).map(|k| vec![pair(k)[0], pair(k)[1], tip(0.0)]);
+                Input::Faces(upper.chain(lower).collect())
+            },
+        ),
+        Example::new(
+            "angle",
+            "an angle: the cap is concave",
+            "ein Winkel: Die Deckfläche ist einspringend",
+            || {
+                Input::Faces(prism(&[
+                    (0.0, 0.0),
+                    (4.0, 0.0),
+                    (4.0, 1.5),
+                    (1.5, 1.5),
+                    (1.5, 4.0),
+                    (0.0, 4.0),
+                ]))
+            },
+        ),
+        Example::new(
+            "two",
+            "two bodies: two loops, two caps",
+            "zwei Körper: zwei Schleifen, zwei Deckflächen",
+            || {
+                let first = prism(&[(0.0, 0.0), (1.5, 0.0), (1.5, 3.0), (0.0, 3.0)]);
+                let second = prism(&[(2.5, 0.0), (4.5, 1.0), (2.5, 3.0)]);
+                Input::Faces([first, second].concat())
+            },
+        ),
     ],
     templates: &[&PLANE, &KEPT, &AWAY, &DIVIDED, &EDGE, &CAP, &OPEN],
     unreached: &[],
@@ -48,6 +87,18 @@ pub(super) const LESSON: Lesson = Lesson {
 };
 
 const TAKES: Word = Word::new("faces around a body", "Flächen um einen Körper");
+
+/// Returns a prism of height 2 over a base, whose corners turn from x to z.
+fn prism(base: &[(f64, f64)]) -> Vec<Vec<DVec3>> {
+    let at = |y: f64| -> Vec<DVec3> { base.iter().map(|&(x, z)| DVec3::new(x, y, z)).collect() };
+    let (low, high) = (at(0.0), at(2.0));
+    let side = |k: usize| {
+        let next = (k + 1) % base.len();
+        vec![low[next], low[k], high[k], high[next]]
+    };
+    let sides = (0..base.len()).map(side);
+    [low.clone(), high.iter().rev().copied().collect()].into_iter().chain(sides).collect()
+}
 
 /// Returns the walls of a square frame, without floor and lid; one outer wall may be missing.
 fn frame(open: bool) -> Vec<Vec<DVec3>> {

@@ -15,8 +15,15 @@ use crate::shade::{flat, gouraud, phong, unlit};
 use crate::view::window::PixelRect;
 use crate::{Error, Result};
 
-pub(super) const LESSONS: &[Lesson] =
-    &[super::barycentric::LESSON, UNLIT, FLAT, GOURAUD, PHONG, PERSPECTIVE];
+pub(super) const LESSONS: &[Lesson] = &[
+    super::barycentric::LESSON,
+    UNLIT,
+    FLAT,
+    GOURAUD,
+    PHONG,
+    super::microfacets::LESSON,
+    PERSPECTIVE,
+];
 
 const UNLIT: Lesson = Lesson {
     name: unlit::INFO.name,
@@ -81,6 +88,30 @@ const EXAMPLES: &[Example] = &[
         title: Word::new("a corner turned to the light", "eine Ecke zum Licht gewandt"),
         input: || face([(1.0, 8.0, 0.0), (0.0, 2.0, 0.0), (8.0, 0.0, 0.0)]),
     },
+    Example::new(
+        "tilted",
+        "tilted in depth: only the normal of the face changes",
+        "in die Tiefe gekippt: nur die Normale der Fläche ändert sich",
+        || face([(0.0, 0.0, 0.0), (11.0, 1.0, -9.0), (4.0, 8.0, -2.0)]),
+    ),
+    Example::new(
+        "other-order",
+        "the corners in the other order: the same pixels",
+        "die Ecken in der anderen Reihenfolge: dieselben Pixel",
+        || face([(0.0, 0.0, 0.0), (4.0, 8.0, 0.0), (11.0, 1.0, 0.0)]),
+    ),
+    Example::new(
+        "level-side",
+        "a level side: the lowest row runs from corner to corner",
+        "eine waagrechte Seite: Die unterste Zeile läuft von Ecke zu Ecke",
+        || face([(0.0, 0.0, 0.0), (10.0, 0.0, 0.0), (3.0, 6.0, 0.0)]),
+    ),
+    Example::new(
+        "sliver",
+        "a sliver: few pixels, and rows without any",
+        "ein Splitter: wenige Pixel und Zeilen ohne eines",
+        || face([(0.0, 0.0, 0.0), (12.0, 4.0, 0.0), (6.0, 1.6, 0.0)]),
+    ),
 ];
 
 const DEEP: &[Example] = &[
@@ -100,6 +131,27 @@ const DEEP: &[Example] = &[
         ),
         input: || face([(0.0, 0.0, -2.0), (11.0, 1.0, -2.0), (4.0, 8.0, -2.0)]),
     },
+    Example::new(
+        "slight",
+        "one corner a little farther: the error is small",
+        "eine Ecke etwas weiter: Der Fehler ist klein",
+        || face([(0.0, 0.0, -4.0), (11.0, 1.0, -5.0), (4.0, 8.0, -4.0)]),
+    ),
+    Example::new(
+        "extreme",
+        "forty times as far: half of u lies in the last pixels",
+        "vierzigmal so weit: Die Hälfte von u liegt in den letzten Pixeln",
+        || face([(0.0, 0.0, -1.0), (11.0, 1.0, -40.0), (4.0, 8.0, -1.0)]),
+    ),
+    Example::new(
+        "by-rows",
+        "depth grows with the rows only: each row is linear",
+        "die Tiefe wächst nur mit den Zeilen: Jede Zeile ist linear",
+        || face([(0.0, 0.0, -1.0), (10.0, 0.0, -1.0), (5.0, 8.0, -4.0)]),
+    ),
+    Example::new("sliver", "a sliver into the depth", "ein Splitter in die Tiefe", || {
+        face([(0.0, 0.0, -1.0), (12.0, 4.0, -6.0), (6.0, 1.6, -2.0)])
+    }),
 ];
 
 static TEXTURE: Template = Template::new(

@@ -56,6 +56,45 @@ const EXAMPLES: &[Example] = &[
             Input::Faces(vec![slab((0.0, 0.0), (6.0, 3.0), (6.0, 1.0)), floor])
         },
     },
+    Example::new(
+        "slit",
+        "two plates with a slit: a strip of light",
+        "zwei Platten mit einem Schlitz: ein Streifen Licht",
+        || {
+            let floor = slab((0.0, 0.0), (10.0, 3.0), (5.0, 5.0));
+            let left = slab((1.0, 0.0), (4.0, 3.0), (2.0, 2.0));
+            Input::Faces(vec![floor, left, slab((6.0, 0.0), (9.0, 3.0), (3.0, 3.0))])
+        },
+    ),
+    Example::new(
+        "near-floor",
+        "a plate just above the floor: the bias must be smaller than the gap",
+        "eine Platte dicht über dem Boden: Der Versatz muss kleiner sein als der Spalt",
+        || {
+            let floor = slab((0.0, 0.0), (9.0, 3.0), (4.0, 4.0));
+            Input::Faces(vec![floor, slab((3.0, 0.0), (6.0, 3.0), (3.5, 3.5))])
+        },
+    ),
+    Example::new(
+        "roof",
+        "a slanted plate: its shadow ends where it ends",
+        "eine schräge Platte: Ihr Schatten endet, wo sie endet",
+        || {
+            let floor = slab((0.0, 0.0), (9.0, 3.0), (6.0, 6.0));
+            Input::Faces(vec![floor, slab((2.0, 0.0), (7.0, 3.0), (4.5, 1.0))])
+        },
+    ),
+    Example::new(
+        "three",
+        "three plates in a stack: only the depth of the uppermost is stored",
+        "drei Platten übereinander: Gespeichert ist nur die Tiefe der obersten",
+        || {
+            let floor = slab((0.0, 0.0), (8.0, 3.0), (7.0, 7.0));
+            let low = slab((2.0, 0.0), (5.0, 3.0), (5.0, 5.0));
+            let middle = slab((3.0, 0.0), (6.0, 3.0), (3.0, 3.0));
+            Input::Faces(vec![floor, low, middle, slab((4.0, 0.0), (7.0, 3.0), (1.0, 1.0))])
+        },
+    ),
 ];
 
 static MOVED: Template = Template::new(

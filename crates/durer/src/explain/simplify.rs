@@ -70,6 +70,54 @@ const LINES: &[Example] = &[
         title: Word::new("a line that turns back", "eine Linie, die umkehrt"),
         input: || line(&[(0.0, 0.0), (3.0, 0.1), (8.0, 0.0), (2.0, 1.0), (5.0, 3.0)]),
     },
+    Example::new(
+        "straight",
+        "on one straight line: only the ends stay",
+        "auf einer Geraden: Nur die Enden bleiben",
+        || line(&[(0.0, 0.0), (1.0, 0.5), (2.0, 1.0), (5.0, 2.5), (8.0, 4.0)]),
+    ),
+    Example::new(
+        "two",
+        "two points: nothing can be left out",
+        "zwei Punkte: Nichts kann wegfallen",
+        || line(&[(0.0, 0.0), (5.0, 2.0)]),
+    ),
+    Example::new(
+        "zigzag",
+        "a zigzag below the tolerance, then one above it",
+        "ein Zickzack unter der Toleranz, dann eines darüber",
+        || {
+            line(&[
+                (0.0, 0.0),
+                (1.0, 0.3),
+                (2.0, -0.3),
+                (3.0, 0.3),
+                (4.0, 0.0),
+                (5.0, 2.0),
+                (6.0, -2.0),
+                (7.0, 2.0),
+                (8.0, 0.0),
+            ])
+        },
+    ),
+    Example::new(
+        "arch",
+        "half of a circle: the ends of equal parts stay",
+        "ein halber Kreis: Die Enden gleicher Teile bleiben",
+        || {
+            line(&[
+                (0.0, 0.0),
+                (0.4, 1.5),
+                (1.2, 2.9),
+                (2.5, 3.7),
+                (4.0, 4.0),
+                (5.5, 3.7),
+                (6.8, 2.9),
+                (7.6, 1.5),
+                (8.0, 0.0),
+            ])
+        },
+    ),
 ];
 
 const RINGS: &[Example] = &[
@@ -101,6 +149,61 @@ const RINGS: &[Example] = &[
             rings(vec![land, island.map(DVec2::from).to_vec()])
         },
     },
+    Example::new(
+        "three",
+        "three areas that meet in one point: the point stays",
+        "drei Flächen, die sich in einem Punkt treffen: Er bleibt",
+        || {
+            let lower = [
+                (0.0, 0.0),
+                (8.0, 0.0),
+                (8.0, 3.0),
+                (6.0, 3.3),
+                (4.0, 3.0),
+                (2.0, 2.7),
+                (0.0, 3.0),
+            ];
+            let left = [(0.0, 3.0), (2.0, 2.7), (4.0, 3.0), (4.3, 4.5), (4.0, 6.0), (0.0, 6.0)];
+            let right = [(4.0, 3.0), (6.0, 3.3), (8.0, 3.0), (8.0, 6.0), (4.0, 6.0), (4.3, 4.5)];
+            rings(vec![
+                lower.map(DVec2::from).to_vec(),
+                left.map(DVec2::from).to_vec(),
+                right.map(DVec2::from).to_vec(),
+            ])
+        },
+    ),
+    Example::new(
+        "hole",
+        "an area in another one: both borders go on together",
+        "eine Fläche in einer anderen: Beide Grenzen bleiben beisammen",
+        || {
+            let land = [(0.0, 0.0), (4.0, 0.2), (8.0, 0.0), (8.0, 6.0), (0.0, 6.0)];
+            let lake = [(2.0, 2.0), (2.0, 4.0), (4.0, 4.2), (6.0, 4.0), (6.0, 2.0), (4.0, 1.8)];
+            let [land, lake] = [land.map(DVec2::from).to_vec(), lake.map(DVec2::from).to_vec()];
+            rings(vec![land, lake.clone(), lake.into_iter().rev().collect()])
+        },
+    ),
+    Example::new(
+        "small",
+        "a small area beside a large one: it keeps three points",
+        "eine kleine Fläche neben einer großen: Sie behält drei Punkte",
+        || {
+            let large = [(0.0, 0.0), (8.0, 0.0), (8.0, 5.0), (4.0, 5.2), (0.0, 5.0)];
+            let small = [(8.4, 0.0), (8.8, 0.0), (8.9, 0.2), (8.8, 0.4), (8.4, 0.4)];
+            rings(vec![large.map(DVec2::from).to_vec(), small.map(DVec2::from).to_vec()])
+        },
+    ),
+    Example::new(
+        "square",
+        "a square with a point on each side: only its corners stay",
+        "ein Quadrat mit einem Punkt auf jeder Seite: Nur die Ecken bleiben",
+        || {
+            let [side, half] = [5.0, 2.5];
+            let lower = [(0.0, 0.0), (half, 0.0), (side, 0.0), (side, half)];
+            let upper = [(side, side), (half, side), (0.0, side), (0.0, half)];
+            rings(vec![lower.into_iter().chain(upper).map(DVec2::from).collect()])
+        },
+    ),
 ];
 
 fn line(points: &[(f64, f64)]) -> Input {

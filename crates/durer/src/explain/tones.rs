@@ -44,6 +44,30 @@ const EXAMPLES: &[Example] = &[
         title: Word::new("a quarter of the light everywhere", "überall ein Viertel des Lichts"),
         input: || greys(8, 8, |_, _| 64),
     },
+    Example::new(
+        "half",
+        "half of the light: the pattern of a chessboard, or grown dots",
+        "die Hälfte des Lichts: ein Schachbrett, oder gewachsene Punkte",
+        || greys(8, 6, |_, _| 128),
+    ),
+    Example::new(
+        "nearly-black",
+        "nearly black: few white pixels, far apart",
+        "fast schwarz: wenige weiße Pixel, weit auseinander",
+        || greys(8, 8, |_, _| 16),
+    ),
+    Example::new(
+        "edge",
+        "a sharp edge between dark and light",
+        "eine scharfe Kante zwischen Dunkel und Hell",
+        || greys(8, 6, |x, _| if x < 4 { 48 } else { 208 }),
+    ),
+    Example::new(
+        "black-and-white",
+        "only black and white: nothing is left over",
+        "nur Schwarz und Weiß: Nichts bleibt übrig",
+        || greys(6, 4, |x, y| if (x + y) % 2 == 0 { 255 } else { 0 }),
+    ),
 ];
 
 static DIFFUSED: Template = Template::new(

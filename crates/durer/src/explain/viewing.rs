@@ -34,6 +34,35 @@ const MAPPING: Lesson = Lesson {
             ),
             input: || house((1.0, 0.0), (3.0, 1.0)),
         },
+        Example::new(
+            "square",
+            "a square window in a square viewport: shapes stay",
+            "ein quadratisches Fenster im quadratischen Viewport: Formen bleiben",
+            || house((0.5, -0.5), (3.5, 2.5)),
+        ),
+        Example::new(
+            "wide",
+            "a larger window shows things smaller",
+            "ein größeres Fenster zeigt alles kleiner",
+            || house((-3.0, -2.0), (7.0, 4.0)),
+        ),
+        Example::new(
+            "tall",
+            "a tall window in the same viewport: everything gets wider",
+            "ein hohes Fenster im selben Viewport: Alles wird breiter",
+            || house((0.8, -2.0), (3.2, 4.0)),
+        ),
+        Example::new(
+            "corners",
+            "the corners of the window become those of the viewport",
+            "aus den Ecken des Fensters werden die des Viewports",
+            || {
+                let window = Rect::new(DVec2::new(-2.0, -1.0), DVec2::new(2.0, 3.0)).ok();
+                let points = [(-2.0, -1.0), (2.0, -1.0), (2.0, 3.0), (-2.0, 3.0), (0.0, 1.0)];
+                let points = points.map(DVec2::from).to_vec();
+                Input::Figure(Figure { window, points, ..Figure::default() })
+            },
+        ),
     ],
     templates: &[&COLUMNS, &ROWS, &POINT],
     unreached: &[],

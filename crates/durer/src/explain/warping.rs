@@ -48,6 +48,37 @@ const EXAMPLES: &[Example] = &[
         title: Word::new("a slope is stretched", "eine Schräge wird gedehnt"),
         input: || Input::Faces(vec![slab((1.0, 0.0), (11.0, 4.0), (1.0, 9.0))]),
     },
+    Example::new(
+        "wall",
+        "a wall straight ahead: all pixels move equally far",
+        "eine Wand geradeaus: Alle Pixel wandern gleich weit",
+        || Input::Faces(vec![slab((0.0, 0.0), (12.0, 4.0), (4.0, 4.0))]),
+    ),
+    Example::new(
+        "two-plates",
+        "two plates before a wall: the nearer one covers the other",
+        "zwei Platten vor einer Wand: Die nähere verdeckt die andere",
+        || {
+            let wall = slab((0.0, 0.0), (12.0, 4.0), (9.0, 9.0));
+            let near = slab((6.0, 1.0), (9.0, 3.0), (1.0, 1.0));
+            Input::Faces(vec![wall, slab((3.0, 1.0), (5.5, 3.0), (4.0, 4.0)), near])
+        },
+    ),
+    Example::new(
+        "away",
+        "a slope the other way: pixels are pressed together",
+        "eine Schräge in der anderen Richtung: Pixel werden gedrängt",
+        || Input::Faces(vec![slab((1.0, 0.0), (11.0, 4.0), (9.0, 1.0))]),
+    ),
+    Example::new(
+        "gap",
+        "nothing behind a gap: the background stays where it is",
+        "nichts hinter einer Lücke: Der Hintergrund bleibt, wo er ist",
+        || {
+            let left = slab((0.0, 0.0), (4.0, 4.0), (3.0, 3.0));
+            Input::Faces(vec![left, slab((8.0, 0.0), (12.0, 4.0), (3.0, 3.0))])
+        },
+    ),
 ];
 
 static MOVED: Template = Template::new(

@@ -1,22 +1,19 @@
 //! Algorithms that have no lesson, each with the reason.
 
 use crate::info::Info;
-use crate::{clip, raster, shade, visibility};
+use crate::{clip, raster, visibility};
 
 const PRODUCTION: &str = "a fast form of an algorithm that has a lesson, with the same result";
-const FORMULA: &str = "one formula: there are no steps to show";
 const COARSE: &str = "its steps are too coarse to be drawn one by one";
 const UNTRACED: &str = "it reports no steps";
 
 /// Algorithms without a lesson and why, in the order of [`super::ALGORITHMS`]; a new lesson removes its entry.
 pub const WITHOUT_LESSON: &[(&Info, &str)] = &[
     (&clip::line::batch::INFO, PRODUCTION),
-    (&clip::polygon::validity::INFO, UNTRACED),
     (&clip::polygon::mismatch::INFO, UNTRACED),
     (&raster::line::wide::buffer::INFO, UNTRACED),
     (&raster::line::tiled::INFO, PRODUCTION),
     (&raster::coverage::INFO, PRODUCTION),
-    (&shade::metallic_roughness::INFO, FORMULA),
     (&visibility::surface::z_buffer::INFO, PRODUCTION),
     (&visibility::surface::a_buffer::INFO, PRODUCTION),
     (&visibility::surface::ambient_occlusion::INFO, UNTRACED),

@@ -11,6 +11,7 @@ pub mod fixed;
 pub mod interpolate;
 pub mod line;
 pub mod paint;
+pub mod point;
 pub mod polygon;
 pub mod seed_fill;
 pub mod span;

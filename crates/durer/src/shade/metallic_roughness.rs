@@ -10,10 +10,11 @@
 
 use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
-use super::normal::Frame;
+use super::normal::{Frame, face_viewer};
 use super::shadow;
 use crate::info::{Class, Info, Occluder};
 use crate::math::Vec3;
+use crate::trace::{NoTrace, Recorder, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -27,7 +28,17 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "O(l) per pixel, l lights",
     limits: "the environment is a closed form, not an image; no shadows",
-    pseudocode: &[],
+    pseudocode: &[
+        "h ← (l + v) / |l + v|; the cosines n·l, n·v, n·h, v·h, at least 0",
+        "α ← roughness²; D ← α² / ((n·h)² (α² − 1) + 1)²",
+        "V ← ½ / (n·l √((n·v)² (1 − α²) + α²) + n·v √((n·l)² (1 − α²) + α²))",
+        "F0 ← the base colour for metals, 0.04 for dielectrics; F90 ← 1",
+        "both times 1 + g·F0: g makes up for light that is reflected more than once",
+        "F ← F0 + (F90 − F0) (1 − v·h)⁵",
+        "diffuse ← (1 − metallic) · base · (1 − F of the dielectric)",
+        "the light times n·l · (diffuse + D V F)",
+        "// π is contained in the unit of the light: D and diffuse are without it",
+    ],
 };
 
 /// Smoother surfaces than this would lose the highlight's shape in single precision.
@@ -109,6 +120,155 @@ impl<L: Lane> Layers<L> {
     }
 }
 
+/// A point of a surface and a light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lit {
+    /// Base colour, linear, 0 … 1.
+    pub base: Vec3,
+    /// Metalness, 0 … 1.
+    pub metallic: f32,
+    /// Perceptual roughness, 0 … 1.
+    pub roughness: f32,
+    /// Unit normal; it is turned to the side of the eye.
+    pub normal: Vec3,
+    /// Unit vector to the eye.
+    pub to_eye: Vec3,
+    /// Unit vector to the light.
+    pub to_light: Vec3,
+}
+
+/// Step of reflecting a light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// The cosines n·l, n·v, n·h and v·h.
+    Cosines([f32; 4]),
+    /// The distribution of facets.
+    Distribution {
+        /// The square of the roughness, which is at least 0.06.
+        alpha: f32,
+        /// D, times π.
+        value: f32,
+    },
+    /// The visibility of facets from the light and from the eye, over 4 n·l n·v.
+    Visibility(f32),
+    /// Fresnel reflection.
+    Fresnel {
+        /// Reflectance straight on, with the light that is reflected more than once.
+        straight: Vec3,
+        /// Reflectance at grazing angles, likewise.
+        grazing: Vec3,
+        /// (1 − v·h)⁵, the part of the latter.
+        away: f32,
+        /// F.
+        value: Vec3,
+    },
+    /// Diffuse reflection.
+    Diffuse {
+        /// Part of the light that enters the dielectric.
+        through: f32,
+        /// The diffuse reflectance, times π.
+        value: Vec3,
+    },
+    /// Everything that leaves towards the eye.
+    Sum(Vec3),
+}
+
+impl Step {
+    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            Self::Cosines(_) => 1,
+            Self::Distribution { .. } => 2,
+            Self::Visibility(_) => 3,
+            Self::Fresnel { .. } => 6,
+            Self::Diffuse { .. } => 7,
+            Self::Sum(_) => 8,
+        }
+    }
+}
+
+/// Returns the light that the steps before the sum lead to.
+pub fn replay(steps: &[Step]) -> Vec3 {
+    let [mut n_l, mut mirrored] = [0.0; 2];
+    let [mut fresnel, mut diffuse] = [Vec3::ZERO; 2];
+    for step in steps {
+        match *step {
+            Step::Cosines([first, ..]) => n_l = first,
+            Step::Distribution { value, .. } => mirrored = value,
+            Step::Visibility(value) => mirrored *= value,
+            Step::Fresnel { value, .. } => fresnel = value,
+            Step::Diffuse { value, .. } => diffuse = value,
+            Step::Sum(_) => {}
+        }
+    }
+    (diffuse + fresnel * mirrored) * n_l
+}
+
+/// Returns the part of a light that a dielectric of refractive index 1.5, or a metal, reflects towards the eye, by the
+/// formula with which surfaces are lit: for the colour 1, in the light's unit, which contains π.
+///
+/// ```
+/// use durer::math::Vec3;
+/// use durer::shade::metallic_roughness::{Lit, reflect_one};
+/// use durer::trace::NoTrace;
+///
+/// let straight_on = Lit {
+///     base: Vec3::splat(0.5),
+///     metallic: 0.0,
+///     roughness: 1.0,
+///     normal: Vec3::Z,
+///     to_eye: Vec3::Z,
+///     to_light: Vec3::Z,
+/// };
+/// // 0.96 of the base colour, and a hundredth from rough reflection.
+/// assert!((reflect_one(&straight_on, &mut NoTrace).x - 0.49).abs() < 0.002);
+/// ```
+pub fn reflect_one(lit: &Lit, t: &mut impl Tracer<Step>) -> Vec3 {
+    let frame = face_viewer(lit.to_eye.into(), lit.normal.into(), lit.normal.into());
+    let substance = Substance {
+        base: lit.base.into(),
+        metallic: lit.metallic,
+        roughness: lit.roughness,
+        occlusion: 1.0,
+        mirrors: false,
+    };
+    let (point, _) = point(&frame, &substance, Dielectric::PLAIN);
+    let mut terms = Recorder::with_cap(1);
+    let sum = self::lit(&frame, &point, lit.to_light.into(), &mut terms);
+    let plain = |v: Vec3Lane<f32>| Vec3::new(v.x, v.y, v.z);
+    if let Some(terms) = terms.into_steps().pop() {
+        t.step(|| Step::Cosines(terms.cosines));
+        t.step(|| Step::Distribution { alpha: point.alpha, value: terms.distribution });
+        t.step(|| Step::Visibility(terms.visibility));
+        t.step(|| Step::Fresnel {
+            straight: plain(point.direct.straight),
+            grazing: plain(point.direct.grazing),
+            away: terms.away,
+            value: plain(terms.fresnel),
+        });
+        t.step(|| Step::Diffuse { through: terms.through, value: plain(terms.diffuse) });
+    }
+    t.step(|| Step::Sum(plain(sum)));
+    plain(sum)
+}
+
+/// Returns the terms that all lights share, with metalness and roughness as they count.
+#[inline(always)]
+fn point<L: Lane>(
+    frame: &Frame<L>,
+    substance: &Substance<L>,
+    dielectric: Dielectric,
+) -> (Point<L>, (L, L)) {
+    let roughness = substance.roughness.at_least(LEAST_ROUGHNESS).at_most(1.0);
+    let metallic = substance.metallic.at_least(0.0).at_most(1.0);
+    let nv = frame.normal.dot(frame.view).at_least(1e-3).at_most(1.0);
+    let alpha = roughness * roughness;
+    let direct = Layers::new(substance.base, metallic, &dielectric, lack(alpha, nv));
+    let diffuse = substance.base.scale(metallic.one_minus() * dielectric.matte);
+    let point = Point { nv, alpha, alpha2: alpha * alpha, diffuse, dielectric, direct };
+    (point, (metallic, roughness))
+}
+
 /// Returns the light that leaves a point towards the eye, without emission.
 #[inline(always)]
 pub(super) fn reflect<L: Lane>(
@@ -118,15 +278,8 @@ pub(super) fn reflect<L: Lane>(
     dielectric: Dielectric,
     lights: &PreparedLights,
 ) -> Vec3Lane<L> {
-    let roughness = substance.roughness.at_least(LEAST_ROUGHNESS).at_most(1.0);
-    let metallic = substance.metallic.at_least(0.0).at_most(1.0);
-    let nv = frame.normal.dot(frame.view).at_least(1e-3).at_most(1.0);
-    let alpha = roughness * roughness;
-    let direct = Layers::new(substance.base, metallic, &dielectric, lack(alpha, nv));
-    let diffuse = substance.base.scale(metallic.one_minus() * dielectric.matte);
-    let point = Point { nv, alpha, alpha2: alpha * alpha, diffuse, dielectric, direct };
-
-    let around = surroundings(frame, &point, substance, (metallic, roughness), lights);
+    let (point, used) = point(frame, substance, dielectric);
+    let around = surroundings(frame, &point, substance, used, lights);
     let around = around.scale(substance.occlusion);
     // Code that is not inlined would lose the SIMD level.
     under_lights(
@@ -135,7 +288,7 @@ pub(super) fn reflect<L: Lane>(
         lights,
         around,
         #[inline(always)]
-        |l| lit(frame, &point, l),
+        |l| lit(frame, &point, l, &mut NoTrace),
     )
 }
 
@@ -185,10 +338,26 @@ fn surroundings<L: Lane>(
     around.plus(environment.reflection(mirrored, p.alpha, lamps).times(specular))
 }
 
+/// Terms of the formula for one light, in lanes.
+struct Terms<L> {
+    cosines: [L; 4],
+    distribution: L,
+    visibility: L,
+    away: L,
+    fresnel: Vec3Lane<L>,
+    through: L,
+    diffuse: Vec3Lane<L>,
+}
+
 /// Returns the part of one light's colour that leaves towards the eye; π is contained in the
 /// light's unit.
 #[inline(always)]
-fn lit<L: Lane>(frame: &Frame<L>, p: &Point<L>, l: Vec3Lane<L>) -> Vec3Lane<L> {
+fn lit<L: Lane>(
+    frame: &Frame<L>,
+    p: &Point<L>,
+    l: Vec3Lane<L>,
+    t: &mut impl Tracer<Terms<L>>,
+) -> Vec3Lane<L> {
     let half = p.nv.splat(0.5);
     let nl = frame.normal.dot(l).at_least(0.0).at_most(1.0);
     let h = l.plus(frame.view).unit_or(frame.normal);
@@ -197,8 +366,8 @@ fn lit<L: Lane>(frame: &Frame<L>, p: &Point<L>, l: Vec3Lane<L>) -> Vec3Lane<L> {
 
     // Trowbridge–Reitz times π. 1 − (n·h)² as |n × h|², which keeps its digits in single precision.
     let across = frame.normal.cross(h);
-    let t = nh * nh * p.alpha2 + across.dot(across);
-    let distribution = p.alpha2 / (t * t).at_least(1e-20);
+    let spread = nh * nh * p.alpha2 + across.dot(across);
+    let distribution = p.alpha2 / (spread * spread).at_least(1e-20);
 
     // Smith's masking, height-correlated, with the 4 n·l n·v of the microfacet formula in it.
     let rest = p.alpha2.one_minus();
@@ -212,7 +381,12 @@ fn lit<L: Lane>(frame: &Frame<L>, p: &Point<L>, l: Vec3Lane<L>) -> Vec3Lane<L> {
     let fresnel = p.direct.straight.scale(keep).plus(p.direct.grazing.scale(away));
     let through = (keep * p.dielectric.most + away * p.dielectric.grazing).one_minus();
     let specular = fresnel.scale(distribution * visibility);
-    p.diffuse.scale(through).plus(specular).scale(nl)
+    let diffuse = p.diffuse.scale(through);
+    t.step(|| {
+        let cosines = [nl, p.nv, nh, vh];
+        Terms { cosines, distribution, visibility, away, fresnel, through, diffuse }
+    });
+    diffuse.plus(specular).scale(nl)
 }
 
 /// Returns the light that a white rough mirror loses by single scattering, over its reflection: 1/E

@@ -3,6 +3,7 @@
 use durer::clip::outcode::{DepthRange, Outcode};
 use durer::clip::volume::*;
 use durer::math::{DMat4, DVec4};
+use durer::raster::interpolate::perspective_correct;
 use durer::trace::{NoTrace, Recorder};
 use proptest::prelude::*;
 
@@ -40,8 +41,8 @@ fn lies_inside(p: DVec4, options: &Options) -> bool {
     p.x.abs() <= g * p.w && p.y.abs() <= g * p.w && near && (!far || p.z <= p.w)
 }
 
-/// Rebuilds positions from the steps alone.
-fn replay(input: &[DVec4], steps: &[Step]) -> Vec<DVec4> {
+/// Rebuilds positions and attributes from the steps alone.
+fn replay(input: &[Vertex], steps: &[Step<DVec4>]) -> Vec<Vertex> {
     let (mut ring, mut next, mut open) = (input.to_vec(), Vec::new(), false);
     for step in steps {
         match *step {
@@ -54,8 +55,10 @@ fn replay(input: &[DVec4], steps: &[Step]) -> Vec<DVec4> {
                 open = true;
             }
             Step::Keep { vertex } => next.push(ring[vertex]),
-            Step::Cut { position, .. } => next.push(position),
-            Step::Dropped => next.retain(|p| p.w > 0.0),
+            Step::Cut { position, attributes, .. } => {
+                next.push(Vertex { position, attributes });
+            }
+            Step::Dropped => next.retain(|v| v.position.w > 0.0),
         }
     }
     if open { next } else { ring }
@@ -171,14 +174,14 @@ proptest! {
         let mut steps = Recorder::default();
         let traced = clip_polygon(&vertices, &options, &mut steps);
         prop_assert_eq!(&traced, &clip_polygon(&vertices, &options, &mut NoTrace));
-        prop_assert_eq!(replay(&ring, steps.steps()), traced.iter().map(|v| v.position).collect::<Vec<_>>());
+        prop_assert_eq!(replay(&vertices, steps.steps()), traced);
 
         let mut steps = Recorder::default();
         let ends = [vertices[0], vertices[1]];
         let traced = clip_segment(ends, &options, &mut steps);
         prop_assert_eq!(traced, clip_segment(ends, &options, &mut NoTrace));
-        let replayed = replay(&ring[..2], steps.steps());
-        prop_assert_eq!(replayed, traced.map_or(vec![], |s| s.map(|v| v.position).to_vec()));
+        let replayed = replay(&ends, steps.steps());
+        prop_assert_eq!(replayed, traced.map_or(vec![], |s| s.to_vec()));
     }
 }
 
@@ -351,4 +354,40 @@ fn a_corner_in_the_eye_has_no_place_and_is_dropped() {
     let corners = corners.map(|p| vertex(p.into()));
     let ring = [vertex(DVec4::ZERO), corners[0], corners[1], corners[2]];
     assert_eq!(clip_polygon(&ring, &Options::default(), &mut NoTrace), corners);
+}
+
+/// On the screen a new vertex is s of the way, and perspective-correct mixing by s gives what it got by t; mixing by s
+/// alone does not.
+#[test]
+fn new_vertices_have_the_values_of_perspective_correct_mixing() {
+    let mut random = crate::raster_coverage::Random(8);
+    let (mut cuts, mut largest) = (0, 0.0_f64);
+    for _ in 0..2_000 {
+        let mut end = |w: f64| {
+            let p = random.point(-4.0, 4.0);
+            ClipVertex { position: DVec4::new(p.x, p.y, 0.0, w), attributes: random.next() }
+        };
+        let ends = [end(1.0), end(3.0)];
+        let mut steps = Recorder::default();
+        clip_segment(ends, &Options::default(), &mut steps);
+        // The first new vertex is between the given ends.
+        let cut = steps.steps().iter().find_map(|step| match *step {
+            Step::Cut { inside, outside, position, attributes, .. } => {
+                Some((inside, outside, position, attributes))
+            }
+            _ => None,
+        });
+        let Some((inside, outside, position, value)) = cut else { continue };
+        let on_screen = |p: DVec4| p.truncate() / p.w;
+        let [p, q] = [inside, outside].map(|i| on_screen(ends[i].position));
+        let s = (on_screen(position) - p).dot(q - p) / (q - p).length_squared();
+        let inv_w = [inside, outside].map(|i| ends[i].position.w.recip());
+        let weights = perspective_correct([1.0 - s, s, 0.0], [inv_w[0], inv_w[1], 1.0]);
+        let [from, to] = [inside, outside].map(|i| ends[i].attributes);
+        let right = weights[0] * from + weights[1] * to;
+        assert!((right - value).abs() < 1e-9, "{ends:?}: {value} {right}");
+        largest = largest.max((from + (to - from) * s - value).abs());
+        cuts += 1;
+    }
+    assert!(cuts > 500 && largest > 0.2, "{cuts} {largest}");
 }

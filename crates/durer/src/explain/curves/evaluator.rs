@@ -49,7 +49,37 @@ const EXAMPLES: &[Example] = &[
             Input::Faces((0..3).map(row).collect())
         },
     },
+    Example::new(
+        "flat",
+        "an even grid: the patch is a plane, its points evenly spaced",
+        "ein gleichmäßiges Gitter: eine Ebene mit gleichmäßigen Punkten",
+        || patch_of(3, 3, |i, j| (2.0 * i, 2.0 * j, 0.0)),
+    ),
+    Example::new(
+        "vault",
+        "rows of a vault: curved across, straight along",
+        "Zeilen eines Gewölbes: quer gekrümmt, längs gerade",
+        || patch_of(3, 2, |i, j| (2.0 * i, 4.0 * j, if i == 1.0 { 4.0 } else { 0.0 })),
+    ),
+    Example::new(
+        "pinched",
+        "a row that is one point: the patch has a tip",
+        "eine Zeile, die ein Punkt ist: Die Fläche hat eine Spitze",
+        || patch_of(3, 2, |i, j| ((2.0 * i - 2.0) * j + 2.0, 4.0 * j, i * (2.0 - i) * j)),
+    ),
+    Example::new(
+        "uneven",
+        "points crowded at one side: equal steps of u are not equal lengths",
+        "Punkte an einer Seite gedrängt: gleiche Schritte von u, ungleiche Längen",
+        || patch_of(4, 2, |i, j| (i * i * 0.6, 4.0 * j, 0.0)),
+    ),
 ];
+
+/// Returns rows of control points by their column and row, counted from 0.
+fn patch_of(columns: u32, rows: u32, at: fn(f64, f64) -> (f64, f64, f64)) -> Input {
+    let row = |j: u32| (0..columns).map(|i| DVec3::from(at(i.into(), j.into()))).collect();
+    Input::Faces((0..rows).map(row).collect())
+}
 
 static ROW: Template = Template::new(
     "row",

@@ -37,6 +37,28 @@ pub(super) const LESSON: Lesson = Lesson {
             ),
             input: || Input::Faces(strip()),
         },
+        Example::new(
+            "right",
+            "all faces right: none is turned",
+            "alle Flächen richtig: Keine wird gewendet",
+            || Input::Faces(pyramid(&[])),
+        ),
+        Example::new(
+            "open",
+            "without its base: an open piece with two flipped faces",
+            "ohne Grundfläche: ein offenes Stück mit zwei gewendeten Flächen",
+            || Input::Faces(pyramid(&[1, 3])[..4].to_vec()),
+        ),
+        Example::new(
+            "two",
+            "two pieces, one of them inside out",
+            "zwei Stücke, eines von innen nach außen",
+            || {
+                let aside = |face: &Vec<DVec3>| face.iter().map(|p| *p + DVec3::X * 6.0).collect();
+                let second = pyramid(&[0, 1, 2, 3, 4]).iter().map(aside).collect();
+                Input::Faces([pyramid(&[]), second].concat())
+            },
+        ),
     ],
     templates: &[&BEGIN, &AGREES, &TURNED, &TORN, &RIGHT, &INSIDE_OUT, &COMPARED],
     unreached: &[("compared", "the test for convex bodies is an option of the library")],

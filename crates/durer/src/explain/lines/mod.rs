@@ -1,7 +1,8 @@
-//! Lessons of lines and conics in pixels.
+//! Lessons of points, lines and conics in pixels.
 
 mod conics;
 mod pattern;
+mod points;
 mod slices;
 mod smooth;
 mod thin;
@@ -14,6 +15,8 @@ use super::lesson::{Example, Lesson};
 use super::words::Word;
 
 pub(super) const LESSONS: &[Lesson] = &[
+    points::SQUARES,
+    points::DISCS,
     thin::EQUATION,
     thin::DDA,
     thin::BRESENHAM,

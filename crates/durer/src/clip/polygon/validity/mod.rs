@@ -12,16 +12,19 @@
 mod edges;
 mod few;
 mod nesting;
+mod steps;
 #[cfg(test)]
 mod tests;
 mod touches;
 
 pub(super) use edges::{Edge, Meeting, crossing, each_pair, edges_of, meeting};
+pub use steps::{Relation, Step, replay};
 pub(super) use touches::{Way, ways};
 
 use super::Shapes;
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
+use crate::trace::{NoTrace, Tracer};
 use crate::{Error, Result};
 use nesting::{each_misplaced, nests};
 use touches::{Touches, ways_touch};
@@ -38,7 +41,19 @@ pub const INFO: Info = Info {
     coherence: &[],
     cost: "O(n √n) for n edges of usual data",
     limits: "some thousand comparisons per edge",
-    pseudocode: &[],
+    pseudocode: &[
+        "leave out repeated points; fewer than three different ones in a ring: a fault",
+        "sort the edges by their left ends; for each two whose boxes may meet:",
+        "    apart, or neighbours in their ring with just their vertex in common: no fault",
+        "    they cross, or run along each other: a fault",
+        "    they touch, and are of one ring: a fault, the ring touches itself",
+        "    they touch, and are of two rings: keep the point",
+        "for each kept point: a ring passes through another one there: a fault",
+        "some edges cross or run along each other: do not check more, go to line 11",
+        "rings of one polygon make a cycle by kept points: a fault, they divide its inside",
+        "a hole outside its outer ring or in another hole, a polygon in another one: a fault",
+        "sort the faults; if there are none, the polygons are valid",
+    ],
 };
 
 /// Limit on the pairs of edges compared per edge.
@@ -145,38 +160,64 @@ pub fn is_valid(shapes: &Shapes, touching: Touching) -> bool {
 /// [`Error::NonFinite`] for a coordinate that is not finite, [`Error::Limit`] if it takes more than some thousand
 /// comparisons per edge.
 pub fn flaws(shapes: &Shapes) -> Result<Vec<Flaw>> {
+    flaws_traced(shapes, &mut NoTrace)
+}
+
+/// Returns the faults of polygons as [`flaws`] does, and reports the steps.
+///
+/// # Errors
+/// As [`flaws`].
+pub fn flaws_traced(shapes: &Shapes, t: &mut impl Tracer<Step>) -> Result<Vec<Flaw>> {
     if let Some(index) = shapes.points().iter().position(|p| !p.is_finite()) {
         return Err(Error::NonFinite { what: "point", index });
     }
     let (shapes, mut found) = without_repeats(shapes);
+    for ring in 0..shapes.ring_count() {
+        t.step(|| Step::Ring { ring, points: shapes.ring(ring).len() });
+    }
+    found.iter().for_each(|&flaw| t.step(|| Step::Found(flaw)));
     let edges = edges_of(&shapes);
     let pairs = edges.len().saturating_mul(PAIRS_PER_EDGE);
     let size = |ring: usize| shapes.ring_range(ring).len();
     let mut touches = Touches::default();
     let all = each_pair(&edges, pairs, |p, q| {
-        match meeting(p, q) {
-            Meeting::Apart => {}
-            Meeting::Crossing => found.push(p.flaw(q, Fault::Crossing, crossing(p, q))),
-            Meeting::Overlap(at) => found.push(p.flaw(q, Fault::Overlap, at)),
-            Meeting::Touch(at) if p.ring != q.ring => touches.add(p, q, at),
-            Meeting::Touch(_) if are_neighbours(p, q, size(p.ring)) => {}
-            Meeting::Touch(at) => found.push(p.flaw(q, Fault::SelfTouch, at)),
+        let relation = match meeting(p, q) {
+            Meeting::Apart => Relation::Apart,
+            Meeting::Crossing => Relation::Flaw(p.flaw(q, Fault::Crossing, crossing(p, q))),
+            Meeting::Overlap(at) => Relation::Flaw(p.flaw(q, Fault::Overlap, at)),
+            Meeting::Touch(at) if p.ring != q.ring => {
+                touches.add(p, q, at);
+                Relation::Touch(at)
+            }
+            Meeting::Touch(_) if are_neighbours(p, q, size(p.ring)) => Relation::Neighbours,
+            Meeting::Touch(at) => Relation::Flaw(p.flaw(q, Fault::SelfTouch, at)),
+        };
+        if let Relation::Flaw(flaw) = relation {
+            found.push(flaw);
         }
+        t.step(|| Step::Pair { edges: [p, q].map(|edge| [edge.ring, edge.index]), relation });
         true
     });
     if !all {
         let (value, limit) = (edges.len() as u64, PAIRS_PER_EDGE as u64);
         return Err(Error::Limit { what: "comparisons of edges", value, limit });
     }
+    let first = found.len();
     found.extend(touches.passages(&shapes));
-    if found.iter().all(|f| f.fault == Fault::SelfTouch) {
+    let nested = found.iter().all(|f| f.fault == Fault::SelfTouch);
+    if nested {
         found.extend(touches.divisions(&shapes));
         each_misplaced(&shapes, |flaw| {
             found.push(flaw);
             true
         });
     }
+    found.iter().skip(first).for_each(|&flaw| t.step(|| Step::Found(flaw)));
+    if !nested {
+        t.step(|| Step::Stopped);
+    }
     sort(&mut found);
+    t.step(|| Step::Sorted { count: found.len() });
     Ok(found)
 }
 

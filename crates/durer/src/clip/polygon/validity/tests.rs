@@ -37,8 +37,12 @@ fn validity_is_decided_by_edges_and_nesting() {
 }
 
 fn faults(polygons: &[&[&[(f64, f64)]]]) -> Vec<(Fault, (f64, f64))> {
-    let flaws = flaws(&shapes(polygons)).expect("flaws");
-    flaws.into_iter().map(|f| (f.fault, f.at.into())).collect()
+    let shapes = shapes(polygons);
+    let (mut steps, found) = (crate::trace::Recorder::default(), flaws(&shapes).expect("flaws"));
+    assert_eq!(flaws_traced(&shapes, &mut steps).expect("flaws"), found);
+    assert_eq!(replay(steps.steps()), found, "{polygons:?}");
+    assert!(steps.steps().iter().all(|step| (1..=11).contains(&step.line())));
+    found.into_iter().map(|f| (f.fault, f.at.into())).collect()
 }
 
 #[test]
