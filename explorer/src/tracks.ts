@@ -42,6 +42,7 @@ export const TRACKS: Track[] = [
     stops: [
       { lesson: "window-viewport", example: "", text: { en: "Two equations give a, b, c and d; then every point is one product and one sum.", de: "Zwei Gleichungen ergeben a, b, c und d; danach kostet jeder Punkt ein Produkt und eine Summe." } },
       { lesson: "homogeneous-volume", example: "", text: { en: "Before the division, −w ≤ x ≤ w is a wedge: see why points with w < 0 need it.", de: "Vor der Division ist −w ≤ x ≤ w ein Keil: So wird klar, warum Punkte mit w < 0 ihn brauchen." } },
+      { lesson: "clip-attributes", example: "one-to-three", text: { en: "A new vertex: t in space, s on the screen, and the error of mixing by s.", de: "Eine neue Ecke: t im Raum, s am Schirm, und der Fehler, mit s zu mischen." } },
       { lesson: "back-face-removal", example: "", text: { en: "The normal against the direction of sight: half of the faces are removed before anything else.", de: "Normale gegen Blickrichtung: Die Hälfte der Flächen fällt vorab weg." } },
     ],
   },
@@ -50,6 +51,7 @@ export const TRACKS: Track[] = [
     title: { en: "Lines and areas in pixels", de: "Linien und Flächen in Pixeln" },
     lead: { en: "Decision variables, tables of edges, stacks of seeds.", de: "Entscheidungsvariablen, Kantentabellen, Stapel von Startpunkten." },
     stops: [
+      { lesson: "points", example: "floor", text: { en: "Which pixel does a place belong to? Each pixel owns two of its sides.", de: "Zu welchem Pixel gehört ein Ort? Jedes Pixel hat zwei seiner Seiten." } },
       { lesson: "dda", example: "lecture", text: { en: "One addition and one rounding per pixel.", de: "Je Pixel eine Addition und eine Rundung." } },
       { lesson: "bresenham", example: "lecture", text: { en: "E = 1, −3, 3, −1, 5: whole numbers only. Predict each step.", de: "E = 1, −3, 3, −1, 5: nur ganze Zahlen. Sagen Sie jeden Schritt voraus." } },
       { lesson: "midpoint-circle", example: "radius-10", text: { en: "One octant; the midpoint between two candidates decides.", de: "Ein Oktant; der Mittelpunkt zwischen zwei Kandidaten entscheidet." } },

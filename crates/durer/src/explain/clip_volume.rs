@@ -35,7 +35,7 @@ pub(super) const LESSONS: &[Lesson] = &[
     super::section::LESSON,
 ];
 
-const WITH_CODES: &[&Template] = &[&CODE, &BORDER, &KEEP, &CUT, &REJECTED];
+const WITH_CODES: &[&Template] = &[&CODE, &BORDER, &KEEP, &CUT, &ACCEPTED, &REJECTED];
 const WITHOUT_CODES: &[&Template] = &[&BORDER, &KEEP, &CUT];
 
 /// Returns the lesson of a place.
@@ -90,6 +90,12 @@ const RINGS: &[Example] = &[
         title: Word::new("all beyond one border", "alles jenseits eines Rands"),
         input: || clip_space(&[(2.0, 0.0, 0.0, 1.0), (3.0, 0.0, 0.0, 1.0), (4.0, 1.0, 0.0, 2.0)]),
     },
+    Example::new(
+        "two-borders",
+        "a corner beyond two borders: five corners are left",
+        "eine Ecke jenseits zweier Ränder: Fünf Ecken bleiben",
+        || clip_space(&[(-0.5, -0.5, 0.0, 1.0), (3.0, 2.5, 0.0, 1.0), (-0.5, 0.5, 0.0, 1.0)]),
+    ),
 ];
 
 const FACES: &[Example] = &[
@@ -114,6 +120,24 @@ const FACES: &[Example] = &[
         title: Word::new("a triangle beside the volume", "ein Dreieck neben dem Volumen"),
         input: || face(&[(6.0, 0.0, -3.0), (9.0, 0.0, -3.0), (7.0, 2.0, -4.0)]),
     },
+    Example::new(
+        "around",
+        "a face around the whole view: only its borders are left",
+        "eine Fläche um die ganze Sicht: Nur deren Ränder bleiben",
+        || face(&[(-9.0, -8.0, -5.0), (9.0, -8.0, -5.0), (9.0, 8.0, -5.0), (-9.0, 8.0, -5.0)]),
+    ),
+    Example::new(
+        "into-depth",
+        "from before the near plane to behind the far one",
+        "von vor der vorderen bis hinter die hintere Ebene",
+        || face(&[(-0.2, -0.1, -0.5), (1.0, -0.5, -14.0), (0.5, 2.0, -8.0)]),
+    ),
+    Example::new(
+        "inside",
+        "wholly in the volume: every corner stays",
+        "ganz im Volumen: Jede Ecke bleibt",
+        || face(&[(-1.0, -1.0, -4.0), (1.5, -1.0, -6.0), (0.0, 1.5, -5.0)]),
+    ),
 ];
 
 fn face(points: &[(f64, f64, f64)]) -> Input {

@@ -209,7 +209,7 @@ impl State {
                 FRESNEL.with([
                     ("straight", rgb(straight)),
                     ("grazing", rgb(grazing)),
-                    ("away", short(away)),
+                    ("away", f64::from(away).into()),
                     ("value", rgb(value)),
                 ])
             }

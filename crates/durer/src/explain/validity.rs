@@ -344,8 +344,11 @@ impl State {
         for (number, ring) in self.rings.iter().enumerate() {
             let closed: Vec<DVec2> = ring.iter().chain(ring.first()).copied().collect();
             picture.chain(closed, Look::Window);
+            // Away from the middle of the ring, where edges are fewer; offsets count downwards.
+            let middle = ring.iter().sum::<DVec2>() / ring.len().max(1) as f64;
             for (k, &at) in ring.iter().enumerate() {
-                picture.label(at, (-9.0, -9.0), format!("{}{k}", letter(number)));
+                let by = (at - middle).normalize_or(DVec2::ONE) * DVec2::new(13.0, -13.0);
+                picture.label(at, by.into(), format!("{}{k}", letter(number)));
             }
         }
         let ends = |[ring, index]: [usize; 2]| {

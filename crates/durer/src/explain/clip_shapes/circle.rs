@@ -43,6 +43,12 @@ pub(super) const LESSON: Lesson = Lesson {
             title: Word::new("in the window", "im Fenster"),
             input: || figure((8.0, 6.0), (4.0, 3.0), 2.5),
         },
+        Example::new(
+            "touching",
+            "it touches a border from inside: d = r takes nothing",
+            "er berührt einen Rand von innen: d = r nimmt nichts",
+            || figure((8.0, 6.0), (5.0, 3.5), 3.0),
+        ),
     ],
     templates: &[&CROSSED, &BEYOND, &WITHIN, &NOTHING, &TAKEN, &ARC, &WHOLE],
     unreached: &[],

@@ -58,6 +58,15 @@ pub(super) const OUTLINE: Lesson = Lesson {
             title: Word::new("in the window", "im Fenster"),
             input: || of_text((-3.0, -6.0), (24.0, 15.0), "IN"),
         },
+        Example::new(
+            "between",
+            "the border is in the gap between two characters",
+            "der Rand liegt in der Lücke zwischen zwei Zeichen",
+            || of_text((-2.0, -5.0), (11.0, 15.0), "HI"),
+        ),
+        Example::new("outside", "beside the window", "neben dem Fenster", || {
+            of_text((40.0, -5.0), (60.0, 15.0), "OUT")
+        }),
     ],
     templates: &[&WITHIN, &BEYOND, &CROSSING, &KEEP, &DROP, &STROKE, &RING, &GONE],
     unreached: &[],

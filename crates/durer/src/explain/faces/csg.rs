@@ -41,6 +41,50 @@ pub(super) const LESSON: Lesson = Lesson {
                 Input::Faces(near.into_iter().chain(far).collect())
             },
         },
+        Example::new(
+            "inside",
+            "a small block within a large one",
+            "ein kleiner Block in einem großen",
+            || {
+                let large =
+                    block(DVec3::new(4.0, 4.0, -6.0), DVec3::new(3.0, 2.5, 2.0), (0.3, 0.2));
+                let small =
+                    block(DVec3::new(4.0, 4.0, -6.0), DVec3::new(1.2, 1.0, 0.8), (0.3, 0.2));
+                Input::Faces([large, small].concat())
+            },
+        ),
+        Example::new(
+            "beam",
+            "a beam right through a block",
+            "ein Balken mitten durch einen Block",
+            || {
+                let body = block(DVec3::new(5.0, 4.0, -6.0), DVec3::new(2.0, 2.5, 2.0), (0.4, 0.3));
+                let beam = block(DVec3::new(5.0, 4.0, -6.0), DVec3::new(4.5, 0.8, 0.8), (0.4, 0.3));
+                Input::Faces([body, beam].concat())
+            },
+        ),
+        Example::new(
+            "beside",
+            "two blocks side by side: no row has an order to decide",
+            "zwei Blöcke nebeneinander: In keiner Zeile ist eine Reihenfolge zu klären",
+            || {
+                let left = block(DVec3::new(2.5, 3.0, -4.0), DVec3::new(1.2, 2.0, 1.0), (0.5, 0.3));
+                let right =
+                    block(DVec3::new(8.0, 3.5, -4.0), DVec3::new(1.2, 2.0, 1.0), (-0.5, 0.3));
+                Input::Faces([left, right].concat())
+            },
+        ),
+        Example::new(
+            "plate",
+            "a thin plate cuts a block in two",
+            "eine dünne Platte teilt einen Block",
+            || {
+                let body = block(DVec3::new(4.5, 3.5, -5.0), DVec3::new(3.0, 2.0, 1.5), (0.4, 0.3));
+                let plate =
+                    block(DVec3::new(4.5, 3.5, -5.0), DVec3::new(0.3, 3.0, 2.5), (0.4, 0.3));
+                Input::Faces([body, plate].concat())
+            },
+        ),
     ],
     templates: &[&SPAN, &DIVIDE, &INTO, &OUT_OF, &HOLDS, &FILL, &EMPTY],
     unreached: &[],

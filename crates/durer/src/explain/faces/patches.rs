@@ -55,11 +55,41 @@ pub(super) const LESSON: Lesson = Lesson {
                 Input::Faces(all.flat_map(|bulge| (0..4).map(move |j| row(j, bulge))).collect())
             },
         },
+        Example::new(
+            "flat",
+            "a flat patch: it is flat enough at once, only its size divides it",
+            "eine ebene Fläche: sofort eben genug, nur ihre Größe teilt sie",
+            || bent(|i, j| (0.3 + 1.7 * i, 0.4 + 1.3 * j, -2.0)),
+        ),
+        Example::new(
+            "small",
+            "a patch as small as a few pixels",
+            "eine Fläche, so klein wie wenige Pixel",
+            || bent(|i, j| (2.2 + 0.5 * i, 2.3 + 0.4 * j, i * j - 3.0)),
+        ),
+        Example::new(
+            "edge-on",
+            "a patch seen from its edge: between pixels nothing is stored",
+            "eine Fläche von der Kante: Zwischen Pixeln wird nichts gespeichert",
+            || bent(|i, j| (0.4 + 1.8 * i, 2.05 + 0.1 * j, -2.0 * j)),
+        ),
+        Example::new(
+            "saddle",
+            "a saddle: bent both ways",
+            "ein Sattel: in beide Richtungen gebogen",
+            || bent(|i, j| (0.3 + 1.6 * i, 0.3 + 1.3 * j, i * (3.0 - i) - j * (3.0 - j))),
+        ),
     ],
     templates: &[&CLEAR, &DROP, &DIVIDE, &UNEVEN, &MISSED, &NEARER, &FARTHER, &STORE],
     unreached: &[],
     make: |_, input, _, cap| make(input, cap),
 };
+
+/// Returns the rows of control points of one patch, by their column and row.
+fn bent(at: fn(f64, f64) -> (f64, f64, f64)) -> Input {
+    let ends = [0.0, 1.0, 2.0, 3.0];
+    Input::Faces(ends.map(|j| ends.map(|i| DVec3::from(at(i, j))).to_vec()).to_vec())
+}
 
 const TAKES: Word = Word::new(
     "rows of four control points, each given as a face, four rows for each patch, seen from +z",

@@ -60,6 +60,36 @@ pub(super) const LESSON: Lesson = Lesson {
                 plan(&rooms, &doors, (3.0, 1.0))
             },
         },
+        Example::new("alone", "one room without a door", "ein Raum ohne Tür", || {
+            plan(&[[0.0, 0.0, 8.0, 6.0]], &[], (4.0, 1.0))
+        }),
+        Example::new(
+            "behind",
+            "a door behind the eye, and one before it",
+            "eine Tür hinter dem Auge, und eine davor",
+            || {
+                let rooms = [[0.0, 4.0, 8.0, 8.0], [0.0, 0.0, 8.0, 4.0], [0.0, 8.0, 8.0, 12.0]];
+                plan(&rooms, &[[3.0, 4.0, 5.0, 4.0], [3.0, 8.0, 5.0, 8.0]], (4.0, 5.0))
+            },
+        ),
+        Example::new(
+            "two-doors",
+            "two doors to one room: it is drawn in both windows",
+            "zwei Türen in einen Raum: Er wird in beiden Fenstern gezeichnet",
+            || {
+                let rooms = [[0.0, 0.0, 10.0, 4.0], [0.0, 4.0, 10.0, 9.0]];
+                plan(&rooms, &[[2.0, 4.0, 4.0, 4.0], [6.0, 4.0, 8.0, 4.0]], (5.0, 1.0))
+            },
+        ),
+        Example::new(
+            "corner",
+            "round a corner: the third room is not seen",
+            "um die Ecke: Der dritte Raum ist nicht zu sehen",
+            || {
+                let rooms = [[0.0, 0.0, 4.0, 4.0], [0.0, 4.0, 4.0, 8.0], [4.0, 4.0, 9.0, 8.0]];
+                plan(&rooms, &[[0.5, 4.0, 1.5, 4.0], [4.0, 7.2, 4.0, 7.8]], (3.0, 1.0))
+            },
+        ),
     ],
     templates: &[&FIRST, &ENTER, &BACK, &BEHIND, &EDGE_ON, &EMPTY, &SEEN],
     unreached: &[],

@@ -47,6 +47,44 @@ pub(in crate::explain) const LESSON: Lesson = Lesson {
                 Input::Faces(body.chain([floor]).collect())
             },
         },
+        Example::new(
+            "one",
+            "one plate: a face in before its shadow, one out behind it",
+            "eine Platte: eine Seite hinein, eine hinaus",
+            || {
+                let floor = slab((0.0, 0.0), (8.0, 6.0), (5.0, 5.0));
+                Input::Faces(vec![slab((2.0, 3.0), (5.0, 5.0), (2.0, 2.0)), floor])
+            },
+        ),
+        Example::new(
+            "low",
+            "a plate close above the floor: its shadow hides beside it",
+            "eine Platte dicht über dem Boden: Ihr Schatten liegt gleich daneben",
+            || {
+                let floor = slab((0.0, 0.0), (8.0, 6.0), (5.0, 5.0));
+                Input::Faces(vec![slab((2.0, 2.0), (5.0, 4.0), (4.0, 4.0)), floor])
+            },
+        ),
+        Example::new(
+            "steps",
+            "two floors at different depths: the shadow jumps",
+            "zwei Böden in verschiedener Tiefe: Der Schatten springt",
+            || {
+                let near = slab((0.0, 0.0), (4.0, 6.0), (4.0, 4.0));
+                let far = slab((4.0, 0.0), (9.0, 6.0), (7.0, 7.0));
+                Input::Faces(vec![slab((1.0, 3.5), (5.0, 5.0), (1.0, 1.0)), near, far])
+            },
+        ),
+        Example::new(
+            "stack",
+            "a plate in the shadow of another one",
+            "eine Platte im Schatten einer anderen",
+            || {
+                let floor = slab((0.0, 0.0), (9.0, 7.0), (7.0, 7.0));
+                let high = slab((1.0, 4.0), (5.0, 6.5), (1.0, 1.0));
+                Input::Faces(vec![high, slab((2.0, 3.0), (5.5, 5.5), (3.0, 3.0)), floor])
+            },
+        ),
     ],
     templates: &[&PIXEL, &LIT, &TURNED, &FRONT, &BACK, &EDGE_ON, &ADDED, &TAKEN, &BEYOND, &CAP],
     unreached: &[("cap", "casters count only from the far end, and lessons count from the eye")],

@@ -339,7 +339,8 @@ impl State {
         for (number, dot) in self.dots.iter().enumerate() {
             let look = if dot.is_outside { Look::Pale } else { Look::Second };
             picture.dot(dot.at, look);
-            picture.label(dot.at, (11.0, -11.0), letter(number));
+            let top = DVec2::new(dot.at.x, dot.at.y + 0.5 * dot.size);
+            picture.label(top, (0.0, -9.0), letter(number));
         }
         picture
     }
