@@ -59,13 +59,12 @@ pub(super) fn begun(border: Outcode, count: usize) -> Caption {
     BORDER.with([("border", name.into()), ("count", count.into())])
 }
 
+/// Named vertices that go into a border, and those that have come out.
+pub(super) type Rings<'a> = (&'a [(Value, DVec4)], &'a [DVec4]);
+
 /// Draws the wedge −w ≤ c ≤ w of one coordinate c across w upwards, as Blinn and Newell do: with the polygon of the
 /// beginning, and, while something is left, the ring that goes into a border, with names, and what has come out.
-pub(super) fn wedge(
-    axis: usize,
-    start: &[DVec4],
-    rings: Option<(&[(Value, DVec4)], &[DVec4])>,
-) -> Picture {
+pub(super) fn wedge(axis: usize, start: &[DVec4], rings: Option<Rings<'_>>) -> Picture {
     let place =
         |points: &[DVec4]| -> Vec<DVec2> { points.iter().map(|&p| seen(p, axis)).collect() };
     // The same extent for all coordinates: the wedge keeps its size from border to border.
