@@ -145,18 +145,20 @@ impl Sheared {
     #[inline(always)]
     fn hit(&self, corners: &[Vec3; 3]) -> Option<(f32, Weights)> {
         let [kx, ky, kz] = self.axes;
-        let local = corners.map(|p| {
+        let local = |p: Vec3| {
             let p = p - self.origin;
             (p[kx] - self.shear.x * p[kz], p[ky] - self.shear.y * p[kz], self.shear.z * p[kz])
-        });
-        let [a, b, c] = local;
+        };
+        // Each by itself: `map` of an array may be a call for each corner.
+        let (a, b, c) = (local(corners[0]), local(corners[1]), local(corners[2]));
         let edges = [cross(b, c), cross(c, a), cross(a, b)];
         let (negative, positive) = (edges.iter().any(|&e| e < 0.0), edges.iter().any(|&e| e > 0.0));
         if negative == positive {
             return None;
         }
         let sum = edges[0] + edges[1] + edges[2];
-        let weights = edges.map(|e| (e / sum) as f32);
+        let weight = |e: f64| (e / sum) as f32;
+        let weights = [weight(edges[0]), weight(edges[1]), weight(edges[2])];
         Some((weights[0] * a.2 + weights[1] * b.2 + weights[2] * c.2, weights))
     }
 }
