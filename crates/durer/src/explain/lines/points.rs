@@ -339,8 +339,9 @@ impl State {
         for (number, dot) in self.dots.iter().enumerate() {
             let look = if dot.is_outside { Look::Pale } else { Look::Second };
             picture.dot(dot.at, look);
-            let top = DVec2::new(dot.at.x, dot.at.y + 0.5 * dot.size);
-            picture.label(top, (0.0, -9.0), letter(number));
+            // Beside the pixels, which have numbers.
+            let left = DVec2::new((dot.at.x - 0.5 * dot.size).floor(), dot.at.y);
+            picture.label(left, (-9.0, 0.0), letter(number));
         }
         picture
     }
