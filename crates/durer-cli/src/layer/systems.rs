@@ -95,7 +95,7 @@ impl Shift {
         let lost = (lost > 0).then(|| {
             let (one, several) = ("feature reaches", "features reach");
             format!(
-                "{} beyond the area of {name}; left out (use --window to cut there first)",
+                "{} beyond the area of {name}; left out (--window cuts to an area first)",
                 counted(lost, one, several)
             )
         });
