@@ -64,6 +64,7 @@ impl Cells {
     }
 
     /// Calls `f` with each row that a line runs through and the columns there, line by line.
+    #[inline]
     fn each_of(
         &self,
         lines: impl Iterator<Item = [Vertex; 2]>,
@@ -258,6 +259,7 @@ impl Lists {
     }
 
     /// Calls `f` with each row that the polygon of the points touches and the lists of its cells there.
+    #[inline]
     pub fn each_of(&self, points: &[GridPoint], mut f: impl FnMut(i32, Range<usize>)) {
         self.cells.rows_of(points, |row, from, to| match &self.kept {
             Kept::All(_) => {

@@ -151,6 +151,7 @@ impl<'a> Occluders<'a> {
     }
 
     /// Calls `f` with the marked cells of a face and its nearest depth.
+    #[inline]
     fn each_cell(&self, id: u32, mut f: impl FnMut(usize, f32)) {
         let Some(occluder) = self.get(id) else { return };
         let depth = occluder.corners.map(|c| c.depth);
