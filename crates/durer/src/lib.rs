@@ -194,8 +194,10 @@ struct Repository;
 pub mod error;
 pub mod info;
 pub mod math;
-mod parallel;
+#[doc(hidden)]
+pub mod parallel;
 pub mod simd;
+mod sorting;
 mod stopwatch;
 pub mod trace;
 pub mod work;

@@ -8,20 +8,31 @@ use std::sync::{Mutex, PoisonError};
 ///
 /// Runs on the current rayon pool where the feature `parallel` is on, else one after the other.
 pub fn map<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
+    // Loops, not iterators, whose many generic functions would be compiled for each caller.
+    let mut results = Vec::with_capacity(items.len());
     // Too little work for tasks; and a single thread avoids their cost.
     if items.len() < 2 || threads() == 1 {
-        return items.into_iter().map(f).collect();
+        for item in items {
+            results.push(f(item));
+        }
+        return results;
     }
-    let todo: Vec<_> = items.into_iter().map(|item| Mutex::new((Some(item), None))).collect();
+    let mut todo = Vec::with_capacity(items.len());
+    for item in items {
+        todo.push(Mutex::new((Some(item), None)));
+    }
     for_each(todo.len(), &|i| {
         let slot = || todo[i].lock().unwrap_or_else(PoisonError::into_inner);
         let item = slot().0.take();
         let result = item.map(&f);
         slot().1 = result;
     });
-    let done =
-        todo.into_iter().map(|slot| slot.into_inner().unwrap_or_else(PoisonError::into_inner));
-    done.filter_map(|(_, result)| result).collect()
+    for slot in todo {
+        if let (_, Some(result)) = slot.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            results.push(result);
+        }
+    }
+    results
 }
 
 /// Applies `f` to each item as [`map`] does, with a state that one thread at a time has and that is used again: it
@@ -66,6 +77,16 @@ pub fn each<R: Copy + Default + Send>(
         results.iter_mut().zip(first..).for_each(|(result, i)| *result = f(i));
     });
     all
+}
+
+/// Jobs for each thread where neighbours in a list share one, so that no thread waits long for the others.
+const JOBS: usize = 16;
+
+/// Returns `f` of each element of a list, in order. Neighbours are the work of one thread.
+pub fn of_each<T: Sync, R: Send>(list: &[T], f: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+    let size = list.len().div_ceil(threads() * JOBS).max(1);
+    let jobs = list.chunks(size).collect();
+    map(jobs, |some: &[T]| some.iter().map(&f).collect::<Vec<R>>()).into_iter().flatten().collect()
 }
 
 #[cfg(feature = "parallel")]

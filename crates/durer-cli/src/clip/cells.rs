@@ -11,9 +11,9 @@ use crate::messages::Messages;
 use durer::clip::cells::{self, Piece};
 use durer::clip::mask::Rules;
 use durer::clip::polygon::{Shapes, WindingRule};
+use durer::parallel;
 use durer_formats::geo::{Feature, Member};
 use durer_formats::told::counted;
-use rayon::prelude::*;
 use std::path::Path;
 
 /// The cells of a file.
@@ -105,7 +105,7 @@ impl Job<'_> {
                 return self.end(writer);
             }
             let first = self.report.given.features - features.len() as u64;
-            let cuts: Vec<_> = features.par_iter().map(cut).collect();
+            let cuts = parallel::of_each(&features, cut);
             for (i, (feature, pieces)) in features.iter().zip(cuts).enumerate() {
                 let pieces = pieces.map_err(|e| self.of_feature(first + i as u64, &e))?;
                 self.report.add(pieces.iter().map(|piece| &piece.cut));

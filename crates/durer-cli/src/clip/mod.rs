@@ -19,9 +19,9 @@ use crate::messages::Messages;
 use crate::places::is_stream;
 use durer::clip::mask::{Algorithm, Area, Cutter, Made, Mask, Rules};
 use durer::clip::polygon::{BooleanOp, PolygonClipper, Shapes, WindingRule};
+use durer::parallel;
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, System, Writer};
 use durer_formats::told::counted;
-use rayon::prelude::*;
 use report::Report;
 use srids::Srids;
 use std::time::Instant;
@@ -449,7 +449,7 @@ impl Job<'_> {
                     |f: &&Feature| f.geometry.as_ref().is_some_and(|g| window.is_long_way(g));
                 self.report.long_ways += features.iter().filter(long).count() as u64;
             }
-            let cuts: Vec<_> = features.par_iter().map(cut).collect();
+            let cuts = parallel::of_each(&features, cut);
             for (i, (mut feature, cut)) in features.into_iter().zip(cuts).enumerate() {
                 let cut = cut.map_err(|e| self.of_feature(first + i as u64, &e))?;
                 let cut = cut.unwrap_or_default();
@@ -476,11 +476,9 @@ impl Job<'_> {
                 break;
             }
             let first = self.report.given.features - features.len() as u64;
-            let areas: Vec<_> = features
-                .par_iter()
-                .filter_map(|f| f.geometry.as_ref().map(|g| rules(args, f).clean(g)))
-                .collect();
-            for (i, area) in areas.into_iter().enumerate() {
+            let clean = |f: &Feature| f.geometry.as_ref().map(|g| rules(args, f).clean(g));
+            let areas = parallel::of_each(&features, clean);
+            for (i, area) in areas.into_iter().flatten().enumerate() {
                 let made = area.map_err(|e| self.of_feature(first + i as u64, &e))?;
                 self.report.repaired += u64::from(made.repaired);
                 self.report.snapped += made.snapped as u64;

@@ -7,8 +7,8 @@ use crate::layer::failure;
 use crate::places::is_stream;
 use crate::tiles::{BrokenOff, Stopped};
 use durer::clip::tiles::{Reach, Subject, Tile, Tiling};
+use durer::parallel;
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Writer};
-use rayon::prelude::*;
 use std::collections::BTreeSet;
 
 impl Job<'_> {
@@ -46,7 +46,7 @@ impl Job<'_> {
                 };
                 tiling.visit(one, |_, parts| parts, take).map(|()| pieces)
             };
-            let cuts: Vec<_> = subjects.par_iter().map(of_one).collect();
+            let cuts = parallel::of_each(&subjects, of_one);
             for (subject, pieces) in subjects.iter().zip(cuts) {
                 let pieces = pieces.map_err(|stopped| self.of_tiling(tiling, stopped))?;
                 self.report.repaired += u64::from(subject.is_repaired());

@@ -6,9 +6,9 @@ use crate::failure::Failure;
 use crate::layer;
 use clap::Args;
 use durer::clip::mask::{Rules, Union};
+use durer::parallel;
 use durer::work::Work;
 use durer_formats::geo::{Feature, Member};
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 pub const EXAMPLES: &str = "\
@@ -60,7 +60,7 @@ pub fn run(args: &DissolveArgs) -> Result<(), Failure> {
             let made = f.geometry.as_ref().map(|g| rules.clean(g)).transpose();
             made.map_err(|e| (*number, e))
         };
-        let cleaned: Vec<_> = features.par_iter().map(clean).collect();
+        let cleaned = parallel::of_each(&features, clean);
         for ((_, feature), made) in features.into_iter().zip(cleaned) {
             let made = made.map_err(|(n, e)| job.fail(format!("feature {n}: {e}")))?;
             layer::keep(&feature, &args.files.running.work).map_err(|e| job.fail(e))?;
@@ -91,9 +91,9 @@ pub fn run(args: &DissolveArgs) -> Result<(), Failure> {
     if repaired > 0 {
         job.report.warnings.push(super::fix::told(repaired));
     }
-    let features: durer::Result<Vec<Feature>> =
-        groups.into_par_iter().map(|group| group.into_feature(&args.files.running.work)).collect();
-    let features = features.map_err(|e| job.fail(e))?;
+    let into_feature = |group: Group| group.into_feature(&args.files.running.work);
+    let features = parallel::map(groups, into_feature).into_iter();
+    let features = features.collect::<durer::Result<_>>().map_err(|e| job.fail(e))?;
     job.write(features)
 }
 

@@ -5,9 +5,9 @@ use crate::failure::Failure;
 use clap::Args;
 use durer::clip::mask::{Rules, match_points};
 use durer::clip::polygon::WindingRule;
+use durer::parallel;
 use durer_formats::geo::{Feature, Geometry};
 use durer_formats::told::counted;
-use rayon::prelude::*;
 
 pub const EXAMPLES: &str = "\
 Examples:
@@ -85,7 +85,7 @@ fn match_all(mut job: Job<'_>, args: &FixArgs) -> Result<(), Failure> {
         let fix = |(_, feature): &(u64, Feature)| {
             feature.geometry.as_ref().map(|geometry| made(args, feature, geometry)).transpose()
         };
-        let fixed: Vec<_> = features.par_iter().map(fix).collect();
+        let fixed = parallel::of_each(&features, fix);
         for ((number, mut feature), made) in features.into_iter().zip(fixed) {
             let made = made.map_err(|e| job.fail(format!("feature {number}: {e}")))?;
             if let Some((geometry, changed)) = made {

@@ -21,9 +21,9 @@ use crate::messages::Messages;
 use crate::options::RunningArgs;
 use crate::places::is_stream;
 use clap::{Args, ValueHint};
+use durer::parallel;
 use durer_formats::geo::{Feature, GeoFormat, Geometry};
 use durer_formats::told::counted;
-use rayon::prelude::*;
 use serde::Serialize;
 use simplify::Simplified;
 use std::path::PathBuf;
@@ -158,10 +158,9 @@ impl<'a> Job<'a> {
             if writer.is_some() && features.is_empty() {
                 break;
             }
-            let changed: Vec<_> = features
-                .par_iter()
-                .map(|(_, f)| f.geometry.as_ref().map(|g| change(f, g)).transpose())
-                .collect();
+            let changed = parallel::of_each(&features, |(_, f)| {
+                f.geometry.as_ref().map(|g| change(f, g)).transpose()
+            });
             let writer = match &mut writer {
                 Some(writer) => writer,
                 none => none.insert(self.writer()?),

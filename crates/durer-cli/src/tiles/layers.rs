@@ -8,10 +8,10 @@ use crate::messages::Messages;
 use crate::names;
 use crate::places::is_stream;
 use durer::clip::tiles::{self, Placed};
+use durer::parallel;
 use durer_formats::geo::{Feature, GeoFormat};
 use durer_formats::tiles::{Dictionary, Field, LayerInfo, Value};
 use durer_formats::told::counted;
-use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -184,7 +184,7 @@ fn read_file(
             Some(geometry) => tiles::place(geometry, coordinates, args.short_way),
             None => Placed::default(),
         };
-        let placed: Vec<_> = features.par_iter().map(place).collect();
+        let placed = parallel::of_each(&features, place);
         for ((number, feature), placed) in features.iter().zip(placed) {
             all.add(args, layer, feature, placed, *number, &mut doubts);
         }

@@ -9,6 +9,7 @@ use super::request::Side;
 use super::seen::{Seen, Sight};
 use super::style;
 use crate::math::{DVec2, DVec3};
+use crate::sorting::CompactSort;
 use crate::target::dimension::Measure;
 
 /// Holes that are alike and are tried for the place of their dimension.
@@ -102,7 +103,7 @@ pub(super) fn diameters(
     let text = |f: &Feature| style::length(2.0 * f.cylinder.radius, unit);
     let kind = features.first().map_or(FeatureKind::Hole, |f| f.kind);
     let mut left: Vec<&Feature> = features.to_vec();
-    left.sort_by(|a, b| a.cylinder.radius.total_cmp(&b.cylinder.radius));
+    left.compact_sort_by(|a, b| a.cylinder.radius.total_cmp(&b.cylinder.radius));
     for alike in left.chunk_by(|a, b| text(a) == text(b)) {
         let mut rest: Vec<&Feature> = alike.to_vec();
         for view in views {

@@ -7,6 +7,7 @@ use super::quad::Quad;
 use super::seen::{Seen, Sight};
 use super::style::BEYOND;
 use crate::math::DVec2;
+use crate::sorting::CompactSort;
 use crate::target::sheet::Mark;
 use std::f64::consts::TAU;
 
@@ -81,7 +82,7 @@ fn axis_lines(axes: &[(DVec2, [DVec2; 2])]) -> Vec<[DVec2; 2]> {
             (key, span, way, offset)
         })
         .collect();
-    keyed.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.0.total_cmp(&b.1.0)));
+    keyed.compact_sort_by(|a, b| a.0.cmp(&b.0).then(a.1.0.total_cmp(&b.1.0)));
     let mut lines = Vec::with_capacity(keyed.len());
     for next in keyed {
         let last: Option<&mut Axis> = lines.last_mut();
@@ -99,7 +100,7 @@ fn axis_lines(axes: &[(DVec2, [DVec2; 2])]) -> Vec<[DVec2; 2]> {
 /// Crosses, or pitch circles with ticks for equal holes on one circle.
 fn center_marks(circles: &[Circle]) -> (Vec<[DVec2; 2]>, Vec<Circle>) {
     let mut circles = concentric(circles);
-    circles.sort_by(|a, b| a.radius.total_cmp(&b.radius));
+    circles.compact_sort_by(|a, b| a.radius.total_cmp(&b.radius));
     let (mut lines, mut rings) = (Vec::new(), Vec::new());
     let same = |a: &Circle, b: &Circle| b.radius - a.radius <= 1e-3 * b.radius;
     for alike in circles.chunk_by(same) {
@@ -127,7 +128,7 @@ fn tick(circle: &Circle, way: DVec2) -> [DVec2; 2] {
 fn concentric(circles: &[Circle]) -> Vec<Circle> {
     let key = |c: &Circle| [c.center.x, c.center.y].map(|v| (v / SAME).round() as i64);
     let mut sorted = circles.to_vec();
-    sorted.sort_by(|a, b| key(a).cmp(&key(b)).then(b.radius.total_cmp(&a.radius)));
+    sorted.compact_sort_by(|a, b| key(a).cmp(&key(b)).then(b.radius.total_cmp(&a.radius)));
     sorted.dedup_by_key(|c| key(c));
     sorted
 }

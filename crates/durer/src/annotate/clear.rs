@@ -3,6 +3,7 @@
 use super::quad::Quad;
 use crate::curve::pieces;
 use crate::math::DVec2;
+use crate::sorting::CompactSort;
 use crate::target::sheet::{Mark, Sheet};
 use crate::target::{Arc, Curve, Piece};
 
@@ -146,7 +147,7 @@ fn join_ends(parts: &mut Vec<Vec<DVec2>>, closed: bool) {
 /// Returns the parts of a segment outside of all quads, as shares of its length.
 fn gaps(a: DVec2, b: DVec2, quads: &[Quad]) -> Vec<(f64, f64)> {
     let mut inside: Vec<(f64, f64)> = quads.iter().filter_map(|q| q.inside(a, b)).collect();
-    inside.sort_by(|p, q| p.0.total_cmp(&q.0));
+    inside.compact_sort_by(|p, q| p.0.total_cmp(&q.0));
     let (mut at, mut gaps) = (0.0, Vec::new());
     for (from, to) in inside {
         if from > at {

@@ -5,6 +5,7 @@ use super::quad::Quad;
 use super::style::{GAP, OVER, Style};
 use crate::curve::stroke_font;
 use crate::math::DVec2;
+use crate::sorting::CompactSort;
 use crate::target::dimension::{DimensionText, Measure};
 use crate::target::sheet::Dimension;
 use crate::target::sheet::Mark;
@@ -63,7 +64,7 @@ impl Board<'_> {
         let (style, thin, letters) = (self.style, self.thin(), self.letters());
         let along = reading(l.along);
         let mut ends = l.ends;
-        ends.sort_by(|p, q| p.dot(along).total_cmp(&q.dot(along)));
+        ends.compact_sort_by(|p, q| p.dot(along).total_cmp(&q.dot(along)));
         let feet = ends.map(|p| l.line + along * (p - l.line).dot(along));
         let [from, to] = feet;
         let (length, width) = (to.distance(from), self.width(&said.text));

@@ -9,6 +9,7 @@ use super::request::{Along, Place, Request, What};
 use super::seen::{Seen, Sight};
 use super::style;
 use crate::math::{DVec2, DVec3};
+use crate::sorting::CompactSort;
 use crate::target::dimension::Measure;
 use crate::{Error, Result};
 
@@ -31,7 +32,7 @@ pub(super) fn put(
     for request in requests {
         ordered.push((rank(model, request)?, request));
     }
-    ordered.sort_by(|a, b| a.0.total_cmp(&b.0));
+    ordered.compact_sort_by(|a, b| a.0.total_cmp(&b.0));
     for (_, request) in ordered {
         let here = views_of(views, request)?;
         if !one(board, &here, model, request)? {

@@ -3,6 +3,7 @@
 use crate::math::{DVec2, DVec3, Rect};
 use crate::paper::PlacedView;
 use crate::scene::Projection;
+use crate::sorting::CompactSort;
 use crate::target::drawing::{Drawing, Line, LineClass};
 use crate::visibility::object::Cylinder;
 
@@ -44,7 +45,7 @@ impl<'a> Seen<'a> {
         let lines = drawing.lines.iter().filter(shown);
         let points = lines.flat_map(|l| &l.points).map(|p| placed.sheet_from_plane(*p));
         let mut points: Vec<DVec2> = points.filter(|p| p.is_finite()).collect();
-        points.sort_unstable_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
+        points.compact_sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
         points.dedup();
         let drawn =
             drawing.bounds().map(|b| [b.min(), b.max()].map(|p| placed.sheet_from_plane(p)));

@@ -201,6 +201,17 @@ impl Tally {
         }
     }
 
+    fn count(&mut self, step: &Step) {
+        match step {
+            Step::ScanLineZ(step) => self.scan_line_z(step),
+            Step::SpanningScanLine(step) => self.spanning(step),
+            Step::ABuffer(step) => self.a_buffer(step),
+            Step::DepthSort(step) => self.depth_sort(step),
+            Step::Warnock(step) => self.warnock(step),
+            Step::Ray(step) => self.ray(step),
+        }
+    }
+
     fn ray(&mut self, step: &ray::Step) {
         let ray::Step::Ray { hit, tests, .. } = step else { return };
         self.add(Kind::Rays, 1);
@@ -212,13 +223,6 @@ impl Tally {
 
 impl Tracer<Step> for Tally {
     fn step(&mut self, make: impl FnOnce() -> Step) {
-        match &make() {
-            Step::ScanLineZ(step) => self.scan_line_z(step),
-            Step::SpanningScanLine(step) => self.spanning(step),
-            Step::ABuffer(step) => self.a_buffer(step),
-            Step::DepthSort(step) => self.depth_sort(step),
-            Step::Warnock(step) => self.warnock(step),
-            Step::Ray(step) => self.ray(step),
-        }
+        self.count(&make());
     }
 }

@@ -11,6 +11,7 @@ use super::words::{Caption, Template, Value, Word};
 use crate::Result;
 use crate::math::DVec2;
 use crate::scene::{Instance, Mesh};
+use crate::sorting::CompactSort;
 use crate::view::pick::{Area, Hit, INFO, Step, pick_traced};
 
 pub(super) const LESSON: Lesson = Lesson {
@@ -171,7 +172,8 @@ impl State {
                 }
             }
             Step::Sorted { hits } => {
-                self.hits.sort_by(|a, b| a.depth.total_cmp(&b.depth).then(a.item.cmp(&b.item)));
+                self.hits
+                    .compact_sort_by(|a, b| a.depth.total_cmp(&b.depth).then(a.item.cmp(&b.item)));
                 let names: Vec<String> =
                     self.hits.iter().map(|hit| self.triangles.name(hit.item)).collect();
                 match names.first().cloned() {

@@ -135,6 +135,52 @@ impl<S, F: FnMut(&S, Want) -> Shown> Way for Going<'_, S, F> {
     }
 }
 
+/// The first way through a run, which keeps states.
+struct First<'a, S, F> {
+    way: Going<'a, S, F>,
+    states: Vec<F>,
+}
+
+/// Steps that are taken one after the other, and states to keep.
+trait Keep {
+    /// Keeps the state before the next step.
+    fn keep(&mut self);
+
+    /// Takes a step, and returns the line and the sentence of its frame.
+    fn next(&mut self) -> Option<Shown>;
+}
+
+impl<S, F: FnMut(&S, Want) -> Shown + Clone> Keep for First<'_, S, F> {
+    fn keep(&mut self) {
+        self.states.extend(self.way.show.clone());
+    }
+
+    fn next(&mut self) -> Option<Shown> {
+        self.way.next(Want::Words)
+    }
+}
+
+/// Takes all steps of a run, and keeps every `apart`-th state; returns the line and the sentence of each step. Not
+/// generic, so that it is compiled once and not for each lesson.
+fn outline(
+    first: &mut dyn Keep,
+    count: usize,
+    apart: usize,
+    dropped: usize,
+) -> Vec<(usize, &'static Template)> {
+    let mut outline = Vec::with_capacity(count + 1);
+    for index in 0..count {
+        if index.is_multiple_of(apart) {
+            first.keep();
+        }
+        outline.extend(first.next().map(|shown| (shown.line, shown.caption.template)));
+    }
+    if let Some(&(line, _)) = outline.last().filter(|_| dropped > 0) {
+        outline.push((line, &MORE));
+    }
+    outline
+}
+
 /// A place in a run.
 struct Cursor<'a> {
     frames: &'a Frames,
@@ -172,7 +218,7 @@ impl Cursor<'_> {
 impl Frames {
     /// Makes frames of steps by a function that takes a step, keeps the state, and shows what is wanted of the frame. It
     /// is kept before several steps, each time with the state that it has then.
-    pub(super) fn new<S, F>(recorder: Recorder<S>, mut show: F) -> Self
+    pub(super) fn new<S, F>(recorder: Recorder<S>, show: F) -> Self
     where
         S: Send + Sync + 'static,
         F: FnMut(&S, Want) -> Shown + Clone + Send + Sync + 'static,
@@ -180,19 +226,11 @@ impl Frames {
         let dropped = recorder.dropped();
         let steps = recorder.into_steps();
         let apart = steps.len().div_ceil(MOST_STATES).max(SHORTEST);
-        let mut states = Vec::new();
-        let mut outline = Vec::with_capacity(steps.len() + 1);
-        for (index, step) in steps.iter().enumerate() {
-            if index.is_multiple_of(apart) {
-                states.push(show.clone());
-            }
-            let Shown { line, caption, .. } = show(step, Want::Words);
-            outline.push((line, caption.template));
-        }
-        if let Some(&(line, _)) = outline.last().filter(|_| dropped > 0) {
-            outline.push((line, &MORE));
-        }
-        Self { replay: Arc::new(Kept { steps, apart, states }), outline: outline.into(), dropped }
+        let way = Going { steps: &steps, show: Some(show) };
+        let mut first = First { way, states: Vec::new() };
+        let outline = outline(&mut first, steps.len(), apart, dropped).into();
+        let states = first.states;
+        Self { replay: Arc::new(Kept { steps, apart, states }), outline, dropped }
     }
 
     /// Returns the number of frames.

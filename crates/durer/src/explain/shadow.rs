@@ -13,6 +13,7 @@ use crate::raster::interpolate::{barycentric_2d, blend};
 use crate::scene::Camera;
 use crate::shade::PreparedLights;
 use crate::shade::shadow::{INFO, ShadowMap, Step};
+use crate::sorting::CompactSort;
 use crate::target::{Framebuffer, Pixels};
 use crate::trace::NoTrace;
 use crate::view::View;
@@ -222,7 +223,7 @@ fn points(triangles: &Triangles, y: f64, columns: u32) -> Vec<Point> {
             }
         }
     }
-    found.sort_by(|p, q| {
+    found.compact_sort_by(|p, q| {
         (p.face, p.at.x).partial_cmp(&(q.face, q.at.x)).unwrap_or(p.face.cmp(&q.face))
     });
     found

@@ -12,6 +12,7 @@ use crate::math::{DVec2, Rect};
 use crate::raster::coverage::FillRule;
 use crate::raster::line::wide::{Join, Stroke};
 use crate::raster::paint::{Paint, PaintTarget};
+use crate::sorting::CompactSort;
 use crate::trace::NoTrace;
 use crate::view::interior_point::{Options, interior_point};
 use crate::view::label::Placer;
@@ -235,7 +236,7 @@ pub(super) fn draw(
         planned.push(one);
     }
     // The sort is stable: equal labels stay in the order of the file.
-    planned.sort_by(Planned::order);
+    planned.compact_sort_by(Planned::order);
     let mut placer = Placer::new(*ground.seen);
     // One of many markers at one place is enough; each label is compared with all reserved places.
     let mut reserved = BTreeSet::new();

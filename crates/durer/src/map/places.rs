@@ -8,6 +8,7 @@ use crate::clip::polygon::{Shapes, rectangle};
 use crate::curve::Contours;
 use crate::math::{DVec2, Rect};
 use crate::raster::coverage::{FillRule, Options, fill};
+use crate::sorting::CompactSort;
 use crate::trace::NoTrace;
 
 /// A label is in an area that holds this share of it: corners of its box are empty.
@@ -140,7 +141,7 @@ pub fn around(area: &Shapes, poles: &[DVec2], size: DVec2, gap: f64, land: &Land
         }
     }
     // Of places where it fits whole, the first stays first: it is the farthest from the border.
-    inside.sort_by(|a, b| b.0.min(HELD).total_cmp(&a.0.min(HELD)));
+    inside.compact_sort_by(|a, b| b.0.min(HELD).total_cmp(&a.0.min(HELD)));
     let best = inside.first().map_or(0.0, |best| best.0);
     let hidden = best * size.x * size.y / area.area().abs().max(f64::MIN_POSITIVE);
     let alone = land.is_alone(area.area().abs(), &bounds, size.y / 2.0);

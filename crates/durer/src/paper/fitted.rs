@@ -4,6 +4,7 @@ use super::onto_paper;
 use crate::curve::fit::{self, Options, Polyline};
 use crate::math::DVec2;
 use crate::parallel;
+use crate::sorting::CompactSort;
 use crate::target::drawing::{Line, LineClass};
 use crate::target::{Arc, Curve, Piece};
 
@@ -87,7 +88,7 @@ impl Shared {
         let tips = open.flat_map(|l| [l.points.first(), l.points.last()].into_iter().flatten());
         let lone = tips.filter(|p| points.binary_search(&key(**p)).is_err());
         let mut ends: Vec<DVec2> = lone.map(|p| onto_paper(*p, origin, factor)).collect();
-        ends.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+        ends.compact_sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
         Self { points, ends, near }
     }
 
@@ -119,7 +120,7 @@ fn unite(curves: &mut [Option<Curve>], tolerance: f64) {
             _ => None,
         }));
     }
-    arcs.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    arcs.compact_sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut leaders = Leaders::new(tolerance);
     for (_, i, k) in arcs {
         let Some(curve) = curves.get_mut(i).and_then(Option::as_mut) else { continue };

@@ -11,6 +11,7 @@
 use super::triangulate::{Step, Triangulation};
 use crate::curve::Contours;
 use crate::math::{DVec2, Orientation, orient2d, orient2d_value};
+use crate::sorting::CompactSort;
 use crate::trace::Tracer;
 
 /// Triangulates a polygon: the first contour is its border, the others are holes in it.
@@ -78,13 +79,13 @@ impl Cutting {
             let place = right(hole);
             hole.rotate_left(place);
         }
-        holes.sort_by(|a, b| self.at(b[0]).x.total_cmp(&self.at(a[0]).x));
+        holes.compact_sort_by(|a, b| self.at(b[0]).x.total_cmp(&self.at(a[0]).x));
         while !holes.is_empty() {
             let hole = holes.remove(0);
             let from = hole[0];
             let mut near: Vec<usize> = (0..self.ring.len()).collect();
             let distance = |k: &usize| self.at(self.ring[*k]).distance_squared(self.at(from));
-            near.sort_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
+            near.compact_sort_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
             let sees = |place: &&usize| {
                 let rings = [&self.ring, &hole].into_iter().chain(&holes);
                 self.is_inner(**place, from)

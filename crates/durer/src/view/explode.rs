@@ -7,6 +7,7 @@
 use super::components;
 use crate::math::{DMat4, DVec3, Vec3};
 use crate::scene::{Aabb, Instance, Mesh, Scene, Topology};
+use crate::sorting::CompactSort;
 use crate::{Error, Result};
 
 /// Direction in which parts are moved.
@@ -177,7 +178,9 @@ impl Stacks<'_> {
         };
         let mut order: Vec<((bool, f64), usize)> =
             (0..self.parts.len()).map(|i| (key(i), i)).collect();
-        order.sort_by(|(a, i), (b, j)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(i.cmp(j)));
+        order.compact_sort_by(|(a, i), (b, j)| {
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(i.cmp(j))
+        });
         order.into_iter().map(|o| o.1).collect()
     }
 }

@@ -11,6 +11,7 @@ use crate::clip::volume::{ClipVertex, Options, clip_polygon, clip_segment};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, DVec4, Rect};
 use crate::scene::{Aabb, Mesh, Scene, Topology};
+use crate::sorting::CompactSort;
 use crate::trace::{NoTrace, Tracer};
 use crate::view::View;
 use crate::view::cull::{Containment, ConvexVolume};
@@ -127,7 +128,7 @@ pub fn replay(steps: &[Step]) -> Vec<Hit> {
 
 /// Sorts hits by depth, equally near ones by item.
 fn sort(hits: &mut [Hit]) {
-    hits.sort_by(|a, b| a.depth.total_cmp(&b.depth).then(a.item.cmp(&b.item)));
+    hits.compact_sort_by(|a, b| a.depth.total_cmp(&b.depth).then(a.item.cmp(&b.item)));
 }
 
 /// Returns the triangles, lines and points behind an area of the screen, whether others hide them or
@@ -207,7 +208,7 @@ pub(crate) fn in_item_order(scene: &Scene) -> impl Iterator<Item = (usize, &Mesh
 /// Returns the instances of hits, nearest first.
 pub fn objects(hits: &[Hit]) -> Vec<Object> {
     let mut by_instance: Vec<(usize, &Hit)> = hits.iter().enumerate().collect();
-    by_instance.sort_by_key(|(place, hit)| (hit.instance, *place));
+    by_instance.compact_sort_by_key(|(place, hit)| (hit.instance, *place));
     let mut found: Vec<(usize, Object)> = by_instance
         .chunk_by(|a, b| a.1.instance == b.1.instance)
         .map(|same| {
@@ -216,7 +217,7 @@ pub fn objects(hits: &[Hit]) -> Vec<Object> {
             (place, Object { instance, nearest: *nearest, primitives: same.len() })
         })
         .collect();
-    found.sort_by_key(|(place, _)| *place);
+    found.compact_sort_by_key(|(place, _)| *place);
     found.into_iter().map(|(_, object)| object).collect()
 }
 

@@ -4,6 +4,7 @@ use super::cull::triangle_area;
 use super::near::{self, OF_EDGE, Places, STEP};
 use crate::math::{DVec3, Vec3};
 use crate::scene::{Aabb, Mesh};
+use crate::sorting::CompactSort;
 
 /// Result of [`mesh_topology`]. Vertices at one place count as one: those whose coordinates differ by no more than 2⁻²⁶
 /// of the model's extent, and ends of borders closer than rounding may have moved them, as in
@@ -146,7 +147,7 @@ fn border_ends(mesh: &Mesh, welded: &[u32]) -> Vec<(u32, f64)> {
         .filter(|[a, b]| a != b)
         .flat_map(|ends| ends.map(|v| (v, place(ends[0]).distance(place(ends[1])))))
         .collect();
-    ends.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
+    ends.compact_sort_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
     ends.dedup_by_key(|e| e.0);
     ends
 }

@@ -3,6 +3,7 @@
 use super::border::{Canonical, finite};
 use crate::clip::exact::{EPSILON, Exact};
 use crate::math::{DVec2, Orientation, Plane, Rect, orient2d};
+use crate::sorting::CompactSort;
 use crate::{Error, Result};
 use std::cmp::Ordering;
 
@@ -319,7 +320,7 @@ fn slid<const N: usize, H: HalfSpace<N>>(
     }
     let normal = space.normal();
     let (mut axes, off) = (std::array::from_fn::<usize, N, _>(|k| k), space.exact(point));
-    axes.sort_by(|&a, &b| normal[b].abs().total_cmp(&normal[a].abs()));
+    axes.compact_sort_by(|&a, &b| normal[b].abs().total_cmp(&normal[a].abs()));
     axes.into_iter().filter(|&k| normal[k] != 0.0 && normal[k].is_finite()).find_map(|k| {
         let mut moved = point;
         moved[k] -= off.ratio(&Exact::from(normal[k]));

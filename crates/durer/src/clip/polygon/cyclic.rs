@@ -16,6 +16,7 @@ use super::steps::{Mark, Operand, Step};
 use super::{BooleanOp, Shapes, WindingRule};
 use crate::clip::exact;
 use crate::math::{DVec2, Orientation, orient2d};
+use crate::sorting::CompactSort;
 use crate::trace::Tracer;
 use crate::{Error, Result};
 use std::cmp::Ordering;
@@ -114,7 +115,7 @@ impl Linked {
             let steep = (b.y - a.y).abs() > (b.x - a.x).abs();
             if steep { (p.y - a.y).abs() } else { (p.x - a.x).abs() }
         };
-        touches.sort_by(|s, t| s.0.cmp(&t.0).then(along(s).total_cmp(&along(t))));
+        touches.compact_sort_by(|s, t| s.0.cmp(&t.0).then(along(s).total_cmp(&along(t))));
         touches.dedup();
         let mut after = (usize::MAX, 0);
         for (edge, p) in touches {
@@ -186,7 +187,7 @@ impl Linked {
         for k in 0..2 {
             let mut order: Vec<usize> = (0..crossings.len()).collect();
             let about = |i: usize| edges[i][k][0].distance_squared(places[i]);
-            order.sort_by(|&i, &j| {
+            order.compact_sort_by(|&i, &j| {
                 crossings[i][k].cmp(&crossings[j][k]).then(about(i).total_cmp(&about(j)))
             });
             // Nearly in order already, so that sorting by insertion takes little time.

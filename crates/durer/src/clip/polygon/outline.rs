@@ -6,6 +6,7 @@
 
 use super::group::is_flat;
 use crate::math::{DVec2, in_sector};
+use crate::sorting::CompactSort;
 use std::cmp::Ordering;
 
 /// A directed edge between two places, the inside on its left.
@@ -23,7 +24,7 @@ fn order(a: &DVec2, b: &DVec2) -> Ordering {
 /// Returns the rings of the region that walks bound, the inside on the left of them.
 pub(super) fn simple_rings(walks: &[Vec<DVec2>]) -> Vec<Vec<DVec2>> {
     let mut places: Vec<DVec2> = walks.iter().flatten().copied().collect();
-    places.sort_by(order);
+    places.compact_sort_by(order);
     places.dedup();
     let edges = remaining(&edges(walks, &places));
     let next = joints(&edges, &places);
@@ -67,7 +68,7 @@ fn edges(walks: &[Vec<DVec2>], places: &[DVec2]) -> Vec<Edge> {
 fn remaining(edges: &[Edge]) -> Vec<Edge> {
     let key = |i: usize| (edges[i].from.min(edges[i].to), edges[i].from.max(edges[i].to));
     let mut order: Vec<usize> = (0..edges.len()).collect();
-    order.sort_by_key(|&i| (key(i), i));
+    order.compact_sort_by_key(|&i| (key(i), i));
     let mut kept = vec![true; edges.len()];
     for same in order.chunk_by(|&i, &j| key(i) == key(j)) {
         let (up, down): (Vec<usize>, Vec<usize>) =
@@ -84,7 +85,7 @@ fn remaining(edges: &[Edge]) -> Vec<Edge> {
 fn joints(edges: &[Edge], places: &[DVec2]) -> Vec<usize> {
     let sorted = |place: fn(&Edge) -> usize| {
         let mut order: Vec<usize> = (0..edges.len()).collect();
-        order.sort_by_key(|&i| (place(&edges[i]), i));
+        order.compact_sort_by_key(|&i| (place(&edges[i]), i));
         order
     };
     let (arriving, mut leaving) = (sorted(|e| e.to), sorted(|e| e.from));

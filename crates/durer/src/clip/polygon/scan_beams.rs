@@ -14,6 +14,7 @@
 use super::{BooleanOp, Shapes, WindingRule};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
+use crate::sorting::CompactSort;
 use crate::trace::Tracer;
 use crate::{Error, Result};
 
@@ -192,7 +193,7 @@ pub fn scan_beams(
     let mut heights: Vec<f64> = waiting.iter().flat_map(|e| [e.lower.y, e.upper.y]).collect();
     heights.sort_by(f64::total_cmp);
     heights.dedup();
-    waiting.sort_by(|a, b| b.lower.y.total_cmp(&a.lower.y));
+    waiting.compact_sort_by(|a, b| b.lower.y.total_cmp(&a.lower.y));
     let (mut active, mut parts): (Vec<Edge>, Vec<Trapezoid>) = (Vec::new(), Vec::new());
     for y in heights.windows(2).map(|pair| [pair[0], pair[1]]) {
         active.retain(|edge| edge.upper.y > y[0]);
@@ -238,7 +239,7 @@ fn edges(ring: &[DVec2], operand: usize) -> impl Iterator<Item = Edge> + '_ {
 /// both sides of the beam.
 fn cuts(active: &mut [Edge], y: [f64; 2], t: &mut impl Tracer<Step>) -> Vec<f64> {
     let ends = |e: &Edge| [e.at(y[0]), e.at(y[1])];
-    active.sort_by(|a, b| {
+    active.compact_sort_by(|a, b| {
         let ([a0, a1], [b0, b1]) = (ends(a), ends(b));
         a0.total_cmp(&b0).then(a1.total_cmp(&b1))
     });
@@ -269,7 +270,7 @@ fn sweep(
     t: &mut impl Tracer<Step>,
 ) {
     let middle = y[0] + (y[1] - y[0]) * 0.5;
-    active.sort_by(|a, b| a.at(middle).total_cmp(&b.at(middle)));
+    active.compact_sort_by(|a, b| a.at(middle).total_cmp(&b.at(middle)));
     let (mut winding, mut left): ([i32; 2], Option<[f64; 2]>) = ([0; 2], None);
     for edge in active.iter() {
         let x = [edge.at(y[0]), edge.at(y[1])];

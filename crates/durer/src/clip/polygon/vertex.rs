@@ -3,11 +3,14 @@
 use std::cmp::Ordering;
 use std::fmt::Debug;
 
+use super::overlay::job::Solve;
 use super::overlay::lattice::GridPoint;
 use crate::math::{DVec2, I64Vec2, Orientation, orient2d};
 
 /// A point of [`Shapes`](super::Shapes): [`DVec2`] or [`I64Vec2`], and no other type.
-pub trait Vertex: Copy + PartialEq + Default + Debug + Send + Sync + GridPoint + 'static {
+pub trait Vertex:
+    Copy + PartialEq + Default + Debug + Send + Sync + GridPoint + Solve + 'static
+{
     /// Returns whether no coordinate is infinite or no number.
     fn is_finite(self) -> bool;
 

@@ -7,6 +7,7 @@
 
 use crate::clip::polygon::{Shapes, Vertex, WindingRule};
 use crate::math::{I64Vec2, IVec2, Orientation};
+use crate::sorting::CompactSort;
 
 /// Coordinates have this many bits at most, so that products of their differences fit 64.
 const BITS: u32 = 29;
@@ -270,7 +271,7 @@ impl Nest {
         }
         let depths: Vec<usize> = self.around.iter().map(Vec::len).collect();
         for around in &mut self.around {
-            around.sort_unstable_by_key(|&ring| (depths[ring as usize], ring));
+            around.compact_sort_by_key(|&ring| (depths[ring as usize], ring));
         }
     }
 

@@ -9,6 +9,7 @@ use super::piece::Body;
 use super::ready::{Feature, runs};
 use super::{Tile, hilbert};
 use crate::math::{DVec2, Rect};
+use crate::sorting::CompactSort;
 
 /// Number of cells between vertices, on average.
 const BETWEEN_VERTICES: f64 = 8.0;
@@ -148,7 +149,7 @@ fn between_features(bounds: &[(bool, Rect)]) -> Option<f64> {
         })
         .collect();
     // The sort is stable, so equal places keep their order.
-    places.sort_by_key(|place| place.0);
+    places.compact_sort_by_key(|place| place.0);
     let mut distances = Logarithms::default();
     places.windows(2).for_each(|pair| distances.add(pair[0].1.distance(pair[1].1)));
     distances.below(NEAR)

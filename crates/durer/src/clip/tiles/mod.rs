@@ -27,6 +27,7 @@ pub use tiling::{Reach, Subject, Tiling};
 pub use walk::{Content, count, walk};
 
 use super::hilbert;
+use crate::sorting::CompactSort;
 
 /// A tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -73,7 +74,7 @@ impl Tile {
         let (zoom, x, y) = (self.zoom + 1, 2 * self.x, 2 * self.y);
         let mut children =
             [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| Self { zoom, x: x + i, y: y + j });
-        children.sort_unstable_by_key(|child| child.id());
+        children.compact_sort_by_key(|child| child.id());
         children
     }
 

@@ -7,6 +7,7 @@ use crate::explain::input::Input;
 use crate::math::{DVec2, DVec3};
 use crate::raster::interpolate::{barycentric_2d, blend};
 use crate::scene::{Camera, Projection};
+use crate::sorting::CompactSort;
 
 /// Points of faces behind the centres of a row's pixels.
 #[derive(Clone)]
@@ -37,7 +38,7 @@ impl Row {
                 }
             }
         }
-        points.sort_by_key(|(face, x, _)| (*face, *x));
+        points.compact_sort_by_key(|(face, x, _)| (*face, *x));
         let deepest = triangles.corners.iter().flatten().map(|corner| corner.z).fold(0.8, f64::max);
         Ok(Self { scene, points, far: deepest * 1.25 })
     }

@@ -6,6 +6,7 @@ use crate::explain::fills::by_rows;
 use crate::raster::coverage::FillRule;
 use crate::raster::polygon::edge_table::{Edge, INFO, Step, row, table};
 use crate::raster::span::Span;
+use crate::sorting::CompactSort;
 use crate::trace::{Recorder, Tracer};
 
 pub(super) const PROGRAM: Program = Program {
@@ -24,7 +25,7 @@ pub(super) const PROGRAM: Program = Program {
 
 fn fill(contours: &Contours, [columns, rows]: [u32; 2], faulty: usize, t: &mut Recorder<Step>) {
     let mut waiting = table(contours, rows);
-    waiting.sort_by_key(|edge| std::cmp::Reverse(edge.rows.0));
+    waiting.compact_sort_by_key(|edge| std::cmp::Reverse(edge.rows.0));
     waiting.iter().rev().for_each(|edge| t.step(|| Step::Table(*edge)));
     let mut active: Vec<Edge> = Vec::new();
     let mut y = waiting.last().map_or(0, |edge| edge.rows.0);
@@ -34,7 +35,7 @@ fn fill(contours: &Contours, [columns, rows]: [u32; 2], faulty: usize, t: &mut R
             active.push(edge);
         }
         if faulty != 5 {
-            active.sort_by_key(|edge| edge.x);
+            active.compact_sort_by_key(|edge| edge.x);
         }
         active.iter().for_each(|&edge| t.step(|| Step::Active { y, edge }));
         row(&active, y, columns, FillRule::EvenOdd, |span| {

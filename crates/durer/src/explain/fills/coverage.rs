@@ -13,6 +13,7 @@ use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
 use crate::raster::coverage::cell_sums::{self, Cell, Step};
 use crate::raster::coverage::{self, Face, PartitionStep};
+use crate::sorting::CompactSort;
 use crate::target::Pixels;
 
 pub(super) const CELLS: Lesson = Lesson {
@@ -255,7 +256,7 @@ impl Cells {
         | Step::Pixel { pixel: [_, y], .. }
         | Step::Span { y, .. }) = *step;
         let mut row: Vec<_> = self.cells.iter().filter(|(pixel, _)| pixel[1] == y).collect();
-        row.sort_by_key(|(pixel, _)| pixel[0]);
+        row.compact_sort_by_key(|(pixel, _)| pixel[0]);
         let mut table = Table::new(heads);
         for (pixel, cell) in row {
             let own = self.pixels.iter().find(|(other, _)| other == pixel);

@@ -1,6 +1,7 @@
 //! Hatching, so that areas can be told apart without colour.
 
 use crate::math::DVec2;
+use crate::sorting::CompactSort;
 
 /// Distance of the lines along x, in pixels.
 const DISTANCE: f64 = 9.0;
@@ -17,7 +18,7 @@ pub(super) fn hatch(rings: &[Vec<DVec2>], size: DVec2, up: bool) -> Vec<[DVec2; 
         let c = first + (k as f64 + 0.5) * DISTANCE;
         let mut stops: Vec<DVec2> =
             rings.iter().flat_map(|ring| crossings(ring, along, c)).collect();
-        stops.sort_by(|a, b| a.x.total_cmp(&b.x));
+        stops.compact_sort_by(|a, b| a.x.total_cmp(&b.x));
         lines
             .extend(stops.chunks_exact(2).filter_map(|pair| Some([*pair.first()?, *pair.get(1)?])));
     }

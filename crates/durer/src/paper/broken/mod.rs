@@ -4,6 +4,7 @@ mod cut;
 
 use crate::math::{DVec2, DVec3};
 use crate::scene::{Aabb, Camera, Projection};
+use crate::sorting::CompactSort;
 use crate::target::drawing::Drawing;
 use crate::{Error, Result};
 use std::str::FromStr;
@@ -81,7 +82,7 @@ impl Breaks {
     pub fn new(breaks: &[Break], bounds: Aabb, views: &[Camera]) -> Result<Self> {
         let gap = views.iter().map(|v| extent(breaks, bounds, v)).fold(0.0, f64::max) * GAP;
         let mut breaks = breaks.to_vec();
-        breaks.sort_by(|a, b| a.axis.cmp(&b.axis).then(a.span[0].total_cmp(&b.span[0])));
+        breaks.compact_sort_by(|a, b| a.axis.cmp(&b.axis).then(a.span[0].total_cmp(&b.span[0])));
         for one in &breaks {
             let (low, high) = (bounds.min[one.axis], bounds.max[one.axis]);
             if one.span[0] <= low || one.span[1] >= high {
@@ -117,7 +118,7 @@ impl Breaks {
             ViewBreak { way, from, to, gap: self.gap }
         };
         let mut breaks: Vec<ViewBreak> = seen.map(view).collect();
-        breaks.sort_by(|a, b| a.from.total_cmp(&b.from));
+        breaks.compact_sort_by(|a, b| a.from.total_cmp(&b.from));
         ViewBreaks(breaks)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::Angle;
 use crate::math::DVec2;
+use crate::sorting::CompactSort;
 use crate::view::projection::NamedView;
 
 /// Extent of a view around the origin of its plane, y down.
@@ -128,6 +129,6 @@ fn tracks(cells: &[Cell], axis: usize) -> Vec<Track> {
             None => tracks.push(Track { at, from, to }),
         }
     }
-    tracks.sort_by_key(|t| t.at);
+    tracks.compact_sort_by_key(|t| t.at);
     tracks
 }

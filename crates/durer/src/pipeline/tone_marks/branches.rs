@@ -8,13 +8,14 @@
 use super::bent::Bent;
 use super::seen::Seen;
 use super::tensor::Tensor;
+use crate::sorting::CompactSort;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Returns, for each pixel, whether it takes the second of its directions.
 pub fn second(seen: &Seen, bent: &[Bent]) -> Vec<bool> {
     let mut order: Vec<usize> = (0..bent.len()).filter(|i| bent[*i].weight > 0.0).collect();
-    order.sort_by(|a, b| bent[*b].weight.total_cmp(&bent[*a].weight));
+    order.compact_sort_by(|a, b| bent[*b].weight.total_cmp(&bent[*a].weight));
     let mut taking = Taking {
         seen,
         bent,

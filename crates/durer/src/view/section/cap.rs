@@ -2,6 +2,7 @@
 
 use crate::clip::polygon::{Ring, signed_area};
 use crate::math::{DVec2, DVec3, Orientation, Vec3, orient2d};
+use crate::sorting::CompactSort;
 use earcut::Earcut;
 use std::collections::HashMap;
 
@@ -25,7 +26,7 @@ pub fn triangles(
         })
         .collect();
     // Large ones first: a hole's border is then the smallest outer ring around it that came before.
-    rings.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then_with(|| a.0.cmp(&b.0)));
+    rings.compact_sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then_with(|| a.0.cmp(&b.0)));
     let (outers, holes): (Vec<_>, Vec<_>) = rings.into_iter().partition(|(_, area)| *area > 0.0);
     let mut polygons: Vec<Vec<Vec<u32>>> = outers.into_iter().map(|(ring, _)| vec![ring]).collect();
     for (hole, _) in holes {

@@ -18,6 +18,7 @@ use super::face_net::{Carrier, FaceNet};
 use super::hidden_line::Span;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
+use crate::sorting::CompactSort;
 use crate::trace::Tracer;
 use crate::work::{Charge, Work};
 use crate::{Error, Result};
@@ -176,7 +177,7 @@ pub fn replay(net: &FaceNet, steps: &[Step]) -> Vec<Line> {
             _ => {}
         }
     }
-    lines.sort_by_key(|line| line.edge);
+    lines.compact_sort_by_key(|line| line.edge);
     lines
 }
 
@@ -228,7 +229,7 @@ pub fn draw(
     let mut run = Run { net, contours, options, lines: Vec::new(), charge, t };
     net.carry(&mut run, work)?;
     let mut lines = run.lines;
-    lines.sort_by_key(|line| line.edge);
+    lines.compact_sort_by_key(|line| line.edge);
     Ok(lines)
 }
 
@@ -301,7 +302,7 @@ impl<T> Run<'_, T> {
                 found.push((pierce.t, Cause::Face(face), pierce.goes_behind));
             }
         }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.compact_sort_by(|a, b| a.0.total_cmp(&b.0));
         found
     }
 }

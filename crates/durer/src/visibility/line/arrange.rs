@@ -7,6 +7,7 @@ use super::piece::Piece;
 use super::simplify::simplify;
 use super::stubs::without_stubs;
 use super::zigzag::without_zigzags;
+use crate::sorting::CompactSort;
 use crate::target::drawing::{Line, LineClass};
 use crate::view::picture_plane::PicturePlane;
 use crate::visibility::object::Faces;
@@ -96,7 +97,7 @@ pub(super) fn arrange(page: &Page, pieces: Pieces, how: How) -> Vec<Line> {
     }
     chains.retain(|c| c.points.len() > 1 && c.length() >= steps);
     // Hidden lines first: visible ones are drawn over them.
-    chains.sort_by_key(|c| std::cmp::Reverse((c.invisibility, c.class)));
+    chains.compact_sort_by_key(|c| std::cmp::Reverse((c.invisibility, c.class)));
     let line = |c: super::chain::Chain| Line {
         class: c.class,
         invisibility: c.invisibility,

@@ -16,6 +16,7 @@ use super::face_net::{Carrier, FaceNet};
 use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
+use crate::sorting::CompactSort;
 use crate::trace::Tracer;
 use crate::work::{Charge, Work};
 
@@ -190,7 +191,7 @@ pub fn replay(net: &FaceNet, steps: &[Step]) -> Vec<Line> {
             _ => {}
         }
     }
-    lines.sort_by_key(|line| line.edge);
+    lines.compact_sort_by_key(|line| line.edge);
     lines
 }
 
@@ -231,7 +232,7 @@ pub fn draw(
     let mut run = Run { net, hiders, options, lines: Vec::new(), charge, t };
     net.carry(&mut run, work)?;
     let mut lines = run.lines;
-    lines.sort_by_key(|line| line.edge);
+    lines.compact_sort_by_key(|line| line.edge);
     Ok(lines)
 }
 
@@ -300,7 +301,7 @@ impl<T> Run<'_, T> {
             let pierce = net.pierce(corners, face).filter(|_| self.options.piercing);
             found.extend(pierce.map(|pierce| (pierce.t, face, None)));
         }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.compact_sort_by(|a, b| a.0.total_cmp(&b.0));
         found
     }
 }

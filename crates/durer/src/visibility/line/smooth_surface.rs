@@ -10,6 +10,7 @@ use super::roundness::Round;
 use super::vertex_normals::{Directions, direction, normals};
 use crate::math::{DMat3, DVec3};
 use crate::scene::{Mesh, Scene};
+use crate::sorting::CompactSort;
 use crate::view::picture_plane::PicturePlane;
 use crate::visibility::object::{Edges, FaceRun, Faces};
 
@@ -86,7 +87,7 @@ impl SmoothSurface {
             found.add_averages(&seen, directions, items, &near);
         }
         found.turned.extend(turned());
-        found.turned.sort_by_key(|t| t.0);
+        found.turned.compact_sort_by_key(|t| t.0);
         found
     }
 

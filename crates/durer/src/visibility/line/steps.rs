@@ -14,6 +14,7 @@ use super::planes::Planes;
 use super::roundness::FLAT;
 use super::vertex_normals::Directions;
 use crate::parallel;
+use crate::sorting::CompactSort;
 use crate::visibility::object::{Edges, Faces, Side};
 use std::ops::Range;
 
@@ -191,7 +192,7 @@ impl Turns {
         let mut of: Vec<(u32, Turn)> =
             self.coarse.iter().map(|t| (lines.first(t.ends[0]), *t)).collect();
         of.retain(|(first, _)| !closed[*first as usize]);
-        of.sort_by_key(|(first, turn)| (*first, turn.ends));
+        of.compact_sort_by_key(|(first, turn)| (*first, turn.ends));
         let lines = of.chunk_by(|a, b| a.0 == b.0);
         lines.map(|line| line.iter().map(|(_, turn)| *turn).collect()).collect()
     }

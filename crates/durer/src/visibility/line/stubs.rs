@@ -11,6 +11,7 @@ use super::page::GridPoint;
 use super::piece::Piece;
 use super::table::Table;
 use crate::math::DVec2;
+use crate::sorting::CompactSort;
 use crate::target::drawing::LineClass;
 
 /// Number of rounds: the line at which a stub ended may end in the open without it, and joined lines
@@ -304,7 +305,7 @@ impl<'a> Lines<'a> {
                 tips.push(Tip { end: ends[0], at, from, length });
             }
         }
-        tips.sort_unstable_by_key(|t| (t.at, t.end));
+        tips.compact_sort_by_key(|t| (t.at, t.end));
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
         for (i, a) in tips.iter().enumerate() {
             let near = |b: &&Tip| b.at.minus(a.at)[0] as f64 <= most;
@@ -314,7 +315,7 @@ impl<'a> Lines<'a> {
                 }
             }
         }
-        pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        pairs.compact_sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         let mut used = vec![false; tips.len()];
         let mut found = Vec::new();
         for (_, a, b) in pairs {

@@ -8,6 +8,7 @@
 
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Vec4};
+use crate::sorting::CompactSort;
 use crate::trace::Tracer;
 
 /// Facts about the algorithm.
@@ -63,7 +64,7 @@ pub fn ordered_mask(edge: [DVec2; 2], area: f64) -> u16 {
     let center = |bit: usize| DVec2::new((bit % 4) as f64 + 0.5, (bit / 4) as f64 + 0.5) / 4.0;
     let depth = |bit: usize| edge_distance(edge, center(bit)).unwrap_or(0.0);
     let mut order: Vec<usize> = (0..16).collect();
-    order.sort_by(|&i, &j| depth(j).total_cmp(&depth(i)).then(i.cmp(&j)));
+    order.compact_sort_by(|&i, &j| depth(j).total_cmp(&depth(i)).then(i.cmp(&j)));
     order.into_iter().take(count).fold(0, |mask, bit| mask | 1 << bit)
 }
 
@@ -159,7 +160,7 @@ pub fn replay(count: usize, steps: &[Step]) -> (Vec<f64>, f64) {
 /// overlap in depth, each consecutive pair shares the sub-pixels that both cover.
 pub fn weights(fragments: &[Fragment], t: &mut impl Tracer<Step>) -> (Vec<f64>, f64) {
     let mut order: Vec<usize> = (0..fragments.len()).collect();
-    order.sort_by(|&i, &j| fragments[i].z[0].total_cmp(&fragments[j].z[0]).then(i.cmp(&j)));
+    order.compact_sort_by(|&i, &j| fragments[i].z[0].total_cmp(&fragments[j].z[0]).then(i.cmp(&j)));
     let mut weights = vec![0.0; fragments.len()];
     // The share that each sub-pixel still has to give away.
     let mut left = [1.0_f64; 16];

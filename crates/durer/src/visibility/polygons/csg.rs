@@ -14,6 +14,7 @@
 use super::{Face, Screen};
 use crate::clip::polygon::BooleanOp;
 use crate::info::{Class, Coherence, Info, Occluder};
+use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 use crate::{Error, Result};
@@ -313,7 +314,7 @@ impl Picture<'_> {
     fn order(&self, faces: &[u32], x: u32, y: u32) -> Vec<(u32, bool)> {
         let mut sorted: Vec<(f64, u32)> =
             faces.iter().map(|face| (self.depth(*face, x, y), *face)).collect();
-        sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        sorted.compact_sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut before = f64::NEG_INFINITY;
         let order = |(depth, face)| (face, std::mem::replace(&mut before, depth) == depth);
         sorted.into_iter().map(order).collect()

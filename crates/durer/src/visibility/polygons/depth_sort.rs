@@ -15,6 +15,7 @@ use super::{Face, Screen};
 use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DVec3, Plane};
+use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 use crate::visibility::surface::depth_sort::Test;
@@ -166,7 +167,7 @@ pub fn items(
         charge.grow(count.saturating_mul(size_of::<([u32; 2], DVec3)>() as u64))?;
         let mut pixels = Vec::with_capacity(count as usize);
         face.pixels(screen, |[x, y], point| pixels.push(([y, x], point)));
-        pixels.sort_by_key(|(pixel, _)| *pixel);
+        pixels.compact_sort_by_key(|(pixel, _)| *pixel);
         Ok(pixels)
     };
     let pixels = faces.iter().map(&mut covered).collect::<Result<_>>()?;
@@ -209,7 +210,7 @@ impl Sorter<'_> {
         let farthest = |polygon: u32| self.depths(polygon)[1];
         let mut list: Vec<(u32, f64)> =
             self.list.iter().map(|(polygon, _)| (*polygon, farthest(*polygon))).collect();
-        list.sort_by(|a, b| b.1.total_cmp(&a.1));
+        list.compact_sort_by(|a, b| b.1.total_cmp(&a.1));
         self.list = list.into_iter().map(|(polygon, _)| (polygon, false)).collect();
     }
 

@@ -9,6 +9,7 @@
 use super::{Face, Screen};
 use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
+use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 
@@ -121,7 +122,7 @@ pub fn items(
         screen.work.charge_for::<(f64, u32, &Face)>("order of polygons", faces.len() as u64)?;
     let mut order: Vec<(f64, u32, &Face)> =
         (0..).zip(faces).map(|(number, face)| (key(face), number, face)).collect();
-    order.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+    order.compact_sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
     order.iter().for_each(|&(z, face, _)| t.step(|| Step::Sorted { face, z }));
     for (_, number, face) in order {
         face.spans(screen, |span| {

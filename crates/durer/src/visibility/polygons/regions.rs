@@ -15,6 +15,7 @@ use crate::clip::polygon::sutherland_hodgman::by_borders;
 use crate::clip::polygon::{BooleanOp, Shapes, overlay};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DVec2, Rect};
+use crate::sorting::CompactSort;
 use crate::trace::{NoTrace, Tracer};
 use crate::work::Work;
 use crate::{Error, Result};
@@ -197,7 +198,7 @@ pub fn regions(
         let [inside, outside] = cutter.cut(nearest, list, t)?;
         lists.extend([charged(outside)?, charged(inside)?]);
     }
-    seen.sort_by_key(|region| region.face);
+    seen.compact_sort_by_key(|region| region.face);
     Ok(seen)
 }
 

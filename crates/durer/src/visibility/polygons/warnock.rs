@@ -14,6 +14,7 @@ use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
 use crate::raster::span::Span;
+use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 use crate::visibility::surface::cover::{Relation, Window};
@@ -264,7 +265,7 @@ impl Cover {
     fn new(face: &Face, screen: &Screen) -> Self {
         let mut spans = Vec::new();
         face.spans(screen, |span| spans.push(span));
-        spans.sort_by_key(|span| (span.y, span.x0));
+        spans.compact_sort_by_key(|span| (span.y, span.x0));
         let count = spans.iter().map(|span| i64::from(span.x1 - span.x0)).sum();
         Self { spans, count }
     }

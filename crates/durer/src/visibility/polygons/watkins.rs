@@ -14,6 +14,7 @@ use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
 use crate::raster::polygon::edge_table::{Edge, table};
+use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 
@@ -158,7 +159,7 @@ pub fn items(faces: &[Face], screen: &Screen, t: &mut impl Tracer<Step>) -> Resu
             continue;
         }
         t.step(|| Step::Row { y });
-        active.sort_by_key(|entry| (entry.edge.x, entry.face));
+        active.compact_sort_by_key(|entry| (entry.edge.x, entry.face));
         active.iter().for_each(|&entry| t.step(|| Step::Active(entry)));
         Row { faces, y, width: screen.width }.sweep(&active, &mut items, t);
         active.retain(|entry| entry.edge.rows.1 > y + 1);
@@ -179,7 +180,9 @@ fn edge_table(faces: &[Face], screen: &Screen) -> Vec<EdgeEntry> {
         table(&own.contours(), screen.height).into_iter().map(move |edge| EdgeEntry { edge, face })
     };
     let mut entries: Vec<EdgeEntry> = (0..).zip(faces).flat_map(of).collect();
-    entries.sort_by_key(|entry| std::cmp::Reverse((entry.edge.rows.0, entry.edge.x, entry.face)));
+    entries.compact_sort_by_key(|entry| {
+        std::cmp::Reverse((entry.edge.rows.0, entry.edge.x, entry.face))
+    });
     entries
 }
 

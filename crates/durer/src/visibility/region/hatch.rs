@@ -6,6 +6,7 @@
 
 use crate::math::DVec2;
 use crate::shade::color::decode_srgb8;
+use crate::sorting::CompactSort;
 use crate::target::drawing::{Line, LineClass, Region, RegionKind};
 
 /// Options for hatching.
@@ -119,7 +120,7 @@ fn family(
                 from = to;
             }
         }
-        meets.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        meets.compact_sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         let pairs = meets.as_chunks::<2>().0.iter();
         spans.extend(pairs.filter(|[a, b]| a.0 == b.0 && a.1 < b.1).map(|[a, b]| (a.0, a.1, b.1)));
     }

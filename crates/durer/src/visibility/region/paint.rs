@@ -11,6 +11,7 @@ use crate::scene::Scene;
 use crate::shade::color::encode_rgba8;
 use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::simd::default_level;
+use crate::sorting::CompactSort;
 use crate::target::drawing::{Line, LineClass, Region, RegionKind};
 use crate::view::View;
 use crate::visibility::surface::lit::{Lighting, Lit};
@@ -98,7 +99,9 @@ impl Paint {
             })
             .collect();
         let mut order: Vec<u32> = (0..patches.list.len() as u32).collect();
-        order.sort_by(|&a, &b| depths[b as usize].total_cmp(&depths[a as usize]).then(a.cmp(&b)));
+        order.compact_sort_by(|&a, &b| {
+            depths[b as usize].total_cmp(&depths[a as usize]).then(a.cmp(&b))
+        });
         let mut rank = vec![0; order.len()];
         for (i, &patch) in order.iter().enumerate() {
             rank[patch as usize] = i as u32;

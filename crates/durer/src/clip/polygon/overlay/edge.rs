@@ -1,5 +1,7 @@
 //! An edge of the arrangement, and how windings change across it.
 
+use crate::clip::polygon::{BooleanOp, WindingRule};
+
 /// Winding numbers of subject and clip around a point, or their change across an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Winding {
@@ -14,6 +16,22 @@ impl Winding {
 
     pub(super) fn minus(self, other: Self) -> Self {
         Self { subject: self.subject - other.subject, clip: self.clip - other.clip }
+    }
+}
+
+/// The region of a result: an operation, and the rules by which subject and clip are filled.
+#[derive(Debug, Clone, Copy)]
+pub struct Inside {
+    pub op: BooleanOp,
+    pub subject: WindingRule,
+    pub clip: WindingRule,
+}
+
+impl Inside {
+    /// Returns whether points with these winding numbers are in the region.
+    #[inline]
+    pub fn contains(self, winding: Winding) -> bool {
+        self.op.keeps(self.subject.fills(winding.subject), self.clip.fills(winding.clip))
     }
 }
 

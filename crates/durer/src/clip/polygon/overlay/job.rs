@@ -1,17 +1,18 @@
 //! The stages of one overlay, from rings to rings.
 
 use super::arrangement::Arrangement;
-use super::edge::Winding;
+use super::bounds::{check, union};
+use super::edge::Inside;
 use super::grid::{Block, Grid, Spread};
 use super::lattice::{self, Coord, GridMap, Segment};
-use super::noding::{self, Cause, Ends, Noding};
+use super::noding::{self, Cause, Noding};
 use super::outlines::Outlines;
 use super::rings::{self, Rings};
 use super::search::Search;
 use super::{EdgeId, Operand, Options, Origin, Output, Source, Step, Winder, edges, parallel};
 use crate::Result;
 use crate::clip::polygon::{BooleanOp, Shapes, Vertex};
-use crate::math::Rect;
+use crate::math::{DVec2, I64Vec2, Rect};
 use crate::trace::Tracer;
 
 /// Bytes of the lists for each edge of the input, without the edges themselves.
@@ -20,23 +21,100 @@ const PER_EDGE: u64 = 24;
 /// Bytes of the graph and of the result for each node that an edge passes.
 const PER_HIT: u64 = 64;
 
-/// One overlay.
-pub struct Job<'a, P: Vertex> {
+/// What an overlay is made of.
+pub struct Task<'a, P: Vertex> {
     pub subject: &'a Shapes<P>,
     pub clip: &'a Shapes<P>,
     pub op: BooleanOp,
     pub options: &'a Options,
-    pub lattice: &'a P::Lattice,
     pub winder: Winder,
+}
+
+/// Overlays of points of one kind. Its functions are not generic, so that they are compiled once and not in each crate that
+/// has a tracer of its own.
+pub trait Solve: Sized {
+    /// Overlays shapes; `report` returns whether it has a use for the steps.
+    ///
+    /// # Errors
+    /// As [`overlay()`](super::overlay()).
+    fn solve(
+        task: &Task<'_, Self>,
+        report: &mut dyn FnMut(Step<Self>) -> bool,
+    ) -> Result<Output<Self>>
+    where
+        Self: Vertex;
+}
+
+impl Solve for DVec2 {
+    fn solve(
+        task: &Task<'_, Self>,
+        report: &mut dyn FnMut(Step<Self>) -> bool,
+    ) -> Result<Output<Self>> {
+        solve(task, report)
+    }
+}
+
+impl Solve for I64Vec2 {
+    fn solve(
+        task: &Task<'_, Self>,
+        report: &mut dyn FnMut(Step<Self>) -> bool,
+    ) -> Result<Output<Self>> {
+        solve(task, report)
+    }
+}
+
+fn solve<P: Vertex>(
+    task: &Task<'_, P>,
+    report: &mut dyn FnMut(Step<P>) -> bool,
+) -> Result<Output<P>> {
+    let &Task { subject, clip, op, options, winder } = task;
+    let corners = check(subject, clip)?;
+    let Some([low, high]) = union(corners) else { return Ok(Output::default()) };
+    let lattice = P::Lattice::between(low, high, options.grid)?;
+    let bounds = corners.map(|some| Rect::around(some?.map(|corner| lattice.place(corner))));
+    let listens = report(Step::Grid { cell: lattice.cell() });
+    let causes = listens || options.origins;
+    let job = Job { subject, clip, op, options, lattice: &lattice, winder, bounds, causes };
+    let t = &mut Listener { listens, report };
+    let mut run = || if lattice.fits::<i32>() { job.run::<i32>(t) } else { job.run::<i64>(t) };
+    let few = subject.points().len() + clip.points().len() < FEW;
+    if few { parallel::alone(run) } else { run() }
+}
+
+/// Number of points below which one thread is as fast as several; unit tests of a few points run on several, too.
+const FEW: usize = if cfg!(test) { 1 } else { 1 << 9 };
+
+/// A tracer behind a pointer.
+struct Listener<'a, P> {
+    listens: bool,
+    report: &'a mut dyn FnMut(Step<P>) -> bool,
+}
+
+impl<P> Tracer<Step<P>> for Listener<'_, P> {
+    fn step(&mut self, make: impl FnOnce() -> Step<P>) {
+        if self.listens {
+            (self.report)(make());
+        }
+    }
+}
+
+/// One overlay.
+struct Job<'a, P: Vertex> {
+    subject: &'a Shapes<P>,
+    clip: &'a Shapes<P>,
+    op: BooleanOp,
+    options: &'a Options,
+    lattice: &'a P::Lattice,
+    winder: Winder,
     /// The boxes around subject and clip.
-    pub bounds: [Option<Rect>; 2],
+    bounds: [Option<Rect>; 2],
     /// True if the cause of each node is to be kept.
-    pub causes: bool,
+    causes: bool,
 }
 
 impl<P: Vertex> Job<'_, P> {
     /// Runs the stages in their order.
-    pub fn run<C: Coord>(&self, t: &mut impl Tracer<Step<P>>) -> Result<Output<P>> {
+    fn run<C: Coord>(&self, t: &mut Listener<P>) -> Result<Output<P>> {
         let work = &self.options.work;
         let points = (self.subject.points().len() + self.clip.points().len()) as u64;
         let _edges = work
@@ -52,8 +130,7 @@ impl<P: Vertex> Job<'_, P> {
             return Ok(Output { cell: self.lattice.cell(), ..Output::default() });
         };
         let grid = Grid::new(&segments, block, Spread::of(&segments, block));
-        let ends = |i: u32| if sources[i as usize].reversed() { Ends::Second } else { Ends::First };
-        let noding = noding::node(&segments, &grid, ends, self.causes, work)?;
+        let noding = noding::node(&segments, &grid, Some(&sources), self.causes, work)?;
         let _graph = work.charge("graph of the overlay", noding.hits.len() as u64 * PER_HIT)?;
         let search = Search { grid: &grid, segments: &segments, noding: &noding };
         let rings = edges::Rings { ends: &outlines.ends, sources: &sources };
@@ -65,14 +142,14 @@ impl<P: Vertex> Job<'_, P> {
             }
             Winder::Sweep => {
                 let mut graph = Arrangement::of_straight(&noding, &sources);
-                graph.sweep(|p, active| {
+                graph.sweep(&mut |p, active| {
                     t.step(|| Step::Sweep { at: self.lattice.unsnap(p), active });
                 });
                 graph
             }
         };
-        let (subject, clip) = (self.options.subject_rule, self.options.clip_rule);
-        let inside = |w: Winding| self.op.keeps(subject.fills(w.subject), clip.fills(w.clip));
+        let Options { subject_rule: subject, clip_rule: clip, .. } = *self.options;
+        let inside = Inside { op: self.op, subject, clip };
         let kept = if self.options.drop_collinear { &[][..] } else { &noding.ends[..] };
         let rings = rings::link(graph, kept, &search, inside);
         self.report(&noding, t);
@@ -94,7 +171,7 @@ impl<P: Vertex> Job<'_, P> {
     }
 
     #[inline(never)]
-    fn report<C: Coord>(&self, noding: &Noding<C>, t: &mut impl Tracer<Step<P>>) {
+    fn report<C: Coord>(&self, noding: &Noding<C>, t: &mut Listener<P>) {
         for (&p, cause) in noding.nodes.iter().zip(noding.causes()) {
             if matches!(cause.get(), Cause::Crossing(..)) {
                 t.step(|| Step::Crossing { at: self.lattice.unsnap(p) });
@@ -109,7 +186,7 @@ impl<P: Vertex> Job<'_, P> {
         noding: &Noding<C>,
         segments: &[Segment<C>],
         sources: &[Source],
-        t: &mut impl Tracer<Step<P>>,
+        t: &mut Listener<P>,
     ) -> Output<P> {
         let shapes = self.shapes(rings, noding);
         let mut origins = Vec::new();

@@ -21,7 +21,7 @@ mod bounds;
 mod edge;
 mod edges;
 pub(crate) mod grid;
-mod job;
+pub(super) mod job;
 pub(crate) mod lattice;
 pub(crate) mod noding;
 mod outlines;
@@ -37,14 +37,12 @@ mod winding;
 use super::{BooleanOp, NestingTree, Shapes, Vertex, WindingRule};
 use crate::Result;
 use crate::info::{Class, Info, Occluder};
-use crate::math::{DVec2, Rect};
+use crate::math::DVec2;
 use crate::trace::Tracer;
 use crate::work::Work;
 
-use bounds::{check, union};
 use edge::Winding;
-use job::Job;
-use lattice::GridMap;
+use job::Task;
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -309,7 +307,7 @@ pub fn overlay<P: Vertex>(
 
 /// Method for finding winding numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Winder {
+pub enum Winder {
     /// Method by connected parts of the graph.
     Parts,
     /// Method by a sweep with a list of active edges.
@@ -324,24 +322,16 @@ pub(super) fn solve<P: Vertex>(
     winder: Winder,
     t: &mut impl Tracer<Step<P>>,
 ) -> Result<Output<P>> {
-    let corners = check(subject, clip)?;
-    let Some([low, high]) = union(corners) else { return Ok(Output::default()) };
-    let lattice = P::Lattice::between(low, high, options.grid)?;
-    let bounds = corners.map(|some| Rect::around(some?.map(|corner| lattice.place(corner))));
-    let mut listens = false;
-    t.step(|| {
-        listens = true;
-        Step::Grid { cell: lattice.cell() }
-    });
-    let causes = listens || options.origins;
-    let job = Job { subject, clip, op, options, lattice: &lattice, winder, bounds, causes };
-    let mut run = || if lattice.fits::<i32>() { job.run::<i32>(t) } else { job.run::<i64>(t) };
-    let few = subject.points().len() + clip.points().len() < FEW;
-    if few { parallel::alone(run) } else { run() }
+    let mut report = |step| {
+        let mut listens = false;
+        t.step(|| {
+            listens = true;
+            step
+        });
+        listens
+    };
+    P::solve(&Task { subject, clip, op, options, winder }, &mut report)
 }
-
-/// Number of points below which one thread is as fast as several; unit tests of a few points run on several, too.
-const FEW: usize = if cfg!(test) { 1 } else { 1 << 9 };
 
 /// An input edge behind a segment: the index of its first point, whether the segment runs against
 /// it, and whose it is.

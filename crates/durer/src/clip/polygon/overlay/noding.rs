@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use super::grid::{Band, Grid, Leaf};
 use super::lattice::{Coord, Point, Segment};
-use super::parallel;
 use super::strips::Strips;
+use super::{Source, parallel};
 use crate::Result;
 use crate::work::{Charge, Work};
 
@@ -158,30 +158,19 @@ struct Workbench<'a, C> {
     work: &'a Work,
 }
 
-/// Ends of a segment that have to become nodes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ends {
-    /// The first: the second is the first of the next edge of its ring.
-    First,
-    /// The second: the segment runs against its edge of a ring.
-    Second,
-    /// Both: the segment belongs to no ring.
-    Both,
-}
-
-/// Nodes all segments; `ends` returns, for each, the ends that no other segment has; `causes` tells whether to keep the
-/// causes of each node.
+/// Nodes all segments: edges of rings with their `sources`, or lines that belong to no ring. `causes` tells whether to keep
+/// the causes of each node.
 ///
 /// # Errors
 /// Those of the work: where crossings take more memory than it may have.
 pub fn node<C: Coord>(
     segments: &[Segment<C>],
     grid: &Grid,
-    ends: impl Fn(u32) -> Ends + Sync + Send,
+    sources: Option<&[Source]>,
     causes: bool,
     work: &Work,
 ) -> Result<Noding<C>> {
-    let mut parts = parts(segments, grid, ends, causes, work)?;
+    let mut parts = parts(segments, grid, sources, causes, work)?;
     let patch_ends = parallel::ends(parts.iter().map(|part| part.nodes.len()));
     let nodes = parallel::concat(&parts.iter().map(|part| &part.nodes[..]).collect::<Vec<_>>());
     let passed = parallel::concat(&parts.iter().map(|part| &part.passed[..]).collect::<Vec<_>>());
@@ -217,7 +206,7 @@ fn tasks(grid: &Grid) -> Vec<(&Band, &[Leaf])> {
 fn parts<C: Coord>(
     segments: &[Segment<C>],
     grid: &Grid,
-    ends: impl Fn(u32) -> Ends + Sync + Send,
+    sources: Option<&[Source]>,
     causes: bool,
     work: &Work,
 ) -> Result<Vec<Part<C>>> {
@@ -248,7 +237,7 @@ fn parts<C: Coord>(
         part.passed.reserve(load);
         part.ends.reserve(load);
         for leaf in leaves {
-            bench.leaf(segments, band.items(leaf), leaf, &ends, &mut part)?;
+            bench.leaf(segments, band.items(leaf), leaf, sources, &mut part)?;
         }
         part.charge.grow_to(part.bytes())?;
         Ok(part)
@@ -262,7 +251,7 @@ impl<C: Coord> Workbench<'_, C> {
         all: &[Segment<C>],
         items: &[u32],
         leaf: &Leaf,
-        ends: &impl Fn(u32) -> Ends,
+        sources: Option<&[Source]>,
         part: &mut Part<C>,
     ) -> Result<()> {
         if items.is_empty() {
@@ -271,7 +260,7 @@ impl<C: Coord> Workbench<'_, C> {
         self.segments.clear();
         self.segments.extend(items.iter().map(|&i| all[i as usize]));
         self.pixels.clear();
-        self.ends(items, leaf, ends);
+        self.ends(items, leaf, sources);
         if items.len() > CROWD {
             self.build_strips(leaf, part)?;
             let pixels = &mut self.pixels;
@@ -312,13 +301,13 @@ impl<C: Coord> Workbench<'_, C> {
     /// Adds the pixels of the ends in a leaf. Every point of a ring is the start of one edge, so only starts are
     /// examined there.
     #[inline(never)]
-    fn ends(&mut self, items: &[u32], leaf: &Leaf, ends: &impl Fn(u32) -> Ends) {
+    fn ends(&mut self, items: &[u32], leaf: &Leaf, sources: Option<&[Source]>) {
         for (s, &i) in self.segments.iter().zip(items) {
-            let which = ends(i);
-            if which != Ends::Second && leaf.block.contains(s.a) {
+            let source = sources.map(|sources| sources[i as usize]);
+            if source.is_none_or(|source| !source.reversed()) && leaf.block.contains(s.a) {
                 self.pixels.push((s.a, CauseWord::end(2 * i)));
             }
-            if which != Ends::First && leaf.block.contains(s.b) {
+            if source.is_none_or(Source::reversed) && leaf.block.contains(s.b) {
                 self.pixels.push((s.b, CauseWord::end(2 * i + 1)));
             }
         }

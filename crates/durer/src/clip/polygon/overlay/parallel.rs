@@ -75,7 +75,10 @@ pub fn filled<T: Copy + Send + Sync>(value: T, count: usize) -> Vec<T> {
     #[cfg(feature = "parallel")]
     if count > FILLS && threads() > 1 {
         use rayon::prelude::*;
-        return rayon::iter::repeat_n(value, count).with_min_len(FILLS / 4).collect();
+        let mut list = Vec::new();
+        // `collect` would also be compiled for iterators of unknown length.
+        rayon::iter::repeat_n(value, count).with_min_len(FILLS / 4).collect_into_vec(&mut list);
+        return list;
     }
     vec![value; count]
 }

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::arrangement::{Arrangement, NONE, Patch};
-use super::edge::{Half, Winding};
+use super::edge::{Half, Inside};
 use super::lattice::{Coord, Point, cross};
 use super::parallel;
 use super::search::Search;
@@ -68,7 +68,7 @@ pub fn link<'b, C: Coord>(
     mut graph: Arrangement<'b, C>,
     kept: &'b [bool],
     search: &Search<C>,
-    inside: impl Fn(Winding) -> bool + Sync,
+    inside: Inside,
 ) -> Rings {
     let courses = courses(&graph, inside);
     // They are no longer needed, and the next steps need the memory.
@@ -92,15 +92,12 @@ pub fn link<'b, C: Coord>(
 }
 
 #[inline(never)]
-fn courses<C: Coord>(
-    graph: &Arrangement<C>,
-    inside: impl Fn(Winding) -> bool + Sync,
-) -> Vec<Course> {
+fn courses<C: Coord>(graph: &Arrangement<C>, inside: Inside) -> Vec<Course> {
     let mut courses = parallel::filled(Course::No, graph.edges.len());
     let tasks = parallel::cut(&mut courses, &graph.edge_ends()).into_iter().zip(&graph.patches);
     parallel::map(tasks.collect(), |(courses, patch): (&mut [Course], &Patch)| {
         for (course, e) in courses.iter_mut().zip(patch.edges.clone()) {
-            *course = match (inside(graph.left(e)), inside(graph.right[e])) {
+            *course = match (inside.contains(graph.left(e)), inside.contains(graph.right[e])) {
                 (true, false) => Course::Up,
                 (false, true) => Course::Down,
                 _ => Course::No,

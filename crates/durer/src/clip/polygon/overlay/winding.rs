@@ -124,7 +124,7 @@ impl<C: Coord> Arrangement<'_, C> {
     /// Finds the winding numbers by a sweep from left to right with a list of the edges it cuts,
     /// from low to high; `f` is called with the length of the list at each node. All edges must be
     /// straight.
-    pub fn sweep(&mut self, mut f: impl FnMut(Point<C>, usize)) {
+    pub fn sweep(&mut self, f: &mut dyn FnMut(Point<C>, usize)) {
         let nodes = self.nodes;
         self.right = vec![Winding::default(); self.edges.len()];
         let mut order: Vec<u32> = (0..nodes.len() as u32).collect();

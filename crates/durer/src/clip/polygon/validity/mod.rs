@@ -24,6 +24,7 @@ pub(super) use touches::{Way, ways};
 use super::Shapes;
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
+use crate::sorting::CompactSort;
 use crate::trace::{NoTrace, Tracer};
 use crate::{Error, Result};
 use nesting::{each_misplaced, nests};
@@ -224,7 +225,9 @@ pub fn flaws_traced(shapes: &Shapes, t: &mut impl Tracer<Step>) -> Result<Vec<Fl
 /// Sorts flaws and leaves each place of each pair of rings once.
 fn sort(flaws: &mut Vec<Flaw>) {
     let place = |p: DVec2, q: DVec2| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y));
-    flaws.sort_by(|a, b| a.rings.cmp(&b.rings).then(place(a.at, b.at)).then(a.fault.cmp(&b.fault)));
+    flaws.compact_sort_by(|a, b| {
+        a.rings.cmp(&b.rings).then(place(a.at, b.at)).then(a.fault.cmp(&b.fault))
+    });
     flaws.dedup_by(|a, b| a == b);
 }
 
@@ -343,7 +346,7 @@ fn each_passage(shapes: &Shapes, mut tell: impl FnMut(&[usize]) -> bool) -> bool
     let order = |p: &DVec2, q: &DVec2| {
         (p.x + 0.0).total_cmp(&(q.x + 0.0)).then((p.y + 0.0).total_cmp(&(q.y + 0.0)))
     };
-    ways.sort_by(|(_, [p, ..]), (_, [q, ..])| order(p, q));
+    ways.compact_sort_by(|(_, [p, ..]), (_, [q, ..])| order(p, q));
     ways.chunk_by(|(_, [p, ..]), (_, [q, ..])| p == q).all(|through| {
         through.iter().enumerate().all(|(i, &(index, way))| {
             through[..i].iter().all(|&(other, w)| ways_touch(way, w) || tell(&[index, other]))

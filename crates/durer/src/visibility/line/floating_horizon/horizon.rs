@@ -3,6 +3,7 @@
 
 use super::strip::{Band, Segment, Strip, push, unite};
 use crate::math::DVec2;
+use crate::sorting::CompactSort;
 
 /// Vertical distances below this part of the picture's height are none: what touches is one.
 const TOUCH: f64 = 1.0 / (1u64 << 40) as f64;
@@ -244,7 +245,7 @@ impl Vec2Chain {
 fn join(ranges: &mut Vec<[f64; 2]>) {
     /// Parts of a segment shorter than this are rounding between two strips.
     const GAP: f64 = 1e-9;
-    ranges.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    ranges.compact_sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut kept = 0;
     for i in 0..ranges.len() {
         let [from, to] = ranges[i];

@@ -1,6 +1,7 @@
 //! Straight pieces, the bands between them, and strips of columns with the bands over them.
 
 use crate::math::DVec2;
+use crate::sorting::CompactSort;
 
 /// A straight piece that is not vertical, from left to right.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -154,6 +155,6 @@ fn united(strip: &Strip, band: &Band, from: f64, to: f64, touch: f64) -> Strip {
             sum.upper = other.upper;
         }
     }
-    apart.sort_by(|a, b| a.lower.at(x).total_cmp(&b.lower.at(x)));
+    apart.compact_sort_by(|a, b| a.lower.at(x).total_cmp(&b.lower.at(x)));
     Strip { from, to, band: sum, more: apart }
 }

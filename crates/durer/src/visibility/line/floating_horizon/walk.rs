@@ -6,6 +6,7 @@ use super::{Family, Options, Piece, Step, chain};
 use crate::math::{DVec2, DVec3};
 use crate::scene::height_field::{cut, part_between};
 use crate::scene::{Camera, HeightField};
+use crate::sorting::CompactSort;
 use crate::trace::Tracer;
 
 /// The four sides of a cell: family, and the corners that they join (bit 0 the column, bit 1 the row).
@@ -159,7 +160,7 @@ fn at_the_foot(
         let ends = ends.map(|p| p - middle);
         let parts = pictures.iter().filter_map(|p| p.part(numbers, ends, between));
         let mut held: Vec<[f64; 2]> = parts.map(|p| p.range).collect();
-        held.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        held.compact_sort_by(|a, b| a[0].total_cmp(&b[0]));
         for [from, to] in gaps(&held) {
             let range = [from.max(between[0]), to.min(between[1])];
             if range[0] < range[1] {

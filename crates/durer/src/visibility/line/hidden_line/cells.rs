@@ -125,6 +125,7 @@ impl Cells {
 
     /// Calls `f` with each row that the polygon of the points touches, and its first and last column
     /// there; a step of margin makes up for rounding.
+    #[inline]
     fn rows_of(&self, points: &[GridPoint], mut f: impl FnMut(i32, i32, i32)) {
         let (mut lo, mut hi) = (points[0], points[0]);
         for p in points {
@@ -133,36 +134,40 @@ impl Cells {
         }
         let [x0, x1] = [i64::from(lo.x) - 1, i64::from(hi.x) + 1].map(|x| self.column(x));
         let [y0, y1] = [i64::from(lo.y) - 1, i64::from(hi.y) + 1].map(|y| self.row(y));
-        if x1 - x0 < 2 || y0 == y1 {
-            (y0..=y1).for_each(|y| f(y, x0, x1));
-            return;
-        }
+        let all = x1 - x0 < 2 || y0 == y1;
         for row in y0..=y1 {
-            let bottom = (i64::from(self.low.y) + (i64::from(row) << self.shift)) as f64 - 2.0;
-            let top = bottom + f64::from(1u32 << self.shift) + 4.0;
-            let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
-            let mut reach = |x: f64| {
-                from = from.min(x);
-                to = to.max(x);
-            };
-            for (i, p) in points.iter().enumerate() {
-                let q = points[(i + 1) % points.len()];
-                let (px, py) = (f64::from(p.x), f64::from(p.y));
-                let (dx, dy) = (f64::from(q.x) - px, f64::from(q.y) - py);
-                if py >= bottom && py <= top {
-                    reach(px);
-                }
-                for y in [bottom, top] {
-                    let t = (y - py) / dy;
-                    if t > 0.0 && t < 1.0 {
-                        reach(px + t * dx);
-                    }
-                }
-            }
-            if from <= to {
-                f(row, self.column(from as i64 - 2).max(x0), self.column(to as i64 + 2).min(x1));
+            if all {
+                f(row, x0, x1);
+            } else if let Some([from, to]) = self.columns_at(row, points) {
+                f(row, from.max(x0), to.min(x1));
             }
         }
+    }
+
+    /// Returns the first and last column that the polygon of the points touches in a row.
+    fn columns_at(&self, row: i32, points: &[GridPoint]) -> Option<[i32; 2]> {
+        let bottom = (i64::from(self.low.y) + (i64::from(row) << self.shift)) as f64 - 2.0;
+        let top = bottom + f64::from(1u32 << self.shift) + 4.0;
+        let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut reach = |x: f64| {
+            from = from.min(x);
+            to = to.max(x);
+        };
+        for (i, p) in points.iter().enumerate() {
+            let q = points[(i + 1) % points.len()];
+            let (px, py) = (f64::from(p.x), f64::from(p.y));
+            let (dx, dy) = (f64::from(q.x) - px, f64::from(q.y) - py);
+            if py >= bottom && py <= top {
+                reach(px);
+            }
+            for y in [bottom, top] {
+                let t = (y - py) / dy;
+                if t > 0.0 && t < 1.0 {
+                    reach(px + t * dx);
+                }
+            }
+        }
+        (from <= to).then(|| [from as i64 - 2, to as i64 + 2].map(|x| self.column(x)))
     }
 }
 

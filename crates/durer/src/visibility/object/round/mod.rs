@@ -12,6 +12,7 @@ mod fit;
 use super::{Bodies, Edges, Faces};
 use crate::math::DVec3;
 use crate::scene::Aabb;
+use crate::sorting::CompactSort;
 use fit::{Sums, Surface};
 use std::f64::consts::TAU;
 
@@ -423,7 +424,7 @@ fn covered(directions: &[f64]) -> (f64, f64) {
 /// Joins the parts of cylinders that are divided lengthwise.
 fn joined(found: Vec<Cylinder>, extent: f64) -> Vec<Cylinder> {
     let (mut whole, mut parts): (Vec<_>, Vec<_>) = found.into_iter().partition(Cylinder::is_full);
-    parts.sort_by(|a, b| a.radius.total_cmp(&b.radius).then(a.item.cmp(&b.item)));
+    parts.compact_sort_by(|a, b| a.radius.total_cmp(&b.radius).then(a.item.cmp(&b.item)));
     let mut gone = vec![false; parts.len()];
     for i in 0..parts.len() {
         if gone[i] {
@@ -441,7 +442,7 @@ fn joined(found: Vec<Cylinder>, extent: f64) -> Vec<Cylinder> {
         }
         whole.push(sum);
     }
-    whole.sort_by_key(|c| c.item);
+    whole.compact_sort_by_key(|c| c.item);
     whole
 }
 

@@ -3,6 +3,7 @@
 use super::{Options, Side, Step};
 use crate::Result;
 use crate::math::{DVec3, Plane};
+use crate::sorting::CompactSort;
 use crate::trace::Tracer;
 use crate::view::cull::Face as Seen;
 use crate::visibility::back_face::Eye;
@@ -173,7 +174,7 @@ impl Tree {
             let node = &self.nodes[number as usize];
             if passed {
                 let mut on = node.on.clone();
-                on.sort_by_key(|&piece| std::cmp::Reverse(self.face(piece)));
+                on.compact_sort_by_key(|&piece| std::cmp::Reverse(self.face(piece)));
                 order.extend(on);
                 continue;
             }

@@ -18,6 +18,7 @@ use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
 use crate::raster::span::Span;
+use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 use std::collections::BTreeMap;
@@ -159,7 +160,7 @@ pub fn items(
         let mut spans = Vec::new();
         face.spans(screen, |span| spans.push(span));
         charge.grow((spans.len() * size_of::<Span>()) as u64)?;
-        spans.sort_by_key(|span| (span.y, span.x0));
+        spans.compact_sort_by_key(|span| (span.y, span.x0));
         Ok(spans)
     };
     let mut picture = Picture {

@@ -2,6 +2,7 @@
 
 use crate::clip::line::{ConvexPolygon, Edge};
 use crate::math::{DVec2, DVec3};
+use crate::sorting::CompactSort;
 use crate::{Error, Result};
 
 /// Opening to another cell.
@@ -84,7 +85,7 @@ impl Plan {
                         sides[door].push(cell);
                     }
                 }
-                openings.sort_by(|a, b| a.0.total_cmp(&b.0));
+                openings.compact_sort_by(|a, b| a.0.total_cmp(&b.0));
                 let mut from = a;
                 for (_, _, door) in openings {
                     let [s, e] = doors[door];

@@ -6,7 +6,7 @@ use crate::Result;
 use crate::clip::polygon::overlay::arrangement::Arrangement;
 use crate::clip::polygon::overlay::grid::{self, Block, Grid, Spread};
 use crate::clip::polygon::overlay::lattice::{Segment, cross};
-use crate::clip::polygon::overlay::noding::{self, Ends};
+use crate::clip::polygon::overlay::noding;
 use crate::clip::polygon::overlay::search::Search;
 use crate::math::DVec2;
 use crate::work::Work;
@@ -46,7 +46,7 @@ impl Planar {
             None => segments,
         };
         let grid = Grid::new(&segments, block, Spread::of(&segments, block));
-        let noding = noding::node(&segments, &grid, |_| Ends::Both, false, work)?;
+        let noding = noding::node(&segments, &grid, None, false, work)?;
         let graph = Arrangement::of_lines(&noding);
         let search = Search { grid: &grid, segments: &segments, noding: &noding };
         let mut planar = Self::of(&graph);

@@ -6,6 +6,7 @@
 //! largest values of the function.
 
 use super::Mask;
+use crate::sorting::CompactSort;
 use fearless_simd::{Simd, f32x8, prelude::*};
 
 /// Pixels that are examined together.
@@ -198,7 +199,7 @@ fn centers(side: u32) -> impl Iterator<Item = [f32; 2]> {
 fn masks_of_direction(side: u32, a: f32, b: f32, masks: &mut [u64]) {
     let mut order: Vec<(f32, u32)> =
         centers(side).map(|[u, v]| a * u + b * v).zip(0..side * side).collect();
-    order.sort_by(|p, q| q.0.total_cmp(&p.0).then(p.1.cmp(&q.1)));
+    order.compact_sort_by(|p, q| q.0.total_cmp(&p.0).then(p.1.cmp(&q.1)));
     for (step, mask) in masks.iter_mut().enumerate() {
         let e = (step as f32 + 0.5) / DISTANCES as f32 - 0.5;
         let count = (area(a, b, e) * (side * side) as f32 + 0.5) as usize;
