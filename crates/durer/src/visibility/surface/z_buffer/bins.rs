@@ -2,10 +2,14 @@
 //! triangles have no order, and stay with the thread that made them.
 
 use super::micropolygon::{Fragments, MOST_TILES, Micropolygons};
+use super::rasterize::{FragmentTest, rasterize};
+use super::tile::SamplePlane;
 use super::tile_grid::TileGrid;
 use crate::Result;
+use crate::scene::Scene;
+use crate::simd::{Level, dispatch};
 use crate::view::View;
-use crate::visibility::surface::lit::Lighting;
+use crate::visibility::surface::lit::{KnownNormals, Lighting};
 use crate::visibility::surface::points::triangles::RunNormals;
 use crate::visibility::surface::setup::{
     Assembler, Counts, Coverage, Filter, Run, Sampled, ScreenTriangle, ScreenVertex, Sink,
@@ -21,14 +25,28 @@ const JOB_TRIANGLES: [u32; 2] = [8192, 32768];
 /// Number of jobs that share the work evenly, unless they are too small.
 const JOBS: u32 = 32;
 
+/// A scene whose triangles are set up, and how.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    pub scene: &'a Scene,
+    pub view: &'a View,
+    pub runs: &'a [Run],
+    pub filter: Filter,
+    /// Samples at which small opaque triangles are sampled during set-up, one or four; none to keep all triangles.
+    pub early: &'static [[i32; 2]],
+    /// Lighting that needs normals of small triangles.
+    pub lighting: Option<&'a Lighting<'a>>,
+    pub level: Level,
+}
+
 /// Pieces of runs that one thread sets up at a time; all of one coverage.
-pub struct Job {
+struct Job {
     coverage: Coverage,
     pieces: Vec<(usize, Range<u32>)>,
 }
 
 /// Divides the runs into jobs: opaque ones first, then masked, then blended, each in scene order.
-pub fn jobs(runs: &[Run]) -> Vec<Job> {
+fn jobs(runs: &[Run]) -> Vec<Job> {
     let all = runs.iter().fold(0, |sum: u32, run| sum.saturating_add(run.range.len() as u32));
     let [least, most] = JOB_TRIANGLES;
     let size = (all / JOBS).clamp(least, most);
@@ -57,9 +75,9 @@ pub fn jobs(runs: &[Run]) -> Vec<Job> {
 /// The triangles of one job and the tiles that they touch.
 pub struct Bins {
     /// Treatment of the fragments of the job's triangles.
-    pub coverage: Coverage,
+    coverage: Coverage,
     /// Counts of the job's triangles.
-    pub counts: Counts,
+    counts: Counts,
     triangles: Vec<ScreenTriangle>,
     /// Triangles that touch each tile, in item order.
     touching: ByTile,
@@ -68,47 +86,127 @@ pub struct Bins {
 /// Buffers for making [`Bins`], which are used again; and the fragments of small triangles, of all jobs that were done
 /// with them.
 #[derive(Default)]
-pub struct Scratch {
+struct Scratch {
     /// Tile and triangle.
     touched: Vec<(u32, u32)>,
     vertices: Vec<ScreenVertex>,
     /// Fragments of triangles that are not among those in the bins.
-    pub fragments: Fragments,
+    fragments: Fragments,
     /// Charge of the fragments to the budget.
     charge: Option<Charge>,
 }
 
 /// Name of triangles and fragments in errors about memory.
-pub const STAGE: &str = "triangles on the screen";
+const STAGE: &str = "triangles on the screen";
 
 impl Scratch {
     /// Charges the growth of the fragments to a budget.
-    pub fn charge(&mut self, work: &Work) -> Result<()> {
+    fn charge(&mut self, work: &Work) -> Result<()> {
         let charge = match &mut self.charge {
             Some(charge) => charge,
             none => none.insert(work.charge(STAGE, 0)?),
         };
         charge.grow_to(self.fragments.bytes())
     }
+}
 
-    /// Returns the charge, for as long as the fragments stay.
-    pub fn take_charge(&mut self) -> Charge {
-        self.charge.take().unwrap_or_default()
+/// The triangles of a scene on the screen, by tile.
+pub struct Binned {
+    /// Lists of the jobs, in their order.
+    bins: Vec<Bins>,
+    /// Fragments of small triangles, in no order.
+    pub fragments: Vec<Fragments>,
+    level: Level,
+    _charges: Vec<Charge>,
+}
+
+impl Binned {
+    /// Sets up all triangles of a scene.
+    ///
+    /// # Errors
+    /// [`crate::Error::Memory`] if the budget has no room for them, and the error of stopped work.
+    pub fn new(source: &Source<'_>, work: &Work) -> Result<Self> {
+        let jobs = jobs(source.runs);
+        let (bins, scratch) =
+            crate::parallel::map_and_keep(jobs, Scratch::default, |scratch, job| {
+                work.check()?;
+                let bins = Bins::new(&job, source, scratch);
+                scratch.charge(work)?;
+                let charge = work.charge(STAGE, bins.bytes())?;
+                Ok((bins, charge))
+            });
+        let bins = bins.into_iter().collect::<Result<Vec<(Bins, Charge)>>>()?;
+        let (bins, mut charges): (Vec<Bins>, Vec<Charge>) = bins.into_iter().unzip();
+        let mut fragments = Vec::new();
+        for Scratch { fragments: of_thread, charge, .. } in scratch {
+            fragments.push(of_thread);
+            charges.extend(charge);
+        }
+        Ok(Self { bins, fragments, level: source.level, _charges: charges })
+    }
+
+    /// Returns the counts of all triangles.
+    pub fn counts(&self) -> Counts {
+        let mut counts = Counts::default();
+        self.bins.iter().for_each(|bins| counts += bins.counts);
+        counts
+    }
+
+    /// Returns the lists of triangles of one coverage.
+    pub fn having(&self, coverage: Coverage) -> impl Iterator<Item = &Bins> + '_ {
+        self.bins.iter().filter(move |bins| bins.coverage == coverage)
+    }
+
+    /// Returns, for each tile of a view, whether it has triangles.
+    pub fn occupied(&self, view: &View) -> Vec<bool> {
+        let tiles = 0..TileGrid::of(view).count();
+        let mut occupied: Vec<bool> = tiles.map(|tile| self.has_fragments(tile)).collect();
+        for (tile, _) in self.bins.iter().flat_map(|bins| &bins.touching.starts) {
+            occupied[*tile as usize] = true;
+        }
+        occupied
+    }
+
+    /// Returns whether a tile has fragments of small triangles.
+    pub fn has_fragments(&self, tile: u32) -> bool {
+        !self.fragments.iter().all(|of_thread| of_thread.nothing_in(tile))
+    }
+
+    /// Rasterizes a tile's triangles of one coverage.
+    pub fn rasterize<T: FragmentTest>(
+        &self,
+        coverage: Coverage,
+        planes: &mut [SamplePlane],
+        area: [[i32; 2]; 2],
+        tile: u32,
+        mut test: Option<&mut T>,
+    ) {
+        for bins in self.having(coverage) {
+            let (triangles, test) = (bins.of_tile(tile), test.as_deref_mut());
+            dispatch!(self.level, simd => rasterize(simd, planes, area, triangles, test));
+        }
+    }
+
+    /// Draws the fragments of a tile, and sets normals in `known` where they are visible.
+    pub fn draw_fragments(
+        &self,
+        planes: &mut [SamplePlane],
+        mut known: Option<&mut KnownNormals>,
+        tile: u32,
+    ) {
+        // There are no fragments if pixels have more samples than a plane contains.
+        let [plane] = planes else { return };
+        for fragments in &self.fragments {
+            dispatch!(self.level, simd =>
+                Fragments::draw(simd, fragments, plane, known.as_deref_mut(), tile));
+        }
     }
 }
 
 impl Bins {
     /// Sets up the triangles of a job and sorts them into tiles.
-    ///
-    /// Small opaque ones are sampled at once where `early` says at which samples, one or four.
-    pub fn new(
-        job: &Job,
-        lighting: &Lighting<'_>,
-        filter: Filter,
-        early: &'static [[i32; 2]],
-        scratch: &mut Scratch,
-    ) -> Self {
-        let Lighting { scene, view, runs, level, .. } = *lighting;
+    fn new(job: &Job, source: &Source<'_>, scratch: &mut Scratch) -> Self {
+        let Source { scene, view, runs, filter, early, lighting, level } = *source;
         let Scratch { touched, fragments, vertices, .. } = scratch;
         touched.clear();
         let mut assembler = Assembler::new(scene, view, filter, level);
@@ -129,9 +227,10 @@ impl Bins {
         };
         // Each run is assembled into the sorter, with normals for small triangles if its lighting needs them.
         for (run, range) in &job.pieces {
-            let normals = !early.is_empty() && lighting.asks_for_normals(*run);
+            let lighting = lighting.filter(|_| !early.is_empty());
+            let normals = lighting.is_some_and(|lighting| lighting.asks_for_normals(*run));
             sorter.normals =
-                normals.then(|| RunNormals::new(scene, view, runs, (*run, lighting.reach)));
+                normals.then(|| RunNormals::new(scene, view, runs, (*run, filter.sample_reach)));
             assembler.primitives(&runs[*run], range.clone(), &mut sorter);
             sorter.micropolygons.finish(level, sorter.normals.as_ref());
         }
@@ -147,7 +246,7 @@ impl Bins {
     }
 
     /// Returns their size in bytes.
-    pub fn bytes(&self) -> u64 {
+    fn bytes(&self) -> u64 {
         let ByTile { starts, entries } = &self.touching;
         let triangles = self.triangles.capacity() * size_of::<ScreenTriangle>();
         (triangles + starts.capacity() * 8 + entries.capacity() * 4) as u64
@@ -202,19 +301,8 @@ impl Sink for Sorter<'_> {
     }
 }
 
-/// Returns, for each tile of the screen, whether it has triangles.
-pub fn occupied(bins: &[Bins], fragments: &[Fragments], view: &View) -> Vec<bool> {
-    let tiles = 0..TileGrid::of(view).count();
-    let has_fragments = |tile: u32| !fragments.iter().all(|of_thread| of_thread.nothing_in(tile));
-    let mut occupied: Vec<bool> = tiles.map(has_fragments).collect();
-    for (tile, _) in bins.iter().flat_map(|bins| &bins.touching.starts) {
-        occupied[*tile as usize] = true;
-    }
-    occupied
-}
-
 /// Triangles by the tiles that they touch.
-pub struct ByTile {
+struct ByTile {
     /// Tiles with something in them, ascending, and where their entries begin.
     starts: Vec<(u32, u32)>,
     entries: Vec<u32>,
@@ -222,7 +310,7 @@ pub struct ByTile {
 
 impl ByTile {
     /// Returns the entries of a tile.
-    pub fn of(&self, tile: u32) -> &[u32] {
+    fn of(&self, tile: u32) -> &[u32] {
         match self.starts.binary_search_by_key(&tile, |s| s.0) {
             Ok(i) => {
                 let end = self.starts.get(i + 1).map_or(self.entries.len(), |s| s.1 as usize);
@@ -234,7 +322,7 @@ impl ByTile {
 }
 
 /// Sorts (tile, triangle) pairs by tile, keeping the order of the triangles.
-pub fn sort_by_tile(touched: &[(u32, u32)], tiles: u32) -> ByTile {
+fn sort_by_tile(touched: &[(u32, u32)], tiles: u32) -> ByTile {
     let mut next = vec![0u32; tiles as usize + 1];
     for (tile, _) in touched {
         next[*tile as usize + 1] += 1;

@@ -6,7 +6,7 @@
 //! Source: N. Greene, M. Kass, G. Miller, *Hierarchical Z-buffer visibility*, SIGGRAPH 1993; here with
 //! one level above the samples, and buckets instead of an octree. Cost: O(triangles + samples).
 
-use super::bins::Bins;
+use super::bins::Binned;
 use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 
 /// Number of triangles below which sorting a tile costs more than it saves.
@@ -32,11 +32,11 @@ impl<'a> FrontToBack<'a> {
     /// Returns the triangles in parts, near ones first: a single part if they are few.
     pub fn parts(
         &mut self,
-        bins: &'a [Bins],
+        binned: &'a Binned,
         tile: u32,
     ) -> impl Iterator<Item = &[&'a ScreenTriangle]> {
         self.given.clear();
-        for bins in bins.iter().filter(|b| b.coverage == Coverage::Opaque) {
+        for bins in binned.having(Coverage::Opaque) {
             self.given.extend(bins.of_tile(tile));
         }
         let few = self.given.len() < FEWEST;
@@ -55,9 +55,9 @@ impl<'a> FrontToBack<'a> {
     }
 
     /// Returns the blended triangles of a tile by the depth of their nearest vertex.
-    pub fn nearest_first(&mut self, bins: &'a [Bins], tile: u32) -> &[&'a ScreenTriangle] {
+    pub fn nearest_first(&mut self, binned: &'a Binned, tile: u32) -> &[&'a ScreenTriangle] {
         self.given.clear();
-        for bins in bins.iter().filter(|b| b.coverage == Coverage::Blended) {
+        for bins in binned.having(Coverage::Blended) {
             self.given.extend(bins.of_tile(tile));
         }
         self.given.sort_by(|s, t| s.depth_min.total_cmp(&t.depth_min));
@@ -92,19 +92,18 @@ impl<'a> FrontToBack<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bins::jobs;
+    use super::super::bins::Source;
     use super::super::rasterize::{AllPass, rasterize};
     use super::super::tile::SamplePlane;
     use super::*;
     use crate::math::{DMat4, DVec3, Vec3};
     use crate::scene::{Camera, Instance, Mesh, Projection, Scene};
-    use crate::shade::{PreparedLights, PreparedMaterials};
     use crate::simd::Level;
     use crate::simd::dispatch;
     use crate::view::View;
-    use crate::visibility::surface::lit::Lighting;
     use crate::visibility::surface::setup::{Filter, runs};
     use crate::visibility::surface::{Cull, Samples};
+    use crate::work::Work;
 
     /// Creates far triangles, then a wall of many small ones in front of most of them; in the right half of the last
     /// rows nothing hides them.
@@ -141,22 +140,17 @@ mod tests {
     fn what_a_wall_hides_is_skipped_and_the_picture_stays() {
         let (scene, view) = scene();
         let runs = runs(&scene).expect("runs");
-        let (materials, lights) =
-            (PreparedMaterials::new(&scene), PreparedLights::auto(view.camera()));
         for samples in [Samples::One, Samples::Four] {
             let level = Level::new();
             let filter = Filter::new(Cull::None, 128);
-            let drawn = (&scene, &view, runs.as_slice());
-            let lighting =
-                Lighting::by_material(drawn, (&materials, &lights), samples.reach(), level);
-            let (jobs, mut scratch) = (jobs(&runs), Default::default());
-            let bins = jobs.iter().map(|job| Bins::new(job, &lighting, filter, &[], &mut scratch));
-            let bins: Vec<Bins> = bins.collect();
+            let (scene, view, runs) = (&scene, &view, runs.as_slice());
+            let source = Source { scene, view, runs, filter, early: &[], lighting: None, level };
+            let binned = Binned::new(&source, &Work::default()).expect("no limit");
             let area = [[0, 0], [64, 64]];
             let mut order = FrontToBack::default();
             let (mut given, mut skipped) = (Vec::new(), 0);
             let mut sorted = SamplePlane::of(samples.offsets());
-            for (i, part) in order.parts(&bins, 0).enumerate() {
+            for (i, part) in order.parts(&binned, 0).enumerate() {
                 dispatch!(level, simd => {
                     if i > 0 {
                         sorted.iter_mut().for_each(|plane| plane.find_farthest(simd));
@@ -173,10 +167,10 @@ mod tests {
             }
             assert!(skipped > 150, "{skipped} of {}", given.len());
             given.sort_unstable();
-            assert!(given.into_iter().eq(bins[0].of_tile(0).map(|t| t.item)), "each once");
+            let all = binned.having(Coverage::Opaque).flat_map(|bins| bins.of_tile(0));
+            assert!(given.into_iter().eq(all.map(|t| t.item)), "each once");
             let mut plain = SamplePlane::of(samples.offsets());
-            let all = bins[0].of_tile(0);
-            dispatch!(level, simd => rasterize(simd, &mut plain, area, all, None::<&mut AllPass>));
+            binned.rasterize(Coverage::Opaque, &mut plain, area, 0, None::<&mut AllPass>);
             for (a, b) in sorted.iter().zip(&plain) {
                 assert!(a.item == b.item && a.depth == b.depth, "{samples:?}");
             }

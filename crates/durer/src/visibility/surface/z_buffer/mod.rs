@@ -17,7 +17,7 @@ mod front_to_back;
 mod micropolygon;
 mod rasterize;
 mod resolve;
-pub mod survey;
+pub(crate) mod survey;
 mod tile;
 mod tile_grid;
 
@@ -34,14 +34,13 @@ use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::lit::{Batch, KnownNormals, Lighting, Lit, PointQueue};
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, ScreenTriangle, runs};
 use crate::visibility::surface::{Background, Cull, Marks, Samples};
-use crate::work::{Charge, Work};
+use crate::work::Work;
 use area::{Area, Codes};
 use band::{Band, bands};
-use bins::{Bins, jobs};
+use bins::{Binned, Source};
 use blended::{Blended, light_blended};
 use front_to_back::FrontToBack;
-use micropolygon::Fragments;
-use rasterize::{AllPass, FragmentTest, rasterize};
+use rasterize::{AllPass, rasterize};
 use resolve::{MaskTest, resolve};
 use tile::{SamplePlane, TILE, TILE_PIXELS};
 use tile_grid::TileGrid;
@@ -137,30 +136,17 @@ pub fn render(
         level: options.level,
     };
     let prepared = start.seconds();
-    let make = bins::Scratch::default;
     let early = early_samples(options.samples, bands.iter().any(Band::wants_center));
-    let work = &options.work;
-    let (bins, mut scratch) = crate::parallel::map_and_keep(jobs(&runs), make, |scratch, job| {
-        work.check()?;
-        let bins = Bins::new(&job, &lighting, filter, early, scratch);
-        scratch.charge(work)?;
-        let charge = work.charge(bins::STAGE, bins.bytes())?;
-        Ok((bins, charge))
-    });
-    let bins = bins.into_iter().collect::<crate::Result<Vec<(Bins, Charge)>>>()?;
-    let (bins, _charges): (Vec<Bins>, Vec<Charge>) = bins.into_iter().unzip();
-    let _of_scratch: Vec<Charge> = scratch.iter_mut().map(bins::Scratch::take_charge).collect();
-    let fragments: Vec<Fragments> = scratch.into_iter().map(|of| of.fragments).collect();
-    let mut report = Report::default();
-    for bin in &bins {
-        report.counts += bin.counts;
-    }
+    let (work, level, lighting) = (&options.work, options.level, &lighting);
+    let source =
+        Source { scene, view, runs: &runs, filter, early, lighting: Some(lighting), level };
+    let binned = &Binned::new(&source, work)?;
+    let mut report = Report { counts: binned.counts(), ..Report::default() };
     report.geometry_seconds = start.seconds() - prepared;
 
     let triangle_count = scene.triangle_count() as u32;
-    let occupied = bins::occupied(&bins, &fragments, view);
-    let (bins, fragments) = (bins.as_slice(), fragments.as_slice());
-    let frame = Frame { view, options, lighting, bins, fragments, occupied, triangle_count };
+    let occupied = binned.occupied(view);
+    let frame = Frame { view, options, lighting: *lighting, binned, occupied, triangle_count };
     let scratch = || Scratch::new(&frame);
     work.begin("rows of tiles", bands.len() as u64);
     crate::parallel::map_with(bands, scratch, |scratch, band| {
@@ -189,9 +175,7 @@ struct Frame<'a> {
     view: &'a View,
     options: &'a Options,
     lighting: Lighting<'a>,
-    bins: &'a [Bins],
-    /// Fragments of small triangles, in no order.
-    fragments: &'a [Fragments],
+    binned: &'a Binned,
     /// True if there is anything in each tile.
     occupied: Vec<bool>,
     /// Items from here on are lines and points, which the item plane does not show.
@@ -251,41 +235,6 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Rasterizes the tile's triangles of one coverage.
-    fn rasterize<T: FragmentTest>(
-        &self,
-        coverage: Coverage,
-        planes: &mut [SamplePlane],
-        area: [[i32; 2]; 2],
-        index: u32,
-        mut test: Option<&mut T>,
-    ) {
-        for bins in self.bins.iter().filter(|b| b.coverage == coverage) {
-            let triangles = bins.of_tile(index);
-            let test = test.as_deref_mut();
-            dispatch!(self.options.level, simd =>
-                rasterize(simd, planes, area, triangles, test));
-        }
-    }
-
-    /// Draws a tile's part of the triangles that were sampled at once; returns whether there is anything.
-    fn draw_fragments(
-        &self,
-        planes: &mut [SamplePlane],
-        mut known: Option<&mut KnownNormals>,
-        index: u32,
-    ) -> bool {
-        let mut any = false;
-        // There are no fragments if pixels have more samples than a plane contains.
-        let [plane] = planes else { return any };
-        for fragments in self.fragments {
-            dispatch!(self.options.level, simd =>
-                Fragments::draw(simd, fragments, plane, known.as_deref_mut(), index));
-            any |= !fragments.nothing_in(index);
-        }
-        any
-    }
-
     /// Rasterizes the tile's opaque triangles.
     fn rasterize_opaque(
         &self,
@@ -294,12 +243,14 @@ impl<'a> Frame<'a> {
         area: [[i32; 2]; 2],
         index: u32,
     ) {
-        let mut drawn = self.draw_fragments(planes, Some(known), index);
+        let binned = self.binned;
+        binned.draw_fragments(planes, Some(known), index);
         // Without back faces little is hidden, and sorting would not pay off.
         if self.options.cull == Cull::Back {
-            return self.rasterize(Coverage::Opaque, planes, area, index, None::<&mut AllPass>);
+            return binned.rasterize(Coverage::Opaque, planes, area, index, None::<&mut AllPass>);
         }
-        for part in order.parts(self.bins, index) {
+        let mut drawn = binned.has_fragments(index);
+        for part in order.parts(binned, index) {
             dispatch!(self.options.level, simd => {
                 if std::mem::take(&mut drawn) {
                     planes.iter_mut().for_each(|plane| plane.find_farthest(simd));
@@ -334,8 +285,8 @@ impl<'a> Frame<'a> {
         planes.iter_mut().for_each(SamplePlane::clear);
         self.rasterize_opaque(order, (planes, known), area, index);
         let mut mask = MaskTest { lit, tile };
-        self.rasterize(Coverage::Masked, planes, area, index, Some(&mut mask));
-        let nearest_first = order.nearest_first(self.bins, index);
+        self.binned.rasterize(Coverage::Masked, planes, area, index, Some(&mut mask));
+        let nearest_first = order.nearest_first(self.binned, index);
         if !nearest_first.is_empty() {
             dispatch!(self.options.level, simd =>
                 light_blended(simd, blended, nearest_first, planes, area, lit));
@@ -366,12 +317,12 @@ impl<'a> Frame<'a> {
             *center = SamplePlane::of(&[[0; 2]]);
         }
         center.iter_mut().for_each(SamplePlane::clear);
-        self.draw_fragments(center, None, index);
+        self.binned.draw_fragments(center, None, index);
         for coverage in [Coverage::Opaque, Coverage::Blended] {
-            self.rasterize(coverage, center, area, index, None::<&mut AllPass>);
+            self.binned.rasterize(coverage, center, area, index, None::<&mut AllPass>);
         }
         let mut mask = MaskTest { lit, tile };
-        self.rasterize(Coverage::Masked, center, area, index, Some(&mut mask));
+        self.binned.rasterize(Coverage::Masked, center, area, index, Some(&mut mask));
         let plane = &center[0];
         for (x, y) in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))) {
             let from = (y * TILE + x) as usize;

@@ -4,31 +4,22 @@
 //! the picture, not on the scene. The visible triangles then form a scene of which the ordinary renderer makes the same
 //! picture, because opaque surfaces that are nowhere nearest do not change it.
 
-use super::bins::{ByTile, STAGE, sort_by_tile};
+use super::bins::{Binned, Source};
 use super::early_samples;
-use super::micropolygon::{Fragments, MOST_TILES, Micropolygons};
-use super::rasterize::{AllPass, rasterize};
+use super::rasterize::AllPass;
 use super::tile::{SamplePlane, TILE, TILE_PIXELS};
 use super::tile_grid::TileGrid;
 use crate::scene::Scene;
-use crate::simd::Level;
-use crate::simd::dispatch;
+use crate::simd::{Level, dispatch};
 use crate::target::NO_ITEM;
 use crate::view::View;
 use crate::visibility::surface::Samples;
-use crate::visibility::surface::setup::{
-    Assembler, Counts, Coverage, Filter, Run, Sampled, ScreenTriangle, Sink, runs,
-};
+use crate::visibility::surface::setup::{Counts, Coverage, Filter, Run, runs};
 use crate::work::{Charge, Work};
 use crate::{Error, Result};
-use fearless_simd::Simd;
-use std::ops::Range;
 
 /// The most items of all pieces: of equal depths the lower item wins, which is decided by the sign of a difference.
 pub const MOST_ITEMS: u64 = i32::MAX as u64;
-
-/// Triangles that are set up together.
-const JOB: usize = 8192;
 
 /// Options of a survey.
 #[derive(Debug, Clone)]
@@ -68,50 +59,12 @@ pub struct Seen {
     _charge: Charge,
 }
 
-/// Triangles of a piece on the screen, by the tiles that they touch.
-struct Binned {
-    triangles: Vec<ScreenTriangle>,
-    touching: ByTile,
-    counts: Counts,
-    _charge: Charge,
-}
-
-/// Sink of triangles; small ones are sampled at once, where pixels have one sample, as in a picture.
-struct Taken<'f> {
-    triangles: Vec<ScreenTriangle>,
-    early: &'static [[i32; 2]],
-    small: Micropolygons<'f>,
-}
-
-impl Sink for Taken<'_> {
-    #[inline(always)]
-    fn take(&mut self, triangle: ScreenTriangle) {
-        self.triangles.push(triangle);
-    }
-
-    #[inline(always)]
-    fn takes_sampled(&self) -> &'static [[i32; 2]] {
-        self.early
-    }
-
-    #[inline(always)]
-    fn take_sampled<S: Simd>(
-        &mut self,
-        simd: S,
-        sampled: &Sampled,
-        which: u64,
-        primitive: impl Fn(usize) -> (u32, [u32; 3]),
-    ) {
-        self.small.add(simd, None, (sampled, which), primitive);
-    }
-}
-
 impl Survey {
     /// Creates an empty survey.
     ///
     /// # Errors
     /// [`Error::Memory`] if the budget has no room for the samples.
-    pub fn new(view: &View, options: Options) -> Result<Self> {
+    pub(crate) fn new(view: &View, options: Options) -> Result<Self> {
         let offsets = options.samples.offsets();
         let mut count = offsets.len() as u64;
         let with_centers = options.centers && options.samples != Samples::One;
@@ -140,20 +93,15 @@ impl Survey {
     pub fn add(&mut self, piece: &Scene) -> Result<()> {
         self.options.work.check()?;
         let runs = self.numbered(runs(piece)?)?;
-        let (binned, small) = crate::parallel::map_and_keep(
-            jobs(&runs),
-            Fragments::default,
-            |small, (run, range)| self.set_up(piece, run, range, small),
-        );
-        let binned = binned.into_iter().collect::<Result<Vec<Binned>>>()?;
-        let _small = self.options.work.charge(STAGE, small.iter().map(Fragments::bytes).sum())?;
-        for of_job in &binned {
-            self.counts += of_job.counts;
-        }
-        let (view, level) = (&self.view, self.options.level);
-        let tiles = self.tiles.iter_mut().enumerate().collect();
-        crate::parallel::map(tiles, |(index, planes): (usize, &mut Vec<SamplePlane>)| {
-            draw(planes, view, level, index as u32, (&binned, &small));
+        let Options { samples, centers, filter, level, ref work } = self.options;
+        let (scene, view, early) = (piece, &self.view, early_samples(samples, centers));
+        let source = Source { scene, view, runs: &runs, filter, early, lighting: None, level };
+        let binned = Binned::new(&source, work)?;
+        self.counts += binned.counts();
+        let occupied = binned.occupied(view);
+        let tiles = (0..).zip(&mut self.tiles).zip(occupied).filter(|(_, occupied)| *occupied);
+        crate::parallel::map(tiles.collect(), |((index, planes), _): ((u32, &mut Vec<_>), _)| {
+            draw(planes, view, level, index, &binned);
         });
         Ok(())
     }
@@ -172,33 +120,6 @@ impl Survey {
         runs.iter_mut().for_each(|run| run.first_item += self.count);
         self.count = value as u32;
         Ok(runs)
-    }
-
-    fn set_up(
-        &self,
-        piece: &Scene,
-        run: &Run,
-        range: Range<u32>,
-        small: &mut Fragments,
-    ) -> Result<Binned> {
-        let Options { filter, level, work, .. } = &self.options;
-        let screen = TileGrid::of(&self.view);
-        let early = early_samples(self.options.samples, self.options.centers);
-        let early = if screen.count() <= MOST_TILES { early } else { &[] };
-        let small = Micropolygons::new(screen, early, small);
-        let mut taken = Taken { triangles: Vec::with_capacity(range.len()), early, small };
-        let mut assembler = Assembler::new(piece, &self.view, *filter, *level);
-        assembler.primitives(run, range, &mut taken);
-        let Taken { triangles, mut small, .. } = taken;
-        small.finish(*level, None);
-        let mut touched = Vec::with_capacity(triangles.len());
-        for (i, triangle) in triangles.iter().enumerate() {
-            screen.touched(triangle, filter.sample_reach, |tile| touched.push((tile, i as u32)));
-        }
-        let touching = sort_by_tile(&touched, screen.count());
-        let bytes = triangles.capacity() * size_of::<ScreenTriangle>() + 4 * touched.len();
-        let _charge = work.charge(STAGE, bytes as u64)?;
-        Ok(Binned { triangles, touching, counts: assembler.counts, _charge })
     }
 
     /// Returns the visible triangles of all pieces.
@@ -226,41 +147,13 @@ impl Survey {
     }
 }
 
-/// Returns the pieces of runs that one thread sets up at a time.
-fn jobs(runs: &[Run]) -> Vec<(&Run, Range<u32>)> {
-    let of_run = |run: &'_ Run| {
-        let end = run.range.end;
-        run.range.clone().step_by(JOB).map(move |start| start..end.min(start + JOB as u32))
-    };
-    runs.iter().flat_map(|run| of_run(run).map(move |range| (run, range))).collect()
-}
-
 /// Draws the triangles that touch a tile.
-fn draw(
-    planes: &mut [SamplePlane],
-    view: &View,
-    level: Level,
-    index: u32,
-    (binned, small): (&[Binned], &[Fragments]),
-) {
+fn draw(planes: &mut [SamplePlane], view: &View, level: Level, index: u32, binned: &Binned) {
     let tile = TileGrid::of(view).origin(index);
     let sides = [view.width() as i32 - tile[0], view.height() as i32 - tile[1]];
     let area = [tile, sides.map(|side| side.min(TILE))];
-    let mut drawn = false;
-    for fragments in small {
-        // There are no fragments if pixels have more samples than a plane contains.
-        if let [plane] = planes {
-            dispatch!(level, simd => Fragments::draw(simd, fragments, plane, None, index));
-        }
-        drawn |= !fragments.nothing_in(index);
-    }
-    for Binned { triangles, touching, .. } in binned {
-        let triangles = touching.of(index).iter().map(|&i| &triangles[i as usize]);
-        let triangles = triangles.inspect(|_| drawn = true);
-        dispatch!(level, simd => rasterize(simd, planes, area, triangles, None::<&mut AllPass>));
-    }
-    if drawn {
-        // Triangles behind the farthest depth are left out of the following pieces.
-        dispatch!(level, simd => planes.iter_mut().for_each(|plane| plane.find_farthest(simd)));
-    }
+    binned.draw_fragments(planes, None, index);
+    binned.rasterize(Coverage::Opaque, planes, area, index, None::<&mut AllPass>);
+    // Triangles behind the farthest depth are left out of the following pieces.
+    dispatch!(level, simd => planes.iter_mut().for_each(|plane| plane.find_farthest(simd)));
 }

@@ -1,4 +1,4 @@
-use super::super::bins::{Bins, jobs};
+use super::super::bins::{Binned, Source};
 use super::super::front_to_back::FrontToBack;
 use super::super::rasterize::AllPass;
 use super::*;
@@ -10,6 +10,7 @@ use crate::view::View;
 use crate::visibility::surface::lit::Lighting;
 use crate::visibility::surface::setup::{Coverage, Filter, runs};
 use crate::visibility::surface::{Cull, Samples};
+use crate::work::Work;
 
 /// Creates sheets one behind another, each of many triangles with common edges; in front and between them some that
 /// intersect, and something opaque.
@@ -71,17 +72,14 @@ fn sheets_look_as_if_all_fragments_were_sorted() {
         let filter = Filter::new(Cull::None, 128);
         let drawn = (&scene, &view, runs.as_slice());
         let lighting = Lighting::by_material(drawn, (&materials, &lights), samples.reach(), level);
-        let (jobs, mut scratch) = (jobs(&runs), Default::default());
-        let bins = jobs.iter().map(|job| Bins::new(job, &lighting, filter, &[], &mut scratch));
-        let bins: Vec<Bins> = bins.collect();
+        let (scene, view, runs) = drawn;
+        let source = Source { scene, view, runs, filter, early: &[], lighting: None, level };
+        let binned = Binned::new(&source, &Work::default()).expect("no limit");
         let (mut lit, area) = (Lit::new(lighting), [[0, 0], [64, 64]]);
         let mut planes = SamplePlane::of(samples.offsets());
-        for bins in bins.iter().filter(|b| b.coverage == Coverage::Opaque) {
-            dispatch!(level, simd =>
-                rasterize(simd, &mut planes, area, bins.of_tile(0), None::<&mut AllPass>));
-        }
+        binned.rasterize(Coverage::Opaque, &mut planes, area, 0, None::<&mut AllPass>);
         let mut order = FrontToBack::default();
-        let triangles = order.nearest_first(&bins, 0);
+        let triangles = order.nearest_first(&binned, 0);
         let planes = &mut planes;
         let (mut sheets, mut sorted) =
             (Blended::new(samples.offsets()), Blended::new(samples.offsets()));

@@ -10,11 +10,12 @@ use crate::target::NO_ITEM;
 use crate::view::View;
 use crate::visibility::surface::lit::Lighting;
 use crate::visibility::surface::points::triangles::{OF_ROWS, Triangles};
-use crate::visibility::surface::setup::{Filter, runs};
-use crate::visibility::surface::z_buffer::bins::{Bins, Scratch, jobs};
-use crate::visibility::surface::z_buffer::rasterize::{AllPass, rasterize};
+use crate::visibility::surface::setup::{Coverage, Filter, runs};
+use crate::visibility::surface::z_buffer::bins::{Binned, Source};
+use crate::visibility::surface::z_buffer::rasterize::AllPass;
 use crate::visibility::surface::z_buffer::tile::SamplePlane;
 use crate::visibility::surface::{Cull, Samples};
+use crate::work::Work;
 
 const COUNT: usize = 6_000;
 
@@ -46,18 +47,12 @@ fn scene() -> Scene {
 }
 
 /// Returns for each sample of a tile the nearest item and the bits of its depth.
-fn nearest(
-    (level, samples): (Level, Samples),
-    (bins, fragments): (&Bins, &Fragments),
-    (tile, at): (u32, [i32; 2]),
-) -> Vec<(u32, i32)> {
+fn nearest(samples: Samples, binned: &Binned, (tile, at): (u32, [i32; 2])) -> Vec<(u32, i32)> {
     let mut planes = SamplePlane::of(samples.offsets());
     planes[0].clear();
     let size = [0, 1].map(|axis| TILE.min(SIZE[axis] - at[axis]));
-    dispatch!(level, simd => {
-        Fragments::draw(simd, fragments, &mut planes[0], None, tile);
-        rasterize(simd, &mut planes, [at, size], bins.of_tile(tile), None::<&mut AllPass>);
-    });
+    binned.draw_fragments(&mut planes, None, tile);
+    binned.rasterize(Coverage::Opaque, &mut planes, [at, size], tile, None::<&mut AllPass>);
     // Values outside the border are unspecified.
     let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (y * TILE + x) as usize));
     let count = samples.offsets().len();
@@ -118,24 +113,28 @@ fn fragments_are_what_rasterizing_and_normal_planes_give() {
         let (reach, offsets) = (samples.reach(), samples.offsets());
         let drawn = (&scene, &view, runs.as_slice());
         let lighting = Lighting::by_material(drawn, (&materials, &lights), reach, level);
-        let bins_for = |early: &'static [[i32; 2]]| {
-            let (mut scratch, filter) = (Scratch::default(), Filter::new(Cull::None, reach));
-            let bins = Bins::new(&jobs(&runs)[0], &lighting, filter, early, &mut scratch);
-            (bins, scratch.fragments)
+        let (scene, view, runs) = drawn;
+        let filter = Filter::new(Cull::None, reach);
+        let binned = |early: &'static [[i32; 2]]| {
+            let lighting = Some(&lighting);
+            let source = Source { scene, view, runs, filter, early, lighting, level };
+            Binned::new(&source, &Work::default()).expect("no limit")
         };
-        let ((bins, fragments), (all, none)) = (bins_for(offsets), bins_for(&[]));
-        let mut triangles = Triangles::new(&scene, &view, &runs, level, (OF_ROWS, reach));
-        let grid = TileGrid::of(&view);
+        let (binned, plain) = (binned(offsets), binned(&[]));
+        let mut triangles = Triangles::new(scene, view, runs, level, (OF_ROWS, reach));
+        let grid = TileGrid::of(view);
         let (mut shown, mut found) = (0, Found::default());
         for tile in 0..grid.count() {
-            assert!(none.nothing_in(tile));
+            assert!(!plain.has_fragments(tile));
             let at = [tile as i32 % grid.columns * TILE, tile as i32 / grid.columns * TILE];
-            let how = (level, samples);
-            let ours = nearest(how, (&bins, &fragments), (tile, at));
-            assert_eq!(ours, nearest(how, (&all, &none), (tile, at)), "{how:?}, tile {tile}");
+            let ours = nearest(samples, &binned, (tile, at));
+            let expected = nearest(samples, &plain, (tile, at));
+            assert_eq!(ours, expected, "{level:?} {samples:?}, tile {tile}");
             shown += ours.iter().filter(|(item, _)| *item != NO_ITEM).count();
-            found.add(&fragments.one, &mut triangles, (tile, at));
-            found.add(&fragments.four, &mut triangles, (tile, at));
+            for fragments in &binned.fragments {
+                found.add(&fragments.one, &mut triangles, (tile, at));
+                found.add(&fragments.four, &mut triangles, (tile, at));
+            }
         }
         let Found { known, unsettled, uppers } = found;
         assert!(shown > 5_000 * offsets.len() && known > 1_000, "{shown} {known}");
