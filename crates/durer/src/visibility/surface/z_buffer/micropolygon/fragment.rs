@@ -29,19 +29,6 @@ impl Seen {
     }
 }
 
-/// Fragment that can be drawn into a tile.
-trait Draw {
-    /// Tests and writes depths, and in `known` the normal where the fragment is visible. `upper` has the upper bits of
-    /// the block's items.
-    fn draw<S: Simd>(
-        &self,
-        simd: S,
-        plane: &mut SamplePlane,
-        upper: u32,
-        known: Option<&mut KnownNormals>,
-    );
-}
-
 /// The samples of a pixel that a small triangle covers.
 #[derive(Debug, Clone, Copy)]
 pub struct Sample<const N: usize> {
@@ -58,24 +45,62 @@ pub struct Fragment<const N: usize> {
     pub sample: Sample<N>,
 }
 
-impl Sample<1> {
-    /// Tests and writes the depth of an item at a pixel of one sample; returns whether it is seen.
+/// Depth test of the samples of a pixel.
+trait DepthTest {
+    /// The samples at which an item is visible.
+    type Visible<S: Simd>;
+
+    /// Tests and writes the depths of an item at a pixel; returns where it is visible, if anywhere. At equal depths the
+    /// lower item wins, as in rasterization.
+    fn test<S: Simd>(
+        &self,
+        simd: S,
+        plane: &mut SamplePlane,
+        pixel: usize,
+        item: u32,
+    ) -> Option<Self::Visible<S>>;
+
+    /// Stores the normal of an item at a pixel for the samples at which it is visible.
+    fn set_normal<S: Simd>(
+        simd: S,
+        known: &mut KnownNormals,
+        at: (usize, Self::Visible<S>),
+        item: u32,
+        normal: [f32; 3],
+    );
+}
+
+impl DepthTest for Sample<1> {
+    type Visible<S: Simd> = ();
+
     #[inline(always)]
-    fn test(&self, plane: &mut SamplePlane, pixel: usize, item: u32) -> bool {
+    fn test<S: Simd>(&self, _: S, plane: &mut SamplePlane, pixel: usize, item: u32) -> Option<()> {
         let [depth] = self.depth;
         let (nearest, of_nearest) = (&mut plane.depth[pixel], &mut plane.item[pixel]);
-        // At equal depths the lower item wins, as in rasterization.
         let wins_ties = of_nearest.cast_signed().wrapping_sub(item.cast_signed()) >= 0;
-        let seen = depth < *nearest || depth == *nearest && wins_ties;
-        if seen {
+        if depth < *nearest || depth == *nearest && wins_ties {
             (*nearest, *of_nearest) = (depth, item);
+            return Some(());
         }
-        seen
+        None
+    }
+
+    #[inline(always)]
+    fn set_normal<S: Simd>(
+        _: S,
+        known: &mut KnownNormals,
+        (pixel, ()): (usize, ()),
+        item: u32,
+        normal: [f32; 3],
+    ) {
+        known.set(pixel, item, normal);
     }
 }
 
-impl Sample<4> {
-    /// Tests and writes the depths of an item at a pixel of four samples; returns all bits set where it is visible.
+impl DepthTest for Sample<4> {
+    /// All bits set where it is visible.
+    type Visible<S: Simd> = i32x4<S>;
+
     #[inline(always)]
     fn test<S: Simd>(
         &self,
@@ -93,7 +118,6 @@ impl Sample<4> {
         let items = &mut plane.item[first..first + 4];
         let old_item: i32x4<S> = u32x4::from_slice(simd, items).bitcast();
         let item = item.cast_signed();
-        // As in rasterization, the lower item wins at equal depths.
         let tie_lost = !(depth - old) & ((old_item - item) >> 31u32);
         let write = !((old - depth) | tie_lost) >> 31u32;
         (old ^ ((old ^ depth) & write)).store_slice(stored);
@@ -101,69 +125,16 @@ impl Sample<4> {
         new.store_slice(items);
         Some(write)
     }
-}
 
-impl Draw for Sample<1> {
     #[inline(always)]
-    fn draw<S: Simd>(
-        &self,
-        _: S,
-        plane: &mut SamplePlane,
-        upper: u32,
-        _: Option<&mut KnownNormals>,
-    ) {
-        let (pixel, item) = self.seen.pixel_and_item(upper);
-        self.test(plane, pixel, item);
-    }
-}
-
-impl Draw for Sample<4> {
-    #[inline(always)]
-    fn draw<S: Simd>(
-        &self,
+    fn set_normal<S: Simd>(
         simd: S,
-        plane: &mut SamplePlane,
-        upper: u32,
-        _: Option<&mut KnownNormals>,
+        known: &mut KnownNormals,
+        at: (usize, i32x4<S>),
+        item: u32,
+        normal: [f32; 3],
     ) {
-        let (pixel, item) = self.seen.pixel_and_item(upper);
-        self.test(simd, plane, pixel, item);
-    }
-}
-
-impl Draw for Fragment<1> {
-    #[inline(always)]
-    fn draw<S: Simd>(
-        &self,
-        _: S,
-        plane: &mut SamplePlane,
-        upper: u32,
-        known: Option<&mut KnownNormals>,
-    ) {
-        let (pixel, item) = self.sample.seen.pixel_and_item(upper);
-        if self.sample.test(plane, pixel, item)
-            && let Some(known) = known
-        {
-            known.set(pixel, item, self.normal);
-        }
-    }
-}
-
-impl Draw for Fragment<4> {
-    #[inline(always)]
-    fn draw<S: Simd>(
-        &self,
-        simd: S,
-        plane: &mut SamplePlane,
-        upper: u32,
-        known: Option<&mut KnownNormals>,
-    ) {
-        let (pixel, item) = self.sample.seen.pixel_and_item(upper);
-        if let Some(seen) = self.sample.test(simd, plane, pixel, item)
-            && let Some(known) = known
-        {
-            known.set_four(simd, (pixel, seen), item, self.normal);
-        }
+        known.set_four(simd, at, item, normal);
     }
 }
 
@@ -215,10 +186,8 @@ impl Fragments {
         mut known: Option<&mut KnownNormals>,
         tile: u32,
     ) {
-        draw_all(simd, &this.one.with_normals, plane, known.as_deref_mut(), tile);
-        draw_all(simd, &this.one.samples, plane, None, tile);
-        draw_all(simd, &this.four.with_normals, plane, known, tile);
-        draw_all(simd, &this.four.samples, plane, None, tile);
+        draw_all(simd, &this.one, plane, known.as_deref_mut(), tile);
+        draw_all(simd, &this.four, plane, known, tile);
     }
 
     /// Returns the memory of the fragments in bytes.
@@ -233,16 +202,29 @@ impl Fragments {
 }
 
 #[inline(always)]
-fn draw_all<S: Simd, T: Draw>(
+fn draw_all<S: Simd, const N: usize>(
     simd: S,
-    tiles: &Tiles<T>,
+    store: &Store<N>,
     plane: &mut SamplePlane,
     mut known: Option<&mut KnownNormals>,
     tile: u32,
-) {
-    for (upper, block) in tiles.of(tile) {
-        for thing in block {
-            thing.draw(simd, plane, upper, known.as_deref_mut());
+) where
+    Sample<N>: DepthTest,
+{
+    for (upper, block) in store.with_normals.of(tile) {
+        for Fragment { normal, sample } in block {
+            let (pixel, item) = sample.seen.pixel_and_item(upper);
+            if let Some(visible) = sample.test(simd, plane, pixel, item)
+                && let Some(known) = known.as_deref_mut()
+            {
+                Sample::<N>::set_normal(simd, known, (pixel, visible), item, *normal);
+            }
+        }
+    }
+    for (upper, block) in store.samples.of(tile) {
+        for sample in block {
+            let (pixel, item) = sample.seen.pixel_and_item(upper);
+            sample.test(simd, plane, pixel, item);
         }
     }
 }
