@@ -10,9 +10,6 @@ use fearless_simd::{Simd, f32x16, u32x16, u64x8};
 /// Linear value of each 8-bit sRGB code, correctly rounded from double precision.
 pub static LINEAR_FROM_SRGB: [f32; 256] = linear_table();
 
-/// The linear value half a code step above each code but the last: where rounding changes.
-static THRESHOLD: [f32; 256] = threshold_table();
-
 /// Binary exponent below which everything rounds to code 0: the first threshold is 2^-12.7.
 const LOWEST_EXPONENT: u32 = 127 - 13;
 /// Mantissa bits that choose a bucket; with 7 no bucket holds two thresholds (tested).
@@ -24,17 +21,17 @@ const BUCKET_SHIFT: u32 = 23 - BUCKET_BITS;
 /// The first bucket's number in the bits of an f32.
 const FIRST_BUCKET: u32 = LOWEST_EXPONENT << BUCKET_BITS;
 
-/// The code of each bucket's lower end.
-static BUCKET_CODE: [u8; BUCKETS] = bucket_table();
-
 /// Table of buckets. The upper half of an entry is the code at the bucket's lower end. The lower half, added to a
 /// value's bits below the bucket number, carries into the code if the value reaches the next threshold. Entries use the
-/// upper half of a word, because [`Encoding::look_up`] packs two into one. The length is a power of two, so that no
+/// upper half of a word, because [`encode_opaque_x16`] packs two into one. The length is a power of two, so that no
 /// index is out of range.
 static BUCKET_STEP: [u64; 1 << INDEX_BITS] = step_table();
 
 /// Bits of a bucket's number.
 const INDEX_BITS: u32 = 11;
+
+/// Values are held to those from the first bucket's lower end to the largest number below 1.
+const HELD: [f32; 2] = [f32::from_bits(FIRST_BUCKET << BUCKET_SHIFT), 1.0 - f32::EPSILON / 2.0];
 
 const fn step_table() -> [u64; 1 << INDEX_BITS] {
     let (threshold, code) = (threshold_table(), bucket_table());
@@ -85,6 +82,7 @@ const fn linear_table() -> [f32; 256] {
     table
 }
 
+/// Returns the linear value half a code step above each code but the last: where rounding changes.
 const fn threshold_table() -> [f32; 256] {
     let mut table = [f32::INFINITY; 256];
     let mut code = 0;
@@ -95,6 +93,7 @@ const fn threshold_table() -> [f32; 256] {
     table
 }
 
+/// Returns the code of each bucket's lower end.
 const fn bucket_table() -> [u8; BUCKETS] {
     let threshold = threshold_table();
     let mut table = [0; BUCKETS];
@@ -120,16 +119,16 @@ pub fn decode_srgb8(code: u8) -> f32 {
 /// 0, all above 1 give 255.
 ///
 /// Monotone, never more than half a step off, and the inverse of [`decode_srgb8`] on all 256 codes.
-/// Cost: two look-ups and a comparison.
+/// Cost: one look-up.
 #[inline(always)]
 pub fn encode_srgb8(linear: f32) -> u8 {
-    if linear >= 1.0 {
-        return 255;
-    }
-    let bucket = (linear.to_bits() >> BUCKET_SHIFT).wrapping_sub(FIRST_BUCKET) as usize;
-    // Below 2^-13 the subtraction wraps; negative numbers and NaN land beyond the table too.
-    let Some(&code) = BUCKET_CODE.get(bucket) else { return 0 };
-    code + u8::from(linear >= THRESHOLD[usize::from(code)])
+    let [least, most] = HELD;
+    // NaN is not above the least.
+    let linear = if linear > least { linear } else { least };
+    let bits = if linear < most { linear } else { most }.to_bits();
+    let bucket = (bits >> BUCKET_SHIFT) - FIRST_BUCKET;
+    let step = (BUCKET_STEP[bucket as usize % BUCKET_STEP.len()] >> 32) as u32;
+    ((step + (bits & ((1 << BUCKET_SHIFT) - 1))) >> BUCKET_SHIFT) as u8
 }
 
 /// Converts sixteen opaque linear colours, by channel, to 8-bit sRGB, each channel as [`encode_srgb8`] does: of each
@@ -138,66 +137,32 @@ pub fn encode_srgb8(linear: f32) -> u8 {
 /// Cost: one look-up per channel.
 #[inline(always)]
 pub(crate) fn encode_opaque_x16<S: Simd>(simd: S, colors: [f32x16<S>; 3]) -> u32x16<S> {
-    let mut encoding = Encoding::new(simd, colors);
-    encoding.look_up();
-    encoding.codes(simd)
-}
-
-/// Sixteen colours on their way to codes. The steps of several encodings are interleaved, so that a stored vector has
-/// long arrived in memory when its numbers are read one by one, and the other way round.
-struct Encoding {
-    /// By channel the buckets, each in the highest bits of 32, later the steps. Two share a word, which halves the
-    /// reads and writes.
-    steps: [[u64; 8]; 3],
-    /// By channel the bits below the buckets.
-    below: [[u32; 16]; 3],
-}
-
-impl Encoding {
-    /// Creates the buckets of colours.
-    #[inline(always)]
-    fn new<S: Simd>(simd: S, [r, g, b]: [f32x16<S>; 3]) -> Self {
-        let (r, g, b) = (buckets_x16(simd, r), buckets_x16(simd, g), buckets_x16(simd, b));
-        let two = |of: u32x16<S>| of.bitcast::<u64x8<S>>().into();
-        Self {
-            steps: [two(r[0]), two(g[0]), two(b[0])],
-            below: [r[1].into(), g[1].into(), b[1].into()],
-        }
+    let [r, g, b] = colors;
+    let ([r, below_r], [g, below_g]) = (buckets_x16(simd, r), buckets_x16(simd, g));
+    let [b, below_b] = buckets_x16(simd, b);
+    // Two buckets share a word, which halves the reads and writes; each is replaced by its step.
+    let mut steps: [[u64; 8]; 3] = [
+        r.bitcast::<u64x8<S>>().into(),
+        g.bitcast::<u64x8<S>>().into(),
+        b.bitcast::<u64x8<S>>().into(),
+    ];
+    for two in steps.as_flattened_mut() {
+        let first = *two as u32 >> (32 - INDEX_BITS);
+        let second = *two >> (64 - INDEX_BITS);
+        *two = BUCKET_STEP[first as usize] >> 32 | BUCKET_STEP[second as usize];
     }
-
-    /// Replaces the buckets by steps.
-    #[inline(always)]
-    fn look_up(&mut self) {
-        for steps in &mut self.steps {
-            for two in steps {
-                let first = *two as u32 >> (32 - INDEX_BITS);
-                let second = *two >> (64 - INDEX_BITS);
-                *two = BUCKET_STEP[first as usize] >> 32 | BUCKET_STEP[second as usize];
-            }
-        }
-    }
-
-    /// Returns the codes, from steps.
-    #[inline(always)]
-    fn codes<S: Simd>(&self, simd: S) -> u32x16<S> {
-        let [r, g, b] = &self.steps;
-        let steps = |of: &[u64; 8]| u64x8::from_slice(simd, of).bitcast::<u32x16<S>>();
-        let (steps_r, steps_g, steps_b) = (steps(r), steps(g), steps(b));
-        let [r, g, b] = &self.below;
-        let (r, g) = (u32x16::from_slice(simd, r), u32x16::from_slice(simd, g));
-        let b = u32x16::from_slice(simd, b);
-        let (r, g) = ((steps_r + r) >> BUCKET_SHIFT, (steps_g + g) >> BUCKET_SHIFT);
-        let b = (steps_b + b) >> BUCKET_SHIFT;
-        r | (g << 8u32) | (b << 16u32) | (255 << 24)
-    }
+    let r = u64x8::from_slice(simd, &steps[0]).bitcast::<u32x16<S>>() + below_r;
+    let g = u64x8::from_slice(simd, &steps[1]).bitcast::<u32x16<S>>() + below_g;
+    let b = u64x8::from_slice(simd, &steps[2]).bitcast::<u32x16<S>>() + below_b;
+    let (r, g, b) = (r >> BUCKET_SHIFT, g >> BUCKET_SHIFT, b >> BUCKET_SHIFT);
+    r | (g << 8u32) | (b << 16u32) | (255 << 24)
 }
 
 /// Returns the buckets of linear values, each in the highest bits, and the values' remaining lower bits.
 #[inline(always)]
 fn buckets_x16<S: Simd>(simd: S, linear: f32x16<S>) -> [u32x16<S>; 2] {
-    // From the first bucket to the largest number below 1; NaN is not above the first.
-    let (least, most) = (f32::from_bits(FIRST_BUCKET << BUCKET_SHIFT), 1.0 - f32::EPSILON / 2.0);
-    let (least, most) = (f32x16::splat(simd, least), f32x16::splat(simd, most));
+    // NaN is not above the least.
+    let (least, most) = (f32x16::splat(simd, HELD[0]), f32x16::splat(simd, HELD[1]));
     let linear = linear.simd_gt(least).select(linear, least);
     let linear = linear.simd_lt(most).select(linear, most);
     let bits: u32x16<S> = linear.bitcast();
@@ -323,8 +288,9 @@ mod tests {
 
     #[test]
     fn rounding_changes_exactly_at_the_thresholds() {
+        let thresholds = threshold_table();
         for code in 0..255_u8 {
-            let t = THRESHOLD[usize::from(code)];
+            let t = thresholds[usize::from(code)];
             assert_eq!(encode_srgb8(t), code + 1);
             assert_eq!(encode_srgb8(f32::from_bits(t.to_bits() - 1)), code);
         }
@@ -334,7 +300,8 @@ mod tests {
     fn sixteen_at_a_time_have_the_codes_of_one() {
         let strange = [f32::NAN, f32::NEG_INFINITY, f32::INFINITY, -1.0, 0.0, 1e-40, 1.0, 7.0];
         let around = |t: f32| [t, f32::from_bits(t.to_bits() - 1), f32::from_bits(t.to_bits() + 1)];
-        let mut values: Vec<f32> = THRESHOLD[..255].iter().flat_map(|t| around(*t)).collect();
+        let mut values: Vec<f32> =
+            threshold_table()[..255].iter().flat_map(|t| around(*t)).collect();
         values.extend(strange);
         values.extend((0..=1000).map(|i| i as f32 * 1e-3));
         for level in crate::simd::levels() {

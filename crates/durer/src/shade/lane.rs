@@ -167,46 +167,43 @@ impl Lane for f32 {
     }
 }
 
-/// [`Lane`] for a vector of floats, by the vector of whole numbers that is as long, and the names of its
-/// operations.
+/// [`Lane`] for a vector of floats, with the vector of whole numbers that is as long.
 macro_rules! lanes {
-    ($floats:ident, $wholes:ident, $count:literal, [$splat:ident, $sqrt:ident, $select:ident, $gt:ident,
-     $le:ident, $to_float:ident, $to_whole:ident, $floor:ident]) => {
+    ($floats:ident, $wholes:ident, $count:literal) => {
         impl<S: Simd> Lane for $floats<S> {
             #[inline(always)]
             fn splat(self, value: f32) -> Self {
-                self.simd.$splat(value)
+                Self::simd_from(self.simd, value)
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
-                self.simd.$sqrt(self)
+                SimdFloat::sqrt(self)
             }
             #[inline(always)]
             fn if_above(self, limit: f32, then: Self, otherwise: Self) -> Self {
-                let limit = self.simd.$splat(limit);
-                self.simd.$select(self.simd.$gt(self, limit), then, otherwise)
+                self.simd_gt(limit).select(then, otherwise)
             }
             #[inline(always)]
             fn larger(self, other: Self) -> Self {
-                self.simd.$select(self.simd.$gt(self, other), self, other)
+                self.simd_gt(other).select(self, other)
             }
             #[inline(always)]
             fn all_at_most(self, limit: f32) -> bool {
-                self.simd.$le(self, self.simd.$splat(limit)).all_true()
+                self.simd_le(limit).all_true()
             }
             #[inline(always)]
             fn split(self) -> (Self, Self) {
                 let bits = self.bitcast::<$wholes<S>>() - SQRT_HALF_BITS;
                 let mantissa = (bits & MANTISSA) + SQRT_HALF_BITS;
-                (self.simd.$to_float(bits >> 23), mantissa.bitcast())
+                ((bits >> 23).to_float(), mantissa.bitcast())
             }
             #[inline(always)]
             fn exp2_whole(self) -> Self {
-                ((self.simd.$to_whole(self) + 127) << 23).bitcast()
+                ((self.to_int::<$wholes<S>>() + 127) << 23).bitcast()
             }
             #[inline(always)]
             fn floor(self) -> Self {
-                self.simd.$floor(self)
+                SimdFloat::floor(self)
             }
             #[inline(always)]
             fn apart<R>(self, f: impl FnOnce() -> R) -> R {
@@ -237,36 +234,8 @@ macro_rules! lanes {
     };
 }
 
-lanes!(
-    f32x8,
-    i32x8,
-    8,
-    [
-        splat_f32x8,
-        sqrt_f32x8,
-        select_f32x8,
-        simd_gt_f32x8,
-        simd_le_f32x8,
-        cvt_f32_i32x8,
-        cvt_i32_f32x8,
-        floor_f32x8
-    ]
-);
-lanes!(
-    f32x16,
-    i32x16,
-    16,
-    [
-        splat_f32x16,
-        sqrt_f32x16,
-        select_f32x16,
-        simd_gt_f32x16,
-        simd_le_f32x16,
-        cvt_f32_i32x16,
-        cvt_i32_f32x16,
-        floor_f32x16
-    ]
-);
+lanes!(f32x8, i32x8, 8);
+lanes!(f32x16, i32x16, 16);
 
 /// A vector or a linear colour, in lanes.
 #[derive(Debug, Clone, Copy)]

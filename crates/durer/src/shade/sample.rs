@@ -19,13 +19,14 @@ pub struct Sample<'a> {
     pub(super) inputs: Inputs<'a, f32>,
 }
 
-/// Numbers of a sample.
-const NUMBERS: usize = 27;
-
 /// Up to eight samples of one material; those not set keep their earlier contents.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Samples<'a> {
-    numbers: [[f32; 8]; NUMBERS],
+    /// The vectors and colours of a [`Sample`], by axis: direction to the eye, face, normal, position; base, diffuse,
+    /// specular and emitted colour.
+    vectors: [[[f32; 8]; 3]; 8],
+    /// Metalness, roughness and occlusion.
+    numbers: [[f32; 8]; 3],
     /// Common to all points, like the fields below.
     shininess: Shininess,
     mirrors: bool,
@@ -37,43 +38,18 @@ impl<'a> Samples<'a> {
     /// [be lit together](super::PreparedMaterial::is_lit_together).
     #[inline(always)]
     pub fn set(&mut self, lane: usize, sample: &Sample<'a>) {
-        let Sample { frame, position: p, inputs } = sample;
-        let (v, f, n) = (&frame.view, &frame.face, &frame.normal);
-        let s = &inputs.substance;
-        let (b, d, r, e) = (&s.base, &inputs.diffuse, &inputs.specular, &inputs.emission);
-        let numbers: [f32; NUMBERS] = [
-            v.x,
-            v.y,
-            v.z,
-            f.x,
-            f.y,
-            f.z,
-            n.x,
-            n.y,
-            n.z,
-            p.x,
-            p.y,
-            p.z,
-            b.x,
-            b.y,
-            b.z,
-            s.metallic,
-            s.roughness,
-            s.occlusion,
-            d.x,
-            d.y,
-            d.z,
-            r.x,
-            r.y,
-            r.z,
-            e.x,
-            e.y,
-            e.z,
-        ];
-        for (to, number) in self.numbers.iter_mut().zip(numbers) {
-            to[lane % 8] = number;
+        let Sample { frame: Frame { view, face, normal }, position, inputs } = *sample;
+        let Inputs { substance, diffuse, specular, shininess, emission, lobes } = inputs;
+        let Substance { base, metallic, roughness, occlusion, mirrors } = substance;
+        let lane = lane % 8;
+        let vectors = [view, face, normal, position, base, diffuse, specular, emission];
+        for ([x, y, z], vector) in self.vectors.iter_mut().zip(vectors) {
+            (x[lane], y[lane], z[lane]) = (vector.x, vector.y, vector.z);
         }
-        (self.shininess, self.mirrors, self.lobes) = (inputs.shininess, s.mirrors, inputs.lobes);
+        for (to, number) in self.numbers.iter_mut().zip([metallic, roughness, occlusion]) {
+            to[lane] = number;
+        }
+        (self.shininess, self.mirrors, self.lobes) = (shininess, mirrors, lobes);
     }
 
     /// Returns linear red, green and blue, with the same bits as [`super::shade`]. Cost: O(lights).
@@ -84,37 +60,25 @@ impl<'a> Samples<'a> {
         lights: &PreparedLights,
         shading: Shading,
     ) -> [[f32; 8]; 3] {
-        let frame = Frame {
-            view: this.vector(simd, 0),
-            face: this.vector(simd, 3),
-            normal: this.vector(simd, 6),
-        };
-        let position = this.vector(simd, 9);
+        let zero = f32x8::splat(simd, 0.0);
+        let mut vectors = [Vec3Lane::new(zero, zero, zero); 8];
+        for (to, [x, y, z]) in vectors.iter_mut().zip(&this.vectors) {
+            let (x, y) = (f32x8::from_slice(simd, x), f32x8::from_slice(simd, y));
+            *to = Vec3Lane::new(x, y, f32x8::from_slice(simd, z));
+        }
+        let [view, face, normal, position, base, diffuse, specular, emission] = vectors;
         let substance = Substance {
-            base: this.vector(simd, 12),
-            metallic: f32x8::from_slice(simd, &this.numbers[15]),
-            roughness: f32x8::from_slice(simd, &this.numbers[16]),
-            occlusion: f32x8::from_slice(simd, &this.numbers[17]),
+            base,
+            metallic: f32x8::from_slice(simd, &this.numbers[0]),
+            roughness: f32x8::from_slice(simd, &this.numbers[1]),
+            occlusion: f32x8::from_slice(simd, &this.numbers[2]),
             mirrors: this.mirrors,
         };
-        let inputs = Inputs {
-            substance,
-            diffuse: this.vector(simd, 18),
-            specular: this.vector(simd, 21),
-            shininess: this.shininess,
-            emission: this.vector(simd, 24),
-            lobes: this.lobes,
-        };
+        let Self { shininess, lobes, .. } = *this;
+        let inputs = Inputs { substance, diffuse, specular, shininess, emission, lobes };
+        let frame = Frame { view, face, normal };
         let color = formula::display(&frame, position, &inputs, None, lights, shading);
         [color.x.into(), color.y.into(), color.z.into()]
-    }
-
-    /// Returns three numbers of all samples.
-    #[inline(always)]
-    fn vector<S: Simd>(&self, simd: S, first: usize) -> Vec3Lane<f32x8<S>> {
-        let x = f32x8::from_slice(simd, &self.numbers[first]);
-        let y = f32x8::from_slice(simd, &self.numbers[first + 1]);
-        Vec3Lane::new(x, y, f32x8::from_slice(simd, &self.numbers[first + 2]))
     }
 }
 
