@@ -9,7 +9,6 @@ mod shares;
 mod sixteen;
 #[cfg(test)]
 mod tests;
-mod textured;
 
 pub use batch::Batch;
 pub use known::KnownNormals;
@@ -205,7 +204,7 @@ impl<'a> Lit<'a> {
         let (w, view, normal, face) = match seen {
             Seen::Pixel(x, y) => {
                 let view = sight.towards_eye([x, y]);
-                (t.weights(x, y, [0.0; 2]), view, t.normal(x, y), t.seen_face_normal)
+                (t.weights(x, y), view, t.normal(x, y), t.seen_face_normal)
             }
             Seen::Point { weights: w, view } => {
                 (w, view, blend(&t.corner_normals(), w), t.face_normal())

@@ -68,17 +68,11 @@ impl VisibleTriangle {
         if self.from_behind { -normal } else { normal }
     }
 
-    /// Returns the edge functions at a point counted from the origin, in this order of operations.
+    /// Returns the edge functions at a pixel's centre, in this order of operations.
     #[inline(always)]
-    fn edges_at(&self, x: f32, y: f32) -> Weights {
-        let [constant, dx, dy] = &self.edges;
+    fn edges_at(&self, [x, y]: [i32; 2]) -> Weights {
+        let ([constant, dx, dy], [x, y]) = self.edge_functions(x, y);
         [0, 1, 2].map(|i| constant[i] + (dx[i] * x + dy[i] * y))
-    }
-
-    /// Returns the edge functions, by constant and changes along x and y.
-    #[inline(always)]
-    pub fn edges(&self) -> &[[f32; 4]; 3] {
-        &self.edges
     }
 
     /// Returns the edge functions and a pixel's centre in their coordinates, from which [`Self::weights`] and
@@ -88,13 +82,11 @@ impl VisibleTriangle {
         (&self.edges, [(x - self.normals.origin[0]) as f32, (y - self.normals.origin[1]) as f32])
     }
 
-    /// Returns the perspective-correct barycentric coordinates at a pixel's centre moved by `shift` pixels; kept
-    /// within the triangle where the point is outside, as it may be at edges.
+    /// Returns the perspective-correct barycentric coordinates at a pixel's centre; kept within the triangle where the
+    /// point is outside, as it may be at edges.
     #[inline(always)]
-    pub fn weights(&self, x: i32, y: i32, shift: [f32; 2]) -> Weights {
-        let fx = (x - self.normals.origin[0]) as f32 + shift[0];
-        let fy = (y - self.normals.origin[1]) as f32 + shift[1];
-        let [a, b, c] = self.edges_at(fx, fy).map(|e| e.max(0.0));
+    pub fn weights(&self, x: i32, y: i32) -> Weights {
+        let [a, b, c] = self.edges_at([x, y]).map(|e| e.max(0.0));
         let inverse = 1.0 / (a + b + c).max(f32::MIN_POSITIVE);
         [a * inverse, b * inverse, c * inverse]
     }
@@ -103,14 +95,12 @@ impl VisibleTriangle {
     /// triangle.
     pub fn weights_beside(&self, x: i32, y: i32) -> (Weights, Weights) {
         let at = |x: i32, y: i32| {
-            let (fx, fy) =
-                ((x - self.normals.origin[0]) as f32, (y - self.normals.origin[1]) as f32);
-            let [a, b, c] = self.edges_at(fx, fy);
+            let [a, b, c] = self.edges_at([x, y]);
             let sum = a + b + c;
             // Beyond the horizon there is no such point, so the derivative at the border is used.
             if sum > 0.0 { Some([a / sum, b / sum, c / sum]) } else { None }
         };
-        let here = || self.weights(x, y, [0.0; 2]);
+        let here = || self.weights(x, y);
         (at(x + 1, y).unwrap_or_else(here), at(x, y + 1).unwrap_or_else(here))
     }
 
@@ -137,8 +127,7 @@ impl VisibleTriangle {
     /// Returns the normal with weights kept within the triangle.
     #[inline(always)]
     pub fn normal_within(&self, x: i32, y: i32) -> Vec3 {
-        let (_, [x, y]) = self.edge_functions(x, y);
-        blend(&self.corner_normals(), self.edges_at(x, y).map(|e| e.max(0.0)))
+        blend(&self.corner_normals(), self.edges_at([x, y]).map(|e| e.max(0.0)))
     }
 
     /// Returns the edge functions, at least 0, at the pixels of a patch.

@@ -104,7 +104,7 @@ impl<'a> Whitted<'a> {
             return compose(&mut self.lit, item, blended.iter().copied(), behind, [x, y]);
         };
         let camera = self.shared.view.camera();
-        let weights = self.lit.triangle(item).weights(x, y, [0.0; 2]);
+        let weights = self.lit.triangle(item).weights(x, y);
         let towards_eye = match camera.projection {
             Projection::Perspective { .. } => -blend(&self.lit.triangle(item).positions(), weights),
             Projection::Orthographic { .. } => camera.axes()[2].as_vec3(),
