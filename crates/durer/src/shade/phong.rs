@@ -43,7 +43,7 @@ pub const INFO: Info = Info {
 
 /// An exponent of the specular term, ready to be applied to (n·h)².
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Shininess {
+pub(super) struct Shininess {
     /// The whole exponent for repeated squaring; 0 where `half` is used.
     whole: u32,
     /// Half the exponent, for the general power of (n·h)².

@@ -2,7 +2,7 @@
 
 use crate::data;
 use crate::scenes::{Numbers, instance, options, sphere};
-use crate::surface_scenes::{assert_same_planes, each};
+use crate::surface_scenes::{assert_same_planes, covered, each};
 use durer::math::{DMat4, DVec3, Vec3};
 use durer::pipeline::Cull;
 use durer::scene::{Camera, Mesh, Projection, Scene};
@@ -11,7 +11,6 @@ use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
 use durer::view::cull::Face;
 use durer::visibility::back_face::{Eye, Options, Step, remove, remove_of_scene};
-use durer::visibility::surface::cover::{Cover, SampleGrid, Window};
 use durer::visibility::surface::input::SurfaceInput;
 use durer::visibility::surface::scan_line_z;
 use durer::visibility::surface::setup::{Filter, ScreenTriangle};
@@ -147,12 +146,7 @@ fn one_convex_body_needs_nothing_else() {
         Scene { meshes: vec![closed_sphere(8)], instances: vec![instance(0)], ..Scene::default() };
     let view = View::new(options(&scene, 300, 300).camera, 300, 300).expect("view");
     let kept = remove_of_scene(&scene, Eye::of(view.camera()), &Options::default(), &mut NoTrace);
-    let screen = Window { x0: 0, y0: 0, x1: 300, y1: 300 };
-    let covers = |t: &ScreenTriangle| {
-        let mut any = false;
-        Cover::new(t, SampleGrid::PIXELS).spans(&screen, |_| any = true);
-        any
-    };
+    let covers = |t: &ScreenTriangle| !covered(t, view.window()).is_empty();
     let input = input(&scene, &view, Cull::None);
     let mut expected: Vec<u32> = input
         .triangles

@@ -1,15 +1,15 @@
 //! Depth sort against the z-buffer.
 
 use crate::surface_scenes::{
-    Prepared, assert_same_planes, crossing_quads, each, of_triangles, random, three_beams,
+    Prepared, assert_same_planes, crossing_quads, depth_at, each, of_triangles, random, three_beams,
 };
 use durer::math::DVec2;
 use durer::raster::interpolate::polygon_area;
 use durer::scene::Scene;
 use durer::trace::{NoTrace, Recorder};
-use durer::visibility::surface::cover::{Cover, SampleGrid};
 use durer::visibility::surface::depth_sort::{Cut, Options, Step, Test, order, render};
 use durer::visibility::surface::input::SurfaceInput;
+use durer::visibility::surface::setup::ScreenTriangle;
 use std::collections::BTreeSet;
 
 #[test]
@@ -57,6 +57,15 @@ fn every_test_gets_its_turn() {
     assert_eq!(passed.into_iter().collect::<Vec<_>>(), all);
 }
 
+/// Returns whether a pixel's centre is on the inner side of an edge, by the top-left rule.
+fn is_within_edge(t: &ScreenTriangle, i: usize, x: i32, y: i32) -> bool {
+    let j = (i + 1) % 3;
+    let [dx, dy] = [t.x[j] - t.x[i], t.y[j] - t.y[i]].map(i64::from);
+    let [px, py] = [256 * x + 128 - t.x[i], 256 * y + 128 - t.y[i]].map(i64::from);
+    let side = dx * py - dy * px;
+    side > 0 || side == 0 && (dy < 0 || dy == 0 && dx > 0)
+}
+
 /// Returns the pixels of each polygon number, from the steps.
 struct Replay<'a> {
     input: &'a SurfaceInput<'a>,
@@ -67,12 +76,10 @@ struct Replay<'a> {
 impl Replay<'_> {
     fn is_inner(&self, polygon: usize, cut: Cut, x: i32, y: i32) -> bool {
         let of = |i: u32| &self.input.triangles[self.triangle[i as usize]];
-        let key = |i: u32| (SampleGrid::PIXELS.depth(of(i), x, y), of(i).item);
+        let key = |i: u32| (depth_at(of(i), x, y), of(i).item);
         match cut {
             Cut::Plane { of } => key(polygon as u32) < key(of),
-            Cut::Edge { of: i, edge } => {
-                Cover::new(of(i), SampleGrid::PIXELS).edge_at(edge, x, y) >= 0
-            }
+            Cut::Edge { of: i, edge } => is_within_edge(of(i), edge, x, y),
             Cut::Column(column) => x < column,
             Cut::Row(row) => y < row,
         }

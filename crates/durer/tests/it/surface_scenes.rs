@@ -3,12 +3,29 @@
 use crate::scenes::{Numbers, instance, options};
 use durer::math::Vec3;
 use durer::pipeline::{Cull, RenderOptions, render};
+use durer::raster::span::Span;
+use durer::raster::triangle::{self, TriangleRasterizer};
 use durer::scene::{Mesh, Scene};
 use durer::shade::PreparedLights;
 use durer::target::Framebuffer;
 use durer::view::View;
+use durer::view::window::PixelRect;
 use durer::visibility::surface::input::SurfaceInput;
-use durer::visibility::surface::setup::Filter;
+use durer::visibility::surface::setup::{Filter, ScreenTriangle};
+
+/// Returns the depth of a triangle's plane at a pixel's centre.
+pub fn depth_at(t: &ScreenTriangle, x: i32, y: i32) -> f32 {
+    let [ox, oy] = t.origin();
+    t.depth_at((x - ox) as f32, (y - oy) as f32)
+}
+
+/// Returns the rows of pixels of a window that a triangle covers.
+pub fn covered(t: &ScreenTriangle, clip: PixelRect) -> Vec<Span> {
+    let mut spans = Vec::new();
+    let options = triangle::Options { clip };
+    TriangleRasterizer::EdgeFunction.rasterize(&t.snapped(), &options, |span| spans.push(span));
+    spans
+}
 
 /// Returns one mesh of separate triangles.
 pub fn of_triangles(triangles: &[[Vec3; 3]]) -> Scene {

@@ -1,11 +1,14 @@
 //! Area subdivision against the z-buffer.
 
-use crate::surface_scenes::{Prepared, assert_same_planes, crossing_quads, each, random};
+use crate::surface_scenes::{
+    Prepared, assert_same_planes, covered, crossing_quads, depth_at, each, random,
+};
 use durer::raster::span::Span;
 use durer::target::{Framebuffer, NO_ITEM};
 use durer::trace::{NoTrace, Recorder};
-use durer::visibility::surface::cover::{Cover, SampleGrid, Window};
+use durer::view::window::PixelRect;
 use durer::visibility::surface::warnock::{Division, Options, Step, render};
+use durer::visibility::surface::window::Window;
 
 fn picture(p: &Prepared<'_>, options: &Options) -> Framebuffer {
     let mut framebuffer = p.framebuffer();
@@ -42,7 +45,7 @@ fn warnock_can_be_replayed() {
         let mut items = vec![NO_ITEM; 70 * 50];
         let mut put = |x: i32, y: i32, triangle: u32| {
             let t = &input.triangles[triangle as usize];
-            if SampleGrid::PIXELS.depth(t, x, y) < 1.0 {
+            if depth_at(t, x, y) < 1.0 {
                 items[y as usize * 70 + x as usize] = t.item;
             }
         };
@@ -52,10 +55,11 @@ fn warnock_can_be_replayed() {
                     samples(window).for_each(|(x, y)| put(x, y, triangle));
                 }
                 Step::Single { window, triangle } => {
-                    let cover = Cover::new(&input.triangles[triangle as usize], SampleGrid::PIXELS);
-                    cover.spans(&window, |Span { y, x0, x1 }| {
+                    let Window { x0, y0, x1, y1 } = window;
+                    let clip = PixelRect::new(x0, y0, x1, y1).expect("window");
+                    for Span { y, x0, x1 } in covered(&input.triangles[triangle as usize], clip) {
                         (x0..x1).for_each(|x| put(x, y, triangle));
-                    });
+                    }
                 }
                 Step::Sample { x, y, triangle: Some(triangle) } => put(x, y, triangle),
                 _ => {}

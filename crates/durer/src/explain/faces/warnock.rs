@@ -10,7 +10,7 @@ use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
 use crate::visibility::polygons::warnock::{INFO, Options, Rule, Step, items};
-use crate::visibility::surface::cover::{Relation, Window};
+use crate::visibility::surface::window::{Relation, Window};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: "warnock",

@@ -17,8 +17,8 @@ use crate::raster::span::Span;
 use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
-use crate::visibility::surface::cover::{Relation, Window};
 use crate::visibility::surface::warnock::Division;
+use crate::visibility::surface::window::{Relation, Window};
 
 /// The facts.
 pub const INFO: Info = Info {

@@ -4,7 +4,7 @@ pub mod a_buffer;
 pub mod ambient_occlusion;
 pub(crate) mod background;
 pub mod comparisons;
-pub mod cover;
+pub(crate) mod cover;
 pub mod depth_sort;
 pub(crate) mod gather;
 pub mod input;
@@ -21,6 +21,7 @@ pub mod shadow_map;
 pub mod spanning_scan_line;
 pub(crate) mod visible;
 pub mod warnock;
+pub mod window;
 pub mod z_buffer;
 
 pub use method::{SurfaceMethod, render_with};

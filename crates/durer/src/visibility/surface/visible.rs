@@ -5,11 +5,11 @@ use crate::shade::color::premultiply;
 use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::visibility::surface::background::background_rows;
-use crate::visibility::surface::cover::Window;
 use crate::visibility::surface::input::{SurfaceInput, TriangleSet};
 use crate::visibility::surface::lit::{Lighting, Lit};
 use crate::visibility::surface::picture::{self, Picture};
 use crate::visibility::surface::setup::Coverage;
+use crate::visibility::surface::window::Window;
 
 /// Nearest surface at each sample of a window.
 #[derive(Debug, Clone, PartialEq)]

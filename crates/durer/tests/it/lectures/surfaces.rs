@@ -13,8 +13,8 @@ use durer::target::Framebuffer;
 use durer::trace::Recorder;
 use durer::visibility::polygons::warnock::{self, Rule, Step as Rules};
 use durer::visibility::polygons::{Face, Screen};
-use durer::visibility::surface::cover::{Relation, Window};
 use durer::visibility::surface::depth_sort::Test;
+use durer::visibility::surface::window::{Relation, Window};
 use std::collections::BTreeSet;
 
 fn frames(name: &str, example: &str) -> Vec<Frame> {

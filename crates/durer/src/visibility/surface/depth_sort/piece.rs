@@ -4,9 +4,10 @@ use super::{ScreenPolygon, corners};
 use crate::math::DVec2;
 use crate::raster::fixed::SUBPIXELS;
 use crate::raster::span::Span;
-use crate::visibility::surface::cover::{Cover, SampleGrid, Window};
+use crate::visibility::surface::cover::{Cover, SampleGrid};
 use crate::visibility::surface::setup::ScreenTriangle;
 use crate::visibility::surface::visible::nearer;
+use crate::visibility::surface::window::Window;
 
 /// A line that cuts a polygon in two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

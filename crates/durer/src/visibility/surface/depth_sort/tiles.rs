@@ -2,7 +2,7 @@
 
 use super::piece::{Key, Pieces};
 use crate::view::View;
-use crate::visibility::surface::cover::Window;
+use crate::visibility::surface::window::Window;
 
 /// Pixels along the side of a tile. Smaller ones cost memory for large polygons, larger ones more
 /// tests among small polygons.

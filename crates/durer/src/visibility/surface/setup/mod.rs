@@ -17,9 +17,9 @@ mod triangle;
 mod vertex;
 
 pub(crate) use corner::EIGHT;
-pub use runs::{Coverage, Run, runs};
-pub use sampled::Sampled;
-pub(crate) use sampled::{PIXELS, place_in_box};
+pub(crate) use runs::runs;
+pub use runs::{Coverage, Run};
+pub(crate) use sampled::{PIXELS, Sampled, place_in_box};
 pub use triangle::ScreenTriangle;
 pub(crate) use vertex::ScreenVertex;
 
@@ -72,7 +72,7 @@ impl std::ops::AddAssign for Counts {
     }
 }
 
-/// Filter of [`Assembler`] for triangles, and the size of lines and points.
+/// Filter for the triangles of a scene, and the size of lines and points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Filter {
     /// Treatment of faces seen from behind.
@@ -92,7 +92,7 @@ impl Filter {
 }
 
 /// Receiver of triangles as they come.
-pub trait Sink {
+pub(crate) trait Sink {
     /// Takes one triangle.
     fn take(&mut self, triangle: ScreenTriangle);
 
@@ -125,7 +125,7 @@ impl Sink for Vec<ScreenTriangle> {
 const UNINDEXED: u32 = 512;
 
 /// Assembler that transforms, clips and sets up the triangles of runs.
-pub struct Assembler<'a> {
+pub(crate) struct Assembler<'a> {
     scene: &'a Scene,
     view: &'a View,
     filter: Filter,
@@ -142,12 +142,12 @@ impl<'a> Assembler<'a> {
     }
 
     /// Returns the assembler with memory for vertices that was used before, and that [`Self::into_memory`] returns.
-    pub(crate) fn with_memory(self, vertices: Vec<ScreenVertex>) -> Self {
+    pub fn with_memory(self, vertices: Vec<ScreenVertex>) -> Self {
         Self { vertices, ..self }
     }
 
     /// Returns the memory for vertices.
-    pub(crate) fn into_memory(self) -> Vec<ScreenVertex> {
+    pub fn into_memory(self) -> Vec<ScreenVertex> {
         self.vertices
     }
 

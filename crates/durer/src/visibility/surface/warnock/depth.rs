@@ -1,7 +1,8 @@
 //! The comparison of two triangles' depths over a whole window, certain for every sample as computed.
 
-use crate::visibility::surface::cover::{SampleGrid, Window};
+use crate::visibility::surface::cover::SampleGrid;
 use crate::visibility::surface::setup::ScreenTriangle;
+use crate::visibility::surface::window::Window;
 
 /// Returns the largest depth over a window's samples; exact, because rounding is monotonic: depths increase or decrease
 /// along rows and columns and are extreme at corners.

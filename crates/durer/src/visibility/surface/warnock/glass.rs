@@ -5,12 +5,13 @@ use crate::math::Vec4;
 use crate::shade::color::{encode_premultiplied, premultiply};
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
-use crate::visibility::surface::cover::{SampleGrid, Window};
+use crate::visibility::surface::cover::SampleGrid;
 use crate::visibility::surface::input::{SurfaceInput, TriangleSet};
 use crate::visibility::surface::layers::{Layer, compose, mean, sort_layers};
 use crate::visibility::surface::lit::{Lighting, Lit};
 use crate::visibility::surface::picture::Picture;
 use crate::visibility::surface::visible::{Visible, background_at, nearer, pixels_of};
+use crate::visibility::surface::window::Window;
 
 /// The blended surfaces of a window.
 pub struct Glass {

@@ -21,7 +21,7 @@ use crate::shade::PreparedLights;
 use crate::shade::color::encode_premultiplied;
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
-use crate::visibility::surface::cover::{Cover, Relation, SampleGrid, Window};
+use crate::visibility::surface::cover::{Cover, SampleGrid};
 use crate::visibility::surface::input::{METHOD, SurfaceInput};
 use crate::visibility::surface::layers::{below_color, mean};
 use crate::visibility::surface::lit::{Lighting, Lit};
@@ -30,6 +30,7 @@ use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 use crate::visibility::surface::visible::{
     Masks, Visible, background_at, nearer, pixels_of, with_lighting, write, write_planes,
 };
+use crate::visibility::surface::window::{Relation, Window};
 use crate::work::{Charge, Work};
 use depth::{farthest, hides};
 use glass::Glass;
