@@ -236,4 +236,7 @@ pub mod explain;
 
 pub mod pipeline;
 
+#[cfg(test)]
+mod testing;
+
 pub use error::{Error, Result};

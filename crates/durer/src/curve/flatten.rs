@@ -266,6 +266,7 @@ pub(crate) fn chain(a: DVec2, element: &PathElement, tolerance: f64, out: &mut V
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::Numbers;
     use crate::trace::Recorder;
 
     /// Returns the distance of a point from a chain of lines.
@@ -280,11 +281,8 @@ mod tests {
 
     #[test]
     fn chords_stay_within_the_tolerance() {
-        let mut seed = 7u32;
-        let mut random = || {
-            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(seed >> 12) / 4096.0
-        };
+        let mut numbers = Numbers(7);
+        let mut random = || f64::from(numbers.unit()) * 256.0;
         for _ in 0..200 {
             let p: Vec<DVec2> = (0..4).map(|_| DVec2::new(random(), random())).collect();
             for tolerance in [1.0, 0.1, 0.01] {

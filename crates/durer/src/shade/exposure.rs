@@ -183,18 +183,8 @@ fn corners(instance: &Instance, mesh: &Mesh, triangle: usize) -> [DVec3; 3] {
 mod tests {
     use super::*;
     use crate::math::DMat4;
-    use crate::scene::{Camera, Light, LightKind, Projection};
-
-    fn camera() -> Camera {
-        Camera {
-            eye: DVec3::new(3.0, 4.0, 5.0),
-            target: DVec3::ZERO,
-            up: DVec3::Y,
-            projection: Projection::Perspective { fov_y: 0.7 },
-            near: 0.1,
-            far: 100.0,
-        }
-    }
+    use crate::scene::{Light, LightKind};
+    use crate::testing::{camera_at, scene_of};
 
     /// Returns a square floor, from −half to half, in `cells` × `cells` squares.
     fn floor(half: f32, cells: u32) -> Scene {
@@ -205,10 +195,7 @@ mod tests {
         let cell = |i: u32| i / cells * side + i % cells;
         let corners = |i: u32| [0, side, 1, 1, side, side + 1].map(|d| cell(i) + d);
         let indices = Some((0..cells * cells).flat_map(corners).collect());
-        let mesh = Mesh { positions, indices, ..Mesh::default() };
-        let world_from_mesh = DMat4::IDENTITY;
-        let instance = Instance { mesh: 0, world_from_mesh, name: String::new() };
-        Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
+        scene_of(Mesh { positions, indices, ..Mesh::default() })
     }
 
     fn sun(direction: DVec3, strength: f32) -> Light {
@@ -225,7 +212,8 @@ mod tests {
             let sun = sun(DVec3::new(slope, -1.0, 0.0), strength);
             for cells in [1, 7, 300] {
                 let scene = floor(2.0, cells);
-                let lights = PreparedLights::exposed(None, &[sun], &scene, &camera());
+                let lights =
+                    PreparedLights::exposed(None, &[sun], &scene, &camera_at(3.0, 4.0, 5.0));
                 let sun = &lights.directional[0];
                 let light = sun.color.x * sun.to_light.y;
                 assert!((light - 0.8).abs() < 1e-5, "{strength} {slope} {cells}: {light}");
@@ -242,7 +230,7 @@ mod tests {
                 lamp(2.0, Vec3::new(1.0, 0.5, 0.2) * factor),
                 sun(DVec3::new(1.0, -2.0, 0.5), 0.3 * factor),
             ];
-            PreparedLights::exposed(None, &lights, &scene, &camera())
+            PreparedLights::exposed(None, &lights, &scene, &camera_at(3.0, 4.0, 5.0))
         };
         let (one, many) = (exposed(1.0), exposed(1e4));
         let near = |a: Vec3, b: Vec3| (a - b).abs().max_element() < 1e-5 * a.max_element();
@@ -259,7 +247,7 @@ mod tests {
                 None,
                 &[lamp(height, Vec3::ONE)],
                 &floor(5.0, 20),
-                &camera(),
+                &camera_at(3.0, 4.0, 5.0),
             );
             let below = lights.points[0].color.x / (height * height) as f32;
             assert!(below > least && below < most, "{height}: {below}");
@@ -270,11 +258,15 @@ mod tests {
     fn where_nothing_is_lit_nothing_changes() {
         let black = lamp(1.0, Vec3::ZERO);
         for scene in [Scene::default(), floor(1.0, 3)] {
-            let lights = PreparedLights::exposed(None, &[black], &scene, &camera());
-            assert_eq!(lights, PreparedLights::new(&[black], &camera()));
+            let lights = PreparedLights::exposed(None, &[black], &scene, &camera_at(3.0, 4.0, 5.0));
+            assert_eq!(lights, PreparedLights::new(&[black], &camera_at(3.0, 4.0, 5.0)));
         }
-        let nothing =
-            PreparedLights::exposed(None, &[lamp(1.0, Vec3::ONE)], &Scene::default(), &camera());
+        let nothing = PreparedLights::exposed(
+            None,
+            &[lamp(1.0, Vec3::ONE)],
+            &Scene::default(),
+            &camera_at(3.0, 4.0, 5.0),
+        );
         assert_eq!(nothing.points[0].color, Vec3::ONE);
     }
 

@@ -66,6 +66,13 @@ pub type Around<'a> = Option<(&'a Arc<Panorama>, UpAxis)>;
 const NEAREST2: f32 = 1e-8;
 
 impl PreparedLights {
+    /// Creates surroundings and lights from far away, seen from the origin, for tests.
+    #[cfg(test)]
+    pub fn far(environment: Environment, directional: Vec<DirectionalLight>) -> Self {
+        let (shadows, tone) = (ShadowMaps::default(), Tone::default());
+        Self { origin: DVec3::ZERO, environment, directional, points: Vec::new(), shadows, tone }
+    }
+
     /// Prepares lights for pictures from this camera's eye.
     ///
     /// Directions that are not finite or zero are left out, and so are positions that are not finite. If there is no
@@ -227,17 +234,10 @@ pub fn auto_lights(camera: &Camera) -> Vec<Light> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Projection;
+    use crate::testing::camera_at;
 
     fn camera() -> Camera {
-        Camera {
-            eye: DVec3::new(1e6, 0.0, 10.0),
-            target: DVec3::new(1e6, 0.0, 0.0),
-            up: DVec3::Y,
-            projection: Projection::Perspective { fov_y: 0.7 },
-            near: 0.1,
-            far: 100.0,
-        }
+        Camera { target: DVec3::new(1e6, 0.0, 0.0), ..camera_at(1e6, 0.0, 10.0) }
     }
 
     fn strength(kind: LightKind, at: Vec3) -> f32 {

@@ -8,13 +8,19 @@
 //! Mobile*, 2014. Light reflected more than once between microfacets is restored by scaling, as in Turquin, *Practical
 //! Multiple Scattering Compensation for Microfacet Models*, 2019. Cost: O(lights) per pixel. Limits: no shadows.
 
+mod steps;
+#[cfg(test)]
+mod tests;
+
+pub use steps::{Lit, Step, reflect_one, replay};
+
 use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
-use super::normal::{Frame, face_viewer};
+use super::normal::Frame;
 use super::shadow;
 use crate::info::{Class, Info, Occluder};
 use crate::math::Vec3;
-use crate::trace::{NoTrace, Recorder, Tracer};
+use crate::trace::{NoTrace, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -118,138 +124,6 @@ impl<L: Lane> Layers<L> {
             dielectric_gain,
         }
     }
-}
-
-/// A point of a surface and a light.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lit {
-    /// Base colour, linear, 0 … 1.
-    pub base: Vec3,
-    /// Metalness, 0 … 1.
-    pub metallic: f32,
-    /// Perceptual roughness, 0 … 1.
-    pub roughness: f32,
-    /// Unit normal; it is turned to the side of the eye.
-    pub normal: Vec3,
-    /// Unit vector to the eye.
-    pub to_eye: Vec3,
-    /// Unit vector to the light.
-    pub to_light: Vec3,
-}
-
-/// Step of reflecting a light.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Step {
-    /// The cosines n·l, n·v, n·h and v·h.
-    Cosines([f32; 4]),
-    /// The distribution of facets.
-    Distribution {
-        /// The square of the roughness, which is at least 0.06.
-        alpha: f32,
-        /// D, times π.
-        value: f32,
-    },
-    /// The visibility of facets from the light and from the eye, over 4 n·l n·v.
-    Visibility(f32),
-    /// Fresnel reflection.
-    Fresnel {
-        /// Reflectance straight on, with the light that is reflected more than once.
-        straight: Vec3,
-        /// Reflectance at grazing angles, likewise.
-        grazing: Vec3,
-        /// (1 − v·h)⁵, the part of the latter.
-        away: f32,
-        /// F.
-        value: Vec3,
-    },
-    /// Diffuse reflection.
-    Diffuse {
-        /// Part of the light that enters the dielectric.
-        through: f32,
-        /// The diffuse reflectance, times π.
-        value: Vec3,
-    },
-    /// Everything that leaves towards the eye.
-    Sum(Vec3),
-}
-
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
-        match self {
-            Self::Cosines(_) => 1,
-            Self::Distribution { .. } => 2,
-            Self::Visibility(_) => 3,
-            Self::Fresnel { .. } => 6,
-            Self::Diffuse { .. } => 7,
-            Self::Sum(_) => 8,
-        }
-    }
-}
-
-/// Returns the light that the steps before the sum lead to.
-pub fn replay(steps: &[Step]) -> Vec3 {
-    let [mut n_l, mut mirrored] = [0.0; 2];
-    let [mut fresnel, mut diffuse] = [Vec3::ZERO; 2];
-    for step in steps {
-        match *step {
-            Step::Cosines([first, ..]) => n_l = first,
-            Step::Distribution { value, .. } => mirrored = value,
-            Step::Visibility(value) => mirrored *= value,
-            Step::Fresnel { value, .. } => fresnel = value,
-            Step::Diffuse { value, .. } => diffuse = value,
-            Step::Sum(_) => {}
-        }
-    }
-    (diffuse + fresnel * mirrored) * n_l
-}
-
-/// Returns the part of a light that a dielectric of refractive index 1.5, or a metal, reflects towards the eye, by the
-/// formula with which surfaces are lit: for the colour 1, in the light's unit, which contains π.
-///
-/// ```
-/// use durer::math::Vec3;
-/// use durer::shade::metallic_roughness::{Lit, reflect_one};
-/// use durer::trace::NoTrace;
-///
-/// let straight_on = Lit {
-///     base: Vec3::splat(0.5),
-///     metallic: 0.0,
-///     roughness: 1.0,
-///     normal: Vec3::Z,
-///     to_eye: Vec3::Z,
-///     to_light: Vec3::Z,
-/// };
-/// // 0.96 of the base colour, and a hundredth from rough reflection.
-/// assert!((reflect_one(&straight_on, &mut NoTrace).x - 0.49).abs() < 0.002);
-/// ```
-pub fn reflect_one(lit: &Lit, t: &mut impl Tracer<Step>) -> Vec3 {
-    let frame = face_viewer(lit.to_eye.into(), lit.normal.into(), lit.normal.into());
-    let substance = Substance {
-        base: lit.base.into(),
-        metallic: lit.metallic,
-        roughness: lit.roughness,
-        occlusion: 1.0,
-        mirrors: false,
-    };
-    let (point, _) = point(&frame, &substance, Dielectric::PLAIN);
-    let mut terms = Recorder::with_cap(1);
-    let sum = self::lit(&frame, &point, lit.to_light.into(), &mut terms);
-    let plain = |v: Vec3Lane<f32>| Vec3::new(v.x, v.y, v.z);
-    if let Some(terms) = terms.into_steps().pop() {
-        t.step(|| Step::Cosines(terms.cosines));
-        t.step(|| Step::Distribution { alpha: point.alpha, value: terms.distribution });
-        t.step(|| Step::Visibility(terms.visibility));
-        t.step(|| Step::Fresnel {
-            straight: plain(point.direct.straight),
-            grazing: plain(point.direct.grazing),
-            away: terms.away,
-            value: plain(terms.fresnel),
-        });
-        t.step(|| Step::Diffuse { through: terms.through, value: plain(terms.diffuse) });
-    }
-    t.step(|| Step::Sum(plain(sum)));
-    plain(sum)
 }
 
 /// Returns the terms that all lights share, with metalness and roughness as they count.
@@ -411,110 +285,4 @@ fn environment_brdf<L: Lane>(roughness: L, nv: L) -> (L, L) {
     let least = (square - grazing).if_above(0.0, grazing, square);
     let a = least * x + y;
     (a * -1.04 + z, (a * 1.04 + w).at_least(0.0))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::DVec3;
-    use crate::shade::environment::Environment;
-    use crate::shade::light::DirectionalLight;
-    use crate::shade::normal::face_viewer;
-
-    fn lights(environment: Environment, directional: Vec<DirectionalLight>) -> PreparedLights {
-        PreparedLights {
-            origin: DVec3::ZERO,
-            environment,
-            directional,
-            points: Vec::new(),
-            shadows: Default::default(),
-            tone: Default::default(),
-        }
-    }
-
-    fn leaving(
-        view: Vec3,
-        base: f32,
-        metallic: f32,
-        roughness: f32,
-        lights: &PreparedLights,
-    ) -> f32 {
-        let frame = face_viewer(view.into(), Vec3::Z.into(), Vec3::Z.into());
-        let base = Vec3Lane::from(Vec3::splat(base));
-        let mirrors = metallic > 0.0;
-        let substance = Substance { base, metallic, roughness, occlusion: 1.0, mirrors };
-        reflect(&frame, Vec3::ZERO.into(), &substance, Dielectric::PLAIN, lights).x
-    }
-
-    fn direction(cosine: f32, turn: f32) -> Vec3 {
-        let sine = (1.0 - cosine * cosine).sqrt();
-        Vec3::new(sine * turn.cos(), sine * turn.sin(), cosine)
-    }
-
-    #[test]
-    fn white_things_vanish_in_white_surroundings() {
-        let furnace = lights(Environment::uniform(Vec3::ONE), Vec::new());
-        for (m, r, c) in (0..=10).flat_map(|m| {
-            (0..=10).flat_map(move |r| (1..=10).map(move |c| (m as f32, r as f32, c as f32)))
-        }) {
-            let view = direction(c / 10.0, 0.3);
-            let light = leaving(view, 1.0, m / 10.0, r / 10.0, &furnace);
-            assert!((light - 1.0).abs() < 0.01, "{m} {r} {c}: {light}");
-        }
-    }
-
-    /// Returns the whole hemisphere of directional lights, each with its share of a uniform
-    /// surrounding.
-    fn hemisphere() -> PreparedLights {
-        let mut directional = Vec::new();
-        let (rings, sectors) = (96, 192);
-        for ring in 0..rings {
-            // Rings of equal solid angle; radiance 1 over π in the light's unit.
-            let cosine = (ring as f32 + 0.5) / rings as f32;
-            for sector in 0..sectors {
-                let turn = (sector as f32 + 0.5) / sectors as f32 * std::f32::consts::TAU;
-                let color = Vec3::splat(2.0 / (rings * sectors) as f32);
-                directional.push(DirectionalLight { to_light: direction(cosine, turn), color });
-            }
-        }
-        lights(Environment::uniform(Vec3::ZERO), directional)
-    }
-
-    #[test]
-    fn lights_from_everywhere_make_white_metal_white() {
-        let furnace = hemisphere();
-        for roughness in [0.35, 0.5, 0.7, 0.85, 1.0] {
-            for cosine in [0.4, 0.7, 0.95] {
-                let light = leaving(direction(cosine, 0.1), 1.0, 1.0, roughness, &furnace);
-                assert!((light - 1.0).abs() < 0.12, "{roughness} {cosine}: {light}");
-                let matte = leaving(direction(cosine, 0.1), 1.0, 0.0, roughness, &furnace);
-                assert!((matte - 1.0).abs() < 0.12, "matte {roughness} {cosine}: {matte}");
-            }
-        }
-    }
-
-    #[test]
-    fn direct_and_ambient_reflection_agree() {
-        // The closed form, compared with the formula that it approximates, summed over the hemisphere.
-        let (sum, closed) = (hemisphere(), lights(Environment::uniform(Vec3::ONE), Vec::new()));
-        for roughness in [0.4, 0.6, 0.8, 1.0] {
-            for (base, metallic) in [(0.5, 1.0), (0.9, 1.0), (0.0, 0.0), (0.5, 0.0)] {
-                let view = direction(0.8, 0.0);
-                let a = leaving(view, base, metallic, roughness, &sum);
-                let b = leaving(view, base, metallic, roughness, &closed);
-                assert!((a - b).abs() < 0.06, "{roughness} {base} {metallic}: {a} {b}");
-            }
-        }
-    }
-
-    #[test]
-    fn rough_dielectrics_tend_to_lambert() {
-        let key = DirectionalLight { to_light: direction(0.6, 1.0), color: Vec3::ONE };
-        let one = lights(Environment::uniform(Vec3::ZERO), vec![key]);
-        let light = leaving(Vec3::Z, 0.5, 0.0, 1.0, &one);
-        // 0.5 · 0.6 · 0.96, and a specular part of at most 4 %.
-        assert!((light - 0.288).abs() < 0.04, "{light}");
-        let dark = leaving(Vec3::Z, 0.0, 0.0, 1.0, &one);
-        assert!(dark > 0.0 && dark < 0.04, "{dark}");
-    }
 }

@@ -192,14 +192,8 @@ mod tests {
     use crate::shade::normal::face_viewer;
 
     fn lights(to_light: Vec3) -> PreparedLights {
-        PreparedLights {
-            origin: crate::math::DVec3::ZERO,
-            environment: Environment::uniform(Vec3::splat(0.125)),
-            directional: vec![DirectionalLight { to_light, color: Vec3::ONE }],
-            points: Vec::new(),
-            shadows: Default::default(),
-            tone: Default::default(),
-        }
+        let light = DirectionalLight { to_light, color: Vec3::ONE };
+        PreparedLights::far(Environment::uniform(Vec3::splat(0.125)), vec![light])
     }
 
     fn reflected(view: Vec3, to_light: Vec3, exponent: f32) -> Reflected {

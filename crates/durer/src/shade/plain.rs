@@ -43,10 +43,11 @@ pub(crate) fn shade_frame<L: Lane>(
 mod tests {
     use super::*;
     use crate::math::{DVec3, Vec3, Vec4};
-    use crate::scene::{Camera, Light, LightKind, Material, Projection, ShadingModel};
+    use crate::scene::{Light, LightKind, Material, ShadingModel};
     use crate::shade::{Faces, PreparedMaterials, Surface, shade_seen};
     use crate::simd::dispatch;
     use crate::simd::levels;
+    use crate::testing::{Numbers, camera_at};
 
     /// Sixteen points of test data.
     type Sixteen = [[[f32; 16]; 3]; 4];
@@ -74,17 +75,6 @@ mod tests {
         shade_points(simd, &points, material, lights, shading)
     }
 
-    fn camera() -> Camera {
-        Camera {
-            eye: DVec3::new(0.0, 0.0, 5.0),
-            target: DVec3::ZERO,
-            up: DVec3::Y,
-            projection: Projection::Perspective { fov_y: 0.7 },
-            near: 0.1,
-            far: 100.0,
-        }
-    }
-
     fn lamps() -> PreparedLights {
         let position = DVec3::new(1.0, 2.0, 3.0);
         let spot = LightKind::Spot {
@@ -96,7 +86,7 @@ mod tests {
         };
         let kinds = [LightKind::Point { position, range: None }, spot];
         let lights = kinds.map(|kind| Light { kind, color: Vec3::new(3.0, 2.0, 1.0) });
-        PreparedLights::new(&lights, &camera())
+        PreparedLights::new(&lights, &camera_at(0.0, 0.0, 5.0))
     }
 
     fn materials() -> Vec<Material> {
@@ -113,20 +103,19 @@ mod tests {
     }
 
     /// Returns a pseudo-random number −1 … 1, sometimes one that breaks formulas.
-    fn numbers(seed: &mut u32) -> f32 {
-        *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        match *seed >> 24 {
+    fn number(numbers: &mut Numbers) -> f32 {
+        match (numbers.unit() * 256.0) as u32 {
             0 => 0.0,
             1 => f32::NAN,
             2 => f32::INFINITY,
             3 => 1e-30,
             4 => -1e25,
-            _ => (*seed >> 8) as f32 / 8_388_608.0 - 1.0,
+            _ => numbers.signed(),
         }
     }
 
-    fn sixteen_points(seed: &mut u32) -> Sixteen {
-        let mut v = || std::array::from_fn(|_| std::array::from_fn(|_| numbers(seed)));
+    fn sixteen_points(numbers: &mut Numbers) -> Sixteen {
+        let mut v = || std::array::from_fn(|_| std::array::from_fn(|_| number(numbers)));
         [v(), v(), v(), v()]
     }
 
@@ -138,15 +127,15 @@ mod tests {
     fn sixteen_at_a_time_are_bit_for_bit_one_at_a_time() {
         let scene = crate::scene::Scene { materials: materials(), ..Default::default() };
         let prepared = PreparedMaterials::new(&scene);
-        let mut seed = 1;
-        for lights in [PreparedLights::auto(&camera()), lamps()] {
+        let mut numbers = Numbers(1);
+        for lights in [PreparedLights::auto(&camera_at(0.0, 0.0, 5.0)), lamps()] {
             for (material, &shading) in
                 (0..5).flat_map(|m| Shading::ALL.iter().map(move |s| (m, s)))
             {
                 let material = prepared.get(Some(material));
                 assert!(material.is_plain());
                 for _ in 0..30 {
-                    let points = sixteen_points(&mut seed);
+                    let points = sixteen_points(&mut numbers);
                     for level in levels() {
                         let colors = dispatch!(level, simd =>
                             shade_sixteen(simd, &points, material, &lights, shading));

@@ -86,25 +86,15 @@ impl<'a> Samples<'a> {
 mod tests {
     use super::*;
     use crate::math::{DVec3, Vec3, Vec4};
-    use crate::scene::{AlphaMode, Camera, Light, LightKind, Material, Projection, ShadingModel};
+    use crate::scene::{AlphaMode, Light, LightKind, Material, ShadingModel};
     use crate::shade::environment::Mirrored;
     use crate::shade::studio::Studio;
     use crate::shade::tone::Tone;
     use crate::shade::{Panorama, PreparedMaterials, Surface, ToneMap, shade_seen};
     use crate::simd::dispatch;
     use crate::simd::levels;
+    use crate::testing::camera_at;
     use std::sync::Arc;
-
-    fn camera() -> Camera {
-        Camera {
-            eye: DVec3::new(0.0, 0.0, 5.0),
-            target: DVec3::ZERO,
-            up: DVec3::Y,
-            projection: Projection::Perspective { fov_y: 0.7 },
-            near: 0.1,
-            far: 100.0,
-        }
-    }
 
     /// Returns a material with each kind of lobe, and one with all.
     fn materials() -> Vec<Material> {
@@ -127,14 +117,15 @@ mod tests {
     }
 
     fn lights() -> Vec<PreparedLights> {
+        let camera = camera_at(0.0, 0.0, 5.0);
         let kind = LightKind::Point { position: DVec3::new(1.0, 2.0, 3.0), range: None };
         let lamp = Light { kind, color: Vec3::new(9.0, 7.0, 5.0) };
-        let mut studio = PreparedLights::auto(&camera());
-        studio.environment.mirrored = Mirrored::Studio(Studio::of_camera(&camera()));
+        let mut studio = PreparedLights::auto(&camera);
+        studio.environment.mirrored = Mirrored::Studio(Studio::of_camera(&camera));
         let sky: Vec<_> = (0..32).map(|i| [0.1 * i as f32, 1.0, 0.3]).collect();
         let sky = Arc::new(Panorama::new(8, 4, &sky).expect("panorama"));
         let around = Some((&sky, crate::scene::UpAxis::Z));
-        let mut lit = vec![studio, PreparedLights::within(around, &[lamp], &camera())];
+        let mut lit = vec![studio, PreparedLights::within(around, &[lamp], &camera)];
         for &map in ToneMap::ALL {
             let tone = Tone { gain: 0.7, map };
             lit.push(PreparedLights { tone, ..lit[0].clone() });

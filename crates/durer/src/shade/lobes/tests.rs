@@ -1,7 +1,6 @@
 //! Lobes, compared with expected results.
 
 use super::*;
-use crate::math::DVec3;
 use crate::shade::environment::Environment;
 use crate::shade::normal::face_viewer;
 
@@ -12,14 +11,7 @@ fn plain() -> Material {
 /// Returns the light that leaves a surface of base colour 0.5 in a white room, at the given cosine of the viewing
 /// angle.
 fn in_white_room(m: &Material, cosine: f32) -> Vec3 {
-    let lights = PreparedLights {
-        origin: DVec3::ZERO,
-        environment: Environment::uniform(Vec3::ONE),
-        directional: Vec::new(),
-        points: Vec::new(),
-        shadows: Default::default(),
-        tone: Default::default(),
-    };
+    let lights = PreparedLights::far(Environment::uniform(Vec3::ONE), Vec::new());
     let view = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
     let frame = face_viewer(view.into(), Vec3::Z.into(), Vec3::Z.into());
     let substance = Substance {

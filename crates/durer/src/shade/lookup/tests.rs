@@ -4,6 +4,7 @@ use super::*;
 use crate::scene::{Image, Sampler};
 use crate::simd::dispatch;
 use crate::simd::levels;
+use crate::testing::Numbers;
 
 #[simd]
 fn sixteen<S: Simd>(simd: S, texture: &PreparedTexture<'_>, at: &[[f32; 16]; 6]) -> [[f32; 16]; 4] {
@@ -19,12 +20,8 @@ fn sixteen<S: Simd>(simd: S, texture: &PreparedTexture<'_>, at: &[[f32; 16]; 6])
 fn sixteen_look_ups_are_sixteen_times_one() {
     let strange =
         [f32::NAN, f32::INFINITY, f32::MIN, -0.0, 1e-40, -1e-9, 1.0, 8_388_609.0, 3e9, -2.5];
-    // Pseudo-random numbers from 0 to 1.
-    let mut seed = 7_u32;
-    let mut random = || {
-        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (seed >> 8) as f32 / (1 << 24) as f32
-    };
+    let mut numbers = Numbers(7);
+    let mut random = || numbers.unit();
     for (width, height) in [(8, 4), (5, 7), (1, 3), (64, 64)] {
         let data = (0..width * height).map(|_| [0; 4].map(|_: u8| (random() * 255.0) as u8));
         let data = data.collect();

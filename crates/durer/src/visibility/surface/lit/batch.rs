@@ -68,7 +68,7 @@ impl Batch {
         let there = shown.simd_ne(u32x16::splat(simd, NO_ITEM)).to_bitmask();
         let info = lit.run_info(items[there.trailing_zeros() as usize % 16]);
         let mine = (shown - info.first_item).simd_lt(u32x16::splat(simd, info.count));
-        if !info.plain || lit.with_positions() || mine.to_bitmask() != there {
+        if !info.is_plain() || lit.with_positions() || mine.to_bitmask() != there {
             let mut colors = [[0.0; 16]; 4];
             Lit::colors_x16(simd, lit, shown, patch, &mut colors);
             return put(simd, opaque(simd, &colors), shown, places, codes);
@@ -135,7 +135,7 @@ impl Batch {
             return None;
         }
         let info = lit.run_info(item);
-        if !info.plain || !self.waiting.is_empty() && self.first_item != info.first_item {
+        if !info.is_plain() || !self.waiting.is_empty() && self.first_item != info.first_item {
             return None;
         }
         self.first_item = info.first_item;

@@ -45,7 +45,7 @@ impl<'a> Lighting<'a> {
 
     /// Returns whether only normals are needed from triangles of a run, if these are settled.
     pub fn asks_for_normals(&self, run: usize) -> bool {
-        self.part() == Part::Normals && self.run_info(run).plain
+        self.part() == Part::Normals && self.run_info(run).is_plain()
     }
 
     pub fn run_info(&self, index: usize) -> RunInfo<'a> {
@@ -64,24 +64,21 @@ impl<'a> Lighting<'a> {
             None => material.shading(),
         };
         let per_pixel = !matches!(shading, Shading::Flat | Shading::Gouraud);
-        let plain = material.is_plain() && mesh.colors.is_empty() && per_pixel;
-        let together = !plain && material.is_lit_together(shading);
-        let looked_up = material
+        let coords = material
             .looked_up_together(shading)
             .filter(|set| mesh.colors.is_empty() && *set < TEX_COORD_SETS)
-            .and_then(|set| mesh.tex_coords.get(set))
-            .map(|coords| LookedUp { coords, changing: material.has_levels() });
-        RunInfo {
-            run: index,
-            first_item: run.first_item,
-            count: run.range.len() as u32,
-            mesh,
-            material,
-            shading,
-            plain,
-            together,
-            looked_up,
-        }
+            .and_then(|set| mesh.tex_coords.get(set));
+        let way = if material.is_plain() && mesh.colors.is_empty() && per_pixel {
+            Way::Plain
+        } else if let Some(coords) = coords {
+            Way::LookedUp(LookedUp { coords, changing: material.has_levels() })
+        } else if material.is_lit_together(shading) {
+            Way::Sampled
+        } else {
+            Way::Alone
+        };
+        let (first_item, count) = (run.first_item, run.range.len() as u32);
+        RunInfo { run: index, first_item, count, mesh, material, shading, way }
     }
 
     /// Returns a direction of a run's mesh along world axes.
@@ -100,15 +97,29 @@ pub struct RunInfo<'a> {
     pub mesh: &'a Mesh,
     pub material: &'a PreparedMaterial<'a>,
     pub shading: Shading,
-    /// True if sixteen pixels can be shaded at a time.
-    pub plain: bool,
-    /// True if several pixels can be lit at a time, after their textures were looked up one by one.
-    pub together: bool,
-    /// Data for looking up the textures of sixteen pixels at a time.
-    pub looked_up: Option<LookedUp<'a>>,
+    pub way: Way<'a>,
+}
+
+/// The way in which the points of a run are lit.
+#[derive(Clone, Copy)]
+pub enum Way<'a> {
+    /// Sixteen at a time, by constants: the material has no textures, and the mesh no colours.
+    Plain,
+    /// Sixteen at a time, as are the look-ups of textures.
+    LookedUp(LookedUp<'a>),
+    /// Eight at a time, after their textures were looked up one by one.
+    Sampled,
+    /// One by one.
+    Alone,
 }
 
 impl RunInfo<'_> {
+    /// Returns whether points need nothing but normals, positions, and directions to the eye.
+    #[inline(always)]
+    pub fn is_plain(&self) -> bool {
+        matches!(self.way, Way::Plain)
+    }
+
     /// Returns whether an item is of the run.
     #[inline(always)]
     pub fn has(&self, item: u32) -> bool {

@@ -1,4 +1,12 @@
-//! Lighting visible items: one pixel with everything a material can have; in [`sixteen`] several at a time.
+//! From visible items to colours.
+//!
+//! [`Lit`] lights items: one point with all that a material can have in this file, sixteen pixels at a time in
+//! [`sixteen`]. Where a point is, its normal, and the direction to the eye come from [`points`](super::points), the
+//! formulas from [`shade`](crate::shade); a run's [`Way`] decides which of these are needed.
+//!
+//! Two collect points of plain materials until there are enough: [`Batch`] patches of pixels side by side, [`PointQueue`]
+//! points from anywhere, each with its weight in a pixel. [`KnownNormals`] keeps normals from the set-up of small
+//! triangles.
 
 mod batch;
 mod coords;
@@ -27,7 +35,7 @@ use crate::visibility::surface::points::sight::Sight;
 use crate::visibility::surface::points::triangles::{
     OF_ROWS, OF_TILES, Part, Triangles, parallel_view,
 };
-use lighting::{LookedUp, RunInfo};
+use lighting::{LookedUp, RunInfo, Way};
 
 /// Sets of texture coordinates that are examined.
 const TEX_COORD_SETS: usize = 4;
@@ -102,10 +110,10 @@ impl<'a> Lit<'a> {
     #[inline(always)]
     pub fn expect(&mut self, item: u32) {
         let (plain, run) = match &self.latest {
-            Some(info) if info.has(item) => (info.plain, info.run),
+            Some(info) if info.has(item) => (info.is_plain(), info.run),
             _ => {
                 let info = self.find_run_info(item);
-                (info.plain, info.run)
+                (info.is_plain(), info.run)
             }
         };
         let part = if plain { self.part } else { Part::All };
@@ -121,7 +129,7 @@ impl<'a> Lit<'a> {
 
     /// Returns linear RGBA, straight alpha, of a point of an item under given lights.
     pub fn color_under(&mut self, item: u32, seen: Seen, lights: &PreparedLights) -> Vec4 {
-        self.with_surface_seen(item, seen, |surface, material, _, shading| {
+        self.with_surface(item, seen, |surface, material, _, shading| {
             // Light computed at corners or for faces cannot depend on the lights that reach the point.
             let surface = Surface { lit: None, ..*surface };
             match seen {
@@ -138,7 +146,7 @@ impl<'a> Lit<'a> {
         let weights = [1.0 / 3.0; 3];
         let view = parallel.unwrap_or_else(|| -blend(&self.triangle(item).positions(), weights));
         let seen = Seen::Point { weights, view };
-        self.with_surface_seen(item, seen, |surface, material, _, shading| {
+        self.with_surface(item, seen, |surface, material, _, shading| {
             if shading == Shading::Unlit {
                 return shade(surface, material, lights, shading);
             }
@@ -151,7 +159,7 @@ impl<'a> Lit<'a> {
 
     /// Returns the alpha of a point of an item.
     pub fn alpha(&mut self, item: u32, seen: Seen) -> f32 {
-        self.with_surface_seen(item, seen, |surface, material, _, _| material.alpha(surface))
+        self.with_surface(item, seen, |surface, material, _, _| material.alpha(surface))
     }
 
     /// Returns the triangle of an item.
@@ -162,14 +170,14 @@ impl<'a> Lit<'a> {
 
     /// Returns linear RGBA, straight alpha, of an item at a pixel's centre.
     pub fn color(&mut self, item: u32, x: i32, y: i32) -> Vec4 {
-        self.with_surface(item, x, y, |surface, material, lights, shading| {
+        self.with_surface(item, Seen::Pixel(x, y), |surface, material, lights, shading| {
             shade_seen(surface, material, lights, shading)
         })
     }
 
     /// Returns whether a masked surface is there at a pixel's centre.
     pub fn passes_mask(&mut self, item: u32, x: i32, y: i32) -> bool {
-        self.with_surface(item, x, y, |surface, material, _, _| material.alpha(surface) > 0.0)
+        self.alpha(item, Seen::Pixel(x, y)) > 0.0
     }
 
     /// Returns unit normal of an item at a pixel's centre, world axes, turned to the eye.
@@ -180,17 +188,8 @@ impl<'a> Lit<'a> {
         if normal.dot(view) < 0.0 { -normal } else { normal }
     }
 
+    /// Calls `use_it` with the surface at a point of an item, its material, the lights and the shading.
     fn with_surface<R>(
-        &mut self,
-        item: u32,
-        x: i32,
-        y: i32,
-        use_it: impl FnOnce(&Surface<'_>, &'a PreparedMaterial<'a>, &PreparedLights, Shading) -> R,
-    ) -> R {
-        self.with_surface_seen(item, Seen::Pixel(x, y), use_it)
-    }
-
-    fn with_surface_seen<R>(
         &mut self,
         item: u32,
         seen: Seen,

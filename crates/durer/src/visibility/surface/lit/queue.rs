@@ -83,7 +83,7 @@ impl PointQueue {
         normal: Option<&[f32; 4]>,
     ) {
         let info = lit.run_info(point.item);
-        if !info.plain {
+        if !info.is_plain() {
             let color = lit.color(point.item, point.at[0], point.at[1]);
             return self.add_color(point.pixel, color.truncate().extend(1.0), point.weight);
         }

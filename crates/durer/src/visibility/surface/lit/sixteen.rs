@@ -1,7 +1,7 @@
 //! Lighting of visible items, sixteen pixels at a time, where their materials allow it.
 
 use super::known::Known;
-use super::{Lit, LookedUp, RunInfo};
+use super::{Lit, LookedUp, RunInfo, Seen, Way};
 use crate::math::{Vec3, Vec4};
 use crate::shade::lane::Vec3Lane;
 use crate::shade::{Faces, Points, PreparedMaterial, Sample, Samples, Shading, shade_points};
@@ -74,25 +74,28 @@ impl<'a> Lit<'a> {
         there: u64,
         patch: Patch,
     ) -> [[f32; 16]; 4] {
-        if info.plain {
-            let points = self.points(simd, info.run, (shown, items), there, patch);
-            let (material, lights) = (info.material, self.shared.lights);
-            let [r, g, b] = shade_points(simd, &points, material, lights, info.shading);
-            [r, g, b, [material.plain_alpha(); 16]]
-        } else if let Some(looked_up) = info.looked_up {
-            self.looked_up_x16(simd, (info, looked_up), (shown, items), there, patch)
-        } else if info.together {
-            self.sampled_x16(simd, info, items, there, patch)
-        } else {
-            let mut colors = [[0.0; 16]; 4];
-            for i in (0..16).filter(|i| there >> i & 1 == 1) {
-                let [x, y] = patch.pixel(i);
-                let color: Vec4 = self.color(items[i], x, y);
-                for (channel, value) in colors.iter_mut().zip(color.to_array()) {
-                    channel[i] = value;
-                }
+        match info.way {
+            Way::Plain => {
+                let points = self.points(simd, info.run, (shown, items), there, patch);
+                let (material, lights) = (info.material, self.shared.lights);
+                let [r, g, b] = shade_points(simd, &points, material, lights, info.shading);
+                [r, g, b, [material.plain_alpha(); 16]]
             }
-            colors
+            Way::LookedUp(looked_up) => {
+                self.looked_up_x16(simd, (info, looked_up), (shown, items), there, patch)
+            }
+            Way::Sampled => self.sampled_x16(simd, info, items, there, patch),
+            Way::Alone => {
+                let mut colors = [[0.0; 16]; 4];
+                for i in (0..16).filter(|i| there >> i & 1 == 1) {
+                    let [x, y] = patch.pixel(i);
+                    let color: Vec4 = self.color(items[i], x, y);
+                    for (channel, value) in colors.iter_mut().zip(color.to_array()) {
+                        channel[i] = value;
+                    }
+                }
+                colors
+            }
         }
     }
 
@@ -155,7 +158,7 @@ impl<'a> Lit<'a> {
 
     /// Returns the values of an item's textures at a pixel's centre.
     fn sample(&mut self, item: u32, x: i32, y: i32) -> Sample<'a> {
-        self.with_surface(item, x, y, |surface, material, _, shading| {
+        self.with_surface(item, Seen::Pixel(x, y), |surface, material, _, shading| {
             material.sample(surface, shading)
         })
     }

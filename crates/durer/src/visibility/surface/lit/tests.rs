@@ -1,8 +1,8 @@
 //! Pixels lit alone or with others, in any order, have the same bits.
 
 use super::*;
-use crate::math::{DMat4, DVec3};
-use crate::scene::{Camera, Instance, Light, LightKind, Material, Mesh, Part, Projection, Scene};
+use crate::math::DVec3;
+use crate::scene::{Camera, Light, LightKind, Material, Mesh, Part, Projection, Scene};
 use crate::shade::color::encode_srgb8;
 use crate::shade::environment::Mirrored;
 use crate::shade::studio::Studio;
@@ -10,6 +10,7 @@ use crate::shade::tone::Tone;
 use crate::shade::{PreparedMaterials, ToneMap};
 use crate::simd::{dispatch, levels};
 use crate::target::NO_ITEM;
+use crate::testing::{Numbers, camera, instance};
 use crate::view::View;
 use crate::visibility::surface::points::patch::Patch;
 use crate::visibility::surface::setup::runs;
@@ -21,24 +22,6 @@ const EYE: DVec3 = DVec3::new(0.3, 0.2, 4.0);
 
 /// Triangles of a run.
 const TRIANGLES: u32 = 24;
-
-/// Pseudo-random numbers −1 … 1.
-struct Numbers(u32);
-
-impl Numbers {
-    fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (self.0 >> 8) as f32 / 8_388_608.0 - 1.0
-    }
-
-    fn vector(&mut self) -> Vec3 {
-        Vec3::new(self.next(), self.next(), self.next())
-    }
-
-    fn below(&mut self, count: u32) -> u32 {
-        (((self.next() + 1.0) * 0.5 * count as f32) as u32).min(count - 1)
-    }
-}
 
 /// Returns two runs of triangles in all directions; every fourth is nearly or exactly edge-on, and some have no normals
 /// or normals on the side of their back.
@@ -89,7 +72,6 @@ fn scene() -> Scene {
         ..Material::default()
     };
     use crate::scene::ShadingModel::{MetallicRoughness, Phong};
-    let instance = |mesh| Instance { mesh, world_from_mesh: DMat4::IDENTITY, name: String::new() };
     Scene {
         meshes,
         instances: vec![instance(0), instance(1)],
@@ -271,8 +253,7 @@ fn pixels_are_lit_alike_alone_and_together() {
     for projection in
         [Projection::Perspective { fov_y: 0.8 }, Projection::Orthographic { height: 3.0 }]
     {
-        let (target, up) = (DVec3::ZERO, DVec3::Y);
-        let camera = Camera { eye: EYE, target, up, projection, near: 0.1, far: 10.0 };
+        let camera = Camera { far: 10.0, ..camera(EYE, projection) };
         let view = View::new(camera, 96, 64).expect("view");
         let mut studio = PreparedLights::auto(&camera);
         studio.environment.mirrored = Mirrored::Studio(Studio::of_camera(&camera));

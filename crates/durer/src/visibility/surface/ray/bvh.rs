@@ -256,14 +256,12 @@ fn best_cut(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::Numbers;
     use crate::trace::NoTrace;
 
     fn boxes(count: usize) -> Vec<Box3> {
-        let mut state = 1u32;
-        let mut next = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / (1 << 24) as f32
-        };
+        let mut numbers = Numbers(1);
+        let mut next = || numbers.unit();
         (0..count)
             .map(|_| {
                 let min = Vec3::new(next(), next(), next()) * 10.0;

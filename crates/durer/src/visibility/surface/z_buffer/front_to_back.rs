@@ -96,10 +96,11 @@ mod tests {
     use super::super::rasterize::{AllPass, rasterize};
     use super::super::tile::SamplePlane;
     use super::*;
-    use crate::math::{DMat4, DVec3, Vec3};
-    use crate::scene::{Camera, Instance, Mesh, Projection, Scene};
+    use crate::math::{DVec3, Vec3};
+    use crate::scene::{Camera, Mesh, Projection, Scene};
     use crate::simd::Level;
     use crate::simd::dispatch;
+    use crate::testing::{camera, scene_of};
     use crate::view::View;
     use crate::visibility::surface::setup::{Filter, runs};
     use crate::visibility::surface::{Cull, Samples};
@@ -124,15 +125,9 @@ mod tests {
             let [a, b, c, d] = [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)];
             positions.extend([a, b, c, a, c, d]);
         }
-        let instance = Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() };
-        let scene = Scene {
-            meshes: vec![Mesh { positions, ..Mesh::default() }],
-            instances: vec![instance],
-            ..Scene::default()
-        };
-        let projection = Projection::Orthographic { height: 2.0 };
-        let (eye, target, up) = (DVec3::Z * 2.0, DVec3::ZERO, DVec3::Y);
-        let camera = Camera { eye, target, up, projection, near: 1.0, far: 4.0 };
+        let scene = scene_of(Mesh { positions, ..Mesh::default() });
+        let camera = camera(DVec3::Z * 2.0, Projection::Orthographic { height: 2.0 });
+        let camera = Camera { near: 1.0, far: 4.0, ..camera };
         (scene, View::new(camera, 64, 64).expect("view"))
     }
 

@@ -2,44 +2,32 @@
 
 use super::*;
 use crate::math::DVec3;
-use crate::scene::{Camera, Instance, Mesh};
+use crate::scene::{Camera, Mesh};
 use crate::simd::levels;
+use crate::testing::{Numbers, camera, scene_of};
 use crate::visibility::surface::setup::runs;
 
-/// Pseudo-random numbers 0 … 1.
-struct Numbers(u32);
-
-impl Numbers {
-    fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (self.0 >> 8) as f32 / 16_777_216.0
-    }
-
-    fn vector(&mut self) -> Vec3 {
-        Vec3::new(self.next(), self.next(), self.next()) * 2.0 - 1.0
-    }
-}
-
 const COUNT: u32 = 2_000;
+
+const EYE: DVec3 = DVec3::new(0.2, 0.1, 3.0);
 
 /// Returns triangles of all sizes, some of them needles, with normals that differ more or less from their faces'.
 fn scene() -> Scene {
     let (mut numbers, mut mesh) = (Numbers(3), Mesh::default());
     for _ in 0..COUNT {
-        let (size, middle) = (0.01_f32.powf(numbers.next()), numbers.vector());
+        let (size, middle) = (0.01_f32.powf(numbers.unit()), numbers.vector());
         let [a, mut b, c] = [0; 3].map(|_| middle + numbers.vector() * size);
-        if numbers.next() < 0.2 {
-            b = a + (c - a) * numbers.next() + numbers.vector() * (size * 0.01);
+        if numbers.unit() < 0.2 {
+            b = a + (c - a) * numbers.unit() + numbers.vector() * (size * 0.01);
         }
         let normal = (b - a).cross(c - a).normalize_or_zero();
-        let (off, length) = (numbers.next() * 1.2, 0.1 + numbers.next());
+        let (off, length) = (numbers.unit() * 1.2, 0.1 + numbers.unit());
         for corner in [a, b, c] {
             mesh.positions.push(corner);
             mesh.normals.push((normal + numbers.vector() * off) * length);
         }
     }
-    let instance = Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() };
-    Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
+    scene_of(mesh)
 }
 
 /// Returns the corners of a triangle on the screen, if all are in front of the eye.
@@ -67,13 +55,12 @@ fn is_inside([a, b, c]: [[f64; 2]; 3], p: [f64; 2]) -> bool {
 fn settled_normals_are_those_of_the_corners_and_on_the_side_that_is_seen() {
     let scene = scene();
     let runs = runs(&scene).expect("runs");
-    let (eye, target, up) = (DVec3::new(0.2, 0.1, 3.0), DVec3::ZERO, DVec3::Y);
     // Settled triangles, samples inside triangles, and samples whose pixel centres are inside too.
     let (mut settled, mut samples, mut centers) = (0, 0, 0);
     for projection in
         [Projection::Perspective { fov_y: 0.8 }, Projection::Orthographic { height: 2.5 }]
     {
-        let camera = Camera { eye, target, up, projection, near: 0.1, far: 10.0 };
+        let camera = Camera { far: 10.0, ..camera(EYE, projection) };
         let view = View::new(camera, 200, 150).expect("view");
         for reach in [0, 96, 128] {
             let level = levels()[0];
@@ -93,12 +80,12 @@ fn settled_normals_are_those_of_the_corners_and_on_the_side_that_is_seen() {
                 for _ in 0..20 {
                     let pixel = [0, 1].map(|axis| {
                         let range = high[axis] - low[axis] + 1.0;
-                        (low[axis] + (range * f64::from(numbers.next())).floor()) as i32
+                        (low[axis] + (range * f64::from(numbers.unit())).floor()) as i32
                     });
                     let center = pixel.map(|v| f64::from(v) + 0.5);
                     // Vertices are rounded before samples are tested against triangles.
                     let most = f64::from(reach) / 256.0 + 0.5 / 256.0;
-                    let at = center.map(|v| v + (f64::from(numbers.next()) * 2.0 - 1.0) * most);
+                    let at = center.map(|v| v + (f64::from(numbers.unit()) * 2.0 - 1.0) * most);
                     if !is_inside(corners, at) {
                         continue;
                     }
@@ -123,9 +110,8 @@ fn settled_normals_are_those_of_the_corners_and_on_the_side_that_is_seen() {
 fn normals_alone_are_those_of_the_whole_triangle() {
     let scene = scene();
     let runs = runs(&scene).expect("runs");
-    let (eye, target, up) = (DVec3::new(0.2, 0.1, 3.0), DVec3::ZERO, DVec3::Y);
     let projection = Projection::Perspective { fov_y: 0.8 };
-    let camera = Camera { eye, target, up, projection, near: 0.1, far: 10.0 };
+    let camera = Camera { far: 10.0, ..camera(EYE, projection) };
     let view = View::new(camera, 200, 150).expect("view");
     for level in levels() {
         let mut whole = Triangles::new(&scene, &view, &runs, level, (64, 96));

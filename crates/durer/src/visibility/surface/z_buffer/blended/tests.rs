@@ -2,10 +2,11 @@ use super::super::bins::{Binned, Source};
 use super::super::front_to_back::FrontToBack;
 use super::super::rasterize::AllPass;
 use super::*;
-use crate::math::{DMat4, DVec3, Vec3};
-use crate::scene::{AlphaMode, Camera, Instance, Material, Mesh, Part, Projection, Scene};
+use crate::math::{DVec3, Vec3};
+use crate::scene::{AlphaMode, Camera, Material, Mesh, Part, Projection, Scene};
 use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::simd::{dispatch, levels};
+use crate::testing::{camera, scene_of};
 use crate::view::View;
 use crate::visibility::surface::lit::Lighting;
 use crate::visibility::surface::setup::{Coverage, Filter, runs};
@@ -47,21 +48,14 @@ fn scene() -> Scene {
     parts.push(part(12, 216..blended));
     parts.push(part(13, blended..blended + 1));
     let materials = (0..13).map(glass).chain([Material::default()]).collect();
-    let instance = Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() };
-    Scene {
-        meshes: vec![Mesh { positions, parts, ..Mesh::default() }],
-        instances: vec![instance],
-        materials,
-        ..Scene::default()
-    }
+    Scene { materials, ..scene_of(Mesh { positions, parts, ..Mesh::default() }) }
 }
 
 #[test]
 fn sheets_look_as_if_all_fragments_were_sorted() {
     let scene = scene();
-    let projection = Projection::Orthographic { height: 2.0 };
-    let (eye, target, up) = (DVec3::Z * 2.0, DVec3::ZERO, DVec3::Y);
-    let camera = Camera { eye, target, up, projection, near: 1.0, far: 4.0 };
+    let camera = camera(DVec3::Z * 2.0, Projection::Orthographic { height: 2.0 });
+    let camera = Camera { near: 1.0, far: 4.0, ..camera };
     let view = View::new(camera, 64, 64).expect("view");
     let (runs, lights) = (runs(&scene).expect("runs"), PreparedLights::auto(&camera));
     let materials = PreparedMaterials::new(&scene);

@@ -2,11 +2,12 @@
 
 use super::tiles::ITEM_BITS;
 use super::*;
-use crate::math::{DMat4, DVec3, Vec3};
-use crate::scene::{Camera, Instance, Mesh, Projection, Scene};
+use crate::math::{DVec3, Vec3};
+use crate::scene::{Camera, Mesh, Projection, Scene};
 use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::simd::levels;
 use crate::target::NO_ITEM;
+use crate::testing::{Numbers, camera, scene_of};
 use crate::view::View;
 use crate::visibility::surface::lit::Lighting;
 use crate::visibility::surface::points::triangles::{OF_ROWS, Triangles};
@@ -24,11 +25,8 @@ const SIZE: [i32; 2] = [150, 140];
 
 /// Returns triangles of at most about three pixels, some of them larger, of all slopes, with normals.
 fn scene() -> Scene {
-    let mut seed = 11_u32;
-    let mut random = || {
-        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (seed >> 8) as f32 / 8_388_608.0 - 1.0
-    };
+    let mut numbers = Numbers(11);
+    let mut random = || numbers.signed();
     let mut mesh = Mesh::default();
     for i in 0..COUNT {
         let middle = Vec3::new(random() * 1.1, random() * 1.1, random() * 0.4);
@@ -42,8 +40,7 @@ fn scene() -> Scene {
             mesh.normals.push(face + Vec3::new(random(), random(), random()) * off);
         }
     }
-    let instance = Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() };
-    Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
+    scene_of(mesh)
 }
 
 /// Returns for each sample of a tile the nearest item and the bits of its depth.
@@ -100,8 +97,8 @@ impl Found {
 fn fragments_are_what_rasterizing_and_normal_planes_give() {
     let scene = scene();
     let projection = Projection::Perspective { fov_y: 0.6 };
-    let (eye, target, up) = (DVec3::new(0.3, 0.2, 3.5), DVec3::ZERO, DVec3::Y);
-    let camera = Camera { eye, target, up, projection, near: 1.0, far: 9.0 };
+    let camera = camera(DVec3::new(0.3, 0.2, 3.5), projection);
+    let camera = Camera { near: 1.0, far: 9.0, ..camera };
     let view = View::new(camera, SIZE[0] as u32, SIZE[1] as u32).expect("view");
     let mut runs = runs(&scene).expect("runs");
     // Blocks of items whose upper bits differ.
