@@ -15,10 +15,10 @@ use super::metallic_roughness::Substance;
 use super::normal::{Frame, face_seen, perturbed};
 use super::phong::{Colors, Shininess, from_metallic_roughness};
 use super::points::Points;
-use super::sample::Sample;
 use super::slot::{Chains, Slot, Texel, Texels, sampled_x16};
 use super::surface::Surface;
 use super::texture::Usage;
+use super::textured::TexturedPoint;
 use super::{Shading, tone};
 use crate::math::{Vec3, Vec4};
 use crate::scene::{AlphaMode, Material, ShadingModel};
@@ -297,7 +297,7 @@ impl<'a> PreparedMaterial<'a> {
         }
     }
 
-    /// Returns whether samples of the material may be lit by [`super::Samples`]: nothing shines
+    /// Returns whether samples of the material may be lit by [`super::TexturedPoints`]: nothing shines
     /// through, and the formula's parameter for all of them at once is one number.
     pub(crate) fn is_lit_together(&self, shading: Shading) -> bool {
         self.has_one_exponent(shading) && self.alpha_mode != AlphaMode::Blend
@@ -314,18 +314,22 @@ impl<'a> PreparedMaterial<'a> {
 
     /// Returns a point with its textures applied, to be lit with others; its geometric normal must
     /// be on the viewer's side, as for [`shade_seen`].
-    pub(crate) fn sample(&self, surface: &Surface<'_>, shading: Shading) -> Sample<'_> {
-        self.sample_with(surface, face_seen, self.base(surface), shading)
+    pub(crate) fn textured_point(
+        &self,
+        surface: &Surface<'_>,
+        shading: Shading,
+    ) -> TexturedPoint<'_> {
+        self.textured_point_with(surface, face_seen, self.base(surface), shading)
     }
 
     #[inline]
-    fn sample_with(
+    fn textured_point_with(
         &self,
         surface: &Surface<'_>,
         frame: Framing,
         base: Vec4,
         shading: Shading,
-    ) -> Sample<'_> {
+    ) -> TexturedPoint<'_> {
         let (view, face) = (surface.view.into(), surface.geometric_normal.into());
         let mut frame = frame(view, face, surface.normal.into());
         if self.has_normal_map() {
@@ -350,7 +354,7 @@ impl<'a> PreparedMaterial<'a> {
         if by_phong(shading) && self.model == ShadingModel::MetallicRoughness {
             self.phong_inputs(surface, base, &mut inputs);
         }
-        Sample { frame, position: surface.position.into(), inputs }
+        TexturedPoint { frame, position: surface.position.into(), inputs }
     }
 
     /// Returns the interpolated normal, bent by the normal map.

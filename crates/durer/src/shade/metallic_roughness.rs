@@ -95,20 +95,20 @@ struct Point<L> {
     /// Diffuse colour of the dielectric part.
     diffuse: Vec3Lane<L>,
     dielectric: Dielectric,
-    direct: Layers<L>,
+    direct: Specular<L>,
 }
 
 /// Specular reflection of the metal and the dielectric part together: reflectance straight on and at
 /// grazing angles, each times its part of the surface and the gain from multiple scattering.
-struct Layers<L> {
+struct Specular<L> {
     straight: Vec3Lane<L>,
     grazing: Vec3Lane<L>,
     /// The gain of the dielectric alone.
     dielectric_gain: L,
 }
 
-impl<L: Lane> Layers<L> {
-    /// Creates the layers; `lack` is the light that a white mirror of this roughness loses by single scattering,
+impl<L: Lane> Specular<L> {
+    /// Creates the reflection; `lack` is the light that a white mirror of this roughness loses by single scattering,
     /// divided by the light it reflects.
     #[inline(always)]
     fn new(base: Vec3Lane<L>, metallic: L, dielectric: &Dielectric, lack: L) -> Self {
@@ -137,7 +137,7 @@ fn point<L: Lane>(
     let metallic = substance.metallic.at_least(0.0).at_most(1.0);
     let nv = frame.normal.dot(frame.view).at_least(1e-3).at_most(1.0);
     let alpha = roughness * roughness;
-    let direct = Layers::new(substance.base, metallic, &dielectric, lack(alpha, nv));
+    let direct = Specular::new(substance.base, metallic, &dielectric, lack(alpha, nv));
     let diffuse = substance.base.scale(metallic.one_minus() * dielectric.matte);
     let point = Point { nv, alpha, alpha2: alpha * alpha, diffuse, dielectric, direct };
     (point, (metallic, roughness))
@@ -202,10 +202,10 @@ fn surroundings<L: Lane>(
     let mirrored = n.scale(n.dot(frame.view) * 2.0).minus(frame.view);
     let (slope, offset) = environment_brdf(roughness, p.nv);
     let lack = p.nv.splat(1.0) / (slope + offset).at_least(0.05) - 1.0;
-    let layers = Layers::new(substance.base, metallic, &p.dielectric, lack);
-    let specular = layers.straight.scale(slope).plus(layers.grazing.scale(offset));
+    let parts = Specular::new(substance.base, metallic, &p.dielectric, lack);
+    let specular = parts.straight.scale(slope).plus(parts.grazing.scale(offset));
     let reflected = slope * p.dielectric.most + offset * p.dielectric.grazing;
-    let through = (reflected * layers.dielectric_gain).one_minus();
+    let through = (reflected * parts.dielectric_gain).one_minus();
     let environment = &lights.environment;
     let around = environment.diffuse(n).times(p.diffuse).scale(through);
     let lamps = substance.mirrors.then(|| metallic.one_minus() * BRIGHTER + 1.0);

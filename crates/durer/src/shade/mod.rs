@@ -27,13 +27,13 @@ pub mod phong;
 mod plain;
 mod points;
 mod reflected;
-mod sample;
 pub mod shadow;
 mod slot;
 pub mod studio;
 mod surface;
 mod texel;
 pub mod texture;
+mod textured;
 pub mod tone;
 pub mod tone_map;
 pub mod unlit;
@@ -50,9 +50,9 @@ pub(crate) use normal::Frame;
 pub use panorama::Panorama;
 pub(crate) use plain::{shade_frame, shade_points};
 pub(crate) use points::{Faces, Points};
-pub(crate) use sample::{Sample, Samples};
 pub use surface::{Surface, TexCoord};
 pub use texture::PreparedTexture;
+pub(crate) use textured::{TexturedPoint, TexturedPoints};
 pub use tone_map::ToneMap;
 
 crate::info::family! {

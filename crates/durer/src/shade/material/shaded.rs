@@ -4,8 +4,8 @@ use super::{Framing, PreparedMaterial};
 use crate::math::{Vec3, Vec4};
 use crate::shade::light::PreparedLights;
 use crate::shade::normal::{face_seen, face_viewer};
-use crate::shade::sample::Sample;
 use crate::shade::surface::Surface;
+use crate::shade::textured::TexturedPoint;
 use crate::shade::{Shading, formula, lobes, tone};
 
 /// Returns the colour of a visible point: linear RGBA with straight alpha, all within 0…1 and never
@@ -47,7 +47,8 @@ fn shade_framed(
     if alpha == 0.0 {
         return Vec4::ZERO;
     }
-    let Sample { frame, position, inputs } = material.sample_with(surface, frame, base, shading);
+    let TexturedPoint { frame, position, inputs } =
+        material.textured_point_with(surface, frame, base, shading);
     if let Some(lobes) = inputs.lobes.filter(|l| l.is_glass())
         && shading == Shading::MetallicRoughness
     {

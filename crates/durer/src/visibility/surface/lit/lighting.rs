@@ -6,7 +6,7 @@ use crate::scene::{Mesh, Scene, Topology};
 use crate::shade::{PreparedLights, PreparedMaterial, PreparedMaterials, Shading};
 use crate::simd::Level;
 use crate::view::View;
-use crate::visibility::surface::points::triangles::Part;
+use crate::visibility::surface::points::triangles::Needs;
 use crate::visibility::surface::setup::Run;
 
 /// Data that all threads share.
@@ -37,15 +37,15 @@ impl<'a> Lighting<'a> {
     }
 
     /// Returns the data of their triangles that lighting several pixels of plain materials needs.
-    pub fn part(&self) -> Part {
+    pub fn needs(&self) -> Needs {
         // Lights need the positions of points, and shadows the orientation of their faces.
         let more = !self.lights.shadows.is_empty() || !self.lights.points.is_empty();
-        if more { Part::All } else { Part::Normals }
+        if more { Needs::All } else { Needs::Normals }
     }
 
     /// Returns whether only normals are needed from triangles of a run, if these are settled.
     pub fn asks_for_normals(&self, run: usize) -> bool {
-        self.part() == Part::Normals && self.run_info(run).is_plain()
+        self.needs() == Needs::Normals && self.run_info(run).is_plain()
     }
 
     pub fn run_info(&self, index: usize) -> RunInfo<'a> {

@@ -33,7 +33,7 @@ use crate::shade::{
 use crate::visibility::surface::points::attributes::{VisibleTriangle, Weights, blend, run_of};
 use crate::visibility::surface::points::sight::Sight;
 use crate::visibility::surface::points::triangles::{
-    OF_ROWS, OF_TILES, Part, Triangles, parallel_view,
+    Needs, OF_ROWS, OF_TILES, Triangles, parallel_view,
 };
 use lighting::{LookedUp, RunInfo, Way};
 
@@ -59,7 +59,7 @@ pub struct Lit<'a> {
     shared: Lighting<'a>,
     triangles: Triangles<'a>,
     /// Data of their triangles that lighting several pixels of plain materials needs.
-    part: Part,
+    needs: Needs,
     /// The run of the latest item.
     latest: Option<RunInfo<'a>>,
     /// Direction to the eye where projection lines are parallel.
@@ -85,8 +85,8 @@ impl<'a> Lit<'a> {
         let (parallel_view, sight) = (parallel_view(shared.view), Sight::new(shared.view));
         let Lighting { scene, view, runs, reach, level, .. } = shared;
         let triangles = Triangles::new(scene, view, runs, level, (kept, reach));
-        let part = shared.part();
-        Self { shared, triangles, part, latest: None, parallel_view, sight, reflected: None }
+        let needs = shared.needs();
+        Self { shared, triangles, needs, latest: None, parallel_view, sight, reflected: None }
     }
 
     /// Returns the run of an item and its material.
@@ -116,9 +116,9 @@ impl<'a> Lit<'a> {
                 (info.is_plain(), info.run)
             }
         };
-        let part = if plain { self.part } else { Part::All };
-        if !self.triangles.has(item, part) {
-            self.triangles.want(item, run, part);
+        let needs = if plain { self.needs } else { Needs::All };
+        if !self.triangles.has(item, needs) {
+            self.triangles.want(item, run, needs);
         }
     }
 

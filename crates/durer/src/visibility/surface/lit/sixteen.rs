@@ -4,12 +4,14 @@ use super::known::Known;
 use super::{Lit, LookedUp, RunInfo, Seen, Way};
 use crate::math::{Vec3, Vec4};
 use crate::shade::lane::Vec3Lane;
-use crate::shade::{Faces, Points, PreparedMaterial, Sample, Samples, Shading, shade_points};
+use crate::shade::{
+    Faces, Points, PreparedMaterial, Shading, TexturedPoint, TexturedPoints, shade_points,
+};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::gather::Gathered;
 use crate::visibility::surface::points::normal_plane::NormalPlane;
 use crate::visibility::surface::points::patch::Patch;
-use crate::visibility::surface::points::triangles::Part;
+use crate::visibility::surface::points::triangles::Needs;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
 use fearless_simd_macros::simd;
@@ -143,12 +145,12 @@ impl<'a> Lit<'a> {
             if there >> first & 0xff == 0 {
                 continue;
             }
-            let mut samples = Samples::default();
+            let mut points = TexturedPoints::default();
             for i in (first..first + 8).filter(|i| there >> i & 1 == 1) {
                 let [x, y] = patch.pixel(i);
-                samples.set(i % 8, &self.sample(items[i], x, y));
+                points.set(i % 8, &self.sample(items[i], x, y));
             }
-            let shaded = Samples::shade(simd, &samples, self.shared.lights, info.shading);
+            let shaded = TexturedPoints::shade(simd, &points, self.shared.lights, info.shading);
             for (to, from) in colors.iter_mut().zip(&shaded) {
                 to[first..first + 8].copy_from_slice(from);
             }
@@ -157,18 +159,18 @@ impl<'a> Lit<'a> {
     }
 
     /// Returns the values of an item's textures at a pixel's centre.
-    fn sample(&mut self, item: u32, x: i32, y: i32) -> Sample<'a> {
+    fn sample(&mut self, item: u32, x: i32, y: i32) -> TexturedPoint<'a> {
         self.with_surface(item, Seen::Pixel(x, y), |surface, material, _, shading| {
-            material.sample(surface, shading)
+            material.textured_point(surface, shading)
         })
     }
 
     /// Returns the normals of an item, if they are settled and nothing else is needed.
     #[inline(always)]
     pub(super) fn settled_plane(&mut self, item: u32, run: usize) -> Option<&NormalPlane> {
-        match self.part {
-            Part::All => None,
-            Part::Normals => Some(self.triangles.normals(item, run)).filter(|n| n.settled),
+        match self.needs {
+            Needs::All => None,
+            Needs::Normals => Some(self.triangles.normals(item, run)).filter(|n| n.settled),
         }
     }
 

@@ -62,9 +62,9 @@ pub const OF_TILES: usize = 1 << 10;
 /// them again in the next.
 pub const OF_ROWS: usize = 1 << 12;
 
-/// Part of an item to prepare.
+/// Data of an item that are needed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Part {
+pub enum Needs {
     /// A [`NormalPlane`]; the rest only where one of several is not settled.
     #[default]
     Normals,
@@ -72,7 +72,7 @@ pub enum Part {
     All,
 }
 
-/// Items of one run whose same part is to be prepared; their places are already reserved.
+/// Items of one run of which the same is to be prepared; their places are already reserved.
 #[derive(Debug, Clone, Copy, Default)]
 struct Wanted {
     items: [u32; 8],
@@ -82,7 +82,7 @@ struct Wanted {
     read: Read,
     count: usize,
     run: usize,
-    part: Part,
+    needs: Needs,
 }
 
 /// Undivided weights of a settled triangle are at least minus this wherever a sample of its pixels may be.
@@ -120,8 +120,8 @@ impl<'a> Triangles<'a> {
     /// Returns the triangle of an item that the rasterizer has drawn.
     #[inline(always)]
     pub fn get(&mut self, item: u32, run: usize) -> &VisibleTriangle {
-        if !self.has(item, Part::All) {
-            self.want(item, run, Part::All);
+        if !self.has(item, Needs::All) {
+            self.want(item, run, Needs::All);
             self.make_ready();
         }
         &self.kept[place(item, &self.kept)]
@@ -130,39 +130,39 @@ impl<'a> Triangles<'a> {
     /// Returns its normals.
     #[inline(always)]
     pub fn normals(&mut self, item: u32, run: usize) -> &NormalPlane {
-        if !self.has(item, Part::Normals) {
-            self.want(item, run, Part::Normals);
+        if !self.has(item, Needs::Normals) {
+            self.want(item, run, Needs::Normals);
             self.make_ready();
         }
         &self.normals[place(item, &self.normals)]
     }
 
-    /// Returns whether a part of an item is kept or requested.
+    /// Returns whether what is needed of an item is kept or requested.
     #[inline(always)]
-    pub fn has(&self, item: u32, part: Part) -> bool {
-        match part {
-            Part::Normals => self.normals[place(item, &self.normals)].item == item,
-            Part::All => self.kept[place(item, &self.kept)].normals.item == item,
+    pub fn has(&self, item: u32, needs: Needs) -> bool {
+        match needs {
+            Needs::Normals => self.normals[place(item, &self.normals)].item == item,
+            Needs::All => self.kept[place(item, &self.kept)].normals.item == item,
         }
     }
 
-    /// Requests a part of an item, which is ready at the latest after [`Self::make_ready`], which must be called before
+    /// Requests what is needed of an item, which is ready at the latest after [`Self::make_ready`], which must be called before
     /// [`Self::get`] and [`Self::normals`].
     #[inline(never)]
-    pub fn want(&mut self, item: u32, run: usize, part: Part) {
-        let Wanted { items, count, run: of, part: of_part, .. } = &self.wanted;
-        if *count == items.len() || *of != run || *of_part != part {
+    pub fn want(&mut self, item: u32, run: usize, needs: Needs) {
+        let Wanted { items, count, run: of, needs: of_needs, .. } = &self.wanted;
+        if *count == items.len() || *of != run || *of_needs != needs {
             self.make_ready();
         }
-        (self.wanted.run, self.wanted.part) = (run, part);
+        (self.wanted.run, self.wanted.needs) = (run, needs);
         let (corners, lane) = (self.corners(item, run), self.wanted.count);
         self.wanted.items[lane] = item;
         self.wanted.corners[lane] = corners;
         self.wanted.read.set(lane, &self.scene.meshes[self.runs[run].mesh], corners);
         self.wanted.count += 1;
-        match part {
-            Part::Normals => self.normals[place(item, &self.normals)].item = item,
-            Part::All => self.kept[place(item, &self.kept)].normals.item = item,
+        match needs {
+            Needs::Normals => self.normals[place(item, &self.normals)].item = item,
+            Needs::All => self.kept[place(item, &self.kept)].normals.item = item,
         }
     }
 
@@ -180,8 +180,8 @@ impl<'a> Triangles<'a> {
 
     /// Prepares all requested items.
     pub fn make_ready(&mut self) {
-        let Wanted { items, corners, read, count, run: index, part } = &mut self.wanted;
-        let (count, index, part) = (std::mem::take(count), *index, *part);
+        let Wanted { items, corners, read, count, run: index, needs } = &mut self.wanted;
+        let (count, index, needs) = (std::mem::take(count), *index, *needs);
         if count == 0 {
             return;
         }
@@ -200,7 +200,7 @@ impl<'a> Triangles<'a> {
         let (items, corners, read) = (&*items, &*corners, &*read);
         let (kept, normals) = (&mut *self.kept, &mut *self.normals);
         // If the latest triangles were settled, these probably are: prepare their normals alone first.
-        let (first, settled) = (part == Part::Normals && self.settled, &mut self.settled);
+        let (first, settled) = (needs == Needs::Normals && self.settled, &mut self.settled);
         dispatch!(self.level, simd => {
             if first {
                 *settled = prepare_normals(simd, t, mesh, (items, read), normals);
@@ -209,7 +209,7 @@ impl<'a> Triangles<'a> {
                 prepare(simd, t, mesh, (items, corners, read), kept);
             }
         });
-        if part == Part::Normals && !first {
+        if needs == Needs::Normals && !first {
             // If some are not settled, more of the following are not, and all would be prepared twice.
             self.settled = true;
             for &item in items {

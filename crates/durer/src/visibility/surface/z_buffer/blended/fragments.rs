@@ -1,8 +1,8 @@
-//! Fragments of a tile's blended triangles that overlap in both area and depth range, sorted pixel by pixel.
+//! FragmentList of a tile's blended triangles that overlap in both area and depth range, sorted pixel by pixel.
 
 use super::super::rasterize::{FragmentTest, one_by_one, rasterize};
 use super::super::tile::{SamplePlane, TILE_PIXELS};
-use super::layers::Layers;
+use super::layers::LitLayers;
 use super::{LANES, place_of};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::lit::Lit;
@@ -34,9 +34,9 @@ const AT_ONCE: usize = 8;
 #[inline(always)]
 pub fn light_sorted<S: Simd>(
     simd: S,
-    fragments: &mut Fragments,
+    fragments: &mut FragmentList,
     (triangles, at_least): (&[&ScreenTriangle], usize),
-    layers: &mut Layers,
+    layers: &mut LitLayers,
     planes: &mut [SamplePlane],
     area: [[i32; 2]; 2],
     lit: &mut Lit<'_>,
@@ -74,8 +74,8 @@ pub fn light_sorted<S: Simd>(
     taken
 }
 
-/// Fragments that nothing opaque hides, before sorting.
-pub struct Fragments {
+/// FragmentList that nothing opaque hides, before sorting.
+pub struct FragmentList {
     list: Vec<Fragment>,
     /// Room for sorting.
     by_place: Vec<Fragment>,
@@ -83,7 +83,7 @@ pub struct Fragments {
     tile: [i32; 2],
 }
 
-impl Fragments {
+impl FragmentList {
     /// Creates an empty list of fragments of pixels with these samples.
     pub fn new(offsets: &'static [[i32; 2]]) -> Self {
         Self { list: Vec::new(), by_place: Vec::new(), offsets, tile: [0; 2] }
@@ -92,7 +92,7 @@ impl Fragments {
     /// Sorts the fragments of each pixel, near ones first; at equal depths the lower item, which is visible, comes
     /// first. Most of them are already in this order.
     fn sort(&mut self) {
-        // Fragments are collected triangle by triangle, so fragments of one item at one pixel are consecutive.
+        // FragmentList are collected triangle by triangle, so fragments of one item at one pixel are consecutive.
         let mut next = [0; TILE_PIXELS + 1];
         for f in &self.list {
             next[f.place as usize + 1] += 1;
@@ -125,8 +125,8 @@ impl Fragments {
 
 /// Pixels in which fragments are collected because surfaces behind still show through.
 struct Open<'a> {
-    fragments: &'a mut Fragments,
-    /// Same as [`Layers::closed`].
+    fragments: &'a mut FragmentList,
+    /// Same as [`LitLayers::closed`].
     closed: &'a [u32],
 }
 
@@ -165,9 +165,9 @@ impl FragmentTest for Open<'_> {
 #[simd]
 fn light_nearer<S: Simd>(
     simd: S,
-    fragments: &mut Fragments,
+    fragments: &mut FragmentList,
     bound: f32,
-    layers: &mut Layers,
+    layers: &mut LitLayers,
     lit: &mut Lit<'_>,
 ) {
     fragments.sort();

@@ -13,7 +13,7 @@ use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
 const NONE: u32 = u32::MAX;
 
 /// Lit layers of a tile's blended surfaces.
-pub struct Layers {
+pub struct LitLayers {
     /// One layer of a block each; 0 at pixels that it does not cover.
     all: Vec<Colors>,
     /// Next nearer layer of each layer's block, in a separate list, so that reads of distant layers need not wait for
@@ -37,7 +37,7 @@ pub struct Layers {
 /// Premultiplied red, green, blue and alpha of the pixels of a block.
 type Colors = [[f32; LANES]; 4];
 
-impl Layers {
+impl LitLayers {
     /// Creates empty layers for pixels of this many samples.
     pub fn new(count: usize) -> Self {
         Self {

@@ -23,8 +23,8 @@ use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x16};
 use fearless_simd_macros::simd;
-use fragments::{Fragments, light_sorted};
-use layers::Layers;
+use fragments::{FragmentList, light_sorted};
+use layers::LitLayers;
 use sheet::Sheet;
 
 /// Pixels of a block: eight in a row, and the eight below them.
@@ -55,8 +55,8 @@ fn place_of(x: i32, y: i32) -> usize {
 /// The blended surfaces of a tile.
 pub struct Blended {
     sheet: Sheet,
-    fragments: Fragments,
-    layers: Layers,
+    fragments: FragmentList,
+    layers: LitLayers,
 }
 
 impl Blended {
@@ -64,8 +64,8 @@ impl Blended {
     pub fn new(offsets: &'static [[i32; 2]]) -> Self {
         Self {
             sheet: Sheet::new(offsets.len()),
-            fragments: Fragments::new(offsets),
-            layers: Layers::new(offsets.len()),
+            fragments: FragmentList::new(offsets),
+            layers: LitLayers::new(offsets.len()),
         }
     }
 
@@ -110,7 +110,7 @@ fn light_sheet<S: Simd>(
     simd: S,
     sheet: &mut Sheet,
     triangles: &[&ScreenTriangle],
-    layers: &mut Layers,
+    layers: &mut LitLayers,
     planes: &mut [SamplePlane],
     area: [[i32; 2]; 2],
     lit: &mut Lit<'_>,

@@ -85,7 +85,7 @@ fn sheets_look_as_if_all_fragments_were_sorted() {
             while !rest.is_empty() {
                 let Blended { sheet, fragments, layers } = &mut sorted;
                 let n = light_sorted(simd, fragments, (rest, 1), layers, planes, area, &mut lit);
-                let mut other = Layers::new(layers.count);
+                let mut other = LitLayers::new(layers.count);
                 other.open(area);
                 let m = light_sheet(simd, sheet, rest, &mut other, planes, area, &mut lit);
                 taken[usize::from(m.is_ok())] += 1;

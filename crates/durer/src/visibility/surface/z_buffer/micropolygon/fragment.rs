@@ -13,9 +13,9 @@ pub const UNCOVERED: i32 = i32::MAX;
 
 /// A pixel of a tile, with the lower bits of an item.
 #[derive(Debug, Clone, Copy)]
-pub struct Seen(u32);
+pub struct PixelItem(u32);
 
-impl Seen {
+impl PixelItem {
     /// Creates the entry of an item at a place on the screen, as returned by [`super::place`].
     #[inline(always)]
     pub fn new(place: u32, item: u32) -> Self {
@@ -32,7 +32,7 @@ impl Seen {
 /// The samples of a pixel that a small triangle covers.
 #[derive(Debug, Clone, Copy)]
 pub struct Sample<const N: usize> {
-    pub seen: Seen,
+    pub at: PixelItem,
     /// The bits of its depths, by sample.
     pub depth: [i32; N],
 }
@@ -213,7 +213,7 @@ fn draw_all<S: Simd, const N: usize>(
 {
     for (upper, block) in store.with_normals.of(tile) {
         for Fragment { normal, sample } in block {
-            let (pixel, item) = sample.seen.pixel_and_item(upper);
+            let (pixel, item) = sample.at.pixel_and_item(upper);
             if let Some(visible) = sample.test(simd, plane, pixel, item)
                 && let Some(known) = known.as_deref_mut()
             {
@@ -223,7 +223,7 @@ fn draw_all<S: Simd, const N: usize>(
     }
     for (upper, block) in store.samples.of(tile) {
         for sample in block {
-            let (pixel, item) = sample.seen.pixel_and_item(upper);
+            let (pixel, item) = sample.at.pixel_and_item(upper);
             sample.test(simd, plane, pixel, item);
         }
     }

@@ -23,7 +23,7 @@ use crate::visibility::surface::setup::{EIGHT, PIXELS, Sampled, place_in_box};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, f32x4, f32x8, i32x4, i32x8, u32x4, u32x8};
 use fearless_simd_macros::simd;
-use fragment::{Fragment, Sample, Seen, Store, UNCOVERED};
+use fragment::{Fragment, PixelItem, Sample, Store, UNCOVERED};
 use tiles::PIXEL_BITS;
 
 /// Number of tiles above which places do not fit into 32 bits; on larger screens no triangle is sampled during set-up.
@@ -105,7 +105,7 @@ impl Queue {
                     let covered = this.covered[lane].map(|of_sample| of_sample >> pixel & 1 != 0);
                     std::array::from_fn(|i| if covered[i % 4] { four[i % 4] } else { UNCOVERED })
                 };
-                let sample = Sample { seen: Seen::new(place, item), depth };
+                let sample = Sample { at: PixelItem::new(place, item), depth };
                 if normals.is_some() {
                     store.with_normals.push(place, item, Fragment { normal: [x, y, z], sample });
                 } else {

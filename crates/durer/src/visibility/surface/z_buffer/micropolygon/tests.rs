@@ -77,7 +77,7 @@ impl Found {
         for (upper, block) in store.with_normals.of(tile) {
             self.uppers[(upper >> ITEM_BITS) as usize] += block.len();
             for fragment in block {
-                let (pixel, item) = fragment.sample.seen.pixel_and_item(upper);
+                let (pixel, item) = fragment.sample.at.pixel_and_item(upper);
                 let [x, y] = [pixel as i32 % TILE, pixel as i32 / TILE];
                 let plane = triangles.normals(item, 0);
                 assert_eq!(fragment.normal[0].is_nan(), !plane.settled, "{item}");

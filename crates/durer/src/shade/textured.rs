@@ -1,4 +1,4 @@
-//! Samples of a material with textures: looked up one by one, lit eight at a time.
+//! Points of a material with textures: looked up one by one, lit eight at a time.
 
 use super::Shading;
 use super::formula::{self, Inputs};
@@ -13,17 +13,17 @@ use fearless_simd_macros::simd;
 
 /// A point of a surface with the values of its material's textures, ready to be lit.
 #[derive(Debug, Clone, Copy)]
-pub struct Sample<'a> {
+pub struct TexturedPoint<'a> {
     pub(super) frame: Frame<f32>,
     pub(super) position: Vec3Lane<f32>,
     pub(super) inputs: Inputs<'a, f32>,
 }
 
-/// Up to eight samples of one material; those not set keep their earlier contents.
+/// Up to eight points of one material; those not set keep their earlier contents.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Samples<'a> {
-    /// The vectors and colours of a [`Sample`], by axis: direction to the eye, face, normal, position; base, diffuse,
-    /// specular and emitted colour.
+pub struct TexturedPoints<'a> {
+    /// The vectors and colours of a [`TexturedPoint`], by axis: direction to the eye, face, normal, position; base,
+    /// diffuse, specular and emitted colour.
     vectors: [[[f32; 8]; 3]; 8],
     /// Metalness, roughness and occlusion.
     numbers: [[f32; 8]; 3],
@@ -33,12 +33,12 @@ pub struct Samples<'a> {
     lobes: Option<&'a Lobes>,
 }
 
-impl<'a> Samples<'a> {
-    /// Sets the sample `lane`, 0 … 7, whose material must
+impl<'a> TexturedPoints<'a> {
+    /// Sets the point `lane`, 0 … 7, whose material must
     /// [be lit together](super::PreparedMaterial::is_lit_together).
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, sample: &Sample<'a>) {
-        let Sample { frame: Frame { view, face, normal }, position, inputs } = *sample;
+    pub fn set(&mut self, lane: usize, point: &TexturedPoint<'a>) {
+        let TexturedPoint { frame: Frame { view, face, normal }, position, inputs } = *point;
         let Inputs { substance, diffuse, specular, shininess, emission, lobes } = inputs;
         let Substance { base, metallic, roughness, occlusion, mirrors } = substance;
         let lane = lane % 8;
@@ -151,13 +151,13 @@ mod tests {
         for (lights, m) in lights().iter().flat_map(|l| (0..7).map(move |m| (l, m))) {
             let material = prepared.get(Some(m));
             assert!(!material.is_plain() && material.is_lit_together(shading));
-            let mut samples = Samples::default();
+            let mut points = TexturedPoints::default();
             for i in 0..8 {
-                samples.set(i as usize, &material.sample(&surface(i), shading));
+                points.set(i as usize, &material.textured_point(&surface(i), shading));
             }
             for level in levels() {
                 let [r, g, b] =
-                    dispatch!(level, simd => Samples::shade(simd, &samples, lights, shading));
+                    dispatch!(level, simd => TexturedPoints::shade(simd, &points, lights, shading));
                 for i in 0..8 {
                     let one = shade_seen(&surface(i as u32), material, lights, shading);
                     let eight = [r[i], g[i], b[i]];
