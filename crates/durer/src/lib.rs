@@ -206,6 +206,9 @@ pub mod target;
 
 pub mod scene;
 
+#[cfg(test)]
+mod testing;
+
 pub mod geometry;
 
 pub mod curve;
@@ -235,8 +238,5 @@ pub mod map;
 pub mod explain;
 
 pub mod pipeline;
-
-#[cfg(test)]
-mod testing;
 
 pub use error::{Error, Result};
