@@ -9,10 +9,10 @@
 //! triangle once per pixel. Equal depths are won by the lower item. Blended surfaces are sorted per
 //! pixel.
 //!
-//! The way of a triangle: `bins` sets it up and lists it for the tiles that it touches; if it is as small as a pixel,
-//! `micropolygon` samples it at once instead. In a tile, `rasterize` keeps the nearest item of each sample, of near
-//! triangles first (`front_to_back`). `resolve` gives the visible items to [`lit`](crate::visibility::surface::lit),
-//! which lights them, and weights the colours by their samples; `blended` lays blended surfaces over them.
+//! Where a triangle goes: `bins` sets it up and lists it for the tiles that it touches, unless it is as small as a pixel
+//! and `micropolygon` samples it during set-up. In a tile, `rasterize` keeps the nearest item of each sample, with near
+//! triangles first (`front_to_back`). `resolve` passes the visible items to `lit`, which lights them, and weights the
+//! colours by samples; `blended` lays blended surfaces over them.
 
 mod area;
 mod band;
