@@ -49,13 +49,13 @@ impl SampleGrid {
     /// depths.
     #[inline]
     pub fn depth(self, t: &ScreenTriangle, x: i32, y: i32) -> f32 {
-        let [dx, dy] = self.from_origin(t, x, y);
+        let [dx, dy] = self.offset(t, x, y);
         t.depth_at(dx, dy)
     }
 
     /// Returns the vector from the centre of a triangle's origin pixel to a sample, in pixels; exact.
     #[inline]
-    pub fn from_origin(self, t: &ScreenTriangle, x: i32, y: i32) -> [f32; 2] {
+    pub fn offset(self, t: &ScreenTriangle, x: i32, y: i32) -> [f32; 2] {
         let [ox, oy] = t.origin();
         if self.shift == 0 {
             return [(x - ox) as f32, (y - oy) as f32];

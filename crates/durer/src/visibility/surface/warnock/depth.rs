@@ -17,7 +17,7 @@ fn nearest(t: &ScreenTriangle, grid: SampleGrid, window: &Window) -> f32 {
 
 /// Returns the depth of the triangle's plane and a bound on its rounding error.
 fn on_plane(t: &ScreenTriangle, grid: SampleGrid, [x, y]: [i32; 2]) -> (f64, f64) {
-    let [dx, dy] = grid.from_origin(t, x, y).map(f64::from);
+    let [dx, dy] = grid.offset(t, x, y).map(f64::from);
     let (ax, ay) = (f64::from(t.depth_dx) * dx, f64::from(t.depth_dy) * dy);
     let depth = f64::from(t.depth);
     // Two products and two sums, each with an error of half an ulp of f32, for two numbers.
