@@ -13,6 +13,7 @@ use durer::target::Framebuffer;
 use durer::trace::NoTrace;
 use durer::view::View;
 use durer::visibility::wireframe;
+use durer_formats::told::counted;
 
 /// Free pixels around the pictures of a sheet.
 const GAP: u32 = 8;
@@ -112,7 +113,7 @@ fn lay_out(compared: &[Compared], options: &RenderOptions) -> durer::Result<Fram
         )?;
         let (text, ink) = match c.differing {
             0 => ("0 pixels differ".to_owned(), INK),
-            n => (format!("{n} pixels differ"), ALARM),
+            n => (counted(n, "pixel differs", "pixels differ"), ALARM),
         };
         write(&mut canvas, &text, below + DVec2::new(2.0, 38.0), f64::from(options.width), ink)?;
     }

@@ -16,6 +16,7 @@ use durer::trace::NoTrace;
 use durer_formats::image::Orientation;
 use durer_formats::picture::PictureFormat;
 use durer_formats::png::Channels;
+use durer_formats::told::counted;
 use durer_formats::{Limits, image, png};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -150,7 +151,8 @@ pub fn run(args: &FillArgs) -> Result<(), Failure> {
     messages.progress.stage(|| format!("writing {target}"));
     picture.write(args, &target, wanted.kind.picture(), &messages)?;
     for Fill { x, y, pixels } in &fills {
-        messages.detail(|| format!("{name}: {pixels} pixels from {x},{y}"));
+        let pixels = counted(*pixels, "pixel", "pixels");
+        messages.detail(|| format!("{name}: {pixels} from {x},{y}"));
     }
     drop(messages);
     if !args.json {

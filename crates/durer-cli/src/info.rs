@@ -13,7 +13,7 @@ use durer::view::cull::triangle_area;
 use durer::view::topology::written_topology;
 use durer::visibility::object::{Edges, Faces, SceneOrientation};
 use durer::work::Work;
-use durer_formats::told::{cut, escaped};
+use durer_formats::told::{counted, cut, escaped};
 use durer_formats::{Facts, Model, ModelFormat, Place, archive, is_name_of_model};
 use serde::Serialize;
 use std::fmt::Write;
@@ -432,10 +432,8 @@ impl Info {
         if let Some(closed) = self.closed {
             lines.push(("closed", if closed { "yes" } else { "no" }.to_owned()));
         }
-        let counted = |count: Option<u64>, one: &str, many: &str| match count {
-            None | Some(0) => None,
-            Some(1) => Some(format!("1 {one}")),
-            Some(count) => Some(format!("{count} {many}")),
+        let counted = |count: Option<u64>, one: &str, several: &str| {
+            count.filter(|&count| count > 0).map(|count| counted(count, one, several))
         };
         let inside_out = counted(self.inside_out, "body inside out", "bodies inside out");
         let inside_out =

@@ -14,6 +14,7 @@ use durer::math::{DVec2, Rect};
 use durer::scene::{Scene, Topology};
 use durer::view::View;
 use durer::view::pick::{Area, Hit, objects, pick};
+use durer_formats::told::counted;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -180,9 +181,9 @@ fn text(picked: &Picked) -> String {
             "object {} ({name}): {}, nearest at depth {:.6}",
             o.instance,
             if o.marks > 0 {
-                format!("{} lines or points", o.marks)
+                counted(o.marks as u64, "line or point", "lines or points")
             } else {
-                format!("{} triangles", o.triangles)
+                counted(o.triangles as u64, "triangle", "triangles")
             },
             o.depth
         );

@@ -33,6 +33,7 @@ use durer::view::components::{Component, components};
 use durer::view::objects::divided;
 use durer::visibility::object::SceneOrientation;
 use durer::work::{Charge, Work};
+use durer_formats::told::counted;
 use durer_formats::{Model, png};
 use jobs::{Job, Picture, plan};
 use scene_options::render_options;
@@ -103,7 +104,9 @@ fn orient(
     let found = SceneOrientation::of(scene).map_err(failed)?;
     found.apply(scene);
     let (bodies, faces) = (found.inside_out, found.flipped);
-    messages.detail(|| format!("{name}: {bodies} bodies inside out and {faces} faces turned"));
+    let bodies = counted(bodies as u64, "body inside out", "bodies inside out");
+    let faces = counted(faces as u64, "face", "faces");
+    messages.detail(|| format!("{name}: {bodies} and {faces} turned"));
     Ok(())
 }
 
@@ -140,9 +143,9 @@ fn render_model(
     let prepared = prepare(args, &mut model.scene, &name, &part, messages)?;
     messages.detail(|| {
         format!(
-            "{name}: {}, {} triangles, read in {read_seconds:.3} s",
+            "{name}: {}, {}, read in {read_seconds:.3} s",
             model.format,
-            model.scene.triangle_count()
+            counted(model.scene.triangle_count(), "triangle", "triangles")
         )
     });
     let found = with_open_side(args, &name, &model.scene)?;
@@ -283,8 +286,9 @@ fn colored(color: Vec4) -> Material {
 /// Warns of algorithms that find other surfaces than the z-buffer at some pixels; all should find the same.
 fn tell_differing(name: &str, report: &PictureReport, messages: &Messages) {
     for c in report.compared.iter().filter(|c| c.differing_pixels > 0) {
-        let (algorithm, count) = (c.algorithm, c.differing_pixels);
-        messages.warning(name, format!("{algorithm} differs from the z-buffer at {count} pixels"));
+        let pixels = counted(c.differing_pixels, "pixel", "pixels");
+        let algorithm = c.algorithm;
+        messages.warning(name, format!("{algorithm} differs from the z-buffer at {pixels}"));
     }
 }
 
@@ -293,11 +297,11 @@ fn describe(report: &PictureReport) -> String {
         return format!("{}: {}", report.files.join(", "), drawing.summary());
     }
     format!(
-        "{}: {}x{}, {} triangles drawn; geometry {:.4} s, raster {:.4} s, encode {:.4} s",
+        "{}: {}x{}, {} drawn; geometry {:.4} s, raster {:.4} s, encode {:.4} s",
         report.files.join(", "),
         report.width,
         report.height,
-        report.triangles.drawn,
+        counted(report.triangles.drawn, "triangle", "triangles"),
         report.geometry_seconds,
         report.raster_seconds,
         report.encode_seconds

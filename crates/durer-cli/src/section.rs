@@ -8,6 +8,10 @@ use clap::Args;
 use durer::math::{DVec3, Plane, Vec4};
 use durer::scene::Scene;
 use durer::view::section::{self, Options, Section};
+use durer_formats::told::agreeing;
+
+/// Words about cuts without a cap, after their number.
+pub const UNCAPPED: &str = "{cut through an open mesh has|cuts through open meshes have} no cap";
 
 /// The planes that models are cut by.
 #[derive(Debug, Clone, Args)]
@@ -98,10 +102,9 @@ pub fn apply(
         messages.warning(name, "--section leaves nothing of the model");
     }
     if cut.open_cuts > 0 {
-        let count = cut.open_cuts;
-        messages.warning(name, format!("{count} cuts through open meshes have no cap"));
+        messages.warning(name, agreeing(cut.open_cuts as u64, UNCAPPED));
     }
-    messages.detail(|| format!("{name}: caps of {} square units", cut.cap_area));
+    messages.detail(|| format!("{name}: caps with an area of {} square units", cut.cap_area));
     *scene = cut.scene;
     Ok(Some(cut.cap_material))
 }

@@ -16,6 +16,7 @@ use durer::shade::color::encode_rgba8;
 use durer::target::Pixels;
 use durer::trace::NoTrace;
 use durer::view::warp::{self, Source, Warped};
+use durer_formats::told::counted;
 use durer_formats::{Limits, image, png};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -170,7 +171,8 @@ fn tell(
     let (width, height) = (warped.source.width(), warped.source.height());
     let report = Report { file: target.to_string(), width, height, filled, holes: warped.holes };
     messages.detail(|| {
-        format!("{}: {width}x{height}, {} holes, {filled} filled", report.file, report.holes)
+        let holes = counted(report.holes, "hole", "holes");
+        format!("{}: {width}x{height}, {holes}, {filled} filled", report.file)
     });
     if args.json { report::print(&report) } else { Ok(()) }
 }

@@ -65,11 +65,8 @@ impl Cloud {
         let origin = place::origin(&self.points);
         let positions = place::narrow(&self.points, origin);
         self.points = Vec::new();
-        let infinite = count_infinite(&positions);
-        if infinite > 0 {
-            let message = format!("{infinite} points have a coordinate that is NaN or infinite");
-            model.warn(Place::Whole, message);
-        }
+        let words = "{point has|points have} a coordinate that is NaN or infinite";
+        model.warn_counted(Place::Whole, count_infinite(&positions) as u64, words);
         let colors = self.linear_colors(&mut model);
         let mut mesh = Mesh { topology: Topology::Points, positions, colors, ..Mesh::default() };
         facets::show_colors(&mut model, std::slice::from_mut(&mut mesh));

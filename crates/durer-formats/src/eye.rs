@@ -97,11 +97,8 @@ fn camera(lens: &Lens, world: DMat4, behind: impl Fn(DVec3) -> f64) -> Result<Na
 
 /// Warns of lights that do not shine, because [`ReadOptions::own_lights`](crate::ReadOptions) is off.
 pub(crate) fn tell_dark(count: usize, model: &mut Model) {
-    if count > 0 {
-        let message =
-            format!("{count} lights of the file do not shine unless its own lights are asked for");
-        model.warn(Place::Whole, message);
-    }
+    let words = "{light of the file does|lights of the file do} not shine unless its own lights are requested";
+    model.warn_counted(Place::Whole, count as u64, words);
 }
 
 /// A light of a format that specifies the falloff with distance itself.

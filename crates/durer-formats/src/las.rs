@@ -59,8 +59,8 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
         header.points(bytes, &mut cloud)
     };
     if read < header.count {
-        let count = header.count;
-        let message = format!("the file ends too early: {read} of {count} points are read");
+        let (count, are) = (header.count, if read == 1 { "is" } else { "are" });
+        let message = format!("the file ends too early: {read} of {count} points {are} read");
         if read == 0 {
             return Err(Error::byte(bytes.len() as u64, message));
         }

@@ -182,8 +182,9 @@ fn faces(scene: &Scene, warnings: &mut Vec<String>) -> Result<Vec<Vec<DVec3>>> {
         });
     }
     if left_out > 0 {
+        let are = if left_out == 1 { "is" } else { "are" };
         let message =
-            format!("only its first {MOST_FACES} faces are explained; {left_out} are left out");
+            format!("only its first {MOST_FACES} faces are explained; {left_out} {are} left out");
         warnings.push(message);
     }
     Ok(faces)

@@ -1,5 +1,7 @@
 //! The types that all readers of models share.
 
+use crate::text::Tally;
+use crate::told::agreeing;
 use crate::{Place, Warning};
 use durer::math::Vec3;
 use durer::scene::Scene;
@@ -160,6 +162,24 @@ impl Model {
     /// Adds a warning.
     pub fn warn(&mut self, place: Place, message: impl Into<String>) {
         self.warnings.push(Warning { place, message: message.into() });
+    }
+
+    /// Adds a warning about several things, if there are any, in words for [`agreeing`].
+    pub(crate) fn warn_counted(&mut self, place: Place, count: u64, words: &str) {
+        if count > 0 {
+            self.warn(place, agreeing(count, words));
+        }
+    }
+
+    /// Adds a warning about what was counted, at its first place, in words for [`agreeing`].
+    pub(crate) fn warn_of(&mut self, tally: &Tally, words: &str) {
+        self.warn_counted(tally.first.clone(), tally.count, words);
+    }
+
+    /// Adds a warning about vertices that are not finite.
+    pub(crate) fn warn_infinite(&mut self, count: usize) {
+        let words = "{vertex has|vertices have} a coordinate that is NaN or infinite";
+        self.warn_counted(Place::Whole, count as u64, words);
     }
 }
 

@@ -312,11 +312,7 @@ impl Reader {
         let count = self.points.len();
         self.points = Vec::new();
         let Attributes { colors, tex_coords, positions, .. } = &mut self.vertices;
-        let infinite = count_infinite(positions);
-        if infinite > 0 {
-            let message = format!("{infinite} vertices have a coordinate that is NaN or infinite");
-            model.warn(Place::Whole, message);
-        }
+        model.warn_infinite(count_infinite(positions));
         tex_coords.resize(if tex_coords.is_empty() { 0 } else { count }, Vec2::ZERO);
         colors.resize(if colors.is_empty() { 0 } else { count }, Vec4::INFINITY);
         to_unit(colors);
@@ -336,14 +332,18 @@ impl Reader {
 
     fn warn(&self, model: &mut Model) {
         for (tally, message) in [
-            (&self.dangling, "faces have a vertex that does not exist and were left out"),
-            (&self.small, "faces have fewer than two vertices and were left out"),
-            (&self.odd, "lines have further numbers, which were ignored"),
-            (&self.mapped, "faces have a color by number, which is not shown"),
+            (
+                &self.dangling,
+                "{face has a vertex that does not exist and was|faces have a vertex that does not exist and were} left out",
+            ),
+            (
+                &self.small,
+                "{face has fewer than two vertices and was|faces have fewer than two vertices and were} left out",
+            ),
+            (&self.odd, "{line has|lines have} further numbers, which were ignored"),
+            (&self.mapped, "{face has|faces have} a color by number, which is not shown"),
         ] {
-            if tally.count > 0 {
-                model.warn(tally.first.clone(), format!("{} {message}", tally.count));
-            }
+            model.warn_of(tally, message);
         }
         if self.points.is_empty() {
             model.warn(Place::Whole, "holds no vertices");

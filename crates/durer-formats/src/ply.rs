@@ -77,11 +77,8 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
 
 /// Warns of skipped lines, and of missing or surplus data at the end of the file.
 fn warn_of_end(model: &mut Model, header: &Header, end: Option<(Place, String)>) {
-    if header.unknown.count > 0 {
-        let message =
-            format!("{} lines are not of a PLY header and were skipped", header.unknown.count);
-        model.warn(header.unknown.first.clone(), message);
-    }
+    let words = "{line is|lines are} not of a PLY header and {was|were} skipped";
+    model.warn_of(&header.unknown, words);
     if let Some((place, message)) = end {
         model.warn(place, message);
     }
@@ -147,8 +144,9 @@ fn missing(element: &Element, row: u64, builder: &Builder, why: Error) -> Result
 fn missing_rows(element: &Element, row: u64, why: Error) -> Result<(Place, String)> {
     let Error::Decode { place, message } = why else { return Err(why) };
     let Element { name, count, .. } = element;
+    let are = if row == 1 { "is" } else { "are" };
     let message = format!(
-        "{message}: {row} of {count} rows of element `{name}` are read, and nothing after them"
+        "{message}: {row} of {count} rows of element `{name}` {are} read, and nothing after them"
     );
     Ok((place, message))
 }

@@ -63,12 +63,16 @@ pub(crate) fn recut(model: &mut Model, mesh: &mut Mesh, limits: &Limits) -> Resu
         replaced.put_into(mesh, limits)?;
     }
     for (tally, message) in [
-        (&found.crossing, "polygons cross themselves; filled by the non-zero rule"),
-        (&found.given_up, "polygons are too intricate; shown as fans from their first corners"),
+        (
+            &found.crossing,
+            "{polygon crosses itself|polygons cross themselves}; filled by the non-zero rule",
+        ),
+        (
+            &found.given_up,
+            "{polygon is too intricate; shown as a fan from its first corner|polygons are too intricate; shown as fans from their first corners}",
+        ),
     ] {
-        if tally.count > 0 {
-            model.warn(tally.first.clone(), format!("{} {message}", tally.count));
-        }
+        model.warn_of(tally, message);
     }
     Ok(())
 }

@@ -89,16 +89,9 @@ fn finished(mut model: Model, infinite: usize) -> Result<Model> {
     if model.scene.meshes.iter().all(|m| m.positions.is_empty()) {
         model.warn(Place::Whole, "holds no triangles");
     }
-    warn_infinite(&mut model, infinite);
+    model.warn_infinite(infinite);
     model.scene.check()?;
     Ok(model)
-}
-
-fn warn_infinite(model: &mut Model, infinite: usize) {
-    if infinite > 0 {
-        let message = format!("{infinite} vertices have a coordinate that is NaN or infinite");
-        model.warn(Place::Whole, message);
-    }
 }
 
 fn check_limit(triangles: u64, limits: &Limits) -> Result<()> {

@@ -34,6 +34,28 @@ pub fn counted(count: u64, one: &str, several: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { several })
 }
 
+/// Returns a number and words that agree with it: of each `{one|several}` in the words, the first if the number is 1.
+///
+/// ```
+/// use durer_formats::told::agreeing;
+/// let words = "{face has|faces have} two corners; {it is|they are} left out";
+/// assert_eq!(agreeing(1, words), "1 face has two corners; it is left out");
+/// assert_eq!(agreeing(2, words), "2 faces have two corners; they are left out");
+/// ```
+pub fn agreeing(count: u64, words: &str) -> String {
+    let mut told = count.to_string() + " ";
+    let mut rest = words;
+    while let Some((before, choice)) = rest.split_once('{')
+        && let Some((choice, after)) = choice.split_once('}')
+    {
+        let (one, several) = choice.split_once('|').unwrap_or((choice, choice));
+        told += before;
+        told += if count == 1 { one } else { several };
+        rest = after;
+    }
+    told + rest
+}
+
 fn cut_at(text: &str, most: usize) -> Cow<'_, str> {
     let mut ends = text.char_indices().map(|(at, _)| at).skip(most - 1);
     match (ends.next(), ends.next()) {

@@ -44,10 +44,7 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
         let count = cloud.points.len() as u64;
         cloud.make_room(count, || Place::Line(line, 0), &options.limits)?;
     }
-    if odd.count > 0 {
-        let message = format!("{} lines hold no point and were skipped", odd.count);
-        model.warn(odd.first, message);
-    }
+    model.warn_of(&odd, "{line holds no point and was|lines hold no point and were} skipped");
     if cloud.points.is_empty() {
         return Err(Error::whole("no line holds the three coordinates of a point"));
     }

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use durer::paper::{Callout, PartsListRow, ViewKind};
 use durer::pipeline;
 use durer::view::projection::NamedView;
+use durer_formats::told::agreeing;
 
 /// Number of hidden parts that a message lists.
 const NAMED: usize = 5;
@@ -51,12 +52,11 @@ impl Callouts {
             found.parts.push(PartsListRow { number, name, quantity });
         }
         if !unseen.is_empty() {
-            let (count, more) = (unseen.len(), if unseen.len() > NAMED { ", …" } else { "" });
+            let words = "{part is in the list only, as the view does not show it|parts are in the list only, as the view does not show them}";
+            let parts = agreeing(unseen.len() as u64, words);
+            let more = if unseen.len() > NAMED { ", …" } else { "" };
             unseen.truncate(NAMED);
-            notes.push(format!(
-                "--callouts: {count} parts are in the list only, as the view does not show them: {}{more}",
-                unseen.join(", ")
-            ));
+            notes.push(format!("--callouts: {parts}: {}{more}", unseen.join(", ")));
         }
         Ok(found)
     }

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::kind::Kind;
 use crate::options::drawing::DetailSpec;
 use crate::render_args::RenderArgs;
+use crate::section::UNCAPPED;
 use durer::math::{DVec3, Plane};
 use durer::paper::{Detail, ViewKind};
 use durer::scene::{Camera, Projection, Scene, UpAxis};
@@ -15,6 +16,7 @@ use durer::view::projection::NamedView;
 use durer::view::section::Section;
 use durer::work::Charge;
 use durer_formats::drawing::DrawingFormat;
+use durer_formats::told::agreeing;
 
 /// The views of a sheet where none are named.
 const VIEWS: &[NamedView] = &[NamedView::Front, NamedView::Top, NamedView::Right, NamedView::Iso];
@@ -100,8 +102,8 @@ impl Shot {
             notes.push(format!("section {letter} leaves nothing of the model"));
         }
         if cut.open_cuts > 0 {
-            let count = cut.open_cuts;
-            notes.push(format!("section {letter}: {count} cuts through open meshes have no cap"));
+            let cuts = agreeing(cut.open_cuts as u64, UNCAPPED);
+            notes.push(format!("section {letter}: {cuts}"));
         }
         Ok(Some((cut, charge)))
     }

@@ -28,6 +28,7 @@ use durer_formats::drawing::{self, DrawingFormat, FileOptions};
 use durer_formats::formula::Formula;
 use durer_formats::height_map::{self, HeightMap, HeightMapOptions};
 use durer_formats::picture::{self, PictureFormat};
+use durer_formats::told::counted;
 use report::Report;
 use std::path::Path;
 use std::time::Instant;
@@ -143,7 +144,8 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
     if flattened {
         messages.warning(&target.to_string(), encoding::FLATTENED);
     }
-    messages.detail(|| format!("{target}: {lines} lines, {bytes} bytes"));
+    let lines = counted(lines as u64, "line", "lines");
+    messages.detail(|| format!("{target}: {lines}, {bytes} bytes"));
     drop(messages);
     if let Some(report) = &mut report {
         (report.read_seconds, report.draw_seconds) = (read_seconds, draw_seconds);

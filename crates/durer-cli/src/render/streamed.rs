@@ -24,6 +24,7 @@ use durer::scene::{Camera, NamedCamera, Projection, Scene, UpAxis};
 use durer::target::Framebuffer;
 use durer::view::fit;
 use durer::view::projection::{EndsOfPieces, FitOptions, FitPieces, ViewDirection};
+use durer_formats::told::counted;
 use durer_formats::{Facts, Pieces};
 use std::time::Instant;
 
@@ -119,7 +120,8 @@ impl Streamed<'_> {
         self.messages.warnings(self.name, &facts.model.warnings);
         self.messages.detail(|| {
             let Facts { model, triangles, .. } = &facts;
-            format!("{}: {}, {triangles} triangles, read in pieces", self.name, model.format)
+            let triangles = counted(*triangles, "triangle", "triangles");
+            format!("{}: {}, {triangles}, read in pieces", self.name, model.format)
         });
         Ok(self.facts.insert(facts).clone())
     }

@@ -4,6 +4,7 @@ use durer::annotate::Feature;
 use durer::math::DVec3;
 use durer::paper::{LaidOut, scale_text};
 use durer::target::drawing::{Drawing, Line, LineClass};
+use durer_formats::told::counted;
 use serde::Serialize;
 
 /// Number of borders below which they are taken for the edges of sheets.
@@ -138,7 +139,9 @@ impl DrawingReport {
     pub fn summary(&self) -> String {
         let polylines: usize =
             self.lines.iter().map(|c| c.visible.polylines + c.hidden.polylines).sum();
-        format!("{polylines} polylines, {} regions, scale {}", self.regions, self.scale_text)
+        let polylines = counted(polylines as u64, "polyline", "polylines");
+        let regions = counted(self.regions as u64, "region", "regions");
+        format!("{polylines}, {regions}, scale {}", self.scale_text)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::PictureReport;
 use crate::encoding::FLATTENED;
 use crate::messages::Messages;
+use durer_formats::told::agreeing;
 use durer_formats::{Model, Place};
 
 /// The notes on all pictures of a model.
@@ -41,10 +42,8 @@ impl Noticed {
 
     /// Adds warnings to the model, and prints them.
     pub fn tell(self, name: &str, model: &mut Model, messages: &Messages) {
-        let non_finite = (self.non_finite > 0).then(|| {
-            let count = self.non_finite;
-            format!("{count} triangles with a coordinate that is not finite are left out")
-        });
+        let words = "{triangle|triangles} with a coordinate that is not finite {is|are} left out";
+        let non_finite = (self.non_finite > 0).then(|| agreeing(self.non_finite, words));
         let flattened = format!("{FLATTENED}; --background gives it another colour");
         tell(name, model, messages, non_finite);
         if let Some(why) = self.unseen {

@@ -37,10 +37,10 @@ pub(super) fn add(
             None => unknown.add(|| document.place(placed.target)),
         }
     }
-    if unknown.count > 0 {
-        let message = format!("{} lights are of no known kind; they are left out", unknown.count);
-        model.warn(unknown.first, message);
-    }
+    model.warn_of(
+        &unknown,
+        "{light is of no known kind; it is|lights are of no known kind; they are} left out",
+    );
     model.scene.lights = eye::lights(&lamps, unit, &model.scene);
 }
 

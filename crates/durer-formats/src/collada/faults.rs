@@ -18,22 +18,35 @@ pub(super) struct Faults {
 /// Adds warnings about omissions and repairs.
 pub(super) fn warn(model: &mut Model, faults: &Faults) {
     for (tally, what) in [
-        (&faults.numbers, "words of arrays are not finite numbers; they count as 0"),
-        (&faults.indices, "corners have an index beyond their source; their faces are left out"),
+        (
+            &faults.numbers,
+            "{word of an array is not a finite number; it counts|words of arrays are not finite numbers; they count} as 0",
+        ),
+        (
+            &faults.indices,
+            "{corner has an index beyond its source; its face is|corners have an index beyond their source; their faces are} left out",
+        ),
         (
             &faults.attributes,
-            "corners refer to a normal, color or texture coordinate beyond its source; they get none",
+            "{corner refers|corners refer} to a normal, color or texture coordinate beyond its source; {it gets|they get} none",
         ),
-        (&faults.short, "faces or lists have too few indices; they are left out"),
-        (&faults.unknown, "geometries are not meshes (splines, bodies); they are left out"),
+        (
+            &faults.short,
+            "{face or list has too few indices; it is|faces or lists have too few indices; they are} left out",
+        ),
+        (
+            &faults.unknown,
+            "{geometry is not a mesh (but a spline or body); it is|geometries are not meshes (but splines or bodies); they are} left out",
+        ),
         (
             &faults.sources,
-            "inputs name a source that is not there or has no numbers; they are left out",
+            "{input names|inputs name} a source that is missing or has no numbers; {it is|they are} left out",
         ),
-        (&faults.holes, "holes of polygons could not be cut; they are filled"),
+        (
+            &faults.holes,
+            "{hole of a polygon could not be cut; it is|holes of polygons could not be cut; they are} filled",
+        ),
     ] {
-        if tally.count > 0 {
-            model.warn(tally.first.clone(), format!("{} {what}", tally.count));
-        }
+        model.warn_of(tally, what);
     }
 }

@@ -73,11 +73,8 @@ impl<'d, 'a> Materials<'d, 'a> {
 
     /// Adds warnings about omissions.
     pub fn warn(&self, model: &mut Model) {
-        if self.lost.count > 0 {
-            let message =
-                format!("{} textures name no picture; they are left out", self.lost.count);
-            model.warn(self.lost.first.clone(), message);
-        }
+        let words = "{texture names no picture; it is|textures name no picture; they are} left out";
+        model.warn_of(&self.lost, words);
     }
 
     fn fill(

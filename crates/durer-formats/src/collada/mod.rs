@@ -111,7 +111,7 @@ fn animations(document: &Document<'_>, root: usize, model: &mut Model) {
     let mut all = libraries.flat_map(|l| document.named(l, "animation"));
     if let Some(first) = all.next() {
         let count = 1 + all.count();
-        let message = format!("{count} animations are not read; the model is shown at rest");
-        model.warn(document.place(first), message);
+        let words = "{animation is|animations are} not read; the model is shown at rest";
+        model.warn_counted(document.place(first), count as u64, words);
     }
 }

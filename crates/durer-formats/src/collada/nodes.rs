@@ -145,13 +145,20 @@ impl<'d, 'a> Nodes<'d, 'a> {
         faults::warn(model, &self.faults);
         self.materials.warn(model);
         for (tally, what) in [
-            (&self.missing, "instances refer to missing objects; they are left out"),
-            (&self.cycles, "nodes are inside themselves; they are left out there"),
-            (&self.broken, "transforms have not the right numbers; they are left out"),
+            (
+                &self.missing,
+                "{instance refers to a missing object; it is|instances refer to missing objects; they are} left out",
+            ),
+            (
+                &self.cycles,
+                "{node is inside itself; it is|nodes are inside themselves; they are} left out there",
+            ),
+            (
+                &self.broken,
+                "{transform does not have the right numbers; it is|transforms do not have the right numbers; they are} left out",
+            ),
         ] {
-            if tally.count > 0 {
-                model.warn(tally.first.clone(), format!("{} {what}", tally.count));
-            }
+            model.warn_of(tally, what);
         }
     }
 

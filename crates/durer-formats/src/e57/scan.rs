@@ -9,6 +9,7 @@
 
 use crate::cloud::Cloud;
 use crate::foreign;
+use crate::told::counted;
 use crate::{Error, Limits, Model, Place, ReadOptions, Resources, Result};
 use durer::math::{DMat3, DVec3, Vec4};
 use e57::{CartesianCoordinate, E57Reader, Point, PointCloud, RecordDataType, SphericalCoordinate};
@@ -37,10 +38,8 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
         Err(_) => model.warn(Place::Whole, "the data end early: the part before is shown"),
         Ok(Ok(())) => {}
     }
-    if scans.invalid > 0 {
-        let message = format!("{} points are marked as invalid and left out", scans.invalid);
-        model.warn(Place::Whole, message);
-    }
+    let words = "{point is|points are} marked as invalid and left out";
+    model.warn_counted(Place::Whole, scans.invalid, words);
     scans.settle();
     scans.cloud.into_model(model)
 }
@@ -75,8 +74,8 @@ impl Scans {
             self.cloud.make_room(sum, place, &self.limits)?;
             let result = self.scan(&mut reader, scan);
             if let Err(why) = result {
-                let count = self.cloud.points.len();
-                let message = format!("breaks off: {why}; {count} points are read");
+                let points = counted(self.cloud.points.len() as u64, "point is", "points are");
+                let message = format!("breaks off: {why}; {points} read");
                 model.warn(place(), message);
             }
         }

@@ -40,12 +40,16 @@ pub(super) fn add(model: &mut Model, scene: &Scene, frames: &Frames, unit: f64, 
         }
     }
     for (tally, what) in [
-        (broken, "lights have no direction or no place; they are left out"),
-        (areas, "lights are areas or volumes; they shine as points"),
+        (
+            broken,
+            "{light has no direction or no place; it is|lights have no direction or no place; they are} left out",
+        ),
+        (
+            areas,
+            "{light is an area or a volume; it shines as a point|lights are areas or volumes; they shine as points}",
+        ),
     ] {
-        if tally.count > 0 {
-            model.warn(tally.first, format!("{} {what}", tally.count));
-        }
+        model.warn_of(&tally, what);
     }
     model.scene.lights = eye::lights(&lamps, unit, &model.scene);
 }

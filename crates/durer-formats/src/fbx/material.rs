@@ -67,17 +67,24 @@ impl<'s> Materials<'s> {
     /// Adds warnings about omissions.
     pub fn warn(&self, model: &mut Model) {
         for (tally, what) in [
-            (&self.layered, "textures have layers or are computed; their first picture is shown"),
-            (&self.lost, "textures name no picture; they are left out"),
+            (
+                &self.layered,
+                "{texture has layers or is computed; its|textures have layers or are computed; their} first picture is shown",
+            ),
+            (
+                &self.lost,
+                "{texture names no picture; it is|textures name no picture; they are} left out",
+            ),
             (
                 &self.opaque,
-                "materials are wholly transparent, as some programs write opaque ones; they are opaque",
+                "{material is wholly transparent, as some programs write opaque ones; it is|materials are wholly transparent, as some programs write opaque ones; they are} shown opaque",
             ),
-            (&self.bumps, "bump maps show heights, which is not read; they are left out"),
+            (
+                &self.bumps,
+                "bump {map shows heights, which is not read; it is|maps show heights, which is not read; they are} left out",
+            ),
         ] {
-            if tally.count > 0 {
-                model.warn(tally.first.clone(), format!("{} {what}", tally.count));
-            }
+            model.warn_of(tally, what);
         }
     }
 

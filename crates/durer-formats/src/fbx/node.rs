@@ -160,18 +160,28 @@ impl<'s> Nodes<'s> {
     pub fn warn(&self, model: &mut Model) {
         self.materials.warn(model);
         for (tally, what) in [
-            (&self.hidden, "nodes are hidden; they and the nodes below them are left out"),
-            (&self.coarse, "nodes are coarser levels of detail; they are left out"),
+            (
+                &self.hidden,
+                "{node is hidden; it and the nodes below it|nodes are hidden; they and the nodes below them} are left out",
+            ),
+            (
+                &self.coarse,
+                "{node is a coarser level of detail; it is|nodes are coarser levels of detail; they are} left out",
+            ),
             (
                 &self.faults.attributes,
-                "corners refer to a missing normal, color or texture coordinate; they get none",
+                "{corner refers|corners refer} to a missing normal, color or texture coordinate; {it gets|they get} none",
             ),
-            (&self.faults.holes, "faces are marked as holes; they are left out"),
-            (&self.faults.points, "faces have a single corner; they are left out"),
+            (
+                &self.faults.holes,
+                "{face is marked as a hole; it is|faces are marked as holes; they are} left out",
+            ),
+            (
+                &self.faults.points,
+                "{face has a single corner; it is|faces have a single corner; they are} left out",
+            ),
         ] {
-            if tally.count > 0 {
-                model.warn(tally.first.clone(), format!("{} {what}", tally.count));
-            }
+            model.warn_of(tally, what);
         }
     }
 }

@@ -146,24 +146,25 @@ fn left_out(scene: &Scene, frames: &Frames, model: &mut Model) {
     for (count, what) in [
         (
             scene.skin_deformers.count,
-            "skins are not bent by their bones; their meshes are shown at rest",
+            "{skin is not bent by its bones; its mesh is|skins are not bent by their bones; their meshes are} shown at rest",
         ),
-        (blends, "blend shapes are not read; meshes have their basic shape"),
-        (levels, "meshes are subdivided by what shows them; their control meshes are shown"),
-        (scene.cache_deformers.count, "meshes move by a cache, which is not read"),
-        (scene.nurbs_surfaces.count, "NURBS surfaces are not read"),
-        (scene.nurbs_curves.count + scene.line_curves.count, "curves are not read"),
-        (scene.procedural_geometries.count, "procedural geometries are not read"),
-        (frames.broken, "transforms have numbers that are not finite; those are as if not there"),
+        (blends, "{blend shape is|blend shapes are} not read; meshes have their basic shape"),
+        (
+            levels,
+            "{mesh is meant to be subdivided; its control mesh is|meshes are meant to be subdivided; their control meshes are} shown",
+        ),
+        (scene.cache_deformers.count, "{mesh moves|meshes move} by a cache, which is not read"),
+        (scene.nurbs_surfaces.count, "NURBS {surface is|surfaces are} not read"),
+        (scene.nurbs_curves.count + scene.line_curves.count, "{curve is|curves are} not read"),
+        (scene.procedural_geometries.count, "procedural {geometry is|geometries are} not read"),
+        (
+            frames.broken,
+            "{transform has|transforms have} numbers that are not finite, which are ignored",
+        ),
     ] {
-        if count > 0 {
-            model.warn(Place::Whole, format!("{count} {what}"));
-        }
+        model.warn_counted(Place::Whole, count as u64, what);
     }
-    let animations = scene.anim_curves.count;
-    if animations > 0 {
-        let message =
-            format!("{animations} curves of animations are not read; the model is shown at rest");
-        model.warn(Place::Whole, message);
-    }
+    let words =
+        "{curve of an animation is|curves of animations are} not read; the model is shown at rest";
+    model.warn_counted(Place::Whole, scene.anim_curves.count as u64, words);
 }

@@ -1,5 +1,6 @@
 //! Parts that could not be read, and are left out if something else remains.
 
+use crate::told::counted;
 use crate::{Error, Model, Place, Result};
 use std::collections::BTreeMap;
 
@@ -39,7 +40,10 @@ impl Broken {
         for (error, at, count) in self.kinds.into_values() {
             let left_out = match count {
                 1 => format!("{at} is left out"),
-                _ => format!("{at} and {} more primitives are left out", count - 1),
+                _ => {
+                    let more = counted(count - 1, "more primitive", "more primitives");
+                    format!("{at} and {more} are left out")
+                }
             };
             warn(error, &left_out, model);
         }

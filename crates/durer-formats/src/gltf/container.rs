@@ -2,6 +2,7 @@
 
 use super::bytes::Bytes;
 use super::old;
+use crate::told::agreeing;
 use crate::{Error, Place, Result, Warning};
 use std::borrow::Cow;
 
@@ -80,7 +81,8 @@ fn split_binary<'a>(file: &Bytes<'a>, warnings: &mut Vec<Warning>) -> Result<Con
         warnings.push(Warning { place: Place::Byte(at), message });
     };
     if length < file.len() {
-        warn(length, format!("{} bytes after the end are ignored", file.len() - length));
+        let words = "{byte after the end is|bytes after the end are} ignored";
+        warn(length, agreeing(file.len() - length, words));
     }
     let (json, end) = match chunk(file, length, FIRST)? {
         (JSON, data, end) => (data.whole()?, end),

@@ -6,6 +6,7 @@ use super::surface::{self, BRIGHTEST};
 use super::texture_ref::texture;
 use super::todo::Todo;
 use super::{broken, derived};
+use crate::told::counted;
 use crate::{Error, Place, Resources, Result, Warning, image, uri};
 use durer::math::{Vec3, Vec4};
 use durer::scene::{
@@ -76,8 +77,8 @@ fn used_images(root: &Root, scene: &Scene, todo: &Todo, warnings: &mut Vec<Warni
         let message = match (without.iter().filter(basisu).count(), without.len()) {
             (0, 1) => "has no image that can be read; drawn white".to_owned(),
             (0, n) => format!(
-                "this and {} more textures have no image that can be read; drawn white",
-                n - 1
+                "this and {} have no image that can be read; drawn white",
+                counted(n as u64 - 1, "more texture", "more textures")
             ),
             (_, n) => format!(
                 "KTX 2 (KHR_texture_basisu) is not decoded, and no other image is given: {n} drawn white"

@@ -2,6 +2,7 @@
 
 use super::geometry::Geometry;
 use crate::model::count_infinite;
+use crate::told::agreeing;
 use durer::math::{Vec3, Vec4};
 use durer::scene::Topology;
 
@@ -10,7 +11,7 @@ use durer::scene::Topology;
 pub fn repair(g: &mut Geometry) {
     let positions = count_infinite(&g.mesh.positions);
     if positions > 0 {
-        g.notes.push(format!("{positions} vertices are not finite"));
+        g.notes.push(agreeing(positions as u64, "{vertex is|vertices are} not finite"));
     }
     let mut bad = Vec::new();
     for (i, normal) in g.mesh.normals.iter_mut().enumerate() {
@@ -20,7 +21,8 @@ pub fn repair(g: &mut Geometry) {
         }
     }
     if !bad.is_empty() {
-        g.notes.push(format!("{} normals without a direction are made anew", bad.len()));
+        let words = "{normal without a direction is|normals without a direction are} computed anew";
+        g.notes.push(agreeing(bad.len() as u64, words));
         let sums = area_normals(g);
         bad.into_iter().for_each(|i| g.mesh.normals[i] = unit(sums[i]).unwrap_or(Vec3::Z));
     }

@@ -59,7 +59,10 @@ impl Placing {
         if lost > 0 {
             let message = match self.places.len() {
                 1 => "its place in the world is not finite; left out".to_owned(),
-                all => format!("{lost} of its {all} places are not finite; left out"),
+                all => {
+                    let are = if lost == 1 { "is" } else { "are" };
+                    format!("{lost} of its {all} places {are} not finite; left out")
+                }
             };
             model.warn(Place::Path(format!("nodes[{}]", self.node)), message);
         }

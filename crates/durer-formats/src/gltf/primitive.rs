@@ -4,6 +4,7 @@ use super::buffer::Source;
 use super::geometry::{Geometry, Influences};
 use super::json::{Primitive, Whole};
 use super::{draco, normals};
+use crate::told::{agreeing, counted};
 use crate::{Error, Result};
 use durer::math::{Vec3, Vec4};
 use durer::scene::{Mesh, Topology};
@@ -213,7 +214,8 @@ impl Geometry {
         let list = matches!(mode, Mode::Points | Mode::Lines | Mode::Triangles);
         if list && primitives * corners != count {
             let rest = count - primitives * corners;
-            self.notes.push(format!("{rest} indices at the end make no primitive; left out"));
+            let words = "{index at the end makes|indices at the end make} no primitive; left out";
+            self.notes.push(agreeing(rest as u64, words));
         }
         self.mesh.indices = match indices {
             None if list && primitives * corners == count => None,
@@ -234,10 +236,10 @@ impl Geometry {
     /// Leaves out primitives with a corner that is not a vertex; `first` describes the first of these. If nothing is
     /// left, that is an error.
     fn leave_out_dangling(&mut self, first: &str, at: &str) -> Result<()> {
-        let (corners, kind) = match self.mesh.topology {
-            Topology::Points => (1, "points"),
-            Topology::Lines => (2, "lines"),
-            Topology::Triangles => (3, "triangles"),
+        let (corners, [one, several]) = match self.mesh.topology {
+            Topology::Points => (1, ["point", "points"]),
+            Topology::Lines => (2, ["line", "lines"]),
+            Topology::Triangles => (3, ["triangle", "triangles"]),
         };
         let vertices = self.mesh.positions.len();
         let indices = self.mesh.indices.get_or_insert_default();
@@ -254,8 +256,10 @@ impl Geometry {
         }
         let left_out = (count - kept) / corners;
         if left_out > 0 {
-            let message = "with a corner that is not a vertex are left out, the first";
-            self.notes.push(format!("{left_out} {kind} {message}: {first}"));
+            let kinds = counted(left_out as u64, one, several);
+            let then = if left_out == 1 { "is left out" } else { "are left out, the first" };
+            let message = format!("{kinds} with a corner that is not a vertex {then}: {first}");
+            self.notes.push(message);
         }
         Ok(())
     }

@@ -11,6 +11,7 @@ mod picture;
 mod points;
 mod table;
 
+use crate::told::agreeing;
 use crate::{Error, Limits, Place, Result, Warning, archive, gzip};
 use durer::scene::HeightField;
 
@@ -166,7 +167,8 @@ fn finish(grid: Grid, options: &HeightMapOptions) -> Result<HeightMap> {
     }
     let infinite = heights.iter().filter(|h| h.is_infinite()).count();
     if infinite > 0 {
-        let message = format!("{infinite} infinite heights are taken as missing");
+        let message =
+            agreeing(infinite as u64, "infinite {height is|heights are} taken as missing");
         warnings.push(Warning { place: Place::Whole, message });
     }
     let count = |n: usize| n.saturating_sub(1) as f64;

@@ -1,6 +1,7 @@
 //! Lists of points x, y, z, and tables whose first row and column are coordinates: resampled to an even grid.
 
 use super::{Grid, HeightMapOptions, check_size};
+use crate::told::agreeing;
 use crate::{Error, Place, Result, Warning};
 use spade::{DelaunayTriangulation, FloatTriangulation, HasPosition, Point2, Triangulation};
 
@@ -142,15 +143,12 @@ fn scattered(points: &[[f64; 3]], options: &HeightMapOptions) -> Result<Grid> {
     }
     let mut warnings = Vec::new();
     if whole.len() < points.len() {
-        warnings
-            .push(told(format!("{} points have no place or height", points.len() - whole.len())));
+        let count = (points.len() - whole.len()) as u64;
+        warnings.push(told(agreeing(count, "{point has|points have} no place or height")));
     }
     if known < whole.len() {
-        let message = format!(
-            "{} points have the place of others; the last height counts",
-            whole.len() - known
-        );
-        warnings.push(told(message));
+        let words = "{point has the place of another|points have the place of others}; the last height counts";
+        warnings.push(told(agreeing((whole.len() - known) as u64, words)));
     }
     let range = |axis: usize| {
         let values = || whole.iter().map(|p| p[axis]);

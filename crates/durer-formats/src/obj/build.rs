@@ -3,6 +3,7 @@
 use super::corners::{Corner, NONE};
 use super::parse::{Parsed, Run};
 use super::smooth;
+use crate::told::agreeing;
 use crate::{Model, Place, ReadOptions, Resources, Result, color, mtl, place, polygon};
 use durer::math::{DVec3, Vec2, Vec3, Vec4};
 use durer::scene::{Instance, Material, Mesh, Part, Topology};
@@ -24,8 +25,11 @@ pub(super) fn build(
         parsed.triangles.indices.is_empty() && parsed.lines.is_empty() && parsed.points.is_empty();
     if nothing_drawn {
         let message = format!(
-            "no faces, lines or points: the {} vertices are taken as points",
-            parsed.positions.len()
+            "no faces, lines or points: the {}",
+            agreeing(
+                parsed.positions.len() as u64,
+                "{vertex is taken as a point|vertices are taken as points}"
+            )
         );
         model.warn(Place::Whole, message);
         parsed.points = (0..parsed.positions.len() as u32).collect();

@@ -1,6 +1,7 @@
 //! Faults of an OBJ file that cost only the element that contains them.
 
 use crate::text::Tally;
+use crate::told::agreeing;
 use crate::{Error, Model, Place, Result};
 
 /// Things that were left out or repaired.
@@ -28,42 +29,52 @@ pub(super) struct Repairs {
 impl Repairs {
     /// Adds one warning for each kind of repair.
     pub fn tell(&self, model: &mut Model) {
-        let word = &self.unknown_word;
+        let quoted = format!("`{}`", self.unknown_word);
         let (corner, number) = (&self.bad_corner, &self.bad_number);
-        for (tally, message) in [
+        for (tally, words, first) in [
             (
                 &self.unknown,
-                format!("statements are not known and were skipped, the first: `{word}`"),
+                "{statement is not known and was|statements are not known and were} skipped",
+                quoted,
             ),
             (
                 &self.bad_corners,
-                format!(
-                    "faces, lines or points have a wrong corner and were left out, the first: {corner}"
-                ),
+                "{face, line or point has a wrong corner and was|faces, lines or points have a wrong corner and were} left out",
+                corner.clone(),
             ),
             (
                 &self.bad_numbers,
-                format!(
-                    "vertices, texture coordinates or normals are not readable, the first: {number}"
-                ),
+                "{vertex, texture coordinate or normal is|vertices, texture coordinates or normals are} not readable",
+                number.clone(),
             ),
-            (&self.short_faces, "elements have too few corners and were left out".to_owned()),
-            (&self.non_finite, "vertices have a coordinate that is NaN or infinite".to_owned()),
-            (&self.sloppy, "numbers have something behind them, which was ignored".to_owned()),
+        ] {
+            if tally.count > 0 {
+                let first = if tally.count == 1 { first } else { format!("the first: {first}") };
+                let message = format!("{}: {first}", agreeing(tally.count, words));
+                model.warn(tally.first.clone(), message);
+            }
+        }
+        for (tally, words) in [
+            (
+                &self.short_faces,
+                "{element has too few corners and was|elements have too few corners and were} left out",
+            ),
+            (&self.non_finite, "{vertex has|vertices have} a coordinate that is NaN or infinite"),
+            (
+                &self.sloppy,
+                "{number has something behind it|numbers have something behind them}, which was ignored",
+            ),
             (
                 &self.no_attributes,
-                "corners name texture coordinates or normals, of which the file has none"
-                    .to_owned(),
+                "{corner names|corners name} texture coordinates or normals, of which the file has none",
             ),
             (
                 &self.no_color,
-                "vertices have no color where others have one; they are white".to_owned(),
+                "{vertex has no color where others have one; it is|vertices have no color where others have one; they are} white",
             ),
-            (&self.unnamed_parts, "further groups were joined to the last: too many".to_owned()),
+            (&self.unnamed_parts, "further {group was|groups were} joined to the last: too many"),
         ] {
-            if tally.count > 0 {
-                model.warn(tally.first.clone(), format!("{} {message}", tally.count));
-            }
+            model.warn_of(tally, words);
         }
         if self.byte_colors {
             model.warn(Place::Whole, "vertex colors go up to 255 instead of 1; they were scaled");

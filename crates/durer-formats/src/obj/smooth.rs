@@ -14,11 +14,8 @@ use durer::scene::Mesh;
 /// faces are left without, which means the face's own.
 pub(super) fn fill(model: &mut Model, mesh: &mut Mesh, keys: &[Corner], count: usize) {
     let missing = keys.iter().filter(|k| k.normal == NONE).count();
-    if missing > 0 {
-        let message =
-            format!("{missing} vertices have no normal where others have; theirs were computed");
-        model.warn(Place::Whole, message);
-    }
+    let words = "{vertex has no normal where others have one; its normal was|vertices have no normal where others have one; their normals were} computed";
+    model.warn_counted(Place::Whole, missing as u64, words);
     let mut computed: Vec<u32> =
         (0..).zip(keys).filter(|(_, k)| k.normal as usize > count).map(|(v, _)| v).collect();
     if computed.is_empty() {

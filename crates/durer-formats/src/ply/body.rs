@@ -2,6 +2,7 @@
 
 use super::header::{Element, Type};
 use crate::text::Cursor;
+use crate::told::agreeing;
 use crate::{Error, Place, Result};
 
 /// A source of values.
@@ -232,7 +233,12 @@ impl<const LITTLE: bool> Values for Binary<'_, LITTLE> {
 
 /// Returns the place and message for bytes beyond the last element.
 pub(super) fn left_over(left: u64, place: u64) -> Option<(Place, String)> {
-    let message = || format!("{left} bytes after the last element were ignored");
+    let message = || {
+        agreeing(
+            left,
+            "{byte after the last element was|bytes after the last element were} ignored",
+        )
+    };
     // Writers that end the data as they end a line leave one or two bytes.
     (left > 2).then(|| (Place::Byte(place), message()))
 }

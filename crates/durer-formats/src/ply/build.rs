@@ -10,6 +10,7 @@ use super::vertices::Vertices;
 use crate::budget::MODEL;
 use crate::facets::Palette;
 use crate::obj::corners::{Corner, Corners, NONE};
+use crate::told::counted;
 use crate::{Error, Limits, Place, Result};
 
 /// The edges so far.
@@ -115,8 +116,8 @@ impl Builder {
         };
         if count > 0 {
             let name = &plan.name;
-            self.unread
-                .push(format!("element `{name}` has {lacks}: its {count} rows are left out"));
+            let rows = counted(count, "row is", "rows are");
+            self.unread.push(format!("element `{name}` has {lacks}: its {rows} left out"));
         }
     }
 

@@ -165,10 +165,13 @@ impl Faces {
     /// Returns the messages about faces that were left out or changed.
     pub fn warnings(&self) -> [(&Tally, &'static str); 2] {
         [
-            (&self.small, "faces have fewer than three vertices and were left out"),
+            (
+                &self.small,
+                "{face has|faces have} fewer than three vertices and {was|were} left out",
+            ),
             (
                 &self.odd_tex_coords,
-                "faces have different numbers of texture coordinates and vertices; they get none",
+                "{face has|faces have} different numbers of texture coordinates and vertices; {it gets|they get} none",
             ),
         ]
     }

@@ -8,6 +8,7 @@ use super::{splat, texture};
 use crate::facets::{self, Attributes};
 use crate::model::count_infinite;
 use crate::obj::corners::Corners;
+use crate::told::agreeing;
 use crate::{Error, Model, Place, ReadOptions, Resources, Result, place};
 use durer::math::DVec3;
 use durer::scene::{Instance, Mesh, Topology};
@@ -86,13 +87,14 @@ pub(super) fn check_dangling(model: &mut Model, bounds: &Bounds, nothing: bool) 
     if nothing {
         return Err(Error::Decode { place, message });
     }
-    let message = format!("{message}; {} faces or edges like this are left out", dangling.count);
+    let words = "{face or edge like this is|faces or edges like this are} left out";
+    let message = format!("{message}; {}", agreeing(dangling.count, words));
     model.warn(place, message);
     Ok(())
 }
 
 fn warn(model: &mut Model, builder: &Builder) {
-    warn_infinite(model, count_infinite(&builder.vertices.all.positions));
+    model.warn_infinite(count_infinite(&builder.vertices.all.positions));
     if builder.vertices.all.positions.is_empty() {
         model.warn(Place::Whole, "holds no vertices");
     }
@@ -102,19 +104,10 @@ fn warn(model: &mut Model, builder: &Builder) {
     }
 }
 
-pub(super) fn warn_infinite(model: &mut Model, infinite: usize) {
-    if infinite > 0 {
-        let message = format!("{infinite} vertices have a coordinate that is NaN or infinite");
-        model.warn(Place::Whole, message);
-    }
-}
-
 /// Warns of faces that were left out or changed.
 pub(super) fn warn_of_faces(model: &mut Model, faces: &Faces) {
     for (tally, message) in faces.warnings() {
-        if tally.count > 0 {
-            model.warn(tally.first.clone(), format!("{} {message}", tally.count));
-        }
+        model.warn_of(tally, message);
     }
 }
 

@@ -422,7 +422,7 @@ impl<R: Read + Seek> crate::Pieces for Pieces<R> {
             triangles = seen.triangles;
             finish::check_dangling(&mut model, &seen.bounds, triangles == 0)?;
         }
-        finish::warn_infinite(&mut model, infinite);
+        model.warn_infinite(infinite);
         if let Some(seen) = &self.faces_seen {
             finish::warn_of_faces(&mut model, &seen.faces);
         }

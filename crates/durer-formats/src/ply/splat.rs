@@ -86,14 +86,10 @@ pub(super) fn discs(model: &mut Model, vertices: &Vertices, limits: &Limits) -> 
 fn tell(model: &mut Model, thin: usize, broken: u64) {
     let message = "Gaussian splats are shown as opaque discs, of one color from all sides";
     model.warn(Place::Whole, message);
-    if thin > 0 {
-        let message = format!("{thin} splats of an opacity below {OPACITY} are left out");
-        model.warn(Place::Whole, message);
-    }
-    if broken > 0 {
-        let message = format!("{broken} splats have no finite size or rotation and are left out");
-        model.warn(Place::Whole, message);
-    }
+    let words = format!("{{splat|splats}} of an opacity below {OPACITY} {{is|are}} left out");
+    model.warn_counted(Place::Whole, thin as u64, &words);
+    let words = "{splat has|splats have} no finite size or rotation and {is|are} left out";
+    model.warn_counted(Place::Whole, broken, words);
 }
 
 impl Shape {

@@ -67,10 +67,8 @@ fn parts(
     if let Some(last) = parts.last_mut() {
         last.range.end = mesh.triangle_count() as u32;
     }
-    if unknown > 0 {
-        let message =
-            format!("{unknown} faces name a picture that the file has not; they are grey");
-        model.warn(Place::Whole, message);
-    }
+    let words =
+        "{face names|faces name} a picture that the file does not have; {it is|they are} grey";
+    model.warn_counted(Place::Whole, unknown, words);
     parts
 }

@@ -4,6 +4,7 @@ use super::{add, check_limit, finished};
 use crate::last_digit::last_digit;
 use crate::model::count_infinite;
 use crate::text::{Cursor, Tally, quote};
+use crate::told::counted;
 use crate::{Error, Limits, Model, Place, Result, number, place, polygon};
 use durer::math::DVec3;
 use durer::scene::{Mesh, Part};
@@ -251,8 +252,8 @@ impl<'a> Ascii<'a> {
         self.warn(model);
         if cut || self.inside_solid {
             let message = format!(
-                "the file ends without `endsolid`; {} whole triangles were read",
-                whole / 3
+                "the file ends without `endsolid`; {} read",
+                counted(whole as u64 / 3, "whole triangle was", "whole triangles were")
             );
             model.warn(place, message);
         }
@@ -276,14 +277,21 @@ impl<'a> Ascii<'a> {
 
     fn warn(&self, model: &mut Model) {
         for (tally, message) in [
-            (&self.unknown, "words are not STL and were skipped"),
-            (&self.small, "facets have fewer than three vertices and were left out"),
-            (&self.bad_vertices, "vertices are not three numbers; their facets were left out"),
-            (&self.decimal_commas, "numbers have a decimal comma; it was read as a point"),
+            (&self.unknown, "{word is|words are} not STL and {was|were} skipped"),
+            (
+                &self.small,
+                "{facet has|facets have} fewer than three vertices and {was|were} left out",
+            ),
+            (
+                &self.bad_vertices,
+                "{vertex is not three numbers; its facet was|vertices are not three numbers; their facets were} left out",
+            ),
+            (
+                &self.decimal_commas,
+                "{number has a decimal comma|numbers have decimal commas}; {it was read as a point|they were read as points}",
+            ),
         ] {
-            if tally.count > 0 {
-                model.warn(tally.first.clone(), format!("{} {message}", tally.count));
-            }
+            model.warn_of(tally, message);
         }
     }
 

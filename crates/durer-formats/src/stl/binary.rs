@@ -4,6 +4,7 @@ use super::palette::Palette;
 use super::{HEADER, RECORD, add, check_limit, count_in_header, finished};
 use crate::budget::MODEL;
 use crate::model::count_infinite;
+use crate::told::counted;
 use crate::{Error, Limits, Model, Place, ReadOptions, Result};
 use durer::math::{DVec3, Vec3};
 use durer::scene::{Mesh, Part};
@@ -55,8 +56,8 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Model> {
     let mut model = Model { format: BINARY.to_owned(), ..Model::default() };
     let (Some(count), Some(data)) = (count_in_header(bytes), bytes.get(HEADER..)) else {
         let message = format!(
-            "the file has {} bytes; a binary STL has at least {HEADER}, an ascii one begins with `solid`",
-            bytes.len()
+            "the file has {}; a binary STL has at least {HEADER}, an ascii one begins with `solid`",
+            counted(bytes.len() as u64, "byte", "bytes")
         );
         return Err(Error::byte(bytes.len() as u64, message));
     };
@@ -72,21 +73,21 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Model> {
 fn records<'a>(model: &mut Model, data: &'a [u8], count: u32) -> Result<&'a [[u8; RECORD]]> {
     let (whole, rest) = data.as_chunks::<RECORD>();
     let (said, there) = (count as usize, whole.len());
+    let triangles = counted(u64::from(count), "triangle", "triangles");
     if said > there {
-        let message = format!("the header counts {said} triangles, the file has room for {there}");
+        let message = format!("the header counts {triangles}, the file has room for {there}");
         if there == 0 {
             return Err(Error::byte(80, message));
         }
         model.warn(Place::Byte(80), message + "; those were read");
     } else if said < there && (said == 0 || rest.is_empty()) {
         let message =
-            format!("the header counts {said} triangles, the file holds {there}; all were read");
+            format!("the header counts {triangles}, the file holds {there}; all were read");
         model.warn(Place::Byte(80), message);
     } else if data.len() > said * RECORD {
         let end = HEADER + said * RECORD;
-        let message =
-            format!("{} bytes after the last triangle were ignored", data.len() - said * RECORD);
-        model.warn(Place::Byte(end as u64), message);
+        let words = "{byte after the last triangle was|bytes after the last triangle were} ignored";
+        model.warn_counted(Place::Byte(end as u64), (data.len() - said * RECORD) as u64, words);
         return Ok(whole.get(..said).unwrap_or(whole));
     }
     Ok(whole)

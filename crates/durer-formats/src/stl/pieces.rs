@@ -2,7 +2,7 @@
 
 use super::binary::{BINARY, BYTES, Facets, vertices};
 use super::palette::Palette;
-use super::{HEADER, RECORD, count_in_header, warn_infinite};
+use super::{HEADER, RECORD, count_in_header};
 use crate::budget::MODEL;
 use crate::model::count_infinite;
 use crate::pieces::{Facts, Visit, union};
@@ -210,7 +210,7 @@ impl<R: Read + Seek> crate::Pieces for Pieces<R> {
         let mut model = Model { format: BINARY.to_owned(), ..Model::default() };
         model.scene.up_axis = UpAxis::Z;
         model.scene.materials.extend(self.palette.material(colored));
-        warn_infinite(&mut model, infinite);
+        model.warn_infinite(infinite);
         let (triangles, vertices) = (self.count, 3 * self.count);
         Ok(Facts { model, triangles, points: 0, vertices })
     }

@@ -327,42 +327,48 @@ impl<'a, 'b> Assembly<'a, 'b> {
 
     fn warn(&mut self) {
         for (tally, what) in [
-            (&self.hidden, "parts are modifiers, holes or places for supports; they are left out"),
+            (
+                &self.hidden,
+                "{part is a modifier, hole or place for supports; it is|parts are modifiers, holes or places for supports; they are} left out",
+            ),
             (
                 &self.aside,
-                "items are objects of the type `other`, which is not to be built; left out",
+                "{item is an object of the type `other`, which is|items are objects of the type `other`, which are} not to be built; left out",
             ),
-            (&self.empty, "objects have neither triangles nor beams; nothing else is read"),
+            (
+                &self.empty,
+                "{object has|objects have} neither triangles nor beams; nothing else is read",
+            ),
         ] {
-            tell(self.model, tally, what);
+            self.model.warn_of(tally, what);
         }
-    }
-}
-
-fn tell(model: &mut Model, tally: &Tally, what: &str) {
-    if tally.count > 0 {
-        model.warn(tally.first.clone(), format!("{} {what}", tally.count));
     }
 }
 
 fn warn_of_faults(model: &mut Model, faults: Faults) {
     for (tally, what) in [
-        (faults.colors, "colors are not #RRGGBB or #RRGGBBAA; they are grey"),
+        (
+            faults.colors,
+            "{color is not #RRGGBB or #RRGGBBAA; it is|colors are not #RRGGBB or #RRGGBBAA; they are} grey",
+        ),
         (
             faults.vertices,
-            "triangles refer to vertices that the object does not have; they are left out",
+            "{triangle refers to vertices that the object does not have; it is|triangles refer to vertices that the object does not have; they are} left out",
         ),
         (
             faults.beams,
-            "beams or balls refer to vertices that the object does not have; they are left out",
+            "{beam or ball refers to vertices that the object does not have; it is|beams or balls refer to vertices that the object does not have; they are} left out",
         ),
-        (faults.clipped, "beam lattices are to be cut at another mesh; they are shown whole"),
+        (
+            faults.clipped,
+            "beam {lattice is|lattices are} to be cut at another mesh; {it is|they are} shown whole",
+        ),
         (
             faults.layers,
-            "multiproperties lay pictures and colors over each other; of these one is shown",
+            "{multiproperty lays|multiproperties lay} pictures and colors over each other; of these one is shown",
         ),
     ] {
-        tell(model, &tally, what);
+        model.warn_of(&tally, what);
     }
 }
 
@@ -370,17 +376,18 @@ fn warn_of_repairs(model: &mut Model, repairs: &Repairs) {
     for (count, what) in [
         (
             repairs.unknown,
-            "triangles refer to properties that the file does not have; there they are grey",
+            "{triangle refers to properties that the file does not have; there it is|triangles refer to properties that the file does not have; there they are} grey",
         ),
-        (repairs.paint, "triangles have an invalid paint code; the rest of the code is ignored"),
+        (
+            repairs.paint,
+            "{triangle has|triangles have} an invalid paint code; the rest of the code is ignored",
+        ),
         (
             repairs.hidden,
-            "triangles are modifiers, holes or places for supports; they are left out",
+            "{triangle is a modifier, hole or place for supports; it is|triangles are modifiers, holes or places for supports; they are} left out",
         ),
     ] {
-        if count > 0 {
-            model.warn(Place::Whole, format!("{count} {what}"));
-        }
+        model.warn_counted(Place::Whole, count, what);
     }
     if repairs.made_up {
         let message = "painted for filaments whose colors the file does not say; they are made up";
